@@ -1,30 +1,35 @@
-"""The best nominal of measured records: fitted with every mechanism that takes a share off its gap.
+"""Measured records written as recordings, with nominals that are fitted to them.
 
-Mechanisms are effects of the library, added one by one while the best of them takes WORTH off the gap. Further effects
-are put into the records beside them.
+A carrier's nominal holds every mechanism that takes a share off its gap: effects of the library, added one by one while
+the best of them takes WORTH off. Further effects are put into the records beside them.
 """
 
 from __future__ import annotations
 
 import copy
+import dataclasses
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from real_rigs import STEP, quick, write_part
-from rig_records import Addition, Array, CarrierRecords, Nominal
+import pandas as pd
+from numpy.typing import NDArray
+from rig_records import Addition, Array, CarrierRecords, Nominal, RigRecords, Runs
 from ruamel.yaml import YAML
 from scipy.optimize import least_squares
 
 from seatsim.recordings.gap import pool_runs
-from seatsim.recordings.recording import Recording, load_recording
+from seatsim.recordings.recording import BENCH_CHANNELS, SEAT_CHANNELS, ChannelEntry, Recording, load_recording
 from seatsim.scenario.loading import single
 from seatsim.schema.fields import bounds
 from seatsim.schema.files import write_whole
 from seatsim.schema.registry import find
 
+DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
+STEP = 1e-3
+"""Relative step of the finite differences, above the error of the time integration."""
 WORTH = 0.03
 """Share of the gap that a mechanism must take off to stand in a nominal."""
 TOLERANCE = 0.05
@@ -58,11 +63,39 @@ def write_carrier(carrier: CarrierRecords, folder: Path) -> Path:
     return out
 
 
+def write_part(rig: RigRecords, nominal: Nominal, runs: Runs, folder: Path, tolerance: float) -> None:
+    """Write some of a rig's records and a nominal as one recording."""
+    units = SEAT_CHANNELS if rig.kind == "seat" else BENCH_CHANNELS
+    entries = [{"name": name, "file": f"{name}.csv.gz"} for name in runs]
+    for entry in entries[1:] if rig.repeats else ():
+        entry["repeat_of"] = entries[0]["name"]
+    channels = next(iter(runs.values()))
+    noise = {name: {"noise_rms": float(f"{rig.noise[name]:.3g}")} if name in rig.noise else {} for name in channels}
+    header: dict[str, object] = {"rig": rig.kind, "sample_rate": rig.sample_rate, "parameter_tolerance": tolerance}
+    header |= {"nominal": "nominal.yaml", "runs": entries}
+    header["channels"] = {name: {"unit": units[name]} | noise[name] for name in channels}
+    if rig.voltage_gain is not None:
+        header["actuator"] = {"gain": rig.voltage_gain}
+    for name, table in runs.items():
+        frame = pd.DataFrame({"time": np.arange(len(next(iter(table.values())))) / rig.sample_rate, **table})
+        write_whole(folder / f"{name}.csv.gz", partial(frame.to_csv, index=False, float_format="%.9g"))
+    for file, content in (("nominal.yaml", nominal), ("recording.yaml", header)):
+        write_whole(folder / file, partial(YAML(typ="safe").dump, content))
+
+
+def quick(recording: Recording) -> Recording:
+    """Return the recording with a displacement that is interpolated, not smoothed: a fit replays it often."""
+    if "displacement" not in recording.channels:
+        return recording
+    channels = recording.channels | {"displacement": ChannelEntry("m", 0.0)}
+    return dataclasses.replace(recording, channels=channels)
+
+
 def identify(
     recording: Recording, start: Nominal, free: Sequence[str], mechanisms: Sequence[Addition]
 ) -> tuple[Fit, list[str]]:
     """Return the nominal fitted to all runs, and the names of the mechanisms that it holds."""
-    best, kept = fit(recording, start, free, []), list[Addition]()
+    best, kept = fit(recording, start, free), list[Addition]()
     while len(kept) < len(mechanisms):
         trials = [(fit(recording, best.nominal, free, [*kept, m]), m) for m in mechanisms if m not in kept]
         next_best, added = min(trials, key=lambda trial: trial[0].gap)
@@ -72,8 +105,17 @@ def identify(
     return best, [name for name, _, _ in kept]
 
 
-def fit(recording: Recording, start: Nominal, free: Sequence[str], mechanisms: Sequence[Addition]) -> Fit:
-    """Return the nominal with its free parameters and those of mechanisms fitted; x counts in starts of each."""
+def fit(
+    recording: Recording,
+    start: Nominal,
+    free: Sequence[str],
+    mechanisms: Sequence[Addition] = (),
+    counted: NDArray[np.bool_] | slice = slice(None),
+) -> Fit:
+    """Return the nominal with its free parameters and those of mechanisms fitted to the rows counted.
+
+    x counts in starts of each parameter.
+    """
     known = {entry["effect"]: entry["parameters"] for entry in start.get("effects", [])}
     x0, low, high = [1.0] * len(free), [0.05] * len(free), [20.0] * len(free)
     for effect, _, starts in mechanisms:
@@ -87,7 +129,7 @@ def fit(recording: Recording, start: Nominal, free: Sequence[str], mechanisms: S
     def residual(x: Array) -> Array:
         scenario = single(recording.nominal_file, nominal_at(start, free, mechanisms, x))
         measured, simulated = pool_runs(scenario, recording, list(recording.runs))
-        return np.concatenate([(simulated[name] - measured[name]) / np.std(measured[name]) for name in measured])
+        return np.concatenate([((simulated[n] - measured[n]) / np.std(measured[n]))[counted] for n in measured])
 
     found = least_squares(residual, x0, bounds=(low, high), diff_step=np.full(len(x0), STEP), max_nfev=STEPS)
     return Fit(nominal_at(start, free, mechanisms, found.x), float(np.sqrt(np.mean(found.fun**2))))
@@ -98,7 +140,7 @@ def nominal_at(start: Nominal, free: Sequence[str], mechanisms: Sequence[Additio
     nominal, values = copy.deepcopy(start), iter(x)
     for dotted, factor in zip(free, values, strict=False):
         name, _, key = dotted.partition(".")
-        section = nominal["damper"]["parameters"] if name == "damper" else _section(nominal, name)
+        section = nominal["damper"]["parameters"] if name == "damper" else nominal[name]
         for k in SHARED if key == "A" else (key,):
             section[k] = float(f"{section[k] * factor:.5g}")
     rest = iter(x[len(free) :])
@@ -107,10 +149,6 @@ def nominal_at(start: Nominal, free: Sequence[str], mechanisms: Sequence[Additio
         for effect, fixed, starts in mechanisms
     ]
     return nominal
-
-
-def _section(nominal: Nominal, name: str) -> dict[str, float]:
-    return nominal["plant"] if name == "plant" else nominal["actuator"]
 
 
 def read_gap(folder: Path) -> tuple[float, str]:

@@ -8,18 +8,19 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
-from rich.console import Console
-from rich.table import Table
 from threadpoolctl import threadpool_limits
 
 from seatsim.blind.labels import KINDS, Label
-from seatsim.blind.score.measures import Rate
+from seatsim.blind.score.cases import Rate
 from seatsim.blind.score.score import score_verdicts
 from seatsim.blind.score.verdicts import read_verdict
 from seatsim.blind.sealed import unseal
+from seatsim.diagnosis.design.isolability import find_isolable_groups
 from seatsim.diagnosis.noise import NoiseWeights, weigh_uniformly
 from seatsim.diagnosis.problem import DiagnosisProblem
+from seatsim.recordings.recording import Recording
 from seatsim.schema.errors import SeatsimError
 from seatsim.schema.files import write_json
 from seatsim.schema.processes import run_jobs
@@ -38,6 +39,20 @@ LEAST_NOISE = 1e-3
 """Least noise of a channel, in its standard deviations, that is taken to be stated: a weight must be finite."""
 
 
+def encode_verdict(
+    recording: Recording, kind: str, effects: Sequence[str], blocks: Sequence[str] = ()
+) -> EncodedDiagnosis:
+    """Return the content of `diagnosis.json`; blocks are those of the effects unless stated."""
+    ranked = list(dict.fromkeys([*blocks, *(effect.partition(".")[0] for effect in effects)]))
+    return {
+        "verdict": kind,
+        "where": [{"block": block, "share": 1.0 / len(ranked)} for block in ranked] if kind != "none" else [],
+        "causes": [{"effect": effect, "probability": 1.0} for effect in effects],
+        "selected": list(effects),
+        "isolable": find_isolable_groups(recording.header.rig, recording.channels),
+    }
+
+
 def rank_by_figure(pairs: Sequence[tuple[str, float]]) -> Ranked:
     """Return the effects by their largest figure."""
     best: dict[str, float] = {}
@@ -52,15 +67,12 @@ def make_parser(description: str) -> argparse.ArgumentParser:
     parser.add_argument("folder", type=Path, metavar="DIR", help="folder of `seatsim blind make`")
     parser.add_argument("--sealed", type=Path, required=True, help="its sealed file")
     parser.add_argument("--key", required=True, help="the key that `blind make` printed")
-    parser.add_argument("--cases", type=int, help="only the first so many cases of the folder")
     return parser
 
 
 def open_labels(options: argparse.Namespace) -> dict[str, Label]:
-    """Return the labels of the cases asked for."""
-    labels = unseal(options.sealed, options.key, options.folder).labels
-    present = sorted(path.parent.name for path in options.folder.glob("case-*/recording.yaml"))
-    return {name: labels[name] for name in present[: options.cases]}
+    """Return the labels of the set asked for."""
+    return unseal(options.sealed, options.key, options.folder).labels
 
 
 def diagnose_cases(base: Path, cases: Sequence[str], methods: Mapping[str, Diagnoser]) -> None:
@@ -86,21 +98,17 @@ def write_verdict(out: Path, method: Diagnoser) -> None:
 
 
 def show_scores(title: str, base: Path, labels: Mapping[str, Label], methods: Sequence[str]) -> None:
-    """Print one table of how often each method is right on the cases; a case without a verdict counts as wrong."""
-    table = Table(title=f"{title}, {len(labels)} cases", title_justify="left")
-    table.add_column("method")
-    for heading in ("right", *KINDS, "block first", "false alarms"):
-        table.add_column(heading, justify="right")
+    """Print how many verdicts of each method are right; a case without a verdict counts as wrong."""
+    rows = {}
     for method in methods:
         verdicts = {case: read_verdict(base / case / method / "diagnosis.json") for case in labels}
-        missing = sum(verdict.verdict == "missing" for verdict in verdicts.values())
-        if missing == len(verdicts):
-            continue
-        score = score_verdicts(labels, verdicts)
-        rates = [score.right, *(score.kinds.get(kind, Rate(0, 0)) for kind in KINDS), score.block, score.false_alarms]
-        name = f"{method} ({missing} missing)" if missing else method
-        table.add_row(name, *(f"{r.value:.3f} {r.right}/{r.total}" if r.total else "-" for r in rates))
-    Console(width=150).print(table)
+        if any(verdict.verdict != "missing" for verdict in verdicts.values()):
+            score = score_verdicts(labels, verdicts)
+            rates: dict[str, Rate] = {"right": score.right, "block first": score.block}
+            rates |= {kind: score.kinds.get(kind, Rate(0, 0)) for kind in KINDS}
+            rates["false alarms"] = score.false_alarms
+            rows[method] = {name: f"{rate.right}/{rate.total}" for name, rate in rates.items()}
+    print(f"{title}, {len(labels)} cases\n{pd.DataFrame.from_dict(rows, orient='index').to_string()}")
 
 
 def weigh_stated_noise(problem: DiagnosisProblem) -> NoiseWeights:

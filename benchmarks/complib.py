@@ -13,11 +13,9 @@ import csv
 import json
 import time
 from pathlib import Path
-from typing import TypedDict
 
 import numpy as np
-from rich.console import Console
-from rich.table import Table
+import pandas as pd
 from threadpoolctl import threadpool_limits
 
 from controllers import Design, GeneralisedPlant, synthesise
@@ -28,20 +26,9 @@ NEGLIGIBLE = 1e-6
 """AC1, UWV and NN10 have an infimum of zero."""
 
 
-class ProblemResult(TypedDict, total=False):
-    """A line of the file: the problem, then either why there is no design or its figures, then the times in s."""
-
-    name: str
-    order: int
-    gains: int
-    error: str
-    gamma: float
-    grid: float
-    largest_gain: float
-    lower_bound: float
-    delta: float | None
-    wall: float
-    processor: float
+ProblemResult = dict[str, str | float | None]
+"""A line of the file: the problem, then either why there is no design or its figures, then the times in s."""
+FIGURES = ["order", "gains", "gamma", "lower_bound", "delta", "grid", "wall", "processor"]
 
 
 def load_problem(path: Path) -> GeneralisedPlant:
@@ -50,13 +37,13 @@ def load_problem(path: Path) -> GeneralisedPlant:
     return GeneralisedPlant(*(p[key] for key in ("A", "B1", "B", "C1", "C", "D11", "D12", "D21")))
 
 
-def solve(path: Path, budget: float, max_gain: float, designs: Path) -> ProblemResult:
+def solve(path: Path, budget: float, designs: Path) -> ProblemResult:
     """Return what a synthesis found, with its time on the wall and on the processor."""
     plant = load_problem(path)
     wall, processor = time.monotonic(), time.process_time()
     found: ProblemResult = {"name": path.stem, "order": plant.order, "gains": int(plant.free.sum())}
     try:
-        design = synthesise(plant, max_gain=max_gain, time_budget=budget)
+        design = synthesise(plant, max_gain=1e6, time_budget=budget)
     except SynthesisError as error:
         found["error"] = str(error)
     else:
@@ -76,46 +63,25 @@ def describe(plant: GeneralisedPlant, design: Design) -> ProblemResult:
     }
 
 
-def tabulate(found: list[ProblemResult], best: dict[str, float]) -> Table:
-    """Return one row a problem: gamma, best known, their ratio, certified delta, disagreement of the norms, times."""
-    rows = Table(box=None)
-    for name in ("problem", "n", "gains", "gamma", "best", "ratio", "delta", "norms", "bound", "s", "cpu s"):
-        rows.add_column(name, justify="left" if name == "problem" else "right")
-    for f in found:
-        if "error" in f:
-            rows.add_row(f["name"], str(f["order"]), str(f["gains"]), "none", f"{best.get(f['name'], np.nan):.6g}")
-            continue
-        gamma, known = f["gamma"], best.get(f["name"], np.nan)
-        rows.add_row(
-            f["name"],
-            str(f["order"]),
-            str(f["gains"]),
-            f"{gamma:.6g}",
-            f"{known:.6g}",
-            f"{ratio(gamma, known):.4f}",
-            "-" if f["delta"] is None else f"{f['delta']:.0e}",
-            f"{abs(f['grid'] / gamma - 1):.0e}" if gamma else "0",
-            f"{f['lower_bound']:.4g}",
-            f"{f['wall']:.1f}",
-            f"{f['processor']:.1f}",
-        )
-    return rows
+def tabulate(found: list[ProblemResult], best: dict[str, float]) -> pd.DataFrame:
+    """Return a row for each problem: its figures, the best value known, and gamma over that.
+
+    The ratio is 1 where both are negligible, and infinite where there is no design.
+    """
+    frame = pd.DataFrame(found).set_index("name").reindex(columns=FIGURES).astype(float).sort_index()
+    known = pd.Series(best, dtype=float).reindex(frame.index)
+    ratio = frame["gamma"] / known.clip(lower=NEGLIGIBLE)
+    ratio = ratio.mask(np.maximum(frame["gamma"], known) < NEGLIGIBLE, 1.0).mask(frame["gamma"].isna(), np.inf)
+    return frame.assign(best=known, ratio=ratio.where(known.notna()))
 
 
-def ratio(gamma: float, known: float) -> float:
-    """Return gamma over the best known value; 1 where both are negligible."""
-    return 1.0 if max(gamma, known) < NEGLIGIBLE else gamma / max(known, NEGLIGIBLE)
-
-
-def summarise(found: list[ProblemResult], best: dict[str, float]) -> str:
+def summarise(frame: pd.DataFrame) -> str:
     """Return the counts: within 1 %, better by 0.5 %, certified."""
-    ratios = [ratio(f["gamma"], best[f["name"]]) if "gamma" in f else np.inf for f in found if f["name"] in best]
-    deltas = [f["delta"] for f in found if "gamma" in f]
+    ratios, deltas = frame["ratio"].dropna(), frame.loc[frame["gamma"].notna(), "delta"]
     return (
-        f"{sum(r <= 1.01 for r in ratios)} of {len(ratios)} within 1 % of the best known value, "
-        f"{sum(r < 0.995 for r in ratios)} better by more than 0.5 %; of {len(deltas)} designs "
-        f"{sum(d is not None and d <= 1.01e-4 for d in deltas)} are certified at 1e-4, "
-        f"{sum(d is not None for d in deltas)} at 0.05"
+        f"{(ratios <= 1.01).sum()} of {len(ratios)} within 1 % of the best known value, "
+        f"{(ratios < 0.995).sum()} better by more than 0.5 %; of {len(deltas)} designs "
+        f"{(deltas <= 1.01e-4).sum()} are certified at 1e-4, {deltas.notna().sum()} at 0.05"
     )
 
 
@@ -126,7 +92,6 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--only", nargs="*", default=[])
     parser.add_argument("--budget", type=float, default=30.0)
-    parser.add_argument("--max-gain", type=float, default=1e6)
     options = parser.parse_args()
     designs = options.out.parent / "designs"
     designs.mkdir(parents=True, exist_ok=True)
@@ -138,7 +103,7 @@ def main() -> None:
         if path.stem in done or (options.only and path.stem not in options.only):
             continue
         with threadpool_limits(1):
-            result = solve(path, options.budget, options.max_gain, designs)
+            result = solve(path, options.budget, designs)
         with options.out.open("a") as stream:
             stream.write(json.dumps(result) + "\n")
         print(json.dumps(result), flush=True)
@@ -146,9 +111,9 @@ def main() -> None:
     with (options.folder / "best_known.csv").open() as stream:
         known = {row["problem"]: row["best_measured_gamma"] for row in csv.DictReader(stream)}
     best = {name: float(value) for name, value in known.items() if value}
-    console = Console(width=140)
-    console.print(tabulate(sorted(found, key=lambda f: f["name"]), best))
-    console.print(summarise(found, best))
+    frame = tabulate(found, best)
+    print(frame.to_string(float_format=lambda value: f"{value:.5g}"))
+    print(summarise(frame))
 
 
 if __name__ == "__main__":

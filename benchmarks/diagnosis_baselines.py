@@ -2,8 +2,9 @@
 
 Each is given the rig with its parameters refitted inside their tolerance, and writes `CASE/BASELINE/diagnosis.json`;
 cases that have one are skipped. The table says how often each is right, beside `CASE/diagnosis` where that is there.
-Thresholds are for each baseline those with the most right verdicts on the first 40 of 120 development cases (11 none,
-13 one effect, 7 two, 9 outside), a second effect beside a right single one counted as wrong; chosen once, then frozen.
+Thresholds of `correlation` and `bic` are those with the most right verdicts on the first 40 of 120 development cases
+(11 none, 13 one effect, 7 two, 9 outside), a second effect beside a right single one counted as wrong; chosen once,
+then frozen. Those of `sparse` were not tuned.
 
 correlation  Cosine, by channel over all runs, of the residual with what each candidate at its start changes. The effect
     with the largest |cosine| is named from NAMED on. It is then projected out of each channel, and a second one is
@@ -12,10 +13,10 @@ correlation  Cosine, by channel over all runs, of the residual with what each ca
 bic  Forward selection with seatsim's own candidates and fits, chi^2 from the stated noise as if it were white,
     BIC = N ln(chi^2 / N) + k ln N with N the numbers compared and k the free parameters of the effects, up to three
     effects while BIC falls, ranked by how much they move; `unknown` where chi^2 / N stays above MISFIT.
-sindy  Sparse regression (STLSQ of pysindy) of what equations leave that are fed measured signals, on terms that each
-    stand for one effect (EQUATIONS), all in units of what noise alone leaves there. An effect is worth what its terms
-    take off an equation; named from TERM on, a second one from TERM_NEXT on. Where an equation keeps more than LEFT:
-    `unknown`, in its block.
+sparse  Sequentially thresholded least squares (the optimiser of SINDy, Brunton et al. 2016) of the residual, in noise
+    units, on what each candidate at its start changes: columns whose share of the residual stays below SPARSE are
+    dropped until none is. Effects are ranked by what their columns take off, at most two; `unknown` where more than
+    LEFT of the residual's power beyond noise is left.
 """
 
 from __future__ import annotations
@@ -26,22 +27,21 @@ from pathlib import Path
 
 import numpy as np
 from cases import (
+    LEAST_NOISE,
     Array,
     Diagnoser,
     EncodedDiagnosis,
     Ranked,
     diagnose_cases,
+    encode_verdict,
     make_parser,
     open_labels,
     rank_by_figure,
     show_scores,
     weigh_stated_noise,
 )
-from measured_motion import has_measured_motion
-from sparse_regression import rank_by_regression
 
 from seatsim.diagnosis.candidates import list_candidates
-from seatsim.diagnosis.design.isolability import find_isolable_groups
 from seatsim.diagnosis.fit import fit
 from seatsim.diagnosis.movement import measure_movements
 from seatsim.diagnosis.objective import Evaluation, Objective
@@ -53,24 +53,10 @@ from seatsim.recordings.recording import load_recording
 
 NAMED, NAMED_NEXT, LARGE = 0.85, 0.8, 0.02
 MISFIT = 8.0
-TERM, TERM_NEXT, LEFT = 0.4, 1.2, 2.0
+SPARSE, LEFT, SWEEPS = 0.15, 0.5, 10
 FULL = DiagnosisSettings()
 TO_THE_END = FULL._replace(selection=FULL.selection._replace(worthwhile=np.inf, promising=1e9, nothing_left=-1.0))
 """Settings under which every larger set is sought, so that BIC alone says how many effects there are."""
-
-
-def encode_verdict(
-    problem: DiagnosisProblem, kind: str, effects: Sequence[str], blocks: Sequence[str] = ()
-) -> EncodedDiagnosis:
-    """Return the content of `diagnosis.json`; blocks are those of the effects unless stated."""
-    ranked = list(dict.fromkeys([*blocks, *(effect.partition(".")[0] for effect in effects)]))
-    return {
-        "verdict": kind,
-        "where": [{"block": block, "share": 1.0 / len(ranked)} for block in ranked] if kind != "none" else [],
-        "causes": [{"effect": effect, "probability": 1.0} for effect in effects],
-        "selected": list(effects), "indistinguishable": [],
-        "isolable": find_isolable_groups(problem.recording.header.rig, problem.recording.channels),
-    }  # fmt: skip
 
 
 def calibrate(objective: Objective) -> Evaluation:
@@ -87,19 +73,29 @@ def diagnose_by_correlation(case: Path) -> EncodedDiagnosis:
         problem = pose_problem(load_recording(case), pool)
         objective = Objective(problem, weigh_stated_noise(problem))
         off, first, second = correlate(objective, calibrate(objective))
-    if first[0][1] < NAMED:
-        return encode_verdict(problem, "unknown" if off > LARGE else "none", [], [first[0][0].partition(".")[0]])
-    named = [first[0][0]] + [effect for effect, cosine in second[:1] if cosine >= NAMED_NEXT]
-    return encode_verdict(problem, "known", named)
+    best, cosine = first[0]
+    if cosine < NAMED:
+        return encode_verdict(problem.recording, "unknown" if off > LARGE else "none", [], [best.partition(".")[0]])
+    named = [best] + [effect for effect, other in second[:1] if other >= NAMED_NEXT]
+    return encode_verdict(problem.recording, "known", named)
 
 
-def correlate(objective: Objective, calibrated: Evaluation) -> tuple[float, Ranked, Ranked]:
-    """Return the largest gap of a channel beyond its noise, the effects by |cosine|, and again without the first."""
+def list_changes(objective: Objective, calibrated: Evaluation) -> tuple[Array, list[tuple[str, Array]]]:
+    """Return the residual of the calibrated rig and, by effect, what each candidate at its start changes in it.
+
+    Each has the shape (channels, rows of all runs).
+    """
     problem = objective.problem
     candidates = list_candidates(problem)
     starts = objective.evaluate([calibrated.parameters.add(c, np.array(c.start)) for c in candidates])
     residual = _pool_runs(calibrated, problem)
     changes = [(c.effect, residual - _pool_runs(start, problem)) for c, start in zip(candidates, starts, strict=True)]
+    return residual, changes
+
+
+def correlate(objective: Objective, calibrated: Evaluation) -> tuple[float, Ranked, Ranked]:
+    """Return the largest gap of a channel beyond its noise, the effects by |cosine|, and again without the first."""
+    problem, (residual, changes) = objective.problem, list_changes(objective, calibrated)
     power = np.mean(residual**2, axis=1) - problem.noise**2
     off = float(np.max(np.sqrt(power.clip(0.0)) / problem.spread))
     cosines = [(effect, _largest_cosine(residual, change, problem)) for effect, change in changes]
@@ -133,7 +129,7 @@ def diagnose_by_bic(case: Path) -> EncodedDiagnosis:
         sizes = [float(np.mean(move**2)) for move in measure_movements(problem, chosen)]
     ranked = rank_by_figure([(term.effect, size) for term, size in zip(chosen.parameters.terms, sizes, strict=True)])
     kind = "unknown" if misfit > MISFIT else "known" if ranked else "none"
-    return encode_verdict(problem, kind, [effect for effect, _ in ranked])
+    return encode_verdict(problem.recording, kind, [effect for effect, _ in ranked])
 
 
 def select_by_bic(objective: Objective) -> tuple[Evaluation, float]:
@@ -156,20 +152,38 @@ def diagnose_by_regression(case: Path) -> EncodedDiagnosis:
     """Return the verdict by sparse regression."""
     with ThreadPoolExecutor() as pool:
         problem = pose_problem(load_recording(case), pool)
-        if not has_measured_motion(problem):
-            return encode_verdict(problem, "unknown", [], ["damper"])
-        ranked, left = rank_by_regression(problem)
-    block = max(left, key=lambda name: left[name])
-    named = [effect for effect, worth in ranked[:1] if worth >= TERM]
-    named += [effect for effect, worth in ranked[1:2] if named and worth >= TERM_NEXT]
-    if left[block] > LEFT:
-        return encode_verdict(problem, "unknown", named, [block])
-    return encode_verdict(problem, "known" if named else "none", named)
+        objective = Objective(problem, weigh_stated_noise(problem))
+        residual, changes = list_changes(objective, calibrate(objective))
+    noise = np.maximum(problem.noise, LEAST_NOISE * problem.spread)[:, None]
+    changes = [(effect, change) for effect, change in changes if np.all(np.isfinite(change))]
+    ranked, left = regress_sparsely((residual / noise).ravel(), [(e, (c / noise).ravel()) for e, c in changes])
+    power = float(np.mean((residual / noise) ** 2))
+    if power < MISFIT:
+        return encode_verdict(problem.recording, "none", [])
+    named = [effect for effect, _ in ranked[:2]]
+    return encode_verdict(problem.recording, "unknown" if left > LEFT * power or not named else "known", named)
+
+
+def regress_sparsely(target: Array, columns: Sequence[tuple[str, Array]]) -> tuple[Ranked, float]:
+    """Return the effects by the power that their columns take off the target, and the power that is left."""
+    kept = [k for k, (_, column) in enumerate(columns) if float(column @ column) > 0.0]
+    shares: Array = np.zeros(0)
+    for _ in range(SWEEPS):
+        matrix = np.column_stack([columns[k][1] for k in kept]) if kept else np.zeros((len(target), 0))
+        shares = np.asarray(np.linalg.lstsq(matrix, target, rcond=None)[0])
+        size = np.linalg.norm(matrix * shares, axis=0) / np.linalg.norm(target)
+        if np.all(size >= SPARSE):
+            break
+        kept = [k for k, share in zip(kept, size, strict=True) if share >= SPARSE]
+    worth = [(columns[k][0], float(np.mean((columns[k][1] * s) ** 2))) for k, s in zip(kept, shares, strict=True)]
+    return rank_by_figure(worth), float(np.mean((target - matrix @ shares) ** 2))
 
 
 BASELINES: dict[str, Diagnoser] = {
-    "correlation": diagnose_by_correlation, "bic": diagnose_by_bic, "sindy": diagnose_by_regression,
-}  # fmt: skip
+    "correlation": diagnose_by_correlation,
+    "bic": diagnose_by_bic,
+    "sparse": diagnose_by_regression,
+}
 
 
 def main() -> None:

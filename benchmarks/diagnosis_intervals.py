@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
-from collections.abc import Mapping
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
@@ -21,10 +20,9 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
-from rich.console import Console
-from rich.table import Table
 from scipy.signal import butter, sosfilt
 from threadpoolctl import threadpool_limits
+from typical_effects import CHANNELS
 
 from seatsim.diagnosis.candidates import Candidate, list_candidates
 from seatsim.diagnosis.noise import weigh_noise
@@ -54,10 +52,6 @@ temperature: 20.0
 controller: {law: replay}
 excitation: {kind: recording}
 """
-NOISE = {
-    "floor_acceleration": 0.01, "frame_acceleration": 0.03, "driver_acceleration": 0.015,
-    "suspension_displacement": 5e-5, "damper_force": 2.5, "coil_current": 0.003,
-}  # fmt: skip
 SIZES = {
     ("sensor.gain", "error"): (0.03, 0.12), ("sensor.bias", "share"): (0.05, 0.3),
     ("sensor.lag", "time"): (0.003, 0.012),
@@ -115,7 +109,7 @@ def make_recording(folder: Path, rng: np.random.Generator, effect: str) -> tuple
     size = rng.uniform(*SIZES[effect, parameter])
     write_text(folder / "nominal.yaml", NOMINAL)
     header = Header("seat", RATE, "nominal.yaml", TOLERANCE)
-    channels = {name: ChannelEntry(SEAT_CHANNELS[name], noise) for name, noise in NOISE.items()}
+    channels = {name: ChannelEntry(SEAT_CHANNELS[name], noise) for name, noise in CHANNELS.items()}
     channels["current_command"] = ChannelEntry("A", 0.0)
     runs = {f"run-{k}": RunEntry(f"run-{k}", f"run-{k}.csv") for k in range(RUNS)}
     blank = TabledRecording(folder, header, runs, channels, None, {run: draw_inputs(rng) for run in runs})
@@ -135,7 +129,7 @@ def make_recording(folder: Path, rng: np.random.Generator, effect: str) -> tuple
         assert isinstance(inputs, SeatInputs)
         pushed = inputs._replace(forces=Forces(force * draw_force(rng, len(inputs.floor.acceleration))))
         outputs = respond(truth, pushed, carry_all_effects=True)
-        every = {**table, **{name: outputs[name] for name in NOISE if name in outputs}}
+        every = {**table, **{name: outputs[name] for name in CHANNELS if name in outputs}}
         tables[run] = {name: values + channels[name].noise_rms * rng.standard_normal(len(values))
                        for name, values in every.items()}  # fmt: skip
     return dataclasses.replace(blank, tables=tables), candidate, size
@@ -150,7 +144,9 @@ def draw_force(rng: np.random.Generator, steps: int) -> Array:
 def pose_blank(recording: TabledRecording) -> DiagnosisProblem:
     """Return the problem of inputs alone, with outputs made up, which names parameters and candidates."""
     rows = round(RATE * SECONDS)
-    made_up = {name: np.random.default_rng(0).standard_normal(rows) for name in NOISE if name != "floor_acceleration"}
+    made_up = {
+        name: np.random.default_rng(0).standard_normal(rows) for name in CHANNELS if name != "floor_acceleration"
+    }
     tables = {run: {**made_up, **table} for run, table in recording.tables.items()}
     loud = {name: entry._replace(noise_rms=0.0) for name, entry in recording.channels.items()}
     with ThreadPoolExecutor() as pool:
@@ -184,33 +180,28 @@ def run_case(folder: Path, seed: int, pool: Executor) -> IntervalCase:
     return IntervalCase(effect, term.free[index], size, float(values[index]), float(std))
 
 
-def summarise(cases: Mapping[str, list[IntervalCase]]) -> Table:
-    """Return coverage by effect as a table."""
-    table = Table(title="90 % intervals", title_justify="left")
-    for heading in ("effect", "covered", "median std / |value|", "median |error| / std"):
-        table.add_column(heading, justify="left" if heading == "effect" else "right")
-    for effect, some in cases.items():
-        share = np.median([case.std / abs(case.value) for case in some])
-        ratio = np.median([abs(case.value - case.true) / case.std for case in some])
-        table.add_row(effect, f"{sum(c.covered for c in some)} of {len(some)}", f"{share:.4f}", f"{ratio:.2f}")
-    return table
+def summarise(frame: pd.DataFrame) -> pd.DataFrame:
+    """Return coverage by effect, the last row over all, and medians of std over value and of error over std."""
+    frame = frame.assign(share=frame["std"] / frame["value"].abs(), off=(frame["value"] - frame["true"]).abs())
+    frame["error"] = frame["off"] / frame["std"]
+    figures = {"covered": ("covered", "sum"), "cases": ("covered", "size")}
+    figures |= {"std / |value|": ("share", "median"), "|error| / std": ("error", "median")}
+    return pd.concat([frame.groupby("effect").agg(**figures), frame.groupby(lambda _: "all").agg(**figures)])
 
 
 def main() -> None:
     """Make and fit the cases, print the coverage and write the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--cases", type=int, default=45)
-    parser.add_argument("--first", type=int, default=0, help="seed of the first case")
     parser.add_argument("--out", type=Path, required=True)
     arguments = parser.parse_args()
     cases = []
     with ThreadPoolExecutor() as pool, threadpool_limits(1):
-        for seed in range(arguments.first, arguments.first + arguments.cases):
+        for seed in range(arguments.cases):
             cases.append(run_case(arguments.out, seed, pool))
     frame = pd.DataFrame([case._asdict() | {"covered": case.covered} for case in cases])
     write_whole(arguments.out / "intervals.csv", partial(frame.to_csv, index=False))
-    by_effect = {effect: [case for case in cases if case.effect == effect] for effect, _ in SIZES}
-    Console().print(summarise({"all": cases} | {effect: some for effect, some in by_effect.items() if some}))
+    print(summarise(frame).to_string(float_format="%.3f"))
 
 
 if __name__ == "__main__":

@@ -22,13 +22,13 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple, cast
 
+import pandas as pd
 from cases import PROCESSES, Diagnoser, EncodedDiagnosis, show_progress, write_verdict
 from threadpoolctl import threadpool_limits
 
 from seatsim.blind.labels import Label
 from seatsim.blind.make.draw_case import CaseSpecification
-from seatsim.blind.make.make import draw_files, make_case
-from seatsim.blind.make.unfinished import case_name
+from seatsim.blind.make.make import case_name, draw_files, make_case
 from seatsim.blind.score.verdicts import Verdict, is_right, read_verdict
 from seatsim.diagnosis.candidates import list_candidates
 from seatsim.diagnosis.design.collinearity import fit_member
@@ -57,11 +57,6 @@ class WithheldCase(NamedTuple):
     without: Verdict
     imitators: dict[str, float]
     right: bool
-
-
-def make(k: int, effect: str, seed: int, out: Path) -> None:
-    """Make one case; where the effect cannot be made material the makers take another, and its label says so."""
-    make_case(draw_files, k, CaseSpecification("one", (effect,)), seed, out, out / "labels")
 
 
 def diagnose_without(without: Sequence[str], case: Path) -> EncodedDiagnosis:
@@ -118,8 +113,10 @@ def work(out: Path, wanted: Sequence[str], count: int, seed: int) -> list[str]:
     # A case keeps its number, and with it its draws, however many cases and whichever effects are asked for.
     orders = {k: effects[k % len(effects)] for k in range(count * len(effects)) if effects[k % len(effects)] in wanted}
     there = {path.stem for path in (out / "labels").glob("case-*.json")}
-    missing = [(k, effect, seed, out) for k, effect in orders.items() if case_name(k) not in there]
-    run_jobs(make, missing, PROCESSES, show_progress)
+    # Where an effect cannot be made material the makers take another, and the label says so.
+    orders_open = {k: CaseSpecification("one", (effect,)) for k, effect in orders.items() if case_name(k) not in there}
+    missing = [(draw_files, k, wanted, seed, out, out / "labels") for k, wanted in orders_open.items()]
+    run_jobs(make_case, missing, PROCESSES, show_progress)
     cases = [case_name(k) for k in orders]
     open_cases = [case for case in cases if not (out / case / "imitated.json").exists()]
     run_jobs(write_imitators, [(out / case, _effect(out, case)) for case in open_cases], PROCESSES, show_progress)
@@ -155,25 +152,21 @@ def load_case(out: Path, case: str) -> WithheldCase:
     return WithheldCase(label["effects"][0], without, imitators, is_right(label, whole))
 
 
-def table(cases: Sequence[WithheldCase]) -> list[str]:
-    """Return the lines of a markdown table, an effect each, and totals over those that no other can imitate."""
-    headings = "effect", "named", "refused as unknown", "taken for", "imitable by", "most like"
-    lines = [f"| {' | '.join(headings)} |", "|---" * len(headings) + "|"]
-    alone: list[WithheldCase] = []
-    imitable: list[WithheldCase] = []
+def tabulate(cases: Sequence[WithheldCase]) -> pd.DataFrame:
+    """Return a row for each effect, and totals over those that no other can imitate and those that another can."""
+    rows, alone = [], []
     for effect in sorted({case.effect for case in cases}):
         own = [case for case in cases if case.effect == effect]
         taken = Counter(case.without.named for case in own if case.without.verdict != "unknown")
         imitators = Counter(name for case in own for name, value in case.imitators.items() if value > IMITATED)
-        (imitable if any(2 * times >= len(own) for times in imitators.values()) else alone).extend(own)
-        others = ", ".join(f"{name} {times}/{len(own)}" for name, times in imitators.most_common())
+        alone += own if all(2 * times < len(own) for times in imitators.values()) else []
+        others = ", ".join(f"{name} {times}" for name, times in imitators.most_common())
         mistaken = ", ".join(f"{name} {times}" for name, times in taken.most_common())
-        cells = effect, _named(own), _refused(own), mistaken or "-", others or "-", _nearest(own)
-        lines.append(f"| {' | '.join(cells)} |")
-    for title, some in (("not imitable", alone), ("imitable", imitable), ("all", list(cases))):
-        effects = f"**{title}**, {len({case.effect for case in some})} effects"
-        lines.append(f"| {effects} | {_named(some)} | {_refused(some)} | | | |")
-    return lines
+        rows.append((effect, *_count(own), mistaken, others, _nearest(own)))
+    imitable = [case for case in cases if case not in alone]
+    rows += [(name, *_count(some), "", "", "") for name, some in (("not imitable", alone), ("imitable", imitable))]
+    headings = ["effect", "cases", "named", "refused as unknown", "taken for", "imitable by", "most like"]
+    return pd.DataFrame(rows, columns=headings)
 
 
 def _nearest(cases: Sequence[WithheldCase]) -> str:
@@ -183,12 +176,9 @@ def _nearest(cases: Sequence[WithheldCase]) -> str:
     return f"{nearest} {sums[nearest] / len(cases):.2f}" if nearest else "-"
 
 
-def _named(cases: Sequence[WithheldCase]) -> str:
-    return f"{sum(case.right for case in cases)}/{len(cases)}"
-
-
-def _refused(cases: Sequence[WithheldCase]) -> str:
-    return f"{sum(case.without.verdict == 'unknown' for case in cases)}/{len(cases)}"
+def _count(cases: Sequence[WithheldCase]) -> tuple[int, int, int]:
+    """Return how many cases there are, in how many the effect was named, and in how many its absence was noticed."""
+    return len(cases), sum(case.right for case in cases), sum(case.without.verdict == "unknown" for case in cases)
 
 
 def main() -> None:
@@ -200,7 +190,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True, help="folder of the cases; what is there is kept")
     options = parser.parse_args()
     cases = work(options.out, options.effects, options.cases_per_effect, options.seed)
-    print("\n".join(table([load_case(options.out, case) for case in cases])))
+    print(tabulate([load_case(options.out, case) for case in cases]).to_string(index=False))
 
 
 if __name__ == "__main__":

@@ -21,10 +21,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+import pandas as pd
 from cases import show_progress, write_verdict
-from rich.console import Console
-from rich.table import Table
-from typical_effects import FORMS
+from typical_effects import FORMS, NOISE
 
 import seatsim
 from controllers.laws.constant import Replay
@@ -61,11 +60,6 @@ variants:
   rough: {controller.on: 0.25, excitation: {kind: iso7096, spectral_class: EM6, duration: 10.0}}
   sweep: {excitation: {kind: chirp, amplitude: 0.025, start_frequency: 0.7, stop_frequency: 6.0, duration: 10.0}}
 """
-NOISE = {
-    "floor_acceleration": 0.01, "frame_acceleration": 0.03, "driver_acceleration": 0.015,
-    "suspension_displacement": 5e-5, "damper_force": 2.5, "coil_current": 0.003, "damper_temperature": 0.1,
-}  # fmt: skip
-"""RMS by channel."""
 MATERIAL = DecisionSettings().material
 FACTORS = (1.0, 0.5, 2.0)
 """Multiples of the typical size, in the order in which they are worked on."""
@@ -87,13 +81,8 @@ class FormCase(NamedTuple):
             name: value / self.factor if abs(away.get(name, 0.0)) > abs(value) else value * self.factor
             for name, value in form.sizes.items()
         }
-        stated: dict[str, Any] = {
-            **dict.fromkeys(field_names(cls), 0.0),
-            **vars(cls)["_field_defaults"],
-            **form.shape,
-            **sizes,
-        }
-        return cls(**stated)
+        rest: dict[str, Any] = dict.fromkeys(field_names(cls), 0.0) | vars(cls)["_field_defaults"]
+        return cls(**{**rest, **form.shape, **sizes})
 
     @property
     def folder(self) -> str:
@@ -189,15 +178,21 @@ def list_cases(effects: Sequence[str], factors: Sequence[float]) -> list[FormCas
 
 def show_table(found: Sequence[FoundForm]) -> None:
     """Print what was said of each case, and how many verdicts are right."""
-    table = Table(title=f"{sum(each.right for each in found)} of {len(found)} right", title_justify="left")
-    for heading in ("effect", "moves", "left", "verdict", "selected, or why it was refused", "groups", "right"):
-        table.add_column(heading)
-    for each in sorted(found, key=lambda each: each.case):
-        named = each.refused or " ".join(each.verdict.selected)
-        cells = each.verdict.verdict, named, " ".join("=".join(group) for group in each.verdict.groups)
-        figures = f"{each.moved:.3f}", f"{each.left:.3f}"
-        table.add_row(str(each.case.record), *figures, *cells, "yes" if each.right else "NO")
-    Console(width=200).print(table)
+    rows = [
+        (
+            str(each.case.record),
+            each.moved,
+            each.left,
+            each.verdict.verdict,
+            each.refused or each.verdict.selected,
+            each.verdict.groups,
+            each.right,
+        )
+        for each in sorted(found, key=lambda each: each.case)
+    ]
+    headings = ["effect", "moves", "left", "verdict", "selected, or why refused", "groups", "right"]
+    print(pd.DataFrame(rows, columns=headings).to_string(index=False, float_format="%.3f"))
+    print(f"{sum(each.right for each in found)} of {len(found)} right")
 
 
 def main() -> None:

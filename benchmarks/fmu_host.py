@@ -7,7 +7,6 @@ import zipfile
 from collections.abc import Mapping
 from importlib.util import find_spec
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,14 +17,6 @@ from seatsim.exchange.fmu import write_fmu
 
 Array = NDArray[np.float64]
 HERE = Path(__file__).parent
-
-
-class Hosted(NamedTuple):
-    """Outputs of a unit, shape (samples + 1, outputs), the time that all steps took in s, and its library."""
-
-    outputs: Array
-    seconds: float
-    library: Path
 
 
 def headers() -> Path:
@@ -46,12 +37,10 @@ def build_host(version: int, folder: Path) -> Path:
     return host
 
 
-def run_unit(
-    block: Block, version: int, inputs: Mapping[str, Array], folder: Path, step: float, runs: int = 1
-) -> Hosted:
-    """Export a block, run it in a host with samples of its inputs, shape (N,) each, and return its outputs.
+def run_unit(block: Block, version: int, inputs: Mapping[str, Array], folder: Path, step: float) -> Array:
+    """Export a block, run it in a host with samples of its inputs, shape (N,) each.
 
-    The time is the least of several runs.
+    Returns its outputs, shape (N + 1, outputs): at rest, then after each step.
     """
     path = folder / f"unit{version}.fmu"
     write_fmu(block, version, path)
@@ -64,13 +53,10 @@ def run_unit(
     outputs = [v.name for v in list_variables(block) if v.causality == "output"]
     numbers = np.array([names.index(name) for name in [*inputs, *outputs]], dtype=np.uint32)
     samples = np.column_stack([np.asarray(values, dtype=float) for values in inputs.values()])
-    command = [str(build_host(version, folder)), str(library), f"{{{token}}}", repr(step), str(len(samples)),
-               str(len(inputs)), str(len(outputs))]  # fmt: skip
+    sizes = [str(len(samples)), str(len(inputs)), str(len(outputs))]
+    command = [str(build_host(version, folder)), str(library), f"{{{token}}}", repr(step), *sizes]
     fed = numbers.tobytes() + np.ascontiguousarray(samples).tobytes()
-    seconds = []
-    for _ in range(runs):
-        done = subprocess.run(command, input=fed, capture_output=True, timeout=120, check=False)
-        assert done.returncode == 0, done.stderr.decode()
-        values = np.frombuffer(done.stdout)
-        seconds.append(float(values[-1]))
-    return Hosted(values[:-1].reshape(len(samples) + 1, len(outputs)), min(seconds), library)
+    done = subprocess.run(command, input=fed, capture_output=True, timeout=120, check=False)
+    assert done.returncode == 0, done.stderr.decode()
+    # the last number is the time that the host took
+    return np.frombuffer(done.stdout)[:-1].reshape(len(samples) + 1, len(outputs))

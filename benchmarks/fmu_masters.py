@@ -1,4 +1,4 @@
-"""Exported units in co-simulation programs of others, beside the host in C that `exports.py` uses.
+"""Exported units in co-simulation programs of others, beside a host in C (`fmu_host`).
 
     pip install ecospy tbb libcosimpy
     python benchmarks/fmu_masters.py [--seconds 10]
@@ -19,7 +19,6 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
-from exports import STEP, floor_of, motion
 from fmu_host import run_unit
 from numpy.typing import NDArray
 
@@ -27,9 +26,10 @@ from seatsim.exchange.block import Block, list_variables
 from seatsim.exchange.blocks.damper import damper_block
 from seatsim.exchange.blocks.rig import rig_block
 from seatsim.scenario.loading import load
+from seatsim.scenario.scenario import Scenario
 
 Array = NDArray[np.float64]
-NANO = 10**9
+STEP = 1e-3
 
 
 def run_ecos(path: Path, block: Block, inputs: Mapping[str, Array], outputs: list[str], step: float) -> Array:
@@ -64,7 +64,7 @@ def run_libcosim(path: Path, block: Block, inputs: Mapping[str, Array], outputs:
     from libcosimpy.CosimSlave import CosimLocalSlave
 
     log_output_level(CosimLogLevel.WARNING)
-    execution = CosimExecution.from_step_size(round(step * NANO))
+    execution = CosimExecution.from_step_size(round(step * 1e9))
     unit = execution.add_local_slave(CosimLocalSlave(str(path), "unit"))
     given, seen = CosimManipulator.create_override(), CosimObserver.create_last_value()
     execution.add_manipulator(given)
@@ -90,6 +90,30 @@ MASTERS: dict[str, tuple[str, tuple[int, ...], Callable[..., Array]]] = {
 """Programs: package, versions of the standard that they read, what runs a unit."""
 
 
+def move_damper(seconds: float) -> dict[str, Array]:
+    """Return samples of the inputs of a damper: two sines below 0.3 m/s, a command up to 1 A that steps."""
+    t = STEP * np.arange(round(seconds / STEP))
+    slow, fast, half = 2.0 * np.pi * 1.3, 2.0 * np.pi * 4.1, 0.12
+    return {
+        "displacement": half / slow * np.sin(slow * t) + half / fast * np.sin(fast * t),
+        "velocity": half * (np.cos(slow * t) + np.cos(fast * t)),
+        "acceleration": -half * (slow * np.sin(slow * t) + fast * np.sin(fast * t)),
+        "command": (np.floor(3.0 * t) * 0.37) % 1.0,
+        "temperature": 20.0 + 0.5 * t,
+    }
+
+
+def shake_rig(scenario: Scenario) -> dict[str, Array]:
+    """Return samples of the inputs of a rig whose sensors have no noise, one fewer than its history has."""
+    floor = scenario.excitation.floor(scenario.solver.step, scenario.seed)
+    jerk = np.diff(floor.acceleration) / scenario.solver.step
+    return {
+        "floor_acceleration": floor.acceleration[:-1],
+        "floor_velocity": floor.velocity[:-1],
+        "floor_jerk": jerk,
+    }
+
+
 def main() -> None:
     """Print a line for every program, unit and version."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -97,8 +121,8 @@ def main() -> None:
     seconds = parser.parse_args().seconds
     scenario = load("quickstart", {"excitation.duration": seconds})[0]
     units = {
-        "damper": (damper_block(scenario), motion(seconds, 0.3, 1.0), STEP),
-        "rig": (rig_block(scenario), floor_of(scenario), scenario.solver.step),
+        "damper": (damper_block(scenario), move_damper(seconds), STEP),
+        "rig": (rig_block(scenario), shake_rig(scenario), scenario.solver.step),
     }
     for master, (package, versions, run) in MASTERS.items():
         if find_spec(package) is None:
@@ -108,7 +132,7 @@ def main() -> None:
             outputs = [v.name for v in list_variables(block) if v.causality == "output"]
             for version in versions:
                 with tempfile.TemporaryDirectory() as place:
-                    hosted = run_unit(block, version, inputs, Path(place), step).outputs[1:]
+                    hosted = run_unit(block, version, inputs, Path(place), step)[1:]
                     found = run(Path(place) / f"unit{version}.fmu", block, inputs, outputs, step)
                 off = np.max(np.abs(found - hosted), axis=0) / np.maximum(np.max(np.abs(hosted), axis=0), 1e-30)
                 print(f"{master} {version_of(package)}: {name}, FMI {version}: difference {off.max():.1e}", flush=True)

@@ -7,7 +7,7 @@ Python: faster than numpy on seven states, and numba compiles them as they stand
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Literal, NamedTuple, TypeVar
+from typing import Literal, TypeVar
 
 import numba
 import numpy as np
@@ -23,10 +23,8 @@ KX, KV = GAIN
 RATE, TOP = Coil().rate, Coil().max_current
 CELLS = 16
 """Cells of the current within which the inverse looks for a change of sign, as seatsim does."""
-CHANNELS = (
-    "frame_acceleration", "driver_acceleration", "suspension_displacement", "suspension_velocity", "damper_force",
-    "coil_current",
-)  # fmt: skip
+ACCELERATIONS = ("frame_acceleration", "driver_acceleration")
+CHANNELS = (*ACCELERATIONS, "suspension_displacement", "suspension_velocity", "damper_force", "coil_current")
 Array = NDArray[np.float64]
 Number = TypeVar("Number", float, Array)
 Size = Callable[[float], float]
@@ -108,20 +106,11 @@ def invert(damper: Force, find_root: Root, x: float, v: float, y: float, z: floa
     return turn if abs(f_turn) < abs(f[best]) else TOP * best / CELLS
 
 
-class Model(NamedTuple):
-    """The seat as `solve_ivp` wants it, and the inverse."""
-
-    rates: Callable[[float, Array, float, Array], Sequence[float]]
-    inverse: Callable[[float, float, float, float], float]
-
-
-def compiled_model() -> Model:
-    """Return the model compiled with numba."""
+def compile_model() -> tuple[Callable[..., Sequence[float]], Callable[[float, float, float, float], float]]:
+    """Return the seat's rates as `solve_ivp` wants them, and the inverse, compiled with numba."""
     force, slope, root, solve, excite = map(numba.njit, (damper, rates, find_root, invert, interpolate))
-    return Model(
-        numba.njit(
-            lambda t, s, u, floor: slope(force, abs, s[0], s[1], s[2], s[3], s[4], s[5], s[6], u, excite(floor, t))
-        ),
+    return (
+        numba.njit(lambda t, s, u, f: slope(force, abs, s[0], s[1], s[2], s[3], s[4], s[5], s[6], u, excite(f, t))),
         numba.njit(lambda x, v, y, z: solve(force, root, x, v, y, z)),
     )
 
@@ -137,19 +126,17 @@ tolerance is a thousandth of the relative one.
 
 def make_solver(name: MethodName) -> Simulate:
     """Return what simulates the run with a method of `solve_ivp`."""
-    model = compiled_model()
+    slope, inverse = compile_model()
 
     def simulate(rtol: float, acceleration: Array, sample_every: int) -> dict[str, Array]:
         state = np.zeros(7)
         states = [state]
         for start in range(0, len(acceleration) - 1, sample_every):
             x, v, _, _, y, z, _ = state.tolist()
-            command = model.inverse(x, v, y, z)
+            command = inverse(x, v, y, z)
             t, end = start * STEP, (start + sample_every) * STEP
-            solution = solve_ivp(
-                model.rates, (t, end), state, method=name, rtol=rtol, atol=1e-3 * rtol,
-                first_step=None if name == "LSODA" else end - t, args=(command, acceleration),
-            )  # fmt: skip
+            first, held = None if name == "LSODA" else end - t, (command, acceleration)
+            solution = solve_ivp(slope, (t, end), state, name, rtol=rtol, atol=1e-3 * rtol, first_step=first, args=held)
             state = solution.y[:, -1]
             states.append(state)
         return list_channels(np.array(states), acceleration[::sample_every])

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from cases import Array, EncodedDiagnosis, Ranked, rank_by_figure
-from real_rigs import quick
+from carrier_nominals import quick
+from cases import Array, EncodedDiagnosis, Ranked, encode_verdict, rank_by_figure
 from ruamel.yaml import YAML
 from scipy.optimize import least_squares
 
@@ -31,10 +31,8 @@ LONGEST, LARGEST = 0.05, 2.0
 """s of a delay; standard deviations of an offset."""
 COMMANDS = ("current_command", "command_voltage")
 MOTIONS = ("floor_acceleration", "displacement")
-MEANS = {
-    "actuator.rate": "coil.lag", "plant.driver_mass": "driver.mass", "gain": "sensor.gain", "offset": "sensor.bias",
-    "delay": "sensor.lag", "command": "coil.delay",
-}  # fmt: skip
+MEANS = {"actuator.rate": "coil.lag", "plant.driver_mass": "driver.mass", "command": "coil.delay"}
+MEANS |= {"gain": "sensor.gain", "offset": "sensor.bias", "delay": "sensor.lag"}
 """The effect that a parameter, or a kind of parameter of a channel, stands for."""
 
 
@@ -55,11 +53,7 @@ def diagnose_by_joint_fit(case: Path) -> EncodedDiagnosis:
     recording = quick(load_recording(case))
     ranked = rank_by_movement(recording)
     named = [effect for effect, moved in ranked[:1] if moved >= NAMED]
-    return {
-        "verdict": "known" if named else "none", "selected": named, "indistinguishable": [],
-        "where": [{"block": effect.partition(".")[0], "share": 1.0} for effect in named],
-        "causes": [{"effect": effect, "probability": 1.0 if effect in named else 0.0} for effect, _ in ranked],
-    }  # fmt: skip
+    return encode_verdict(recording, "known" if named else "none", named)
 
 
 def rank_by_movement(recording: Recording) -> Ranked:
@@ -79,26 +73,19 @@ def rank_by_movement(recording: Recording) -> Ranked:
 def list_unknowns(recording: Recording) -> list[Unknown]:
     """Return what is fitted to a recording."""
     nominal = YAML(typ="safe").load(recording.nominal_file)
-    sections = {
-        "plant": nominal.get("plant", {}), "damper.parameters": nominal["damper"]["parameters"],
-        "actuator": {"rate": nominal["actuator"].get("rate", 130.0)},
-    }  # fmt: skip
+    sections = {"plant": nominal.get("plant", {}), "damper.parameters": nominal["damper"]["parameters"]}
+    sections["actuator"] = {"rate": nominal["actuator"].get("rate", 130.0)}
     found = []
     for section, values in sections.items():
         for key, value in values.items():
             if value and key not in ("n", "v_ref"):
                 found.append(Unknown(f"{section}.{key}", "", WIDEST * abs(value), value))
-    for channel in residual_channels(recording):
+    run = next(iter(recording.runs))
+    for channel in select_compared(recording.table(run), recording.header.rig, recording.header.sample_rate):
         found += [Unknown("gain", channel, WIDEST), Unknown("offset", channel, LARGEST)]
         found.append(Unknown("delay", channel, LONGEST))
     found += [Unknown("gain", channel, WIDEST) for channel in MOTIONS if channel in recording.channels]
     return found + [Unknown("command", channel, LONGEST) for channel in COMMANDS if channel in recording.channels]
-
-
-def residual_channels(recording: Recording) -> list[str]:
-    """Return the channels that are compared."""
-    run = next(iter(recording.runs))
-    return list(select_compared(recording.table(run), recording.header.rig, recording.header.sample_rate))
 
 
 def misfit(recording: Recording, unknowns: list[Unknown], x: Array) -> Array:

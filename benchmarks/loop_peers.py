@@ -9,6 +9,7 @@ with every damper. A line has the least of several times, taken in turns, and it
 
 from __future__ import annotations
 
+import argparse
 import tempfile
 import time
 from collections.abc import Callable, Mapping
@@ -43,6 +44,9 @@ Channels = Mapping[str, Array]
 
 def main() -> None:
     """Measure and print."""
+    parser = argparse.ArgumentParser(description="a step of the compiled loop beside peers")
+    parser.add_argument("--dampers", nargs="*", choices=DAMPERS.names(), default=DAMPERS.names(), metavar="MODEL")
+    options = parser.parse_args()
     acceleration, setup = make_floor(DURATION), make_setup(SAMPLE_EVERY)
     run, history = prepare_run(acceleration, setup)
     with tempfile.TemporaryDirectory() as folder:
@@ -52,7 +56,7 @@ def main() -> None:
             check_agreement(channels, history, permitted)
             show(source, native, run, len(acceleration))
     measure_solvers()
-    for name in DAMPERS.names():
+    for name in options.dampers:
         show(name, prepare_run(acceleration, make_setup(SAMPLE_EVERY, DAMPERS.find(name)()))[0], run, len(acceleration))
 
 

@@ -2,7 +2,7 @@
 
 Out of `../shared/data` are written carriers with their best nominals (`carrier_nominals`), and on each of them cases of
 `seatsim blind make --carrier`: an effect put into the measured signals. They
-are diagnosed by seatsim and, where `--methods` names them, by correlation and BIC (`diagnosis_baselines`) and a joint
+are diagnosed by seatsim and, where `--methods` names them, by the baselines (`diagnosis_baselines`) and a joint
 fit (`joint_fit`). A call broken off goes on where it stopped. Counted are, by carrier and by effect:
 
 first   the effect is the likeliest cause (under whatever verdict but `none`)
@@ -14,18 +14,15 @@ missed  neither, and none is selected
 from __future__ import annotations
 
 import argparse
-from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-from carrier_nominals import read_gap, write_carrier
+import pandas as pd
+from carrier_nominals import DATA, read_gap, write_carrier
 from cases import Diagnoser, show_progress, write_verdict
-from diagnosis_baselines import diagnose_by_bic, diagnose_by_correlation
+from diagnosis_baselines import BASELINES
 from joint_fit import diagnose_by_joint_fit
-from real_rigs import DATA
-from rich.console import Console
-from rich.table import Table
 from rig_records import list_carriers
 
 import seatsim
@@ -47,21 +44,17 @@ def diagnose_by_seatsim(case: Path) -> Mapping[str, object]:
     return to_content(seatsim.diagnose(case))
 
 
-METHODS: dict[str, Diagnoser] = {
-    "diagnosis": diagnose_by_seatsim, "joint-fit": diagnose_by_joint_fit, "bic": diagnose_by_bic,
-    "correlation": diagnose_by_correlation,
-}  # fmt: skip
+METHODS: dict[str, Diagnoser] = {"diagnosis": diagnose_by_seatsim, "joint-fit": diagnose_by_joint_fit, **BASELINES}
 
 
-def make_sets(data: Path, out: Path, cases: int, seed: int, jobs: int) -> Labels:
+def make_sets(data: Path, out: Path, only: Sequence[str] | None, cases: int, seed: int, jobs: int) -> Labels:
     """Write carriers and their cases, as far as they are not there, and return the labels."""
-    carriers = [write_carrier(records, out / "carriers") for records in list_carriers(data)]
+    chosen = [records for records in list_carriers(data) if not only or records.rig.name in only]
+    carriers = [write_carrier(records, out / "carriers") for records in chosen]
     labels: Labels = {}
     for index, carrier in enumerate(carriers):
-        folder, sealed, note = (
-            out / "cases" / carrier.name,
-            *(out / f"{carrier.name}.{end}" for end in ("sealed", "key")),
-        )
+        folder = out / "cases" / carrier.name
+        sealed, note = (out / f"{carrier.name}.{end}" for end in ("sealed", "key"))
         if not note.is_file():
             key = make_on_carrier(carrier, cases, seed + index, folder, sealed, show_progress, jobs)
             note.write_text(key)
@@ -77,50 +70,34 @@ def outcome(label: Label, verdict: Verdict) -> str:
     return "wrong" if is_wrong_name(label, verdict) else "missed"
 
 
-def count_outcomes(labels: Labels, method: str, row_of: Callable[[Path, Label], str]) -> dict[str, Counter[str]]:
-    """Return how often each outcome came by row, `all` last; cases that the method has not done are left out."""
-    rows: dict[str, Counter[str]] = {}
-    for case, label in sorted(labels.items()):
-        verdict = read_verdict(case / method / "diagnosis.json")
-        if label["kind"] == "untouched" or not (case / method).is_dir():
-            continue
-        for row in (row_of(case, label), "all"):
-            rows.setdefault(row, Counter())[outcome(label, verdict)] += 1
-    return {row: rows[row] for row in (*sorted(rows.keys() - {"all"}), "all") if row in rows}
+def list_outcomes(labels: Labels, method: str) -> pd.DataFrame:
+    """Return carrier, effect and outcome of every case that the method has done, but untouched ones."""
+    done = {case: label for case, label in labels.items() if label["kind"] != "untouched" and (case / method).is_dir()}
+    found = [
+        (case.parent.name, label["effects"][0], outcome(label, read_verdict(case / method / "diagnosis.json")))
+        for case, label in sorted(done.items())
+    ]
+    return pd.DataFrame(found, columns=["carrier", "effect", "outcome"])
 
 
-def outcome_table(title: str, rows: Mapping[str, Counter[str]]) -> Table:
-    """Return outcomes by row."""
-    table = Table(title=title, title_justify="left")
-    table.add_column("")
-    for heading in (*OUTCOMES, "right"):
-        table.add_column(heading, justify="right")
-    for name, counts in rows.items():
-        right, total = counts["first"] + counts["pair"], sum(counts.values())
-        table.add_row(name, *(str(counts[key]) for key in OUTCOMES), f"{right}/{total} = {right / total:.0%}")
-    return table
-
-
-def print_results(labels: Labels, carriers: Path, methods: Sequence[str]) -> None:
+def print_results(labels: Labels, carriers: Path) -> None:
     """Print what each method found, and of the diagnosis the sizes and what it names on untouched carriers."""
-    console = Console(width=150)
     for folder in sorted(carriers.iterdir()):
         gap, mechanisms = read_gap(folder)
-        console.print(f"{folder.name}: nominal's gap {gap:.3f}, with {mechanisms or 'no mechanism'}")
-    for method in methods:
-        by_carrier = count_outcomes(labels, method, lambda case, label: case.parent.name)
-        by_effect = count_outcomes(labels, method, lambda case, label: label["effects"][0])
-        if by_carrier:
-            console.print(outcome_table(f"{method}, by carrier", by_carrier))
-            console.print(outcome_table(f"{method}, by effect", by_effect))
+        print(f"{folder.name}: nominal's gap {gap:.3f}, with {mechanisms or 'no mechanism'}")
+    for method in METHODS:
+        found = list_outcomes(labels, method)
+        for rows in ("carrier", "effect") if len(found) else ():
+            counts = pd.crosstab(found[rows], found["outcome"], margins=True, margins_name="all")
+            print(f"\n{method}\n{counts.reindex(columns=[*OUTCOMES, 'all'], fill_value=0).to_string()}")
     named = {str(case): label for case, label in labels.items()}
     verdicts = {name: read_verdict(Path(name) / "diagnosis" / "diagnosis.json") for name in named}
     score = score_verdicts(named, verdicts)
-    console.print(f"untouched carriers, not scored: {score.untouched}")
+    print(f"untouched carriers, not scored: {score.untouched}")
     ratios = [size.found / size.true for size in score.found_sizes if size.true]
     if ratios:
         low, middle, high = np.quantile(ratios, (0.1, 0.5, 0.9))
-        console.print(f"size found over size put in, {len(ratios)} parameters: {middle:.2f} ({low:.2f} to {high:.2f})")
+        print(f"size found over size put in, {len(ratios)} parameters: {middle:.2f} ({low:.2f} to {high:.2f})")
 
 
 def main() -> None:
@@ -129,17 +106,18 @@ def main() -> None:
     parser.add_argument("--data", type=Path, default=DATA)
     parser.add_argument("--out", type=Path, required=True, help="folder for carriers, cases and diagnoses")
     parser.add_argument("--cases", type=int, default=12, help="on each carrier")
+    parser.add_argument("--only", nargs="*", metavar="CARRIER", help="names of carriers")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2, help="cases that are worked on at once")
     parser.add_argument("--methods", nargs="+", choices=METHODS, default=["diagnosis"])
     args = parser.parse_args()
     if not args.data.is_dir():
         raise SystemExit(f"{args.data}: the measured data are not there; state their folder with --data")
-    labels = make_sets(args.data, args.out, args.cases, args.seed, args.jobs)
+    labels = make_sets(args.data, args.out, args.only, args.cases, args.seed, args.jobs)
     wanted = [(case / name, METHODS[name]) for name in args.methods for case in labels]
     todo = [(out, method) for out, method in wanted if not out.is_dir()]
     run_jobs(write_verdict, todo, args.jobs, show_progress)
-    print_results(labels, args.out / "carriers", list(METHODS))
+    print_results(labels, args.out / "carriers")
 
 
 if __name__ == "__main__":

@@ -19,7 +19,8 @@ quanser, quanser-travel  Quarter car as a seat: road = floor, middle plate = fra
 fsae  Passive racing damper on a scotch yoke, 127 mm/s: at 25-29 degC and 50 psi, and under a heat gun at 49-83 degC.
     The motion is counted from the middle of the stroke. No current: the nominal is a Bouc-Wen law at 0 A.
 
-`list_carriers` cuts them into runs of at most 10 s that serve as backgrounds of cases (`measured_carriers`).
+`list_rigs` holds the recordings that are diagnosed as they are (`real_rigs`), with nominals that lack what is known.
+`list_carriers` cuts the records into runs of at most 10 s that serve as backgrounds of cases (`measured_carriers`).
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
-from typing import NamedTuple, TypedDict
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -38,6 +39,8 @@ Array = NDArray[np.float64]
 Table = Mapping[str, Array]
 """Channels of a run, each of shape (N,)."""
 Runs = dict[str, Table]
+Nominal = dict[str, Any]
+"""A nominal scenario as its file has it."""
 SETTLED = 0.025
 """s after which a switched voltage counts as steady."""
 SCALE = 30.0
@@ -48,43 +51,12 @@ BOUC_WEN = {"k0": 0.0, "x0": 0.0, "f0": 0.0, "n": 2.0}
 BENCH_FREE = ("damper.c_a", "damper.c_b", "damper.alpha_a", "damper.alpha_b", "damper.A")
 Addition = tuple[str, Mapping[str, float | str], Mapping[str, float]]
 """An effect to be added by hand: name, fixed parameters, free ones with their start."""
-Trial = tuple[Addition, ...]
-"""Effects that are added together."""
-GAS: Addition = ("damper.gas_spring", {}, {"preload": 50.0})
-BIAS: Addition = ("sensor.bias", {"channel": "damper_force"}, {"share": 0.5})
-LAG: Addition = ("coil.lag", {}, {"time": 0.003})
 FRICTION: Addition = ("suspension.friction", {"presliding": 1e-4}, {"force": 20.0})
 GAS_SPRING: Addition = ("damper.gas_spring", {}, {"preload": 50.0, "stiffness": 500.0})
 ASYMMETRY: Addition = ("damper.asymmetry", {}, {"viscous": 0.1, "yielding": 0.1})
 SATURATION: Addition = ("damper.magnetic_saturation", {}, {"bend": 0.5})
 SEAL: Addition = ("damper.seal_friction", {"presliding": 1e-4}, {"force": 10.0})
 FADE: Addition = ("damper.thermal_fade", {}, {"viscous": 0.004, "yielding": 0.004})
-
-
-class DamperEntry(TypedDict):
-    """A damper as a scenario states it."""
-
-    model: str
-    parameters: dict[str, float]
-
-
-class EffectEntry(TypedDict):
-    """An effect as a scenario states it."""
-
-    effect: str
-    parameters: dict[str, float | str]
-
-
-class Nominal(TypedDict, total=False):
-    """A nominal scenario as its file has it."""
-
-    damper: DamperEntry
-    actuator: dict[str, float]
-    temperature: float
-    plant: dict[str, float]
-    controller: dict[str, str | float]
-    excitation: dict[str, str]
-    effects: list[EffectEntry]
 
 
 class RigRecords(NamedTuple):
@@ -103,7 +75,6 @@ class RigRecords(NamedTuple):
     fit: Runs
     runs: Runs
     unseen: Runs
-    trials: tuple[Trial, ...]
     voltage_gain: float | None = None
     repeats: bool = False
     counted: Callable[[Table], NDArray[np.bool_]] = lambda table: np.full(len(next(iter(table.values()))), True)
@@ -142,33 +113,27 @@ def utfsm(data: Path, name: str, currents: Sequence[float]) -> RigRecords:
 
     split = part("10mm_2Hz"), part("25mm_0p5Hz", "5mm_3Hz"), part("5mm_4Hz", "2mm_5Hz", "25mm_0p25Hz")
     guess = {"c_a": 1100.0, "c_b": 4500.0, "alpha_a": 100.0, "alpha_b": 850.0, "A": 3e4, "beta": 1.5e4, "gamma": 1.5e4}
-    return RigRecords(
-        name, "damper_bench", 200.0, "static offset of 27-58 N", bench(guess, 130.0), BENCH_FREE,
-        {channel: float(np.median(values)) for channel, values in levels.items()}, *split, ((GAS,), (BIAS,)),
-    )  # fmt: skip
+    noise = {channel: float(np.median(values)) for channel, values in levels.items()}
+    about = "damper_bench", 200.0, "static offset of 27-58 N", bench(guess, 130.0)
+    return RigRecords(name, *about, BENCH_FREE, noise, *split)
 
 
 def dyke(data: Path, name: str, rate: float) -> RigRecords:
     """Return the random test of Dyke's prototype: 5 s to fit, three runs of 4 s, the last 30 % unseen."""
     whole = pd.read_csv(data / "dyke_nees_2012_1158" / "ranran_50.csv.gz")
-    noise = {
-        "displacement": white_noise(whole["displacement_m"], 3004.8),
-        "damper_force": white_noise(whole["force_N"], 3004.8),
-    }
-    table = {
-        channel: whole[column].to_numpy()[::4]
-        for channel, column in (
-            ("displacement", "displacement_m"), ("damper_force", "force_N"), ("command_voltage", "voltage_V"),
-        )
-    }  # fmt: skip
+    columns = {"displacement": "displacement_m", "damper_force": "force_N", "command_voltage": "voltage_V"}
+    table = {channel: whole[column].to_numpy()[::4] for channel, column in columns.items()}
+    noise = {name: white_noise(whole[columns[name]], 3004.8) for name in ("displacement", "damper_force")}
     ends = [round(t * 751.2) for t in (0.0, 5.25, 9.25, 13.25, 17.25, 24.65)]
-    pieces = [{c: v[a:b] for c, v in table.items()} for a, b in pairwise(ends)]
+    pieces: list[Table] = [{c: v[a:b] for c, v in table.items()} for a, b in pairwise(ends)]
     guess = {"c_a": 1500.0, "c_b": 1000.0, "alpha_a": 110.0, "alpha_b": 670.0, "A": 1.8e4, "beta": 9e3, "gamma": 9e3}
-    return RigRecords(
-        name, "damper_bench", 751.2, "response lag near 8 ms, gas offset of -104 to -140 N", bench(guess, rate),
-        BENCH_FREE, noise, {"first": pieces[0]}, {f"piece-{k}": pieces[k] for k in (1, 2, 3)}, {"last": pieces[4]},
-        ((GAS,), (LAG,), (GAS, LAG)), voltage_gain=1.0 / 2.25, counted=_settled,
-    )  # fmt: skip
+    about = "damper_bench", 751.2, "response lag near 8 ms, gas offset of -104 to -140 N", bench(guess, rate)
+    split: tuple[Runs, Runs, Runs] = (
+        {"first": pieces[0]},
+        {f"piece-{k}": pieces[k] for k in (1, 2, 3)},
+        {"last": pieces[4]},
+    )
+    return RigRecords(name, *about, BENCH_FREE, noise, *split, voltage_gain=1.0 / 2.25, counted=_settled)
 
 
 def quanser(data: Path, name: str, outputs: Sequence[str]) -> RigRecords:
@@ -186,20 +151,14 @@ def quanser(data: Path, name: str, outputs: Sequence[str]) -> RigRecords:
         noise = {channel: noise_in_band(place[plate], 2) for channel, plate in plates.items()}
         noise["suspension_displacement"] = noise_in_band(place["unsprung"] - place["road"], 0)
     damper = {"c_a": 0.0, "c_b": 0.0, "alpha_a": 0.0, "alpha_b": 0.0, "A": 2e3, "beta": 1e3, "gamma": 1e3}
-    nominal = bench(damper, 130.0) | {
-        "plant": {
-            "frame_mass": 1.0 * SCALE, "driver_mass": 2.45 * SCALE, "suspension_stiffness": 3800.0 * SCALE,
-            "suspension_damping": 20.0 * SCALE, "cushion_stiffness": 3000.0 * SCALE, "cushion_damping": 60.0 * SCALE,
-        },
-        "controller": {"law": "replay", "current": 0.0},
-        "excitation": {"kind": "recording"},
-    }  # fmt: skip
-    free = ("suspension_stiffness", "suspension_damping", "cushion_stiffness", "cushion_damping")
-    return RigRecords(
-        name, "seat", 500.0, "guide friction (to the ground); actuator force that does not map", nominal,
-        tuple(f"plant.{key}" for key in free), noise, {"repeat-1": tables[0]},
-        {"repeat-2": tables[1], "repeat-3": tables[2]}, {}, ((FRICTION,),), repeats=True,
-    )  # fmt: skip
+    soft = {"suspension_stiffness": 3800.0, "suspension_damping": 20.0}
+    soft |= {"cushion_stiffness": 3000.0, "cushion_damping": 60.0}
+    plant = {name: SCALE * value for name, value in ({"frame_mass": 1.0, "driver_mass": 2.45} | soft).items()}
+    driven = {"controller": {"law": "replay", "current": 0.0}, "excitation": {"kind": "recording"}}
+    nominal: Nominal = bench(damper, 130.0) | {"plant": plant} | driven
+    about = "seat", 500.0, "guide friction (to the ground); actuator force that does not map", nominal
+    split: tuple[Runs, Runs, Runs] = {"repeat-1": tables[0]}, {f"repeat-{k}": tables[k - 1] for k in (2, 3)}, {}
+    return RigRecords(name, *about, tuple(f"plant.{key}" for key in soft), noise, *split, repeats=True)
 
 
 def fsae(data: Path, name: str, file: str, length: float) -> RigRecords:
@@ -220,10 +179,21 @@ def fsae(data: Path, name: str, file: str, length: float) -> RigRecords:
     fit, runs, unseen = ({name: pieces[name] for name in list(pieces)[k::3]} for k in range(3))
     guess = {"c_a": 1500.0, "c_b": 0.0, "alpha_a": 60.0, "alpha_b": 0.0, "A": 2e3, "beta": 1e3, "gamma": 1e3}
     free = ("damper.c_a", "damper.alpha_a", "damper.A")
-    return RigRecords(
-        name, "damper_bench", rate, "gas offset, compression-rebound asymmetry, friction", bench(guess, 130.0), free,
-        noise, fit, runs, unseen, ((GAS,),),
-    )  # fmt: skip
+    about = "damper_bench", rate, "gas offset, compression-rebound asymmetry, friction", bench(guess, 130.0)
+    return RigRecords(name, *about, free, noise, fit, runs, unseen)
+
+
+def list_rigs(data: Path) -> list[RigRecords]:
+    """Return the rigs whose recordings are diagnosed as they are."""
+    return [
+        utfsm(data, "utfsm", (0.0, 0.25)),
+        utfsm(data, "utfsm-all", (0.0, 0.25, 0.5, 0.75, 1.0)),
+        dyke(data, "dyke", 1000.0),
+        dyke(data, "dyke-130", 130.0),
+        fsae(data, "fsae", "t1_3_3_18_18_s5_n100_50psi", 6.0),
+        quanser(data, "quanser", ("frame_acceleration", "driver_acceleration", "suspension_displacement")),
+        quanser(data, "quanser-travel", ("suspension_displacement",)),
+    ]
 
 
 class CarrierRecords(NamedTuple):

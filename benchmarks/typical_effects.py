@@ -18,8 +18,10 @@ FRICTIONS = (
     Form({"force": 24.0}), Form({"force": 24.0}, {"presliding": 2e-4}),
     Form({"force": 24.0}, {"presliding": 5e-4, "lubrication": 5.0}),
 )  # fmt: skip
-CHANNELS = ("damper_force", "suspension_displacement", "driver_acceleration", "coil_current", "frame_acceleration",
-            "floor_acceleration")  # fmt: skip
+ACCELERATIONS = {"floor_acceleration": 0.01, "frame_acceleration": 0.03, "driver_acceleration": 0.015}
+CHANNELS = ACCELERATIONS | {"suspension_displacement": 5e-5, "damper_force": 2.5, "coil_current": 0.003}
+NOISE = CHANNELS | {"damper_temperature": 0.1}
+"""RMS by channel, in its unit."""
 FADE = {"viscous": 0.008, "yielding": 0.008}
 STOPS = {"low": -0.018, "high": 0.018}
 FORMS: Mapping[str, Sequence[Form]] = {

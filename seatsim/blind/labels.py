@@ -7,36 +7,29 @@ from typing import Literal, Required, TypedDict, get_args
 Kind = Literal["none", "one", "two", "outside"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
 """No effect, one or two effects of the library, something outside the library."""
-CarriedKind = Literal["carried", "untouched"]
+_CarriedKind = Literal["carried", "untouched"]
 """One effect on a measured recording, and such a recording as it was measured, of which nobody knows what is true."""
 Block = Literal["damper", "coil", "suspension", "cushion", "driver", "floor", "sensor"]
 BLOCKS: tuple[Block, ...] = get_args(Block)
-EFFECTS = (
-    "damper.thermal_fade", "damper.gas_spring", "damper.asymmetry", "damper.preyield_hysteresis",
-    "damper.magnetic_saturation", "damper.remanence", "damper.free_play", "damper.seal_friction",
-    "coil.lag", "coil.asymmetric_lag", "coil.delay", "coil.current_limit",
-    "suspension.friction", "suspension.end_stop", "suspension.progressive_spring",
-    "cushion.hardening", "cushion.separation", "driver.mass", "driver.biodynamics", "floor.unmeasured_input",
-    "sensor.gain", "sensor.bias", "sensor.lag", "sensor.clock_skew",
-)  # fmt: skip
+_LIBRARY = {
+    "damper": (
+        "thermal_fade gas_spring asymmetry preyield_hysteresis magnetic_saturation remanence free_play seal_friction"
+    ),
+    "coil": "lag asymmetric_lag delay current_limit",
+    "suspension": "friction end_stop progressive_spring",
+    "cushion": "hardening separation",
+    "driver": "mass biodynamics",
+    "floor": "unmeasured_input",
+    "sensor": "gain bias lag clock_skew",
+}
+EFFECTS = tuple(f"{block}.{name}" for block, names in _LIBRARY.items() for name in names.split())
 """The library of the contract, section 5, written again: the makers share no code with the candidates."""
-
-
-class Specification(TypedDict):
-    """What a case was ordered to be, as it stands in its label."""
-
-    kind: Kind
-    names: list[str]
-    missing: list[str] | None
-    background: float
-    scatter: float
-    varied: bool
 
 
 class Label(TypedDict, total=False):
     """What is true of a case. Lists go in parallel, one entry for each fault; a hand-made label may hold less."""
 
-    kind: Required[Kind | CarriedKind]
+    kind: Required[Kind | _CarriedKind]
     effects: Required[list[str]]
     """Effects of the library that are at work; empty outside it."""
     blocks: Required[list[str]]
@@ -67,4 +60,5 @@ class Label(TypedDict, total=False):
     """Relative error of nominal parameters that the owner states."""
     rig: dict[str, float]
     """Nominal parameters of seat, damper and coil."""
-    order: Specification
+    order: dict[str, object]
+    """What the case was ordered to be, see `make.draw_case.CaseSpecification`."""

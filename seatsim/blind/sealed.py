@@ -8,7 +8,6 @@ import json
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypedDict, cast
 
 from cryptography.fernet import Fernet, InvalidToken
 
@@ -26,29 +25,14 @@ SEAL = "seal.txt"
 """Name of the hash beside the recordings."""
 
 
-class Provenance(TypedDict, total=False):
-    """What made a set; `seed_given` tells whether the seed was given or drawn."""
-
-    seed: int
-    seed_given: bool
-    cases: int
-    kinds: str | list[str] | None
-
-
-class _Head(TypedDict):
-    """Content of `labels.json`."""
-
-    made: Provenance
-    cases: dict[str, Label]
-
-
 @dataclass(frozen=True)
 class Sealed:
     """What a sealed file holds: labels by case, unseen recordings by case (files by name), and what made them."""
 
     labels: dict[str, Label]
     unseen: dict[str, dict[str, bytes]]
-    made: Provenance
+    made: dict[str, object]
+    """Seed, whether that was given or drawn, number and kinds of the cases."""
 
     def extract(self, case: str, folder: Path) -> Path:
         """Write the unseen recording of a case into `folder`/`case` and return that; empty where none was withheld."""
@@ -72,10 +56,9 @@ def seal(path: Path, folder: Path, key: str, content: Sealed) -> str:
     Raises:
         InputError: a file cannot be written.
     """
-    head: _Head = {"made": content.made, "cases": content.labels}
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as archive:
-        archive.writestr(LABELS, json.dumps(head))
+        archive.writestr(LABELS, json.dumps({"made": content.made, "cases": content.labels}))
         for case, files in content.unseen.items():
             for name, data in files.items():
                 archive.writestr(f"unseen/{case}/{name}", data)
@@ -101,7 +84,7 @@ def unseal(path: Path, key: str, folder: Path | None = None) -> Sealed:
         raise InputError(f"{path}: the key does not open it; give the key that `blind make` printed") from error
     with zipfile.ZipFile(io.BytesIO(packed)) as archive:
         # what opens was encrypted by `seal`, so its form need not be checked
-        head = cast(_Head, json.loads(archive.read(LABELS)))
+        head = json.loads(archive.read(LABELS))
         unseen: dict[str, dict[str, bytes]] = {}
         for entry in archive.namelist():
             if entry.startswith("unseen/"):

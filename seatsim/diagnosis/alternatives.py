@@ -44,7 +44,7 @@ MOTION = {"seat": "suspension_displacement", "damper_bench": "displacement"}
 """Channel from which the motion of the damper is taken, by rig."""
 
 
-class FormFit(NamedTuple):
+class _FormFit(NamedTuple):
     """A model fitted to the damper force: the rig with it, its parameters, and its cost."""
 
     model: str
@@ -131,7 +131,7 @@ def _compare_about(
     records = [_isolate_damper(problem, rig, name) for name in problem.runs if name != run]
     own = name_of("damper", type(rig.damper.record))
 
-    def shrink(fit: FormFit | None) -> float:
+    def shrink(fit: _FormFit | None) -> float:
         return -math.inf if fit is None else 1.0 - _measure_gap(problem, fit.scenario, run) / before
 
     as_free = _fit_form(problem, rig, own, records)
@@ -142,7 +142,7 @@ def _compare_about(
             yield DamperForm(fit.model, own, beside, gain, refitted, fit.parameters)
 
 
-def _screen_fits(problem: DiagnosisProblem, fits: Sequence[FormFit], as_free: FormFit | None) -> list[FormFit]:
+def _screen_fits(problem: DiagnosisProblem, fits: Sequence[_FormFit], as_free: _FormFit | None) -> list[_FormFit]:
     """Return the fit that leaves least of the force where that is less than the nominal's own leaves, else none."""
     highest = math.inf if as_free is None else as_free.cost * (1.0 - problem.settings.damper_forms.better) ** 2
     return [fit for fit in sorted(fits, key=lambda fit: fit.cost)[:1] if fit.cost < highest]
@@ -181,7 +181,7 @@ def _isolate_damper(problem: DiagnosisProblem, rig: Scenario, run: str) -> Bench
     return record.part(*record.liveliest(problem.settings.damper_forms.rows // len(problem.runs)))
 
 
-def _fit_form(problem: DiagnosisProblem, rig: Scenario, model: str, records: Sequence[BenchRecord]) -> FormFit | None:
+def _fit_form(problem: DiagnosisProblem, rig: Scenario, model: str, records: Sequence[BenchRecord]) -> _FormFit | None:
     """Return the rig with a model fitted to the damper's records, None where the model cannot be fitted to them."""
     settings, record = problem.settings.damper_forms, cast("DamperRecord", rig.damper.record)
     known = record if name_of("damper", type(record)) == model else None
@@ -199,4 +199,4 @@ def _fit_form(problem: DiagnosisProblem, rig: Scenario, model: str, records: Seq
         return None
     damper = stated.to_bench(found.vector).damper
     choice = dataclasses.replace(rig.damper, record=cast("Damper", damper))
-    return FormFit(model, dataclasses.replace(rig, damper=choice), damper._asdict(), found.cost)
+    return _FormFit(model, dataclasses.replace(rig, damper=choice), damper._asdict(), found.cost)

@@ -12,7 +12,7 @@ from seatsim.schema.arrays import Array
 
 PATIENCE = 3
 """Exchanges of whole blocks without fewer components out of place, after which one component at a time is exchanged."""
-ALLOWANCE = 1e-12
+_ALLOWANCE = 1e-12
 """Violations of a bound and gradients below this, in units of the largest right-hand side, are rounding errors."""
 
 
@@ -34,7 +34,7 @@ def minimise_bounded(matrix: Array, right: Array, low: Array, high: Array) -> Ar
     """
     side = np.zeros(len(right), dtype=np.int8)
     fewest, patience = len(right) + 1, PATIENCE
-    allowed = ALLOWANCE * max(1.0, float(np.abs(right).max(initial=0.0)))
+    allowed = _ALLOWANCE * max(1.0, float(np.abs(right).max(initial=0.0)))
     while True:
         x = np.where(side < 0, low, np.where(side > 0, high, 0.0))
         free = side == 0

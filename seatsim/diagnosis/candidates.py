@@ -15,13 +15,13 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.fields import bounds, choices, describe, field_names
 from seatsim.schema.registry import Record
 
-Fixed = Mapping[str, float | str]
+_Fixed = Mapping[str, float | str]
 """Parameters that no fit changes."""
 
 
 INPUTS = ("floor_acceleration", "displacement")
 """Recorded inputs whose sensor may err: it moves every channel that is simulated from them."""
-SEAT_SPRING = 4600.0
+_SEAT_SPRING = 4600.0
 """N/m; spring of the seat for which the effects state the stiffnesses at which fits start."""
 
 
@@ -35,7 +35,7 @@ class Candidate(NamedTuple):
 
     effect: str
     cls: type[Record]
-    fixed: Fixed
+    fixed: _Fixed
     free: tuple[str, ...]
     start: tuple[float, ...]
     low: tuple[float, ...]
@@ -146,7 +146,7 @@ def _suit_spring(candidate: Candidate, problem: DiagnosisProblem) -> Candidate:
     if candidate.block != "suspension" or plant is None:
         return candidate
     units = {field.name: field.unit for field in describe(candidate.cls)}
-    softer = min(1.0, plant.suspension_stiffness / SEAT_SPRING)
+    softer = min(1.0, plant.suspension_stiffness / _SEAT_SPRING)
     start, low, high = (
         tuple(softer * x if units[name] == "N/m" else x for name, x in zip(candidate.free, values, strict=True))
         for values in (candidate.start, candidate.low, candidate.high)
@@ -193,7 +193,7 @@ def _fits(cls: type[Record], problem: DiagnosisProblem) -> bool:
     return specification.suits(problem.scenario.damper.record)
 
 
-def _places(cls: type[Record], problem: DiagnosisProblem) -> list[Fixed]:
+def _places(cls: type[Record], problem: DiagnosisProblem) -> list[_Fixed]:
     """Return the channels that an effect may act on, or one empty name for an effect that acts on no channel."""
     if not EFFECTS.specification_of(cls).by_channel:
         return [{}]
@@ -202,7 +202,7 @@ def _places(cls: type[Record], problem: DiagnosisProblem) -> list[Fixed]:
     return [{"channel": name} for name in named if name in problem.recording.channels and name in known]
 
 
-def _candidate(name: str, cls: type[Record], form: Form, place: Fixed, reach: float) -> Candidate:
+def _candidate(name: str, cls: type[Record], form: Form, place: _Fixed, reach: float) -> Candidate:
     """Return the candidate of one structure on one channel; parameters that the structure does not name stay off."""
     off = {field: 0.0 for field in field_names(cls) if field not in place} | dict(EFFECTS.specification_of(cls).off)
     fixed = {field: value for field, value in off.items() if field not in form.free} | dict(form.fixed) | dict(place)

@@ -24,7 +24,7 @@ from seatsim.diagnosis.select import Selection
 from seatsim.schema.arrays import Array
 
 
-class Supported(NamedTuple):
+class _Supported(NamedTuple):
     """What runs left out support: a set, sets that help as much, and all sets tried, with the logarithm of the weight.
 
     That weight is of the square of the share of the gap that stays, pooled over the runs, of the rig without effects.
@@ -35,7 +35,7 @@ class Supported(NamedTuple):
     tried: list[tuple[Evaluation, float]]
 
 
-def select_by_cross_validation(objective: Objective, selection: Selection) -> Supported:
+def select_by_cross_validation(objective: Objective, selection: Selection) -> _Supported:
     """Return the smallest set of effects that no larger one improves on left-out runs, and sets that help as much.
 
     A larger set is chosen as long as its evidence is higher (see `seatsim.diagnosis.probability`); one without the
@@ -61,7 +61,7 @@ def select_by_cross_validation(objective: Objective, selection: Selection) -> Su
         if _weigh(objective, *best[0]) < _weigh(objective, chosen, before) + margin:
             break
         (chosen, before), equivalent = best[0], [evaluation for evaluation, _ in best[1:]]
-    return Supported(chosen, equivalent, [(each, _weigh(objective, each, left)) for each, left in found])
+    return _Supported(chosen, equivalent, [(each, _weigh(objective, each, left)) for each, left in found])
 
 
 def _list_equals(objective: Objective, tried: Sequence[tuple[Evaluation, float]]) -> list[tuple[Evaluation, float]]:

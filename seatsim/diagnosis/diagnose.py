@@ -26,7 +26,7 @@ from seatsim.schema.errors import InputError
 
 BUDGET = 120.0
 """s; time that a diagnosis may take unless another is asked for."""
-CUT = "the budget of {budget:g} s was spent, so that the answer is the best so far; cut short"
+_CUT = "the budget of {budget:g} s was spent, so that the answer is the best so far; cut short"
 """Beginning of the note that names the stages cut short."""
 
 
@@ -101,7 +101,7 @@ def diagnose_problem(
         solution = solve(problem.until(deadline), without, tell, method)
         solution, at_bound = search_wider(solution, without, tell, method)
         cut = _list_cut(stages, deadline.end) if deadline.is_past else []
-        said = [*notes, *at_bound, *([f"{CUT.format(budget=budget)}: {', '.join(cut)}"] if cut else [])]
+        said = [*notes, *at_bound, *([f"{_CUT.format(budget=budget)}: {', '.join(cut)}"] if cut else [])]
         solution = solution._replace(objective=solution.objective.unhurried)
         return state_diagnosis(solution, said, progress, damper_forms)
 

@@ -27,7 +27,7 @@ from seatsim.simulation.respond import respond
 
 Table = Mapping[str, Array]
 
-REPLICATES = 3
+_REPLICATES = 3
 """Simulations with newly drawn noise of the inputs."""
 
 
@@ -96,7 +96,7 @@ def carry_input_noise(scenario: Scenario, recording: Recording, table: Table) ->
     # The same draws for every recording: equal input gives equal output.
     rng = np.random.default_rng(0)
     clean = replay_table(scenario, recording, table)
-    noisy = [replay_table(scenario, recording, _add_noise(recording, table, rng)) for _ in range(REPLICATES)]
+    noisy = [replay_table(scenario, recording, _add_noise(recording, table, rng)) for _ in range(_REPLICATES)]
     return {
         name: float(np.sqrt(np.mean([np.mean((other[name] - values) ** 2) for other in noisy])))
         for name, values in clean.items()

@@ -25,9 +25,9 @@ from seatsim.schema.fields import describe
 
 QUOTED = ("driver_acceleration", "frame_acceleration", "suspension_displacement")
 """Channels whose RMS the report states."""
-STATED_DIGITS = 2
+_STATED_DIGITS = 2
 """Significant digits to which a probability is known."""
-SMOOTHED_ROWS = 5
+_SMOOTHED_ROWS = 5
 """Rows over which a displacement is averaged before its slope is drawn."""
 
 
@@ -51,13 +51,13 @@ def estimate_causes(
     # Single effects share one linearisation of the nuisances, about the calibrated rig: one each would take longer than
     # the fits. The chosen effects, whose figures the user acts on, have their own.
     about_calibrated = selection.linearise_nuisances(objective, selection.calibrated)
-    chosen = dict[str, FoundEffect]()
+    chosen = dict[str, _FoundEffect]()
     if augmented.parameters.terms:
         fitted = objective.on_runs(list(augmented.whitened))
         chosen = _estimate_parameters(fitted, augmented, selection.linearise_nuisances(fitted, augmented))
     causes = []
     for effect, probability in decision.probabilities.items():
-        shrink, found = 0.0, chosen.get(effect, FoundEffect({}, False))
+        shrink, found = 0.0, chosen.get(effect, _FoundEffect({}, False))
         single = selection.singles.get(effect)
         if single is not None:
             with_it = make_scenario(problem, nominal, single.parameters)
@@ -65,12 +65,12 @@ def estimate_causes(
             if effect not in chosen:
                 found = _estimate_parameters(objective, single, about_calibrated)[effect]
         # Effects of one set differ in probability by what no evidence can tell; the larger shrink then comes first.
-        stated = float(f"{probability:.{STATED_DIGITS}g}")
+        stated = float(f"{probability:.{_STATED_DIGITS}g}")
         causes.append(Cause(effect, stated, shrink, *found))
     return sorted(causes, key=lambda cause: (-cause.probability, -cause.shrink))
 
 
-class FoundEffect(NamedTuple):
+class _FoundEffect(NamedTuple):
     """The fitted parameters of an effect, with the channel it acts on, and whether all of its size is at a bound."""
 
     parameters: dict[str, Estimate | str]
@@ -79,7 +79,7 @@ class FoundEffect(NamedTuple):
 
 def _estimate_parameters(
     objective: Objective, evaluation: Evaluation, nuisances: Linearisation
-) -> dict[str, FoundEffect]:
+) -> dict[str, _FoundEffect]:
     """Return what was found of each effect."""
     parameters, found = evaluation.parameters, {}
     ends = parameters.find_at_bound(1.0 - objective.settings.widening.at_bound)
@@ -94,7 +94,7 @@ def _estimate_parameters(
             std = max(float(deviations[start + k] * term.scale[k]), shortest if units[name] == "s" else 0.0)
             bound = float(term.low[k]), float(term.high[k])
             estimates[name] = Estimate(float(value), std, units[name], bound, bool(ends[start + k]))
-        found[term.effect] = FoundEffect(estimates, bool(np.all(ends[start : start + term.sizes])))
+        found[term.effect] = _FoundEffect(estimates, bool(np.all(ends[start : start + term.sizes])))
         start += len(term.free)
     return found
 
@@ -131,7 +131,7 @@ def trace_motion(problem: DiagnosisProblem, run: str) -> dict[str, Array]:
     motion: dict[str, Array] = {name: table[name] for name in ("coil_current", "damper_temperature") if name in table}
     if position is None:
         return motion
-    smooth = np.convolve(position, np.ones(SMOOTHED_ROWS) / SMOOTHED_ROWS, mode="same")
+    smooth = np.convolve(position, np.ones(_SMOOTHED_ROWS) / _SMOOTHED_ROWS, mode="same")
     return motion | {"displacement": position, "velocity": np.gradient(smooth, 1.0 / problem.rate)}
 
 

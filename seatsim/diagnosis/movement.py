@@ -47,7 +47,7 @@ def measure_remainders(problem: DiagnosisProblem, evaluation: Evaluation) -> Arr
     return np.asarray(np.sqrt(np.maximum(power, 0.0)) / problem.spread)
 
 
-def measure_channel_excess(evaluation: Evaluation) -> Array:
+def _measure_channel_excess(evaluation: Evaluation) -> Array:
     """Return the whitened excess (reduced chi-square less 1) of every channel, shape (channels,)."""
     by_run = [np.mean(values**2, axis=1) for values in evaluation.whitened.values()]
     return np.asarray(np.mean(by_run, axis=0) - 1.0)
@@ -56,7 +56,7 @@ def measure_channel_excess(evaluation: Evaluation) -> Array:
 def measure_shares_left(problem: DiagnosisProblem, before: Evaluation, after: Evaluation) -> list[float]:
     """Return the share of the excess that is left of every channel with a material gap before."""
     gaps = measure_remainders(problem, before)
-    excess, left = measure_channel_excess(before), measure_channel_excess(after)
+    excess, left = _measure_channel_excess(before), _measure_channel_excess(after)
     settings = problem.settings
     channels = np.flatnonzero((gaps > settings.decision.material) & (excess > settings.selection.nothing_left))
     return [float(left[k] / excess[k]) for k in channels]

@@ -13,18 +13,18 @@ from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
 from seatsim.schema.fields import bounds, describe, replace_fields
 
-SCALE_OF_FORCES = 100.0
+_SCALE_OF_FORCES = 100.0
 """N; scale of the tolerance of forces that are nominally zero, as the recording's contract states it."""
-SCALE_OF_LENGTHS = 0.01
+_SCALE_OF_LENGTHS = 0.01
 """m; scale of the tolerance of lengths that are nominally zero, as the recording's contract states it."""
-NOT_UNCERTAIN = ("damper_ratio", "travel", "v_ref", "n", "resistance")
+_NOT_UNCERTAIN = ("damper_ratio", "travel", "v_ref", "n", "resistance")
 """Fields that are a convention, a geometry or an exponent of a model's form, or that move no compared channel."""
 
-LEAST_SHARE = 0.05
+_LEAST_SHARE = 0.05
 """Share of its nominal value below which no parameter falls that may not be negative: without mass nothing moves."""
 SECTIONS = {"plant": "plant", "damper": "damper.parameters", "coil": "actuator"}
 """Dotted key in the file of a scenario of each section that holds parameters."""
-NONE_OF_ITS_OWN: Mapping[str, float] = MappingProxyType({})
+_NONE_OF_ITS_OWN: Mapping[str, float] = MappingProxyType({})
 
 
 class Nuisance(NamedTuple):
@@ -64,7 +64,7 @@ def list_calibrated(parameters: Sequence[Nuisance], deviations: Array, at_bound:
 
 
 def list_nuisances(
-    scenario: Scenario, tolerance: float, own: Mapping[str, float] = NONE_OF_ITS_OWN, of_zeros: float | None = None
+    scenario: Scenario, tolerance: float, own: Mapping[str, float] = _NONE_OF_ITS_OWN, of_zeros: float | None = None
 ) -> list[Nuisance]:
     """List the parameters that relative tolerances let vary; those that are zero vary by a scale of their unit.
 
@@ -75,14 +75,14 @@ def list_nuisances(
         of_zeros: tolerance of parameters that are zero and have none of their own, as `tolerance` where absent.
     """
     stiffness = scenario.plant.suspension_stiffness if scenario.plant else 0.0
-    scales = {"N": SCALE_OF_FORCES, "N/m": stiffness, "m": SCALE_OF_LENGTHS}
+    scales = {"N": _SCALE_OF_FORCES, "N/m": stiffness, "m": _SCALE_OF_LENGTHS}
     sections = {"plant": scenario.plant, "damper": scenario.damper.record, "coil": scenario.coil}
     found = []
     for section, record in sections.items():
         for specification in describe(type(record)) if record is not None else []:
             name, value = specification.name, getattr(record, specification.name)
             key = f"{SECTIONS[section]}.{name}"
-            if (name in NOT_UNCERTAIN and key not in own) or not isinstance(value, float | int):
+            if (name in _NOT_UNCERTAIN and key not in own) or not isinstance(value, float | int):
                 continue
             usual = tolerance if value or of_zeros is None else of_zeros
             # Rates and times have no scale: a coil without a delay has none, and not one that is known to be small.
@@ -96,7 +96,7 @@ def list_nuisances(
 def _range(record: type, name: str, value: float) -> tuple[float, float]:
     """Return the values that a field permits; what may not be negative keeps a share of what it is nominally."""
     low, high = bounds(record, name)
-    return (max(low, LEAST_SHARE * value), high) if low >= 0.0 else (low, high)
+    return (max(low, _LEAST_SHARE * value), high) if low >= 0.0 else (low, high)
 
 
 def vary(scenario: Scenario, parameters: Sequence[Nuisance], deviations: Array) -> Scenario:

@@ -30,9 +30,9 @@ from seatsim.simulation.bench_response import FINER
 from seatsim.simulation.inputs import RigInputs
 from seatsim.simulation.respond import respond
 
-COARSEST_STEP = 0.002
+_COARSEST_STEP = 0.002
 """s; longest step of the simulation: its adaptive sub-steps make a shorter one change no figure of a diagnosis."""
-REACHED = {"m": ("suspension_displacement",), "A": ("coil_current", "current_command")}
+_REACHED = {"m": ("suspension_displacement",), "A": ("coil_current", "current_command")}
 """Channels that tell how far the rig went towards a limit, by its unit: the first that was recorded does."""
 
 
@@ -160,7 +160,7 @@ def pose_problem(recording: Recording, pool: Executor, settings: DiagnosisSettin
     recording = without_gravity(recording)
     scenario = recording.nominal
     interval = 1.0 / recording.header.sample_rate
-    parts = max(1, math.ceil(interval / COARSEST_STEP - 1e-9))
+    parts = max(1, math.ceil(interval / _COARSEST_STEP - 1e-9))
     solver = scenario.solver._replace(step=interval / parts)
     scenario = dataclasses.replace(scenario, solver=solver, start=Start())
     tables = {run: recording.table(run) for run in recording.runs}
@@ -186,7 +186,7 @@ def pose_problem(recording: Recording, pool: Executor, settings: DiagnosisSettin
 
 def _measure_reach(recorded: Container[str], tables: Collection[Mapping[str, Array]]) -> dict[str, float]:
     """Return the largest value of the first recorded channel of each unit, in any run."""
-    first = {unit: next((name for name in names if name in recorded), "") for unit, names in REACHED.items()}
+    first = {unit: next((name for name in names if name in recorded), "") for unit, names in _REACHED.items()}
     return {unit: max(float(np.abs(table[name]).max()) for table in tables) for unit, name in first.items() if name}
 
 

@@ -9,7 +9,7 @@ from seatsim.schema.arrays import Array
 
 Spectra = NDArray[np.complex128]
 
-FEWEST_BINS = 4
+_FEWEST_BINS = 4
 """Least half-width of the average in bins, so that the lowest frequencies are averaged at all."""
 TINY = 1e-30
 """Least power, so that nothing is divided by the zero of a silent channel."""
@@ -25,7 +25,7 @@ def smooth_spectrum(power: Array, half_width: float) -> Array:
     count = power.shape[1]
     cumulated = np.concatenate([np.zeros((len(power), 1)), np.cumsum(power, axis=1)], axis=1)
     index = np.arange(count)
-    half = np.maximum(FEWEST_BINS, (half_width * index).astype(int))
+    half = np.maximum(_FEWEST_BINS, (half_width * index).astype(int))
     low, high = np.maximum(0, index - half), np.minimum(count, index + half + 1)
     return np.asarray((cumulated[:, high] - cumulated[:, low]) / (high - low))
 

@@ -24,14 +24,14 @@ from seatsim.diagnosis.solution import Method, Progress, Solution
 from seatsim.diagnosis.solve import solve
 
 Search = Callable[[], Solution]
-THEIRS = {
+_THEIRS = {
     "plant.driver_mass": "driver.mass", "actuator.rate": "coil.lag", "actuator.max_current": "coil.current_limit",
     "damper.parameters.f0": "damper.gas_spring", "damper.parameters.k0": "damper.gas_spring",
 }  # fmt: skip
 """Parameters that an effect continues beyond their tolerance, so that they end at a bound where it is at work."""
 
 
-class Wider(NamedTuple):
+class _Wider(NamedTuple):
     """The first solution's best set, the same rig where parameters at their bounds may go farther, and its measure."""
 
     best: Evaluation
@@ -69,7 +69,7 @@ def search_wider(
     attempt = _leave_less if best.excess > problem.settings.selection.nothing_left else _need_fewer
     notes = ["at the bound of their tolerance: " + ", ".join(held.values())]
     try:
-        second, said = attempt(Wider(best, start, judge), search, len(held))
+        second, said = attempt(_Wider(best, start, judge), search, len(held))
     except OutOfTimeError:
         return first, notes
     if said:
@@ -79,7 +79,7 @@ def search_wider(
     return second or first, notes
 
 
-def _leave_less(wider: Wider, search: Search, held: int) -> tuple[Solution | None, str]:
+def _leave_less(wider: _Wider, search: Search, held: int) -> tuple[Solution | None, str]:
     """Return the second solution where it leaves clearly less than the first, with words on what it leaves."""
     settings, second = wider.judge.settings.widening, None
     left = _share_left(wider, refit(wider.judge, wider.start))
@@ -90,7 +90,7 @@ def _leave_less(wider: Wider, search: Search, held: int) -> tuple[Solution | Non
     return (second, said) if left <= settings.clearly_less else (None, f"{said}, which is not clearly less")
 
 
-def _need_fewer(wider: Wider, search: Search, held: int) -> tuple[Solution | None, str]:
+def _need_fewer(wider: _Wider, search: Search, held: int) -> tuple[Solution | None, str]:
     """Return the second solution where fewer effects leave nothing to explain, with words on that."""
     terms, little = wider.start.terms, wider.judge.settings.selection.nothing_left
     if len(terms) < 2 or held < wider.judge.settings.widening.strained:
@@ -112,7 +112,7 @@ def find_at_bound(problem: DiagnosisProblem, parameters: Parameters) -> dict[int
     listed = list_calibrated(problem.parameters, parameters.deviations, problem.settings.widening.at_bound)
     return {
         k: f"{each.name} {each.nominal:.4g} (fitted {each.value:.4g})"
-        for k, each in enumerate(listed) if each.at_bound and THEIRS.get(each.name) not in parameters.names
+        for k, each in enumerate(listed) if each.at_bound and _THEIRS.get(each.name) not in parameters.names
     }  # fmt: skip
 
 
@@ -127,7 +127,7 @@ def _widen(objective: Objective, parameters: Parameters, held: Sequence[int]) ->
     return same, Objective(dataclasses.replace(problem, parameters=wider), objective.weights)
 
 
-def _share_left(wider: Wider, second: Evaluation) -> float:
+def _share_left(wider: _Wider, second: Evaluation) -> float:
     """Return the share of what the first rig leaves that the second leaves: of the excess or of the gap, the larger."""
     both, problem = (wider.best, second), wider.judge.problem
     errors = [float(np.mean(normalise_rms_errors(problem, each.residuals) ** 2)) for each in both]

@@ -72,7 +72,7 @@ def write_carrier(carrier: Carrier, folder: Path) -> Path:
 
 def seat_carrier() -> Carrier:
     """Return two runs of a linear seat on a random floor; its outputs are those of its own nominal, without noise."""
-    from seatsim.blind.carrier.injections.seat import simulate_linear
+    from seatsim.blind.carrier.seat import simulate_linear
 
     nominal = {
         "plant": PLANT,

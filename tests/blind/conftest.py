@@ -1,12 +1,16 @@
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import pytest
 
 from seatsim.blind.make import draw_experiment
 
 
-@pytest.fixture
-def short(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture(scope="package", autouse=True)
+def short() -> Iterator[None]:
     """Runs of a few seconds."""
-    monkeypatch.setattr(draw_experiment, "SECONDS", 2.6)
-    monkeypatch.setattr(draw_experiment, "UNSEEN_SECONDS", 2.6)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(draw_experiment, "SECONDS", 2.6)
+        patch.setattr(draw_experiment, "UNSEEN_SECONDS", 2.6)
+        yield

@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.blind.make.draw_experiment import draw_experiment
-from seatsim.blind.make.materiality import CommandedRuns
-from seatsim.blind.truth.experiment import CHANNELS, Experiment, context_of, read_channels, simulate_run
-from seatsim.blind.truth.faults.scenario import Changes, Context
+from seatsim.blind.make.materiality import CommandedRuns, context_of
+from seatsim.blind.truth.experiment import CHANNELS, Experiment, read_channels, simulate_run
+from seatsim.blind.truth.faults import Changes, Context
 
 
 class SmallExperiment(NamedTuple):

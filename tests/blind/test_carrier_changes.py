@@ -9,13 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from seatsim.blind.carrier.change import Change
-from seatsim.blind.carrier.draw import DrawnCase, draw_amount
-from seatsim.blind.carrier.injections.catalogue import draw_changes
-from seatsim.blind.carrier.injections.coil import draw_faster_coils
-from seatsim.blind.carrier.recorded import Carrier
+from seatsim.blind.carrier.make import DrawnCase, draw_amount, draw_changes
+from seatsim.blind.carrier.readings import draw_faster_coils
+from seatsim.blind.carrier.recorded import Carrier, Change, low_pass, shifted, shifted_rows, slide, slope
 from seatsim.blind.carrier.replays import Ruler
-from seatsim.blind.carrier.signals import low_pass, shifted, shifted_rows, slide, slope
 from seatsim.blind.labels import EFFECTS
 
 from .carriers import RATE, bench_carrier, seat_carrier
@@ -146,7 +143,7 @@ def test_an_effect_whose_opposite_is_in_the_background_is_not_put_in() -> None:
 
 
 def put(carrier: Carrier) -> Any:
-    from seatsim.blind.carrier.change import Altered
+    from seatsim.blind.carrier.recorded import Altered
 
     return Altered(carrier, {})
 

@@ -11,9 +11,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from seatsim.blind.make import draw_experiment, draw_rig, folder, materiality, severity
-from seatsim.blind.make.tolerance import ToleranceRefit, bounded_least_squares
-from seatsim.blind.truth.faults.scenario import Changes, SensorFault
+from seatsim.blind.make import draw_case, draw_experiment, folder, materiality, severity
+from seatsim.blind.make.materiality import ToleranceRefit, bounded_least_squares
+from seatsim.blind.truth.faults import Changes, SensorFault
 
 from .experiments import small_experiment
 
@@ -30,7 +30,7 @@ def test_parameters_are_scattered_inside_the_width() -> None:
 
 def test_channels_are_missing_at_their_rates() -> None:
     rng = np.random.default_rng(0)
-    missing = [draw_rig.draw_missing_channels(rng) for _ in range(4000)]
+    missing = [draw_case.draw_missing_channels(rng) for _ in range(4000)]
     shares = Counter(map(len, missing))
     assert [shares[k] / 4000 for k in range(3)] == pytest.approx([0.6, 0.33, 0.07], abs=0.03)
     single = Counter(some[0] for some in missing if len(some) == 1)
@@ -67,7 +67,6 @@ def test_targets_are_log_uniform() -> None:
     assert np.mean(logs) == pytest.approx(0.5 * (math.log(1.1) + math.log(8.0)), abs=0.03)
 
 
-@pytest.mark.usefixtures("short")
 def test_materiality_of_a_gain_and_of_a_parameter() -> None:
     experiment, _, runs = small_experiment()
     gain = Changes(sensor_faults=(SensorFault("gain", "damper_force", 0.1),))
@@ -82,7 +81,6 @@ def test_materiality_of_a_gain_and_of_a_parameter() -> None:
     assert materiality.collinearity(np.array([1.0, 0.0]), np.array([-3.0, 4.0])) == pytest.approx(0.6)
 
 
-@pytest.mark.usefixtures("short")
 def test_a_change_inside_the_tolerance_is_explained_and_one_beyond_it_is_not() -> None:
     experiment, _, runs = small_experiment()
     refit = ToleranceRefit(experiment, runs.commands)
@@ -102,7 +100,6 @@ def test_the_bounded_refit_is_the_projection_onto_the_box() -> None:
     np.testing.assert_allclose(found, [0.4, -1.0, 0.9], atol=1e-6)
 
 
-@pytest.mark.usefixtures("short")
 def test_a_recording_holds_what_its_header_states() -> None:
     experiment, _, _ = small_experiment()
     quiet = {name: np.linspace(0.0, 1.0, 20_000) for name in folder.CHANNELS}

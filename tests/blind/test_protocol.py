@@ -11,14 +11,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from seatsim.blind.carrier.injections.catalogue import draw_changes
+from seatsim.blind.carrier.make import draw_changes
 from seatsim.blind.carrier.recorded import encode_carrier, read_carrier
 from seatsim.blind.labels import EFFECTS
 from seatsim.blind.make.compose import compose
 from seatsim.blind.make.draw_case import CaseSpecification, draw_case
 from seatsim.blind.make.folder import nominal_scenario, recording_header
 from seatsim.blind.truth.experiment import Experiment
-from seatsim.blind.truth.physics.rig import EXCITATION_RATE
+from seatsim.blind.truth.rig import EXCITATION_RATE
 
 from .carriers import bench_carrier, seat_carrier, write_carrier
 
@@ -60,7 +60,6 @@ def best_stump(features: np.ndarray, hits: np.ndarray) -> tuple[int, float, floa
     return best[1]
 
 
-@pytest.mark.usefixtures("short")
 @pytest.mark.parametrize(("kinds", "cases"), [("mixed", 2000), ("varied", 1200)])
 def test_a_classifier_of_all_but_the_signals_stays_at_chance(
     kinds: str, cases: int, monkeypatch: pytest.MonkeyPatch
@@ -80,7 +79,6 @@ def test_a_classifier_of_all_but_the_signals_stays_at_chance(
         assert share - others < 4.0 * chance, f"{names[k]} tells {effect or 'a faultless rig'}"
 
 
-@pytest.mark.usefixtures("short")
 def test_the_same_draw_gives_the_same_folder_whatever_the_effect() -> None:
     for seed, varied in ((0, False), (3, True)):
         found = []
@@ -90,7 +88,6 @@ def test_the_same_draw_gives_the_same_folder_whatever_the_effect() -> None:
         assert found[0] == found[1] == found[2]
 
 
-@pytest.mark.usefixtures("short")
 def test_an_effect_that_the_damper_cannot_have_gives_way_to_another() -> None:
     order = CaseSpecification("one", ("damper.preyield_hysteresis",))
     cases = [draw_case(order, np.random.default_rng(seed)) for seed in range(4)]

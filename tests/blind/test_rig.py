@@ -10,14 +10,13 @@ import pytest
 import seatsim
 from seatsim.blind.make.folder import encode_recording, write_folder
 from seatsim.blind.truth.experiment import read_channels, simulate_run
-from seatsim.blind.truth.faults.scenario import Changes
-from seatsim.blind.truth.physics.parameters import parameter_record
-from seatsim.blind.truth.physics.rig import EXCITATION_RATE, INTEGRATION_STEP, Inputs, simulate
+from seatsim.blind.truth.faults import Changes
+from seatsim.blind.truth.parameters import parameter_record
+from seatsim.blind.truth.rig import EXCITATION_RATE, INTEGRATION_STEP, Inputs, simulate
 
 from .experiments import small_experiment
 
 
-@pytest.mark.usefixtures("short")
 @pytest.mark.parametrize("bingham", [False, True])
 def test_a_faultless_rig_replays_to_within_its_noise(bingham: bool, tmp_path: Path) -> None:
     experiment, _, _ = small_experiment(bingham)
@@ -29,7 +28,6 @@ def test_a_faultless_rig_replays_to_within_its_noise(bingham: bool, tmp_path: Pa
         assert gap.overall <= 1.1 * gap.floor.overall
 
 
-@pytest.mark.usefixtures("short")
 def test_the_step_is_fine_enough_for_a_steep_damper() -> None:
     experiment, _, runs = small_experiment(True)
     values = parameter_record(experiment.true)

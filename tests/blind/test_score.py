@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+import dataclasses
 import io
 import json
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from rich.console import Console
 
-from seatsim.blind.score.cases import ScoredCase, describe_failure, missing_channels, strength_class
-from seatsim.blind.score.measures import Rate, calibration_error, reliability
+from seatsim.blind.carrier.recorded import encode_carrier
+from seatsim.blind.score.cases import (
+    Rate,
+    ScoredCase,
+    calibration_error,
+    describe_failure,
+    missing_channels,
+    reliability,
+    strength_class,
+)
 from seatsim.blind.score.score import score, score_verdicts
 from seatsim.blind.score.shrink import score_shrink
 from seatsim.blind.score.tables import tables
@@ -21,6 +29,8 @@ from seatsim.blind.score.verdicts import Verdict, is_right, read_verdict
 from seatsim.blind.sealed import Sealed, new_key, seal
 from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
+
+from .carriers import bench_carrier, write_yaml
 
 ONE = {"kind": "one", "effects": ["damper.remanence"], "blocks": ["damper"], "forms": ["remanence-decay"]}
 TWO = {"kind": "two", "effects": ["coil.lag", "driver.mass"], "blocks": ["coil", "driver"]}
@@ -116,44 +126,41 @@ def test_classes_and_failures_of_cases() -> None:
     assert (failure.effects, failure.verdict, failure.missing) == (["damper.remanence"], "known", [])
 
 
-def test_shrink_claimed_and_reached(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    gaps = {"nominal.yaml": 0.5, "good.yaml": 0.1, "bad.yaml": 0.4}
-
-    def gap(scenario: Path, recording: Path) -> SimpleNamespace:
-        assert (recording / "run-u.csv.gz").read_bytes() == b"unseen"
-        if scenario.name not in gaps:
-            raise InputError("cannot be replayed")
-        return SimpleNamespace(overall=gaps[scenario.name])
-
-    def predict(scenario: Path, recording: Path, diagnosis: Path) -> SimpleNamespace:
-        assert diagnosis == scenario.parent / "diagnosis.json"
-        if scenario.name == "bad.yaml":
-            raise InputError("states no model error")
-        return SimpleNamespace(shrink=0.75, shrink_interval=(0.7, 0.79))
-
-    monkeypatch.setattr("seatsim.recordings.gap.measure_gap", gap)
-    monkeypatch.setattr("seatsim.recordings.prediction.predict_gap", predict)
-    names = ["a", "b", "c", "d", "e"]
-    opened = Sealed(dict.fromkeys(names, ONE), {name: {"run-u.csv.gz": b"unseen"} for name in names}, {})
-    verdicts = {
-        "a": Verdict("known", shrink=0.7, shrink_interval=(0.6, 0.9), augmented=Path("good.yaml")),
-        "b": Verdict("unknown", shrink=0.5, shrink_interval=(0.4, 0.6), augmented=Path("bad.yaml")),
-        "c": Verdict("ambiguous", shrink=0.5, shrink_interval=(0.4, 0.6), augmented=Path("other.yaml")),
-        "d": Verdict("none", shrink=0.0, augmented=Path("good.yaml")),
-        "e": Verdict("known", augmented=Path("good.yaml")),
+def test_shrink_claimed_and_reached(tmp_path: Path) -> None:
+    """The recording has an offset of the force that the nominal lacks and the augmented scenario has, or half of it."""
+    base, carrier = tmp_path / "set", bench_carrier()
+    shifted = {run: {**table, "damper_force": table["damper_force"] + 60.0} for run, table in carrier.tables.items()}
+    files = encode_carrier(dataclasses.replace(carrier, tables=shifted), ("run-0",))
+    augmented = {}
+    for name, preload in (("whole", 60.0), ("half", 30.0), ("wrong", -60.0)):
+        effect = {"effect": "damper.gas_spring", "parameters": {"preload": preload}}
+        augmented[name] = write_yaml({**carrier.nominal, "effects": [effect]}, tmp_path / f"{name}.yaml")
+    said = {
+        "a": Verdict("known", shrink=0.9, shrink_interval=(0.8, 1.0), augmented=augmented["whole"]),
+        "b": Verdict("unknown", shrink=0.6, shrink_interval=(0.55, 0.65), augmented=augmented["half"]),
+        "c": Verdict("ambiguous", shrink=0.5, shrink_interval=(0.4, 0.6), augmented=tmp_path / "none.yaml"),
+        "d": Verdict("none", shrink=0.0, augmented=augmented["whole"]),
+        "e": Verdict("known", augmented=augmented["whole"]),
+        "f": Verdict("known", shrink=0.1, augmented=augmented["wrong"]),
     }
-    found = score_shrink(tmp_path, opened, verdicts, 1, None)
-    assert found is not None
-    assert [(name, claimed, covered) for name, claimed, _, covered in found.cases] == [
-        ("a", 0.7, True), ("b", 0.5, False), ("c", 0.5, None),
-    ]  # fmt: skip
-    assert [true for _, _, true, _ in found.cases][:2] == pytest.approx([0.8, 0.2])
-    assert found.mean_difference == pytest.approx(0.5 * (0.1 + 0.3)) and found.bias == pytest.approx(0.5 * (-0.1 + 0.3))
+    for name in said:
+        (base / name).mkdir(parents=True)
+        (base / name / "nominal.yaml").write_bytes(files["nominal.yaml"])
+    opened = Sealed(dict.fromkeys(said, ONE), dict.fromkeys(said, files), {})
+    found = score_shrink(base, opened, said, 1, None)
+    assert found is not None and found.predicted is None
+    assert [(name, stated, held) for name, stated, _, held in found.cases] == [
+        ("a", 0.9, True),
+        ("b", 0.6, False),
+        ("c", 0.5, None),
+        ("f", 0.1, None),
+    ]
+    true = {name: value for name, _, value, _ in found.cases}
+    assert true["a"] > 0.95 and true["b"] == pytest.approx(0.5, abs=0.02) and true["f"] < -0.9
     assert found.coverage == Rate(1, 2)
-    assert found.predicted is not None and found.predicted.coverage == Rate(0, 1)
-    assert [(name, claimed) for name, claimed, _, _ in found.predicted.cases] == [("a", 0.75)]
-    assert found.predicted.mean_difference == pytest.approx(0.05)
-    assert score_shrink(tmp_path, opened, dict.fromkeys(names, Verdict("known")), 1, None) is None
+    off = np.array([0.9 - true["a"], 0.6 - true["b"], 0.1 - true["f"]])
+    assert (found.mean_difference, found.bias) == pytest.approx((np.mean(np.abs(off)), np.mean(off)))
+    assert score_shrink(base, opened, dict.fromkeys(said, Verdict("known")), 1, None) is None
 
 
 def test_a_verdict_is_read_as_the_contract_has_it(tmp_path: Path) -> None:

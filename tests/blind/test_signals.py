@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy.signal import welch
 
-from seatsim.blind.truth import excitation, frame_forces, sensors
-from seatsim.blind.truth.faults.scenario import FrameForce, SensorFault
-from seatsim.blind.truth.noise import coloured_noise
-from seatsim.blind.truth.physics.rig import EXCITATION_RATE, SAMPLE_RATE, RigMotion
+from seatsim.blind.truth import excitation, experiment
+from seatsim.blind.truth.excitation import coloured_noise
+from seatsim.blind.truth.faults import FrameForce, SensorFault
+from seatsim.blind.truth.rig import EXCITATION_RATE, SAMPLE_RATE, RigMotion
 
 
 def test_coloured_noise_has_unit_variance_and_its_slope() -> None:
@@ -52,17 +52,17 @@ def test_current_steps_are_held_and_bounded() -> None:
 
 def test_frame_forces_are_repeatable_and_differ_by_run() -> None:
     force = FrameForce("coloured", 12.0, 7)
-    first, again, other = (frame_forces.frame_force([force], run, 10.0) for run in (0, 0, 1))
+    first, again, other = (excitation.frame_force([force], run, 10.0) for run in (0, 0, 1))
     assert np.std(first) == pytest.approx(12.0)
     np.testing.assert_array_equal(first, again)
     assert abs(np.corrcoef(first, other)[0, 1]) < 0.5
-    np.testing.assert_allclose(frame_forces.frame_force([force, force], 0, 10.0), 2.0 * first)
-    assert frame_forces.frame_force([], 0, 10.0).size == 1
-    hum = frame_forces.frame_force([FrameForce("hum", 3.0, 7, 12.0)], 0, 20.0)
+    np.testing.assert_allclose(excitation.frame_force([force, force], 0, 10.0), 2.0 * first)
+    assert excitation.frame_force([], 0, 10.0).size == 1
+    hum = excitation.frame_force([FrameForce("hum", 3.0, 7, 12.0)], 0, 20.0)
     f, power = welch(hum, EXCITATION_RATE, nperseg=8000)
     assert f[np.argmax(power)] == pytest.approx(12.0, abs=0.6)
     assert np.std(hum) == pytest.approx(3.0, rel=0.1)
-    knocks = frame_forces.frame_force([FrameForce("knock", 3.0, 7, 1.0)], 0, 60.0)
+    knocks = excitation.frame_force([FrameForce("knock", 3.0, 7, 1.0)], 0, 60.0)
     starts = np.count_nonzero(np.diff((knocks != 0.0).astype(int)) == 1)
     assert np.std(knocks) == pytest.approx(3.0)
     assert starts == pytest.approx(60.0 / 1.13, rel=0.25)
@@ -70,26 +70,7 @@ def test_frame_forces_are_repeatable_and_differ_by_run() -> None:
 
 def faulty(kind: str, u: np.ndarray, size: float, **other: float) -> np.ndarray:
     fault = SensorFault(kind, "damper_force", size, **other)
-    return sensors.apply_fault(u, 10.0 + 0.0 * u, fault, 0)
-
-
-def test_sensor_faults() -> None:
-    time = np.arange(2000) / SAMPLE_RATE
-    u = 3.0 * np.sin(2.0 * np.pi * time)
-    for kind in ("gain", "gain_bent", "bias", "wander", "lag_second", "lag_average", "quantise", "clip", "backlash"):
-        np.testing.assert_array_equal(faulty(kind, u, 0.0), u)
-    np.testing.assert_allclose(faulty("gain", u, -0.2), 0.8 * u)
-    np.testing.assert_allclose(faulty("gain_bent", u, 0.2, detail=0.5, scale=2.0), u * (1 + 0.2 / (1 + u**2 / 80.0)))
-    np.testing.assert_allclose(faulty("bias", u, 2.0, detail=0.9) - u, np.linspace(2.0, 3.0, u.size))
-    wander = faulty("wander", u, 2.0, detail=0.5, seed=3) - u
-    assert np.std(wander) == pytest.approx(2.0)
-    np.testing.assert_allclose(faulty("quantise", u, 0.5) % 0.5, 0.0)
-    assert np.max(np.abs(faulty("quantise", u, 0.5) - u)) <= 0.25
-    assert np.ptp(faulty("clip", u, 2.0)) == 4.0
-    np.testing.assert_allclose(faulty("crosstalk", u, 0.1), u + 1.0)
-    play = faulty("backlash", u, 1.0)
-    assert np.max(play) == pytest.approx(2.5) and np.min(play) == pytest.approx(-2.5)
-    assert np.max(np.abs(play - u)) == pytest.approx(0.5)
+    return experiment.apply_fault(u, 10.0 + 0.0 * u, fault, 0)
 
 
 @pytest.mark.parametrize("kind", ["lag_second", "lag_average"])
@@ -106,19 +87,12 @@ def motion(rows: int = 500) -> RigMotion:
 
 def test_a_late_log_is_late_by_its_size() -> None:
     late = SensorFault("skew", "log", 0.01)
-    read = sensors.read_sensors(motion(), np.arange(2000.0), [late], 0)
+    read = experiment.read_sensors(motion(), np.arange(2000.0), [late], 0)
     np.testing.assert_allclose(read["coil_current"][50:], motion().current[50:] - 0.01)
     np.testing.assert_allclose(read["current_command"][50:], motion().command[50:] - 5.0)
     np.testing.assert_array_equal(read["floor_acceleration"], np.arange(0.0, 2000.0, 4.0))
     drifting = dataclasses.replace(late, detail=0.5)
     assert late.on_input and not SensorFault("gain", "damper_force", 0.1).on_input
     for run, left in ((0, 1.0 - 0.5 * 0.6), (1, 0.5)):
-        read = sensors.read_sensors(motion(), np.arange(2000.0), [drifting], run)
+        read = experiment.read_sensors(motion(), np.arange(2000.0), [drifting], run)
         assert motion().current[-1] - read["coil_current"][-1] == pytest.approx(0.01 * left)
-
-
-def test_a_fault_reads_its_neighbour_and_leaves_the_motion_alone() -> None:
-    true = motion()
-    read = sensors.read_sensors(true, np.zeros(2000), [SensorFault("crosstalk", "frame_acceleration", 0.5)], 0)
-    np.testing.assert_array_equal(read["frame_acceleration"], 0.5)
-    np.testing.assert_array_equal(true.frame, 0.0)

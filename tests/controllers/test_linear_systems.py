@@ -15,7 +15,6 @@ from controllers.linear_systems import (
 from controllers.synthesis.norm import frequency_response
 from controllers.synthesis.plant import Loop
 from seatsim.metrics import weighting
-from seatsim.schema.errors import InputError
 
 OMEGA = np.geomspace(0.5, 300.0, 40)
 
@@ -28,11 +27,6 @@ def gains(system):
 def test_weighting_with_states_is_that_of_the_standard(name):
     expected = weighting.frequency_response(OMEGA / (2 * np.pi), name)
     np.testing.assert_allclose(gains(frequency_weighting(name))[:, 0, 0], expected, rtol=1e-9)
-
-
-def test_unknown_weighting():
-    with pytest.raises(InputError, match="Wk"):
-        frequency_weighting("Wz")
 
 
 def test_a_section_is_its_quotient_and_its_states_are_of_one_size():

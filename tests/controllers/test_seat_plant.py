@@ -11,7 +11,7 @@ from controllers.synthesis.norm import frequency_response, hinf_norm
 from controllers.synthesis.plant import Loop
 from seatsim.metrics import weighting
 from seatsim.rig.coil import Coil
-from seatsim.rig.plant import Plant, state_space
+from seatsim.rig.plant import Plant
 from seatsim.rig.sensors import Sensors
 from seatsim.schema.errors import InputError
 
@@ -29,13 +29,6 @@ def test_actuator_lags_as_coil_and_delay():
     exact = np.exp(-1j * omega * lag.delay) * lag.rate / (1j * omega + lag.rate)
     np.testing.assert_allclose(gains(build_actuator(lag), omega)[:, 0, 0], exact, atol=2e-3)
     assert len(build_actuator(ActuatorLag(delay=0.0)).A) == 1
-
-
-def test_without_extras_it_is_the_exact_seat():
-    plant, s = build_generalised_plant(SEAT, Weights(travel=30.0)), state_space(SEAT)
-    np.testing.assert_array_equal(plant.A, s.A)
-    np.testing.assert_array_equal(plant.B2, s.B2)
-    np.testing.assert_array_equal(plant.C1, [[30.0], [1.0]] * s.C1)
 
 
 def test_every_path_with_lag_and_weighting():
@@ -103,13 +96,6 @@ def test_law_designs_for_the_worst_of_drivers_and_factors():
     ]
     assert min(scan) * (1 - 1e-3) <= design.gamma <= min(scan)
     assert all(loop.gamma <= design.gamma and loop.poles.real.max() < 0 for loop in design.loops)
-
-
-def test_displacement_gain_may_be_left_out():
-    lag = ActuatorLag(delay=0.0025)
-    law = StaticOutputFeedback(weights=Weights(30.0), displacement_gain=False, lag=lag)
-    compiled = law.prepared(SEAT)
-    assert compiled.displacement == 0 and compiled.velocity > 500
 
 
 def test_checks_tell_of_margins_and_the_sampled_loop():

@@ -1,15 +1,10 @@
 """Where the nominal's own form is wrong everywhere: which effects runs left out of the fit support."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pandas as pd
 import pytest
 
 import seatsim
-from seatsim.diagnosis.movement import group_equivalent
-from seatsim.diagnosis.objective import Evaluation
-from seatsim.diagnosis.parameters import Parameters
 
 RATE = 250.0
 NOMINAL = """\
@@ -53,6 +48,7 @@ def folder(tmp_path):
     return tmp_path
 
 
+@pytest.mark.slow
 def test_a_known_effect_is_named_beside_a_form_that_is_wrong_everywhere(folder):
     found = seatsim.diagnose(folder)
     assert found.verdict == "unknown"
@@ -63,14 +59,3 @@ def test_a_known_effect_is_named_beside_a_form_that_is_wrong_everywhere(folder):
     assert all(f"{first} from {' and '.join(others)}" in found.sentence for first, *others in found.indistinguishable)
     (cause,) = [cause for cause in found.causes if cause.effect == "damper.gas_spring"]
     assert cause.parameters["preload"].value == pytest.approx(60.0, rel=0.3)
-
-
-def fitted(*effects):
-    """Return an evaluation with these effects, of which nothing else is asked."""
-    return Evaluation(Parameters(np.zeros(0), tuple(SimpleNamespace(effect=effect) for effect in effects)), {}, {}, 0.0)
-
-
-def test_what_stands_for_one_of_two_effects_stands_for_it_in_other_sets():
-    alike = [fitted("c", "b"), fitted("a", "d"), fitted("c", "d"), fitted("c", "e"), fitted("f", "g"), fitted("a")]
-    groups = group_equivalent(fitted("a", "b"), alike)
-    assert groups == [["a", "c"], ["b", "d", "e"]]

@@ -198,10 +198,6 @@ def test_what_forms_explain_is_one_sentence(forms, said):
     assert describe_forms(forms, gaps(0.4, 0.3), 0.1) == said
 
 
-def test_no_share_is_made_of_a_gap_that_effects_close():
-    assert describe_forms([form("ellis", 1.0, 0.9, "coil.lag")], gaps(0.4, 0.0), 0.1) == ""
-
-
 def test_a_diagnosis_lists_the_forms_that_were_tried(wrong_form, tmp_path):
     forms = wrong_form.settings.damper_forms._replace(models=("biviscous", "bouc_wen"))
     settings = wrong_form.settings._replace(damper_forms=forms)

@@ -6,7 +6,7 @@ import pytest
 from typer.testing import CliRunner
 
 import seatsim
-from seatsim.blind.make import draw_experiment, tolerance
+from seatsim.blind.make import draw_experiment, materiality
 from seatsim.blind.make.make import make
 from seatsim.blind.sealed import unseal
 from seatsim.cli.app import app
@@ -23,7 +23,7 @@ def made(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(draw_experiment, "SECONDS", 12.0)
         patch.setattr(draw_experiment, "UNSEEN_SECONDS", 2.6)
-        patch.setattr(tolerance, "SECONDS", 4.0)
+        patch.setattr(materiality, "SECONDS", 4.0)
         key = make(3, 11, folder / "set", folder / "set.sealed", kinds=KINDS, processes=1)
     labels = unseal(folder / "set.sealed", key, folder / "set").labels
     return folder / "set", {label["kind"]: (name, label) for name, label in labels.items()}

@@ -11,7 +11,6 @@ import seatsim
 from seatsim.diagnosis.candidates import list_candidates
 from seatsim.diagnosis.design.collinearity import measure_collinearity
 from seatsim.diagnosis.design.experiment import propose_experiment
-from seatsim.diagnosis.design.separability import PredictedExperiment, measure_separability
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.noise import weigh_noise
 from seatsim.diagnosis.objective import Objective
@@ -75,11 +74,6 @@ def test_a_load_cell_tells_friction_in_the_damper_from_friction_in_the_linkage(r
     assert "load cell" in found.reason
 
 
-def test_what_no_experiment_can_tell_apart_is_said_to_be_so(rubbing):
-    found = propose_experiment(*rubbing, [FRICTIONS[0], FRICTIONS[0]])
-    assert found.kind == "none" and found.likeness_then > 0.999
-
-
 def test_a_calibration_tells_a_wrong_sensor_from_another_driver(rubbing):
     found = propose_experiment(*rubbing, ["sensor.gain", "driver.mass"])
     assert (found.kind, found.name) == ("intervention", "calibrate_sensor") and "calibrating" in found.reason
@@ -93,12 +87,6 @@ def test_frictions_have_the_same_forms_so_that_none_is_preferred_where_no_load_c
     assert forms[0] == forms[1]
 
 
-def test_beside_a_calibration_what_remains_is_told_apart_too(rubbing):
-    found = propose_experiment(*rubbing, ["sensor.gain", *FRICTIONS])
-    assert (found.kind, found.name) == ("intervention", "load_cell")
-    assert found.reason.startswith("calibrating ") and "; beside that, repeat a run with a load cell" in found.reason
-
-
 def test_a_proposed_excitation_is_a_scenario_that_runs(sound, tmp_path):
     rig = recorded(sound, tmp_path, GasSpring(preload=10.0, stiffness=600.0), ["damper_force"])
     found = propose_experiment(
@@ -108,13 +96,3 @@ def test_a_proposed_excitation_is_a_scenario_that_runs(sound, tmp_path):
     YAML(typ="safe").dump(dict(found.scenario), tmp_path / "next.yaml")
     result = seatsim.run(tmp_path / "next.yaml")
     assert np.ptp(result["suspension_displacement"]) > 1e-3
-
-
-def test_separability_is_the_distance_that_no_parameter_takes_away():
-    axes = np.eye(6)
-    old = PredictedExperiment(np.zeros((2, 3)), 1e-9 * axes[:1, :3], [1e-9 * axes[:1, :3]] * 2)
-    outputs = np.array([[0.0, 0.0, 0.0], [30.0, 40.0, 0.0]])
-    free = PredictedExperiment(outputs, 1e-9 * axes[:1, :3], [1e-9 * axes[:1, :3]] * 2)
-    tied = PredictedExperiment(outputs, 1e-9 * axes[:1, :3], [1e4 * axes[:1, :3]] * 2)
-    assert measure_separability(old, free, 0.58, 10.0) == pytest.approx(50.0)
-    assert measure_separability(old, tied, 0.58, 10.0) == pytest.approx(40.0)

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from seatsim.diagnosis.localise.hypotheses import evaluate_hypotheses
-from seatsim.diagnosis.localise.input_estimate import estimate_nonrepeatable_force
 from seatsim.diagnosis.localise.reconstruction import PORTS
 from seatsim.diagnosis.noise import weigh_noise
 from seatsim.diagnosis.objective import Objective
@@ -56,11 +55,6 @@ def test_a_force_in_a_block_is_placed_there(posed, block):
     assert likeliest(with_input(posed, block))[0] == block
 
 
-def test_a_slow_force_is_no_wandering_zero_of_the_floor(posed):
-    slow = with_input(posed, "suspension", lambda samples, rate: np.sin(2 * np.pi * 0.2 / rate * np.arange(samples)))
-    assert likeliest(slow)[0] in ("suspension", "driver")
-
-
 def test_a_current_that_the_command_does_not_predict_is_the_coils(posed):
     rng, measured = np.random.default_rng(3), {}
     for run in posed.runs:
@@ -73,33 +67,6 @@ def test_a_current_that_the_command_does_not_predict_is_the_coils(posed):
     assert likeliest(dataclasses.replace(posed, measured=measured))[0] == "coil"
 
 
-def test_a_wrong_log_of_the_current_is_the_sensors(posed):
-    measured, k = {run: values.copy() for run, values in posed.measured.items()}, posed.channels.index("coil_current")
-    for values in measured.values():
-        values[k] = np.where(values[k] > 0.3, values[k] - 0.2, 0.0)
-    best, found = likeliest(dataclasses.replace(posed, measured=measured))
-    assert best == "sensor" and found[best].channel == "coil_current"
-
-
-def test_without_a_load_cell_damper_and_suspension_are_one(posed):
-    kept = [k for k, name in enumerate(posed.channels) if name != "damper_force"]
-    channels = tuple(posed.channels[k] for k in kept)
-    shaken = with_input(posed, "suspension")
-    measured = {run: values[kept] for run, values in shaken.measured.items()}
-    best, found = likeliest(dataclasses.replace(shaken, channels=channels, measured=measured))
-    assert best == "damper" and found["suspension"].negative_log_evidence == found["damper"].negative_log_evidence
-
-
-def test_an_error_of_one_channel_is_the_sensors(posed):
-    measured = {run: values.copy() for run, values in posed.measured.items()}
-    k = posed.channels.index("driver_acceleration")
-    for values in measured.values():
-        values[k] = np.clip(values[k], -posed.spread[k], posed.spread[k])
-    best, found = likeliest(dataclasses.replace(posed, measured=measured))
-    assert best == "sensor"
-    assert found["sensor"].quantity == "error of driver_acceleration"
-
-
 @pytest.mark.parametrize("fault", [stepped, with_play, limited])
 def test_a_floor_that_only_its_sensor_sees_rest_is_the_sensors(sound, tmp_path, fault):
     copy = shutil.copytree(sound, tmp_path / "copy")
@@ -108,32 +75,3 @@ def test_a_floor_that_only_its_sensor_sees_rest_is_the_sensors(sound, tmp_path, 
     assert best == "sensor"
     assert found[best].channel == "floor_acceleration"
     assert "floor" not in found
-
-
-def repeated(posed, newtons):
-    """Return the problem with a run and its repeat, between which a random force on the frame differs."""
-    first, second = posed.runs
-    rng, measured = np.random.default_rng(5), {}
-    for run in posed.runs:
-        push = Forces(newtons * rng.standard_normal(len(posed.inputs[first].floor.acceleration)))
-        true = posed.simulated(first, posed.nominal, (), posed.inputs[first]._replace(forces=push))
-        measured[run] = true + posed.noise[:, None] * rng.standard_normal(true.shape)
-    runs = posed.recording.runs | {second: posed.recording.runs[second]._replace(repeat_of=first)}
-    recording, inputs = dataclasses.replace(posed.recording, runs=runs), dict.fromkeys(posed.runs, posed.inputs[first])
-    return dataclasses.replace(posed, measured=measured, inputs=inputs, recording=recording)
-
-
-def test_a_force_that_does_not_repeat_is_found_for_every_run(posed):
-    found = []
-    for newtons in (0.0, 30.0):
-        problem = repeated(posed, newtons)
-        objective = Objective(problem, weigh_noise(problem))
-        forces = estimate_nonrepeatable_force(objective, objective.evaluate([Parameters(problem.nominal)])[0])
-        assert set(forces) == set(problem.runs)
-        found.append(np.std(forces[problem.runs[0]]))
-    assert found[1] > 3.0 * found[0]
-
-
-def test_without_repeats_no_force_is_looked_for(posed):
-    objective = Objective(posed, weigh_noise(posed))
-    assert estimate_nonrepeatable_force(objective, objective.evaluate([Parameters(posed.nominal)])[0]) is None

@@ -1,25 +1,19 @@
 """Recordings of real rigs (benchmarks/real_rigs.py): what is known of the data is in them, not in the nominals."""
 
-import importlib.util
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 import seatsim
 
-SCRIPT = Path(__file__).resolve().parents[2] / "benchmarks" / "real_rigs.py"
+
+@pytest.fixture(scope="module")
+def real_rigs(benchmark):
+    return benchmark("real_rigs")
 
 
 @pytest.fixture(scope="module")
-def real_rigs():
-    sys.path.insert(0, str(SCRIPT.parent))
-    spec = importlib.util.spec_from_file_location("real_rigs", SCRIPT)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    sys.path.remove(str(SCRIPT.parent))
-    return module
+def records(benchmark):
+    return benchmark("rig_records")
 
 
 @pytest.fixture
@@ -27,19 +21,8 @@ def data(shared):
     return shared / "data"
 
 
-def test_the_offset_of_utfsm_fitted_to_half_of_the_runs_closes_the_gap_of_records_never_seen(real_rigs, data, tmp_path):
-    rig = real_rigs.utfsm(data, "utfsm", (0.0, 0.25))
-    rig = rig._replace(trials=rig.trials[:1])
-    folder = real_rigs.write(rig, tmp_path)
-    (found,) = real_rigs.by_hand(rig, folder)
-    assert real_rigs.single(folder / "nominal.yaml").damper.record.f0 == 0.0
-    assert 27.0 < float(found.parameters.removeprefix("preload ")) < 58.0
-    assert found.shrink > 0.2 and found.unseen[1] < 0.75 * found.unseen[0]
-    assert found.calibrated > 0.9 * found.nominal > 10.0 * found.floor
-
-
-def test_no_record_stands_in_two_parts(real_rigs, data):
-    for rig in real_rigs.rigs(data):
+def test_no_record_stands_in_two_parts(records, data):
+    for rig in records.list_rigs(data):
         parts = [set(rig.fit), set(rig.runs), set(rig.unseen)]
         assert len(set.union(*parts)) == sum(map(len, parts))
         tables = [table for part in (rig.fit, rig.runs, rig.unseen) for table in part.values()]
@@ -48,25 +31,26 @@ def test_no_record_stands_in_two_parts(real_rigs, data):
         assert len({tuple(table[first][300:400]) for table in tables}) == len(tables)
 
 
-def test_the_force_of_dyke_lags_the_voltage_by_what_the_standard_coil_lags(real_rigs, data, tmp_path):
+def test_the_force_of_dyke_lags_the_voltage_by_what_the_standard_coil_lags(real_rigs, records, data, tmp_path):
     gaps = {}
     for rate in (130.0, 1000.0):
-        rig = real_rigs.dyke(data, "dyke", rate)
-        real_rigs.write_part(rig, rig.nominal, rig.unseen, tmp_path / f"{rate:g}")
+        rig = records.dyke(data, "dyke", rate)
+        real_rigs.write_part(rig, rig.nominal, rig.unseen, tmp_path / f"{rate:g}", real_rigs.TOLERANCE)
         recording = real_rigs.quick(seatsim.load_recording(tmp_path / f"{rate:g}"))
         gaps[rate] = seatsim.gap(recording.nominal, recording).overall
     assert gaps[130.0] < 0.8 * gaps[1000.0]
 
 
-def test_the_quarter_car_maps_onto_the_seat_with_its_resonance(real_rigs, data, tmp_path):
-    rig = real_rigs.quanser(data, "quanser", ("driver_acceleration", "suspension_displacement"))
-    real_rigs.write_part(rig, rig.nominal, rig.runs, tmp_path)
+def test_the_quarter_car_maps_onto_the_seat_with_its_resonance(real_rigs, records, data, tmp_path):
+    rig = records.quanser(data, "quanser", ("driver_acceleration", "suspension_displacement"))
+    real_rigs.write_part(rig, rig.nominal, rig.runs, tmp_path, real_rigs.TOLERANCE)
     recording = seatsim.load_recording(tmp_path)
     assert recording.runs["repeat-3"].repeat_of == "repeat-2"
     found = seatsim.gap(recording.nominal, recording)
     assert 5.0 * found.floor.overall < found.overall < 0.4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name, known", [
     ("utfsm", [{"damper.gas_spring"}]),
     # The force follows the voltage faster one way than the other, by which the standard lag, too, is passed.
@@ -74,8 +58,10 @@ def test_the_quarter_car_maps_onto_the_seat_with_its_resonance(real_rigs, data, 
     ("dyke-130", [{"coil.asymmetric_lag"}, {"damper.gas_spring"}]),
     ("quanser-travel", [{"suspension.friction"}]),
 ])  # fmt: skip
-def test_what_the_data_are_known_to_show_stands_beside_what_is_unexplained(real_rigs, data, tmp_path, name, known):
-    rig = next(rig for rig in real_rigs.rigs(data) if rig.name == name)
+def test_what_the_data_are_known_to_show_stands_beside_what_is_unexplained(
+    real_rigs, records, data, tmp_path, name, known
+):
+    rig = next(rig for rig in records.list_rigs(data) if rig.name == name)
     found = seatsim.diagnose(real_rigs.write(rig, tmp_path), budget=1200.0)  # on a busy machine, too
     assert found.verdict == "unknown"
     groups = [{each, *(name for group in found.indistinguishable if each in group for name in group)}

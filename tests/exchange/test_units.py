@@ -89,7 +89,7 @@ def test_a_unit_in_a_host_in_c_equals_the_functions_bit_by_bit(version, host, se
     name = {2: "modified_bouc_wen", 3: "hong_sigmoid_gaussian"}[version]
     block = block_of(name, seat_file)
     hosted = host.run_unit(block, version, motion(), tmp_path, STEP)
-    assert np.array_equal(hosted.outputs[1:], evaluate(block, motion(), STEP))
+    assert np.array_equal(hosted[1:], evaluate(block, motion(), STEP))
 
 
 def test_a_rig_in_a_host_in_c_equals_its_simulation(host, seat_file, tmp_path):
@@ -104,7 +104,7 @@ def test_a_rig_in_a_host_in_c_equals_its_simulation(host, seat_file, tmp_path):
     hosted = host.run_unit(rig_block(scenario), 2, inputs, tmp_path, STEP)
     for k, name in enumerate(RigOutputs._fields):
         expected = history[name][:-1] if name == "current_command" else history[name][1:]
-        assert hosted.outputs[1:, k] == pytest.approx(expected, abs=1e-11 * np.max(np.abs(expected)))
+        assert hosted[1:, k] == pytest.approx(expected, abs=1e-11 * np.max(np.abs(expected)))
 
 
 @pytest.mark.parametrize("version", [2, 3])

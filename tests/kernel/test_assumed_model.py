@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from seatsim.dampers.bouc_wen import BoucWen
-from seatsim.kernel.assumed_model import AssumedModel, TrueModel, follow_state, model_scaling, model_state
+from seatsim.kernel.assumed_model import AssumedModel, follow_state, model_scaling, model_state
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 
 from .uncompiled import Linear
@@ -22,21 +22,6 @@ class Cubes(NamedTuple):
 
     def rates(self, x, v, i, scaling, z):
         return (x**3, v**3, i + scaling.yield_force)
-
-
-class Decay(NamedTuple):
-    """`z' = -rate z`."""
-
-    rate: float
-
-    def rates(self, x, v, i, scaling, z):
-        return (-self.rate * z[0],)
-
-
-def test_the_true_model_is_given_what_is_true():
-    model = TrueModel(Linear(), 1)
-    assert model_state(model, (1.0,), (2.0,)) == (1.0,)
-    assert model_scaling(model, HOT, 80.0) == HOT
 
 
 @pytest.mark.parametrize(("own", "measured", "felt"), [(math.nan, 60.0, 60.0), (35.0, 60.0, 35.0)])
@@ -59,12 +44,6 @@ def test_motion_runs_along_straight_lines_between_samples():
     quartic = [length * (b**4 - a**4) / (4.0 * (b - a)) for a, b in ((x0, x1), (v0, v1))]
     expected = (1.0 + quartic[0], 2.0 + quartic[1], 3.0 + length * (0.6 + 0.7))
     assert found == pytest.approx(expected, rel=1e-13)
-
-
-def test_two_steps_of_the_classical_method():
-    h = 0.5 * 0.3 * 4.0
-    factor = sum((-h) ** n / math.factorial(n) for n in range(5))
-    assert follow_state(Decay(4.0), (2.0,), 0.0, 0.0, 0.0, 0.0, 0.0, NONE, 0.3) == pytest.approx((2.0 * factor**2,))
 
 
 def test_the_state_of_a_bouc_wen_damper_is_followed():

@@ -9,7 +9,6 @@ from seatsim.kernel.augmented import (
     SETTLING,
     AugmentedDamper,
     _piston_speed,
-    _split,
     classes_of,
 )
 from seatsim.rig.temperature import TemperatureScaling
@@ -47,14 +46,6 @@ class Saturated(NamedTuple):
 
     def yield_current(self, i, z):
         return 0.6 * i
-
-
-@plugged("pulled")
-class Pulled(NamedTuple):
-    """A yield part that is stronger where it is positive."""
-
-    def yield_force(self, force, z):
-        return force + 0.1 * abs(force)
 
 
 @plugged("beside", initial=(0.2, 0.4))
@@ -113,12 +104,6 @@ def limit(*effects, damper=DAMPER, v=V, z=()):
     return AugmentedDamper(damper, effects).friction_limit(v, AMPS, WARM, z)
 
 
-def test_without_effects_it_is_the_damper():
-    assert force() == pytest.approx(VISCOUS + YIELD, rel=1e-12)
-    assert rates(damper=Hysteretic(), z=(0.1, 0.2)) == pytest.approx((50.0 * (V - 0.1), X))
-    assert limit(damper=Linear(friction=30.0)) == pytest.approx(21.0)
-
-
 def test_a_gap_transmits_a_share_of_force_and_speed():
     assert force(Half()) == pytest.approx(0.5 * (VISCOUS + YIELD), rel=1e-12)
     assert force(Half(), v=-V) == pytest.approx(-0.25 * (VISCOUS + YIELD), rel=1e-12)
@@ -141,11 +126,6 @@ def test_the_yield_part_alone_feels_another_current():
     assert limit(Saturated(), damper=friction) == pytest.approx(20.0 * 1.3 * 0.7, rel=1e-12)
 
 
-def test_the_yield_part_alone_is_pulled():
-    assert force(Pulled()) == pytest.approx(VISCOUS + 1.1 * YIELD, rel=1e-12)
-    assert force(Pulled(), v=-V) == pytest.approx(-VISCOUS - 0.9 * YIELD, rel=1e-12)
-
-
 def test_force_and_friction_beside_the_damper():
     assert force(Beside(), z=(0.2, 0.4)) == pytest.approx(VISCOUS + YIELD + 10.0 + 4.0, rel=1e-12)
     assert limit(Beside(), damper=Linear(friction=30.0), z=(0.2, 0.4)) == pytest.approx(46.0)
@@ -160,18 +140,6 @@ def test_a_yield_part_with_a_shape_of_its_own():
     assert force(Late(), damper=damper, z=(0.3,)) == pytest.approx(expected, rel=1e-9)
     assert rates(Late(), damper=damper, z=(0.3,)) == pytest.approx((target - 0.3,), rel=1e-9)
     assert limit(Late(), damper=damper, z=(0.3,)) == 0.0
-
-
-@pytest.mark.parametrize("v", [0.02, -0.02, 0.0])
-def test_the_yield_part_is_split_into_mean_size_and_share(v):
-    damper = Yielding(offset=8.0, coulomb_force=20.0)
-    size = 0.7 * (350.0 + 30.0)
-    share = (0.7 * 350.0 * math.tanh(v / 0.01) + math.copysign(21.0, v) * (v != 0.0)) / size
-    assert _split(damper, X, v, AMPS, WARM, ()) == pytest.approx((5.6, size, share), rel=1e-9, abs=1e-12)
-
-
-def test_without_a_yield_part_its_share_is_nothing():
-    assert _split(Linear(), X, V, AMPS, WARM, ()) == (0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize("elongation", [0.0, 0.001, -0.002, 0.004])

@@ -8,12 +8,11 @@ from scipy.integrate import solve_ivp
 
 from seatsim.kernel import bench
 from seatsim.kernel.bench import MOST_PARTS, TOLERANCE, run_bench
-from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
+from seatsim.rig.temperature import TemperatureFactors
 
 from .uncompiled import Linear
 
 FACTORS = TemperatureFactors(-0.01, 0.0, -0.02, 20.0)
-NONE = TemperatureScaling()
 
 
 class Maxwell(NamedTuple):
@@ -44,13 +43,6 @@ def test_a_damper_without_state_is_its_law():
     assert reached == 50
     expected = (800.0 + 150.0 * time) * v + 1000.0 * x + 30.0 * np.sign(v)
     assert out == pytest.approx(expected, rel=1e-12)
-
-
-def test_friction_is_nothing_at_rest():
-    out = np.full(2, np.nan)
-    zero = np.zeros(3)
-    assert run_bench(Linear(friction=30.0), FACTORS, zero, zero, zero, zero + 20.0, (), 0.01, 1, 1.0, out) == 2
-    assert out.tolist() == [0.0, 0.0]
 
 
 def test_temperature_is_that_of_the_row():
@@ -87,47 +79,6 @@ def test_a_stiff_state_is_divided_until_the_tolerance_is_met(tolerance):
     assert np.max(np.abs(out - exact) / (bench.FORCE_SCALE + np.abs(exact))) < 10.0 * tolerance
 
 
-def advanced(damper, parts, most, tolerance, step=5e-3, z=(1e-4,)):
-    x, v, i = np.zeros(3), np.full(3, 0.3), np.zeros(3)
-    return bench.advance_state(damper, NONE, x, v, i, z, step, parts, most, tolerance)
-
-
-def test_parts_double_until_the_error_is_small_and_halve_once_it_is_much_smaller():
-    assert advanced(Maxwell(time=1e-3), 1, 1, 1e-4)[1] == 1
-    assert advanced(Maxwell(time=1e-3), 1, 4, 1e-9)[1:] == (4, True)
-    assert advanced(Maxwell(time=10.0), 8, 64, 1e-3)[1] == 4
-    assert advanced(Maxwell(time=10.0), 1, 64, 1e-3)[1] == 1
-    needed = advanced(Maxwell(time=1e-3), 1, MOST_PARTS, 1e-6)[1]
-    error = parts_error(needed)
-    assert error <= 1e-6 < parts_error(needed // 2)
-    assert error > 1e-6 / 32.0
-
-
-def parts_error(parts):
-    """Worst relative error of a part, of as many in one step of the stiff element."""
-    z, worst, unit = (1e-4,), 0.0, 5e-3 / parts
-    for part in range(parts):
-        z, error = bench._part(
-            Maxwell(time=1e-3), NONE, np.zeros(3), np.full(3, 0.3), np.zeros(3), z, unit, part / parts, 1.0 / parts
-        )
-        worst = max(worst, error)
-    return worst
-
-
-def test_the_error_is_the_difference_to_the_embedded_solution():
-    damper, h, z = Maxwell(k=2e5, time=0.02), 0.004, 1e-3
-    x, v, i = np.zeros(3), np.array([0.1, 0.2, 0.4]), np.array([0.0, 0.3, 0.5])
-    state, error = bench._part(damper, NONE, x, v, i, (z,), h, 0.0, 1.0)
-    r = lambda speed, y: speed - y / 0.02  # noqa: E731
-    k1, k2 = r(0.1, z), r(0.2, z + 0.5 * h * r(0.1, z))
-    k3 = r(0.2, z + 0.5 * h * k2)
-    k4 = r(0.4, z + h * k3)
-    expected = z + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
-    assert state == pytest.approx((expected,), rel=1e-13)
-    force = 2e5 * expected + 50.0
-    assert error == pytest.approx(2e5 * h / 6.0 * abs(r(0.4, expected) - k4) / (10.0 + abs(force)), rel=1e-6)
-
-
 def test_a_state_that_runs_away_stops_the_bench():
     *_, out, reached = run(Maxwell(k=1.0, time=-1e-12), 20, 0.01, (1e-4,), most=1)
     assert reached == 1
@@ -142,7 +93,3 @@ def test_between_the_samples_runs_their_parabola():
     line = np.polynomial.Polynomial.fit([0.0, 0.5, 1.0], samples, 2)
     for s in (0.0, 0.2, 0.5, 0.75, 1.0):
         assert bench._between(samples, s) == pytest.approx(line(s), rel=1e-12)
-
-
-def test_defaults_of_the_bench():
-    assert (TOLERANCE, bench.FORCE_SCALE, MOST_PARTS, bench.MARGIN) == (1e-4, 10.0, 4096, 32.0)

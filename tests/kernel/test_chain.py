@@ -73,10 +73,6 @@ def test_sum_fold_and_join(hooks):
     assert hooks((Silent(),), (9.0,)) == (0.0, 8.0, ())
 
 
-def test_the_order_of_a_fold_is_that_of_the_records():
-    assert change((Last(), First()), (4.0, 0.5, 0.25), 8.0, 3.0) == pytest.approx((8.0 - 4.0) * 0.25 + 3.0)
-
-
 def test_states_at_rest_one_after_another():
     assert state_at_rest([First, Silent, Last]) == (1.0, 2.0, 7.0, 3.0)
     assert state_at_rest([]) == ()
@@ -90,16 +86,6 @@ def test_the_state_is_parted_at_the_effects():
     kinds = numba.typeof(EFFECTS)
     assert chain._leading_state(kinds, z)(EFFECTS, z) == (0.1, 0.2)
     assert chain._effect_state(kinds, z)(EFFECTS, z) == Z
-
-
-def test_each_class_gets_the_part_of_its_own_state():
-    parts = [(index, part.start, part.stop) for index, _, part in chain._parts([First, Silent, Last], "size")]
-    assert parts == [(0, 0, 2), (2, 3, 4)]
-    assert [method for _, method, _ in chain._parts([First, Silent], "speed")] == [First.speed]
-
-
-def test_hooks_bear_their_names():
-    assert (size.__name__, change.__name__, speed.__qualname__) == ("size", "change", "speed")
 
 
 def test_what_is_no_tuple_of_records_is_refused():

@@ -43,23 +43,6 @@ def test_the_current_is_exact(delay, rate_fall, start):
     assert h["coil_current"] == pytest.approx(exact(coil, commands, start), abs=1e-12)
 
 
-def test_switching_times_of_the_rd_1005_3():
-    coil = Coil(rate=176.0, rate_fall=70.0)
-    commands = np.where(np.arange(201) < 100, 1.0, 0.0)
-    current = driven(DAMPER, STILL, commands, coil=coil)["coil_current"]
-    assert np.argmax(current > 0.95) == pytest.approx(17, abs=1)
-    assert np.argmax(current[100:] < 0.05 * current[100]) == pytest.approx(43, abs=1)
-
-
-@pytest.mark.parametrize("every", [1, 7])
-def test_a_command_stands_until_the_next_sample(every):
-    commands = np.random.default_rng(6).uniform(0.0, 1.0, 201)
-    h = driven(DAMPER, STILL, commands, every=every, coil=Coil(max_current=0.8, delay=0.0025))
-    held = np.minimum(commands[(np.arange(201) // every) * every], 0.8)
-    assert h["current_command"] == pytest.approx(held, abs=0)
-    assert h["coil_current"] == pytest.approx(exact(Coil(max_current=0.8, delay=0.0025), held), abs=1e-12)
-
-
 def test_a_prescribed_current_bypasses_the_coil():
     current = 0.5 + 0.4 * np.sin(40.0 * STEP * np.arange(2001))
     floor = rough(2.0, rms=3.0)

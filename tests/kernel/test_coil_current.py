@@ -1,11 +1,8 @@
 """The current that follows a known command, against exponentials written out."""
 
-import math
-
 import numpy as np
 import pytest
 
-from seatsim.kernel import coil_current
 from seatsim.kernel.coil_current import follow_command, simulate_current
 from seatsim.rig.coil import Coil
 
@@ -23,42 +20,12 @@ def test_a_rise_and_a_fall():
     assert found[20:] == pytest.approx(falling, rel=1e-12)
 
 
-def test_each_command_acts_from_its_row_to_the_next():
-    found = follow_command(COIL, np.array([1.0, 0.0, 1.0]), STEP, 0.0)
-    first = 1.0 - math.exp(-150.0 * STEP)
-    assert found.tolist() == pytest.approx([0.0, first, first * math.exp(-60.0 * STEP)], rel=1e-12)
-
-
 @pytest.mark.parametrize("rows", [1, 3])
 def test_a_delay_of_whole_steps_moves_the_rows(rows):
     command = np.random.default_rng(3).uniform(0.0, 1.0, 30)
     late = follow_command(COIL._replace(delay=rows * STEP), command, STEP, 0.4)
     assert late[: rows + 1].tolist() == [0.4] * (rows + 1)
     assert late[rows:].tolist() == follow_command(COIL, command, STEP, 0.4)[:-rows].tolist()
-
-
-def test_a_delay_within_a_step_acts_within_it():
-    found = follow_command(COIL._replace(delay=2.25 * STEP), np.full(5, 1.0), STEP, 0.0)
-    time = np.maximum(STEP * np.arange(5) - 2.25 * STEP, 0.0)
-    assert found == pytest.approx(1.0 - np.exp(-150.0 * time), rel=1e-12)
-
-
-def test_one_row_is_the_start_alone():
-    assert follow_command(COIL, np.array([0.9]), STEP, 0.25).tolist() == [0.25]
-
-
-def test_the_command_is_left_as_it_was():
-    command = np.array([1.0, 0.5])
-    follow_command(COIL, command, STEP, 0.2)
-    assert command.tolist() == [1.0, 0.5]
-
-
-def test_numbers_of_every_kind_are_taken(monkeypatch):
-    plugged = []
-    monkeypatch.setattr(coil_current, "compiled", lambda function, classes: plugged.append(classes) or function)
-    found = simulate_current(COIL, [1, 0, 1], STEP, 0)
-    assert found.dtype == np.float64 and plugged == [(Coil,)]
-    assert found == pytest.approx(follow_command(COIL, np.array([1.0, 0.0, 1.0]), STEP, 0.0), abs=0)
 
 
 def test_compiled_it_is_the_same():
@@ -73,3 +40,15 @@ def test_a_delay_within_a_step_is_that_of_finer_steps(quarters):
     coarse = follow_command(COIL._replace(delay=quarters * STEP / 4), command, STEP, 0.4)
     fine = follow_command(COIL._replace(delay=quarters * STEP / 4), np.repeat(command, 4), STEP / 4, 0.4)
     np.testing.assert_allclose(coarse, fine[::4], rtol=1e-10)
+
+
+def test_each_command_acts_from_its_row_to_the_next():
+    found = follow_command(COIL, np.array([1.0, 0.0, 1.0]), STEP, 0.0)
+    first = 1.0 - np.exp(-150.0 * STEP)
+    assert found.tolist() == pytest.approx([0.0, first, first * np.exp(-60.0 * STEP)], rel=1e-12)
+
+
+def test_a_delay_within_a_step_acts_within_it():
+    found = follow_command(COIL._replace(delay=2.25 * STEP), np.full(5, 1.0), STEP, 0.0)
+    time = np.maximum(STEP * np.arange(5) - 2.25 * STEP, 0.0)
+    assert found == pytest.approx(1.0 - np.exp(-150.0 * time), rel=1e-12)

@@ -1,6 +1,5 @@
 """What the loop asks of damper, law and sensors, where these answer and where they do not."""
 
-import math
 from typing import NamedTuple
 
 import numba
@@ -9,8 +8,8 @@ import pytest
 
 from seatsim.kernel import generic
 from seatsim.rig.control import Measurement
-from seatsim.rig.sensors import Direct, Sensors, at_rest
-from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
+from seatsim.rig.sensors import Sensors, at_rest
+from seatsim.rig.temperature import TemperatureScaling
 
 from .uncompiled import Commanded, Feedback, Hysteretic, Linear
 
@@ -28,13 +27,6 @@ def test_a_damper_answers_for_itself():
     assert generic.force(Linear(800.0, 300.0, 1000.0), 0.01, 0.2, 0.5, HOT, ()) == pytest.approx(950 * 0.8 * 0.2 + 9.0)
     assert generic.rates(Hysteretic(), 0.01, 0.2, 0.5, HOT, (0.1, 0.0)) == pytest.approx((5.0, 0.01))
     assert generic.coulomb(Linear(friction=40.0), 0.5, HOT) == pytest.approx(28.0)
-
-
-def test_what_a_damper_does_not_have_is_nothing():
-    assert generic.rates(Linear(), 0.01, 0.2, 0.5, HOT, ()) == ()
-    assert generic.coulomb(Hysteretic(), 0.5, HOT) == 0.0
-    with pytest.raises(TypeError, match="Nothing has no method 'force'"):
-        generic.force(Nothing(), 0.0, 0.0, 0.0, HOT, ())
 
 
 def test_the_limit_of_friction_is_the_dampers_own_magnitude():
@@ -59,21 +51,9 @@ def test_numba_gets_the_laws_own_method():
         generic._evaluate_law(numba.typeof(Nothing()), None, None)
 
 
-def test_without_instruments_a_law_sees_what_is_true():
-    noise = np.ones((1, 4))
-    assert generic.read(Direct(), Y, noise, 0, (2.0,)) == (Y, (2.0,))
-    assert generic.advance_filters(Direct(), 1.0, 2.0, (0.0,) * 4, (2.0,)) == (2.0,)
-
-
 def test_instruments_answer_for_themselves():
     made, state = Sensors().instruments(1e-3, 5e-3), at_rest(0.01)
     moved = generic.advance_filters(made, 0.3, 0.02, (0.0, 0.1, 0.0, 0.2), state)
     assert moved == made.advance_filters(0.3, 0.02, (0.0, 0.1, 0.0, 0.2), state) != state
     seen, after = generic.read(made, Y, np.zeros((1, 4)), 0, moved)
     assert seen.displacement == moved[1] and after[8] == moved[1]
-
-
-def test_temperature_scales_exponentially():
-    factors = TemperatureFactors(-0.01, 0.002, -0.02, 25.0)
-    expected = [math.exp(delta * 40.0) for delta in (-0.01, 0.002, -0.02)]
-    assert generic.scaling_at(factors, 65.0) == pytest.approx(expected, rel=1e-14)

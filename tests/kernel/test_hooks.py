@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numba
 import pytest
 
-from seatsim.kernel.hooks import hook, method_of, record_class
+from seatsim.kernel.hooks import hook, record_class
 
 
 class With(NamedTuple):
@@ -38,17 +38,6 @@ def compiled_answer(record, value):
 def test_the_records_own_method_goes_before_the_default(call):
     assert call(With(3.0), 2.0) == 6.0
     assert call(Without(3.0), 2.0) == -2.0
-
-
-def test_a_hook_keeps_its_name():
-    assert answer.__name__ == "answer"
-    assert answer.__qualname__ == "answer"
-
-
-def test_a_method_is_found_by_its_name_alone():
-    assert method_of(With, "answer") is With.answer
-    assert method_of(Without, "answer") is None
-    assert method_of(With, "question") is None
 
 
 def test_the_class_of_a_record_is_found_from_its_numba_type():

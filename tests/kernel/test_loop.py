@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from seatsim.kernel import channels, step
+from seatsim.kernel import step
 from seatsim.kernel.assumed_model import AssumedModel, TrueModel
 from seatsim.kernel.channels import CHANNELS
-from seatsim.kernel.loop import run_loop, warm_up
+from seatsim.kernel.loop import run_loop
 from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
 from seatsim.kernel.recorders import keep_rows
 from seatsim.kernel.rig import Rig
@@ -112,20 +112,6 @@ def test_the_coil_follows_its_command_late(delay):
     assert h["coil_current"] == pytest.approx(expected, rel=1e-9)
 
 
-def test_a_falling_current_falls_at_its_own_rate():
-    h, _ = run(Commanded(0.1), start_current=0.8)
-    assert h["coil_current"] == pytest.approx(0.1 + 0.7 * np.exp(-60.0 * STEP * np.arange(40)), rel=1e-9)
-
-
-def test_a_recorded_temperature_acts_on_the_damper():
-    temperature = np.linspace(20.0, 80.0, 40)
-    h, _ = run(Commanded(0.0), temperature=temperature)
-    assert h["damper_temperature"] == pytest.approx(temperature, abs=0)
-    # The force of a row is that at the end of the step before, at whose temperature it was found.
-    factor = np.exp(-0.01 * (np.concatenate([[20.0], temperature[:-1]]) - 20.0))
-    assert h["damper_force"] == pytest.approx(800.0 * factor * 0.8 * h["suspension_velocity"], rel=1e-9)
-
-
 def test_a_damper_warms_by_its_work_and_its_coil():
     thermal = Thermal(start=30.0, ambient=20.0, heat_capacity=0.5, conductance=2.0)
     h, _ = run(
@@ -141,15 +127,6 @@ def test_a_damper_warms_by_its_work_and_its_coil():
     )
 
 
-def test_warming_takes_the_mean_square_of_a_current_that_runs_straight():
-    thermal, coil = Thermal(20.0, 25.0, 400.0, 3.0), Coil(resistance=7.0)
-    current = np.linspace(0.2, 0.8, 100_001)
-    heat = 7.0 * np.mean(current**2) * 0.01
-    expected = (6.0 + heat - 3.0 * (40.0 - 25.0) * 0.01) / 400.0
-    for work in (6.0, -6.0):
-        assert warm_up(thermal, coil, 40.0, work, 0.2, 0.8, 0.01) == pytest.approx(expected, rel=1e-6)
-
-
 def test_an_assumed_damper_is_followed_beside_the_true_one():
     true, rest = Hysteretic(), (0.0, 0.0)
     law = {"law_state": (0.0,), "damper": true, "rest": rest, "followed": rest, "rows": 120}
@@ -159,21 +136,6 @@ def test_an_assumed_damper_is_followed_beside_the_true_one():
     assert np.mean((knows["current_command"] > 0.02) & (knows["current_command"] < 0.98)) > 0.05
     hot, _ = run(Feedback(500.0), model=AssumedModel(true, 1, FACTORS, 80.0), **law)
     assert np.max(np.abs(hot["current_command"] - knows["current_command"])) > 0.05
-
-
-class Counting(NamedTuple):
-    """A law that asks for 10 mA more at every sample."""
-
-    def wanted_current(self, y, state):
-        return 0.01 * state[0]
-
-    def update(self, y, state):
-        return (state[0] + 1.0,)
-
-
-def test_a_law_remembers_its_samples():
-    h, _ = run(Counting(), every=5, law_state=(2.0,))
-    assert h["current_command"] == pytest.approx(0.01 * (2.0 + np.arange(40) // 5), rel=1e-12)
 
 
 class Charged(NamedTuple):
@@ -249,9 +211,3 @@ def test_a_lost_solution_stops_the_run():
     h, reached = run(Commanded(0.5), rows=30, floor=floor)
     assert reached == 11
     assert np.isfinite(h["frame_acceleration"][:12]).all() and np.isnan(h["frame_acceleration"][12:]).all()
-
-
-def test_the_floors_own_column():
-    h, _ = run(Commanded(0.5))
-    assert h["floor_acceleration"] == pytest.approx(3.0 * np.sin(40.0 * STEP * np.arange(40)), abs=0)
-    assert channels.FLOOR_ACCELERATION == 0

@@ -5,7 +5,7 @@ import pytest
 
 from seatsim.kernel.assumed_model import TrueModel
 from seatsim.kernel.channels import CHANNELS, CURRENT_COMMAND
-from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing, sample_of, step_inputs
+from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing, step_inputs
 from seatsim.kernel.recorders import keep_rows
 from seatsim.kernel.rig import Rig
 from seatsim.rig.coil import Coil
@@ -33,22 +33,12 @@ def between(k, inputs=INPUTS, late=0, split=0.0, most=0.8, first=0.33):
     return step_inputs(setup, inputs, keep_rows(out), k, first, late, split, (0.5, 0.6))
 
 
-def test_an_absent_input_is_zero():
-    assert sample_of(NONE, 2) == 0.0
-    assert sample_of(COMMANDS, 2) == 0.9
-
-
 def test_floor_and_forces_run_from_sample_to_sample():
     found = between(1)
     assert (found.floor, found.floor_rise) == (3.0, -1.0)
     assert (found.frame_force, found.frame_force_rise) == (40.0, -20.0)
     assert (found.driver_force, found.driver_force_rise) == (4.0, -3.0)
     assert (found.length, found.current, found.kept) == (1e-3, 0.33, (0.5, 0.6))
-
-
-def test_absent_forces_stay_absent():
-    found = between(1, INPUTS._replace(frame_force=NONE, driver_force=NONE))
-    assert found[-4:] == (0.0, 0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize(
@@ -60,10 +50,6 @@ def test_commands_act_late_and_no_more_than_the_driver_can_give(k, late, before,
     found = between(k, late=late, split=2e-4)
     assert (found.before, found.after, found.split) == (before, after, 2e-4)
     assert not found.prescribed
-
-
-def test_a_start_above_the_limit_is_limited_too():
-    assert between(0, late=2, most=0.2).before == 0.2
 
 
 def test_a_prescribed_current_goes_to_its_next_sample():

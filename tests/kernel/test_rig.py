@@ -1,6 +1,5 @@
 """The derivative of the rig's state: linear matrices, set-valued friction, effects, and the balance of energy."""
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -132,20 +131,3 @@ def test_supplied_less_dissipated_power_is_the_rate_of_the_energy_stored():
 )
 def test_friction_holds_or_opposes(free, v, slip, limit, friction, acceleration):
     assert _friction(free, v, slip, limit, 20.0) == pytest.approx((friction, acceleration), abs=1e-12)
-
-
-def test_sticking_is_none_of_the_directions():
-    assert STICKING not in (-1.0, 0.0, 1.0) and math.isfinite(STICKING)
-
-
-@pytest.mark.parametrize("limit", [0.3, 300.0])
-def test_friction_holds_what_it_can_and_slips_against_the_motion(limit):
-    mass = 20.0
-    # At rest it takes up to its limit; beyond, it slips against what pushes.
-    assert _friction(0.9 * limit / mass, 0.0, 0.0, limit, mass) == pytest.approx((0.9 * limit, 0.0))
-    assert _friction(-1.5 * limit / mass, 0.0, 0.0, limit, mass) == pytest.approx((-limit, -0.5 * limit / mass))
-    # In motion it opposes the velocity, at any speed.
-    for v in (1.0, -1.0, 0.2):
-        assert _friction(0.0, v, 0.0, limit, mass) == pytest.approx(
-            (np.copysign(limit, v), -np.copysign(limit, v) / mass)
-        )

@@ -7,7 +7,7 @@ import pytest
 from scipy.linalg import expm
 
 from seatsim.kernel import step as module
-from seatsim.kernel.rig import STICKING, Rig, RigForces
+from seatsim.kernel.rig import STICKING, Rig
 from seatsim.kernel.step import StepInputs, advance, current_at, disturbance_at, start
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant, state_space
@@ -45,11 +45,6 @@ def test_the_coil_turns_to_the_new_command_after_the_split(time):
     assert current_at(COIL, inputs, time) == pytest.approx(expected, rel=1e-14)
 
 
-def test_without_a_split_the_new_command_acts_at_once():
-    inputs = STILL._replace(current=0.5, before=1.0, after=0.2)
-    assert current_at(COIL, inputs, 0.0004) == pytest.approx(relaxation(0.5, 0.2, 60.0, 0.0004), rel=1e-14)
-
-
 def test_a_prescribed_current_runs_straight():
     inputs = STILL._replace(current=0.5, before=9.0, after=0.2, split=0.0004, prescribed=True)
     assert current_at(COIL, inputs, 0.0004) == pytest.approx(0.5 - 0.3 * 0.4, rel=1e-14)
@@ -71,39 +66,12 @@ def test_disturbances_run_straight():
 
 
 @pytest.mark.parametrize(
-    ("v", "a", "limit", "phase"),
-    [(0.1, 0.0, 0.0, 0.0), (0.1, -2.0, 5.0, 1.0), (-0.1, 2.0, 5.0, -1.0), (0.0, 0.0, 5.0, STICKING),
-     (0.0, 2.0, 5.0, 1.0), (0.0, -2.0, 5.0, -1.0), (0.1, 0.0, -1.0, 0.0)],
-)  # fmt: skip
-def test_the_phase_of_the_friction(v, a, limit, phase):
-    assert module._phase((0.0, v), (v, a), RigForces(0.0, 0.0, limit)) == phase
-
-
-@pytest.mark.parametrize(
-    ("slip", "v", "friction", "margin"),
-    [(1.0, 0.2, 5.0, 0.2), (-1.0, 0.2, 5.0, -0.2), (STICKING, 0.0, -3.0, 2.0), (STICKING, 0.0, 7.0, -2.0)],
-)
-def test_the_margin_to_the_end_of_a_phase(slip, v, friction, margin):
-    assert module._margin(slip, (0.0, v), RigForces(0.0, friction, 5.0)) == pytest.approx(margin)
-
-
-def test_the_error_is_that_of_both_velocities_over_the_tolerance():
-    state, rates, k4 = (9.0, 0.3, 9.0, -0.2), (9.0, 5.0, 9.0, 1.0), (7.0, 5.6, 7.0, 0.7)
-    expected = H / 6.0 * (0.6 + 0.3) / (1e-4 * (0.01 + 0.3 + 0.2))
-    assert module.estimate_error(state, rates, k4, H, 1e-4) == pytest.approx(expected, rel=1e-12)
-
-
-@pytest.mark.parametrize(
     ("h", "error", "longer"),
     [(1.0, 9.0, 1.0), (2.0, 0.0, 1.0), (0.1, 0.0, 0.4), (0.1, 1.0, 0.09), (0.1, 1e4, 0.02), (0.1, 16.0, 0.045),
      (0.5, 0.0, 1.0), (2.0**-19, 1e9, 2.0**-18), (0.1, 5e-4, 0.4), (0.1, 0.01, 0.09 / 0.01**0.25)],
 )  # fmt: skip
 def test_the_next_sub_step_follows_from_the_error(h, error, longer):
     assert module._longer(h, error, 1.0) == pytest.approx(longer, rel=1e-12)
-
-
-def test_bounds_of_the_integrator():
-    assert module.SPEED_SCALE == 0.01 and module.SHORTEST == 2.0**-18 and module.EVENT_TOLERANCE == 1e-10
 
 
 def moved(damper, state, inputs, steps, tolerance=1e-4, plant=PLANT, substep=None):

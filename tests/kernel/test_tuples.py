@@ -14,17 +14,6 @@ UNROLLED = [
 ]
 
 
-def test_axpy_adds_a_multiple():
-    assert tuples.axpy(Y, 0.3, K[0]) == pytest.approx(np.array(Y) + 0.3 * np.array(K[0]), rel=1e-14)
-    assert tuples.axpy((), 0.3, ()) == ()
-
-
-def test_combine_is_the_weighted_mean_of_four_rates():
-    k = np.array(K)
-    expected = np.array(Y) + 0.3 * (k[0] + 2.0 * k[1] + 2.0 * k[2] + k[3]) / 6.0
-    assert tuples.combine(Y, 0.3, *K) == pytest.approx(expected, rel=1e-14)
-
-
 def test_combine_follows_an_exponential_to_the_fourth_order():
     h, k1 = 0.1, (-1.0,)
     k2 = (-tuples.axpy((1.0,), 0.5 * h, k1)[0],)

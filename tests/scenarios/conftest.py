@@ -1,5 +1,5 @@
 """The command line as a script calls it."""
 
-from ..cli.conftest import here, seatsim_command, undrawn
+from ..cli.conftest import here, undrawn
 
-__all__ = ["here", "seatsim_command", "undrawn"]
+__all__ = ["here", "undrawn"]

@@ -6,10 +6,7 @@ from ruamel.yaml import YAML
 from seatsim.sweeps.engines.local import LocalEngine
 from seatsim.sweeps.execute import execute, prepare
 
-from ..cli.conftest import seatsim_command
 from ..conftest import SEAT
-
-__all__ = ["seatsim_command"]
 
 MASSES = {"plant.driver_mass": {"normal": [80, 12], "low": 50, "high": 120}}
 

@@ -12,12 +12,9 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from numpy.random import Generator
 
-from seatsim.blind.carrier.change import Change
-from seatsim.blind.carrier.draw import DrawnCase, choose_runs, draw_amount
-from seatsim.blind.carrier.injections.catalogue import draw_changes
-from seatsim.blind.carrier.injections.coil import draw_faster_coils
-from seatsim.blind.carrier.make import label
-from seatsim.blind.carrier.recorded import Carrier, encode_carrier, read_carrier
+from seatsim.blind.carrier.make import DrawnCase, choose_runs, draw_amount, draw_changes, label
+from seatsim.blind.carrier.readings import draw_faster_coils
+from seatsim.blind.carrier.recorded import Carrier, Change, encode_carrier, read_carrier
 from seatsim.blind.carrier.replays import Ruler
 from seatsim.blind.make.folder import write_folder
 from seatsim.blind.score.verdicts import is_right, read_verdict
@@ -87,9 +84,15 @@ class Powers(NamedTuple):
 
 
 def measure_power(
-    recording: Path, out: Path, diagnose: Diagnose, effects: Sequence[str] = (), draws: int = 10, seed: int = 0,
-    processes: int = 2, progress: Callable[[Power, int, int], None] | None = None,
-) -> list[Power]:  # fmt: skip
+    recording: Path,
+    out: Path,
+    diagnose: Diagnose,
+    effects: Sequence[str] = (),
+    draws: int = 10,
+    seed: int = 0,
+    processes: int = 2,
+    progress: Callable[[Power, int, int], None] | None = None,
+) -> list[Power]:
     """Return the power for each effect that a recording allows, or for those named, by bisection over SIZES.
 
     A size is given up once more draws are missed than a tenth. Every case stays in `out`/cases with its diagnosis, so

@@ -10,7 +10,7 @@ import numpy as np
 from ruamel.yaml import YAML
 
 from seatsim.blind.carrier.recorded import Carrier, Content, encode_carrier, number, section
-from seatsim.blind.make.tolerance import bounded_least_squares
+from seatsim.blind.make.materiality import bounded_least_squares
 from seatsim.recordings.recording import ChannelEntry, load_recording
 from seatsim.recordings.replay import replay_table, select_compared, stands_out
 from seatsim.scenario.loading import single
@@ -19,13 +19,13 @@ from seatsim.schema.leftovers import temporary_folder
 
 MATERIAL_SHARE = 0.05
 """Of a channel's standard deviation (contract, section 4)."""
-UNKNOWN_TOLERANCE = 0.05
+_UNKNOWN_TOLERANCE = 0.05
 """Stands for a `parameter_tolerance` that is no single number."""
-ZERO_SCALES = {"f0": 100.0, "fc_a": 100.0, "alpha_a": 100.0}
+_ZERO_SCALES = {"f0": 100.0, "fc_a": 100.0, "alpha_a": 100.0}
 """Scales of parameters known to be zero (contract, section 3), N."""
 EXACT = ("n", "x0", "v_ref")
 """Parameters of a damper that are exponents, lengths or regularisations: known."""
-OWN_SHARE = 0.5
+_OWN_SHARE = 0.5
 """Of a change's own square by which it must at least raise that of the residuals."""
 Residuals = dict[str, Array]
 """Measured minus simulated by compared channel, over all runs, shape (N,) each."""
@@ -70,11 +70,11 @@ class Ruler:
         """Tell whether a change adds to the gap about what it does by itself, so that taking it away would help.
 
         Where the background holds the opposite of the effect the two cancel, and nobody can know which is true:
-        `|r1|^2 - |r0|^2 >= OWN_SHARE |g|^2` of the residuals before and after, each refitted inside the tolerance.
+        `|r1|^2 - |r0|^2 >= _OWN_SHARE |g|^2` of the residuals before and after, each refitted inside the tolerance.
         """
         g, r0 = self._change(changed), self._stack(self.before)
         before, after, own = (values - self._absorbed(values) for values in (r0, r0 + g, g))
-        return bool(after @ after - before @ before >= OWN_SHARE * (own @ own))
+        return bool(after @ after - before @ before >= _OWN_SHARE * (own @ own))
 
     def _change(self, changed: Carrier) -> Array:
         """Return what a change does to measured minus simulated, in std, end to end; NaN where channels are lost."""
@@ -123,7 +123,7 @@ def residuals(carrier: Carrier) -> Residuals:
 def tolerance(carrier: Carrier) -> float:
     """Return the fraction to which parameters are taken to be known."""
     stated = carrier.header.get("parameter_tolerance", 0.02)
-    return number(stated) if isinstance(stated, int | float) else UNKNOWN_TOLERANCE
+    return number(stated) if isinstance(stated, int | float) else _UNKNOWN_TOLERANCE
 
 
 def _varied_nominals(carrier: Carrier) -> list[Content]:
@@ -133,7 +133,7 @@ def _varied_nominals(carrier: Carrier) -> list[Content]:
     values = section(damper, "parameters")
     varied: list[Content] = []
     for key, value in values.items():
-        step = share * (number(value) or ZERO_SCALES.get(key, 0.0))
+        step = share * (number(value) or _ZERO_SCALES.get(key, 0.0))
         if key not in EXACT and step and np.isfinite(step):
             varied.append({**nominal, "damper": {**damper, "parameters": {**values, key: number(value) + step}}})
     for name, part in (("plant", plant), ("actuator", coil)):

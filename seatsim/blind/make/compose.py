@@ -10,21 +10,21 @@ from numpy.random import Generator
 from seatsim.blind.labels import EFFECTS, KINDS, Kind
 from seatsim.blind.make.draw_case import CaseSpecification
 from seatsim.blind.truth.experiment import COMPARED
-from seatsim.blind.truth.faults.catalogue import scenarios_of
+from seatsim.blind.truth.outside_faults import scenarios_of
 from seatsim.schema.errors import InputError, nearest
 
-PRESETS = ("mixed", "varied", "null", "background")
+_PRESETS = ("mixed", "varied", "null", "background")
 BACKGROUND = 6.0
 """Random force on the frame of the preset `background`, N rms: half of that which counts as an effect of severity 1."""
 
 
-def compose(cases: int, kinds: str | Sequence[str] | None, rng: Generator) -> list[CaseSpecification]:
+def compose(cases: int, kinds: str | Sequence[str], rng: Generator) -> list[CaseSpecification]:
     """Return the specifications of a set, shuffled.
 
-    `mixed` (or None): a fifth none, a fifth two effects, a fifth outside, the rest one effect, the 24 effects equally
-    often. `varied`: the same mix, every case on another rig. `null`: faultless over every subset of channels.
-    `background`: faultless, a random force on the frame, and a repeated run that shows it. A list of kinds is gone
-    through in turn.
+    `mixed`: a fifth none, a fifth two effects, a fifth outside, the rest one effect, the 24 effects equally often.
+    `varied`: the same mix, every case on another rig. `null`: faultless over every subset of channels. `background`:
+    faultless, a random force on the frame, and a repeated run that shows it. Otherwise a kind, which all cases are, or
+    kinds that are gone through in turn.
 
     Raises:
         InputError: there is no such preset or kind.
@@ -43,36 +43,25 @@ def null_subsets() -> list[tuple[str, ...]]:
     """Return every set of channels to leave out that leaves a floor, a current and something to compare."""
     optional = (*COMPARED, "damper_temperature", "current_command")
     subsets = [some for count in range(len(optional) + 1) for some in combinations(optional, count)]
-    return [some for some in subsets if _leaves_enough(some)]
+    needed: list[set[str]] = [{"current_command", "coil_current"}, set(COMPARED) - {"coil_current"}]
+    return [some for some in subsets if not any(either <= set(some) for either in needed)]
 
 
-def _leaves_enough(missing: tuple[str, ...]) -> bool:
-    gone = set(missing)
-    if {"current_command", "coil_current"} <= gone:
-        return False
-    motion = {"frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force"}
-    return not motion <= gone
-
-
-def _kinds(cases: int, kinds: str | Sequence[str] | None) -> list[Kind]:
+def _kinds(cases: int, kinds: str | Sequence[str]) -> list[Kind]:
     """Return the kind of each case, before shuffling."""
-    if kinds in (None, "mixed", "varied"):
+    if kinds in ("mixed", "varied"):
         fifth = round(cases / 5)
-        parts: list[tuple[Kind, int]] = [
-            ("none", fifth), ("two", fifth), ("outside", fifth), ("one", max(cases - 3 * fifth, 0)),
-        ]  # fmt: skip
-        return [kind for kind, count in parts for _ in range(count)][:cases]
-    if isinstance(kinds, str):
-        chosen = [_known_kind(kinds, (*PRESETS, *KINDS))]
-    else:
-        chosen = [_known_kind(kind, KINDS) for kind in kinds]
+        parts: dict[Kind, int] = {"none": fifth, "two": fifth, "outside": fifth, "one": max(cases - 3 * fifth, 0)}
+        return [kind for kind, count in parts.items() for _ in range(count)][:cases]
+    chosen = [_known_kind(kind) for kind in ([kinds] if isinstance(kinds, str) else kinds)]
     return [chosen[k % len(chosen)] for k in range(cases)]
 
 
-def _known_kind(name: str, known: Sequence[str]) -> Kind:
+def _known_kind(name: str) -> Kind:
     for kind in KINDS:
         if kind == name:
             return kind
+    known = (*_PRESETS, *KINDS)
     raise InputError(f"kinds: {name!r} is not one of {', '.join(known)}{nearest(name, known)}")
 
 

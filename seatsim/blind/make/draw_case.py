@@ -2,37 +2,55 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.random import Generator
 
-from seatsim.blind.labels import EFFECTS, Kind, Label, Specification
-from seatsim.blind.make.draw_experiment import SCATTER
-from seatsim.blind.make.draw_rig import FaultlessRig, draw_rig
-from seatsim.blind.make.materiality import CommandedRuns, collinearity
+from seatsim.blind.labels import EFFECTS, Kind, Label
+from seatsim.blind.make.draw_experiment import SCATTER, draw_experiment
+from seatsim.blind.make.draw_varied import draw_varied_experiment
+from seatsim.blind.make.materiality import CommandedRuns, FaultlessRig, collinearity
 from seatsim.blind.make.severity import find_severity
-from seatsim.blind.truth.experiment import CHANNELS, Experiment, read_channels, simulate_run
-from seatsim.blind.truth.faults.catalogue import SCENARIOS, scenarios_of
-from seatsim.blind.truth.faults.scenario import Changes, Context, FaultScenario, Shape
-from seatsim.blind.truth.sensors import Readings
+from seatsim.blind.truth.experiment import CHANNELS, Experiment, Readings, read_channels, simulate_run
+from seatsim.blind.truth.faults import Changes, Context, FaultScenario, Shape
+from seatsim.blind.truth.outside_faults import SCENARIOS, scenarios_of
 from seatsim.schema.errors import RunError
 
-ATTEMPTS = 8
+_BINGHAM_SHARE = 0.5
+"""Of the rigs."""
+_COMPLETE_SHARE, _AT_MOST_ONE_MISSING = 0.6, 0.93
+"""Shares of the rigs that record every channel, and that lack at most one; the others lack two."""
+_OPTIONAL = {"damper_force": 0.7, "coil_current": 0.3}
+"""Channels that a rig may lack, and how likely each is the one: a load cell is what is saved first.
+
+A fade could not be found without thermometer, so that no rig lacks it, whatever is wrong with it.
+"""
+_ATTEMPTS = 8
 """Attempts with the same faults before others take their place: on some rigs an effect such as play is hardly seen."""
-EXCHANGES = 20
+_EXCHANGES = 20
 """How often others take their place; some fault can be seen on every rig, so that more are never needed."""
 ROUNDS = 6
 """Of raising faults that are not material beside the others; each raises by 15 % or more."""
-LARGEST_COLLINEARITY = 0.9
+_LARGEST_COLLINEARITY = 0.9
 """Two faults whose responses correlate above this are one fault to any diagnoser, and are not drawn together."""
 MATERIAL = 1.02
 """A little above the limit of 1, so that noise does not decide whether a fault is there."""
-RAISE = 1.15
+_RAISE = 1.15
 """How much further than to the limit a fault is raised."""
 WEAKEST = 0.4
 """Materiality below which a fault is raised no faster, as response and severity are not proportional that far."""
+
+
+def draw_missing_channels(rng: Generator) -> tuple[str, ...]:
+    """Draw the channels that are not recorded: none in 60 % of cases, rarely two."""
+    u = rng.random()
+    if u < _COMPLETE_SHARE:
+        return ()
+    count = 1 if u < _AT_MOST_ONE_MISSING else 2
+    return tuple(str(name) for name in rng.choice(list(_OPTIONAL), count, replace=False, p=list(_OPTIONAL.values())))
 
 
 @dataclass(frozen=True)
@@ -51,20 +69,17 @@ class CaseSpecification:
     varied: bool = False
 
     def draw_rig(self, rng: Generator) -> Experiment:
-        """Draw a rig and its protocol, to which neither kind nor names are told."""
-        return draw_rig(rng, self.varied, self.missing, self.scatter, self.background)
-
-    def as_dict(self) -> Specification:
-        """Return it as it stands in a label."""
-        missing = None if self.missing is None else list(self.missing)
-        return {
-            "kind": self.kind, "names": list(self.names), "missing": missing, "background": self.background,
-            "scatter": self.scatter, "varied": self.varied,
-        }  # fmt: skip
+        """Draw a rig and its protocol; neither kind nor names are used, so that nothing of it tells what is wrong."""
+        gone = draw_missing_channels(rng) if self.missing is None else self.missing
+        channels = tuple(name for name in CHANNELS if name not in gone)
+        bingham = rng.random() < _BINGHAM_SHARE
+        if self.varied:
+            return draw_varied_experiment(rng, bingham, channels)
+        return draw_experiment(rng, bingham, channels, self.scatter, self.background)
 
 
 @dataclass(frozen=True)
-class DrawnFault:
+class _DrawnFault:
     """A scenario, its drawn shape and severity, its materiality beside the others: in all, and net of tolerance."""
 
     scenario: FaultScenario
@@ -81,7 +96,7 @@ class Case:
 
     specification: CaseSpecification
     experiment: Experiment
-    faults: tuple[DrawnFault, ...]
+    faults: tuple[_DrawnFault, ...]
     readings: list[Readings]
     collinearity: float
 
@@ -105,7 +120,7 @@ class Case:
             "sample_rate": self.experiment.sample_rate,
             "tolerance": self.experiment.tolerance,
             "rig": dict(self.experiment.nominal),
-            "order": self.specification.as_dict(),
+            "order": dataclasses.asdict(self.specification),
         }
 
 
@@ -121,8 +136,8 @@ def draw_case(specification: CaseSpecification, rng: Generator) -> Case:
     """
     scenarios = _draw_scenarios(specification, rng)
     rig = FaultlessRig(specification.draw_rig(rng))
-    for _ in range(EXCHANGES):
-        for _ in range(ATTEMPTS):
+    for _ in range(_EXCHANGES):
+        for _ in range(_ATTEMPTS):
             case = _attempt(specification, scenarios, rig, rng)
             if case is not None:
                 return case
@@ -131,7 +146,7 @@ def draw_case(specification: CaseSpecification, rng: Generator) -> Case:
         others = rng.choice(outside if specification.kind == "outside" else EFFECTS, len(scenarios), replace=False)
         specification = replace(specification, names=tuple(map(str, others)))
         scenarios = _draw_scenarios(specification, rng)
-    raise RunError(f"no material case of kind {specification.kind} came of {ATTEMPTS * EXCHANGES} draws")
+    raise RunError(f"no material case of kind {specification.kind} came of {_ATTEMPTS * _EXCHANGES} draws")
 
 
 def _draw_scenarios(specification: CaseSpecification, rng: Generator) -> list[FaultScenario]:
@@ -145,7 +160,7 @@ def _attempt(
     specification: CaseSpecification, scenarios: Sequence[FaultScenario], rig: FaultlessRig, rng: Generator
 ) -> Case | None:
     """Draw shapes and severities once; None where a fault cannot be made material on this rig."""
-    faults: list[DrawnFault] = []
+    faults: list[_DrawnFault] = []
     for scenario in scenarios:
         fault = _draw_fault(scenario, rig, rng)
         if fault is None:
@@ -154,7 +169,7 @@ def _attempt(
     return _settle(specification, faults, rig)
 
 
-def _draw_fault(scenario: FaultScenario, rig: FaultlessRig, rng: Generator) -> DrawnFault | None:
+def _draw_fault(scenario: FaultScenario, rig: FaultlessRig, rng: Generator) -> _DrawnFault | None:
     """Draw a fault's shape, and the severity that gives it a drawn materiality when it is alone."""
     if scenario.bingham and not rig.experiment.is_bingham:
         return None
@@ -167,10 +182,10 @@ def _draw_fault(scenario: FaultScenario, rig: FaultlessRig, rng: Generator) -> D
     if found is None:
         return None
     severity, size = found
-    return DrawnFault(scenario, shape, severity, size, scenario.build(severity, shape, rig.context))
+    return _DrawnFault(scenario, shape, severity, size, scenario.build(severity, shape, rig.context))
 
 
-def _settle(specification: CaseSpecification, faults: list[DrawnFault], rig: FaultlessRig) -> Case | None:
+def _settle(specification: CaseSpecification, faults: list[_DrawnFault], rig: FaultlessRig) -> Case | None:
     """Close the loop with the faults in it; raise what is no longer material beside the others, or give up."""
     experiment = rig.experiment
     runs = range(len(experiment.runs))
@@ -191,13 +206,13 @@ def _settle(specification: CaseSpecification, faults: list[DrawnFault], rig: Fau
     return None
 
 
-def _sum_of_changes(faults: Sequence[DrawnFault]) -> Changes:
+def _sum_of_changes(faults: Sequence[_DrawnFault]) -> Changes:
     return sum((fault.changes for fault in faults), Changes())
 
 
 def _measure(
-    faults: Sequence[DrawnFault], runs: CommandedRuns, rig: FaultlessRig
-) -> tuple[list[DrawnFault], float] | None:
+    faults: Sequence[_DrawnFault], runs: CommandedRuns, rig: FaultlessRig
+) -> tuple[list[_DrawnFault], float] | None:
     """Return the faults with their materiality beside the others, and their collinearity; None where one is no case.
 
     That is where the rig is unstable, or where two faults can hardly be distinguished.
@@ -210,14 +225,14 @@ def _measure(
         sized.append(replace(fault, materiality=size, net=net))
         responses.append(response)
     alike = collinearity(*responses) if len(responses) == 2 else 0.0
-    if alike > LARGEST_COLLINEARITY or not all(np.isfinite(fault.materiality) for fault in sized):
+    if alike > _LARGEST_COLLINEARITY or not all(np.isfinite(fault.materiality) for fault in sized):
         return None
     return sized, alike
 
 
-def _raise(fault: DrawnFault, context: Context) -> DrawnFault:
+def _raise(fault: _DrawnFault, context: Context) -> _DrawnFault:
     """Return a fault that is not material net of tolerance at a higher severity, no higher than is plausible."""
     if fault.net >= MATERIAL:
         return fault
-    severity = min(fault.severity * RAISE / max(fault.net, WEAKEST), fault.scenario.span[1])
+    severity = min(fault.severity * _RAISE / max(fault.net, WEAKEST), fault.scenario.span[1])
     return replace(fault, severity=severity, changes=fault.scenario.build(severity, fault.shape, context))

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 import numpy as np
 from numpy.random import Generator
 
+from seatsim.blind.truth import coil
 from seatsim.blind.truth.excitation import draw_bumps, draw_current_steps, draw_road, draw_sweep
-from seatsim.blind.truth.experiment import Experiment, RunPlan
-from seatsim.blind.truth.faults.scenario import FrameForce
-from seatsim.blind.truth.physics import control_laws
-from seatsim.blind.truth.physics.rig import SAMPLE_RATE
+from seatsim.blind.truth.experiment import CHANNELS, Experiment, RunPlan
+from seatsim.blind.truth.faults import FrameForce
+from seatsim.blind.truth.rig import SAMPLE_RATE
 from seatsim.schema.arrays import Array
 
 SECONDS = 24.0
@@ -24,18 +24,12 @@ STEPPED = 0.4
 """Share of the rigs whose current is stepped in every run, not controlled in some."""
 STARTS, HOT = (20.0, 30.0, 45.0, 60.0), (55.0, 75.0)
 """Temperatures of the damper at which runs start, to within 2 K, and the range of the one that is hot, degC."""
-NOISE = {
-    "floor_acceleration": 0.01, "frame_acceleration": 0.03, "driver_acceleration": 0.015,
-    "suspension_displacement": 5e-5, "damper_force": 2.5, "coil_current": 0.003, "damper_temperature": 0.1,
-}  # fmt: skip
-"""Rms by channel, in its unit: common accelerometers, a laser, a load cell, a shunt, a thermocouple."""
 PLANT = {"ms": 20.0, "m": 80.0, "kf": 4600.0, "cf": 150.0, "kc": 60000.0, "cc": 1500.0}
 COIL = {"rate": 130.0, "i_max": 1.0}
-BOUC_WEN = {
-    "is_bingham": 0.0, "c_a": 250.0, "c_b": 350.0, "y_a": 45.0, "y_b": 620.0, "k0": 0.0, "x0": 0.0, "f0": 0.0,
-    "A": 2000.0, "beta": 1000.0, "gamma": 1000.0, "n": 2.0,
-}  # fmt: skip
-BINGHAM = {"is_bingham": 1.0, "c_a": 250.0, "c_b": 350.0, "y_a": 45.0, "y_b": 620.0, "f0": 0.0, "v_ref": 0.004}
+_FORCES = {"c_a": 250.0, "c_b": 350.0, "y_a": 45.0, "y_b": 620.0}
+BINGHAM = {"is_bingham": 1.0, **_FORCES, "f0": 0.0, "v_ref": 0.004}
+HYSTERESIS = {"A": 2000.0, "beta": 1000.0, "gamma": 1000.0, "n": 2.0}
+BOUC_WEN = {"is_bingham": 0.0, **_FORCES, "k0": 0.0, "x0": 0.0, "f0": 0.0, **HYSTERESIS}
 EXACT = ("is_bingham", "n", "i_max", "damper_ratio")
 """Parameters that are choices, not measurements, and are never off."""
 
@@ -66,19 +60,27 @@ def draw_experiment(
     true = scatter_parameters(nominal, rng, scatter) | draw_heat(rng)
     level = rng.uniform(0.85, 1.2)
     # noise is stated to three digits, and drawn as stated
-    noise = {name: float(f"{value * level:.3g}") for name, value in NOISE.items() if name in channels}
+    noise = {name: float(f"{value * level:.3g}") for name, value in noise_of(channels).items()}
     forces = (FrameForce("coloured", background, int(rng.integers(1, 10**6))),) if background else ()
     return Experiment(nominal, true, channels, noise, _draw_runs(rng, bool(background)), forces)
+
+
+def noise_of(channels: Collection[str]) -> dict[str, float]:
+    """Return the rms of the usual sensors' noise, of the channels that have some."""
+    return {name: channel.noise for name, channel in CHANNELS.items() if name in channels and channel.noise}
 
 
 def draw_heat(rng: Generator) -> dict[str, float]:
     """Draw how the damper warms up, which its thermometer shows whether or not it fades; names of `RigParameters`."""
     own = rng.spawn(1)[0]  # so that all else that is drawn is as it would be without
-    return {
-        "fluid_heat": own.uniform(25.0, 90.0), "housing_heat": own.uniform(120.0, 400.0),
-        "thermometer_time": own.uniform(1.0, 5.0), "fluid_to_housing": own.uniform(1.5, 4.0),
-        "housing_to_air": own.uniform(0.4, 1.5),
-    }  # fmt: skip
+    ranges = {
+        "fluid_heat": (25.0, 90.0),
+        "housing_heat": (120.0, 400.0),
+        "thermometer_time": (1.0, 5.0),
+        "fluid_to_housing": (1.5, 4.0),
+        "housing_to_air": (0.4, 1.5),
+    }
+    return {name: own.uniform(low, high) for name, (low, high) in ranges.items()}
 
 
 def draw_temperatures(rng: Generator, count: int) -> list[float]:
@@ -94,10 +96,10 @@ def draw_temperatures(rng: Generator, count: int) -> list[float]:
 
 def draw_laws(rng: Generator) -> tuple[Array, Array]:
     """Draw a skyhook and an output feedback: level A, dead band m/s; gains N/m and N s/m."""
-    skyhook = [control_laws.SKYHOOK, round(rng.uniform(0.7, 1.0), 2), rng.uniform(0.002, 0.02), 0.0, 0.0, 0.0]
+    skyhook = [coil.SKYHOOK, round(rng.uniform(0.7, 1.0), 2), rng.uniform(0.002, 0.02), 0.0, 0.0, 0.0]
     stiffness, relative = -rng.uniform(0.0, 1500.0), rng.uniform(0.0, 200.0)
     gains = [stiffness, relative, rng.uniform(900.0, 2200.0), rng.uniform(200.0, 900.0)]
-    return np.array(skyhook), np.array([control_laws.FEEDBACK, 0.9, *gains])
+    return np.array(skyhook), np.array([coil.FEEDBACK, 0.9, *gains])
 
 
 def _draw_runs(rng: Generator, repeat: bool) -> tuple[RunPlan, ...]:
@@ -109,7 +111,7 @@ def _draw_runs(rng: Generator, repeat: bool) -> tuple[RunPlan, ...]:
     rms = rng.uniform(1.15, 1.7)
     starts = draw_temperatures(rng, 4)
     no_current = np.zeros(rows)
-    schedule = np.array([control_laws.SCHEDULE, 0.0, 0.0, 0.0, 0.0, 0.0])
+    schedule = np.array([coil.SCHEDULE, 0.0, 0.0, 0.0, 0.0, 0.0])
     skyhook, feedback = draw_laws(rng)
     top = rng.uniform(0.8, 1.0)
     first = RunPlan("run-a", draw_road(rng, SECONDS, rms), schedule, draw_current_steps(rng, rows, top), starts[0])

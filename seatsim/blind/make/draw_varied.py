@@ -11,36 +11,35 @@ from numpy.random import Generator
 
 from seatsim.blind.make import draw_experiment as standard
 from seatsim.blind.make.materiality import COARSE_STEP, CommandedRuns
-from seatsim.blind.truth.excitation import draw_current_steps
+from seatsim.blind.truth import coil
+from seatsim.blind.truth.excitation import NoiseColour, draw_current_steps
 from seatsim.blind.truth.experiment import Experiment, RunPlan, simulate_run
-from seatsim.blind.truth.faults.scenario import Changes, FrameForce
-from seatsim.blind.truth.noise import NoiseColour
-from seatsim.blind.truth.physics import control_laws
+from seatsim.blind.truth.faults import Changes, FrameForce
 from seatsim.blind.truth.vehicle_floor import draw_vehicle, draw_vehicle_floor
 from seatsim.schema.arrays import Array
 
 SAMPLE_RATES = (256.0, 400.0, 500.0, 512.0, 800.0, 1000.0)
 """Hz, of common loggers."""
-SMALLEST_TOLERANCE, LARGEST_TOLERANCE = 0.01, 0.05
+_SMALLEST_TOLERANCE, _LARGEST_TOLERANCE = 0.01, 0.05
 NOISE_FACTOR = 2.0
 """Largest factor by which a channel's noise is above or below that of the usual sensors."""
-BACKGROUND_SHARE = 1.0 / 3.0
+_BACKGROUND_SHARE = 1.0 / 3.0
 """Share of the rigs that have a force on the frame beside the floor, and a repeated run that shows it."""
 BACKGROUND = (0.01, 0.03)
 """Rms of that force over that of the force between floor and frame."""
 LARGEST_BACKGROUND = 0.8
 """Materiality of that force: as strong as it were an effect it would be `floor.unmeasured_input`, and no background."""
-OFFSET_SHARE = 0.4
+_OFFSET_SHARE = 0.4
 """Share of the Bouc-Wen dampers whose accumulator has a nominal stiffness and force."""
 STEEPEST = 8000.0
 """Largest rate at which a regularised yield force may stop the frame, 1/s; the steps of the truth resolve it."""
-FEEDBACK_GAIN = 2.0
+_FEEDBACK_GAIN = 2.0
 """By which the feedback's gains are above those of the standard rig, whose floor has more low frequencies."""
 LEAST_VISCOUS = 250.0
 """N s/m; below it a damper in a mount with play is stiffer than the steps of the truth resolve."""
 
 
-class SeatKind(NamedTuple):
+class _SeatKind(NamedTuple):
     """Ranges of a kind of seat."""
 
     frame: tuple[float, float]  # kg
@@ -48,35 +47,34 @@ class SeatKind(NamedTuple):
     damper_ratio: tuple[float, float]  # stroke of the damper per suspension displacement
 
 
-SEATS = (
-    SeatKind((14.0, 28.0), (1.2, 2.2), (1.0, 1.0)),  # car seat on a suspension
-    SeatKind((28.0, 60.0), (1.0, 1.6), (0.4, 0.8)),  # truck seat on a scissor
-    SeatKind((22.0, 45.0), (1.1, 2.0), (0.8, 1.0)),  # tractor seat
+_SEATS = (
+    _SeatKind((14.0, 28.0), (1.2, 2.2), (1.0, 1.0)),  # car seat on a suspension
+    _SeatKind((28.0, 60.0), (1.0, 1.6), (0.4, 0.8)),  # truck seat on a scissor
+    _SeatKind((22.0, 45.0), (1.1, 2.0), (0.8, 1.0)),  # tractor seat
 )
 DRIVER = (50.0, 110.0)
 """kg."""
-CUSHION_RESONANCE, CUSHION_DAMPING = (3.5, 6.5), (0.12, 0.4)
+_CUSHION_RESONANCE, _CUSHION_DAMPING = (3.5, 6.5), (0.12, 0.4)
 """Hz, and damping ratio, of the driver on the cushion."""
-SUSPENSION_DAMPING = (0.03, 0.15)
+_SUSPENSION_DAMPING = (0.03, 0.15)
 """Damping ratio of the suspension without its damper."""
-STANDARD_MASS = standard.PLANT["ms"] + standard.PLANT["m"]
+_STANDARD_MASS = standard.PLANT["ms"] + standard.PLANT["m"]
 """kg, to which the standard damper fits."""
 
 
 def draw_varied_experiment(rng: Generator, bingham: bool, channels: tuple[str, ...]) -> Experiment:
     """Draw a rig and its protocol; a third of them have a background force and a repeated run."""
-    rate, tolerance = float(rng.choice(SAMPLE_RATES)), _log_uniform(rng, SMALLEST_TOLERANCE, LARGEST_TOLERANCE)
+    rate, tolerance = float(rng.choice(SAMPLE_RATES)), _log_uniform(rng, _SMALLEST_TOLERANCE, _LARGEST_TOLERANCE)
     tolerance = float(f"{tolerance:.2g}")
     nominal = draw_nominal(rng, bingham)
     noise = {
         name: float(f"{value * _log_uniform(rng, 1.0 / NOISE_FACTOR, NOISE_FACTOR):.3g}")
-        for name, value in standard.NOISE.items()
-        if name in channels
+        for name, value in standard.noise_of(channels).items()
     }
     true = standard.scatter_parameters(nominal, rng, tolerance) | standard.draw_heat(rng)
     colours = {name: _draw_colour(rng) for name in noise}
     experiment = Experiment(nominal, true, channels, noise, (), (), rate, tolerance, colours)
-    repeat = rng.random() < BACKGROUND_SHARE
+    repeat = rng.random() < _BACKGROUND_SHARE
     experiment = dataclasses.replace(experiment, runs=_draw_runs(rng, experiment, repeat))
     return _add_background(experiment, rng) if repeat else experiment
 
@@ -87,32 +85,31 @@ def _log_uniform(rng: Generator, low: float, high: float) -> float:
 
 def draw_nominal(rng: Generator, bingham: bool) -> dict[str, float]:
     """Draw the parameters of seat, damper and coil, rounded to three digits as an owner states them."""
-    seat = SEATS[int(rng.integers(len(SEATS)))]
+    seat = _SEATS[int(rng.integers(len(_SEATS)))]
     plant = _draw_plant(rng, seat)
     ratio = round(rng.uniform(*seat.damper_ratio), 2)
-    damper = draw_damper(rng, plant, ratio, bingham)
+    damper = _draw_damper(rng, plant, ratio, bingham)
     coil = {"rate": _log_uniform(rng, 60.0, 250.0), "i_max": standard.COIL["i_max"]}
     rounded = {name: float(f"{value:.3g}") for name, value in (plant | damper | coil).items()}
     return rounded | {"damper_ratio": ratio}
 
 
-def _draw_plant(rng: Generator, seat: SeatKind) -> dict[str, float]:
+def _draw_plant(rng: Generator, seat: _SeatKind) -> dict[str, float]:
     """Draw masses, and from natural frequencies and damping ratios the springs and dampings."""
     ms, m = rng.uniform(*seat.frame), rng.uniform(*DRIVER)
-    w, cushion = (2.0 * math.pi * rng.uniform(*band) for band in (seat.resonance, CUSHION_RESONANCE))
-    return {
-        "ms": ms, "m": m, "kf": (ms + m) * w * w, "cf": 2.0 * rng.uniform(*SUSPENSION_DAMPING) * (ms + m) * w,
-        "kc": m * cushion * cushion, "cc": 2.0 * rng.uniform(*CUSHION_DAMPING) * m * cushion,
-    }  # fmt: skip
+    w, cushion = (2.0 * math.pi * rng.uniform(*band) for band in (seat.resonance, _CUSHION_RESONANCE))
+    suspension = {"kf": (ms + m) * w * w, "cf": 2.0 * rng.uniform(*_SUSPENSION_DAMPING) * (ms + m) * w}
+    seated = {"kc": m * cushion * cushion, "cc": 2.0 * rng.uniform(*_CUSHION_DAMPING) * m * cushion}
+    return {"ms": ms, "m": m, **suspension, **seated}
 
 
-def draw_damper(rng: Generator, plant: dict[str, float], ratio: float, bingham: bool) -> dict[str, float]:
+def _draw_damper(rng: Generator, plant: dict[str, float], ratio: float, bingham: bool) -> dict[str, float]:
     """Draw a damper that fits the seat.
 
     The standard damper's force goes with the mass that it damps over the ratio, its viscous part over the ratio
     squared, and each part is off by up to a factor of 1.5.
     """
-    size = (plant["ms"] + plant["m"]) / STANDARD_MASS / ratio
+    size = (plant["ms"] + plant["m"]) / _STANDARD_MASS / ratio
     powers = {"c_a": 2.0, "c_b": 2.0, "y_a": 1.0, "y_b": 1.0}
     damper = {
         name: standard.BOUC_WEN[name] * size / ratio ** (power - 1.0) * _log_uniform(rng, 1.0 / 1.5, 1.5)
@@ -123,12 +120,11 @@ def draw_damper(rng: Generator, plant: dict[str, float], ratio: float, bingham: 
         steepest = ratio**2 * (damper["y_a"] + damper["y_b"]) / (STEEPEST * plant["ms"])
         return damper | {"is_bingham": 1.0, "f0": 0.0, "v_ref": max(steepest, 0.002) * _log_uniform(rng, 1.0, 4.0)}
     slope, share = _log_uniform(rng, 500.0, 2500.0), rng.uniform(0.3, 0.7)
-    offset = rng.random() < OFFSET_SHARE
-    return damper | {
-        "is_bingham": 0.0, "A": slope, "beta": share * slope, "gamma": (1.0 - share) * slope,
-        "n": float(rng.integers(1, 3)), "x0": 0.0, "k0": size * rng.uniform(100.0, 800.0) if offset else 0.0,
-        "f0": size * rng.uniform(-40.0, 40.0) if offset else 0.0,
-    }  # fmt: skip
+    offset = rng.random() < _OFFSET_SHARE
+    hysteresis = {"A": slope, "beta": share * slope, "gamma": (1.0 - share) * slope, "n": float(rng.integers(1, 3))}
+    k0 = size * rng.uniform(100.0, 800.0) if offset else 0.0
+    f0 = size * rng.uniform(-40.0, 40.0) if offset else 0.0
+    return damper | {"is_bingham": 0.0, **hysteresis, "x0": 0.0, "k0": k0, "f0": f0}
 
 
 def _draw_colour(rng: Generator) -> NoiseColour:
@@ -142,7 +138,7 @@ def _draw_runs(rng: Generator, experiment: Experiment, repeat: bool) -> tuple[Ru
     """Draw three runs of one vehicle on different roads, the first again where `repeat`, and the unseen one."""
     rate, vehicle, top = experiment.sample_rate, draw_vehicle(rng), rng.uniform(0.8, 1.0)
     starts = standard.draw_temperatures(rng, 4)
-    schedule = np.array([control_laws.SCHEDULE, 0.0, 0.0, 0.0, 0.0, 0.0])
+    schedule = np.array([coil.SCHEDULE, 0.0, 0.0, 0.0, 0.0, 0.0])
     laws = [schedule, *_fit_laws(standard.draw_laws(rng), experiment), schedule]
     if rng.random() < standard.STEPPED:
         laws = [schedule] * 4
@@ -163,7 +159,7 @@ def _fit_laws(laws: tuple[Array, Array], experiment: Experiment) -> tuple[Array,
     """
     skyhook, feedback = laws
     nominal = experiment.nominal
-    scale = FEEDBACK_GAIN * STANDARD_MASS / (nominal["ms"] + nominal["m"]) * nominal["damper_ratio"]
+    scale = _FEEDBACK_GAIN * _STANDARD_MASS / (nominal["ms"] + nominal["m"]) * nominal["damper_ratio"]
     return skyhook, np.concatenate([feedback[:2], scale * feedback[2:]])
 
 

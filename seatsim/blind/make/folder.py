@@ -12,46 +12,40 @@ import numpy as np
 from numpy.random import Generator
 from ruamel.yaml import YAML
 
-from seatsim.blind.truth.experiment import CHANNELS, Experiment, RunPlan
-from seatsim.blind.truth.noise import colour_noise
-from seatsim.blind.truth.sensors import Readings
+from seatsim.blind.truth.excitation import colour_noise
+from seatsim.blind.truth.experiment import CHANNELS, Experiment, Readings, RunPlan
 from seatsim.schema.files import write_together
 
-UNITS = {
-    "floor_acceleration": "m/s^2", "frame_acceleration": "m/s^2", "driver_acceleration": "m/s^2",
-    "suspension_displacement": "m", "damper_force": "N", "current_command": "A", "coil_current": "A",
-    "damper_temperature": "degC",
-}  # fmt: skip
-DIGITS = {"suspension_displacement": 6, "damper_force": 1, "damper_temperature": 2}
-"""After the point, a tenth of the noise or less; all others have four."""
-EPOCH = 1_600_000_000
+_EPOCH = 1_600_000_000
 """Time stamp of every file, s: the true time would reveal how long its case took to draw."""
 
 
 def nominal_scenario(experiment: Experiment) -> dict[str, object]:
     """Return the nominal scenario, which the owner assumes, under the contract's keys."""
-    n = experiment.nominal
-    bingham = experiment.is_bingham
+    n, bingham = experiment.nominal, experiment.is_bingham
     letter = "fc" if bingham else "alpha"
     names = ("f0", "v_ref") if bingham else ("k0", "x0", "f0", "A", "beta", "gamma")
-    parameters: dict[str, float] = {
-        "c_a": n["c_a"], "c_b": n["c_b"], f"{letter}_a": n["y_a"], f"{letter}_b": n["y_b"],
-    }  # fmt: skip
+    parameters = {"c_a": n["c_a"], "c_b": n["c_b"], f"{letter}_a": n["y_a"], f"{letter}_b": n["y_b"]}
     parameters |= {name: n[name] for name in names}
     if not bingham:
         parameters["n"] = int(n["n"])
-    ratio = {"damper_ratio": n["damper_ratio"]} if "damper_ratio" in n else {}
+    symbols = {
+        "frame_mass": "ms",
+        "driver_mass": "m",
+        "suspension_stiffness": "kf",
+        "suspension_damping": "cf",
+        "cushion_stiffness": "kc",
+        "cushion_damping": "cc",
+        "damper_ratio": "damper_ratio",
+    }
     return {
-        "plant": {
-            "frame_mass": n["ms"], "driver_mass": n["m"], "suspension_stiffness": n["kf"],
-            "suspension_damping": n["cf"], "cushion_stiffness": n["kc"], "cushion_damping": n["cc"],
-        } | ratio,
+        "plant": {name: n[symbol] for name, symbol in symbols.items() if symbol in n},
         "damper": {"model": "bingham" if bingham else "bouc_wen", "parameters": parameters},
         "actuator": {"rate": n["rate"], "max_current": n["i_max"]},
         "temperature": 20.0,
         "controller": {"law": "replay"},
         "excitation": {"kind": "recording"},
-    }  # fmt: skip
+    }
 
 
 def recording_header(experiment: Experiment, runs: Sequence[RunPlan]) -> dict[str, object]:
@@ -62,13 +56,17 @@ def recording_header(experiment: Experiment, runs: Sequence[RunPlan]) -> dict[st
         for run in runs
     ]
     return {
-        "rig": "seat", "sample_rate": experiment.sample_rate, "parameter_tolerance": experiment.tolerance,
-        "nominal": "nominal.yaml", "runs": entries, "channels": channels,
-    }  # fmt: skip
+        "rig": "seat",
+        "sample_rate": experiment.sample_rate,
+        "parameter_tolerance": experiment.tolerance,
+        "nominal": "nominal.yaml",
+        "runs": entries,
+        "channels": channels,
+    }
 
 
 def _channel_header(experiment: Experiment, name: str) -> dict[str, str | float]:
-    header: dict[str, str | float] = {"unit": UNITS[name]}
+    header: dict[str, str | float] = {"unit": CHANNELS[name].unit}
     return header | {"noise_rms": experiment.noise[name]} if name in experiment.noise else header
 
 
@@ -92,7 +90,7 @@ def _encode_table(channels: Readings, rate: float) -> bytes:
     rows = next(iter(channels.values())).size
     whole_milliseconds = 1000.0 % rate == 0.0
     columns = [np.char.mod("%.3f" if whole_milliseconds else "%.9f", np.arange(rows) / rate)]
-    columns += [np.char.mod(f"%.{DIGITS.get(name, 4)}f", values) for name, values in channels.items()]
+    columns += [np.char.mod(f"%.{CHANNELS[name].digits}f", values) for name, values in channels.items()]
     lines = [",".join(("time", *channels))] + [",".join(row) for row in zip(*columns, strict=True)]
     return pack(("\n".join(lines) + "\n").encode())
 
@@ -138,8 +136,8 @@ def write_folder(folder: Path, files: Mapping[str, bytes]) -> None:
     def fill(part: Path) -> list[Path]:
         for name, content in files.items():
             (part / name).write_bytes(content)
-            os.utime(part / name, (EPOCH, EPOCH))
-        os.utime(part, (EPOCH, EPOCH))
+            os.utime(part / name, (_EPOCH, _EPOCH))
+        os.utime(part, (_EPOCH, _EPOCH))
         return [part / name for name in files]
 
     write_together(folder, fill)

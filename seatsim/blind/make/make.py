@@ -1,11 +1,14 @@
 """Makes a set of cases: recordings without labels, and the labels sealed.
 
 Every case has its own generator, spawned from the seed, so a set is the same in any order and with any number of
-processes, and one that was broken off goes on.
+processes. While it is unfinished, seed, key, labels and unseen runs lie in `SEALED.partial`, readable by the owner
+alone, so that a call that was broken off goes on; that folder is deleted when the file is sealed.
 """
 
 from __future__ import annotations
 
+import json
+import secrets
 import shutil
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -18,9 +21,9 @@ from seatsim.blind.labels import Label
 from seatsim.blind.make.compose import compose
 from seatsim.blind.make.draw_case import CaseSpecification, draw_case
 from seatsim.blind.make.folder import encode_recording, write_folder
-from seatsim.blind.make.unfinished import begin_or_resume, case_name, gather, is_finished, keep_label, keep_unseen
-from seatsim.blind.sealed import seal
+from seatsim.blind.sealed import SEAL, Sealed, new_key, seal
 from seatsim.schema.errors import InputError
+from seatsim.schema.files import make_folder, write_bytes, write_text
 from seatsim.schema.processes import Progress, run_jobs
 
 Wanted = TypeVar("Wanted")
@@ -38,14 +41,30 @@ Draw = Callable[[Wanted, Generator], CaseFiles]
 """Draws a case of what is wanted; it must be picklable, for other processes."""
 
 
+class _Plan(NamedTuple):
+    """What was asked for, and what makes the set; the content of `state.json`."""
+
+    cases: int
+    kinds: str | list[str]
+    seed: int
+    key: str
+    given: bool
+    """Whether the seed was given; otherwise it was drawn."""
+
+
 def make(
-    cases: int, seed: int | None, out: str | Path, sealed: str | Path, progress: Progress | None = None,
-    kinds: str | Sequence[str] | None = None, processes: int = 2,
-) -> str:  # fmt: skip
+    cases: int,
+    seed: int | None,
+    out: str | Path,
+    sealed: str | Path,
+    progress: Progress | None = None,
+    kinds: str | list[str] = "mixed",
+    processes: int = 2,
+) -> str:
     """Write a set on simulated rigs; return the key.
 
-    `kinds` is a preset (`mixed`, `varied`, `null`, `background`) or a list of kinds (none, one, two, outside) that is
-    gone through in turn. The rest is that of `make_set`.
+    `kinds` is a preset (`mixed`, `varied`, `null`, `background`) or a kind (none, one, two, outside), or kinds
+    that are gone through in turn. The rest is that of `make_set`.
 
     Raises:
         InputError: fewer than one case, an unknown preset, a folder or file that is another set's.
@@ -58,9 +77,16 @@ def make(
 
 
 def make_set(
-    cases: int, seed: int | None, kinds: str | Sequence[str] | None, folder: Path, target: Path,
-    order: Callable[[int], Sequence[Wanted]], draw: Draw[Wanted], progress: Progress | None, processes: int,
-) -> str:  # fmt: skip
+    cases: int,
+    seed: int | None,
+    kinds: str | list[str],
+    folder: Path,
+    target: Path,
+    order: Callable[[int], Sequence[Wanted]],
+    draw: Draw[Wanted],
+    progress: Progress | None,
+    processes: int,
+) -> str:
     """Write `folder`/case-0001/... and the sealed file `target`; return the key, which is stored nowhere.
 
     Without `seed` one is drawn and sealed. `order` returns what each case is to be, by seed. A call broken off goes on
@@ -72,28 +98,75 @@ def make_set(
     partial = target.with_name(f"{target.name}.partial")
     if target.resolve().is_relative_to(folder.resolve()):
         raise InputError(f"{target}: lies inside {folder}; the labels must lie elsewhere than the recordings")
-    state = begin_or_resume(cases, seed, kinds, folder, target, partial)
-    wanted = order(state["seed"])
-    todo = [k for k in range(cases) if not is_finished(folder, partial, case_name(k))]
+    plan = _begin_or_resume(cases, seed, kinds, folder, target, partial)
+    wanted = order(plan.seed)
+    todo = [k for k in range(cases) if not _is_finished(folder, partial, case_name(k))]
     done_before = cases - len(todo)
     if progress:
         progress(done_before, cases)
-    jobs = [(draw, k, wanted[k], state["seed"], folder, partial) for k in todo]
+    jobs = [(draw, k, wanted[k], plan.seed, folder, partial) for k in todo]
     run_jobs(make_case, jobs, processes, progress and (lambda done, _: progress(done_before + done, cases)))
-    seal(target, folder, state["key"], gather(state, partial))
+    seal(target, folder, plan.key, _gather(plan, partial))
     shutil.rmtree(partial)
-    return state["key"]
+    return plan.key
+
+
+def case_name(k: int) -> str:
+    """Return the name of the case with index k."""
+    return f"case-{k + 1:04d}"
+
+
+def _begin_or_resume(
+    cases: int, seed: int | None, kinds: str | list[str], folder: Path, target: Path, partial: Path
+) -> _Plan:
+    """Return the plan of an unfinished set, or begin one."""
+    if cases < 1:
+        raise InputError(f"--cases {cases}: at least 1")
+    note = partial / "state.json"
+    if note.is_file():
+        plan = _Plan(**json.loads(note.read_text(encoding="utf-8")))
+        if (plan.cases, plan.kinds) != (cases, kinds) or seed not in (None, plan.seed):
+            raise InputError(f"{partial}: holds an unfinished set made otherwise; delete it, or give another --sealed")
+        return plan
+    if target.exists() or (folder / SEAL).exists() or any(folder.glob("case-*")):
+        raise InputError(f"{folder}: {target} or a set of cases is there already; give another --out and --sealed")
+    plan = _Plan(cases, kinds, secrets.randbits(62) if seed is None else seed, new_key(), seed is not None)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        partial.mkdir(parents=True, mode=0o700)  # its owner alone can read it, since the key opens the labels
+    except OSError as error:
+        raise InputError(f"{partial}: cannot be written: {error.strerror}; give another --sealed") from error
+    write_text(note, json.dumps(plan._asdict()))
+    return plan
+
+
+def _is_finished(folder: Path, partial: Path, name: str) -> bool:
+    return (folder / name).is_dir() and (partial / f"{name}.json").is_file()
 
 
 def make_case(draw: Draw[Wanted], k: int, wanted: Wanted, seed: int, folder: Path, partial: Path) -> None:
-    """Draw the case with index k of a set and write its recording, its unseen run and, last, its label."""
+    """Draw the case with index k of a set and write its recording, its unseen run and, last, its label.
+
+    The label marks the case as finished.
+    """
     name = case_name(k)
     case = draw(wanted, np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(1, k))))
-    keep_unseen(partial, name, case.unseen)
+    make_folder(partial / name)
+    for file, content in case.unseen.items():
+        write_bytes(partial / name / file, content)
     if (folder / name).is_dir():
         shutil.rmtree(folder / name)
     write_folder(folder / name, case.recording)
-    keep_label(partial, name, case.label)
+    write_text(partial / f"{name}.json", json.dumps(case.label))
+
+
+def _gather(plan: _Plan, partial: Path) -> Sealed:
+    """Return what is to be sealed of a set whose cases are all finished."""
+    names = [case_name(k) for k in range(plan.cases)]
+    labels = {name: json.loads((partial / f"{name}.json").read_text(encoding="utf-8")) for name in names}
+    unseen = {name: {file.name: file.read_bytes() for file in sorted((partial / name).iterdir())} for name in names}
+    made: dict[str, object] = {"seed": plan.seed, "seed_given": plan.given, "cases": plan.cases, "kinds": plan.kinds}
+    return Sealed(labels, unseen, made)
 
 
 def draw_files(specification: CaseSpecification, rng: Generator) -> CaseFiles:

@@ -1,21 +1,27 @@
-"""How strong a fault is: by how much it moves the channels that a gap compares, and the severity that does so.
+"""How strong a fault is: by how much it moves the channels that a gap compares, beyond what the tolerance explains.
 
 Materiality (contract, section 4): the largest over compared channels of `rms(moved) / max(0.05 std, noise)`; 1 is the
 material limit. What is moved is what a replay would miss: the reading with the fault less the reading without it, and
 less what the faulty inputs already move in the replay.
+
+By the contract a gap that the tolerance explains is no gap. So a fault counts here only where it stays material after
+the best bounded refit of every nominal parameter, linear in the parameters: `min |g - J theta|`, `|theta| <= 1`.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
+from scipy.optimize import lsq_linear
 
-from seatsim.blind.truth.experiment import Experiment, read_channels, simulate_run
-from seatsim.blind.truth.faults.scenario import Changes
-from seatsim.blind.truth.physics.rig import RigMotion
-from seatsim.blind.truth.sensors import Readings
+from seatsim.blind.make.draw_experiment import EXACT, zero_scales
+from seatsim.blind.truth.experiment import CHANNELS, Experiment, Readings, read_channels, simulate_run
+from seatsim.blind.truth.faults import Changes, Context
+from seatsim.blind.truth.rig import RigMotion
 from seatsim.schema.arrays import Array
 
 MATERIAL_SHARE = 0.05
@@ -26,8 +32,12 @@ LEFT_OUT = 1.0
 """Seconds at the start of each run that no gap counts (contract, section 4)."""
 COARSE_STEP = 2.5e-4
 """Step of the simulations that only measure sizes, s: two and a half times as fast as those that are recorded."""
-REMEMBERED = 6
+_REMEMBERED = 6
 """Sets of motions that are kept beside the first, which is that of the rig without the fault."""
+SECONDS = 12.0
+"""Of each run that are looked at: half of it, as every parameter costs a simulation."""
+NEGLIGIBLE = 0.2
+"""Materiality below which a fault is not material whatever a refit takes away."""
 
 
 @dataclass
@@ -57,7 +67,7 @@ class CommandedRuns:
         """Return the motion of each run; sensor faults do not change it, so one simulation serves all of those."""
         key = repr((sorted(changes.parameters.items()), changes.frame_forces))
         if key not in self.known:
-            if len(self.known) > REMEMBERED:
+            if len(self.known) > _REMEMBERED:
                 self.known.pop(list(self.known)[1])
             self.known[key] = [
                 simulate_run(self.experiment, changes, k, self.commands[k], step=COARSE_STEP) for k in self.runs
@@ -128,3 +138,77 @@ def collinearity(a: Array, b: Array) -> float:
     """Return `|a b| / (|a| |b|)` of two responses, 0..1."""
     size = float(np.linalg.norm(a) * np.linalg.norm(b))
     return abs(float(a @ b)) / size if size else 0.0
+
+
+class ToleranceRefit:
+    """Sensitivities of the compared channels to each parameter of an experiment, one tolerance up."""
+
+    def __init__(self, experiment: Experiment, commands: list[Array]) -> None:
+        rows = round(SECONDS * experiment.sample_rate)
+        self.runs = CommandedRuns(experiment, [command[:rows] for command in commands])
+        scales = zero_scales(experiment.nominal)
+        self.sensitivities: list[dict[str, Array]] = []
+        for name, value in experiment.nominal.items():
+            step = experiment.tolerance * (value or scales.get(name, 0.0))
+            if name not in EXACT and step:
+                sensitivity, _ = self.runs.response(Changes({name: experiment.true[name] + step}), Changes())
+                self.sensitivities.append(sensitivity)
+
+    def unexplained_share(self, fault: Changes, others: Changes) -> float:
+        """Return which share of a fault's materiality no refit inside the tolerance takes away, 0..1 or a little more.
+
+        The refit minimises the sum over all channels, so the largest of them may grow. Channels that a sensitivity has
+        not, because it does not stand above noise there, take no part.
+        """
+        response, limits = self.runs.response(fault, others)
+        names = [name for name in response if all(name in column for column in self.sensitivities)]
+        if not names:
+            return 1.0
+        g = np.concatenate([response[name] / limits[name] for name in names])
+        before = max(rms(response[name] / limits[name]) for name in names)
+        if not np.all(np.isfinite(g)) or before < NEGLIGIBLE:
+            return 1.0
+        columns = [np.concatenate([c[name] / limits[name] for name in names]) for c in self.sensitivities]
+        J = np.column_stack(columns)
+        left = np.split(g - J @ bounded_least_squares(J, g), len(names))
+        return max(rms(part) for part in left) / before
+
+
+def bounded_least_squares(J: Array, g: Array) -> Array:
+    """Return `argmin |g - J theta|` with `|theta| <= 1`.
+
+    Solved on the triangular factor of `[J g]`, which has the same minimum with a row per column.
+    """
+    triangle = np.asarray(np.linalg.qr(np.column_stack([J, g]), mode="r"))
+    return np.asarray(lsq_linear(triangle[:, :-1], triangle[:, -1], (-1.0, 1.0)).x)
+
+
+def context_of(experiment: Experiment, readings: Sequence[Readings]) -> Context:
+    """Return what fault scenarios may know, from the readings of the rig without them."""
+    pooled = {name: np.concatenate([run[name] for run in readings]) for name in CHANNELS}
+    driver = pooled["driver_acceleration"]
+    mass, stiffness = experiment.nominal["m"], experiment.nominal["kc"]
+    return Context(
+        spread={name: float(np.std(values)) for name, values in pooled.items()},
+        x_peak=float(np.max(np.abs(pooled["suspension_displacement"]))),
+        y_peak=mass * float(np.max(driver)) / stiffness,
+        tension_peak=mass * float(np.max(-driver)),
+        channels=experiment.channels,
+        is_bingham=experiment.is_bingham,
+    )
+
+
+class FaultlessRig:
+    """A drawn rig, and what measures faults on it; it stays the same whatever is drawn to be wrong with it."""
+
+    def __init__(self, experiment: Experiment) -> None:
+        self.experiment = experiment
+        recorded = range(len(experiment.runs) - 1)
+        motions = [simulate_run(experiment, Changes(), k, step=COARSE_STEP) for k in recorded]
+        self.runs = CommandedRuns(experiment, [motion.command for motion in motions])
+        self.context = context_of(experiment, [read_channels(experiment, Changes(), k, motions[k]) for k in recorded])
+
+    @cached_property
+    def refit(self) -> ToleranceRefit:
+        """What the nominal's tolerance explains of a fault."""
+        return ToleranceRefit(self.experiment, self.runs.commands)

@@ -13,17 +13,17 @@ LOG_TOLERANCE = 0.2
 EVALUATIONS = 9
 MATERIAL = 1.03
 """A little above the limit, as sizes are measured with a coarse step."""
-WEAKEST_TARGET, STRONGEST_TARGET = 1.1, 8.0
+_WEAKEST_TARGET, _STRONGEST_TARGET = 1.1, 8.0
 TINY = 1e-9
 """In place of a materiality of zero, where its logarithm is taken."""
-UNSTABLE_FACTOR = 0.6
+_UNSTABLE_FACTOR = 0.6
 """Of a severity at which the rig was unstable: the new upper bound."""
 
 Known = list[tuple[float, float]]
 """Severities and their materialities."""
 
 
-def draw_target(rng: Generator, top: float = STRONGEST_TARGET, bottom: float = WEAKEST_TARGET) -> float:
+def draw_target(rng: Generator, top: float = _STRONGEST_TARGET, bottom: float = _WEAKEST_TARGET) -> float:
     """Draw a materiality, log-uniform from the material limit to strong."""
     return float(np.exp(rng.uniform(math.log(bottom), math.log(max(top, bottom * 1.01)))))
 
@@ -43,7 +43,7 @@ def find_severity(
     for _ in range(EVALUATIONS):
         size = size_of(s)
         if not math.isfinite(size):
-            high = UNSTABLE_FACTOR * s
+            high = _UNSTABLE_FACTOR * s
             s = math.sqrt(max(low, s / 8.0) * high)
             if high <= low:
                 return None

@@ -12,20 +12,25 @@ from numpy.typing import NDArray
 
 from seatsim.blind.labels import EFFECTS, KINDS, Label
 from seatsim.blind.score.cases import (
+    Bin,
     Failure,
     FoundSize,
+    Rate,
     ScoredCase,
+    brier_score,
+    calibration_error,
     compare_sizes,
     confusion,
     count_named,
+    count_true,
     describe_failure,
     missing_channels,
     pair,
     rate_right,
     rates_by,
+    reliability,
     strength_class,
 )
-from seatsim.blind.score.measures import Bin, Rate, brier_score, calibration_error, count_true, reliability
 from seatsim.blind.score.shrink import ShrinkScore, score_shrink
 from seatsim.blind.score.verdicts import (
     NAMING,
@@ -84,9 +89,14 @@ class Score:
 
 
 def score(
-    folder: str | Path, sealed: str | Path, key: str, diagnoses: str = "diagnosis", unseen: bool = True,
-    progress: Progress | None = None, processes: int = 2,
-) -> Score:  # fmt: skip
+    folder: str | Path,
+    sealed: str | Path,
+    key: str,
+    diagnoses: str = "diagnosis",
+    unseen: bool = True,
+    progress: Progress | None = None,
+    processes: int = 2,
+) -> Score:
     """Score DIR/case-*/DIAGNOSES/diagnosis.json against the sealed labels.
 
     With `unseen`, the stated shrink is compared with that of `augmented.yaml` on the run that was never given;

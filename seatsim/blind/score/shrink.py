@@ -11,16 +11,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.blind.score.measures import Rate, count_true
+from seatsim.blind.score.cases import Rate, count_true
 from seatsim.blind.score.verdicts import NAMING, Verdict
 from seatsim.blind.sealed import Sealed
 from seatsim.schema.errors import SeatsimError
 from seatsim.schema.leftovers import temporary_folder
 from seatsim.schema.processes import Progress, run_jobs
 
-FEWEST_FOR_PROCESSES = 8
+_FEWEST_FOR_PROCESSES = 8
 """Cases below which a new process costs more time, for its imports, than it saves."""
-CaseShrink = tuple[str, float, float, bool | None]
+_CaseShrink = tuple[str, float, float, bool | None]
 """Name, stated shrink, true shrink (NaN: cannot be replayed), whether the interval holds (None: none is given)."""
 
 
@@ -38,11 +38,11 @@ class ShrinkScore:
     mean_difference: float
     bias: float
     coverage: Rate
-    cases: list[CaseShrink]
+    cases: list[_CaseShrink]
     predicted: ShrinkScore | None = None
 
 
-class UnseenShrink(NamedTuple):
+class _UnseenShrink(NamedTuple):
     """The shrink on an unseen run: true, and predicted from its inputs with an interval; None where there is none."""
 
     true: float | None
@@ -63,15 +63,16 @@ def score_shrink(
             (base / name / "nominal.yaml", verdicts[name].augmented, folder)
             for name, folder in zip(claims, unseen, strict=True)
         ]
-        found = run_jobs(find_unseen_shrink, jobs, processes if len(jobs) >= FEWEST_FOR_PROCESSES else 1, progress)
+        found = run_jobs(_find_unseen_shrink, jobs, processes if len(jobs) >= _FEWEST_FOR_PROCESSES else 1, progress)
     stated = [
         _compare_case(name, verdicts[name].shrink, verdicts[name].shrink_interval, unseen.true)
         for name, unseen in zip(claims, found, strict=True)
     ]
     predicted = [
         _compare_case(name, unseen.predicted, unseen.interval, unseen.true)
-        for name, unseen in zip(claims, found, strict=True) if unseen.predicted is not None
-    ]  # fmt: skip
+        for name, unseen in zip(claims, found, strict=True)
+        if unseen.predicted is not None
+    ]
     return dataclasses.replace(_compare(stated), predicted=_compare(predicted) if predicted else None)
 
 
@@ -83,12 +84,12 @@ def _claims_shrink(verdict: Verdict) -> bool:
 
 def _compare_case(
     name: str, shrink: float | None, interval: tuple[float, float] | None, true: float | None
-) -> CaseShrink:
+) -> _CaseShrink:
     covered = None if interval is None or true is None else interval[0] - ROUNDING <= true <= interval[1] + ROUNDING
     return name, float(shrink or 0.0), math.nan if true is None else true, covered
 
 
-def _compare(cases: Sequence[CaseShrink]) -> ShrinkScore:
+def _compare(cases: Sequence[_CaseShrink]) -> ShrinkScore:
     coverage = count_true([covered for *_, covered in cases if covered is not None])
     off = np.array([claimed - true for _, claimed, true, _ in cases if math.isfinite(true)])
     if not off.size:
@@ -96,7 +97,7 @@ def _compare(cases: Sequence[CaseShrink]) -> ShrinkScore:
     return ShrinkScore(float(np.mean(np.abs(off))), float(np.mean(off)), coverage, list(cases))
 
 
-def find_unseen_shrink(nominal: Path, augmented: Path | None, unseen: Path) -> UnseenShrink:
+def _find_unseen_shrink(nominal: Path, augmented: Path | None, unseen: Path) -> _UnseenShrink:
     """Return `1 - after / before` of the overall gap on the unseen recording, and what its inputs let one expect."""
     # imported here, since both import the whole simulator, which only a score with unseen runs needs
     from seatsim.recordings.gap import measure_gap
@@ -106,11 +107,11 @@ def find_unseen_shrink(nominal: Path, augmented: Path | None, unseen: Path) -> U
         before = measure_gap(nominal, unseen).overall
         after = measure_gap(augmented or nominal, unseen).overall
     except SeatsimError:
-        return UnseenShrink(None)
+        return _UnseenShrink(None)
     true = 1.0 - after / before
     try:
         predicted = predict_gap(augmented or nominal, unseen, (augmented or nominal).parent / "diagnosis.json")
     except SeatsimError:
         # A diagnosis of another tool states no model error.
-        return UnseenShrink(true)
-    return UnseenShrink(true, predicted.shrink, predicted.shrink_interval)
+        return _UnseenShrink(true)
+    return _UnseenShrink(true, predicted.shrink, predicted.shrink_interval)

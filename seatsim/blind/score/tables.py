@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from rich.table import Table
 
-from seatsim.blind.score.measures import Rate
+from seatsim.blind.score.cases import Rate
 from seatsim.blind.score.score import Score
 
 
@@ -38,13 +38,17 @@ def _summary(score: Score) -> Table:
     table = _table(f"blind score, {score.cases} cases", "what", "share", "count", "95 % interval")
     named = {"right": score.right} | {f"right: {kind}": value for kind, value in score.kinds.items()}
     named |= {
-        "outside: unknown and right block": score.outside_with_block, "top-1 (one effect)": score.top1,
+        "outside: unknown and right block": score.outside_with_block,
+        "top-1 (one effect)": score.top1,
         "wrong effect named (one effect)": score.wrong_names,
-        "top-3 (one effect)": score.top3, "right block first": score.block,
-        "right block first, merged as isolable": score.block_coarse, "false alarms": score.false_alarms,
-        "gap detected": score.detected, "two effects: recall": score.two_recall,
+        "top-3 (one effect)": score.top3,
+        "right block first": score.block,
+        "right block first, merged as isolable": score.block_coarse,
+        "false alarms": score.false_alarms,
+        "gap detected": score.detected,
+        "two effects: recall": score.two_recall,
         "two effects: precision": score.two_precision,
-    }  # fmt: skip
+    }
     for name, value in named.items():
         if value.total:
             table.add_row(name, *_row(value))

@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NotRequired, Required, TypedDict, cast
+
+from pydantic import BaseModel, ValidationError
 
 from seatsim.blind.labels import Label
-from seatsim.schema.guarded import expect, read_json
+from seatsim.schema.errors import InputError
+from seatsim.schema.guarded import read_json
 
 NAMING = ("known", "ambiguous")
 """Verdicts that name effects."""
-LARGEST_GROUP = 2
+_LARGEST_GROUP = 2
 """Effects that a group may hold and still count as an answer: a workshop can check two."""
 
 
@@ -51,88 +53,74 @@ class Verdict:
         return self.verdict
 
 
+class _Estimate(BaseModel):
+    value: float
+
+
+class _Cause(BaseModel):
+    effect: str
+    probability: float | None = None
+    parameters: dict[str, _Estimate | str] | None = None
+
+    def values(self) -> dict[str, float]:
+        """Return the estimated numbers; what is a word, such as a channel, is left out."""
+        found = self.parameters or {}
+        return {name: estimate.value for name, estimate in found.items() if isinstance(estimate, _Estimate)}
+
+
+class _Place(BaseModel):
+    block: str
+
+
+class _Gap(BaseModel):
+    shrink: float | None = None
+    shrink_interval: tuple[float | None, float | None] | None = None
+
+
+class _Diagnosis(BaseModel):
+    """The keys of `diagnosis.json` (contract, section 7) that are scored; all but the verdict may be absent or null."""
+
+    verdict: str
+    causes: list[_Cause] | None = None
+    where: list[_Place] | None = None
+    selected: list[str] | None = None
+    indistinguishable: list[tuple[str, ...]] | None = None
+    isolable: list[tuple[str, ...]] | None = None
+    gap: _Gap | None = None
+    augmented: str | None = None
+
+
 def read_verdict(path: Path) -> Verdict:
-    """Read a diagnosis; where there is none the verdict is `missing`.
+    """Read a diagnosis, which may come from another tool; where there is none the verdict is `missing`.
 
     Raises:
         InputError: the file is not a JSON object with a verdict.
     """
     if not path.is_file():
         return Verdict("missing")
-    with expect(path, "diagnosis as the contract has it"):
-        return _parse(cast("_Diagnosis", read_json(path, "diagnosis")), path)
-
-
-class _Estimate(TypedDict):
-    value: float
-
-
-class _Cause(TypedDict):
-    effect: str
-    probability: NotRequired[float | None]
-    parameters: NotRequired[dict[str, _Estimate | str] | None]
-
-
-class _Place(TypedDict):
-    block: str
-
-
-class _Shrink(TypedDict, total=False):
-    shrink: float | None
-    shrink_interval: list[float | None] | None
-
-
-class _Diagnosis(TypedDict, total=False):
-    """The keys of `diagnosis.json` (contract, section 7) that are scored; all but the verdict may be absent or null."""
-
-    verdict: Required[str]
-    causes: list[_Cause] | None
-    where: list[_Place] | None
-    selected: list[str] | None
-    indistinguishable: list[list[str]] | None
-    isolable: list[list[str]] | None
-    gap: _Shrink | None
-    augmented: str | None
-
-
-def _parse(data: _Diagnosis, path: Path) -> Verdict:
-    """Return the verdict of JSON that may come from another tool, so every value is converted, or refused."""
-    ranked = sorted(data.get("causes") or [], key=lambda cause: -_probability(cause))
-    gap: _Shrink = data.get("gap") or {}
-    shrink, augmented = gap.get("shrink"), data.get("augmented")
+    try:
+        data = _Diagnosis.model_validate(read_json(path, "diagnosis"))
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(map(str, first["loc"])) or "the file"
+        raise InputError(f"{path}: is no diagnosis as the contract has it: {place}: {first['msg']}") from error
+    probabilities = {cause.effect: cause.probability or 0.0 for cause in data.causes or []}
+    ranked = sorted(data.causes or [], key=lambda cause: -(cause.probability or 0.0))
+    gap = data.gap or _Gap()
+    low, high = gap.shrink_interval or (None, None)
     return Verdict(
-        verdict=str(data["verdict"]),
-        blocks=tuple(str(entry["block"]) for entry in data.get("where") or []),
-        causes=tuple(str(cause["effect"]) for cause in ranked),
-        probabilities={str(cause["effect"]): _probability(cause) for cause in ranked},
-        selected=tuple(str(name) for name in data.get("selected") or []),
-        groups=_groups(data.get("indistinguishable")),
-        isolable=_groups(data.get("isolable")),
-        shrink=None if shrink is None else float(shrink),
-        shrink_interval=_interval(gap.get("shrink_interval")),
-        augmented=path.parent / str(augmented) if augmented else None,
-        parameters={str(cause["effect"]): _values(cause) for cause in ranked},
+        verdict=data.verdict,
+        blocks=tuple(place.block for place in data.where or []),
+        causes=tuple(cause.effect for cause in ranked),
+        probabilities=probabilities,
+        selected=tuple(data.selected or []),
+        groups=tuple(data.indistinguishable or []),
+        isolable=tuple(data.isolable or []),
+        shrink=gap.shrink,
+        shrink_interval=None if low is None or high is None else (low, high),
+        augmented=path.parent / data.augmented if data.augmented else None,
+        parameters={cause.effect: cause.values() for cause in ranked},
     )
-
-
-def _probability(cause: _Cause) -> float:
-    return float(cause.get("probability") or 0.0)
-
-
-def _values(cause: _Cause) -> dict[str, float]:
-    """Return the estimated numbers of a cause; what is a word, such as a channel, is left out."""
-    parameters = cause.get("parameters") or {}
-    return {name: float(found["value"]) for name, found in parameters.items() if not isinstance(found, str)}
-
-
-def _groups(groups: list[list[str]] | None) -> tuple[tuple[str, ...], ...]:
-    return tuple(tuple(str(name) for name in group) for group in groups or [])
-
-
-def _interval(ends: list[float | None] | None) -> tuple[float, float] | None:
-    if not ends or ends[0] is None or ends[1] is None:
-        return None
-    return float(ends[0]), float(ends[1])
 
 
 def is_right(label: Label, verdict: Verdict) -> bool:
@@ -153,7 +141,7 @@ def is_right(label: Label, verdict: Verdict) -> bool:
     naming = (*NAMING, "unknown") if label["kind"] == "carried" else NAMING
     if verdict.verdict not in naming or not verdict.causes:
         return False
-    pairs = [set(group) for group in verdict.groups if len(group) <= LARGEST_GROUP]
+    pairs = [set(group) for group in verdict.groups if len(group) <= _LARGEST_GROUP]
     return verdict.causes[0] in effects or any(effects <= pair for pair in pairs)
 
 

@@ -1,5 +1,6 @@
 """Reality, simulated independently of the models and the kernel that are tested on it.
 
-`physics` holds the equations of the true rig, `faults` what may depart from nominal, and the modules here what excites
-it and what its sensors read. How a set of cases is composed and written does not belong here, nor does any verdict.
+`rig` puts the equations of `damper`, `seat` and `coil` together, `faults` says what may depart from nominal, and
+`excitation` and `experiment` what excites the rig and what its sensors read. How a set of cases is composed and written
+does not belong here, nor does any verdict.
 """

@@ -8,18 +8,18 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from seatsim.blind.truth.noise import coloured_noise
-from seatsim.blind.truth.physics.rig import EXCITATION_RATE
+from seatsim.blind.truth.excitation import coloured_noise
+from seatsim.blind.truth.rig import EXCITATION_RATE
 from seatsim.schema.arrays import Array
 
 Spectrum = NDArray[np.complex128]
-ROUGHNESS = {"A": 16e-6, "B": 64e-6, "C": 256e-6, "D": 1024e-6}
+_ROUGHNESS = {"A": 16e-6, "B": 64e-6, "C": 256e-6, "D": 1024e-6}
 """Displacement power `Gd(n0)` of ISO 8608:2016 at the middle of each class, m^3."""
 REFERENCE = 0.1
 """n0 of ISO 8608, cycles per metre."""
 LOWEST, HIGHEST = 0.4, 90.0
 """Hz, the soft edges of what a floor does: no drift, and nothing that rows at 256 Hz would alias."""
-QUIETEST, LOUDEST = 0.4, 2.2
+_QUIETEST, _LOUDEST = 0.4, 2.2
 """Rms that a floor is brought within, m/s^2: a smooth road still moves the seat, a rough one keeps it off its stops."""
 
 
@@ -40,11 +40,10 @@ class Vehicle(NamedTuple):
 def draw_vehicle(rng: Generator) -> Vehicle:
     """Draw a bus, truck cab or tractor: body at 1-2.2 Hz, wheels at 8-14 Hz, a panel at 18-45 Hz, an engine."""
     radians = 2.0 * np.pi
-    return Vehicle(
-        radians * rng.uniform(1.0, 2.2), rng.uniform(0.15, 0.35), radians * rng.uniform(8.0, 14.0),
-        rng.uniform(0.08, 0.25), radians * rng.uniform(18.0, 45.0), rng.uniform(0.03, 0.15), rng.uniform(0.1, 1.0),
-        rng.uniform(22.0, 55.0), rng.uniform(0.02, 0.12),
-    )  # fmt: skip
+    body = radians * rng.uniform(1.0, 2.2), rng.uniform(0.15, 0.35)
+    wheel = radians * rng.uniform(8.0, 14.0), rng.uniform(0.08, 0.25)
+    panel = radians * rng.uniform(18.0, 45.0), rng.uniform(0.03, 0.15), rng.uniform(0.1, 1.0)
+    return Vehicle(*body, *wheel, *panel, rng.uniform(22.0, 55.0), rng.uniform(0.02, 0.12))
 
 
 def draw_vehicle_floor(rng: Generator, vehicle: Vehicle, seconds: float, bumps: float) -> Array:
@@ -54,22 +53,22 @@ def draw_vehicle_floor(rng: Generator, vehicle: Vehicle, seconds: float, bumps: 
     `(2 pi n0)^2 Gd(n0) v`; so it is drawn white and scaled by the speed and the roughness of the moment.
     """
     samples = round(seconds * EXCITATION_RATE)
-    speed = draw_speed(rng, samples)
-    power = (2.0 * np.pi * REFERENCE) ** 2 * draw_roughness(rng, samples) * speed
+    speed = _draw_speed(rng, samples)
+    power = (2.0 * np.pi * REFERENCE) ** 2 * _draw_roughness(rng, samples) * speed
     road = np.sqrt(0.5 * EXCITATION_RATE * power) * rng.standard_normal(samples)
-    floor = through_vehicle(road + draw_bump_velocity(rng, speed, bumps), vehicle)
+    floor = _through_vehicle(road + draw_bump_velocity(rng, speed, bumps), vehicle)
     level = float(np.std(floor))
-    return floor * min(max(level, QUIETEST), LOUDEST) / level + draw_engine(rng, vehicle, samples)
+    return floor * min(max(level, _QUIETEST), _LOUDEST) / level + _draw_engine(rng, vehicle, samples)
 
 
-def draw_speed(rng: Generator, samples: int) -> Array:
+def _draw_speed(rng: Generator, samples: int) -> Array:
     """Return the speed of a drive, m/s, shape (samples,): linear between levels of 15-100 % of its fastest."""
     return rng.uniform(8.0, 25.0) * _levels(rng, samples, 0.15, 1.0)
 
 
-def draw_roughness(rng: Generator, samples: int) -> Array:
+def _draw_roughness(rng: Generator, samples: int) -> Array:
     """Return `Gd(n0)`, m^3, shape (samples,): that of a class, patched by factors of 1/2 to 2."""
-    middle = ROUGHNESS[str(rng.choice(list(ROUGHNESS), p=[0.1, 0.35, 0.4, 0.15]))]
+    middle = _ROUGHNESS[str(rng.choice(list(_ROUGHNESS), p=[0.1, 0.35, 0.4, 0.15]))]
     return np.asarray(middle * 2.0 ** _levels(rng, samples, -1.0, 1.0))
 
 
@@ -98,7 +97,7 @@ def draw_bump_velocity(rng: Generator, speed: Array, rate: float) -> Array:
     return velocity
 
 
-def through_vehicle(velocity: Array, vehicle: Vehicle) -> Array:
+def _through_vehicle(velocity: Array, vehicle: Vehicle) -> Array:
     """Return the floor's acceleration for the road's vertical velocity: wheel, body and panel in series."""
     f = np.fft.rfftfreq(velocity.size, 1.0 / EXCITATION_RATE)
     s: Spectrum = np.asarray(2j * np.pi * f, dtype=np.complex128)
@@ -115,6 +114,6 @@ def _mode(s: Spectrum, w: float, damping: float) -> Spectrum:
     return carried / (s * s + carried)
 
 
-def draw_engine(rng: Generator, vehicle: Vehicle, samples: int) -> Array:
+def _draw_engine(rng: Generator, vehicle: Vehicle, samples: int) -> Array:
     """Return the engine's part of the floor, m/s^2, shape (samples,): a narrow band about its frequency."""
     return vehicle.hum * coloured_noise(rng, samples, 0.97 * vehicle.engine, vehicle.engine, 0.0, EXCITATION_RATE)

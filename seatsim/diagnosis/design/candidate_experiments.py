@@ -18,11 +18,11 @@ NOTHING: Mapping[str, float] = MappingProxyType({})
 
 SWITCHING = 0.25
 """s; time between changes of a switched current: long compared with a coil's lag, short compared with the motion."""
-NEARLY_FULL = 0.9
+_NEARLY_FULL = 0.9
 """Share of the largest current that is switched, so that no supply is at its limit."""
-WARM_UP = (20.0, 60.0)
+_WARM_UP = (20.0, 60.0)
 """degC at the start and at the end of a run in which the damper warms up."""
-ADDED_MASS = 20.0
+_ADDED_MASS = 20.0
 """kg; mass added in the driver's seat."""
 
 
@@ -54,7 +54,7 @@ def _tone(frequency: float, amplitude: float, duration: float) -> Keys:
 
 
 STEADY: Keys = {"law": "constant", "current": 0.3}
-SWITCHED: Keys = {"law": "on_off_skyhook", "on": NEARLY_FULL}
+SWITCHED: Keys = {"law": "on_off_skyhook", "on": _NEARLY_FULL}
 SWEPT: Keys = {
     "kind": "chirp", "start_frequency": 1.0, "stop_frequency": 20.0, "amplitude": 1.5, "duration": 12.0,
     "quantity": "acceleration",
@@ -65,15 +65,15 @@ BUMP: Keys = {
 }  # fmt: skip
 SWEEP = "sweep the floor from {start_frequency:.3g} to {stop_frequency:.3g} Hz at {amplitude:.3g} m/s^2"
 STEPS = "switch the current about every 0.25 s on a tone of {frequency:.3g} Hz"
-OF_A_TONE = ("amplitude", "frequency", "current")
+_OF_A_TONE = ("amplitude", "frequency", "current")
 EXCITATIONS: Mapping[str, Excitation] = {
     "bump": Excitation("drive over a bump of {mm:.3g} mm", STEADY, BUMP, ("height", "speed", "current")),
     "sweep": Excitation(SWEEP, STEADY, SWEPT, ("amplitude", "start_frequency", "stop_frequency", "current")),
     "large_slow_sine": Excitation(
-        "shake the floor at {frequency:.3g} Hz with {mm:.3g} mm", STEADY, _tone(0.5, 0.025, 12.0), OF_A_TONE
+        "shake the floor at {frequency:.3g} Hz with {mm:.3g} mm", STEADY, _tone(0.5, 0.025, 12.0), _OF_A_TONE
     ),
     "very_slow_sine": Excitation(
-        "move the floor at {frequency:.3g} Hz with {mm:.3g} mm", STEADY, _tone(0.05, 0.025, 20.0), OF_A_TONE
+        "move the floor at {frequency:.3g} Hz with {mm:.3g} mm", STEADY, _tone(0.05, 0.025, 20.0), _OF_A_TONE
     ),
     "current_steps": Excitation(STEPS, SWITCHED, _tone(1.0, 0.03, 12.0), ("amplitude", "frequency", "on")),
 }
@@ -119,7 +119,7 @@ def _scale(value: str | float, factor: float) -> str | float:
 def _intervene(problem: DiagnosisProblem, floor: Floor) -> Iterator[CandidateExperiment]:
     """Yield changes of the rig, its sensors or its temperature, with the floor motion of a recorded run or none."""
     rest, time = np.zeros(len(floor.acceleration)), floor.time
-    steps = NEARLY_FULL * problem.scenario.coil.max_current * (np.floor(time / SWITCHING) % 2.0)
+    steps = _NEARLY_FULL * problem.scenario.coil.max_current * (np.floor(time / SWITCHING) % 2.0)
     still = Floor(floor.step, rest, rest, rest, steps)
     if "coil_current" not in problem.channels:
         text = "repeat a run and log the current of the coil"
@@ -127,14 +127,14 @@ def _intervene(problem: DiagnosisProblem, floor: Floor) -> Iterator[CandidateExp
     without = floor._replace(command=rest, coil_current=rest)
     off = {} if {"current_command", "coil_current"} & set(problem.recording.channels) else {"controller.current": 0.0}
     yield CandidateExperiment("zero_current", "repeat a run without current", without, set=off)
-    low, high = WARM_UP
+    low, high = _WARM_UP
     warming = floor._replace(temperature=low + (high - low) * time / time[-1])
     yield CandidateExperiment("warm_up", "repeat a run while the damper warms from 20 to 60 degC", warming)
     plant = problem.scenario.plant
     if plant is not None and not problem.bench:
         yield CandidateExperiment("locked_seat", "lock the seat and switch the current every 0.25 s", still)
         text = "repeat a run with 20 kg more on the driver's place"
-        yield CandidateExperiment("added_mass", text, floor, set={"plant.driver_mass": plant.driver_mass + ADDED_MASS})
+        yield CandidateExperiment("added_mass", text, floor, set={"plant.driver_mass": plant.driver_mass + _ADDED_MASS})
     if "damper_force" not in problem.channels:
         text = "repeat a run with a load cell at the damper"
         yield CandidateExperiment("load_cell", text, floor, ("damper_force",))

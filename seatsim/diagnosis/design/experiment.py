@@ -39,7 +39,7 @@ USUAL_NOISE = dict(zip(COMPARED["seat"], (0.03, 0.015, 5e-5, 2.5, 0.003), strict
 """Noise of usual sensors, for those that state none, in the unit of their channel."""
 BEYOND = 10.0
 """Score of an excitation for each time that it takes the permitted travel beyond the first."""
-NOT_REPEATED = ("start", "sweep", "variants", "published")
+_NOT_REPEATED = ("start", "sweep", "variants", "published")
 """Sections of the nominal scenario that an experiment does not have."""
 
 
@@ -165,7 +165,7 @@ def _write_scenario(problem: DiagnosisProblem, candidate: CandidateExperiment) -
         return None
     nominal = write_augmented(problem, Parameters(problem.nominal))
     values = nominal | {"name": f"experiment-{candidate.name}"} | dict(candidate.scenario)
-    return {key: value for key, value in values.items() if key not in NOT_REPEATED}
+    return {key: value for key, value in values.items() if key not in _NOT_REPEATED}
 
 
 def _name_sensors(members: Sequence[Evaluation]) -> list[str]:

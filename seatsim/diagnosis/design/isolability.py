@@ -50,7 +50,7 @@ SEAT = (
 )
 BENCH = (_equation("Fd x v i", "damper"), _equation("x v"))
 """Equations of the two rigs, without coil and sensors."""
-SENSED = {
+_SENSED = {
     "floor_acceleration": "a0",
     "frame_acceleration": "as",
     "driver_acceleration": "ac",
@@ -66,7 +66,7 @@ BLOCKS = {
     "seat": ("damper", "coil", "suspension", "cushion", "driver", "floor", "sensor"),
     "damper_bench": ("damper", "coil", "sensor"),
 }
-REMEDIES = {
+_REMEDIES = {
     "damper_force": "add a load cell at the damper",
     "coil_current": "log the current of the coil",
     "current_command": "log the commanded current",
@@ -76,8 +76,8 @@ REMEDIES = {
     "velocity": "add a velocity sensor across the damper",
 }
 """What to do about a channel that is absent."""
-FOR_RIG = {
-    "seat": tuple(name for name in REMEDIES if name != "velocity"),
+_FOR_RIG = {
+    "seat": tuple(name for name in _REMEDIES if name != "velocity"),
     "damper_bench": ("damper_force", "coil_current", "current_command", "velocity"),
 }
 
@@ -120,8 +120,8 @@ def find_overdetermined(equations: Collection[Equation]) -> set[int]:
 def describe_missing_sensors(rig: str, channels: Collection[str]) -> list[str]:
     """Return a sentence for each distinction that these channels do not allow, with the channel that would allow it."""
     groups = find_isolable_groups(rig, channels)
-    sentences = [_loss(rig, channels, groups, name) for name in FOR_RIG[rig] if not _is_recorded(name, channels)]
-    everything = {*channels, *(name for name in FOR_RIG[rig] if not _is_recorded(name, channels))}
+    sentences = [_loss(rig, channels, groups, name) for name in _FOR_RIG[rig] if not _is_recorded(name, channels)]
+    everything = {*channels, *(name for name in _FOR_RIG[rig] if not _is_recorded(name, channels))}
     sentences += [
         f"{join_names(group)} cannot be distinguished by any channel:"
         " only the form of an effect, or a repeat of a run, can"
@@ -136,7 +136,7 @@ def _equations(rig: str, channels: Collection[str]) -> list[Equation]:
     equations = list(SEAT if rig == "seat" else BENCH)
     if _is_recorded("current_command", channels) or "coil_current" not in channels:
         equations.append(_equation("i", "coil"))  # i' = rate (command - i), the command known
-    return equations + [_equation(SENSED[name], f"sensor {name}") for name in sorted(channels) if name in SENSED]
+    return equations + [_equation(_SENSED[name], f"sensor {name}") for name in sorted(channels) if name in _SENSED]
 
 
 def _is_recorded(name: str, channels: Collection[str]) -> bool:
@@ -183,7 +183,7 @@ def _loss(rig: str, channels: Collection[str], groups: list[list[str]], absent: 
         f"{join_names([_named(part) for part in found])} cannot be distinguished" for found in split if len(found) > 1
     ]
     costs += [f"{join_names(unseen)} cannot be assessed"] if unseen else []
-    return f"without {absent}, {join_names(costs)}: {REMEDIES[absent]}" if costs else ""
+    return f"without {absent}, {join_names(costs)}: {_REMEDIES[absent]}" if costs else ""
 
 
 def _named(part: list[str]) -> str:

@@ -11,9 +11,9 @@ from seatsim.diagnosis.design.candidate_experiments import EXCITATIONS, Candidat
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.schema.arrays import Array
 
-FIRST_STEP = 0.6
+_FIRST_STEP = 0.6
 """First step of the search in the natural logarithm of a key: a factor of 1.8."""
-LARGEST_FACTOR = 2.4
+_LARGEST_FACTOR = 2.4
 """Largest factor on a key, either way: the sweep then ends below 50 Hz, which a step of 2 ms resolves."""
 
 
@@ -29,12 +29,12 @@ def optimise_excitation(
         trials: most excitations that are tried, about four for each free key.
     """
     free = EXCITATIONS[name].free
-    largest = np.log(LARGEST_FACTOR)
+    largest = np.log(_LARGEST_FACTOR)
 
     def score_at(logarithms: Array) -> float:
         return score(excite(problem, name, dict(zip(free, np.exp(logarithms).tolist(), strict=True))))
 
-    corners = np.vstack([np.zeros(len(free)), FIRST_STEP * np.eye(len(free))])
+    corners = np.vstack([np.zeros(len(free)), _FIRST_STEP * np.eye(len(free))])
     minimize(
         score_at, corners[0], method="Nelder-Mead", bounds=[(-largest, largest)] * len(free),
         options={"maxfev": trials, "initial_simplex": corners},

@@ -12,9 +12,9 @@ from seatsim.diagnosis.movement import measure_movements
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
 from seatsim.diagnosis.result import Share
 
-ON_FRAME = ("damper", "suspension", "floor")
+_ON_FRAME = ("damper", "suspension", "floor")
 """Blocks whose unknown input is a force on the frame."""
-LEAST_DIFFERENCE = 1e-6
+_LEAST_DIFFERENCE = 1e-6
 """Least difference in evidence that is divided by, where no block explains anything."""
 
 
@@ -82,9 +82,9 @@ def weigh_blocks(objective: Objective, nuisances: Linearisation) -> Remainder:
     hypotheses, evaluation = evaluate_hypotheses(objective, nuisances), nuisances.evaluation
     before = evaluation.cost / evaluation.rows - 1.0
     best = min(hypothesis.negative_log_evidence for hypothesis in hypotheses.values())
-    width = objective.settings.localisation.decisive * max(before - best, LEAST_DIFFERENCE)
+    width = objective.settings.localisation.decisive * max(before - best, _LEAST_DIFFERENCE)
     driver = hypotheses["driver"].negative_log_evidence + width
-    if min(hypotheses[block].negative_log_evidence for block in ON_FRAME if block in hypotheses) < driver:
+    if min(hypotheses[block].negative_log_evidence for block in _ON_FRAME if block in hypotheses) < driver:
         hypotheses["driver"] = hypotheses["driver"]._replace(negative_log_evidence=driver)
     best = min(hypothesis.negative_log_evidence for hypothesis in hypotheses.values())
     weights = {block: math.exp(-(h.negative_log_evidence - best) / width) for block, h in hypotheses.items()}

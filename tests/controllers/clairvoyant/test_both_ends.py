@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import seatsim
-from controllers.clairvoyant import ClairvoyantBounds, clairvoyant
+from controllers.clairvoyant import clairvoyant
 from controllers.clairvoyant.bound import find_lower_bound
-from controllers.clairvoyant.envelope import fit_envelope
 from controllers.clairvoyant.feasible import find_best_run
 from controllers.clairvoyant.problem import HeldForceProblem
 from controllers.clairvoyant.recursion import ForceBand
@@ -84,35 +83,6 @@ def test_run_is_what_the_simulation_makes_of_its_force(scenarios, bracket):
     assert np.max(np.abs(F) - BAND.a - BAND.b * size) < 5.0
 
 
-def test_lagrangian_is_that_of_the_dense_problem(scenarios):
-    problem = posed(scenarios[0])
-    H, h, free, G = dense(problem)
-    w0 = problem.transcription.free_velocity
-    alpha, beta, nu = np.random.default_rng(1).uniform(0, 1, (3, problem.intervals)) * [[2e-7], [2e-7], [1e-10]]
-    c, f, b, a = BAND
-    D = np.eye(len(w0)) - b * G
-    L = H + G.T @ np.diag((alpha + beta) * c) @ G + D.T @ np.diag(nu) @ D
-    L -= 0.5 * (np.diag(alpha + beta) @ G + G.T @ np.diag(alpha + beta))
-    line = h + G.T @ ((alpha + beta) * c * w0 + 0.5 * f * (alpha - beta)) - 0.5 * (alpha + beta) * w0
-    line -= D.T @ (nu * b * w0)
-    constant = free + np.sum((alpha + beta) * c * w0**2 + f * (alpha - beta) * w0 + nu * (b**2 * w0**2 - a**2))
-    found = problem.minimise_lagrangian(BAND, np.array([alpha, beta, nu]), 0.0)
-    assert found.bound == pytest.approx(constant - line @ np.linalg.solve(L, line), rel=1e-7)
-    assert found.barrier == pytest.approx(np.linalg.slogdet(L)[1], rel=1e-9)
-
-
-def test_derivatives_with_the_barrier(scenarios):
-    problem, barrier = posed(scenarios[0]), 1e-5
-    y = np.full((3, problem.intervals), 2e-7) * [[1.0], [0.7], [1e-3]]
-    by = problem.minimise_lagrangian(BAND, y, barrier).by
-    for row, k in ((0, 5), (0, 40), (1, 40), (2, 60)):
-        step = np.zeros_like(y)
-        step[row, k] = 1e-3 * y[row, k]
-        up, down = (problem.minimise_lagrangian(BAND, y + sign * step, barrier) for sign in (1, -1))
-        rise = (up.bound + barrier * up.barrier - down.bound - barrier * down.barrier) / (2 * step[row, k])
-        assert by[row, k] == pytest.approx(rise, rel=1e-4)
-
-
 def test_both_ends_meet_where_the_damper_has_no_choice(scenarios):
     """A band about F = c w leaves a dashpot, whose criterion follows from a linear system."""
     problem = posed(scenarios[0], 0.5)
@@ -123,23 +93,6 @@ def test_both_ends_meet_where_the_damper_has_no_choice(scenarios):
     run = find_best_run(problem, band)
     assert run.cost == pytest.approx(dashpot, rel=0.05)
     assert find_lower_bound(problem, band, run.cost).value == pytest.approx(run.cost, rel=0.05)
-
-
-def test_envelope_of_a_viscous_and_friction_damper(scenarios):
-    found = fit_envelope(scenarios[0].damper, 1.0, 20.0)
-    assert found.inner == pytest.approx(BAND, rel=1e-6)
-    assert found.outer.c * 0.3 + found.outer.f <= 250 * 0.3 + 45 + 1e-9
-    assert found.outer.a + found.outer.b * 0.3 >= 665 + 600 * 0.3 - 1e-9
-
-
-def test_bound_is_the_highest_of_all_weights():
-    bracket = ClairvoyantBounds(
-        np.array([1.0, 4.0]), np.array([2.0, 5.0]), np.array([1.5, 1.2]), np.array([0.5, 1.0]), None, 1.0
-    )
-    assert bracket.bound(0.0) == pytest.approx(np.sqrt(5.0))
-    assert bracket.bound([1.0, 10.0]) == pytest.approx([1.0, 0.0])
-    assert bracket.best([0.75, 2.0]) == pytest.approx([1.35, 1.2])
-    assert np.isnan(bracket.best(0.4))
 
 
 @pytest.mark.parametrize(
@@ -156,10 +109,3 @@ def test_what_has_no_bracket(kept_seat_file, settings, said):
     [scenario] = seatsim.load(kept_seat_file, settings)
     with pytest.raises(InputError, match=said):
         clairvoyant(scenario)
-
-
-def test_numbers_out_of_range(scenarios):
-    with pytest.raises(InputError, match="above 0"):
-        clairvoyant(scenarios[0], [0.0])
-    with pytest.raises(InputError, match=r"multiple of solver.step 0.001 s; choose 0.002 s"):
-        clairvoyant(scenarios[0], [1.0], hold=0.0015)

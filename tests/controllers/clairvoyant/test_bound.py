@@ -5,7 +5,6 @@ from collections import deque
 import numpy as np
 import pytest
 
-from controllers.clairvoyant import bound
 from controllers.clairvoyant.bound import (
     _ascend,
     _build_hat_functions,
@@ -16,23 +15,6 @@ from controllers.clairvoyant.bound import (
     find_lower_bound,
 )
 from controllers.clairvoyant.feasible import find_best_run
-
-
-def test_hats_sum_to_the_length_of_an_interval_and_are_linear_between_nodes():
-    hats = _build_hat_functions(8, 0.005).toarray()
-    assert hats.shape == (8, 3)
-    np.testing.assert_allclose(hats.sum(axis=1), 0.005)
-    middles, nodes = 0.005 * (np.arange(8) + 0.5), bound.SPACING * np.arange(3)
-    np.testing.assert_allclose(hats @ nodes, 0.005 * middles, rtol=1e-12)
-    assert hats[0, 0] == pytest.approx(0.005 * (1 - 0.0025 / 0.02))
-    assert hats[0, 2] == 0.0
-
-
-def test_multipliers_are_sums_of_hats_of_exponentials():
-    hats = _build_hat_functions(8, 0.005)
-    y = np.log(np.arange(1.0, 10.0))
-    for row, values in zip(_sum_hats(hats, y), np.arange(1.0, 10.0).reshape(3, 3), strict=True):
-        np.testing.assert_allclose(row, hats @ values)
 
 
 def test_the_ascent_comes_near_the_top_of_a_concave_function():

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-import seatsim
 from controllers.clairvoyant import envelope as module
 from controllers.clairvoyant.envelope import SPEEDS, fit_envelope
 from controllers.clairvoyant.recursion import ForceBand
@@ -21,13 +20,6 @@ def steady(monkeypatch):
         monkeypatch.setattr(module, "_measure_steady_force", measured)
 
     return use
-
-
-def test_viscous_and_friction_forces_are_their_own_lines(steady):
-    steady(lambda w, i: 45.0 + 620.0 * i + (250.0 + 350.0 * i) * w)
-    found = fit_envelope(None, 1.0, 20.0)
-    assert found.inner == pytest.approx(ForceBand(250.0, 45.0, 600.0, 665.0), rel=1e-9)
-    assert (found.outer.c, found.outer.f) == pytest.approx((250.0, 45.0), rel=1e-9)
 
 
 def test_the_largest_current_counts(steady):
@@ -62,11 +54,3 @@ def test_what_has_no_envelope(steady):
     steady(lambda w, i: 45.0 + 250.0 * w)
     with pytest.raises(InputError, match="do not leave a straight band"):
         fit_envelope(None, 1.0, 20.0)
-
-
-def test_the_steady_force_is_measured_both_ways_at_the_peak_velocity(kept_seat_file):
-    (scenario,) = seatsim.load(kept_seat_file, {"damper.parameters.f0": 20.0})
-    for speed in (0.05, 1.0):
-        found = module._measure_steady_force(scenario.damper, speed, 0.5, 20.0)
-        friction, viscous = 45.0 + 310.0, (250.0 + 175.0) * speed
-        np.testing.assert_allclose(found, [friction + viscous + 20.0, friction + viscous - 20.0], rtol=2e-3)

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from controllers.clairvoyant import feasible
 from controllers.clairvoyant.feasible import find_best_run
 from controllers.clairvoyant.recursion import ForceBand
 
@@ -46,38 +45,3 @@ def test_a_band_with_no_choice_is_a_dashpot(problem, dense):
 def test_a_start_is_used_and_never_made_worse(problem, band):
     for gain in constant_laws(problem):
         assert find_best_run(problem, band, gain).cost <= problem.simulate(band, gain).cost
-
-
-def test_without_a_pass_the_start_itself_is_run(problem, band, monkeypatch):
-    monkeypatch.setattr(feasible, "PASSES", 0)
-    for gain in constant_laws(problem):
-        assert find_best_run(problem, band, gain).cost == problem.simulate(band, gain).cost
-    nothing = np.zeros((problem.intervals, len(problem.transcription.velocity)))
-    assert find_best_run(problem, band).cost == problem.simulate(band, nothing).cost
-
-
-class Scripted:
-    """A problem of one interval whose runs cost what a list says; proximities that are asked for are kept."""
-
-    intervals = 1
-
-    def __init__(self, costs):
-        self.costs, self.asked = iter(costs), []
-        self.transcription = type("T", (), {"velocity": np.zeros(1)})()
-
-    def simulate(self, band, gain):
-        return type("R", (), {"cost": next(self.costs)})()
-
-    def improve_law(self, band, run, proximity):
-        self.asked.append(proximity)
-
-
-def test_the_proximity_grows_where_a_pass_does_not_improve_and_shrinks_where_it_does(monkeypatch):
-    script = Scripted([10.0, 11.0, 12.0, 13.0, 9.0, 8.0, 7.0, *[9.0] * 100])
-    assert find_best_run(script, None).cost == 7.0
-    np.testing.assert_allclose(script.asked[:8], [0, 1e-13, 4e-13, 1.6e-12, 3.2e-13, 6.4e-14, 0.0, 1e-13], rtol=1e-9)
-    assert max(script.asked) > 1e-7 and len(script.asked) < feasible.PASSES
-    tiny = Scripted([10.0, *(10.0 * (1 - 1e-9) for _ in range(100))])
-    assert find_best_run(tiny, None).cost == 10.0
-    endless = Scripted([float(1000 - k) for k in range(200)])
-    assert find_best_run(endless, None).cost == 1000.0 - feasible.PASSES

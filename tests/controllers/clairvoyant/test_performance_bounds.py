@@ -4,16 +4,10 @@ import numpy as np
 import pytest
 
 from controllers.clairvoyant import ClairvoyantBounds
-from seatsim.schema.content import to_content
 
 FOUND = ClairvoyantBounds(
     np.array([1.0, 4.0]), np.array([2.0, 5.0]), np.array([1.5, 1.2]), np.array([0.5, 1.0]), np.zeros((2, 3)), 0.005
 )
-
-
-def test_the_criterion_that_was_reached_and_the_width():
-    np.testing.assert_allclose(FOUND.reached, [1.5**2 + 0.25, 1.2**2 + 4.0])
-    np.testing.assert_allclose(FOUND.width, [np.sqrt(2.5 / 2.0) - 1, np.sqrt(5.44 / 5.0) - 1])
 
 
 def test_the_bound_is_the_highest_of_all_weights():
@@ -32,10 +26,3 @@ def test_the_best_is_interpolated_and_never_rises_with_travel():
     np.testing.assert_allclose(turned.best([0.75, 1.0, 1.5]), [1.35, 1.2, 1.15])
     worse = ClairvoyantBounds(FOUND.weights, FOUND.lower, np.array([1.2, 1.4]), FOUND.travel, FOUND.force, 0.005)
     np.testing.assert_allclose(worse.best([0.75, 3.0]), [1.2, 1.2])
-
-
-def test_the_curves_go_to_a_file_by_name_without_the_forces():
-    curves = to_content(FOUND)
-    assert list(curves) == ["weights", "lower", "acceleration", "travel", "width"]
-    assert curves["lower"] == [2.0, 5.0] and curves["travel"] == [0.5, 1.0]
-    assert curves["width"] == pytest.approx(FOUND.width.tolist())

@@ -39,35 +39,6 @@ def scripted(kept_seat_file, monkeypatch):
     return scenario, asked
 
 
-def test_weights_are_solved_from_the_middle_outwards_and_returned_as_given(scripted):
-    scenario, asked = scripted
-    lines = []
-    found = clairvoyant(scenario, [900.0, 100.0, 400.0, 1600.0], progress=lines.append)
-    assert [weight for weight, *_ in asked] == [900.0, 400.0, 1600.0, 100.0]
-    assert [start for *_, start in asked] == [None, 900.0, 900.0, 400.0]
-    np.testing.assert_array_equal(found.weights, [900.0, 100.0, 400.0, 1600.0])
-    np.testing.assert_array_equal(found.lower, found.weights)
-    cost = found.weights * 1.5
-    np.testing.assert_allclose(found.acceleration, np.sqrt(cost / 4))
-    np.testing.assert_allclose(found.travel, np.sqrt(cost / 100))
-    np.testing.assert_array_equal(found.force, np.full((4, 3), 0.5))
-    assert found.step == pytest.approx(0.005)
-    assert lines[0].endswith("weight 1 of 4") and lines[-1].endswith("weight 4 of 4")
-
-
-def test_the_bound_is_asked_with_the_size_of_the_weakest_dampers_run(scripted):
-    scenario, asked = scripted
-    clairvoyant(scenario, [100.0, 900.0])
-    assert {weight: size for weight, size, _ in asked} == {100.0: 200.0, 900.0: 1350.0}
-
-
-def test_a_damper_faster_than_its_lines_is_refused(scripted, monkeypatch):
-    scenario, _ = scripted
-    monkeypatch.setattr(solve, "TOP", 1.1)
-    with pytest.raises(InputError, match=r"moves at 1\.2 m/s; the bracket's envelope holds to 1\.1 m/s"):
-        clairvoyant(scenario, [100.0])
-
-
 @pytest.mark.parametrize("weights", [[0.0], [-1.0], [np.inf], [], [[1.0]], 3.0])
 def test_weights_are_one_or_more_numbers_above_zero(scripted, weights):
     with pytest.raises(InputError, match="numbers above 0"):

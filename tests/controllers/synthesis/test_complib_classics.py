@@ -16,6 +16,7 @@ def best_known(shared):
         return {row["problem"]: row["best_measured_gamma"] for row in csv.DictReader(stream)}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["AC4", "AC7", "HE1", "NN2", "AC15"])
 def test_within_a_percent_of_the_best_known(complib, best_known, name):
     design = synthesise(complib(name), time_budget=8.0)
@@ -27,6 +28,7 @@ def test_within_a_percent_of_the_best_known(complib, best_known, name):
         assert design.lower_bound == pytest.approx(0.5573, abs=1e-4)
 
 
+@pytest.mark.slow
 def test_only_one_problem_of_the_benchmark_is_hopeless(complib, best_known):
     hopeless = []
     for name in best_known:

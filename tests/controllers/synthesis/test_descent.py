@@ -5,9 +5,7 @@ import time
 import numpy as np
 import pytest
 
-from controllers.synthesis import descent as module
-from controllers.synthesis.bfgs import Iterate
-from controllers.synthesis.descent import Descent, StabilisingGain, _distinct, _lower, explore, improve, refine
+from controllers.synthesis.descent import Descent, StabilisingGain, explore, improve, refine
 from controllers.synthesis.objective import NormObjective
 from controllers.synthesis.plant import GeneralisedPlant
 from controllers.synthesis.starts import StartingGain
@@ -52,10 +50,6 @@ def test_a_start_that_is_not_stabilised_tells_how_near_it_came():
     assert found.abscissa == pytest.approx(0.3, abs=1e-6)
 
 
-def test_the_deadline_ends_the_exploration_after_a_start():
-    assert explore(objective(), starts(0.0, 1.0, 2.0), time.monotonic() - 1).starts == 1
-
-
 def test_two_explorations_join():
     joint = Descent(candidates(1.0, 3.0), -0.5, 2).with_more(Descent(candidates(2.0), -0.1, 5))
     assert [c.gamma for c in joint.candidates] == [1.0, 2.0, 3.0]
@@ -63,18 +57,6 @@ def test_two_explorations_join():
     assert not joint.agrees
     assert Descent(candidates(1.0, 1.001), 0.0, 2).agrees
     assert not Descent(candidates(1.0, 1.001), 0.0, 3).agrees
-
-
-def test_candidates_of_one_valley_count_once():
-    assert [c.gamma for c in _distinct(candidates(1.0, 1.001, 1.0015, 1.004, 2.0))] == [1.0, 1.004, 2.0]
-
-
-def test_refining_goes_to_the_end_and_keeps_the_best():
-    poor = [StabilisingGain(objective().norm(np.array([k])), np.array([k])) for k in (-0.5, 0.2, -3.0)]
-    best = refine(objective(), poor, later())
-    assert best.gamma == pytest.approx(np.sqrt(0.5), rel=1e-9)
-    assert best.entries == pytest.approx([-1.0], rel=1e-3)
-    assert best.gamma == objective().norm(best.entries)
 
 
 def test_refining_is_not_content_with_the_first_of_two_valleys(random_plant):
@@ -99,45 +81,3 @@ def test_improving_looks_about_the_best_and_never_loses_it():
     assert improve(objective(), poor, 3, time.monotonic() - 1) is poor
     none = StabilisingGain(0.0, np.array([0.0]))
     assert improve(objective(), none, 3, later()) is none
-
-
-def test_gains_about_the_best_lie_near_first_and_then_farther_off(monkeypatch):
-    best, drawn = StabilisingGain(objective().norm(np.array([-0.9])), np.array([-0.9])), []
-    monkeypatch.setattr(
-        module, "explore", lambda problem, gains, deadline: drawn.append(list(gains)) or Descent([], 0.0, len(gains))
-    )
-    for seed in range(40):
-        improve(objective(), best, seed, later())
-    away = np.array([[abs(start.gain[0, 0] / -0.9 - 1.0) for start in each] for each in drawn])
-    spread = np.sqrt(np.mean(away**2, axis=0))
-    assert spread[0] < 0.3 and spread[-1] > 3.0 and np.all(np.diff(spread) > 0.0)
-
-
-class Slope:
-    """An objective whose norm is its only entry, for turns whose gain is stated."""
-
-    def norm(self, entries):
-        return float(entries[0])
-
-    def same(self, entries):
-        return entries
-
-    sizes = angles = entries = log_norm = same
-
-
-@pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
-@pytest.mark.parametrize(
-    ("gain", "target", "turns"),
-    [
-        (1e-3, np.inf, 8),
-        (1e-5, np.inf, 8),
-        (1e-7, np.inf, 1),
-        (1e-3, 0.5, 1),  # eight turns of a thousandth each come nowhere near
-        (1e-3, 0.995, 8),
-    ],
-)
-def test_turns_go_on_while_they_gain_a_share_of_gamma_and_may_reach_the_target(monkeypatch, size, gain, target, turns):
-    monkeypatch.setattr(module, "minimise", lambda function, start, *_, **__: Iterate(start, 0.0, start))
-    monkeypatch.setattr(module, "polish", lambda problem, entries, deadline: entries * (1.0 - gain))
-    found = _lower(Slope(), StabilisingGain(size, np.array([size])), target * size, later())
-    assert found.gamma == pytest.approx(size * (1.0 - gain) ** turns, rel=1e-9)

@@ -5,15 +5,12 @@ import time
 import cvxpy as cp
 import numpy as np
 import pytest
-from scipy.linalg import null_space
 
 from controllers.synthesis.certify import certify
 from controllers.synthesis.lmi import (
     _bounded_real,
     _change_states,
-    _project,
     _recentre,
-    _symmetric_root,
     _transpose,
     compute_full_order_bound,
     find_single_step_gain,
@@ -50,21 +47,6 @@ def test_bounded_real_matrix(random_plant):
     np.testing.assert_allclose(numbers(_bounded_real(p, gamma, cp.Constant(X), cp.Constant(Y), g)), wanted, rtol=1e-12)
 
 
-def test_projected_matrix(random_plant):
-    p, X, g = random_plant(1), np.diag([1.0, 2.0, 3.0, 4.0]) + 0.1, 1.5
-    full = np.block(
-        [
-            [p.A.T @ X + X @ p.A, X @ p.B1, p.C1.T],
-            [p.B1.T @ X, -g * np.eye(2), p.D11.T],
-            [p.C1, p.D11, -g * np.eye(3)],
-        ]
-    )
-    kernel = null_space(np.hstack([p.C2, p.D21, np.zeros((2, 3))]))
-    made = numbers(_project(p, cp.Constant(X), cp.Constant(g)))
-    # The basis of the kernel is free; eigenvalues are not.
-    np.testing.assert_allclose(np.linalg.eigvalsh(made), np.linalg.eigvalsh(kernel.T @ full @ kernel), rtol=1e-9)
-
-
 def test_a_change_of_states_keeps_the_response_and_the_transposed_plant_transposes_it(random_plant):
     plant, T = random_plant(2, structure=[[1, 0], [1, 1]]), np.random.default_rng(1).standard_normal((4, 4))
     response = frequency_response(plant.close(GAIN), OMEGA)
@@ -74,34 +56,6 @@ def test_a_change_of_states_keeps_the_response_and_the_transposed_plant_transpos
     turned = _transpose(plant)
     np.testing.assert_array_equal(turned.free, plant.free.T)
     np.testing.assert_allclose(frequency_response(turned.close(GAIN.T), OMEGA), np.swapaxes(response, 1, 2), rtol=1e-9)
-
-
-def test_recentred_plants_have_unit_rate_gamma_columns_and_rows(random_plant):
-    plant, factor = random_plant(3), np.random.default_rng(2).standard_normal((4, 4))
-    p = _recentre(plant, factor, 5.0)
-    assert np.linalg.norm(p.A, 2) == pytest.approx(1.0)
-    np.testing.assert_allclose(np.linalg.norm(p.B2, axis=0), 1.0)
-    np.testing.assert_allclose(np.linalg.norm(p.C2, axis=1), 1.0)
-    rate = np.linalg.norm(factor @ plant.A @ np.linalg.inv(factor), 2)
-    wanted = frequency_response(plant.close(np.zeros((2, 2))), rate * OMEGA) / 5.0
-    np.testing.assert_allclose(frequency_response(p.close(np.zeros((2, 2))), OMEGA), wanted, rtol=1e-8)
-    # Gains are in other units, but the paths from u and to y are those of the plant up to a factor each.
-    for column in range(2):
-        ratio = np.append(factor @ plant.B2[:, column], np.sqrt(rate / 5.0) * plant.D12[:, column])
-        made = np.append(p.B2[:, column], p.D12[:, column])
-        np.testing.assert_allclose(made / np.linalg.norm(made), ratio / np.linalg.norm(ratio), rtol=1e-9)
-        row = np.append(plant.C2[column] @ np.linalg.inv(factor), np.sqrt(rate / 5.0) * plant.D21[column])
-        made = np.append(p.C2[column], p.D21[column])
-        np.testing.assert_allclose(made / np.linalg.norm(made), row / np.linalg.norm(row), rtol=1e-9)
-
-
-def test_the_symmetric_root_squares_to_its_matrix_and_stays_invertible():
-    matrix = np.array([[2.0, 1.0], [1.0, 3.0]])
-    root = _symmetric_root(matrix)
-    np.testing.assert_allclose(root @ root, matrix, rtol=1e-12)
-    np.testing.assert_allclose(root, root.T)
-    thin = _symmetric_root(np.diag([1.0, -1e-15]))
-    assert np.linalg.cond(thin) == pytest.approx(1e9**0.5, rel=1e-3)
 
 
 @pytest.mark.parametrize(("e1", "best"), [(10.0, 1.0000889), (50.0, 1.0022106)])
@@ -152,3 +106,22 @@ def test_the_single_step_gain_of_a_measured_state_is_near_the_best_in_any_unit_o
     plant = GeneralisedPlant(-one, size * one, size * one, [[1 / size], [0]], one / size, column, [[0], [1]], 0 * one)
     gain = find_single_step_gain(plant, 1.0, later())
     assert hinf_norm(plant.close(gain)).value == pytest.approx(np.sqrt(0.5), rel=0.1)
+
+
+def test_recentred_plants_have_unit_rate_gamma_columns_and_rows(random_plant):
+    plant, factor = random_plant(3), np.random.default_rng(2).standard_normal((4, 4))
+    p = _recentre(plant, factor, 5.0)
+    assert np.linalg.norm(p.A, 2) == pytest.approx(1.0)
+    np.testing.assert_allclose(np.linalg.norm(p.B2, axis=0), 1.0)
+    np.testing.assert_allclose(np.linalg.norm(p.C2, axis=1), 1.0)
+    rate = np.linalg.norm(factor @ plant.A @ np.linalg.inv(factor), 2)
+    wanted = frequency_response(plant.close(np.zeros((2, 2))), rate * OMEGA) / 5.0
+    np.testing.assert_allclose(frequency_response(p.close(np.zeros((2, 2))), OMEGA), wanted, rtol=1e-8)
+    # Gains are in other units, but the paths from u and to y are those of the plant up to a factor each.
+    for column in range(2):
+        ratio = np.append(factor @ plant.B2[:, column], np.sqrt(rate / 5.0) * plant.D12[:, column])
+        made = np.append(p.B2[:, column], p.D12[:, column])
+        np.testing.assert_allclose(made / np.linalg.norm(made), ratio / np.linalg.norm(ratio), rtol=1e-9)
+        row = np.append(plant.C2[column] @ np.linalg.inv(factor), np.sqrt(rate / 5.0) * plant.D21[column])
+        made = np.append(p.C2[column], p.D21[column])
+        np.testing.assert_allclose(made / np.linalg.norm(made), row / np.linalg.norm(row), rtol=1e-9)

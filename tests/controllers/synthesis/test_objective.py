@@ -41,12 +41,6 @@ def test_gradient_of_the_norm(seat, e1, gain):
     np.testing.assert_allclose(objective.log_norm(theta)[1], slopes(objective.log_norm, theta), rtol=1e-4, atol=1e-7)
 
 
-def test_gradient_near_a_limit_and_with_all_matrices(random_plant):
-    objective = objective_of(stable(random_plant(2)), limit=0.4)
-    theta = objective.angles(np.array([0.3, -0.2, 0.1, 0.05]))
-    np.testing.assert_allclose(objective.log_norm(theta)[1], slopes(objective.log_norm, theta), rtol=1e-4, atol=1e-6)
-
-
 def test_gradients_of_singular_values(random_plant):
     plant, omega, step = random_plant(1), [0.3, 2.0], 1e-6
     gain = 0.1 * np.random.default_rng(0).standard_normal((2, 2))

@@ -5,9 +5,8 @@ import time
 import numpy as np
 import pytest
 
-from controllers.synthesis import polish as module
 from controllers.synthesis.objective import NormObjective
-from controllers.synthesis.polish import _peaks, _renewed, _solve, _values, polish
+from controllers.synthesis.polish import _peaks, _solve, _values, polish
 
 OPTIMA = {10.0: 1.0681900, 30.0: 1.1359585, 50.0: 1.1848133}
 GAINS = {10.0: [-1937.2, 2013.9], 30.0: [967.0, 2339.1], 50.0: [3268.6, 2613.3]}
@@ -75,40 +74,3 @@ def test_values_and_slopes_at_frequencies(seat):
         up, down = (_values(problem, entries + sign * step, frequencies)[0] for sign in (1, -1))
         np.testing.assert_allclose(slopes[:, k], (up - down) / 2e-2, rtol=1e-4, atol=1e-12)
     assert values.shape == (2,)
-
-
-def test_peaks_are_those_that_hold_the_norm_up(seat):
-    problem, entries = objective(seat(30.0)), np.array(GAINS[30.0])
-    level = problem.norm(entries)
-    (omega,) = _peaks(problem, entries, level)
-    heights = _values(problem, entries, [omega])[0]
-    assert len(omega) >= 2 and heights.max() == pytest.approx(level, rel=1e-9)
-    assert np.all(heights >= 0.9 * level * (1 - 1e-9))
-    (nothing,) = _peaks(problem, entries, 2 * level)
-    assert not len(nothing)
-    # An old frequency stays while it is nearly as high and apart from the new ones.
-    (kept,) = _renewed(problem, entries, [np.array([omega[-1], omega[-1] * 1.01, 1e4])], level)
-    np.testing.assert_allclose(sorted(kept), sorted([*omega, omega[-1] * 1.01]), rtol=1e-4)
-
-
-@pytest.mark.parametrize(
-    ("kept", "wanted"),
-    [
-        (1.0, [0.3, 0.6, 1.2, 2.4, 4.8, 9.6, 10.0, 10.0]),  # what is promised is reached
-        (0.5, [0.3] * 8),
-        (0.0, [0.3 / 4**k for k in range(8)]),
-    ],
-)
-def test_the_trust_follows_what_the_last_step_kept_of_its_promise(monkeypatch, seat, kept, wanted):
-    problem, used = objective(seat(30.0)), []
-
-    def solve(problem, entries, frequencies, level, trust):
-        used.append(trust)
-        return entries * (1 - 0.1 * kept), 0.9 * level
-
-    monkeypatch.setattr(module, "_solve", solve)
-    monkeypatch.setattr(module, "_peaks", lambda *_: [])
-    monkeypatch.setattr(module, "_renewed", lambda *_: [])
-    monkeypatch.setattr(problem, "norm", lambda entries: float(entries[0]))
-    polish(problem, np.array([1.0, 1.0]), later())
-    np.testing.assert_allclose(used[:8], wanted)

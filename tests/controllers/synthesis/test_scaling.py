@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from controllers.synthesis.norm import frequency_response, hinf_norm
-from controllers.synthesis.scaling import _balancing_step, scale
+from controllers.synthesis.scaling import scale
 
 GAIN = np.array([[967.0, 2339.0]])
 
@@ -36,11 +36,6 @@ def test_the_response_is_that_of_slower_or_faster_time(random_plant, seed):
     np.testing.assert_allclose(
         frequency_response(made.plant.close(gain), omega), frequency_response(close, made.rate * omega), rtol=1e-8
     )
-
-
-def test_factors_are_powers_of_two(scaled):
-    for factors in (scaled.controls, scaled.measured, [scaled.rate]):
-        np.testing.assert_array_equal(np.log2(factors) % 1, 0)
 
 
 def test_columns_rows_rates_and_both_ends_are_of_one_size(scaled):
@@ -75,13 +70,6 @@ def test_a_plant_may_be_scaled_like_another(seat, scaled):
     assert hinf_norm(light.plant.close(scaled.scaled_gain(GAIN))).value == pytest.approx(own.value, rel=1e-12)
 
 
-def test_an_input_without_effect_keeps_its_unit(random_plant):
-    plant = random_plant(0, nu=2)
-    B2 = plant.B2 * [1.0, 0.0]
-    idle = type(plant)(plant.A, plant.B1, B2, plant.C1, plant.C2, plant.D11, plant.D12, plant.D21)
-    assert scale(idle).controls[1] == 1.0
-
-
 @pytest.mark.parametrize("seed", range(3))
 def test_the_coordinates_do_not_depend_on_the_units_of_disturbance_performance_and_time(random_plant, seed):
     p, far = random_plant(seed), 2.0**20
@@ -92,19 +80,3 @@ def test_the_coordinates_do_not_depend_on_the_units_of_disturbance_performance_a
     np.testing.assert_array_equal(faster.plant.A, made.plant.A)
     np.testing.assert_array_equal(faster.plant.C2, made.plant.C2)
     assert faster.rate == far * made.rate
-
-
-@pytest.mark.parametrize("seed", range(6))
-def test_every_step_of_balancing_is_the_same_in_other_units_of_disturbance_performance_and_time(random_plant, seed):
-    p, random, far = random_plant(seed), np.random.default_rng(seed), 2.0**20
-    grades, rate = np.exp2(random.integers(-20, 20, (2, 4))), 3.0
-    p = type(p)(p.A, p.B1 * grades[0][:, None], p.B2, p.C1 * grades[1], p.C2, p.D11, p.D12, p.D21)
-    p = type(p)(np.diag(grades[1]) @ p.A, p.B1, p.B2, p.C1, p.C2, p.D11, p.D12, p.D21)
-    made = _balancing_step(p, np.ones(4), rate)
-    for size in (far, 1 / far):
-        seen = type(p)(p.A, p.B1, p.B2, size * p.C1, p.C2, p.D11, p.D12, p.D21)
-        np.testing.assert_array_equal(_balancing_step(seen, np.ones(4), rate), made)
-        driven = type(p)(p.A, size * p.B1, p.B2, p.C1, p.C2, p.D11, p.D12, p.D21)
-        np.testing.assert_array_equal(_balancing_step(driven, np.ones(4), rate), made)
-        fast = type(p)(size * p.A, size * p.B1, size * p.B2, p.C1, p.C2, p.D11, p.D12, p.D21)
-        np.testing.assert_array_equal(_balancing_step(fast, np.ones(4), size * rate), made)

@@ -1,16 +1,13 @@
 """The search on one or several plants, its time, and what it says where it fails."""
 
-import re
 import time
 
 import numpy as np
 import pytest
 
-from controllers.synthesis import search as module
-from controllers.synthesis.descent import Descent, StabilisingGain
 from controllers.synthesis.norm import hinf_norm
 from controllers.synthesis.plant import GeneralisedPlant
-from controllers.synthesis.search import TimeBudget, _lowest, search
+from controllers.synthesis.search import TimeBudget, search
 from seatsim.schema.errors import SynthesisError
 
 ONE, COLUMN = np.eye(1), np.zeros((2, 1))
@@ -61,12 +58,6 @@ def test_the_plant_in_the_middle_joins_where_it_is_worst():
     assert max(norms) <= min(scan) * (1 + 1e-9)
 
 
-def test_plants_that_never_decide_do_not_join():
-    lines = []
-    ask([state_feedback(-1.0), state_feedback(-1.1), state_feedback(-1.2)], lines=lines)
-    assert not any("of 3" in line and line.count(",") > 1 for line in lines)
-
-
 def test_failure_tells_of_starts_limit_time_and_abscissa():
     # 1/s^3 needs phase lead: s^3 - k is never Hurwitz.
     A, B, C = 10.0 * np.eye(3, k=1), np.eye(3)[:, 2:], np.eye(3)[:1]
@@ -86,44 +77,3 @@ def test_where_starts_disagree_the_best_is_looked_about(random_plant):
     assert lines[0] == "searching" and "starts" in lines[1] and "stabilised" in lines[1]
     assert float(lines[-1].split()[1]) == pytest.approx(few, rel=1e-5)
     assert np.isfinite(few)
-
-
-@pytest.mark.parametrize("rate", [1.0, 1000.0])
-def test_the_abscissa_of_a_failure_is_in_the_users_time(rate):
-    # A gain without a direct path cannot change the sum of the poles, 3 rate, so that one lies right of rate.
-    A, B, C = rate * np.array([[0.0, 1, 0], [0, 0, 1], [-3, 1, 3]]), rate * np.eye(3)[:, 2:], np.eye(3)[:1]
-    plant = GeneralisedPlant(A, B, B, C, C, [[0]], [[0]], [[0]])
-    with pytest.raises(SynthesisError) as error:
-        ask([plant], 100.0, 0.5)
-    reached = float(re.search(r"reached is (\S+) 1/s", str(error.value))[1])
-    assert rate * (1.0 - 1e-3) <= reached < 3.0 * rate
-
-
-def test_of_plants_that_are_equally_bad_one_is_enough():
-    lines = []
-    ask([state_feedback(-1.2), state_feedback(-1.0), state_feedback(-1.0)], lines=lines)
-    assert not any("0, 2, 1 of 3" in line for line in lines)
-
-
-def test_a_search_of_all_plants_has_the_time_that_is_left_and_one_of_some_a_part(monkeypatch):
-    clocks, explore = [], module._explore
-
-    def note(objective, starts, clock):
-        clocks.append((len(objective.plants), clock.begin + clock.budget))
-        return explore(objective, starts, clock)
-
-    monkeypatch.setattr(module, "_explore", note)
-    begin = time.monotonic()
-    ask([state_feedback(-1.0), state_feedback(-1.0, 6.0), state_feedback(-1.2)])
-    ends = {count: end - begin for count, end in clocks}
-    assert 0.3 < ends[2] / ends[3] < 0.6
-
-
-def test_further_starts_go_on_while_they_gain(monkeypatch):
-    steps = iter([1.0, 0.9, 0.8, 0.79999, 0.1])
-    monkeypatch.setattr(module, "refine", lambda *_: StabilisingGain(next(steps), np.zeros(1)))
-    monkeypatch.setattr(module, "improve", lambda objective, best, seed, deadline: best)
-    monkeypatch.setattr(module, "explore", lambda *_: Descent([], 0.0, 0))
-    two = Descent([StabilisingGain(1.0, np.zeros(1)), StabilisingGain(2.0, np.zeros(1))], -1.0, 2)
-    best = _lowest(None, two, iter(()), 0, TimeBudget(time.monotonic(), 30.0), lambda text: None)
-    assert best.gamma == 0.79999

@@ -5,8 +5,6 @@ import time
 import numpy as np
 import pytest
 
-from controllers.synthesis import solve
-from controllers.synthesis.bound import compute_pointwise_bound
 from controllers.synthesis.plant import GeneralisedPlant
 from controllers.synthesis.solve import _collect_plants, _limits, synthesise
 from seatsim.schema.errors import InputError
@@ -25,28 +23,6 @@ def test_the_design_is_that_of_the_known_optimum():
     assert design.lower_bound == pytest.approx(design.gamma, rel=1e-5) and design.lower_bound <= design.gamma
     assert design.max_gain == 7.0
     assert lines[0] == "searching" and lines[-1] == "the bound of any controller"
-
-
-def test_the_lower_bound_is_the_largest_of_all_plants(monkeypatch):
-    plants = [state_feedback(0.5), state_feedback(4.0), state_feedback(1.0)]
-    asked = []
-
-    def bound(plant, gain, certificate, deadline):
-        asked.append((plant, certificate, deadline - time.monotonic()))
-        return 0.25
-
-    monkeypatch.setattr(solve, "compute_lower_bound", bound)
-    design = synthesise(plants, time_budget=6.0)
-    pointwise = [compute_pointwise_bound(plant, design.gain) for plant in plants]
-    assert design.lower_bound == pytest.approx(min(max(*pointwise, 0.25), design.gamma), rel=1e-12)
-    ((plant, certificate, left),) = asked
-    assert plant is plants[1] and certificate is design.worst.certificate
-    assert 0.0 < left <= 6.0
-    monkeypatch.setattr(solve, "compute_lower_bound", lambda *_: 1e9)
-    assert synthesise(state_feedback(), time_budget=2.0).lower_bound == pytest.approx(np.sqrt(0.5), rel=1e-6)
-    monkeypatch.setattr(solve, "compute_pointwise_bound", lambda *_: 0.1)
-    monkeypatch.setattr(solve, "compute_lower_bound", lambda *_: 0.3)
-    assert synthesise(state_feedback(), time_budget=2.0).lower_bound == 0.3
 
 
 def test_limits_come_from_the_largest_gain_and_from_bounds(random_plant):

@@ -1,15 +1,11 @@
 """Where the search sets out from: which gains, in which sizes, in which order."""
 
-import time
 from itertools import islice
 
 import numpy as np
-import pytest
 from scipy.linalg import solve_continuous_are
 
-from controllers.synthesis.lmi import find_single_step_gain
-from controllers.synthesis.scaling import scale
-from controllers.synthesis.starts import generate_convex_start, generate_starting_gains, project_state_feedback
+from controllers.synthesis.starts import generate_starting_gains, project_state_feedback
 
 UNIT = np.full((2, 2), 8.0)
 
@@ -37,15 +33,6 @@ def test_no_gain_then_state_feedback_then_gains_over_decades(random_plant):
         np.testing.assert_array_equal(np.abs(wide.gain), wide.unit)
 
 
-def test_random_gains_are_normal_in_their_sizes(random_plant):
-    starts = list(islice(generate_starting_gains([random_plant(0)], UNIT, 1), 2, 1202))
-    drawn = np.array([start.gain / start.unit for k, start in enumerate(starts) if k % 3 != 2])
-    assert drawn.std() == pytest.approx(1.0, abs=0.05)
-    assert drawn.mean() == pytest.approx(0.0, abs=0.05)
-    signs = np.array([np.sign(start.gain) for k, start in enumerate(starts) if k % 3 == 2])
-    assert signs.mean() == pytest.approx(0.0, abs=0.1)
-
-
 def test_state_feedback_is_that_of_the_riccati_equation_where_the_state_is_measured(random_plant):
     plant = random_plant(1, n=3, ny=3)
     P = solve_continuous_are(plant.A, plant.B2, np.eye(3), np.eye(2))
@@ -59,11 +46,3 @@ def test_state_feedback_keeps_to_the_structure_and_needs_a_solution(random_plant
     plant = random_plant(1)
     hopeless = type(plant)(np.eye(4), plant.B1, 0 * plant.B2, plant.C1, plant.C2, plant.D11, plant.D12, plant.D21)
     assert project_state_feedback(hopeless) is None
-
-
-def test_the_convex_start_is_the_single_step_gain(seat):
-    plant, unit = scale(seat(30.0)).plant, np.array([[2.0, 3.0]])
-    (start,) = generate_convex_start(plant, 1.0, unit, time.monotonic() + 20)
-    np.testing.assert_allclose(start.gain, find_single_step_gain(plant, 1.0, time.monotonic() + 20), rtol=1e-9)
-    np.testing.assert_array_equal(start.unit, unit)
-    assert not list(generate_convex_start(plant, 1.0, unit, time.monotonic() - 1))

@@ -81,13 +81,6 @@ def test_noise_of_a_recorded_velocity_is_carried(tmp_path):
     assert carried(problem) == pytest.approx(spread_of_force(problem, velocity=2e-3), rel=0.1)
 
 
-def test_noise_of_a_current_that_drives_the_damper_is_carried(tmp_path):
-    problem = pose(tmp_path, "coil_current", current_noise=0.02)
-    found = carried(problem)
-    assert found == pytest.approx(spread_of_force(problem, displacement=NOISE, coil_current=0.02), rel=0.15)
-    assert found > 5.0
-
-
 def test_the_weights_of_a_bench_count_it(tmp_path):
     problem = pose(tmp_path)
     settings = problem.settings._replace(noise=problem.settings.noise._replace(model_error=0.0, least_power=0.0))

@@ -24,19 +24,10 @@ def test_an_effect_has_the_share_of_the_weight_that_lies_in_sets_with_it():
     assert found["c"] == 0.01 and list(found) == NAMES
 
 
-def test_only_the_ratio_of_what_is_left_counts():
-    one, other = weigh(("", 1.0), ("a", 0.2)), weigh(("", 50.0), ("a", 10.0))
-    assert one == pytest.approx(other) and one["a"] == pytest.approx(2.5 / 3.5)
-
-
 def test_probabilities_stay_within_their_bounds():
     assert weigh(("", 1.0), ("a", 1e-9)) == {"a": 0.9, "b": 0.01, "c": 0.01}
     # Without any set nothing is known of any effect.
     assert weigh() == dict.fromkeys(NAMES, 0.01)
-
-
-def test_very_different_sets_are_weighed_without_overflow():
-    assert weigh(("", 1e-6), ("a", 1e-5), power=500.0)["a"] == 0.01
 
 
 def test_a_sensor_has_a_prior_of_its_own():

@@ -20,7 +20,6 @@ from .toy import (
     place,
     stack,
     weigh_stated,
-    whiten,
 )  # fmt: skip
 
 NAMES = ["nominal", "nuisance 0", "a.one", "a.one beside", "b.two", "c.three", "d.limit"]
@@ -52,19 +51,6 @@ def least_cost(objective, names, last=(-6.0, 6.0)):
     return 2.0 * best.cost, best.x[-1]
 
 
-def test_a_sensitivity_is_what_a_candidates_start_changes():
-    objective = pose({"b.two": 2.0})
-    calibrated = refit(objective, Parameters(objective.problem.nominal))
-    found = measure_sensitivities(
-        objective, calibrated, [offer("b.two", start=-0.5), offer("c.three", cls=Wild), offer("c.three", start=2.0)]
-    )
-    # What makes the rig leave all bounds is left out.
-    assert [each.effect for each in found.candidates] == ["b.two", "c.three"]
-    for k, expected in enumerate((-0.5, 2.0)):
-        changes = np.concatenate([found.changes[run][k].ravel() for run in objective.problem.runs])
-        np.testing.assert_allclose(changes, expected * whiten(objective, found.candidates[k].effect), atol=1e-8)
-
-
 def test_effects_that_cannot_be_simulated_are_named_with_the_number_of_their_starts():
     offered = [offer("b.two"), offer("c.three", cls=Wild), offer("c.three"), offer("c.three", cls=Wild)]
     said = name_unstable(offered, [offered[0], offered[2]])
@@ -86,24 +72,6 @@ def test_the_predicted_cost_is_the_least_that_the_candidate_leaves(start):
     (found,) = screened(objective, [candidate])
     # Of 0, 0.6, 1 and 1.6 times the predicted amount, the predicted one is the best start.
     assert found.parameters.values[0][0] == pytest.approx(amount, rel=1e-4)
-
-
-def test_the_base_takes_part_in_the_prediction():
-    objective = pose({"b.two": 1.5, "c.three": 0.4, "a.one": -0.8, "nuisance 0": 0.6})
-    exact, _ = least_cost(objective, ["b.two", "c.three"])
-    base = [(offer("b.two", start=0.4), 0.4)]
-    assert shortlisted_below(objective, offer("c.three", start=0.3), exact * (1.0 + 1e-5), base)
-    assert not shortlisted_below(objective, offer("c.three", start=0.3), exact * (1.0 - 1e-5), base)
-    (found,) = screened(objective, [offer("c.three", start=0.3)], base)
-    assert found.parameters.names == {"b.two", "c.three"}
-    assert [term.effect for term in found.parameters.terms] == ["b.two", "c.three"]
-
-
-def test_a_nuisance_at_its_bound_gives_no_way_in_the_prediction():
-    objective = pose({"b.two": 1.5, "nuisance 0": 3.0})
-    exact, _ = least_cost(objective, ["b.two"])
-    assert shortlisted_below(objective, offer("b.two"), exact * (1.0 + 1e-5))
-    assert not shortlisted_below(objective, offer("b.two"), exact * (1.0 - 1e-5))
 
 
 def test_a_start_is_enlarged_by_the_stretch_at_most():
@@ -149,13 +117,6 @@ def test_a_structure_is_tried_once_from_its_most_promising_start():
     assert found[0].parameters.terms[0] is near
 
 
-def test_starts_keep_the_bounds_and_the_shape():
-    objective = pose({"a.one": 5.0, "a.one beside": 0.3})
-    candidate = offer_two("a.one", (1.0, 0.25), (-3.0, 0.1), (3.0, 0.5))
-    (found,) = screened(objective, [candidate])
-    np.testing.assert_allclose(found.parameters.values[0], [3.0, 0.25])
-
-
 def test_each_size_is_predicted_by_itself():
     objective = pose({"a.one": 1.5, "a.one beside": -0.4})
     candidate = offer_two("a.one", (1.0, 0.25), (-3.0, -3.0), (3.0, 3.0))
@@ -165,18 +126,6 @@ def test_each_size_is_predicted_by_itself():
     assert apart.cost < 0.1 * together.cost
 
 
-def test_the_changes_of_an_effect_with_two_sizes_stand_beside_those_of_others():
-    objective = pose({"b.two": 1.0})
-    calibrated = refit(objective, Parameters(objective.problem.nominal))
-    both = offer_two("a.one", (1.0, 0.25), (-3.0, -3.0), (3.0, 3.0))._replace(sizes=2)
-    found = measure_sensitivities(objective, calibrated, [both, offer("b.two", start=0.5)])
-    assert found.entries == [slice(0, 2), slice(2, 3)]
-    expected = [whiten(objective, "a.one"), 0.25 * whiten(objective, "a.one beside"), 0.5 * whiten(objective, "b.two")]
-    for k, change in enumerate(expected):
-        changes = np.concatenate([found.changes[run][k].ravel() for run in objective.problem.runs])
-        np.testing.assert_allclose(changes, change, atol=1e-8)
-
-
 @pytest.mark.parametrize("true, expected", [(1.28, 1.27), (1.17, 1.16), (1.07, 1.08), (0.85, 1 / 1.16), (1.0, 1.0)])
 def test_a_limit_is_tried_a_little_to_the_side_that_the_prediction_points_to(true, expected):
     # What a limit adds falls with it: 2 - limit of the signal.
@@ -184,11 +133,6 @@ def test_a_limit_is_tried_a_little_to_the_side_that_the_prediction_points_to(tru
     (found,) = screened(objective, [offer("d.limit", start=1.0, low=0.0, high=1e3, cls=Limited)])
     assert found.parameters.terms[0].is_limit
     assert found.parameters.values[0][0] == pytest.approx(expected)
-
-
-def test_nothing_offered_finds_nothing():
-    assert screened(pose({"b.two": 1.0}), []) == []
-    assert screened(pose({"b.two": 1.0}), [offer("b.two")], bound=0.0) == []
 
 
 @pytest.mark.parametrize(

@@ -45,14 +45,6 @@ def loaded(problem, text, folder):
     return dataclasses.replace(problem, scenario=single(folder / "other.yaml"))
 
 
-def test_the_nominal_rig_is_the_nominal_file(problem):
-    content = write_augmented(problem, place(problem))
-    expected = copy.deepcopy(problem.scenario.source.data)
-    assert content.pop("effects") == []
-    expected["actuator"]["delay"] = 0.01
-    assert content == expected
-
-
 def test_parameters_move_by_their_deviations_in_tolerances_where_they_stand(problem):
     before = copy.deepcopy(problem.scenario.source.data)
     content = write_augmented(problem, place(problem, deviations=[0.5, -1.0, 1.0, 0.25]))

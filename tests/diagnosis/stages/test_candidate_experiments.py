@@ -46,11 +46,6 @@ def test_the_cheapest_come_first_and_a_sensor_is_added_where_it_lacks(seat):
     assert list(by_name(full)) == [*EXCITED, *INTERVENTIONS]
 
 
-def test_a_bench_has_no_bump_no_seat_and_no_driver(bench):
-    names = ["sweep", "large_slow_sine", "very_slow_sine", "current_steps", "coil_current", "zero_current", "warm_up"]
-    assert list(by_name(bench)) == names
-
-
 def test_excitations_say_what_to_shake(seat, bench):
     assert by_name(seat)["sweep"].text == "sweep the floor from 1 to 20 Hz at 1.5 m/s^2"
     assert by_name(bench)["sweep"].text == "sweep the damper from 1 to 20 Hz at 1.5 m/s^2"
@@ -79,12 +74,6 @@ def test_the_floor_of_an_excitation_is_that_of_its_scenario(seat, name, excitati
     keys = {key: value for key, value in found.scenario["excitation"].items() if key != "kind"}
     assert keys.items() <= excitation._asdict().items()
     assert not found.set and found.added_sensors == ()
-
-
-def test_a_steady_current_is_a_share_of_the_largest(seat):
-    found = by_name(seat)["sweep"]
-    assert np.all(found.floor.command == 0.6) and len(found.floor.command) == len(found.floor.acceleration)
-    assert found.scenario["controller"] == {"law": "constant", "current": 0.6}
 
 
 def test_a_switched_current_is_off_and_nearly_full_every_quarter_of_a_second(seat):
@@ -118,20 +107,6 @@ def test_each_intervention_changes_one_thing(seat):
     assert found["load_cell"].floor is recorded
 
 
-def test_a_bench_repeats_the_motion_of_its_damper(bench):
-    found, inputs = by_name(bench)["coil_current"].floor, bench.inputs["first"]
-    assert found.step == 1.0 / RATE and not found.acceleration.any() and not found.velocity.any()
-    assert found.displacement is inputs.displacement
-    assert found.command is inputs.current_command and found.temperature is inputs.damper_temperature
-    assert found.coil_current is None
-
-
-def test_a_run_without_current_states_it_where_no_current_is_recorded(seat):
-    channels = {name: each for name, each in seat.recording.channels.items() if name != "current_command"}
-    silent = dataclasses.replace(seat, recording=dataclasses.replace(seat.recording, channels=channels))
-    assert by_name(silent)["zero_current"].set == {"controller.current": 0.0}
-
-
 def test_factors_change_the_free_keys_of_an_excitation_and_no_current_exceeds_the_largest(seat):
     found = excite(seat, "sweep", {"amplitude": 2.0, "stop_frequency": 0.5, "current": 9.0})
     assert found.text == "sweep the floor from 1 to 10 Hz at 3 m/s^2"
@@ -141,3 +116,11 @@ def test_factors_change_the_free_keys_of_an_excitation_and_no_current_exceeds_th
     assert bump.text == "drive over a bump of 25 mm" and bump.scenario["excitation"]["height"] == 0.025
     for name, item in EXCITATIONS.items():
         assert set(item.free) <= {*item.keys, *item.law} - {"kind", "law"}, name
+
+
+def test_a_bench_repeats_the_motion_of_its_damper(bench):
+    found, inputs = by_name(bench)["coil_current"].floor, bench.inputs["first"]
+    assert found.step == 1.0 / RATE and not found.acceleration.any() and not found.velocity.any()
+    assert found.displacement is inputs.displacement
+    assert found.command is inputs.current_command and found.temperature is inputs.damper_temperature
+    assert found.coil_current is None

@@ -1,16 +1,14 @@
 """Collinearity of effects of a linear seat, against angles between what ridge regressions leave of their signals."""
 
-import dataclasses
-
 import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
 from seatsim.diagnosis.candidates import list_candidates
-from seatsim.diagnosis.design.collinearity import fit_member, measure_collinearity, stack_jacobian, stack_whitened
+from seatsim.diagnosis.design.collinearity import fit_member, measure_collinearity, stack_whitened
 from seatsim.diagnosis.parameters import Parameters
 
-from .toy import TAPS, Added, offer, place, pose, record, weigh_stated, whiten
+from .toy import Added, offer, place, pose, record, weigh_stated, whiten
 
 PRIOR = 0.58
 
@@ -57,25 +55,6 @@ def test_identical_effects_have_one_and_those_that_share_nothing_have_zero(folde
     assert np.allclose(matrix, [[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 1.0]], atol=1e-9)
 
 
-def test_what_a_nuisance_absorbs_of_two_effects_makes_them_collinear_no_more(folder, monkeypatch):
-    for name, alone in (("frame", "frame alone"), ("driver", "driver alone")):
-        taps = np.array(TAPS["mass"]) + 0.05 * np.array(TAPS[alone])
-        monkeypatch.setitem(TAPS, f"mass and {name}", taps.tolist())
-    terms = [(offer("a", "mass and frame"), 1.0), (offer("b", "mass and driver"), 1.0)]
-    without, with_it = make_objective(folder, nuisances=0), make_objective(folder, nuisances=1)
-    assert compare(without, linearise(without, *terms), "a", "b").matrix[0, 1] > 0.99
-    absorbed = compare(with_it, linearise(with_it, *terms), "a", "b").matrix[0, 1]
-    left = [leave(with_it, whiten(with_it, f"mass and {name}"), ["mass"]) for name in ("frame", "driver")]
-    assert absorbed == pytest.approx(cosine(*left), abs=1e-6) and absorbed < 0.95
-
-
-def test_an_effect_without_any_signal_is_collinear_with_itself_alone(folder):
-    objective = make_objective(folder)
-    # A force that the load cell alone sees, where none is recorded.
-    nuisances = linearise(objective, (offer("a", "force alone"), 1.0), (offer("b", "one"), 1.0))
-    assert np.array_equal(compare(objective, nuisances, "a", "b").matrix, np.eye(2))
-
-
 def bend(objective, share):
     return share * whiten(objective, "one") + share**2 * whiten(objective, "three")
 
@@ -94,57 +73,12 @@ def test_an_effect_that_the_rig_lacks_is_made_as_large_as_the_largest_fitted_one
     assert matrix[0, 1] == pytest.approx(expected, abs=1e-6)
 
 
-def test_a_fitted_effect_keeps_its_size_beside_a_larger_one(folder):
-    objective = make_objective(folder)
-    bent = next(c for c in list_candidates(objective.problem) if c.effect == "driver.biodynamics")
-    nuisances = linearise(objective, (offer("a", "two"), 3.0), (bent, 0.3, 5.0, 0.3))
-    expected = cosine(leave(objective, whiten(objective, "two")), leave(objective, bend(objective, 0.3)))
-    assert compare(objective, nuisances, "a", bent.effect).matrix[0, 1] == pytest.approx(expected, abs=1e-6)
-
-
-def test_without_any_fitted_effect_candidates_keep_their_starts(folder):
-    objective = make_objective(folder)
-    nuisances = linearise(objective)
-    names, matrix = compare(objective, nuisances, "suspension.friction", "driver.biodynamics")
-    expected = cosine(leave(objective, whiten(objective, "two")), leave(objective, bend(objective, 0.2)))
-    assert names == ["suspension.friction", "driver.biodynamics"]
-    assert matrix[0, 1] == pytest.approx(expected, abs=1e-6)
-
-
-def test_an_effect_on_several_channels_is_as_collinear_as_the_one_that_is_most_so(folder, monkeypatch):
-    # A wrong scale of the driver's accelerometer, and of the frame's, are what these two add.
-    for name, k in (("frame", 0), ("driver", 1)):
-        taps = np.zeros((5, 2))
-        taps[k] = TAPS["floor"][k]
-        monkeypatch.setitem(TAPS, f"{name} scale", taps.tolist())
-    objective = make_objective(folder, nuisances=0)
-    nuisances = linearise(objective, (offer("a", "frame scale"), 0.1), (offer("b", "driver alone"), 0.1))
-    matrix = compare(objective, nuisances, "a", "sensor.gain", "b").matrix
-    frame, driver = whiten(objective, "frame scale"), whiten(objective, "driver scale")
-    assert matrix[0, 1] == pytest.approx(1.0) and cosine(frame, driver) < 1e-9
-    assert matrix[1, 2] == pytest.approx(cosine(driver, whiten(objective, "driver alone")), abs=1e-6)
-    assert matrix[1, 1] == 1.0 and np.array_equal(matrix, matrix.T)
-
-
 def test_names_that_cannot_act_here_are_left_out_and_repeated_ones_said_once(folder):
     objective = make_objective(folder)
     nuisances = linearise(objective, (offer("a", "one"), 1.0))
     found = compare(objective, nuisances, "a", "no.such", "a")
     assert found.effects == ["a"] and np.array_equal(found.matrix, [[1.0]])
     assert compare(objective, nuisances).matrix.shape == (0, 0)
-
-
-def test_what_runs_have_is_stacked_in_their_order(folder):
-    objective = make_objective(folder)
-    nuisances = linearise(objective)
-    parts = nuisances.evaluation.whitened
-    expected = np.concatenate([parts["first"].ravel(), parts["second"].ravel()])
-    swapped = dict(reversed(parts.items()))
-    assert np.array_equal(stack_whitened(objective, swapped), expected)
-    jacobian = stack_jacobian(objective, nuisances)
-    assert np.allclose(jacobian, [0.1 * whiten(objective, cause) for cause in ("mass", "stiffness")], rtol=1e-6)
-    only = objective.on_runs(["second"])
-    assert np.array_equal(stack_whitened(only, parts), parts["second"].ravel())
 
 
 def solve(objective, causes):
@@ -178,42 +112,8 @@ def test_a_member_stands_alone_for_its_group_and_is_fitted(rubbing):
     )
 
 
-def test_the_member_at_work_starts_from_its_own_values_and_stands_last(rubbing):
-    objective, nuisances = rubbing
-    found = fit_member(objective, nuisances, "x.one", ["x.one", "suspension.friction"])
-    assert [term.effect for term in found.parameters.terms] == ["y.three", "x.one"]
-    assert found.cost == pytest.approx(solve(objective, ["three", "one"])[1], rel=1e-6)
-
-
 def test_of_all_structures_the_best_is_returned(rubbing):
     objective, nuisances = rubbing
     found = fit_member(objective, nuisances, "damper.seal_friction", ["x.one", "damper.seal_friction"])
     starts = [c for c in list_candidates(objective.problem) if c.effect == "damper.seal_friction"]
     assert len(starts) > 1 and found.cost == pytest.approx(solve(objective, ["three", "one"])[1], rel=1e-6)
-
-
-def count_fits(objective, nuisances, structures):
-    """Return how often rigs are simulated for a member with a wrong sensor, which has a start for every channel."""
-    calls, problem = [], objective.problem
-
-    class Counting(type(problem)):
-        def simulated(self, *given):
-            calls.append(given)
-            return problem.simulated(*given)
-
-    settings = problem.settings._replace(design=problem.settings.design._replace(structures=structures))
-    values = {field.name: getattr(problem, field.name) for field in dataclasses.fields(problem)}
-    counting = dataclasses.replace(objective, problem=Counting(**values | {"settings": settings}))
-    return fit_member(counting, nuisances, "sensor.gain", ["x.one"]), len(calls)
-
-
-def test_only_the_best_structures_are_fitted(rubbing):
-    objective, nuisances = rubbing
-    best, few = count_fits(objective, nuisances, 1)
-    all_fitted, many = count_fits(objective, nuisances, 3)
-    assert few < many and all_fitted.cost <= best.cost
-    starts = [(c, c.start[0]) for c in list_candidates(objective.problem) if c.effect == "sensor.gain"]
-    base = nuisances.evaluation.parameters.remove("x.one")
-    costs = {c.fixed["channel"]: each.cost for (c, _), each in zip(
-        starts, objective.evaluate([base.add(c, np.array(c.start)) for c, _ in starts]), strict=True)}  # fmt: skip
-    assert best.parameters.terms[-1].fixed["channel"] == min(costs, key=costs.get)

@@ -7,7 +7,6 @@ import pytest
 
 from seatsim.diagnosis.error_budget import budget_errors, carry_input_noise, measure_step_error
 from seatsim.diagnosis.every_run import list_gaps, replay_runs, state_model_error
-from seatsim.diagnosis.nuisance import list_calibrated
 from seatsim.diagnosis.validate import make_scenario
 from seatsim.recordings.gap import measure_gap
 from seatsim.scenario.loading import single
@@ -43,13 +42,6 @@ def test_the_model_error_is_that_of_the_last_scenario(posed):
     assert found.runs == tuple(RUNS) and list(found.noise) == list(problem.channels)
     worse = state_model_error(problem, replay_runs(problem, scenarios[:1]))
     assert all(np.mean(worse.pooled[name]) > 3.0 * np.mean(found.pooled[name]) for name in problem.channels)
-
-
-def test_refitted_parameters_stand_by_dotted_key_beside_their_bounds(posed):
-    problem, _ = posed
-    mass, stiffness = list_calibrated(problem.parameters, np.array([0.25, -1.0]), 0.98)
-    assert mass == ("plant.driver_mass", 80.0, 82.0, (72.0, 88.0), False, "-")
-    assert stiffness == ("plant.suspension_stiffness", 4600.0, 4140.0, (4140.0, 5060.0), True, "-")
 
 
 def test_an_error_is_divided_into_what_noise_makes_and_the_form(posed):

@@ -8,7 +8,7 @@ from scipy.optimize import lsq_linear
 
 from seatsim.diagnosis.localise import hypotheses
 from seatsim.diagnosis.localise.hypotheses import evaluate_hypotheses
-from seatsim.diagnosis.localise.input_estimate import InputEstimate, estimate_error, estimate_input
+from seatsim.diagnosis.localise.input_estimate import InputEstimate
 from seatsim.diagnosis.localise.reconstruction import PORTS, reconstruct
 from seatsim.diagnosis.objective import Evaluation, Linearisation
 from seatsim.diagnosis.parameters import Parameters
@@ -74,21 +74,6 @@ def test_the_evidence_is_that_of_the_dense_gaussian(folder, nuisances):
         expected = (left @ inverse @ left + np.linalg.slogdet(covariance)[1]) / len(residuals) - 1.0
         found = hypotheses._negative_log_evidence(objective, linearisation, estimates)
         assert found == pytest.approx(expected, abs=1e-5)
-
-
-def test_right_hypotheses_of_white_residuals_and_signals_have_the_evidence_of_their_entropy(folder):
-    # Residuals drawn from the covariance: the quadratic part is 1 in the mean, the rest the log determinant.
-    rng, found = np.random.default_rng(3), []
-    objective = weigh_stated(pose(record(folder)))
-    response, power = np.full((2, 500), 1.0 + 1.0j), np.full(500, 3.0)
-    drawn = np.sqrt(power / 2.0) * (rng.standard_normal((40, 500)) + 1j * rng.standard_normal((40, 500)))
-    for signal in drawn:
-        seen = response * signal + rng.standard_normal((2, 500)) + 1j * rng.standard_normal((2, 500))
-        estimate = InputEstimate(np.hstack([seen.real, seen.imag]), response, power, np.zeros(1))
-        rig = Linearisation(Evaluation(Parameters(np.zeros(0)), {}, {}, 0.0), {"a": np.zeros((0, 2000))})
-        found.append(hypotheses._negative_log_evidence(objective, rig, {"a": estimate}))
-    # |h|^2 p / 2 = 4 * 3 / 2 = 6 at each of 500 frequencies of 2000 numbers.
-    assert np.mean(found) == pytest.approx(2.0 * np.log(7.0) * 500 / 2000, abs=0.02)
 
 
 RUNS = {"first": 400, "second": 300}
@@ -185,46 +170,3 @@ def test_a_coil_is_asked_where_its_current_is_recorded(folder):
     found = evaluate(dataclasses.replace(objective, problem=dataclasses.replace(problem, measured=measured)))
     assert likeliest(found) == "coil"
     assert (found["coil"].quantity, found["coil"].unit, found["coil"].channel) == ("current", "A", "")
-
-
-def test_a_slow_motion_that_the_floors_sensor_alone_does_not_see_is_its_error(folder, monkeypatch):
-    objective = make_objective(folder)
-    asked = []
-
-    def estimate(objective, evaluation, run, port, highest=np.inf):
-        asked.append((port, highest))
-        return estimate_input(objective, evaluation, run, port, highest)
-
-    monkeypatch.setattr(hypotheses, "estimate_input", estimate)
-    found = evaluate(objective)
-    # The drift of the floor's sensor is slow; a floor that does move is free.
-    assert {highest for port, highest in asked if port == PORTS["floor"]} == {np.inf, 0.5}
-    assert {highest for port, highest in asked if port != PORTS["floor"]} == {np.inf}
-    assert found["sensor"].channel != "" and "floor_acceleration" not in found
-
-
-def test_a_floor_sensor_that_does_not_follow_errs_by_minus_what_the_floor_does_more(folder, monkeypatch):
-    objective = make_objective(folder)
-    moving = plant(objective, "floor", 0.5)[0]["floor"]
-    monkeypatch.setattr(hypotheses, "follows_floor", lambda recording: False)
-    found = plant(objective, "floor", 0.5)[0]
-    assert "floor" not in found and likeliest(found) == "sensor"
-    sensor = found["sensor"]
-    assert (sensor.quantity, sensor.unit, sensor.channel) == (
-        "error of floor_acceleration",
-        "m/s^2",
-        "floor_acceleration",
-    )
-    assert sensor.negative_log_evidence == moving.negative_log_evidence
-    assert np.array_equal(sensor.signals["first"], -moving.signals["first"])
-
-
-def test_every_channel_has_a_hypothesis_of_its_own(folder):
-    objective = make_objective(folder)
-    nominal = objective.evaluate([Parameters(objective.problem.nominal)])[0]
-    linearisation = objective.linearise_nuisances(nominal)
-    each = []
-    for k in range(4):
-        estimates = {run: estimate_error(objective, nominal, run, k) for run in objective.problem.runs}
-        each.append(hypotheses._negative_log_evidence(objective, linearisation, estimates))
-    assert evaluate_hypotheses(objective, linearisation)["sensor"].negative_log_evidence <= min(each)

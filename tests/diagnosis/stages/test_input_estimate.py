@@ -7,12 +7,11 @@ import pytest
 
 from seatsim.diagnosis.localise.input_estimate import (
     estimate_current,
-    estimate_error,
     estimate_input,
     estimate_nonrepeatable_force,
     respond_to_error,
 )
-from seatsim.diagnosis.localise.reconstruction import PORTS, Port, Reconstruction, reconstruct
+from seatsim.diagnosis.localise.reconstruction import PORTS, Port, reconstruct
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.spectra import measure_power
 
@@ -62,25 +61,6 @@ def test_a_planted_signal_is_recovered_to_within_the_noise(folder, block):
     assert np.sqrt(np.mean((found.signal - signal) ** 2)) < 0.03 * np.std(signal)
 
 
-def test_noise_hides_a_signal_by_as_much_as_its_response_is_weak(folder):
-    signal = slow_force(SAMPLES, 40.0)
-    objective, nominal = plant(make_objective(folder, 0.05), PORTS["suspension"], signal)
-    error = estimate_input(objective, nominal, "first", PORTS["suspension"]).signal - signal
-    # Were the gains sum a + b at all frequencies, unweighted noise of the channels would leave this much.
-    gain = np.array([a + b for a, b in TAPS["frame force"][:3]])
-    assert np.std(error) < 0.05 / np.linalg.norm(gain)
-    assert np.std(error) > 0.1 * 0.05 / np.linalg.norm(gain)
-
-
-@pytest.mark.usefixtures("gains")
-def test_residuals_are_what_is_left_without_the_input_where_the_rig_is_linear(folder):
-    objective, nominal = plant(make_objective(folder), PORTS["driver"], slow_force(SAMPLES, 40.0))
-    found = estimate_input(objective, nominal, "first", PORTS["driver"])
-    assert np.allclose(found.residuals, nominal.whitened["first"], atol=1e-6)
-    gain = np.array([size * a for size, (a, _) in zip(SIZES, TAPS["driver force"], strict=False)])[:3, None]
-    assert np.allclose(found.response, objective.weights.weights["first"] * gain)
-
-
 @pytest.mark.usefixtures("gains")
 @pytest.mark.parametrize(("highest", "rounds"), [(np.inf, 1), (6.0, 1), (np.inf, 2), (6.0, 2)])
 def test_a_correction_is_its_formula_and_the_signal_is_filtered_by_wieners(folder, highest, rounds):
@@ -125,47 +105,6 @@ def test_an_input_below_a_highest_frequency_has_nothing_above(folder):
     assert power[frequency == 2.0][0] > 0.0 and np.sum(power[frequency <= 0.5]) > 0.0
 
 
-def test_corrections_end_where_noise_is_all_that_is_left_or_where_they_are_fruitless(folder, monkeypatch):
-    seeds = []
-    objective, nominal = plant(make_objective(folder), PORTS["suspension"], slow_force(SAMPLES, 40.0))
-    measure = Reconstruction.measure_response
-
-    def counted(self, signal, outputs, seed=1):
-        seeds.append(seed)
-        return measure(self, signal, outputs, seed)
-
-    monkeypatch.setattr(Reconstruction, "measure_response", counted)
-    estimate_input(objective, nominal, "first", PORTS["suspension"])
-    ended = list(seeds)
-    # Another port explains the gap in part: it ends after two corrections in a row that lower it by less than 2 %.
-    seeds.clear()
-    estimate_input(objective, nominal, "first", PORTS["driver"])
-    fruitless = list(seeds)
-    assert ended == list(range(1, len(ended) + 1)) and len(ended) <= 2
-    assert fruitless == list(range(1, len(fruitless) + 1)) and 3 <= len(fruitless) < 20
-
-
-def test_a_port_that_is_of_no_help_is_tried_twice(folder, monkeypatch):
-    objective = make_objective(folder)
-    # The driver's force moves the travel alone, which is as simulated; the frame has a gap.
-    monkeypatch.setitem(TAPS, "driver force", [[0.0, 0.0], [0.0, 0.0], [0.02, 0.0], [0.0, 0.0], [0.0, 0.0]])
-    gap = np.array([slow_force(SAMPLES, 1.0), np.zeros(SAMPLES), np.zeros(SAMPLES)])
-    problem = objective.problem
-    measured = problem.measured | {"first": problem.simulated("first", problem.nominal, ()) + gap}
-    objective = dataclasses.replace(objective, problem=dataclasses.replace(problem, measured=measured))
-    nominal = objective.evaluate([Parameters(problem.nominal)])[0]
-    tried, simulate = [], Reconstruction.simulate_with
-
-    def counted(self, signal):
-        tried.append(signal)
-        return simulate(self, signal)
-
-    monkeypatch.setattr(Reconstruction, "simulate_with", counted)
-    found = estimate_input(objective, nominal, "first", PORTS["driver"])
-    # Nothing to start from, then twice a probe and four fractions of a correction.
-    assert len(tried) == 1 + 2 * (1 + 4) and not found.signal.any()
-
-
 def with_current(folder, logged_more):
     rows = SKIP + SAMPLES
     command = 0.4 + 0.2 * np.sin(np.arange(rows) / 7.0)
@@ -195,23 +134,6 @@ def test_a_current_is_what_was_logged_beyond_that_of_the_simulated_coil(folder):
     assert np.array_equal(found.residuals[4], nominal.whitened["first"][4])
 
 
-def test_the_error_of_a_sensor_is_its_residual(folder):
-    objective = make_objective(folder)
-    nominal = objective.evaluate([Parameters(objective.problem.nominal)])[0]
-    found = estimate_error(objective, nominal, "second", 1)
-    assert found.residuals is nominal.whitened["second"]
-    assert np.array_equal(found.signal, nominal.residuals["second"][1])
-    spectrum = np.fft.rfft(nominal.residuals["second"][1])[: objective.weights.bins["second"]]
-    assert found.power == pytest.approx(measure_power(spectrum, 0.15))
-    assert np.array_equal(found.response, respond_to_error(objective.weights.weights["second"], 1))
-
-
-def test_a_unit_error_is_seen_by_its_own_channel_alone():
-    weights = np.array([[1.0, 2.0], [3.0, 4.0], [5.0, 6.0]])
-    assert np.array_equal(respond_to_error(weights, 1), [[0.0, 0.0], [3.0, 4.0], [0.0, 0.0]])
-    assert respond_to_error(weights, 2).dtype == complex
-
-
 def repeat(folder, forces, noise=LOUD):
     """Return an objective with a run, its repeat and a third run, and the nominal rig; forces act on the frame."""
     floor = np.random.default_rng(4).standard_normal(SKIP + SAMPLES)
@@ -234,19 +156,6 @@ def test_what_a_repeat_answers_to_a_floor_of_its_own_is_no_disturbance(folder):
     nominal = objective.evaluate([Parameters(objective.problem.nominal)])[0]
     assert np.std(objective.problem.measured["first"] - objective.problem.measured["again"]) > 0.5
     assert np.std(estimate_nonrepeatable_force(objective, nominal)["again"]) < 0.01
-
-
-@pytest.mark.usefixtures("gains")
-def test_a_force_by_which_repeats_differ_is_half_the_power_of_their_difference(folder):
-    forces = {"first": slow_force(SAMPLES, 30.0, 1), "again": slow_force(SAMPLES, 30.0, 2)}
-    objective, nominal = repeat(folder, forces)
-    found = estimate_nonrepeatable_force(objective, nominal)
-    assert {run: len(force) for run, force in found.items()} == {"first": 400, "other": 250, "again": 400}
-    assert np.array_equal(found["other"], found["first"][:250])
-    assert np.array_equal(found["again"], found["first"])
-    # Twice the power of one over two: the difference, over the root of 2; a fifth more for what the filter takes.
-    expected = 1.2 * (forces["first"] - forces["again"]) / np.sqrt(2.0)
-    assert np.std(found["first"] - expected) < 0.02 * np.std(expected)
 
 
 @pytest.mark.usefixtures("gains")

@@ -6,14 +6,11 @@ import numpy as np
 import pytest
 
 from seatsim.diagnosis.localise.reconstruction import FAR_OFF, PORTS, Port, reconstruct
-from seatsim.diagnosis.spectra import measure_power
 
 from .toy import (
     CHANNELS,
-    RATE,
     SIZES,
     SKIP,
-    TAPS,
     Diverging,
     add_taps,
     place,
@@ -29,13 +26,6 @@ def objective(folder):
     runs = {"first": 240, "second": 600}
     commands = {run: 0.3 + 0.2 * np.sin(np.arange(SKIP + rows) / 9.0) for run, rows in runs.items()}
     return weigh_stated(pose(record(folder, runs=runs, channels=CHANNELS, commands=commands)))
-
-
-@pytest.fixture
-def gains(monkeypatch):
-    """Let forces act at once, without their second tap, so that their response is a gain."""
-    for cause in ("frame force", "driver force"):
-        monkeypatch.setitem(TAPS, cause, [[a, 0.0] for a, _ in TAPS[cause]])
 
 
 def build(objective, port, run="first", *terms):
@@ -87,13 +77,6 @@ def test_a_current_adds_to_that_of_the_coil_and_is_never_negative(objective):
     assert np.allclose(rig.simulate_with(signal), expected[:, SKIP : SKIP + rig.samples], atol=1e-9)
 
 
-def test_effects_and_deviations_of_the_rig_act_beside_the_input(objective):
-    rig = reconstruct(objective, place(objective.problem, deviations=[1.0, 0.0]), "first", PORTS["driver"])
-    floor = objective.problem.recording.table("first")["floor_acceleration"]
-    expected = nominal(objective.problem) + 0.1 * add_taps("mass", floor)[:, SKIP : SKIP + rig.samples]
-    assert np.allclose(rig.simulate_with(np.zeros(rig.samples)), expected)
-
-
 def test_a_rig_that_leaves_all_bounds_misses_by_far(objective):
     problem = dataclasses.replace(
         objective.problem, scenario=dataclasses.replace(objective.problem.scenario, effects=(Diverging(1.0),))
@@ -101,15 +84,6 @@ def test_a_rig_that_leaves_all_bounds_misses_by_far(objective):
     rig = build(dataclasses.replace(objective, problem=problem), PORTS["suspension"])
     found = rig.simulate_with(np.zeros(rig.samples))
     assert np.array_equal(found, np.tile(FAR_OFF * problem.spread[:, None], rig.samples))
-
-
-def test_without_a_load_cell_none_errs(objective):
-    problem = objective.problem
-    other = dataclasses.replace(
-        problem, channels=CHANNELS[:2], measured={r: v[:2] for r, v in problem.measured.items()}
-    )
-    rig = build(dataclasses.replace(objective, problem=other), PORTS["damper"])
-    assert rig.simulate_with(np.ones(rig.samples)).shape == (2, rig.samples)
 
 
 def test_residuals_are_measured_less_simulated_whitened(objective):
@@ -131,43 +105,9 @@ def test_a_probe_is_a_tenth_of_the_floors_motion_or_of_the_force_that_it_means(o
     assert not np.allclose(rig.draw_probe(2.0, 3), rig.draw_probe(2.0, 4))
 
 
-@pytest.mark.parametrize("corner", [2.0, 40.0])
-def test_the_spectrum_of_a_probe_falls_above_its_corner(objective, corner):
-    rig = build(objective, PORTS["suspension"], "second")
-    power = np.mean([np.abs(np.fft.rfft(rig.draw_probe(corner, seed))) ** 2 for seed in range(60)], axis=0)
-    frequency = np.fft.rfftfreq(rig.samples, 1.0 / RATE)
-    flat = power[1:-1] * (1.0 + frequency[1:-1] / corner) ** 2
-    parts = [np.mean(part) for part in np.array_split(flat, 5)]
-    assert max(parts) < 1.25 * min(parts)
-
-
-def test_plausible_inputs_have_the_power_of_ten_slow_probes(objective):
-    rig = build(objective, PORTS["suspension"])
-    bins = objective.weights.bins["first"]
-    probe = np.fft.rfft(rig.draw_probe(2.0, 1))[:bins]
-    assert rig.plausible_power() == pytest.approx(100.0 * measure_power(probe, 0.15))
-    loud = objective.settings._replace(reconstruction=objective.settings.reconstruction._replace(largest_input=3.0))
-    other = dataclasses.replace(rig, problem=dataclasses.replace(objective.problem, settings=loud))
-    assert other.plausible_power() == pytest.approx(0.09 * rig.plausible_power())
-
-
 def weighted(objective, run, response):
     weights = objective.weights.weights[run]
     return weights * response[:, : weights.shape[1]]
-
-
-@pytest.mark.usefixtures("gains")
-@pytest.mark.parametrize("seed", [1, 2])
-def test_the_response_of_a_gain_is_measured_exactly(objective, seed):
-    rig = build(objective, PORTS["cushion"])
-    gains = np.array(
-        [size * (d[0] - f[0]) for size, f, d in zip(SIZES, TAPS["frame force"], TAPS["driver force"], strict=True)]
-    )
-    expected = weighted(objective, "first", np.tile(gains[:, None], rig.samples // 2 + 1))
-    about = 30.0 * np.random.default_rng(1).standard_normal(rig.samples)
-    for signal in (np.zeros(rig.samples), about):
-        found = rig.measure_response(signal, rig.simulate_with(signal), seed)
-        assert np.allclose(found, expected, rtol=1e-8, atol=1e-8)
 
 
 def test_the_response_of_a_filter_is_measured_but_for_its_ends(objective):

@@ -73,12 +73,6 @@ def test_what_the_regressors_make_is_predicted_and_what_they_do_not_is_not():
     assert predict_share(SETTINGS, regressors, turned) == 0.0
 
 
-def test_regressors_at_rest_and_no_signal_at_all_are_no_trouble():
-    regressors = {run: np.zeros((2, 50)) for run in "ab"}
-    assert predict_share(SETTINGS, regressors, {run: np.ones(50) for run in "ab"}) == 0.0
-    assert predict_share(SETTINGS, draw({"a": 50, "b": 50}), {run: np.zeros(50) for run in "ab"}) == 1.0
-
-
 FAMILIES = ["displacement", "velocity", "velocity and current", "past motion", "floor motion"]
 
 
@@ -142,15 +136,6 @@ def test_families_are_those_of_the_simulated_motion(problem):
     assert found["everything"] == pytest.approx(max(predict_share(SETTINGS, together, target), alone), abs=1e-9)
 
 
-def test_the_rigs_own_motion_is_regressed_on_not_the_nominal_one(problem):
-    heavy = place(problem, deviations=[1.0, 1.0])
-    signals = of_motion(problem, lambda x, v, i, a: x)
-    assert (
-        explain_signal(problem, heavy, signals)["displacement"]
-        < explain_signal(problem, place(problem), signals)["displacement"]
-    )
-
-
 @pytest.mark.parametrize(
     ("make", "family"),
     [
@@ -164,38 +149,6 @@ def test_a_force_that_the_rig_makes_is_predicted_by_its_family(problem, make, fa
     assert max(FAMILIES, key=lambda each: found[each]) == family
     # Averages of rows blur what bends within a row.
     assert found[family] > 0.35 and found["everything"] >= found[family]
-
-
-def test_a_random_force_is_predicted_by_nothing(problem):
-    rng = np.random.default_rng(4)
-    found = explain_signal(problem, place(problem), of_motion(problem, lambda x, v, i, a: rng.standard_normal(len(x))))
-    assert found["everything"] < 0.05
-
-
-def test_without_travel_only_the_floor_tells(problem):
-    short = dataclasses.replace(problem, channels=CHANNELS[:2])
-    found = explain_signal(
-        short, place(short), of_motion(problem, lambda x, v, i, a: np.convolve(a, [0.0, 0.0, 1.0])[: len(a)])
-    )
-    assert list(found) == ["floor motion", "everything"]
-    assert found["floor motion"] == found["everything"] > 0.2
-
-
-def test_a_recorded_current_stands_in_for_one_that_is_not_compared(problem):
-    short = dataclasses.replace(problem, channels=CHANNELS[:4])
-    signals = of_motion(problem, lambda x, v, i, a: 30.0 * i * v)
-    compared = explain_signal(problem, place(problem), signals)["velocity and current"]
-    assert explain_signal(short, place(short), signals)["velocity and current"] == pytest.approx(compared, abs=0.01)
-    # A command that is shorter than the run, or none at all, says nothing.
-    for tables in (
-        {
-            run: {n: v for n, v in t.items() if n not in ("coil_current", "current_command")}
-            for run, t in problem.recording.tables.items()
-        },
-        {run: t | {"coil_current": t["coil_current"][:3]} for run, t in problem.recording.tables.items()},
-    ):
-        silent = dataclasses.replace(short, recording=dataclasses.replace(problem.recording, tables=tables))
-        assert explain_signal(silent, place(silent), signals)["velocity and current"] == 0.0
 
 
 def test_signals_at_a_low_rate_are_not_thinned(problem):

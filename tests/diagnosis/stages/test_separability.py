@@ -16,29 +16,12 @@ def predict(outputs, nuisances=NONE, own=None):
 SAME = predict([[1.0, 2.0], [1.0, 2.0]])
 
 
-def test_without_parameters_it_is_the_distance_in_the_new_experiment():
-    assert measure_separability(SAME, predict([[1.0, 1.0], [4.0, 5.0]]), 1.0, 1.0) == pytest.approx(5.0)
-
-
-def test_what_the_recording_tells_already_is_no_gain():
-    far = predict([[0.0, 0.0], [30.0, 40.0]])
-    assert measure_separability(far, predict([[1.0, 1.0], [4.0, 5.0]]), 1.0, 1.0) == pytest.approx(5.0)
-    assert measure_separability(far, SAME, 1.0, 1.0) == pytest.approx(0.0, abs=1e-6)
-
-
 def test_a_nuisance_takes_away_what_its_prior_lets_it():
     # Least of (3 - 2 u)^2 + (u / s)^2 is 9 / (1 + 4 s^2).
     new = predict([[0.0, 4.0], [3.0, 4.0]], [[2.0, 0.0]])
     old = predict(SAME.outputs, [[0.0, 0.0]])
     for std in (0.5, 2.0):
         assert measure_separability(old, new, std, 9.0) == pytest.approx(np.sqrt(9.0 / (1.0 + 4.0 * std**2)))
-
-
-def test_a_nuisance_that_the_recording_fixes_takes_away_less():
-    # Both experiments hold u: least of (3 - 2 u)^2 + (5 u)^2 + (u / s)^2, less 0 of the recording alone.
-    new, old = predict([[0.0, 4.0], [3.0, 4.0]], [[2.0, 0.0]]), predict(SAME.outputs, [[5.0, 0.0]])
-    information = 25.0 + 1.0 / 0.25
-    assert measure_separability(old, new, 0.5, 9.0) == pytest.approx(np.sqrt(9.0 * information / (4.0 + information)))
 
 
 def test_own_parameters_are_those_of_the_rig_that_is_moved_under_the_wide_prior():

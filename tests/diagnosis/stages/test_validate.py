@@ -15,20 +15,11 @@ from seatsim.diagnosis.validate import (
     choose_typical_run,
     make_scenario,
     refit_without,
-    shrink_by_run,
 )
 from seatsim.effects.sensor import Gain
 from seatsim.scenario.loading import single
 
-from .toy import RATE, SIZES, SKIP, Added, add_taps, offer, place, pose, record, weigh_stated
-
-
-def test_shrink_is_the_share_of_the_rms_that_is_gone_by_run(folder):
-    problem = pose(record(folder))
-    before = {run: np.ones_like(values) * problem.spread[:, None] for run, values in problem.measured.items()}
-    after = {"first": 0.3 * before["first"], "second": 1.5 * before["second"]}
-    rigs = [Evaluation(Parameters(problem.nominal), residuals, {}, 0.0) for residuals in (before, after)]
-    assert shrink_by_run(problem, *rigs) == pytest.approx([0.7, -0.5])
+from .toy import RATE, SKIP, Added, add_taps, offer, place, pose, record, weigh_stated
 
 
 @dataclasses.dataclass(frozen=True)
@@ -109,23 +100,6 @@ def test_the_typical_run_shrinks_as_all_runs_together(shares, after, chosen):
     assert choose_typical_run(problem, *rigs) == chosen
 
 
-def test_every_effect_counts_for_itself():
-    shares = {"one": [0.3, 0.3, 0.4], "two": [0.3, 0.02, 0.68]}
-    # The last run has too much of the second effect, the middle one too little.
-    assert choose(shares, [0.9, 0.1, 0.2], ("one", "two")) == "run 0"
-    shares = {"one": [0.9, 0.1], "two": [0.15, 0.85]}
-    # Each run has too much of one: the one with less is held out.
-    assert choose(shares, [0.1, 0.9], ("one", "two")) == "run 1"
-    assert choose({"one": [0.9, 0.1], "two": [0.1, 0.9]}, [0.2, 0.1], ("one", "two")) == "run 1"
-    assert choose({"one": [0.9, 0.1], "two": [0.1, 0.9]}, [0.1, 0.2], ("one", "two")) == "run 0"
-
-
-def test_the_quantile_is_that_of_the_settings():
-    shrink = [0.5, 0.1, 0.9, 0.3, 0.7]
-    found = [choose({"one": [0.2] * 5}, shrink, quantile=q) for q in (0.0, 0.49, 0.5, 1.0)]
-    assert found == ["run 1", "run 3", "run 0", "run 2"]
-
-
 def test_without_effects_or_other_runs_the_last_is_held_out():
     assert choose({"one": [0.2] * 3}, [0.5, 0.1, 0.9], ()) == "run 2"
     assert choose({"one": [1.0]}, [0.5]) == "run 0"
@@ -142,19 +116,6 @@ def test_a_rig_is_fitted_without_the_run(folder):
     assert calibrated.parameters.terms == () and np.any(calibrated.parameters.deviations)
     alone = refit_without(objective, chosen, "first")[1]
     assert alone.parameters.values[0][0] > 1.0
-
-
-def test_without_effects_the_augmented_rig_is_the_calibrated_one(folder):
-    objective = weigh_stated(pose(record(folder)))
-    chosen = objective.evaluate([place(objective.problem)])[0]
-    calibrated, augmented = refit_without(objective, chosen, "first")
-    assert augmented is calibrated
-
-
-def test_a_single_run_is_not_left_out(folder):
-    objective = weigh_stated(pose(record(folder, (Added("one", 0.5),), {"only": 240}, noise=1e-3)))
-    chosen = objective.evaluate([place(objective.problem, (offer("x.one", "one"), 1.0))])[0]
-    assert refit_without(objective, chosen, "only")[1].parameters.values[0][0] == pytest.approx(0.5, abs=1e-3)
 
 
 def test_a_scenario_has_the_parameters_and_effects_of_a_rig_beside_its_own(folder):
@@ -208,21 +169,6 @@ def test_other_excitations_and_the_spread_from_run_to_run_widen_the_interval(fol
     assert wide == pytest.approx(narrow * np.sqrt(0.1**2 + 0.2**2) / 0.1)
 
 
-def test_the_floor_is_the_noise_in_standard_deviations(folder):
-    problem = pose(record(folder, (Added("one", 1.0),)))
-    found = measure(problem, scenarios(problem, 0.0, 0.0, 1.0), "first", 0.0).floor
-    table = problem.recording.table("first")
-    stated = [0.05 * size / np.std(table[name][SKIP:]) for name, size in zip(problem.channels, SIZES, strict=False)]
-    assert list(found.channels.values()) == pytest.approx(stated)
-    assert found.overall == pytest.approx(np.sqrt(np.mean(np.square(stated))))
-
-
-def test_a_gap_that_does_not_shrink_has_no_interval(folder):
-    problem = pose(record(folder, (Added("one", 1.0),)))
-    found = measure(problem, scenarios(problem, 0.5, 0.2, 0.5), "first", 0.3)
-    assert found.shrink == 0.0 and found.shrink_interval == (0.0, 0.0)
-
-
 @pytest.mark.parametrize("amount", [0.97, 1.3, 2.2])
 def test_an_interval_holds_its_shrink_and_no_gap_shrinks_by_more_than_itself(folder, amount):
     problem = pose(record(folder, (Added("one", 1.0),), noise=1e-3))
@@ -264,28 +210,3 @@ def test_an_interval_covers_a_known_shrink_in_nine_of_ten_draws(draw_residuals, 
         assert low <= point <= high
         covered += low <= shrink <= high
     assert 0.83 < covered / draws < 0.96
-
-
-def test_an_interval_narrows_where_both_rigs_miss_alike(draw_residuals):
-    rng = np.random.default_rng(2)
-    widths = [np.ptp(draw_residuals(rng, 0.5, correlation)[0]) for correlation in (0.0, 0.9, 1.0)]
-    assert widths[0] > 1.5 * widths[1] > 0.0 and widths[2] < 1e-9
-
-
-def test_a_spread_from_run_to_run_widens_it(draw_residuals):
-    (low, high), _ = draw_residuals(np.random.default_rng(3), 0.3, 1.0, spread=0.2)
-    assert high - low == pytest.approx(2.0 * 1.645 * 0.2, rel=0.15)
-
-
-def test_channels_count_in_their_standard_deviations(draw_residuals):
-    # Half of the power goes to 0.04 of it, the other half stays.
-    (low, high), point = draw_residuals(np.random.default_rng(3), [0.8, 0.0], 1.0)
-    assert point == pytest.approx(1.0 - np.sqrt(0.52), abs=0.05) and low <= point <= high
-    assert high - low < 0.1
-
-
-@pytest.mark.parametrize("percentiles", [(95.0, 99.0), (1.0, 5.0)])
-def test_an_interval_that_misses_its_shrink_is_widened_to_it(draw_residuals, folder, percentiles):
-    changed = {"excitation_std": 0.0, "block_length": LENGTH / RATE, "percentiles": percentiles}
-    (low, high), point = draw_residuals(np.random.default_rng(3), 0.5, problem=pose(record(folder), validation=changed))
-    assert (low if percentiles[0] > 50.0 else high) == point and low < high

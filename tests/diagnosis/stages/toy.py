@@ -10,6 +10,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from seatsim.diagnosis.candidates import Candidate
+from seatsim.diagnosis.localise.reconstruction import PORTS, reconstruct
 from seatsim.diagnosis.noise import weigh_uniformly
 from seatsim.diagnosis.nuisance import Nuisance
 from seatsim.diagnosis.objective import Objective
@@ -234,3 +235,31 @@ def whiten(objective, cause):
     """Return the whitened numbers of one unit of a cause, of all runs on end."""
     problem = objective.problem
     return np.concatenate([objective.weights(signal_of(problem, run, cause), run).ravel() for run in problem.runs])
+
+
+@dataclass(frozen=True)
+class _Unweighed:
+    """A problem without weights, to drive a rig by an input."""
+
+    problem: object
+    weights: object = None
+
+
+def push(problem, newtons, port):
+    """Return what a random force at a port adds by run and channel, another one in each run."""
+    added = {}
+    for seed, (run, values) in enumerate(problem.measured.items()):
+        samples = values.shape[1]
+        drawn = np.fft.rfft(np.random.default_rng(seed).standard_normal(samples))
+        force = np.fft.irfft(drawn / (1.0 + np.arange(len(drawn)) / 20.0), samples)
+        rig = reconstruct(_Unweighed(problem), place(problem), run, PORTS[port])
+        change = rig.simulate_with(newtons * force / np.std(force)) - rig.simulate_with(np.zeros(samples))
+        added[run] = dict(zip(problem.channels, change, strict=True))
+    return added
+
+
+def slow_floor(rows, seed=3):
+    """Return a floor that hardly moves from one row to the next, so that `slow` and `fast` are the same."""
+    return np.convolve(
+        np.cumsum(np.random.default_rng(seed).standard_normal(rows + 40)) / 10.0, np.ones(20) / 20.0, "same"
+    )[20:-20]

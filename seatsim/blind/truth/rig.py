@@ -1,0 +1,225 @@
+"""The true seat rig in one compiled loop: classical Runge-Kutta at 0.1 ms, memories carried from step to step.
+
+    ms zs'' = -Fs + Fc - Fd + F_frame,    m zc'' = -Fc + F_occupant
+
+The floor enters only as an acceleration; all motion is relative (`x = zs - z0`, `y = zc - zs`), so nothing drifts.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple, cast
+
+import numpy as np
+
+from seatsim.blind.truth import state
+from seatsim.blind.truth.coil import ROUNDING, command_of, held_command, target_current, write_coil_rates
+from seatsim.blind.truth.damper import damper_force, update_cavity
+from seatsim.blind.truth.fluid import update_relays
+from seatsim.blind.truth.parameters import RigParameters
+from seatsim.blind.truth.seat import cushion_force, occupant_force, suspension_force, write_occupant_rates
+from seatsim.blind.truth.state import compiled
+from seatsim.schema.arrays import Array
+
+SAMPLE_RATE = 500.0
+"""Rows per second, unless an experiment states another rate."""
+EXCITATION_RATE = 2000.0
+"""Samples per second of the floor and of forces on the frame; linear between them."""
+INTEGRATION_STEP = 1e-4
+"""Longest step of the integration, s, a whole number of them in a row; a quarter of it changes no channel by more than
+0.1 % of its spread (see the tests)."""
+_FORGETTING = 0.8
+"""1/s, at which a controller's integral of an acceleration forgets, so that no offset runs away."""
+
+
+@dataclass(frozen=True)
+class RigMotion:
+    """What the rig did, shape (rows,) each, before sensors and noise; `fine_current` has a value for every step."""
+
+    frame: Array  # m/s^2
+    driver: Array  # m/s^2
+    displacement: Array  # m, suspension
+    force: Array  # N, at the load cell
+    command: Array  # A
+    current: Array  # A
+    temperature: Array  # degC, of the thermometer
+    fine_current: Array  # A, shape (steps,)
+    sample_rate: float = SAMPLE_RATE  # Hz, of the rows
+
+
+class Inputs(NamedTuple):
+    """What acts on the rig during a run; floor and frame force are linear between samples."""
+
+    floor: Array  # m/s^2
+    floor_rate: float  # Hz
+    frame_force: Array  # N, at EXCITATION_RATE; a single sample means none
+    law: Array  # see `control_laws`
+    schedule: Array  # A, one per row: the command where the law is a schedule
+    sample_rate: float = SAMPLE_RATE  # Hz, of the rows
+
+
+class _Stages(NamedTuple):
+    """Rates at the four stages of a Runge-Kutta step, the state between them, and the last accelerations."""
+
+    k1: Array
+    k2: Array
+    k3: Array
+    k4: Array
+    part: Array
+    acc: Array
+
+
+def simulate(record: np.void, inputs: Inputs, step: float = INTEGRATION_STEP) -> RigMotion:
+    """Run the rig from rest for as many rows as the schedule has, in steps no longer than `step`, s.
+
+    `record` is that of `parameter_record`.
+    """
+    rows = inputs.schedule.size
+    per_row = math.ceil(1.0 / (inputs.sample_rate * step) - ROUNDING)
+    out: Array = np.zeros((7, rows))
+    fine = np.zeros(rows * per_row)
+    _run(cast(RigParameters, record), inputs, per_row, out, fine)
+    return RigMotion(out[0], out[1], out[2], out[3], out[4], out[5], out[6], fine, inputs.sample_rate)
+
+
+@compiled
+def _between(samples: Array, rate: float, time: float) -> float:
+    place = time * rate
+    k = int(place)
+    if k + 1 >= samples.size:
+        return float(samples[-1])
+    return float(samples[k] + (place - k) * (samples[k + 1] - samples[k]))
+
+
+@compiled
+def _base_acceleration(y: Array, rates: Array, floor: float, reaction: float, p: RigParameters) -> float:
+    """Return the acceleration of the base, m/s^2, and write its rates; `reaction` is the suspension's force on it."""
+    if p.base_rate > 0.0 and p.base_mass > 0.0:
+        restoring = p.base_rate * (p.base_rate * y[state.BASE] + 2.0 * p.base_damping * y[state.BASE_V])
+        rates[state.BASE] = y[state.BASE_V]
+        rates[state.BASE_V] = -restoring - floor + reaction / p.base_mass
+        return float(floor + rates[state.BASE_V])
+    return floor
+
+
+@compiled
+def _write_rates(
+    y: Array,
+    rates: Array,
+    memory: Array,
+    floor: float,
+    frame_force: float,
+    target: float,
+    late: float,
+    p: RigParameters,
+    acc: Array,
+) -> None:
+    """Write all rates; `acc` gets frame and driver acceleration (m/s^2) and the force at the load cell (N).
+
+    An inerter (fluid inertia) adds its mass to the frame and is carried by the base; a lever transmits the damper's
+    force and travel by its ratio.
+    """
+    write_coil_rates(y, rates, target, y[state.V], p)
+    ratio = p.damper_ratio + p.lever_slope * y[state.X]
+    fd = damper_force(y, rates, memory, p.damper_ratio * y[state.X], y[state.V] * ratio, p)
+    fs = suspension_force(y, rates, p)
+    fc = cushion_force(y, rates, p)
+    base = _base_acceleration(y, rates, floor, fs + ratio * fd, p)
+    frame = (-fs + fc - ratio * fd + frame_force + p.inertance * base) / (p.ms + p.inertance)
+    seated = p.m * (1.0 + p.mass_gain) * (1.0 - p.body_fraction - p.second_body_fraction)
+    driver = (-fc + occupant_force(y, late, p)) / seated
+    write_occupant_rates(y, rates, driver, p)
+    rates[state.X] = y[state.V]
+    rates[state.V] = frame - base
+    rates[state.Y] = y[state.W]
+    rates[state.W] = driver - frame
+    acc[0] = frame
+    acc[1] = driver
+    acc[2] = fd + p.inertance * (frame - base)
+
+
+@compiled
+def _finish_step(
+    y: Array,
+    memory: Array,
+    stages: _Stages,
+    middle: float,
+    end: float,
+    frame_force: float,
+    target: float,
+    late: float,
+    h: float,
+    p: RigParameters,
+) -> None:
+    """Advance the state from the first stage to the end of the step; the floor is given in its middle and at its end.
+
+    Frame force, target and muscles stay as they were at its start: they change slowly beside a step.
+    """
+    k1, k2, k3, k4, part, acc = stages
+    for j in range(state.STATES):
+        part[j] = y[j] + 0.5 * h * k1[j]
+    _write_rates(part, k2, memory, middle, frame_force, target, late, p, acc)
+    for j in range(state.STATES):
+        part[j] = y[j] + 0.5 * h * k2[j]
+    _write_rates(part, k3, memory, middle, frame_force, target, late, p, acc)
+    for j in range(state.STATES):
+        part[j] = y[j] + h * k3[j]
+    _write_rates(part, k4, memory, end, frame_force, target, late, p, acc)
+    for j in range(state.STATES):
+        y[j] += h / 6.0 * (k1[j] + 2.0 * (k2[j] + k3[j]) + k4[j])
+    # the driver stage can neither sink current nor exceed its supply
+    y[state.CURRENT] = min(max(y[state.CURRENT], 0.0), p.i_max)
+
+
+@compiled
+def _update_memory(
+    y: Array, memory: Array, relays: Array, frame: float, driver: float, h: float, p: RigParameters
+) -> None:
+    """Carry what changes once a step: the controller's velocities, the cavity, the relays."""
+    memory[state.V_FRAME] += h * (frame - _FORGETTING * memory[state.V_FRAME])
+    memory[state.V_DRIVER] += h * (driver - _FORGETTING * memory[state.V_DRIVER])
+    if p.cavitation_force > 0.0:
+        ratio = p.damper_ratio + p.lever_slope * y[state.X]
+        update_cavity(y, memory, p.damper_ratio * y[state.X], y[state.V] * ratio, h, p)
+    if p.relay_share != 0.0:
+        update_relays(y, memory, relays, p)
+
+
+@compiled
+def _run(p: RigParameters, inputs: Inputs, per_row: int, out: Array, fine: Array) -> None:
+    floor, floor_rate, frame_forces, law, schedule, sample_rate = inputs
+    rows = out.shape[1]
+    interval = 1.0 / sample_rate
+    h = interval / per_row
+    y = np.zeros(state.STATES)
+    y[state.T_FLUID] = y[state.T_HOUSING] = y[state.T_THERMOMETER] = p.t_start
+    memory = np.zeros(state.MEMORIES)
+    relays = np.zeros(state.RELAYS)
+    k1, k2, k3 = np.zeros(state.STATES), np.zeros(state.STATES), np.zeros(state.STATES)
+    k4, part, acc = np.zeros(state.STATES), np.zeros(state.STATES), np.zeros(3)
+    stages = _Stages(k1, k2, k3, k4, part, acc)
+    commands = np.zeros(rows)
+    # a ring of past cushion speeds, as long as the muscles' delay
+    lag = max(round(p.muscle_delay / h), 1)
+    past = np.zeros(lag)
+    for row in range(rows):
+        for sub in range(per_row):
+            n = row * per_row + sub
+            time = n * h
+            force = _between(frame_forces, EXCITATION_RATE, time) if frame_forces.size > 1 else 0.0
+            if sub == 0:
+                commands[row] = command_of(law, schedule, row, y, memory, p)
+            target = target_current(held_command(commands, time, interval, p), time, h, y, memory, p)
+            late = past[n % lag]
+            _write_rates(y, k1, memory, _between(floor, floor_rate, time), force, target, late, p, acc)
+            if sub == 0:
+                out[0, row], out[1, row], out[3, row] = acc
+                out[2, row], out[4, row], out[5, row] = y[state.X], commands[row], y[state.CURRENT]
+                out[6, row] = y[state.T_THERMOMETER]
+            fine[n] = y[state.CURRENT]
+            frame, driver = acc[0], acc[1]
+            middle, end = _between(floor, floor_rate, time + 0.5 * h), _between(floor, floor_rate, time + h)
+            _finish_step(y, memory, stages, middle, end, force, target, late, h, p)
+            past[n % lag] = y[state.W]
+            _update_memory(y, memory, relays, frame, driver, h, p)

@@ -1,0 +1,285 @@
+"""What reads files of others, each with valid files and the names of those that are changed."""
+
+from __future__ import annotations
+
+import gzip
+import io
+import tempfile
+import zipfile
+from collections.abc import Callable, Generator, Mapping
+from functools import partial
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from controllers.synthesis import synthesise
+from controllers.synthesis.design import Design
+from seatsim.blind.score.verdicts import read_verdict
+from seatsim.blind.sealed import SEAL, Sealed, seal, unseal
+from seatsim.cosimulation.description import DESCRIPTION, check_parameter, describe_unit, find_variable
+from seatsim.importing.importing import import_files
+from seatsim.importing.inspection import inspect_file
+from seatsim.metrics.table import METRICS
+from seatsim.provenance.statement import read_manifest
+from seatsim.recordings.bench_tables import load_bench
+from seatsim.recordings.recording import load_recording
+from seatsim.report.sweep import report_sweep
+from seatsim.scenario.loading import load, single
+from seatsim.sweeps.engines.base import Work
+from seatsim.sweeps.execute import execute, prepare
+from seatsim.sweeps.outcome import DONE, Outcome
+from seatsim.sweeps.statistics.rows import count_exceedances, read_rows, tabulate_quantiles
+from seatsim.sweeps.statistics.sensitivity import analyse_sensitivity
+
+from ..importing import exports
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "scenarios"
+RECORDING, BENCH = EXAMPLES / "data" / "recording", EXAMPLES / "data" / "bench"
+SHORT_ROWS, FEW_ROWS = 600, 200
+ROWS = "runs/part-000000.parquet"
+KEY = "c2VhdHNpbS1mdXp6LXJlYWRlcnMtMzItYnl0ZXMhISE="
+"""A key for the sealed file."""
+
+
+class Reader(NamedTuple):
+    """Something that reads: the valid files, which of them are changed, and the call on their folder."""
+
+    files: Mapping[str, bytes]
+    changed: tuple[str, ...]
+    read: Callable[[Path], object]
+
+
+def make_readers() -> dict[str, Reader]:
+    """Return all readers with their valid files."""
+    scenario = (EXAMPLES / "quickstart.yaml").read_bytes()
+    seat = (EXAMPLES / "laws.yaml").read_bytes()
+    table = b"".join(gzip.decompress((RECORDING / "run-1.csv.gz").read_bytes()).splitlines(keepends=True)[:SHORT_ROWS])
+    recorded = {name: (RECORDING / name).read_bytes() for name in ("recording.yaml", "nominal.yaml")}
+    recorded |= {f"run-{number}.csv.gz": gzip.compress(table, 1) for number in (1, 2)}
+    bench = next(path for path in sorted(BENCH.glob("*.csv*")))
+    rows = bench.read_bytes() if bench.suffix == ".csv" else gzip.decompress(bench.read_bytes())
+    rows = b"".join(rows.splitlines(keepends=True)[:SHORT_ROWS])
+    sidecar = b"sample_rate_Hz: 500\ntemperature_degC: 20\nnote: a sine of 1 Hz\n"
+    sweep = b"scenario: quickstart.yaml\nseed: 1\ndesign: lhs\nruns: 10\n"
+    sweep += b"vary:\n  plant.driver_mass: {normal: [80, 12], low: 50}\n"
+    design = b"plant.driver_mass,temperature\n55,20\n75,40\n98,60\n"
+    formats = make_formats(table)
+    rows_of_sweep = make_sweep(scenario, sweep)
+    floor = b"time,up\n" + b"".join(b"%.3f,%d\n" % (0.005 * row, row * 37 % 11 - 5) for row in range(SHORT_ROWS))
+    measured = scenario[: scenario.index(b"excitation:")]
+    measured += b"excitation: {kind: table, path: floor.csv, column: up, time_column: time, duration: 1.0}\n"
+    designed = b"scenario: quickstart.yaml\ndesign: table\ntable: points.csv\nlimits: {driver_acceleration_rms: 2}\n"
+    return {
+        "scenario": Reader({"a.yaml": scenario}, ("a.yaml",), _read_scenario),
+        "variants": Reader({"a.yaml": seat}, ("a.yaml",), _read_scenario),
+        "recording": Reader(recorded, ("recording.yaml", "nominal.yaml"), _read_recording),
+        "table": Reader(recorded, ("run-1.csv.gz",), _read_recording),
+        "bench": Reader({"a.csv": rows, "a.yaml": sidecar}, ("a.csv", "a.yaml"), _read_bench),
+        "sweep": Reader({"a.yaml": sweep, "quickstart.yaml": scenario}, ("a.yaml",), _read_sweep),
+        "design": Reader(
+            {"a.yaml": designed, "points.csv": design, "quickstart.yaml": scenario},
+            ("a.yaml", "points.csv"),
+            _read_sweep,
+        ),
+        "floor": Reader({"a.yaml": measured, "floor.csv": floor}, ("a.yaml", "floor.csv"), _read_floor),
+        "rows": Reader(rows_of_sweep, ("manifest.json", ROWS), _read_rows),
+        "resumed": Reader(rows_of_sweep, ("manifest.json", ROWS), _read_resumed),
+        "unit": Reader({"a.fmu": make_unit()}, ("a.fmu",), _read_unit),
+        "import": Reader({"a.csv": table}, ("a.csv",), _read_import),
+        "map": Reader({"a.csv": table, "map.yaml": make_map()}, ("map.yaml",), _read_map),
+        **{
+            f"format {name}": Reader({name: content}, (name,), partial(_read_format, name))
+            for name, content in formats.items()
+        },
+        "synthesis": Reader({"design.yaml": make_design()}, ("design.yaml",), _read_design),
+        "diagnosis": Reader({"diagnosis.json": make_diagnosis()}, ("diagnosis.json",), _read_diagnosis),
+        "manifest": Reader({"manifest.json": make_manifest()}, ("manifest.json",), _read_manifest),
+        "sealed": Reader(make_sealed(), ("sealed", "folder-seal.txt"), _read_sealed),
+    }
+
+
+def _read_scenario(folder: Path) -> object:
+    return load(folder / "a.yaml")
+
+
+def _read_recording(folder: Path) -> object:
+    recording = load_recording(folder)
+    tables = [recording.table(run) for run in recording.runs]
+    return tables, recording.nominal
+
+
+def _read_bench(folder: Path) -> object:
+    return load_bench(folder / "a.csv")
+
+
+def _read_sweep(folder: Path) -> object:
+    return prepare(folder / "a.yaml")
+
+
+def _read_floor(folder: Path) -> object:
+    scenario = single(folder / "a.yaml")
+    return None if scenario.excitation is None else scenario.excitation.floor(scenario.solver.step, scenario.seed)
+
+
+def _read_rows(folder: Path) -> object:
+    rows = read_rows(folder)
+    return report_sweep(rows, tabulate_quantiles(rows), analyse_sensitivity(rows), count_exceedances(rows))
+
+
+def _read_resumed(folder: Path) -> object:
+    return execute(prepare(folder / "a.yaml"), folder, make_up, resume=True)
+
+
+def _read_unit(folder: Path) -> object:
+    unit = describe_unit(folder / "a.fmu")
+    variables = find_variable(unit, "v", "input"), find_variable(unit, "F", "output")
+    return variables, check_parameter(unit, "c", 2.0)
+
+
+def _read_map(folder: Path) -> object:
+    return import_files([folder / "a.csv"], folder / "imported", folder / "map.yaml")
+
+
+def _read_import(folder: Path) -> object:
+    return inspect_file(folder / "a.csv")
+
+
+def _read_format(name: str, folder: Path) -> object:
+    return inspect_file(folder / name)
+
+
+def _read_design(folder: Path) -> object:
+    return Design.load(folder / "design.yaml").gamma
+
+
+def _read_diagnosis(folder: Path) -> object:
+    return read_verdict(folder / "diagnosis.json")
+
+
+def _read_manifest(folder: Path) -> object:
+    return read_manifest(folder)
+
+
+def _read_sealed(folder: Path) -> object:
+    (folder / "set").mkdir(exist_ok=True)
+    (folder / "folder-seal.txt").rename(folder / "set" / "seal.txt")
+    try:
+        return unseal(folder / "sealed", KEY, folder / "set")
+    finally:
+        (folder / "set" / "seal.txt").rename(folder / "folder-seal.txt")
+        (folder / "set").rmdir()
+
+
+def make_formats(table: bytes) -> dict[str, bytes]:
+    """Return the first rows of the table in every format that is imported, by `tests/importing/exports.py`."""
+
+    frame = pd.read_csv(io.BytesIO(table)).head(FEW_ROWS)
+    columns = {"time": 0.002 * np.arange(FEW_ROWS)} | {name: frame[name].to_numpy() for name in exports.UNITS}
+    road = 0.01 * np.sin(np.arange(FEW_ROWS) / 9.0)[:, None] * np.ones(3)
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place)
+        for name, write in exports.FORMATS.items():
+            write(folder / name, columns)
+        for kind in ("KRBI", "LRFI"):
+            exports.opencrg(folder / f"{kind}.crg", road, kind=kind)
+        return {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
+
+
+def make_design() -> bytes:
+    """Return a design of a plant of two states."""
+
+    with tempfile.TemporaryDirectory() as place:
+        two, one = np.eye(2), np.ones((1, 1))
+        found = synthesise(
+            np.array([[0.0, 1.0], [-4.0, -0.4]]), np.array([[0.0], [1.0]]), np.array([[0.0], [1.0]]), two, two,
+            np.zeros((2, 1)), 0.1 * np.vstack([one, one]), np.zeros((2, 1)), time_budget=2.0,
+        )  # fmt: skip
+        found.save(Path(place) / "design.yaml")
+        return (Path(place) / "design.yaml").read_bytes()
+
+
+def make_diagnosis() -> bytes:
+    """Return a `diagnosis.json`."""
+    return (
+        b'{"verdict": "known", "where": [{"block": "damper", "share": 0.9}], "causes": [{"effect": "damper.remanence",'
+        b' "probability": 0.97, "shrink": 0.87, "parameters": {"width": {"value": 0.08, "std": 0.004, "unit": "A"}}}],'
+        b' "selected": ["damper.remanence"], "indistinguishable": [], "experiment": null, "held_out": ["run-c"],'
+        b' "gap": {"before": {"overall": 0.31, "channels": {"damper_force": 0.4}}, "shrink": 0.87,'
+        b' "shrink_interval": [0.82, 0.9]}, "augmented": "augmented.yaml"}'
+    )
+
+
+def make_manifest() -> bytes:
+    """Return the manifest of a command."""
+    return (
+        b'{"seed": 1, "versions": {"seatsim": "0.1.0"}, "platform": {"system": "Linux"}, "command": "comfort",'
+        b' "arguments": ["--hours=6.0", "--", "rec"], "directory": "../..", "folder": "c", "own_code": [],'
+        b' "inputs": [{"path": "../../rec/recording.yaml", "sha256": "00", "bytes": 4}],'
+        b' "outputs": [{"path": "comfort.json", "sha256": "00", "bytes": 4}], "measured": {}}'
+    )
+
+
+def make_sealed() -> dict[str, bytes]:
+    """Return a sealed file and the seal of its set."""
+
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place) / "set"
+        folder.mkdir()
+        seal(Path(place) / "sealed", folder, KEY, Sealed({}, {"case-0001": {"run.csv": b"a\n1\n"}}, {"seed": 1}))
+        return {"sealed": (Path(place) / "sealed").read_bytes(), "folder-seal.txt": (folder / SEAL).read_bytes()}
+
+
+def make_map() -> bytes:
+    """Return a map for the import of a table."""
+    return (
+        b"rig: seat\nsample_rate: 500.0\ncsv: {decimal: '.'}\nruns: {first: [a.csv]}\nalign: {a.csv: 0.25}\nchannels:\n"
+        b"  floor_acceleration: {column: floor_acceleration, unit: m/s^2, scale: 1.0, remove_mean: true}\n"
+        b"  driver_acceleration: {column: driver_acceleration, unit: m/s^2, sign: -1, delay: 0.002, noise_rms: 0.05}\n"
+        b"  suspension_displacement: {column: suspension_displacement, unit: m, offset: 0.001, despike: true}\n"
+    )
+
+
+def make_unit() -> bytes:
+    """Return a functional mock-up unit with a library that is none."""
+
+    variable = (
+        '<ScalarVariable name="{}" valueReference="{}" causality="{}" variability="{}"><Real {}/></ScalarVariable>'
+    )
+    variables = [("v", 0, "input", "continuous", 'start="0" unit="m/s"'), ("F", 1, "output", "continuous", 'unit="N"'),
+                 ("c", 2, "parameter", "tunable", 'start="1" max="5"')]  # fmt: skip
+    stated = "".join(variable.format(*each) for each in variables)
+    text = f"""<?xml version="1.0" encoding="UTF-8"?>
+<fmiModelDescription fmiVersion="2.0" modelName="d" guid="1"><CoSimulation modelIdentifier="d"/>
+<UnitDefinitions><Unit name="N"><BaseUnit kg="1" m="1" s="-2"/></Unit></UnitDefinitions>
+<ModelVariables>{stated}</ModelVariables><ModelStructure><Outputs><Unknown index="2"/></Outputs></ModelStructure>
+</fmiModelDescription>"""
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w") as archive:
+        archive.writestr(DESCRIPTION, text)
+        for folder, ending in (("linux64", "so"), ("darwin64", "dylib"), ("win64", "dll")):
+            archive.writestr(f"binaries/{folder}/d.{ending}", "no library")
+    return packed.getvalue()
+
+
+def make_sweep(scenario: bytes, definition: bytes) -> dict[str, bytes]:
+    """Return the files of a sweep and of the folder that holds its rows, whose figures are made up."""
+
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place)
+        (folder / "quickstart.yaml").write_bytes(scenario)
+        (folder / "a.yaml").write_bytes(definition)
+        execute(prepare(folder / "a.yaml"), folder, make_up)
+        paths = [path for path in sorted(folder.rglob("*")) if path.is_file()]
+        return {path.relative_to(folder).as_posix(): path.read_bytes() for path in paths}
+
+
+def make_up(work: Work) -> Generator[list[Outcome]]:
+    """Yield an outcome for each run of a sweep, as an engine does, without simulating."""
+
+    yield [
+        Outcome(run, DONE, "", 1, tuple(1.0 + 0.01 * run * number for number in range(len(METRICS))))
+        for runs in work.tasks
+        for run in runs
+    ]

@@ -1,0 +1,65 @@
+"""Damaged files for every reader: each is read, or refused by one sentence, soon and without leaving anything."""
+
+import random
+import time
+import warnings
+
+import pytest
+
+from seatsim.schema.errors import SeatsimError
+
+from ..importing.exports import FORMATS
+from .mutations import mutate
+from .readers import make_readers
+
+MUTANTS, LIMIT = 40, 60.0
+NAMES = (
+    *("scenario", "variants", "recording", "table", "bench", "sweep", "design", "floor", "rows", "resumed", "unit"),
+    *("import", "map", "synthesis", "diagnosis", "manifest", "sealed"),
+    *(f"format {name}" for name in (*FORMATS, "KRBI.crg", "LRFI.crg")),
+)
+pytestmark = [
+    pytest.mark.slow,
+    # Libraries that write and read tables leave files open.
+    pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::pytest.PytestUnraisableExceptionWarning"),
+]
+
+
+@pytest.fixture(scope="module")
+def readers():
+    return make_readers()
+
+
+def write(files, folder):
+    for name, content in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_bytes(content)
+
+
+def test_every_reader_is_tried_and_reads_its_valid_files(readers, tmp_path):
+    assert set(readers) == set(NAMES)
+    for name, reader in readers.items():
+        write(reader.files, tmp_path / name)
+        reader.read(tmp_path / name)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_damaged_files_are_read_or_refused_by_a_sentence(readers, name, tmp_path):
+    reader, refused = readers[name], 0
+    for number in range(MUTANTS):
+        generator, files, folder = random.Random(f"7 {number}"), dict(reader.files), tmp_path / str(number)
+        changed = generator.choice(reader.changed)
+        for _ in range(generator.choice((1, 1, 1, 2, 3))):
+            files[changed] = mutate(files[changed], generator)
+        write(files, folder)
+        before, begun = sorted(folder.rglob("*")), time.perf_counter()
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                reader.read(folder)
+        except SeatsimError as error:
+            refused += 1
+            assert "\n" not in str(error) and len(str(error)) < 3000, number
+            assert sorted(folder.rglob("*")) == before, number
+        assert time.perf_counter() - begun < LIMIT, number
+    assert refused
