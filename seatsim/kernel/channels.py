@@ -1,6 +1,22 @@
-"""Columns of a history: their names for readers, their numbers for the compiled loop."""
+"""Columns of a history: their names for readers, and what the compiled loop writes into a row of them."""
 
 from __future__ import annotations
+
+from typing import NamedTuple
+
+from seatsim.compilation.jit import jit
+from seatsim.kernel.step import IntegratorState
+from seatsim.rig.state import (
+    CUSHION_DISPLACEMENT,
+    CUSHION_VELOCITY,
+    CUSHION_WORK,
+    DAMPER_WORK,
+    DISPLACEMENT,
+    FLOOR_WORK,
+    SUSPENSION_WORK,
+    VELOCITY,
+)
+from seatsim.schema.arrays import Array
 
 CHANNELS = (
     "floor_acceleration",
@@ -22,24 +38,43 @@ CHANNELS = (
     "energy_cushion",
 )
 """Columns of a history, in order; SI units, degrees Celsius."""
+CURRENT_COMMAND = CHANNELS.index("current_command")
+"""Column from which the loop reads the commands that act later."""
 
-(
-    FLOOR_ACCELERATION,
-    FRAME_ACCELERATION,
-    DRIVER_ACCELERATION,
-    SUSPENSION_DISPLACEMENT,
-    SUSPENSION_VELOCITY,
-    CUSHION_DISPLACEMENT,
-    CUSHION_VELOCITY,
-    DAMPER_FORCE,
-    WANTED_FORCE,
-    FORCE_SERVED,
-    COIL_CURRENT,
-    CURRENT_COMMAND,
-    DAMPER_TEMPERATURE,
-    ENERGY_FLOOR,
-    ENERGY_DAMPER,
-    ENERGY_SUSPENSION,
-    ENERGY_CUSHION,
-) = range(len(CHANNELS))
-# Plain numbers: numba treats a module's number as a constant, while a member of an enumeration is looked up.
+
+class Sample(NamedTuple):
+    """What is known at a sample beside the state of the rig: in m/s^2, N (NaN: no force is wanted), A and degC."""
+
+    floor: float
+    wanted: float
+    served: float
+    current: float
+    command: float
+    temperature: float
+
+
+@jit
+def write_row(row: Array, now: IntegratorState, sample: Sample) -> None:
+    """Write a sample into its row, shape (len(CHANNELS),), in the order of `CHANNELS`."""
+    s, frame = now.state, now.rates[VELOCITY] + sample.floor
+    values = (
+        sample.floor,
+        frame,
+        frame + now.rates[CUSHION_VELOCITY],
+        s[DISPLACEMENT],
+        s[VELOCITY],
+        s[CUSHION_DISPLACEMENT],
+        s[CUSHION_VELOCITY],
+        now.forces.damper_force,
+        sample.wanted,
+        sample.served,
+        sample.current,
+        sample.command,
+        sample.temperature,
+        s[FLOOR_WORK],
+        s[DAMPER_WORK],
+        s[SUSPENSION_WORK],
+        s[CUSHION_WORK],
+    )
+    for column in range(len(values)):
+        row[column] = values[column]
