@@ -27,7 +27,7 @@ import seatsim
 from seatsim.blind.make.make import make
 from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.importing.importing import import_files
-from seatsim.kernel.coil_current import simulate_current
+from seatsim.kernel.bench import simulate_current
 from seatsim.recordings.quality.examination import examine
 from seatsim.recordings.quality.issue import Issue
 from seatsim.recordings.recording import load_recording

@@ -24,14 +24,19 @@ from rich.console import Console
 from rich.table import Table
 from threadpoolctl import threadpool_limits
 
-from seatsim.identification.adjustment import rescale_damper
 from seatsim.identification.coordinates import Coordinates
-from seatsim.identification.damper_record import DamperRecord, find_model, find_specification, law_range
+from seatsim.identification.damper_record import (
+    DamperRecord,
+    Scales,
+    find_model,
+    find_specification,
+    law_range,
+    rescale_damper,
+)
 from seatsim.identification.identify import identify_records
 from seatsim.identification.information import Information, compute_information
 from seatsim.identification.prediction import BenchModel, prepare_inputs
 from seatsim.identification.problem import IdentificationProblem, weight_records
-from seatsim.identification.scales import Scales
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.errors import RunError

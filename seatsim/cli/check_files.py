@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
-from seatsim.characterisation.specimen import load_specimen
+from seatsim.characterisation.model_tests import load_specimen
 from seatsim.cli.trial import try_class
 from seatsim.cosimulation.description import describe_unit
 from seatsim.excitations.recording import RecordedRun

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Literal, NamedTuple, Protocol, TypeVar
 
-from seatsim.kernel.protocols import DamperModel
+from seatsim.kernel.generic import DamperModel
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.errors import InputError

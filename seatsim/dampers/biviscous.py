@@ -7,8 +7,17 @@ from typing import Annotated, NamedTuple
 
 from seatsim.compilation.jit import jit
 from seatsim.dampers.base import damper
-from seatsim.dampers.pieces import BRANCH_STATE, UTFSM, CurrentLaw, between, branch, branch_rate, cubic
-from seatsim.dampers.pieces_series import SETTLING, limited
+from seatsim.dampers.pieces import (
+    BRANCH_STATE,
+    SETTLING,
+    UTFSM,
+    CurrentLaw,
+    between,
+    branch,
+    branch_rate,
+    cubic,
+    limited,
+)
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param

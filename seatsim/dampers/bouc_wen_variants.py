@@ -7,8 +7,7 @@ from typing import Annotated, NamedTuple
 
 from seatsim.compilation.jit import jit
 from seatsim.dampers.base import damper
-from seatsim.dampers.pieces import UTFSM, CurrentLaw, between, cubic, power
-from seatsim.dampers.pieces_series import inertance, inertance_rate
+from seatsim.dampers.pieces import UTFSM, CurrentLaw, between, cubic, inertance, inertance_rate, power
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param

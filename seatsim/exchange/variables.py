@@ -15,8 +15,7 @@ from seatsim.exchange.printing.declarations import is_row
 from seatsim.exchange.printing.values import field_names as c_names
 from seatsim.exchange.printing.values import is_empty
 from seatsim.kernel.augmented import AugmentedDamper
-from seatsim.kernel.rig import Rig
-from seatsim.kernel.seated_body import SeatedBody
+from seatsim.kernel.rig import Rig, SeatedBody
 from seatsim.schema.fields import bounds, describe
 
 RATES = {"floor_acceleration": "floor_jerk", "velocity": "acceleration"}

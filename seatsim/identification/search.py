@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.identification.adjustment import rescale_damper
+from seatsim.identification.damper_record import rescale_damper
 from seatsim.identification.prediction import BenchModel, predict_force
 from seatsim.identification.problem import (
     COIL_RATE,

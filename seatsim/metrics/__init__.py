@@ -5,6 +5,7 @@ Everything here is a function of sampled signals in SI units: no scenario, no si
 
 from seatsim.metrics.comfort import (
     Dose,
+    SeatTransmission,
     crest_factor,
     daily_exposure,
     daily_vdv,
@@ -16,11 +17,11 @@ from seatsim.metrics.comfort import (
     mtvv,
     running_rms,
     seat_factor,
+    seat_transmission,
     vdv,
     weighted_rms,
 )
-from seatsim.metrics.directions import DIRECTIONS, Direction, direction
-from seatsim.metrics.exposure import Exposure, assess_exposure
+from seatsim.metrics.exposure import DIRECTIONS, Direction, Exposure, assess_exposure, direction
 from seatsim.metrics.motion import (
     TrackingError,
     electrical_energy,
@@ -30,10 +31,8 @@ from seatsim.metrics.motion import (
     peak,
     rms,
 )
-from seatsim.metrics.seat_transmission import SeatTransmission, seat_transmission
-from seatsim.metrics.spectra import cross_spectral_density, power_spectral_density
+from seatsim.metrics.spectra import Transmissibility, cross_spectral_density, power_spectral_density, transmissibility
 from seatsim.metrics.table import METRICS, Metric, MetricSpecification, summarise
-from seatsim.metrics.transmissibility import Transmissibility, transmissibility
 from seatsim.metrics.weighting import WEIGHTINGS, Weighting, frequency_response, weight
 
 __all__ = [

@@ -11,9 +11,9 @@ import numpy as np
 from seatsim.cosimulation.damper import require_model
 from seatsim.effects.base import EFFECTS, ON_DAMPER, ON_SEAT, acts_on, off
 from seatsim.kernel.augmented import AugmentedDamper
-from seatsim.kernel.chain import Effects, state_at_rest
-from seatsim.kernel.protocols import DamperModel
-from seatsim.kernel.seated_body import MASSES, Matrix, SeatedBody, Vector
+from seatsim.kernel.generic import DamperModel
+from seatsim.kernel.hooks import Effects, state_at_rest
+from seatsim.kernel.rig import MASSES, Matrix, SeatedBody, Vector
 from seatsim.rig.coil import Coil
 from seatsim.rig.drivers import BODIES, SINGLE_MASS, Driver, body_matrices
 from seatsim.rig.plant import Plant

@@ -13,7 +13,7 @@ from seatsim.cosimulation.damper import require_model
 from seatsim.dampers.base import DamperSpecification
 from seatsim.kernel.augmented import classes_of
 from seatsim.kernel.bench import MOST_PARTS, TOLERANCE, run_bench
-from seatsim.kernel.protocols import DamperModel
+from seatsim.kernel.generic import DamperModel
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.arrays import Array

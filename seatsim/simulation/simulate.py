@@ -13,8 +13,8 @@ from seatsim.effects.base import ON_DAMPER, acts_on
 from seatsim.excitations.base import Floor
 from seatsim.kernel.assumed_model import AssumedModel, InverseModel, TrueModel
 from seatsim.kernel.augmented import classes_of
-from seatsim.kernel.chain import state_at_rest
 from seatsim.kernel.channels import CHANNELS, CURRENT_COMMAND
+from seatsim.kernel.hooks import state_at_rest
 from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.loop import run_loop
 from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
@@ -79,7 +79,7 @@ def simulate(
 
     Raises:
         InputError: the scenario has no plant, or its times do not fit each other.
-        RunError: the solution grew beyond all bounds, or took more work than `seatsim.kernel.work` grants.
+        RunError: the solution grew beyond all bounds, or took more work than `seatsim.kernel.integration` grants.
     """
     if scenario.plant is None or scenario.control is None:
         raise InputError(f"{scenario.name}: a damper bench has no seat to simulate; it is replayed with 'seatsim gap'")

@@ -8,17 +8,22 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.metrics.comfort import Dose, dose, find_shocks, join_doses, motion_sickness_dose
-from seatsim.metrics.directions import DIRECTIONS, POINTS, Direction, direction, point_of
-from seatsim.metrics.exposure import Exposure, assess_exposure
-from seatsim.metrics.seat_transmission import SeatTransmission, seat_transmission
+from seatsim.metrics.comfort import (
+    Dose,
+    SeatTransmission,
+    dose,
+    find_shocks,
+    join_doses,
+    motion_sickness_dose,
+    seat_transmission,
+)
+from seatsim.metrics.exposure import DIRECTIONS, POINTS, Direction, Exposure, assess_exposure, direction, point_of
 from seatsim.metrics.weighting import weight
 from seatsim.recordings.quality.plausible_ranges import say_implausible
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.units import STANDARD_GRAVITY
-from seatsim.standards.acceleration_axes import choose_axes
-from seatsim.standards.acceleration_records import AccelerationRecord, load_accelerations
+from seatsim.standards.acceleration_records import AccelerationRecord, choose_axes, load_accelerations
 
 FLOOR = {"floor.x": "x", "floor.y": "y", "floor.z": "z"}
 """Axes at the base of the seat, and the axis of the seat whose weighting and SEAT factor they belong to."""

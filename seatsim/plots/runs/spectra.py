@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from seatsim import metrics
-from seatsim.metrics.transmissibility import AVERAGES, LONGEST
+from seatsim.metrics.spectra import AVERAGES, LONGEST
 from seatsim.plots import style
 from seatsim.plots.runs import naming
 from seatsim.plots.style import GREY, Entry, Grid

@@ -10,11 +10,9 @@ from seatsim.diagnosis.candidates import Candidate, list_candidates
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.effects.base import EFFECTS
 from seatsim.effects.coil import CoilLag, Delay
-from seatsim.effects.cushion import Hardening, Separation
 from seatsim.effects.damper import FreePlay, GasSpring, SealFriction
-from seatsim.effects.driver import Biodynamics, Mass
+from seatsim.effects.seat import Biodynamics, EndStop, Friction, Hardening, Mass, Separation
 from seatsim.effects.sensor import Bias, ClockSkew, Gain, SensorLag
-from seatsim.effects.suspension import EndStop, Friction
 from seatsim.recordings.recording import ChannelEntry
 from seatsim.rig.plant import Plant
 from seatsim.rig.temperature import TemperatureFactors

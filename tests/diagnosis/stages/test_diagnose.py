@@ -14,7 +14,7 @@ from seatsim.diagnosis import diagnose as module
 from seatsim.diagnosis.diagnose import diagnose, diagnose_problem
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.diagnosis.solution import Method
-from seatsim.effects.driver import Mass
+from seatsim.effects.seat import Mass
 from seatsim.recordings.quality.examination import Examination
 from seatsim.recordings.quality.issue import Issue
 from seatsim.schema.errors import InputError

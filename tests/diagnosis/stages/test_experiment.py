@@ -11,7 +11,7 @@ from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.design import experiment
 from seatsim.diagnosis.design.candidate_experiments import CandidateExperiment, list_candidate_experiments
 from seatsim.diagnosis.design.experiment import propose_experiment
-from seatsim.effects.driver import Mass
+from seatsim.effects.seat import Mass
 from seatsim.effects.sensor import ClockSkew, Gain
 from seatsim.excitations.base import Floor
 from seatsim.simulation.inputs import BenchInputs, SeatInputs

@@ -11,7 +11,7 @@ from seatsim.diagnosis.diagnose import diagnose_problem
 from seatsim.diagnosis.solution import Method, Solution
 from seatsim.diagnosis.solve import solve
 from seatsim.diagnosis.widen import find_at_bound, search_wider
-from seatsim.effects.driver import Mass
+from seatsim.effects.seat import Mass
 
 from .toy import CHANNELS, Added, offer, place, pose, record, weigh_stated
 
