@@ -16,12 +16,7 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.fields import param
 
 
-@effect(
-    "suspension.friction",
-    source="Coulomb's law; with presliding Dahl 1968",
-    initial=(0.0,),
-    forms=FRICTIONS,
-)
+@effect("suspension.friction", source="Coulomb's law; with presliding Dahl 1968", initial=(0.0,), forms=FRICTIONS)
 class Friction(NamedTuple):
     """Rate-independent friction in the linkage, not seen by the damper's load cell.
 

@@ -9,17 +9,7 @@ from pydantic import Field
 from pydantic.fields import FieldInfo
 
 from seatsim.excitations.base import Duration, Floor, Quantity, choice, excitation
-from seatsim.excitations.motion import (
-    Motion,
-    check_step,
-    clock,
-    ease,
-    floor_of,
-    product,
-    samples,
-    sine,
-    soft_start,
-)
+from seatsim.excitations.motion import Motion, check_step, clock, ease, floor_of, product, samples, sine, soft_start
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param

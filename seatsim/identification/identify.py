@@ -78,10 +78,7 @@ class Identification(NamedTuple):
 
 
 def identify(
-    data: str | Path,
-    model: str,
-    settings: IdentificationSettings = DEFAULTS,
-    progress: Progress = ignore_progress,
+    data: str | Path, model: str, settings: IdentificationSettings = DEFAULTS, progress: Progress = ignore_progress
 ) -> Identification:
     """Fit a damper model to the bench records of a file or folder.
 

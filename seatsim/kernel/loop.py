@@ -24,13 +24,7 @@ ROUNDING = 1e-9
 
 
 def run_loop(
-    setup: LoopSetup,
-    inputs: LoopInputs,
-    rig_state: State,
-    followed: State,
-    law_state: State,
-    out: Array,
-    grid: Array,
+    setup: LoopSetup, inputs: LoopInputs, rig_state: State, followed: State, law_state: State, out: Array, grid: Array
 ) -> int:
     """Simulate N samples from rest into `out`, shape (N, len(CHANNELS)), and return how many were reached.
 

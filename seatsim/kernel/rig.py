@@ -9,14 +9,7 @@ from seatsim.compilation.jit import jit
 from seatsim.kernel.generic import DamperModel, force_and_rates, friction_limit
 from seatsim.kernel.hooks import Effects, effect_state, fold_hook, join_hook, leading_state, sum_hook
 from seatsim.rig.plant import Plant
-from seatsim.rig.state import (
-    CUSHION_DISPLACEMENT,
-    CUSHION_VELOCITY,
-    DISPLACEMENT,
-    MECHANICAL,
-    VELOCITY,
-    State,
-)
+from seatsim.rig.state import CUSHION_DISPLACEMENT, CUSHION_VELOCITY, DISPLACEMENT, MECHANICAL, VELOCITY, State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.registry import register
 

@@ -75,7 +75,7 @@ def assess_exposure(doses: dict[str, Dose], hours: float) -> Exposure | None:
     """Return the exposure of `hours` a day to vibration like that of a record; None where no axis counts for health.
 
     Args:
-        doses: of the weighted accelerations by axis (`seatsim.metrics.DIRECTIONS`), without multiplying factors.
+        doses: of the weighted accelerations by axis (`DIRECTIONS`), without multiplying factors.
         hours: duration of the vibration in a day, above 0, at most 24.
 
     Raises:
@@ -125,7 +125,7 @@ class Direction(NamedTuple):
     """
 
     weighting: str
-    """Frequency weighting, a name of `seatsim.metrics.WEIGHTINGS`."""
+    """Frequency weighting, a name of `seatsim.metrics.weighting.WEIGHTINGS`."""
     comfort: float
     """Factor k of the vibration total value for comfort (8.2.2); m/rad for rotation."""
     health: float | None = None

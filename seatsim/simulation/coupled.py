@@ -85,12 +85,7 @@ class _CoupledSeat(LoopSetup):
     before: float
 
     def begin(
-        self,
-        state: State,
-        disturbance: Disturbance,
-        current: float,
-        factors: TemperatureScaling,
-        temperature: float,
+        self, state: State, disturbance: Disturbance, current: float, factors: TemperatureScaling, temperature: float
     ) -> IntegratorState:
         """Start the unit, and return the state of the integration under its force."""
         self.before = self.unit.start(self.damper, self._motion(state, state, current, temperature))

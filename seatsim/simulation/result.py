@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.metrics import Metric
+from seatsim.metrics.table import Metric
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.notebook import Pictures, draw
 from seatsim.simulation.simulate import History

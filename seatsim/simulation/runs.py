@@ -13,7 +13,7 @@ from typing import TypeVar
 import numpy as np
 
 from seatsim.compilation.reasons import explain
-from seatsim.metrics import Metric, summarise
+from seatsim.metrics.table import Metric, summarise
 from seatsim.scenario.loading import load
 from seatsim.scenario.plausibility import list_doubts
 from seatsim.scenario.scenario import Scenario

@@ -67,10 +67,7 @@ class History:
 
 
 def simulate(
-    scenario: Scenario,
-    floor: Floor | None = None,
-    forces: Forces | None = None,
-    carry_all_effects: bool | None = None,
+    scenario: Scenario, floor: Floor | None = None, forces: Forces | None = None, carry_all_effects: bool | None = None
 ) -> History:
     """Simulate one run, excited as the scenario says, or by a `floor` that is at hand.
 

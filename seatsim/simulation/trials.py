@@ -12,8 +12,8 @@ import numpy as np
 from seatsim.cosimulation.damper import FmuDamper
 from seatsim.effects.base import acts_on
 from seatsim.excitations.base import Floor
-from seatsim.metrics import Metric
 from seatsim.metrics.motion import rms
+from seatsim.metrics.table import Metric
 from seatsim.scenario.numbers import LAW, is_permitted, list_numbers, set_number
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from seatsim.cosimulation.damper import FmuDamper
-from seatsim.metrics import Metric
+from seatsim.metrics.table import Metric
 from seatsim.metrics.weighting import least_rate
 from seatsim.rig.plant import USUAL_TRAVEL
 from seatsim.scenario.scenario import Scenario

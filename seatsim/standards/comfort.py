@@ -43,7 +43,7 @@ class AxisAssessment(NamedTuple):
     direction: Direction
     dose: Dose
     shocks: tuple[str, ...]
-    """Why the basic method does not suffice (`seatsim.metrics.find_shocks`)."""
+    """Why the basic method does not suffice (`seatsim.metrics.comfort.find_shocks`)."""
     removed: float
     """Mean that was taken out of the record before weighting, in its unit: an offset of the sensor, or gravity."""
 
@@ -135,7 +135,7 @@ def comfort(
 def total_values(doses: Mapping[str, Dose]) -> dict[str, float]:
     """Return a_v = sqrt(sum over axes of k^2 a_w^2) in m/s^2 by point of contact, and of all points as `overall`.
 
-    Source: ISO 2631-1:1997, equation 10 in 8.2.2, and 8.2.3 for several points; k as in `seatsim.metrics.DIRECTIONS`.
+    Source: ISO 2631-1:1997, equation 10 in 8.2.2, and 8.2.3 for several points; k as in `seatsim.metrics.exposure`.
     """
     squares = {axis: (direction(axis).comfort * found.rms) ** 2 for axis, found in doses.items()}
     by_point = {point: sum(square for axis, square in squares.items() if point_of(axis) == point) for point in POINTS}

@@ -52,9 +52,7 @@ _Result = TypeVar("_Result", Trial, DampingTest)
 
 
 def assess_simulated_seats(
-    scenarios: Sequence[Scenario],
-    classes: Sequence[SpectralClass],
-    progress: Count = lambda done, of: None,
+    scenarios: Sequence[Scenario], classes: Sequence[SpectralClass], progress: Count = lambda done, of: None
 ) -> SeatTest:
     """Put the seats of scenarios to the test of ISO 7096, each in three runs a class and driver.
 

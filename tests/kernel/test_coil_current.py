@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.kernel import coil_current
+from seatsim.kernel import bench
 from seatsim.kernel.bench import follow_command, simulate_current
 from seatsim.rig.coil import Coil
 
@@ -55,7 +55,7 @@ def test_the_command_is_left_as_it_was():
 
 def test_numbers_of_every_kind_are_taken(monkeypatch):
     plugged = []
-    monkeypatch.setattr(coil_current, "compiled", lambda function, classes: plugged.append(classes) or function)
+    monkeypatch.setattr(bench, "compiled", lambda function, classes: plugged.append(classes) or function)
     found = simulate_current(COIL, [1, 0, 1], STEP, 0)
     assert found.dtype == np.float64 and plugged == [(Coil,)]
     assert found == pytest.approx(follow_command(COIL, np.array([1.0, 0.0, 1.0]), STEP, 0.0), abs=0)

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.metrics import weight
 from seatsim.metrics.arrays import as_pair, as_signal, ratio, require_finite, require_positive
 from seatsim.metrics.table import MissingInput, RunChannels
+from seatsim.metrics.weighting import weight
 from seatsim.schema.errors import InputError
 
 STEP = 0.002

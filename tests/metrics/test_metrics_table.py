@@ -9,7 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import seatsim.metrics
-from seatsim.metrics import METRICS, rms, seat_factor, summarise, weight
+from seatsim.metrics.comfort import seat_factor
+from seatsim.metrics.motion import rms
+from seatsim.metrics.table import METRICS, summarise
+from seatsim.metrics.weighting import weight
 from seatsim.schema.errors import InputError
 
 STEP = 0.001

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 from seatsim import load, run, seat_test
 from seatsim.cli.app import app
 from seatsim.excitations.iso7096 import Iso7096, acceleration_density
-from seatsim.metrics import frequency_response
+from seatsim.metrics.weighting import frequency_response
 from seatsim.recordings.writer import save_recording
 from seatsim.rig.plant import control_system
 from seatsim.schema.errors import InputError, RunError

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from seatsim.dampers.base import DamperSpecification
 from seatsim.kernel.generic import DamperModel
-from seatsim.metrics import rms
+from seatsim.metrics.motion import rms
 from seatsim.plots import labels, style
 from seatsim.plots.runs import naming
 from seatsim.plots.style import Entry, Grid
