@@ -98,20 +98,10 @@ def damper(
     Raises:
         InputError: the class lacks a method that a damper has.
     """
+    ranges = max_speed, max_current, temperatures
+    stated = factors or TemperatureFactors()
     specification = DamperSpecification(
-        source,
-        initial,
-        state,
-        current_order,
-        centred,
-        max_speed,
-        max_current,
-        temperatures,
-        factors or TemperatureFactors(),
-        complete,
-        confidence,
-        fixed,
-        smooth,
+        source, initial, state, current_order, centred, *ranges, stated, complete, confidence, fixed, smooth
     )
     enter = DAMPERS.register(name, specification)
 

@@ -6,7 +6,7 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import damper
-from seatsim.dampers.pieces import UTFSM, CurrentLaw, cubic, power
+from seatsim.dampers.pieces import UTFSM, CurrentLaw, cubic, power, utfsm_damper
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
@@ -80,13 +80,10 @@ class OriginalBingham(NamedTuple):
         return max(0.0, cubic(self.fc, i) * scaling.yield_force)
 
 
-@damper(
+@utfsm_damper(
     "updated_bingham",
     source="Occhiuzzi, Spizzuoco and Serino 2003, Smart Mater. Struct. 12:703; form vaguely recalled, their"
     f" function C(I, |v|) not found and read by us as shear thinning; {UTFSM}",
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="reading",
 )
 class UpdatedBingham(NamedTuple):
@@ -119,12 +116,9 @@ class UpdatedBingham(NamedTuple):
         return max(0.0, cubic(self.fc, min(i, self.law_end)) * scaling.yield_force)
 
 
-@damper(
+@utfsm_damper(
     "powell",
     source=f"Powell 1994, Smart Mater. Struct. 3:416; form recalled, no parameter set found; {UTFSM}",
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="recalled",
 )
 class Powell(NamedTuple):

@@ -6,8 +6,7 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.compilation.jit import jit
-from seatsim.dampers.base import damper
-from seatsim.dampers.pieces import SETTLING, UTFSM, CurrentLaw, between, cubic
+from seatsim.dampers.pieces import SETTLING, UTFSM, CurrentLaw, between, cubic, utfsm_damper
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
@@ -61,15 +60,12 @@ def series_force(d: Ellis, v: float, i: float, scaling: TemperatureScaling, stop
     return ellis_force(v + stop / play, damping, height, max(d.p_a + d.p_b * i, LEAST_EXPONENT))
 
 
-@damper(
+@utfsm_damper(
     "ellis",
     source="composed by us from the fluid of Ellis (Bird, Armstrong and Hassager, Dynamics of Polymeric Liquids) and a"
     f" free play; {UTFSM}",
     initial=(0.0, 0.0),
     state="y, position in the free play in m; w, seal friction over its limit",
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="derived",
 )
 class Ellis(NamedTuple):
@@ -124,15 +120,12 @@ class Ellis(NamedTuple):
         return (play, (v - abs(v) * z[1]) / self.x_s)
 
 
-@damper(
+@utfsm_damper(
     "hydro_mechanical",
     source="Hong, Choi, Choi and Wereley 2005, J. Sound Vib. 285:1180; form vaguely recalled, read by us as lumped"
     f" hydraulics, no parameter set found; {UTFSM}",
     initial=(0.0, 0.0),
     state="V, volume in m^3 that the chambers give; Q, flow in m^3/s through the gap",
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="reading",
     fixed=("A",),
     smooth=True,
@@ -191,15 +184,12 @@ ORDERED_AT = 0.1
 """Steady velocity in m/s at which the order parameter is 1, chosen by us: the scale of the damper's speeds."""
 
 
-@damper(
+@utfsm_damper(
     "phase_transition",
     source="Wang and Kamath 2006, Smart Mater. Struct. 15:1725, whose equations were not at hand: our reading of its"
     f" idea; {UTFSM}",
     initial=(0.0,),
     state="p, order parameter of the flow",
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="reading",
     smooth=True,
 )

@@ -4,23 +4,19 @@ from __future__ import annotations
 
 from typing import Annotated, NamedTuple
 
-from seatsim.dampers.base import damper
 from seatsim.dampers.bouc_wen_variants import NORMALISED
-from seatsim.dampers.pieces import UTFSM, CurrentLaw, between, cubic
+from seatsim.dampers.pieces import UTFSM, CurrentLaw, between, cubic, utfsm_damper
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
 
-@damper(
+@utfsm_damper(
     "modified_dahl",
     source=f"Zhou and Qu 2002; form recalled; {UTFSM}",
     initial=(0.0,),
     state=NORMALISED,
     current_order=1,
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="recalled",
 )
 class ModifiedDahl(NamedTuple):
@@ -54,15 +50,12 @@ class ModifiedDahl(NamedTuple):
         return (self.sigma * (v - abs(v) * z[0]),)
 
 
-@damper(
+@utfsm_damper(
     "viscous_dahl",
     source="Ikhouane and Dyke 2007, Smart Mater. Struct. 16:605; form as in public code of UTFPR (Brazil, repository"
     f" labcontrol-data/mr-damper, MIT); {UTFSM}",
     initial=(0.0,),
     state=NORMALISED,
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="published",
 )
 class ViscousDahl(NamedTuple):
@@ -99,14 +92,11 @@ class ViscousDahl(NamedTuple):
 DEFLECTION = "w, deflection of the bristles over its bound, from -1 to 1"
 
 
-@damper(
+@utfsm_damper(
     "lugre_jimenez",
     source=f"Jimenez and Alvarez-Icaza 2005, Struct. Control Health Monit. 12:91; form recalled, unsurely; {UTFSM}",
     initial=(0.0,),
     state=DEFLECTION,
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="recalled",
 )
 class LuGreJimenez(NamedTuple):
@@ -144,15 +134,12 @@ class LuGreJimenez(NamedTuple):
         return (self.sigma0 * self.a0 * (1.0 + self.a1 * (i + self.i0)) * (v - abs(v) * z[0]),)
 
 
-@damper(
+@utfsm_damper(
     "lugre_sakai",
     source=f"Sakai, Ohmori and Sano 2003; Terasawa et al. 2004 (IEEE CDC); form recalled; {UTFSM}",
     initial=(0.0,),
     state=DEFLECTION,
     current_order=1,
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="recalled",
 )
 class LuGreSakai(NamedTuple):

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Annotated
 
 from seatsim.compilation.jit import jit
+from seatsim.dampers.base import damper
 from seatsim.rig.state import State
 from seatsim.schema.fields import param
 
@@ -35,6 +37,9 @@ Where a model does not say otherwise they are derived by us from one steady cycl
 Stiffnesses of elements in series were kept to what explicit steps of 1 ms bear; inertances, which such tests do not
 show, were chosen.
 """
+
+utfsm_damper = partial(damper, max_speed=0.13, max_current=1.0, temperatures=(20.0, 20.0))
+"""`damper` for a model with such defaults: the data reach 0.13 m/s and 1 A, at 20 degC."""
 
 BRANCH_STATE = "w, the displacement in m about its recent mean, whose sign is the branch of the loop"
 BRANCH_WIDTH = 5e-4

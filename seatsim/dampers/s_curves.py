@@ -7,7 +7,17 @@ from typing import Annotated, NamedTuple
 
 from seatsim.compilation.jit import jit
 from seatsim.dampers.base import damper
-from seatsim.dampers.pieces import BRANCH_STATE, UTFSM, CurrentLaw, QuadraticLaw, branch, branch_rate, cubic, quadratic
+from seatsim.dampers.pieces import (
+    BRANCH_STATE,
+    UTFSM,
+    CurrentLaw,
+    QuadraticLaw,
+    branch,
+    branch_rate,
+    cubic,
+    quadratic,
+    utfsm_damper,
+)
 from seatsim.dampers.yu import envelope_rate
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
@@ -115,15 +125,12 @@ def logistic(k: float, a: float, s: float) -> float:
     return 1.0 + k / (1.0 + math.exp(-a * s))
 
 
-@damper(
+@utfsm_damper(
     "sigmoid",
     source=f"Ma, Wang, Rakheja and Su 2002-2007; form recalled; {UTFSM}",
     initial=(0.0, 0.0),
     state=f"{BRANCH_STATE}; e, envelope of the speed in m/s, for the cycle's peak speed",
     centred=True,
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="recalled",
     fixed=("k0", "k2"),
 )

@@ -9,21 +9,28 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 from seatsim.compilation.jit import jit
-from seatsim.dampers.base import damper
-from seatsim.dampers.pieces import SETTLING, UTFSM, CurrentLaw, cubic, inertance, inertance_rate, limited, power, slip
+from seatsim.dampers.pieces import (
+    SETTLING,
+    UTFSM,
+    CurrentLaw,
+    cubic,
+    inertance,
+    inertance_rate,
+    limited,
+    power,
+    slip,
+    utfsm_damper,
+)
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
 
-@damper(
+@utfsm_damper(
     "modified_bingham",
     source=f"Wang and Liao 2011, Smart Mater. Struct. 20:023001, eq 13, without parameters; {UTFSM}",
     initial=(0.0,),
     state="e = x - x1, deflection in m of the series spring",
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="published",
 )
 class ModifiedBingham(NamedTuple):
@@ -57,14 +64,11 @@ class ModifiedBingham(NamedTuple):
         return (v - slip(q, cubic(self.fc, held) * scaling.yield_force, cubic(self.c0, held) * scaling.viscous),)
 
 
-@damper(
+@utfsm_damper(
     "gamota_filisko",
     source=f"Gamota and Filisko 1991, J. Rheology 35:399; form recalled, no parameter set found; {UTFSM}",
     initial=(0.0, 0.0),
     state="e2 = x - x2, deflection in m of the outer spring; e1 = x2 - x1, deflection in m of the inner solid",
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="recalled",
 )
 class GamotaFilisko(NamedTuple):
@@ -105,15 +109,12 @@ class GamotaFilisko(NamedTuple):
         return (v - flow - creep, creep)
 
 
-@damper(
+@utfsm_damper(
     "bingmax",
     source="Makris, Burton, Hill and Jordan 1996, J. Eng. Mech. 122:1003; form recalled, no parameter set found;"
     f" {UTFSM}",
     initial=(0.0,),
     state="e, deflection in m of the Maxwell element's spring",
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="recalled",
     smooth=True,
 )
@@ -158,15 +159,12 @@ def rising_power(b: float, n: float, size: float, tangent_below: float) -> float
     return b * power(tangent_below, n) * (1.0 + n * (size / tangent_below - 1.0))
 
 
-@damper(
+@utfsm_damper(
     "maxwell_nonlinear_slider",
     source="Chae, Ricles and Sause 2010, 2013; form recalled, parameters of the 200 kN RD-9001-01 in a file of Chae"
     f" 2010; {UTFSM}",
     initial=(0.0, 0.0),
     state="e, deflection in m of the Maxwell element's spring; u, inner speed in m/s of the inertance",
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="recalled",
 )
 class MaxwellNonlinearSlider(NamedTuple):

@@ -6,8 +6,17 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.compilation.jit import jit
-from seatsim.dampers.base import damper
-from seatsim.dampers.pieces import SETTLING, UTFSM, CurrentLaw, cubic, inertance, inertance_rate, limited, slip
+from seatsim.dampers.pieces import (
+    SETTLING,
+    UTFSM,
+    CurrentLaw,
+    cubic,
+    inertance,
+    inertance_rate,
+    limited,
+    slip,
+    utfsm_damper,
+)
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
@@ -25,15 +34,12 @@ def solid_force(k1: float, k2: float, scaling: TemperatureScaling, z: State) -> 
     return (k1 * z[0] + k2 * z[1]) * scaling.stiffness
 
 
-@damper(
+@utfsm_damper(
     "viscoelastic_plastic",
     source="Kamath and Wereley 1997, J. Guidance Control Dyn. 20:1125; shape functions recalled, the elements"
     f" between them read by us, no parameter set found; {UTFSM}",
     initial=(0.0, 0.0),
     state="e, deflection in m of the pre-yield spring; u, inner speed in m/s of the inertance",
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="reading",
 )
 class ViscoelasticPlastic(NamedTuple):
@@ -84,15 +90,12 @@ class ViscoelasticPlastic(NamedTuple):
         return ((1.0 - post) * v - creep, inertance_rate(post * v, z[1]))
 
 
-@damper(
+@utfsm_damper(
     "li_viscoelastic_plastic",
     source="Li, Yao, Chen, Yeo and Yap 2000, Smart Mater. Struct. 9:95; form vaguely recalled, the passage through"
     f" yield read by us, no parameter set found; {UTFSM}",
     initial=(0.0, 0.0, 0.0),
     state="e1, deflection in m of spring k1; e2, deflection in m of spring k2; u, inner speed in m/s of the inertance",
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="reading",
 )
 class LiViscoelasticPlastic(NamedTuple):
@@ -145,15 +148,12 @@ class LiViscoelasticPlastic(NamedTuple):
         return (rate, rate - creep, inertance_rate(yielded(f, fc) * v, z[2]))
 
 
-@damper(
+@utfsm_damper(
     "stiffness_viscosity_elasto_slide",
     source="named in Table 2.1 of Braz-Cesar and Barros 2012, of the group of Wereley; form recalled, no parameter set"
     f" found; {UTFSM}",
     initial=(0.0,),
     state="e, deflection in m of the elasto-slide element",
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="recalled",
 )
 class StiffnessViscosityElastoSlide(NamedTuple):
@@ -191,15 +191,12 @@ class StiffnessViscosityElastoSlide(NamedTuple):
         return (v - slip(ke * z[0], cubic(self.n_s, held) * scaling.yield_force, ke * SETTLING),)
 
 
-@damper(
+@utfsm_damper(
     "equivalent_oh_onoda",
     source="Oh and Onoda 2002, Smart Mater. Struct. 11:156, whose equations were not at hand: our reading of its"
     f" lumped elements; {UTFSM}",
     initial=(0.0,),
     state="e, elongation of the series spring in m",
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="reading",
 )
 class EquivalentOhOnoda(NamedTuple):
