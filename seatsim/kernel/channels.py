@@ -18,26 +18,27 @@ from seatsim.rig.state import (
 )
 from seatsim.schema.arrays import Array
 
-CHANNELS = (
-    "floor_acceleration",
-    "frame_acceleration",
-    "driver_acceleration",
-    "suspension_displacement",
-    "suspension_velocity",
-    "cushion_displacement",
-    "cushion_velocity",
-    "damper_force",
-    "wanted_force",
-    "force_served",
-    "coil_current",
-    "current_command",
-    "damper_temperature",
-    "energy_floor",
-    "energy_damper",
-    "energy_suspension",
-    "energy_cushion",
-)
-"""Columns of a history, in order; SI units, degrees Celsius."""
+UNITS = {
+    "floor_acceleration": "m/s^2",
+    "frame_acceleration": "m/s^2",
+    "driver_acceleration": "m/s^2",
+    "suspension_displacement": "m",
+    "suspension_velocity": "m/s",
+    "cushion_displacement": "m",
+    "cushion_velocity": "m/s",
+    "damper_force": "N",
+    "wanted_force": "N",
+    "force_served": "-",
+    "coil_current": "A",
+    "current_command": "A",
+    "damper_temperature": "degC",
+    "energy_floor": "J",
+    "energy_damper": "J",
+    "energy_suspension": "J",
+    "energy_cushion": "J",
+}
+"""Unit of every column of a history, in the order of the columns."""
+CHANNELS = tuple(UNITS)
 CURRENT_COMMAND = CHANNELS.index("current_command")
 """Column from which the loop reads the commands that act later."""
 

@@ -30,20 +30,6 @@ class DamperModel(Protocol):
         """Return the force in N without the set-valued friction, positive when it opposes extension."""
 
 
-class DamperWithState(DamperModel, Protocol):
-    """A damper with a state of its own, such as a hysteresis."""
-
-    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State, /) -> State:
-        """Return the time derivative of z, of the same length."""
-
-
-class DamperWithFriction(DamperModel, Protocol):
-    """A damper with a friction that is set-valued at rest, which the kernel solves without regularisation."""
-
-    def coulomb(self, i: float, scaling: TemperatureScaling, /) -> float:
-        """Return the magnitude of the friction in N."""
-
-
 scaling_at = jit(scaling)
 
 
