@@ -7,10 +7,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from seatsim.characterisation.cycles import find_cycles
-from seatsim.characterisation.measured_steps import measure_responses
 from seatsim.characterisation.response import Response, response_columns
 from seatsim.characterisation.rows import Row, row_columns, summarise_aperiodic_record, summarise_record
-from seatsim.characterisation.steps import find_plateaus
+from seatsim.characterisation.steps import find_plateaus, measure_responses
 from seatsim.recordings.bench_tables import BenchRecord, load_bench, unused_columns
 
 SETTLED = 0.2

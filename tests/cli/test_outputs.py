@@ -15,7 +15,7 @@ from seatsim.cli.outputs import characterisation as output
 from seatsim.cli.outputs import diagnosis
 from seatsim.cli.outputs import runs as outputs
 from seatsim.diagnosis.diagnose import BUDGET
-from seatsim.metrics import Metric
+from seatsim.metrics.table import Metric
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import plain
 

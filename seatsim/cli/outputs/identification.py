@@ -16,7 +16,7 @@ from ruamel.yaml import YAML
 
 from seatsim.cli.outputs.runs import write_pictures
 from seatsim.dampers.base import OWN, find_confidence
-from seatsim.identification.agreement import Agreement
+from seatsim.identification.assessment import Agreement
 from seatsim.identification.identify import Identification
 from seatsim.identification.model_benchmark import BenchmarkEntry
 from seatsim.provenance.manifest import write_documented

@@ -17,9 +17,9 @@ from seatsim.report.rendering import write_html
 from seatsim.report.runs import report_runs
 from seatsim.schema.files import write_json, write_together, write_whole
 from seatsim.schema.text import disarm
-from seatsim.simulation.history_table import write_histories
 from seatsim.simulation.performance_bounds import measure_distance
 from seatsim.simulation.result import Result, Run
+from seatsim.simulation.runs import write_histories
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

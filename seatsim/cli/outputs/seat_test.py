@@ -14,8 +14,17 @@ from seatsim.recordings.recording import HEADER
 from seatsim.report.rendering import write_html
 from seatsim.report.seat_test import report_seat_test
 from seatsim.schema.files import write_json
-from seatsim.standards.iso7096 import ACCEPTANCE, DAMPING, LIMITS, RECALLED, SEATED_SHARE
-from seatsim.standards.seat_rows import DampingRow, SeatFailure, SeatRow, SeatTest
+from seatsim.standards.seat_rows import (
+    ACCEPTANCE,
+    DAMPING,
+    LIMITS,
+    RECALLED,
+    SEATED_SHARE,
+    DampingRow,
+    SeatFailure,
+    SeatRow,
+    SeatTest,
+)
 
 
 def make_tables(found: SeatTest) -> list[Table]:
