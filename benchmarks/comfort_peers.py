@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import signal
 
-from seatsim.metrics import WEIGHTINGS, dose, weight
-from seatsim.metrics.weighting import sections
+from seatsim.metrics.comfort import dose
+from seatsim.metrics.weighting import WEIGHTINGS, sections, weight
 
 Array = NDArray[np.float64]
 

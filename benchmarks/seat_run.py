@@ -14,10 +14,10 @@ from seatsim.dampers.bouc_wen import ModifiedBoucWen
 from seatsim.excitations.iso7096 import Iso7096
 from seatsim.kernel.assumed_model import TrueModel
 from seatsim.kernel.channels import CHANNELS
+from seatsim.kernel.generic import DamperModel
+from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.loop import run_loop
 from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
-from seatsim.kernel.protocols import DamperModel
-from seatsim.kernel.recorders import Rows, keep_rows
 from seatsim.kernel.rig import Rig
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import LAWS, Law, prepare_law
@@ -52,10 +52,10 @@ def prepare_run(acceleration: Array, setup: LoopSetup) -> tuple[Callable[[], Non
     none, samples, damper = np.zeros(0), len(acceleration), type(setup.rig.damper)
     inputs = LoopInputs(acceleration, np.zeros(samples), np.full(samples, 20.0), none, none, none, none)
     history = np.empty((len(CHANNELS), samples)).T
-    loop, rest = compiled(run_loop, (damper, type(setup.law), Rows)), initial_state(damper)
+    loop, rest = compiled(run_loop, (damper, type(setup.law))), initial_state(damper)
 
     def run() -> None:
-        if loop(setup, inputs, rest, rest, (), keep_rows(history))[0] != samples:
+        if loop(setup, inputs, rest, rest, (), history, np.empty(CELLS + 1)) != samples:
             raise RuntimeError("the solution left all bounds")
 
     run()

@@ -9,7 +9,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.characterisation.specimen import load_specimen
+from seatsim.characterisation.model_tests import load_specimen
 from seatsim.simulation.damper_bench import SineTest, sine_test
 
 T = TypeVar("T", float, NDArray[np.float64])

@@ -16,8 +16,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from seatsim.excitations.iso7096 import acceleration_density
-from seatsim.excitations.road import LONGEST, SHORTEST, RoadClass, displacement_density
-from seatsim.excitations.vehicle import floor_response
+from seatsim.excitations.road import LONGEST, SHORTEST, RoadClass, displacement_density, floor_response
 from seatsim.rig.plant import Plant, PlantMatrices, state_space
 
 Array = NDArray[np.float64]

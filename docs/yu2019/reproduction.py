@@ -24,8 +24,7 @@ from scipy.optimize import brentq, least_squares
 
 from controllers import synthesise
 from controllers.seat_plant import Weights, build_generalised_plant
-from seatsim.dampers.asymmetric import Yu2019
-from seatsim.dampers.hysteresis_division import Yu2017
+from seatsim.dampers.yu import Yu2017, Yu2019
 from seatsim.rig.plant import Plant
 from seatsim.scenario.loading import load
 from seatsim.scenario.scenario import DamperChoice, Inverse, Scenario

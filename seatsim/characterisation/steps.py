@@ -1,12 +1,16 @@
-"""Steps of a current: where it rests, where it leaves one level for another."""
+"""Steps of a current, and the response times that measured records show while the motion goes on."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
+from seatsim.characterisation.response import Response, StepEnsemble, estimate_response, find_crossing
+from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.schema.arrays import Array
 
 LEAST_RANGE = 0.02
@@ -89,3 +93,168 @@ def _onset(current: Array, before: Plateau, after: Plateau, commanded: bool) -> 
     if commanded or low == 0 or covered[low] == covered[low - 1]:
         return float(low)
     return low - 1 + float(np.clip((LEFT - covered[low - 1]) / (covered[low] - covered[low - 1]), 0.0, 1.0))
+
+
+LONGEST = 0.5
+"""Seconds after a step that are looked at."""
+LENGTHS = (LONGEST, 0.3, 0.2, 0.12, 0.08, 0.05, 0.04, 0.025)
+"""Seconds after a step that are tried, the longest with enough steps first."""
+ENOUGH = 12
+"""Steps that are wanted for the longest of the lengths."""
+LEAD = 0.015
+"""Seconds before a step in which the current has to rest."""
+SAME_LEVEL = 0.05
+"""Difference of two levels of a current, over its range, up to which they are the same."""
+LEVEL_GRID = 0.1
+"""Grid of levels, over the range of the current, by which steps are put into pairs."""
+SPEED_HELD = 0.1
+"""Largest change of a speed that counts as constant, relative."""
+SLOWEST = 0.1
+"""Least speed of a stretch at constant speed, over the record's largest."""
+SETTLING = 0.03
+"""Seconds after a step from which on, at the earliest, the force counts as settled."""
+SMOOTHING = 0.001
+"""Seconds over which a demodulated response is smoothed."""
+KNEES = (0.05, 0.2, 0.6)
+"""Speeds over the RMS speed at which the steady force may bend."""
+LAGS = (0.0, 0.002, 0.005, 0.01)
+"""Seconds by which the steady force may lag behind the velocity."""
+UNSURE = 0.1
+"""Largest error of the steady forces, over their difference and over the root of the number of steps."""
+
+
+def measure_responses(record: BenchRecord) -> list[Response]:
+    """Return the response of a record's force to the steps of its current, one for each pair of levels.
+
+    At constant speed the force before and after the step is what stands there. Where the speed varies, the steady
+    force at either level is a least-squares fit to the settled rows,
+
+        F_level = sum c_k f_k,  f = 1, x, v, dv/dt, tanh(v(t - lag) / (q v_rms)),
+
+    and the response is demodulated by it (`estimate_response`). A pair of levels that allows neither has a note that
+    says why.
+    """
+    steps = find_steps(record.current, record.rate, record.commanded)
+    if not steps:
+        return []
+    unit = LEVEL_GRID * float(np.ptp(record.current))
+    pairs: dict[tuple[int, int], list[CurrentStep]] = {}
+    for step in steps:
+        pairs.setdefault((round(step.before.level / unit), round(step.after.level / unit)), []).append(step)
+    return [_of_pair(record, chosen, steps) for chosen in pairs.values()]
+
+
+def _of_pair(record: BenchRecord, steps: Sequence[CurrentStep], every: Sequence[CurrentStep]) -> Response:
+    before, after = (float(np.median([p.level for p in ps])) for ps in zip(*(s[1:] for s in steps), strict=True))
+    blank = Response(record.name, before, after, len(steps), "")
+    # A constant speed needs no model of the steady force, so it counts first where half of the steps have one.
+    even = [found for step in steps if (found := _constant_speed_rows(record, step)) is not None]
+    answer = _at_constant_speed(record, even, blank) if 2 * len(even) >= len(steps) else blank
+    if not answer.method:
+        answer = _demodulated(record, steps, every, answer)
+    if not answer.method and 0 < 2 * len(even) < len(steps):
+        answer = _at_constant_speed(record, even, blank)
+    return answer if record.commanded else answer._replace(current_t95=_of_current(record, steps))
+
+
+def _constant_speed_rows(record: BenchRecord, step: CurrentStep) -> tuple[CurrentStep, int, int] | None:
+    """Return the rows before and after a step over which the speed is constant, None where these are too few."""
+    k, v = round(step.row), record.velocity
+    here = float(np.median(v[max(0, k - 3) : k + 4]))
+    if abs(here) < SLOWEST * float(np.percentile(np.abs(v), 98)) or here == 0.0:
+        return None
+    uneven = np.abs(v - here) > SPEED_HELD * abs(here)
+    behind, ahead = np.flatnonzero(uneven[:k]), np.flatnonzero(uneven[k:])
+    first = max(step.before.first, int(behind[-1]) + 1 if behind.size else 0)
+    last = min(step.after.last, k + int(ahead[0]) if ahead.size else len(v), k + round(LONGEST * record.rate))
+    if k - first < max(5, LEAD * record.rate) or last - k < max(10, LENGTHS[-1] * record.rate):
+        return None
+    return step, k - first, last - k
+
+
+def _at_constant_speed(record: BenchRecord, found: Sequence[tuple[CurrentStep, int, int]], blank: Response) -> Response:
+    after = int(np.median([length for *_, length in found]))
+    chosen = [one for one in found if one[2] >= after]
+    before = min(*(one[1] for one in chosen), round(0.05 * record.rate))
+    force = _about(record.force, [step for step, *_ in chosen], before, after)
+    off = np.median(force[:, :before], axis=1, keepdims=True)
+    on = np.median(force[:, -(after // 5) :], axis=1, keepdims=True)
+    noise = float(np.mean(np.std(force[:, :before], axis=1)))
+    speed = float(np.mean([abs(record.velocity[round(step.row)]) for step, *_ in chosen]))
+    blank = blank._replace(steps=len(chosen), method="constant speed", speed=speed)
+    if float(np.min(np.abs(on - off))) < 5.0 * noise:
+        return blank._replace(method="", note="the force changes by less than five times its noise")
+    levels = np.broadcast_to(off, force.shape), np.broadcast_to(on, force.shape)
+    instants = np.array([round(step.row) - step.row for step, *_ in chosen]) / record.rate
+    return estimate_response(StepEnsemble(force, *levels, instants, before, record.rate), blank)
+
+
+def _demodulated(
+    record: BenchRecord, steps: Sequence[CurrentStep], every: Sequence[CurrentStep], blank: Response
+) -> Response:
+    rate = record.rate
+    led = [s for s in steps if s.row - s.before.first >= LEAD * rate]
+    lengths = [s.after.last - s.row for s in led]
+    after = next((n for n in LENGTHS if sum(m >= n * rate for m in lengths) >= min(ENOUGH, max(1, len(led)))), 0.0)
+    chosen = [step for step, length in zip(led, lengths, strict=True) if length >= after * rate]
+    if not after or not chosen:
+        return blank._replace(note=f"the current never rests for {1e3 * LENGTHS[-1]:g} ms after a step")
+    basis = _basis(record)
+    steady = [_steady(record, basis, every, level) for level in (blank.before, blank.after)]
+    if any(fit is None for fit in steady):
+        return blank._replace(note="too few settled rows at one of the currents to know its steady force")
+    (off, error_off), (on, error_on) = (fit for fit in steady if fit is not None)
+    before, rows = max(2, round(0.005 * rate)), int(after * rate) - 1
+    force, off, on = (_about(y, chosen, before, rows) for y in (record.force, off, on))
+    apart = math.sqrt(float(np.mean((on - off) ** 2)))
+    blank = blank._replace(steps=len(chosen), method="demodulated")
+    if max(error_off, error_on) > UNSURE * apart * math.sqrt(len(chosen)):
+        return blank._replace(method="", note="the speed varies, and the steady forces are not known well enough")
+    window = max(3, 2 * round(0.5 * SMOOTHING * rate) + 1)
+    instants = np.array([round(step.row) - step.row for step in chosen]) / rate
+    return estimate_response(StepEnsemble(force, off, on, instants, before, rate), blank, window)
+
+
+def _basis(record: BenchRecord) -> Array:
+    v = record.velocity
+    parts = [np.ones(len(v)), record.displacement, v, np.gradient(v) * record.rate]
+    knees = np.array(KNEES) * max(float(np.sqrt(np.mean(v**2))), 1e-12)
+    parts += [np.tanh(np.roll(v, round(lag * record.rate)) / knee) for lag in LAGS for knee in knees]
+    basis = np.column_stack(parts)
+    size: Array = np.sqrt(np.mean(basis**2, axis=0))
+    return basis / np.maximum(size, 1e-12)
+
+
+def _steady(
+    record: BenchRecord, basis: Array, every: Sequence[CurrentStep], level: float
+) -> tuple[Array, float] | None:
+    """Return the steady force at a level, shape (N,), and its RMS error over the settled rows."""
+    near = SAME_LEVEL * float(np.ptp(record.current))
+    settled = np.zeros(len(basis), dtype=bool)
+    for step in every:
+        rest = step.after
+        if abs(rest.level - level) <= near:
+            settled[int(step.row + max(SETTLING * record.rate, 0.5 * (rest.last - step.row))) : rest.last] = True
+        if abs(step.before.level - level) <= near and step.before.first == 0:
+            settled[step.before.last // 2 : step.before.last] = True
+    if np.count_nonzero(settled) < 10 * basis.shape[1]:
+        return None
+    # Terms that this motion does not tell apart are dropped, not given huge weights of opposite signs.
+    weights, *_ = np.linalg.lstsq(basis[settled], record.force[settled], rcond=1e-8)
+    force = basis @ weights
+    return force, math.sqrt(float(np.mean((record.force - force)[settled] ** 2)))
+
+
+def _of_current(record: BenchRecord, steps: Sequence[CurrentStep]) -> float:
+    """Return the median time to 95 % of the steps of a measured current."""
+    times = []
+    for step in steps:
+        rows = np.arange(int(step.row), step.after.last)
+        share = (record.current[rows] - step.before.level) / (step.after.level - step.before.level)
+        times.append(find_crossing(np.asarray((rows - step.row) / record.rate, dtype=float), share, 0.95))
+    reached = [time for time in times if math.isfinite(time)]
+    return float(np.median(reached)) if reached else math.nan
+
+
+def _about(values: Array, steps: Sequence[CurrentStep], before: int, after: int) -> Array:
+    return np.array([values[round(s.row) - before : round(s.row) + after] for s in steps])

@@ -7,10 +7,9 @@ from pathlib import Path
 from typing import Annotated, NamedTuple
 
 from seatsim.characterisation.cycles import find_cycles
-from seatsim.characterisation.measured_steps import measure_responses
 from seatsim.characterisation.response import Response
 from seatsim.characterisation.rows import Row, summarise_aperiodic_record, summarise_record
-from seatsim.characterisation.steps import find_plateaus
+from seatsim.characterisation.steps import find_plateaus, measure_responses
 from seatsim.recordings.bench_tables import BenchRecord, load_bench, unused_columns
 from seatsim.schema.content import Form
 from seatsim.schema.notebook import show_record

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Literal, NamedTuple, Protocol, TypeVar
 
-from seatsim.kernel.protocols import DamperModel
+from seatsim.kernel.generic import DamperModel
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.errors import InputError
@@ -98,20 +98,10 @@ def damper(
     Raises:
         InputError: the class lacks a method that a damper has.
     """
+    ranges = max_speed, max_current, temperatures
+    stated = factors or TemperatureFactors()
     specification = DamperSpecification(
-        source,
-        initial,
-        state,
-        current_order,
-        centred,
-        max_speed,
-        max_current,
-        temperatures,
-        factors or TemperatureFactors(),
-        complete,
-        confidence,
-        fixed,
-        smooth,
+        source, initial, state, current_order, centred, *ranges, stated, complete, confidence, fixed, smooth
     )
     enter = DAMPERS.register(name, specification)
 

@@ -6,9 +6,18 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.compilation.jit import jit
-from seatsim.dampers.base import damper
-from seatsim.dampers.pieces import BRANCH_STATE, UTFSM, CurrentLaw, between, branch, branch_rate, cubic
-from seatsim.dampers.pieces_series import SETTLING, limited
+from seatsim.dampers.pieces import (
+    BRANCH_STATE,
+    SETTLING,
+    UTFSM,
+    CurrentLaw,
+    between,
+    branch,
+    branch_rate,
+    cubic,
+    limited,
+    utfsm_damper,
+)
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
@@ -22,14 +31,7 @@ def two_slopes(pre: float, post: float, fy: float, v: float, shift: float) -> fl
     return post * v + limited((pre - post) * v + shift, fy)
 
 
-@damper(
-    "biviscous",
-    source=f"{WERELEY}; {UTFSM}",
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
-    confidence="recalled",
-)
+@utfsm_damper("biviscous", source=f"{WERELEY}; {UTFSM}", confidence="recalled")
 class Biviscous(NamedTuple):
     """Nonlinear bi-viscous damper, without hysteresis.
 
@@ -54,15 +56,12 @@ class Biviscous(NamedTuple):
         return two_slopes(pre, post, cubic(self.fy, held) * scaling.yield_force, v, 0.0) + self.f0
 
 
-@damper(
+@utfsm_damper(
     "hysteretic_biviscous",
     source=f"{WERELEY}; {UTFSM}",
     initial=(0.0,),
     state=BRANCH_STATE,
     centred=True,
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="recalled",
     smooth=True,
 )
@@ -100,15 +99,12 @@ class HystereticBiviscous(NamedTuple):
         return branch_rate(v, z)
 
 
-@damper(
+@utfsm_damper(
     "hysteretic_arctangent",
     source=f"named in Table 2.1 of Braz-Cesar and Barros 2012; form recalled, no parameter set found; {UTFSM}",
     initial=(0.0,),
     state=BRANCH_STATE,
     centred=True,
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="recalled",
     smooth=True,
 )
@@ -147,15 +143,12 @@ class HystereticArctangent(NamedTuple):
         return branch_rate(v, z)
 
 
-@damper(
+@utfsm_damper(
     "lumped_biviscous",
     source="Sims, Peel, Stanway, Johnson and Bullough 2000, J. Sound Vib. 229:207; form recalled, no parameter set"
     f" found; {UTFSM}",
     initial=(0.0, 0.0),
     state="e = x - x1, deflection in m of the compressible fluid; u = x1', speed in m/s of the flow",
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="recalled",
 )
 class LumpedBiviscous(NamedTuple):

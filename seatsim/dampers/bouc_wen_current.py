@@ -6,9 +6,8 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.compilation.jit import jit
-from seatsim.dampers.base import damper
 from seatsim.dampers.bouc_wen_variants import NORMALISED, normalised_rate
-from seatsim.dampers.pieces import BRANCH_MEMORY, UTFSM, branch_rate
+from seatsim.dampers.pieces import BRANCH_MEMORY, UTFSM, branch_rate, utfsm_damper
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
@@ -40,14 +39,11 @@ def excitation_factor(d2: float, d4: float, s: float, r: float) -> float:
     return of_frequency * of_amplitude
 
 
-@damper(
+@utfsm_damper(
     "current_dependent_bouc_wen",
     source=f"Dominguez, Sedaghati and Stiharu 2004, Smart Mater. Struct. 13:1351; form recalled; {UTFSM}",
     initial=(0.0,),
     state=NORMALISED,
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="recalled",
 )
 class CurrentDependentBoucWen(NamedTuple):
@@ -94,16 +90,13 @@ class CurrentDependentBoucWen(NamedTuple):
         return (normalised_rate(self.stiffness / alpha, self.sigma, self.n, v, z[0]),)
 
 
-@damper(
+@utfsm_damper(
     "frequency_dependent_bouc_wen",
     source="Dominguez, Sedaghati and Stiharu 2006, Smart Mater. Struct. 15:1179, of which only the structure is"
     f" recalled; frequency and amplitude from running mean squares are ours; {UTFSM}",
     initial=(0.0, 0.5 * AMPLITUDE**2, 0.5 * (FREQUENCY * AMPLITUDE) ** 2, 0.0),
     state="d, displacement about its recent mean in m; s, recent mean square of d in m^2; r, recent mean square of"
     f" the velocity in m^2/s^2; {NORMALISED}",
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="reading",
 )
 class FrequencyDependentBoucWen(NamedTuple):

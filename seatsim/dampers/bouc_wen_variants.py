@@ -6,9 +6,7 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.compilation.jit import jit
-from seatsim.dampers.base import damper
-from seatsim.dampers.pieces import UTFSM, CurrentLaw, between, cubic, power
-from seatsim.dampers.pieces_series import inertance, inertance_rate
+from seatsim.dampers.pieces import UTFSM, CurrentLaw, between, cubic, inertance, inertance_rate, power, utfsm_damper
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
@@ -23,15 +21,12 @@ def normalised_rate(rho: float, sigma: float, n: float, r: float, w: float) -> f
     return rho * r * (1.0 - size if r * w >= 0.0 else 1.0 + (2.0 * sigma - 1.0) * size)
 
 
-@damper(
+@utfsm_damper(
     "shear_bouc_wen",
     source="Jansen and Dyke 2000, normalised after Ikhouane and Dyke 2007, Smart Mater. Struct. 16:605; form recalled;"
     f" {UTFSM}",
     initial=(0.0,),
     state=NORMALISED,
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="recalled",
 )
 class ShearBoucWen(NamedTuple):
@@ -69,14 +64,11 @@ class ShearBoucWen(NamedTuple):
         return (normalised_rate(rho, self.sigma, self.n, v, z[0]),)
 
 
-@damper(
+@utfsm_damper(
     "large_scale_bouc_wen",
     source=f"Yang, Spencer, Jung and Carlson 2004, J. Eng. Mech. 130:1107; form recalled; {UTFSM}",
     initial=(0.0, 0.0),
     state=f"{NORMALISED}; u, velocity of the inertance in m/s",
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="recalled",
 )
 class LargeScaleBoucWen(NamedTuple):
@@ -121,14 +113,11 @@ class LargeScaleBoucWen(NamedTuple):
         return (normalised_rate(rho, self.sigma, self.n, v, z[0]), inertance_rate(v, z[1]))
 
 
-@damper(
+@utfsm_damper(
     "nonsymmetrical_bouc_wen",
     source=f"Kwok, Ha, Nguyen, Li and Samali 2007, ISA Trans. 46:167; form recalled; {UTFSM}",
     initial=(0.0,),
     state=NORMALISED,
-    max_speed=0.13,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="recalled",
     fixed=("mu",),
 )

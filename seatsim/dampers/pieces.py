@@ -1,11 +1,13 @@
-"""Pieces that several damper models share: powers, current laws, the Bouc-Wen state, the branch of a loop."""
+"""Pieces that several damper models share: powers, current laws, the branch of a loop, elements in series."""
 
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Annotated
 
 from seatsim.compilation.jit import jit
+from seatsim.dampers.base import damper
 from seatsim.rig.state import State
 from seatsim.schema.fields import param
 
@@ -35,6 +37,9 @@ Where a model does not say otherwise they are derived by us from one steady cycl
 Stiffnesses of elements in series were kept to what explicit steps of 1 ms bear; inertances, which such tests do not
 show, were chosen.
 """
+
+utfsm_damper = partial(damper, max_speed=0.13, max_current=1.0, temperatures=(20.0, 20.0))
+"""`damper` for a model with such defaults: the data reach 0.13 m/s and 1 A, at 20 degC."""
 
 BRANCH_STATE = "w, the displacement in m about its recent mean, whose sign is the branch of the loop"
 BRANCH_WIDTH = 5e-4
@@ -97,3 +102,43 @@ def branch(z: State) -> float:
 def branch_rate(v: float, z: State) -> State:
     """Return the rate of the branch state, `w' = v - w / 1 s`."""
     return (v - z[0] / BRANCH_MEMORY,)
+
+
+SETTLING = 1e-3
+"""Shortest time in s in which an inner element settles, chosen by us so that explicit steps of 1 ms are stable.
+
+Forces do not depend on it as long as the motion is slow against it: a few hundredths at 10 Hz.
+"""
+INERTANCE_TIME = 2e-3
+"""Time in s after which the inner speed of an inertance follows the piston, chosen by us."""
+
+
+@jit
+def limited(force: float, limit: float) -> float:
+    """Return a force in N held within `limit` of either sign; no force where the limit is below zero."""
+    most = max(limit, 0.0)
+    return min(max(force, -most), most)
+
+
+@jit
+def slip(force: float, limit: float, c: float) -> float:
+    """Return the speed in m/s at which Coulomb friction `limit` beside a dashpot `c` gives way to a force.
+
+    It is 0 for `|force| <= limit`, else `(force - limit sgn(force)) / c`: continuous, and passive for any limit.
+    """
+    return (force - limited(force, limit)) / c
+
+
+@jit
+def inertance(mass: float, v: float, u: float) -> float:
+    """Return the force in N of an inertance behind a dashpot `mass / tau`: `mass dv/dt` where v is slow against tau.
+
+    u is the inner speed, whose rate is `inertance_rate`. The detour needs no acceleration and is passive.
+    """
+    return mass * inertance_rate(v, u)
+
+
+@jit
+def inertance_rate(v: float, u: float) -> float:
+    """Return the rate in m/s^2 of the inner speed, `u' = (v - u) / tau`."""
+    return (v - u) / INERTANCE_TIME

@@ -24,7 +24,7 @@ from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import DamperForm, Gaps
 from seatsim.effects.base import ON_DAMPER, acts_on
 from seatsim.identification.damper_record import DamperRecord, FieldValue, find_model
-from seatsim.identification.problem_statement import state_problem
+from seatsim.identification.problem import state_problem
 from seatsim.identification.search import default_vector, descend_from_defaults, refine
 from seatsim.identification.settings import IdentificationSettings
 from seatsim.recordings.bench_tables import BenchRecord

@@ -78,12 +78,7 @@ class Asymmetry(NamedTuple):
         return TemperatureScaling(viscous, scaling.stiffness, yielding)
 
 
-@effect(
-    "damper.seal_friction",
-    source="Coulomb's law; with presliding Dahl 1968",
-    initial=(0.0,),
-    forms=FRICTIONS,
-)
+@effect("damper.seal_friction", source="Coulomb's law; with presliding Dahl 1968", initial=(0.0,), forms=FRICTIONS)
 class SealFriction(NamedTuple):
     """Rate-independent friction inside the damper, at every current, seen by the load cell.
 

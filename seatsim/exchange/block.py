@@ -25,8 +25,7 @@ from seatsim.effects.base import EFFECTS
 from seatsim.exchange.printing.values import field_names as c_names
 from seatsim.exchange.printing.values import is_empty, is_row
 from seatsim.kernel.augmented import AugmentedDamper
-from seatsim.kernel.rig import Rig
-from seatsim.kernel.seated_body import SeatedBody
+from seatsim.kernel.rig import Rig, SeatedBody
 from seatsim.schema.content import Form, Unwritten
 from seatsim.schema.fields import bounds, describe
 from seatsim.schema.registry import Record

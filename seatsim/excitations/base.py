@@ -1,15 +1,18 @@
-"""Definition of an excitation: a record of keys that yields the motion of the floor."""
+"""Definition of an excitation: a record of keys that yields the motion of the floor; keys that several share."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
-from typing import NamedTuple, Protocol, TypeVar
+from typing import Annotated, Literal, NamedTuple, Protocol, TypeVar
 
 import numpy as np
+from pydantic import Field
+from pydantic.fields import FieldInfo
 
 from seatsim.schema.arrays import Array, require_samples
 from seatsim.schema.errors import RunError
+from seatsim.schema.fields import param
 from seatsim.schema.registry import Record, Registry
 
 FEWEST = 2
@@ -87,3 +90,23 @@ def _checked(make: Callable[[Excitation, float, int], Floor]) -> Callable[[Excit
         return Floor(step, **read)
 
     return floor
+
+
+def choice(meaning: str, unit: str = "") -> FieldInfo:
+    """Describe a key that has no numeric bounds of its own: a choice, a list or a nested record."""
+    described: FieldInfo = Field(description=meaning, json_schema_extra={"unit": unit})
+    return described
+
+
+DURATION = param("s", "length of the run", above=0, high=7200)
+Duration = Annotated[float, DURATION]
+SPEED = param("m/s", "constant vehicle speed", low=1, high=60, usual=(1, 45))
+Speed = Annotated[float, SPEED]
+Through = Annotated[
+    Literal["vehicle", "direct"],
+    choice("path from road to floor: 'vehicle' (tyre, body and cab mounts) or 'direct' (the floor is the road)"),
+]
+Quantity = Annotated[
+    Literal["displacement", "acceleration"],
+    choice("what the amplitude is of: displacement in m or acceleration in m/s^2"),
+]

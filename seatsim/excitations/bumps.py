@@ -16,11 +16,9 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 from scipy.fft import rfft
 
-from seatsim.excitations.base import Floor, excitation
-from seatsim.excitations.keys import Duration, Speed, Through, choice
-from seatsim.excitations.motion import Motion, check_step, clock, floor_of, samples
-from seatsim.excitations.spectra import lines, motion_of
-from seatsim.excitations.vehicle import TRUCK, Vehicle, floor_response, ring_down
+from seatsim.excitations.base import Duration, Floor, Speed, Through, choice, excitation
+from seatsim.excitations.motion import Motion, check_step, clock, floor_of, lines, motion_of, samples
+from seatsim.excitations.road import TRUCK, Vehicle, floor_response, ring_down
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param

@@ -16,10 +16,8 @@ from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 
-from seatsim.excitations.base import Floor, excitation
-from seatsim.excitations.keys import Duration, choice
-from seatsim.excitations.motion import check_step, samples, soft_start
-from seatsim.excitations.spectra import integrated_twice, motion_of, random_phase
+from seatsim.excitations.base import Duration, Floor, choice, excitation
+from seatsim.excitations.motion import check_step, integrated_twice, motion_of, random_phase, samples, soft_start
 from seatsim.schema.arrays import Array
 
 SpectralClass = Literal["EM1", "EM2", "EM3", "EM4", "EM5", "EM6", "EM7", "EM8", "EM9"]

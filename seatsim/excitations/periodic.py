@@ -1,4 +1,4 @@
-"""Tones and sweeps of the floor: sine, stepped sine and chirp, as a shaker table plays them."""
+"""Tones and sweeps of the floor, as a shaker table plays them: sine, stepped sine, chirp, and rest."""
 
 from __future__ import annotations
 
@@ -8,19 +8,8 @@ import numpy as np
 from pydantic import Field
 from pydantic.fields import FieldInfo
 
-from seatsim.excitations.base import Floor, excitation
-from seatsim.excitations.keys import Duration, Quantity, choice
-from seatsim.excitations.motion import (
-    Motion,
-    check_step,
-    clock,
-    ease,
-    floor_of,
-    product,
-    samples,
-    sine,
-    soft_start,
-)
+from seatsim.excitations.base import Duration, Floor, Quantity, choice, excitation
+from seatsim.excitations.motion import Motion, check_step, clock, ease, floor_of, product, samples, sine, soft_start
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param
@@ -153,3 +142,15 @@ def _inverse_square(omega: Motion) -> Motion:
 def _window(time: Array, length: Array, rise: Array) -> Motion:
     fall = ease(length - time, rise)
     return product(ease(time, rise), Motion(fall.displacement, -fall.velocity, fall.acceleration))
+
+
+@excitation("rest")
+class Rest(NamedTuple):
+    """A floor that does not move; the seat is released from the position in `start`."""
+
+    duration: Duration
+
+    def floor(self, step: float, seed: int) -> Floor:
+        """Return the floor at rest."""
+        still = np.zeros(samples(self.duration, step))
+        return Floor(step, still, still, still)

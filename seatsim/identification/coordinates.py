@@ -14,10 +14,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.identification.adjustment import RANGE_FIELDS
-from seatsim.identification.current_laws import evaluate_law, interpolate_law, is_current_law
-from seatsim.identification.damper_record import DamperRecord, FieldValue, law_range
-from seatsim.identification.scales import Scales, parse_unit
+from seatsim.identification.damper_record import (
+    RANGE_FIELDS,
+    DamperRecord,
+    FieldValue,
+    Scales,
+    evaluate_law,
+    interpolate_law,
+    is_current_law,
+    law_range,
+    parse_unit,
+)
 from seatsim.schema.arrays import Array
 from seatsim.schema.fields import bounds, describe
 

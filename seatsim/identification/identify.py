@@ -12,23 +12,24 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.dampers.base import find_confidence
-from seatsim.identification.agreement import Agreement, mean_agreement
 from seatsim.identification.assessment import (
+    Agreement,
     Assessment,
     PredictionData,
+    VisitedRanges,
     assess_fit,
     assess_predictions,
     load_prediction_data,
+    mean_agreement,
+    measure_coverage,
+    note_limits,
 )
-from seatsim.identification.coverage import VisitedRanges, measure_coverage, note_limits
 from seatsim.identification.damper_record import find_model, find_specification
 from seatsim.identification.information import Information, compute_information
 from seatsim.identification.prediction import BenchModel, RecordInputs, predict_force
-from seatsim.identification.problem import IdentificationProblem
-from seatsim.identification.problem_statement import find_origin, state_problem
+from seatsim.identification.problem import IdentificationProblem, find_origin, state_problem
 from seatsim.identification.search import Progress, ignore_progress, search_parameters
-from seatsim.identification.settings import IdentificationSettings
-from seatsim.identification.split import split_records
+from seatsim.identification.settings import IdentificationSettings, split_records
 from seatsim.recordings.bench_tables import BenchRecord, load_bench, unused_columns
 from seatsim.schema.arrays import Array
 from seatsim.schema.content import Joined, Unwritten, plain, written
@@ -132,10 +133,7 @@ class Identification(NamedTuple):
 
 
 def identify(
-    data: str | Path,
-    model: str,
-    settings: IdentificationSettings = DEFAULTS,
-    progress: Progress = ignore_progress,
+    data: str | Path, model: str, settings: IdentificationSettings = DEFAULTS, progress: Progress = ignore_progress
 ) -> Identification:
     """Fit a damper model to the bench records of a file or folder.
 

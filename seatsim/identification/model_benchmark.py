@@ -12,13 +12,11 @@ from typing import NamedTuple, cast
 
 from seatsim.compilation.cached import digest
 from seatsim.dampers.base import find_confidence
-from seatsim.identification.adjustment import numeric_fields
 from seatsim.identification.assessment import PredictionData
-from seatsim.identification.damper_record import find_model
+from seatsim.identification.damper_record import find_model, numeric_fields
 from seatsim.identification.identify import Identification, identify_records, predict_records
 from seatsim.identification.search import Progress
-from seatsim.identification.settings import IdentificationSettings
-from seatsim.identification.split import split_records
+from seatsim.identification.settings import IdentificationSettings, split_records
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.schema.errors import InputError, SeatsimError, nearest
 from seatsim.schema.files import write_json

@@ -1,9 +1,13 @@
-"""What is asked of an identification."""
+"""What is asked of an identification, and which records, and parts of them, it may see."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from fnmatch import fnmatch
 from typing import NamedTuple
+
+from seatsim.recordings.bench_tables import LEAST_ROWS, BenchRecord, stem
+from seatsim.schema.errors import InputError, nearest
 
 
 class IdentificationSettings(NamedTuple):
@@ -19,3 +23,61 @@ class IdentificationSettings(NamedTuple):
     fix: Mapping[str, float] = {}
     ignore_temperature: bool = False
     seed: int = 0
+
+
+class Split(NamedTuple):
+    """Records of which the first part is fitted to, those parts, and records of which nothing is."""
+
+    train: list[BenchRecord]
+    fitted: list[BenchRecord]
+    held_out: list[BenchRecord]
+
+
+def split_records(records: Sequence[BenchRecord], settings: IdentificationSettings) -> Split:
+    """Return which records, and which rows of them, are fitted to.
+
+    Raises:
+        InputError: a pattern matches nothing, nothing is left, or the fraction is out of bounds.
+    """
+    share = settings.test_fraction
+    if not 0.0 <= share < 1.0:
+        raise InputError(f"--test-fraction {share:g} is not permitted; it must be at least 0 and below 1, such as 0.3")
+    held_out = match_records(records, settings.test)
+    train = [record for record in records if not _is_among(record, held_out)]
+    if not train:
+        raise InputError(f"--test {' '.join(settings.test)} holds out every record; leave some to fit to")
+    fitted = [record.part(0, round((1.0 - share) * len(record.force))) for record in train]
+    for record, part in zip(train, fitted, strict=True):
+        _check_length(record, part, share)
+    return Split(train, fitted, held_out)
+
+
+def _check_length(record: BenchRecord, fitted: BenchRecord, share: float) -> None:
+    """Refuse a fraction that leaves too few rows on either side of the cut."""
+    least = min(len(fitted.force), len(record.force) - len(fitted.force) if share else len(fitted.force))
+    if least < LEAST_ROWS:
+        raise InputError(
+            f"--test-fraction {share:g} cuts off {least} rows of '{record.name}'; a part has at least {LEAST_ROWS}"
+        )
+
+
+def match_records(records: Sequence[BenchRecord], patterns: Sequence[str]) -> list[BenchRecord]:
+    """Return the records whose file, or whose own name, matches one of the globs.
+
+    Raises:
+        InputError: a pattern matches nothing.
+    """
+    chosen: list[BenchRecord] = []
+    for pattern in patterns:
+        found = [r for r in records if any(fnmatch(name, pattern) for name in (r.file, stem(r.file), r.name))]
+        if not found:
+            known = list(dict.fromkeys(stem(record.file) for record in records))
+            hint = nearest(pattern, known)
+            raise InputError(f"--test {pattern} matches no record{hint}; there are {', '.join(known)}")
+        chosen += [record for record in found if not _is_among(record, chosen)]
+    return chosen
+
+
+def _is_among(record: BenchRecord, records: Iterable[BenchRecord]) -> bool:
+    # By identity: records hold arrays, which have no single truth value when they are compared.
+    return any(record is other for other in records)

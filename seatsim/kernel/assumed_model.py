@@ -9,10 +9,9 @@ import math
 from typing import NamedTuple
 
 from seatsim.compilation.jit import jit
-from seatsim.kernel.generic import rates, scaling_at
+from seatsim.kernel.generic import DamperModel, rates, scaling_at
 from seatsim.kernel.hooks import hook
-from seatsim.kernel.protocols import DamperModel
-from seatsim.kernel.tuples import axpy, combine
+from seatsim.kernel.integration import axpy, combine
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 

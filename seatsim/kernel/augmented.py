@@ -14,9 +14,8 @@ import math
 from typing import NamedTuple
 
 from seatsim.compilation.jit import jit
-from seatsim.kernel.chain import Effects, effect_state, fold_hook, join_hook, leading_state, sum_hook
-from seatsim.kernel.generic import coulomb, force, rates
-from seatsim.kernel.protocols import DamperModel
+from seatsim.kernel.generic import DamperModel, coulomb, force, rates
+from seatsim.kernel.hooks import Effects, effect_state, fold_hook, join_hook, leading_state, sum_hook
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 

@@ -7,15 +7,50 @@ parabola through the three samples of the step.
 
 from __future__ import annotations
 
+import math
+
+import numpy as np
+
+from seatsim.compilation.cached import compiled
 from seatsim.compilation.jit import jit
-from seatsim.kernel.generic import force, rates, scaling_at
+from seatsim.kernel.generic import DamperModel, force, rates, scaling_at
+from seatsim.kernel.integration import MOST_DEBT, axpy, combine, owe
 from seatsim.kernel.inverse import total_force
-from seatsim.kernel.protocols import DamperModel
-from seatsim.kernel.tuples import axpy, combine
-from seatsim.kernel.work import MOST_DEBT, owe
+from seatsim.kernel.step import relaxed
+from seatsim.rig.coil import Coil
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 from seatsim.schema.arrays import Array
+
+ROUNDING = 1e-9
+"""Share of a step by which a delay may miss a whole number of steps and still count as that many."""
+
+
+def simulate_current(coil: Coil, command: Array, step: float, start: float) -> Array:
+    """Return the current in A, shape (N,), that follows a held command of shape (N,) from `start` on.
+
+    command: in A, within the coil's limit, every `step` seconds; it acts `coil.delay` later, which need not be a whole
+    number of steps. Before the first command acts the current stays at `start`. The solution is that of `coil.relax`,
+    exact from one value of the command to the next.
+    """
+    run = compiled(follow_command, (Coil,))
+    return run(coil, np.asarray(command, dtype=float), float(step), float(start))
+
+
+def follow_command(coil: Coil, command: Array, step: float, start: float) -> Array:
+    """Return the same as `simulate_current`, uncompiled; the last value of the command has no time to act."""
+    late = math.floor(coil.delay / step + ROUNDING)
+    split = coil.delay - late * step
+    split = split if split >= ROUNDING * step else 0.0
+    out: Array = np.empty_like(command)
+    out[0] = start
+    for k in range(len(command) - 1):
+        now = out[k]
+        if split > 0.0:
+            now = relaxed(coil, now, command[k - late - 1] if k > late else start, split)
+        out[k + 1] = relaxed(coil, now, command[k - late] if k >= late else start, step - split)
+    return out
+
 
 Samples = Array | tuple[float, float, float]
 """What goes on in a step: its value at the beginning, in the middle and at the end."""
@@ -50,7 +85,7 @@ def run_bench(
     x [m], v [m/s], current [A] and temperature [degC] have shape (2 n + 1,), sampled every half step;
     temperature is constant over a step. `initial_state` is the damper's at the first sample, `step` in s. The number
     returned is n + 1 on success; otherwise the damper's state has diverged at the last sample reached, or is too stiff
-    (`seatsim.kernel.work`).
+    (`seatsim.kernel.integration`).
     Set-valued friction acts as `coulomb sgn(v)`, zero at v = 0. A step is divided into at most `most_parts` parts, so
     that it adds an error of `tolerance` at most, relative to the force plus `FORCE_SCALE`. To be compiled by
     `compiled`.

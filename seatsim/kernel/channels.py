@@ -1,45 +1,81 @@
-"""Columns of a history: their names for readers, their numbers for the compiled loop."""
+"""Columns of a history: their names for readers, and what the compiled loop writes into a row of them."""
 
 from __future__ import annotations
 
-CHANNELS = (
-    "floor_acceleration",
-    "frame_acceleration",
-    "driver_acceleration",
-    "suspension_displacement",
-    "suspension_velocity",
-    "cushion_displacement",
-    "cushion_velocity",
-    "damper_force",
-    "wanted_force",
-    "force_served",
-    "coil_current",
-    "current_command",
-    "damper_temperature",
-    "energy_floor",
-    "energy_damper",
-    "energy_suspension",
-    "energy_cushion",
-)
-"""Columns of a history, in order; SI units, degrees Celsius."""
+from typing import NamedTuple
 
-(
-    FLOOR_ACCELERATION,
-    FRAME_ACCELERATION,
-    DRIVER_ACCELERATION,
-    SUSPENSION_DISPLACEMENT,
-    SUSPENSION_VELOCITY,
+from seatsim.compilation.jit import jit
+from seatsim.kernel.step import IntegratorState
+from seatsim.rig.state import (
     CUSHION_DISPLACEMENT,
     CUSHION_VELOCITY,
-    DAMPER_FORCE,
-    WANTED_FORCE,
-    FORCE_SERVED,
-    COIL_CURRENT,
-    CURRENT_COMMAND,
-    DAMPER_TEMPERATURE,
-    ENERGY_FLOOR,
-    ENERGY_DAMPER,
-    ENERGY_SUSPENSION,
-    ENERGY_CUSHION,
-) = range(len(CHANNELS))
-# Plain numbers: numba treats a module's number as a constant, while a member of an enumeration is looked up.
+    CUSHION_WORK,
+    DAMPER_WORK,
+    DISPLACEMENT,
+    FLOOR_WORK,
+    SUSPENSION_WORK,
+    VELOCITY,
+)
+from seatsim.schema.arrays import Array
+
+UNITS = {
+    "floor_acceleration": "m/s^2",
+    "frame_acceleration": "m/s^2",
+    "driver_acceleration": "m/s^2",
+    "suspension_displacement": "m",
+    "suspension_velocity": "m/s",
+    "cushion_displacement": "m",
+    "cushion_velocity": "m/s",
+    "damper_force": "N",
+    "wanted_force": "N",
+    "force_served": "-",
+    "coil_current": "A",
+    "current_command": "A",
+    "damper_temperature": "degC",
+    "energy_floor": "J",
+    "energy_damper": "J",
+    "energy_suspension": "J",
+    "energy_cushion": "J",
+}
+"""Unit of every column of a history, in the order of the columns."""
+CHANNELS = tuple(UNITS)
+CURRENT_COMMAND = CHANNELS.index("current_command")
+"""Column from which the loop reads the commands that act later."""
+
+
+class Sample(NamedTuple):
+    """What is known at a sample beside the state of the rig: in m/s^2, N (NaN: no force is wanted), A and degC."""
+
+    floor: float
+    wanted: float
+    served: float
+    current: float
+    command: float
+    temperature: float
+
+
+@jit
+def write_row(row: Array, now: IntegratorState, sample: Sample) -> None:
+    """Write a sample into its row, shape (len(CHANNELS),), in the order of `CHANNELS`."""
+    s, frame = now.state, now.rates[VELOCITY] + sample.floor
+    values = (
+        sample.floor,
+        frame,
+        frame + now.rates[CUSHION_VELOCITY],
+        s[DISPLACEMENT],
+        s[VELOCITY],
+        s[CUSHION_DISPLACEMENT],
+        s[CUSHION_VELOCITY],
+        now.forces.damper_force,
+        sample.wanted,
+        sample.served,
+        sample.current,
+        sample.command,
+        sample.temperature,
+        s[FLOOR_WORK],
+        s[DAMPER_WORK],
+        s[SUSPENSION_WORK],
+        s[CUSHION_WORK],
+    )
+    for column in range(len(values)):
+        row[column] = values[column]

@@ -1,28 +1,26 @@
-"""Lanes on a CUDA device: one lane a thread, with its state in registers.
+"""Lanes on a CUDA device, which has never been one: the kernel has run in numba's simulator of a device only.
 
-Only this module compiles for a device. With `NUMBA_ENABLE_CUDASIM=1` numba runs the same kernel in Python, which takes
-some milliseconds for every step of a lane and needs no device.
+A lane is a thread that runs the time loop of `seatsim.kernel.loop` with its state in registers. Only this module
+compiles for a device. With `NUMBA_ENABLE_CUDASIM=1` numba runs the same kernel in Python, which takes some milliseconds
+for every step of a lane and needs no device.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import cache
-from itertools import islice
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import cuda, float64, int64, void
-from numba.core import config
 from numpy.typing import NDArray
 
 from seatsim.compilation.jit import define, jit
 from seatsim.compilation.watch import report
+from seatsim.kernel.channels import CHANNELS
 from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.loop import run_loop
 from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup
-from seatsim.kernel.numbers import SHARED, numbers
-from seatsim.kernel.sums import NO_SUMS, LaneLimits, Summed, Sums
 from seatsim.rig.state import State
 from seatsim.schema.arrays import Array
 
@@ -33,14 +31,9 @@ POINTS = CELLS + 1
 """Points of the grid of `seatsim.kernel.inverse.invert`, as a number that the compiler takes for a constant."""
 THREADS = 64
 """Threads of a block: a lane takes so many registers that larger blocks leave some of them unused."""
-ROWS = float64[:, ::1]
-SIGNATURE = void(*(float64,) * 4, ROWS, ROWS, ROWS, int64[::1], float64[:, :, ::1], ROWS, ROWS, ROWS)
+_ROWS, _PLANES = float64[:, ::1], float64[:, :, ::1]
+SIGNATURE = void(_ROWS, _ROWS, _ROWS, int64[::1], _PLANES, _PLANES, int64[::1])
 """Types of the arguments of a kernel."""
-
-
-def is_simulated() -> bool:
-    """Return whether numba simulates the device."""
-    return bool(config.ENABLE_CUDASIM)
 
 
 def has_device() -> bool:
@@ -70,17 +63,6 @@ class LaneStart(NamedTuple):
     velocity: float
 
 
-class LaneEnd(NamedTuple):
-    """A lane after its run: its sums, the temperature of its damper in degC, the number of samples that it reached."""
-
-    sums: Sums
-    temperature: float
-    reached: float
-
-
-END = LaneEnd(NO_SUMS, 0.0, 0.0)
-
-
 class KernelError(Exception):
     """Why models do not compile for the device."""
 
@@ -99,13 +81,10 @@ class DeviceInputs(NamedTuple):
     noise: Array
 
 
-def run_on_device(
-    template: LaneStart, limits: LaneLimits, inputs: DeviceInputs, depth: int
-) -> tuple[list[LaneEnd], Any]:
-    """Simulate L lanes and return their ends, and their drivers' accelerations in m/s^2, shape (N, L), on the device.
+def run_on_device(template: LaneStart, inputs: DeviceInputs) -> tuple[Array, list[int]]:
+    """Simulate L lanes; return their rows, shape (N, len(CHANNELS), L), and the samples that each of them reached.
 
-    `template` gives the form of the lanes (see `numbers.template_of`); `depth` is above the greatest delay in
-    steps by two.
+    `template` gives the form that the lanes have in common: the classes of all their records.
 
     Raises:
         KernelError: the models do not compile for the device.
@@ -114,17 +93,10 @@ def run_on_device(
     kernel = _compile_kernel(_form_of(template))
     if isinstance(kernel, str):
         raise KernelError(kernel)
-    driver, commands, ends = (
-        cuda.device_array((rows, lanes), np.float64) for rows in (len(inputs.floors), depth, len(numbers(END)))
-    )
-    given = [cuda.to_device(each) for each in inputs]
-    kernel[(lanes + THREADS - 1) // THREADS, THREADS](*limits, *given, commands, driver, ends)
-    return [_end_of(row) for row in ends.copy_to_host().T.tolist()], driver
-
-
-def _end_of(row: list[float]) -> LaneEnd:
-    values = iter(row)
-    return LaneEnd(Sums(*islice(values, len(NO_SUMS))), *values)
+    out = cuda.device_array((len(inputs.floors), len(CHANNELS), lanes), np.float64)
+    reached = cuda.device_array(lanes, np.int64)
+    kernel[(lanes + THREADS - 1) // THREADS, THREADS](*map(cuda.to_device, inputs), out, reached)
+    return out.copy_to_host(), reached.copy_to_host().tolist()
 
 
 @cache
@@ -145,37 +117,50 @@ def make_kernel(template: LaneStart) -> Callable[..., None]:
 
 
 def _define_kernel(form: Form) -> Callable[..., None]:
-    gather, scatter, simulate = jit(_define_gather(form)), jit(_define_scatter(END)), jit(run_loop)
+    source, classes = form
+    gather: Callable[[Array, int], Any] = jit(
+        define(f"def gather(rows, lane):\n    return {source}\n", "gather", dict(classes))
+    )
+    simulate: Any = jit(run_loop)
 
     def run(
-        most_speed: float,
-        most_current: float,
-        coldest: float,
-        hottest: float,
         starts: Array,
         floors: Array,
         speeds: Array,
         floor_of: NDArray[np.int64],
         noise: Array,
-        commands: Array,
-        driver: Array,
-        ends: Array,
+        out: Array,
+        reached: NDArray[np.int64],
     ) -> None:
         lane = cuda.grid(1)
         if lane < len(floor_of):
-            room = cuda.local.array(POINTS, float64)
+            grid = cuda.local.array(POINTS, float64)
             own, start = floor_of[lane], gather(starts, lane)
             none = floors[:0, own]
             inputs = LoopInputs(
                 floors[:, own], speeds[:, own], none, none, none, none, none, 0.0, start.displacement, start.velocity,
                 start.sensed, noise[:, :, lane], start.temperature,
             )  # fmt: skip
-            limits = LaneLimits(most_speed, most_current, coldest, hottest)
-            recorder: Any = Summed(driver[:, lane], commands[:, lane], room, limits)
-            reached, sums, temperature = simulate(start.setup, inputs, start.rig, start.followed, start.law, recorder)
-            scatter((sums, temperature, float(reached)), ends, lane)
+            reached[lane] = simulate(start.setup, inputs, start.rig, start.followed, start.law, out[:, :, lane], grid)
 
     return run
+
+
+def numbers(record: tuple[object, ...]) -> list[float]:
+    """Return the numbers of a record, any nesting of tuples, from the first field to the last.
+
+    Raises:
+        TypeError: a field is neither a number nor a record.
+    """
+    found: list[float] = []
+    for part in record:
+        if isinstance(part, tuple):
+            found += numbers(part)
+        elif isinstance(part, bool | int | float):
+            found.append(part)
+        else:
+            raise TypeError(f"{type(part).__name__} is no number")
+    return found
 
 
 def _form_of(record: tuple[object, ...]) -> Form:
@@ -185,9 +170,6 @@ def _form_of(record: tuple[object, ...]) -> Form:
 
 
 def _expression(part: object, places: Iterator[int], classes: dict[type, str]) -> str:
-    if type(part) in SHARED:
-        next(places)
-        return repr(SHARED[type(part)])
     if isinstance(part, tuple):
         inner = "".join(f"{_expression(each, places, classes)}, " for each in part)
         if type(part) is tuple:
@@ -198,23 +180,3 @@ def _expression(part: object, places: Iterator[int], classes: dict[type, str]) -
     if isinstance(part, bool):
         return f"{value} != 0.0"
     return f"int({value})" if isinstance(part, int) else value
-
-
-def _define_gather(form: Form) -> Callable[..., Any]:
-    """Return the function that builds the record of a lane out of its rows."""
-    source, classes = form
-    return define(f"def gather(rows, lane):\n    return {source}\n", "gather", dict(classes))
-
-
-def _define_scatter(record: tuple[object, ...]) -> Callable[..., Any]:
-    """Return the function that writes a record of this form into its rows."""
-    lines = [f"    rows[{row}, lane] = {leaf}" for row, leaf in enumerate(_leaves(record, "record"))]
-    return define("\n".join(["def scatter(record, rows, lane):", *lines, ""]), "scatter", {})
-
-
-def _leaves(part: object, path: str) -> Iterator[str]:
-    if isinstance(part, tuple):
-        for index, each in enumerate(cast("tuple[object, ...]", part)):
-            yield from _leaves(each, f"{path}[{index}]")
-    else:
-        yield path

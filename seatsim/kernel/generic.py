@@ -1,19 +1,34 @@
-"""Functions that the compiled loop calls on a damper, a law or sensors of any class."""
+"""Functions that the compiled loop calls on a damper, a law or sensors of any class, and what it asks of a damper.
+
+numba compiles a record's methods and never reads the interfaces; they are for readers and for the type checker.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Protocol
 
 from numba import types
 
 from seatsim.compilation.jit import jit, specialise
 from seatsim.kernel.hooks import hook, record_class
-from seatsim.kernel.protocols import DamperModel
 from seatsim.rig.control import CompiledLaw, CurrentLaw, ForceLaw, Measurement
 from seatsim.rig.sensors import Sensing
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling, scaling
 from seatsim.schema.arrays import Array
+
+
+class DamperModel(Protocol):
+    """A damper model: the part that every model has.
+
+    x [m] and v [m/s] are displacement and velocity of the damper, i [A] its coil current, `scaling` the factors of the
+    temperature on its viscous, elastic and yield terms, z its state (empty where it has none).
+    """
+
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State, /) -> float:
+        """Return the force in N without the set-valued friction, positive when it opposes extension."""
+
 
 scaling_at = jit(scaling)
 

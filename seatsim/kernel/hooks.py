@@ -1,18 +1,23 @@
-"""Optional methods of records: the one place where a method is looked up by its name.
+"""Optional methods of records: the one place where a method is looked up by its name; and arithmetic of tuples.
 
 A record class is an ordinary NamedTuple with ordinary methods. `hook(default)` makes a function `f(record, ...)` that
-in compiled code is the record's own method of that name, inlined; where the class has none, the default's. numba
-resolves it by the class of the record, so that a hook without a method costs nothing.
+in compiled code is the record's own method of that name, inlined; where the class has none, the default's. Over a tuple
+of effect records `sum_hook`, `fold_hook` and `join_hook` make one function per hook, unrolled: only the records that
+have the method are called, the others cost nothing. `z` is the state of all of them, one after another; a method
+`f(self, ..., z)` gets its own part of it. numba resolves all by the classes of the records.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import ParamSpec, TypeVar, cast
+from collections.abc import Callable, Iterator, Sequence
+from functools import cache
+from typing import ParamSpec, Protocol, TypeVar, cast
 
 from numba import types
 
-from seatsim.compilation.jit import specialise
+from seatsim.compilation.jit import define, jit, specialise
+from seatsim.rig.state import State
+from seatsim.schema.registry import specification_of
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -53,3 +58,118 @@ def hook(default: Callable[P, R]) -> Callable[P, R]:
     generic.__name__ = generic.__qualname__ = name
     specialise(generic)(resolve)
     return generic
+
+
+T = TypeVar("T")
+Effects = tuple[tuple[object, ...], ...]
+"""Effect records: a `typing.NamedTuple` each, with a method for each hook that it uses."""
+
+
+class SummedHook(Protocol):
+    """Sum of the values that the records' methods return."""
+
+    def __call__(self, effects: Effects, z: State, /, *arguments: object) -> float:
+        """Return the sum, 0 where no record has the method."""
+
+
+class FoldedHook(Protocol):
+    """A value that is passed from record to record."""
+
+    def __call__(self, effects: Effects, z: State, value: T, /, *arguments: object) -> T:
+        """Return `value` after all records changed it; unchanged where no record has the method."""
+
+
+class JoinedHook(Protocol):
+    """Tuples of the records, one after another."""
+
+    def __call__(self, effects: Effects, z: State, /, *arguments: object) -> State:
+        """Return the joined tuple, empty where no record has the method."""
+
+
+def state_at_rest(classes: Sequence[type]) -> State:
+    """Return the state at rest of records of these classes, one after another."""
+    return tuple(value for cls in classes for value in specification_of(cls).initial)
+
+
+def _parts(classes: Sequence[type], name: str) -> Iterator[tuple[int, Callable[..., object], slice]]:
+    """Yield index, method and part of the state of every class that has the method."""
+    start = 0
+    for index, cls in enumerate(classes):
+        end = start + len(specification_of(cls).initial)
+        method = method_of(cls, name)
+        if method:
+            yield index, method, slice(start, end)
+        start = end
+
+
+@cache
+def _implementation(
+    classes: tuple[type, ...], name: str, first: str, line: str, last: str, count: int
+) -> Callable[..., object]:
+    """Build `impl(effects, z, a0, ...)` with `count` arguments: numba cannot loop over a tuple of several classes."""
+    arguments = [f"a{k}" for k in range(count)]
+    body, namespace = [first], cast("dict[str, object]", {"__name__": __name__})
+    for index, method, part in _parts(classes, name):
+        namespace[f"m{index}"] = jit(method)
+        given = ", ".join([f"effects[{index}]", *arguments, f"z[{part.start}:{part.stop}]"])
+        body.append(line.format(call=f"m{index}({given})"))
+    source = "\n    ".join([f"def {name}({', '.join(['effects', 'z', *arguments])}):", *body, last])
+    return define(source, name, namespace)
+
+
+def _chain(name: str, first: str, line: str, last: str) -> Callable[..., object]:
+    """Make a generic function `f(effects, z, *arguments)` out of the source of its body.
+
+    The body is `first`, then `line` for each record that has the method, then `last`; `{call}` in a line is the
+    method's call, `r` the result so far, `a0, a1, ...` the arguments.
+    """
+
+    def generic(effects: Effects, z: State, *arguments: object) -> object:
+        classes = tuple(type(effect) for effect in effects)
+        return _implementation(classes, name, first, line, last, len(arguments))(effects, z, *arguments)
+
+    def resolve(effects: types.Type, z: types.Type, *arguments: types.Type) -> Callable[..., object] | None:
+        if not isinstance(effects, types.BaseTuple):
+            return None
+        return _implementation(tuple(map(record_class, effects.types)), name, first, line, last, len(arguments))
+
+    generic.__name__ = generic.__qualname__ = name
+    specialise(generic)(resolve)
+    return generic
+
+
+def sum_hook(name: str) -> SummedHook:
+    """Make the function that sums the records' values for the hook `name`."""
+    return cast(SummedHook, _chain(name, "r = 0.0", "r += {call}", "return r"))
+
+
+def fold_hook(name: str) -> FoldedHook:
+    """Make the function that passes its first argument from record to record, each of which may change it."""
+    return cast(FoldedHook, _chain(name, "", "a0 = {call}", "return a0"))
+
+
+def join_hook(name: str) -> JoinedHook:
+    """Make the function that joins the records' tuples, one after another, in the order of the states."""
+    return cast(JoinedHook, _chain(name, "r = ()", "r = r + {call}", "return r"))
+
+
+def leading_state(effects: Effects, z: State) -> State:
+    """Return the head of a state, in front of the part that belongs to the effects."""
+    return z[: len(z) - len(state_at_rest([type(effect) for effect in effects]))]
+
+
+def effect_state(effects: Effects, z: State) -> State:
+    """Return the tail of a state, which belongs to the effects."""
+    return z[len(z) - len(state_at_rest([type(effect) for effect in effects])) :]
+
+
+@specialise(leading_state)
+def _leading_state(effects: types.Type, z: types.Type) -> Callable[[Effects, State], State]:
+    end = len(z) - len(state_at_rest([*map(record_class, effects.types)]))
+    return lambda effects, z: z[:end]
+
+
+@specialise(effect_state)
+def _effect_state(effects: types.Type, z: types.Type) -> Callable[[Effects, State], State]:
+    start = len(z) - len(state_at_rest([*map(record_class, effects.types)]))
+    return lambda effects, z: z[start:]

@@ -6,8 +6,7 @@ import math
 from typing import NamedTuple
 
 from seatsim.compilation.jit import jit
-from seatsim.kernel.generic import force, friction_limit
-from seatsim.kernel.protocols import DamperModel
+from seatsim.kernel.generic import DamperModel, force, friction_limit
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.arrays import Array

@@ -6,13 +6,13 @@ import math
 
 from seatsim.compilation.jit import jit
 from seatsim.kernel.assumed_model import InverseModel, follow_state, model_scaling, model_state
-from seatsim.kernel.chain import leading_state
+from seatsim.kernel.channels import Sample, write_row
 from seatsim.kernel.generic import advance_filters, evaluate_law, read, scaling_at, update, wants_force
+from seatsim.kernel.hooks import hook, leading_state
 from seatsim.kernel.inverse import invert
 from seatsim.kernel.loop_inputs import ControlledRig, LoopInputs, LoopSetup, sample_of, step_inputs
-from seatsim.kernel.recorders import Recorder, Sample, keep, nothing
 from seatsim.kernel.rig import Disturbance
-from seatsim.kernel.step import IntegratorState, advance, relaxed, start
+from seatsim.kernel.step import IntegratorState, StepInputs, advance, relaxed, start
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import CompiledLaw, Measurement
 from seatsim.rig.state import CUSHION_VELOCITY, DAMPER_WORK, DISPLACEMENT, MECHANICAL, VELOCITY, State
@@ -24,16 +24,17 @@ ROUNDING = 1e-9
 
 
 def run_loop(
-    setup: LoopSetup, inputs: LoopInputs, rig_state: State, followed: State, law_state: State, recorder: Recorder
-) -> tuple[int, State, float]:
-    """Simulate N samples from rest; return how many were reached, what was kept, and the damper's temperature in degC.
+    setup: LoopSetup, inputs: LoopInputs, rig_state: State, followed: State, law_state: State, out: Array, grid: Array
+) -> int:
+    """Simulate N samples from rest into `out`, shape (N, len(CHANNELS)), and return how many were reached.
 
     `rig_state` is that of damper and effects at rest, `followed` that of the inverse's damper, `law_state` the law's
-    initial one. To be compiled by `compiled`, with the classes of every record in `setup` and of the recorder. Nothing
-    is raised: a run that diverges returns the sample at which it did, and later ones are not kept.
+    initial one; `grid`, shape (CELLS + 1,), is scratch of the inverse. To be compiled by `compiled`, with the classes
+    of every record in `setup`. Nothing is raised: a run that diverges returns the sample at which it did, and later
+    rows are not written.
     """
-    rig, coil, law, model, timing = setup.rig, setup.coil, setup.law, setup.inverse_model, setup.timing
-    step, samples = timing.step, len(inputs.floor_acceleration)
+    coil, model, timing = setup.coil, setup.inverse_model, setup.timing
+    step, samples, ratio = timing.step, len(inputs.floor_acceleration), setup.rig.plant.damper_ratio
     late, split, kept = delay_of(coil, step)
     current = inputs.start_current
     follows = len(inputs.temperature) > 0
@@ -43,9 +44,8 @@ def run_loop(
     disturbance = Disturbance(
         inputs.floor_acceleration[0], sample_of(inputs.frame_force, 0), sample_of(inputs.driver_force, 0)
     )
-    now = start(rig, mechanical + rig_state, disturbance, current, factors, step)
+    now = begin(setup, mechanical + rig_state, disturbance, current, factors, temperature)
     command, wanted, served, sensed = 0.0, math.nan, math.nan, inputs.sensed
-    room, kept_of_run = recorder.room, nothing(recorder)
 
     for k in range(samples):
         floor = inputs.floor_acceleration[k]
@@ -56,29 +56,19 @@ def run_loop(
             speed, replayed = inputs.floor_velocity[k], inputs.replayed[k] if len(inputs.replayed) > 0 else math.nan
             true = measure(now, k * step, floor, speed, current, temperature, replayed)
             y, sensed = read(setup.sensors, true, inputs.noise, k // timing.sample_every, sensed)
-            command, wanted, served = decide(setup, y, now, factors, followed, law_state, room)
-            law_state = update(law, y, law_state)
-        sample = Sample(floor, wanted, served, current, command, temperature)
-        kept_of_run = keep(recorder, kept_of_run, setup.rig, k, now, sample)
+            command, wanted, served = decide(setup, y, now, factors, followed, law_state, grid)
+            law_state = update(setup.law, y, law_state)
+        write_row(out[k], now, Sample(floor, wanted, served, current, command, temperature))
         if k == samples - 1:
             break
-        acting = step_inputs(setup, inputs, recorder, k, current, late, split, kept)
+        acting = step_inputs(setup, inputs, out, k, current, late, split, kept)
         x, v, work = now.state[DISPLACEMENT], now.state[VELOCITY], now.state[DAMPER_WORK]
-        now, next_current, good = advance(rig, coil, acting, factors, now, timing.tolerance)
+        now, next_current, good = take_step(setup, acting, k, factors, now, temperature)
         if not good:
-            return k, kept_of_run, temperature
-        ratio = rig.plant.damper_ratio
-        followed = follow_state(
-            model.damper,
-            followed,
-            ratio * x,
-            ratio * v,
-            ratio * now.state[DISPLACEMENT],
-            ratio * now.state[VELOCITY],
-            0.5 * (current + next_current),
-            model_scaling(model, factors, temperature),
-            step,
-        )
+            return k
+        x_next, v_next = ratio * now.state[DISPLACEMENT], ratio * now.state[VELOCITY]
+        felt, mean = model_scaling(model, factors, temperature), 0.5 * (current + next_current)
+        followed = follow_state(model.damper, followed, ratio * x, ratio * v, x_next, v_next, mean, felt, step)
         # Temperature is constant over a step: its change within one is far too small to affect the factors.
         if timing.self_heating:
             work = now.state[DAMPER_WORK] - work
@@ -88,7 +78,28 @@ def run_loop(
             temperature = inputs.temperature[k + 1]
             factors = scaling_at(setup.factors, temperature)
         current = next_current
-    return samples, kept_of_run, temperature
+    return samples
+
+
+@hook
+def begin(
+    setup: LoopSetup,
+    state: State,
+    disturbance: Disturbance,
+    current: float,
+    factors: TemperatureScaling,
+    temperature: float,
+) -> IntegratorState:
+    """State of the integration at the first sample; `temperature` is the damper's in degC."""
+    return start(setup.rig, state, disturbance, current, factors, setup.timing.step)
+
+
+@hook
+def take_step(
+    setup: LoopSetup, acting: StepInputs, k: int, factors: TemperatureScaling, now: IntegratorState, temperature: float
+) -> tuple[IntegratorState, float, bool]:
+    """State after the step from sample `k`, the current then in A, and whether the step succeeded (see `advance`)."""
+    return advance(setup.rig, setup.coil, acting, factors, now, setup.timing.tolerance)
 
 
 @jit

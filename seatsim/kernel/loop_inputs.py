@@ -8,7 +8,7 @@ import numpy as np
 
 from seatsim.compilation.jit import jit
 from seatsim.kernel.assumed_model import InverseModel
-from seatsim.kernel.recorders import Recorder, command_at
+from seatsim.kernel.channels import CURRENT_COMMAND
 from seatsim.kernel.rig import Rig
 from seatsim.kernel.step import StepInputs
 from seatsim.rig.coil import Coil
@@ -101,7 +101,7 @@ def sample_of(values: Array, k: int) -> float:
 def step_inputs(
     setup: LoopSetup,
     inputs: LoopInputs,
-    recorder: Recorder,
+    rows: Array,
     k: int,
     current: float,
     late: int,
@@ -110,12 +110,13 @@ def step_inputs(
 ) -> StepInputs:
     """Return the inputs of the rig from sample `k` to the next.
 
-    `recorder` holds the commands until sample k, which act `late` steps and `split` seconds later, no more than the
-    coil's driver can give; before the first of them acts, the coil's `start_current` stands. `kept` as in `StepInputs`.
+    `rows`, shape (N, len(CHANNELS)), hold the commands until sample k, which act `late` steps and `split` seconds
+    later, no more than the coil's driver can give; before the first of them acts, the coil's `start_current` stands.
+    `kept` as in `StepInputs`.
     """
     first, most, prescribed = inputs.start_current, setup.coil.max_current, len(inputs.prescribed) > 0
-    before = min(command_at(recorder, k - late - 1) if k > late else first, most)
-    after = min(command_at(recorder, k - late) if k >= late else first, most)
+    before = min(rows[k - late - 1, CURRENT_COMMAND] if k > late else first, most)
+    after = min(rows[k - late, CURRENT_COMMAND] if k >= late else first, most)
     if prescribed:
         after = inputs.prescribed[k + 1]
     floor = inputs.floor_acceleration[k]

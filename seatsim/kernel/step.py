@@ -11,9 +11,8 @@ import math
 from typing import NamedTuple
 
 from seatsim.compilation.jit import jit, jit_apart
+from seatsim.kernel.integration import MOST_DEBT, axpy, combine, owe
 from seatsim.kernel.rig import STICKING, Disturbance, Rig, RigForces, derivative
-from seatsim.kernel.tuples import axpy, combine
-from seatsim.kernel.work import MOST_DEBT, owe
 from seatsim.rig.coil import Coil, relax
 from seatsim.rig.state import CUSHION_DISPLACEMENT, CUSHION_VELOCITY, VELOCITY, State
 from seatsim.rig.temperature import TemperatureScaling
@@ -69,7 +68,7 @@ class IntegratorState(NamedTuple):
     """State of the integration: state of the rig, its rates and forces, phase of the friction, next sub-step in s.
 
     `slip` is 0 without set-valued friction, -1 or 1 where the suspension slides, STICKING where it is stuck; `debt` the
-    sub-steps owed (`seatsim.kernel.work.owe`).
+    sub-steps owed (`seatsim.kernel.integration.owe`).
     """
 
     state: State
@@ -170,9 +169,9 @@ def advance(
     """Return the state of the integration after one step, the current then in A, and whether the step succeeded.
 
     A step fails where the error stays beyond `DIVERGED` even in the shortest sub-step, or is NaN; the last valid state
-    is then returned. So does one by which the run takes more work than `seatsim.kernel.work` grants. `tolerance` is the
-    error in the velocities that a sub-step may add, relative to their size plus `SPEED_SCALE`; above about 0.1 it has
-    no effect.
+    is then returned. So does one by which the run takes more work than `seatsim.kernel.integration` grants. `tolerance`
+    is the error in the velocities that a sub-step may add, relative to their size plus `SPEED_SCALE`; above about 0.1
+    it has no effect.
     """
     h = now.substep
     # The common case, a rig without set-valued friction that needs one sub-step, has a short path of its own.

@@ -1,4 +1,4 @@
-"""A day's exposure to whole-body vibration: directive 2002/44/EC and the health guidance of ISO 2631-1, Annex B.
+"""Where vibration enters a person, and a day's exposure: directive 2002/44/EC and ISO 2631-1 with Annex B.
 
 Nothing here says more about health than the two texts do.
 """
@@ -6,12 +6,12 @@ Nothing here says more about health than the two texts do.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Annotated, NamedTuple
 
 from seatsim.metrics.comfort import EIGHT_HOURS, Dose, daily_exposure, daily_vdv, estimated_vdv
-from seatsim.metrics.directions import direction
-from seatsim.schema.content import written
-from seatsim.schema.errors import InputError
+from seatsim.schema.content import Form, written
+from seatsim.schema.errors import InputError, nearest
 
 HOUR, DAY = 3600.0, 24.0
 """s; h"""
@@ -88,7 +88,7 @@ def assess_exposure(doses: dict[str, Dose], hours: float) -> Exposure | None:
     """Return the exposure of `hours` a day to vibration like that of a record; None where no axis counts for health.
 
     Args:
-        doses: of the weighted accelerations by axis (`seatsim.metrics.DIRECTIONS`), without multiplying factors.
+        doses: of the weighted accelerations by axis (`DIRECTIONS`), without multiplying factors.
         hours: duration of the vibration in a day, above 0, at most 24.
 
     Raises:
@@ -128,3 +128,55 @@ def _reach(value: ExposureValue, a8: float, vdv8: float, hours: float) -> ValueR
 def _zone(value: float, bounds: tuple[float, ...]) -> str:
     low, high = bounds
     return "below" if value < low else "above" if value > high else "within"
+
+
+class Direction(NamedTuple):
+    """One axis at one point of contact with the person.
+
+    Source: ISO 2631-1:1997, 7.2.3 and Tables 1 and 2 with 8.2.2.1 to 8.2.2.3; factors recalled, not read in the
+    standard.
+    """
+
+    weighting: str
+    """Frequency weighting, a name of `seatsim.metrics.weighting.WEIGHTINGS`."""
+    comfort: Annotated[float, Form(key="factor_comfort")]
+    """Factor k of the vibration total value for comfort (8.2.2); m/rad for rotation."""
+    health: Annotated[float | None, Form(key="factor_health")] = None
+    """Factor k with regard to health (7.2.3); None where the standard has none."""
+    unit: str = "m/s^2"
+
+
+POINTS = ("seat", "back", "feet")
+"""Surfaces through which vibration enters a seated person."""
+
+DIRECTIONS: Mapping[str, Direction] = {
+    "x": Direction("Wd", 1.0, 1.4),
+    "y": Direction("Wd", 1.0, 1.4),
+    "z": Direction("Wk", 1.0, 1.0),
+    "rx": Direction("We", 0.63, unit="rad/s^2"),
+    "ry": Direction("We", 0.4, unit="rad/s^2"),
+    "rz": Direction("We", 0.2, unit="rad/s^2"),
+    "back.x": Direction("Wc", 0.8),
+    "back.y": Direction("Wd", 0.5),
+    "back.z": Direction("Wd", 0.4),
+    "feet.x": Direction("Wk", 0.25),
+    "feet.y": Direction("Wk", 0.25),
+    "feet.z": Direction("Wk", 0.4),
+}
+"""By axis: fore-and-aft x, lateral y, vertical z; without a point in front, on the surface of the seat."""
+
+
+def direction(axis: str) -> Direction:
+    """Return the direction of an axis.
+
+    Raises:
+        InputError: no axis has this name.
+    """
+    if axis not in DIRECTIONS:
+        raise InputError(f"no axis is called '{axis}'{nearest(axis, DIRECTIONS)}; permitted: {', '.join(DIRECTIONS)}")
+    return DIRECTIONS[axis]
+
+
+def point_of(axis: str) -> str:
+    """Return the point of contact of an axis, a name of `POINTS`."""
+    return axis.partition(".")[0] if "." in axis else POINTS[0]

@@ -13,7 +13,7 @@ from seatsim.diagnosis.augmented import write_augmented
 from seatsim.diagnosis.candidates import Candidate, list_candidates
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import pose_problem
-from seatsim.metrics import rms
+from seatsim.metrics.motion import rms
 from seatsim.page.controls import Choice, Slider, Switch, read_number
 from seatsim.page.scenario_view import View
 from seatsim.recordings.quality.examination import examine, refuse

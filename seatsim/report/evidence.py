@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from seatsim.diagnosis.result import Diagnosis, Trace
-from seatsim.metrics import rms
+from seatsim.metrics.motion import rms
 from seatsim.plots.diagnosis.bins import (
     bin_edges,
     compute_residual,

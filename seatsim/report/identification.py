@@ -6,8 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from seatsim.identification.agreement import Agreement
-from seatsim.identification.assessment import Assessment
+from seatsim.identification.assessment import Agreement, Assessment
 from seatsim.identification.identify import Identification
 from seatsim.plots.labels import format_unit
 from seatsim.report.blocks import Block, Items, Report, Section, Table

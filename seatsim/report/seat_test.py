@@ -13,8 +13,7 @@ from seatsim.report.formatting import UNKNOWN, format_number, format_percent, fo
 from seatsim.report.method import describe_method
 from seatsim.report.planes import Curve, draw_curves
 from seatsim.schema.text import join_names
-from seatsim.standards.iso7096 import LIMITS, RECALLED
-from seatsim.standards.seat_rows import DampingRow, SeatRow, SeatTest
+from seatsim.standards.seat_rows import LIMITS, RECALLED, DampingRow, SeatRow, SeatTest
 
 NAMED = 3
 """Failures that the answer names."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from seatsim.metrics import power_spectral_density
+from seatsim.metrics.spectra import power_spectral_density
 from seatsim.plots.averaging import average_bands
 from seatsim.schema.arrays import Array
 

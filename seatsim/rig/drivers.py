@@ -66,11 +66,7 @@ BODIES: Mapping[str, Body] = {
     "iso5982": Body(
         contact=2.0,
         masses=(45.0, 6.0, 2.0),
-        links=(
-            Link(0, CONTACT, 36200.0, 1390.0),
-            Link(1, CONTACT, 9990.0, 387.0),
-            Link(2, 1, 34400.0, 234.0),
-        ),
+        links=(Link(0, CONTACT, 36200.0, 1390.0), Link(1, CONTACT, 9990.0, 387.0), Link(2, 1, 34400.0, 234.0)),
         head=2,
         source="ISO 5982:2001, model of a person of 75 kg, of whom 55 kg rest on the seat",
         confidence=RECALLED,

@@ -115,12 +115,7 @@ def control_system(plant: Plant) -> control.StateSpace:
         c,
         d,
         inputs=["floor_acceleration", "damper_force"],
-        outputs=[
-            "suspension_displacement",
-            "suspension_velocity",
-            "frame_acceleration",
-            "driver_acceleration",
-        ],
+        outputs=["suspension_displacement", "suspension_velocity", "frame_acceleration", "driver_acceleration"],
     )
 
 

@@ -34,9 +34,7 @@ def scaling(factors: TemperatureFactors, temperature: float) -> TemperatureScali
     """Return the factors at a damper temperature in degC (Yu et al. 2019, eqs 9-11)."""
     rise = temperature - factors.reference
     return TemperatureScaling(
-        math.exp(factors.viscous * rise),
-        math.exp(factors.stiffness * rise),
-        math.exp(factors.yield_force * rise),
+        math.exp(factors.viscous * rise), math.exp(factors.stiffness * rise), math.exp(factors.yield_force * rise)
     )
 
 

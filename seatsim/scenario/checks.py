@@ -14,7 +14,7 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from seatsim.metrics import METRICS
+from seatsim.metrics.table import METRICS
 from seatsim.schema.errors import nearest
 from seatsim.schema.json_schema import TEXT, Schema, mapping_schema
 from seatsim.schema.validation import check_keys, is_finite_number, mapping

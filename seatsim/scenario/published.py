@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple, cast
 
-from seatsim.metrics import METRICS
+from seatsim.metrics.table import METRICS
 from seatsim.schema.validation import check_keys, is_finite_number, mapping
 from seatsim.schema.yaml_source import Source
 

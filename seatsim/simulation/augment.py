@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
-from typing import cast
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
 from seatsim.cosimulation.damper import require_model
 from seatsim.effects.base import EFFECTS, ON_DAMPER, ON_SEAT, acts_on, off
 from seatsim.kernel.augmented import AugmentedDamper
-from seatsim.kernel.chain import Effects, state_at_rest
-from seatsim.kernel.protocols import DamperModel
-from seatsim.kernel.seated_body import MASSES, Matrix, SeatedBody, Vector
+from seatsim.kernel.generic import DamperModel
+from seatsim.kernel.hooks import Effects, state_at_rest
+from seatsim.kernel.rig import MASSES, Matrix, SeatedBody, Vector
 from seatsim.rig.coil import Coil
 from seatsim.rig.drivers import BODIES, SINGLE_MASS, Driver, body_matrices
 from seatsim.rig.plant import Plant
@@ -21,66 +21,77 @@ from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.arrays import Array, require_samples
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import specification_of
-from seatsim.simulation.effect_hooks import COIL, FACTORS, FRAME_FORCE, PLANT, READING, TEMPERATURE, TRUTH
+
+T = TypeVar("T")
 
 NONE = np.zeros(0)
 
 
 def augment_plant(effects: Sequence[object], plant: Plant) -> Plant:
     """Return the parameters of the seat as the effects leave them."""
-    for effect in PLANT.of(effects):
-        plant = effect.plant(plant)
-    return plant
+    return _change(effects, "plant", plant)
 
 
 def augment_coil(effects: Sequence[object], coil: Coil) -> Coil:
     """Return the parameters of the coil as the effects leave them."""
-    for effect in COIL.of(effects):
-        coil = effect.coil(coil)
-    return coil
+    return _change(effects, "coil", coil)
 
 
 def augment_factors(effects: Sequence[object], factors: TemperatureFactors) -> TemperatureFactors:
     """Return the temperature factors of the damper as the effects leave them."""
-    for effect in FACTORS.of(effects):
-        factors = effect.factors(factors)
-    return factors
+    return _change(effects, "factors", factors)
 
 
 def augment_temperature(effects: Sequence[object], step: float, temperature: Array) -> Array:
     """Return the temperature of the fluid in degC out of that of the thermocouple, shape (N,), every `step` seconds."""
-    for effect in TEMPERATURE.of(effects):
-        temperature = _checked(effect, "temperature", effect.temperature(step, temperature), temperature, step)
+    for effect, change in _with(effects, "temperature"):
+        temperature = _checked(effect, "temperature", change(step, temperature), temperature, step)
     return temperature
 
 
 def undo_reading(effects: Sequence[object], values: Array, channel: str, step: float) -> Array:
     """Return what is true out of what a sensor says, shape (N,): the effects on it undone, the last one first."""
-    for effect in TRUTH.of(effects[::-1]):
-        values = _checked(effect, f"truth of {channel}", effect.truth(channel, step, values), values, step)
-    return values
-
-
-def read_sensor(effects: Sequence[object], values: Array, channel: str, step: float) -> Array:
-    """Return what a sensor says out of what is true, shape (N,), sampled every `step` seconds."""
-    for effect in READING.of(effects):
-        values = _checked(effect, f"reading of {channel}", effect.reading(channel, step, values), values, step)
+    for effect, undo in _with(effects[::-1], "truth"):
+        values = _checked(effect, f"truth of {channel}", undo(channel, step, values), values, step)
     return values
 
 
 def read_sensors(effects: Sequence[object], step: float, true: Mapping[str, Array]) -> dict[str, Array]:
     """Return what the sensors say of true channels that are sampled every `step` seconds, shape (N,) each."""
-    return {name: read_sensor(effects, values, name, step) for name, values in true.items()}
+    return {name: _read_sensor(effects, values, name, step) for name, values in true.items()}
+
+
+def _read_sensor(effects: Sequence[object], values: Array, channel: str, step: float) -> Array:
+    for effect, read in _with(effects, "reading"):
+        values = _checked(effect, f"reading of {channel}", read(channel, step, values), values, step)
+    return values
 
 
 def sum_frame_forces(effects: Sequence[object], time: Array, seed: int) -> Array:
     """Return the force on the frame in N that effects add, shape (N,), or of length 0 where none does."""
     step = float(time[1]) if len(time) > 1 else 0.0
     forces = [
-        _checked(effect, "frame_force", effect.frame_force(time, seed), time, step)
-        for effect in FRAME_FORCE.of(effects)
+        _checked(effect, "frame_force", push(time, seed), time, step) for effect, push in _with(effects, "frame_force")
     ]
     return np.asarray(np.sum(forces, axis=0)) if forces else NONE
+
+
+def acts_on_signals(effects: Sequence[object]) -> bool:
+    """Return whether an effect changes what drives a run, sample by sample."""
+    return any(acts_on(type(effect), ("temperature", "frame_force", "truth")) for effect in effects)
+
+
+def _with(effects: Sequence[object], hook: str) -> Iterator[tuple[object, Callable[..., Any]]]:
+    """Yield the effects that have a method for a hook (see `seatsim.effects.base`), each with it, in their order."""
+    # An isinstance of a runtime protocol takes 10 us, some fifty times in a simulation of 10 ms: too slow here.
+    return ((effect, getattr(effect, hook)) for effect in effects if hasattr(effect, hook))
+
+
+def _change(effects: Sequence[object], hook: str, value: T) -> T:
+    """Return a record as the effects leave it, one after another."""
+    for _, change in _with(effects, hook):
+        value = change(value)
+    return value
 
 
 def _checked(effect: object, method: str, found: object, like: Array, step: float) -> Array:

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline, UnivariateSpline
 
 from seatsim.effects.base import ON_SEAT, acts_on
-from seatsim.kernel.coil_current import simulate_current
+from seatsim.kernel.bench import simulate_current
 from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array

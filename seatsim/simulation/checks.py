@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.excitations.rest import Rest
+from seatsim.excitations.periodic import Rest
 from seatsim.rig.control import LAWS, ForceLaw, prepare_law
 from seatsim.rig.sampled_loop import SampledLoop, build_sampled_loop
 from seatsim.scenario.checks import LOOP_FIGURES, STABLE, Check

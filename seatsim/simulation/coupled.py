@@ -1,6 +1,6 @@
 """A seat whose damper is a unit of another program: the rig's steps are compiled, the loop over them is Python.
 
-One pass is what one pass of `seatsim.kernel.loop.run_loop` is, with the same functions. Over a step the rig feels the
+The loop is `seatsim.kernel.loop.run_loop`, whose steps are made here with the unit. Over a step the rig feels the
 mean of the unit's force at both ends, `(F_k + F_k+1) / 2`, and the unit the motion that follows from it:
 
     state_k+1 = rig(state_k, (F_k + F_k+1) / 2),   F_k+1 = unit(motion of that step)
@@ -12,7 +12,6 @@ two forces: of order 2 too, but stable only while damping times step is well bel
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -23,16 +22,13 @@ from seatsim.cosimulation.damper import CoupledForce, FmuDamper
 from seatsim.cosimulation.running import RunningUnit
 from seatsim.cosimulation.unit import run_unit
 from seatsim.effects.base import ON_DAMPER, acts_on
-from seatsim.kernel import step as kernel_step
-from seatsim.kernel.assumed_model import follow_state, model_scaling
-from seatsim.kernel.generic import advance_filters, read, scaling_at, update, wants_force
+from seatsim.kernel.generic import wants_force
 from seatsim.kernel.inverse import CELLS
-from seatsim.kernel.loop import ROUNDING, decide, measure, warm_up
-from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, sample_of, step_inputs
-from seatsim.kernel.recorders import Sample, keep_rows
+from seatsim.kernel.loop import run_loop
+from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup
 from seatsim.kernel.rig import Disturbance
-from seatsim.kernel.step import IntegratorState, StepInputs, relaxed
-from seatsim.rig.state import DAMPER_WORK, DISPLACEMENT, VELOCITY, State
+from seatsim.kernel.step import IntegratorState, StepInputs, advance, disturbance_at, start
+from seatsim.rig.state import DISPLACEMENT, VELOCITY, State
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 from seatsim.scenario.scenario import DamperChoice, Scenario
 from seatsim.schema.arrays import Array
@@ -75,105 +71,60 @@ def run_coupled(
             " the inverse assumes: inverse: {model: NAME, parameters: {...}}"
         )
     with run_unit(damper) as unit:
-        return _Loop(unit, setup, inputs).run(damper, states, out)
+        seat = _CoupledSeat(*setup)
+        seat.damper, seat.unit, seat.parts = damper, unit, (CoupledForce, *map(type, setup.rig.effects))
+        return run_loop(seat, inputs, *states, out, np.empty(CELLS + 1))
 
 
-class _Loop:
-    """The constant parts of a run with a unit."""
+class _CoupledSeat(LoopSetup):
+    """The constant parts of a run with a unit; the force of the rig's damper is the unit's at the last sample."""
 
-    def __init__(self, unit: RunningUnit, setup: LoopSetup, inputs: LoopInputs) -> None:
-        self.unit, self.setup, self.inputs = unit, setup, inputs
-        parts = (CoupledForce, *map(type, setup.rig.effects))
-        self.advance = compiled(kernel_step.advance, parts)
-        self.restart = compiled(kernel_step.start, parts)
+    damper: FmuDamper
+    unit: RunningUnit
+    parts: tuple[type, ...]
+    before: float
 
-    def run(self, damper: FmuDamper, states: tuple[State, State, State], out: Array) -> int:
-        """Run from time zero; the passes are those of `run_loop`."""
-        setup, inputs, timing, coil, model = (
-            self.setup, self.inputs, self.setup.timing, self.setup.coil, self.setup.inverse_model
-        )  # fmt: skip
-        step, samples, ratio, recorder = timing.step, len(out), setup.rig.plant.damper_ratio, keep_rows(out)
-        late = math.floor(coil.delay / step + ROUNDING)
-        split = coil.delay - late * step
-        split = split if split >= ROUNDING * step else 0.0
-        kept = (1.0 - relaxed(coil, 0.0, 1.0, 0.5 * step), relaxed(coil, 1.0, 0.0, 0.5 * step))
-        current, temperature, sensed = inputs.start_current, float(inputs.temperature[0]), inputs.sensed
-        factors = scaling_at(setup.factors, temperature)
-        rig_state, followed, law_state = states
-        state = (inputs.start_displacement, inputs.start_velocity, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, *rig_state)
-        force = self.unit.start(damper, self._motion(state, state, current, temperature))
-        before, substep, command, wanted, served = force, step, 0.0, math.nan, math.nan
-        grid = np.empty(CELLS + 1)
-        for k in range(samples):
-            floor = float(inputs.floor_acceleration[k])
-            now = self._feel(force, state, k, current, factors, substep)
-            sensed = advance_filters(setup.sensors, floor, now.state[DISPLACEMENT], now.rates, sensed)
-            if k % timing.sample_every == 0:
-                replayed = float(inputs.replayed[k]) if len(inputs.replayed) else math.nan
-                speed = float(inputs.floor_velocity[k])
-                true = measure(now, k * step, floor, speed, current, temperature, replayed)
-                y, sensed = read(setup.sensors, true, inputs.noise, k // timing.sample_every, sensed)
-                command, wanted, served = decide(setup, y, now, factors, followed, law_state, grid)
-                law_state = update(setup.law, y, law_state)
-            sample = Sample(floor, wanted, served, current, command, temperature)
-            recorder.keep((), setup.rig, k, now, sample)
-            if k == samples - 1:
-                break
-            acting = step_inputs(setup, inputs, recorder, k, current, late, split, kept)
-            found = self._step(acting, k, now, force, before, temperature, factors)
-            if found is None:
-                return k
-            later, next_current, before, force = *found[:2], force, found[2]
-            x, v, work = state[DISPLACEMENT], state[VELOCITY], state[DAMPER_WORK]
-            state, substep = later.state, later.substep
-            followed = follow_state(
-                model.damper, followed, ratio * x, ratio * v, ratio * state[DISPLACEMENT], ratio * state[VELOCITY],
-                0.5 * (current + next_current), model_scaling(model, factors, temperature), step,
-            )  # fmt: skip
-            if timing.self_heating:
-                work = state[DAMPER_WORK] - work
-                temperature += warm_up(setup.thermal, coil, temperature, work, current, next_current, step)
-            else:
-                temperature = float(inputs.temperature[k + 1])
-            factors = scaling_at(setup.factors, temperature)
-            current = next_current
-        return samples
+    def begin(
+        self, state: State, disturbance: Disturbance, current: float, factors: TemperatureScaling, temperature: float
+    ) -> IntegratorState:
+        """Start the unit, and return the state of the integration under its force."""
+        self.before = self.unit.start(self.damper, self._motion(state, state, current, temperature))
+        return self._feel(self.before, state, disturbance, current, factors, self.timing.step)
 
     def _feel(
-        self, force: float, state: State, k: int, current: float, factors: TemperatureScaling, substep: float
-    ) -> IntegratorState:
-        """Return the integration begun in a state at sample `k` under a force of the unit."""
-        inputs = self.inputs
-        disturbance = Disturbance(
-            float(inputs.floor_acceleration[k]), sample_of(inputs.frame_force, k), sample_of(inputs.driver_force, k)
-        )
-        rig = self.setup.rig._replace(damper=CoupledForce(force))
-        return self.restart(rig, state, disturbance, current, factors, substep)
-
-    def _step(
-        self, acting: StepInputs, k: int, now: IntegratorState, force: float, before: float, temperature: float,
+        self,
+        force: float,
+        state: State,
+        disturbance: Disturbance,
+        current: float,
         factors: TemperatureScaling,
-    ) -> tuple[IntegratorState, float, float] | None:  # fmt: skip
-        """Return the rig, the current and the unit's force after the step from sample `k`; None where the rig diverged.
+        substep: float,
+    ) -> IntegratorState:
+        """Return the integration begun in a state under a force of the unit in N."""
+        rig = self.rig._replace(damper=CoupledForce(force))
+        return compiled(start, self.parts)(rig, state, disturbance, current, factors, substep)
 
-        `force` is the unit's at this sample, `before` that of the last one.
-        """
-        unit, reached = self.unit, True
+    def take_step(
+        self, acting: StepInputs, k: int, factors: TemperatureScaling, now: IntegratorState, temperature: float
+    ) -> tuple[IntegratorState, float, bool]:
+        """Return the rig and the current after the step from sample `k`, and whether the rig stayed within bounds."""
+        unit, force, reached = self.unit, now.forces.damper_force, True
         found: tuple[IntegratorState, float, float] = (now, acting.current, force)
 
         def miss(trial: float) -> float:
             """Make the step as if the unit's force ended at `trial`, and return by how much it ends elsewhere."""
             nonlocal found, reached
             felt = 0.5 * (force + trial)
-            begun = self._feel(felt, now.state, k, acting.current, factors, now.substep)
-            rig = self.setup.rig._replace(damper=CoupledForce(felt))
-            later, current, reached = self.advance(
-                rig, self.setup.coil, acting, factors, begun, self.setup.timing.tolerance
+            begun = self._feel(felt, now.state, disturbance_at(acting, 0.0), acting.current, factors, now.substep)
+            rig = self.rig._replace(damper=CoupledForce(felt))
+            later, current, reached = compiled(advance, self.parts)(
+                rig, self.coil, acting, factors, begun, self.timing.tolerance
             )
             if not reached:
                 return 0.0
-            motion = self._motion(now.state, later.state, current, temperature)
-            answer = unit.step(k * acting.length, acting.length, motion)
+            answer = unit.step(
+                k * acting.length, acting.length, self._motion(now.state, later.state, current, temperature)
+            )
             found = later, current, answer
             return answer - trial
 
@@ -184,8 +135,10 @@ class _Loop:
             finally:
                 unit.drop(state)
         else:
-            miss(2.0 * force - before)
-        return found if reached else None
+            miss(2.0 * force - self.before)
+        later, current, self.before = *found[:2], force
+        at_end = disturbance_at(acting, acting.length)
+        return self._feel(found[2], later.state, at_end, current, factors, later.substep), current, reached
 
     def _motion(self, first: State, last: State, current: float, temperature: float) -> dict[str, float]:
         """Return what the unit is given for a step: where it begins, and how it goes on where that can be said.
@@ -193,7 +146,7 @@ class _Loop:
         A unit that takes an acceleration goes on by itself from the motion at the beginning of the step; any other
         holds what it is given, which is then the motion at the end.
         """
-        ratio, length = self.setup.rig.plant.damper_ratio, self.setup.timing.step
+        ratio, length = self.rig.plant.damper_ratio, self.timing.step
         given = first if self.unit.takes_acceleration else last
         return {
             "displacement": ratio * given[DISPLACEMENT],

@@ -13,7 +13,7 @@ from seatsim.cosimulation.damper import require_model
 from seatsim.dampers.base import DamperSpecification
 from seatsim.kernel.augmented import classes_of
 from seatsim.kernel.bench import MOST_PARTS, TOLERANCE, run_bench
-from seatsim.kernel.protocols import DamperModel
+from seatsim.kernel.generic import DamperModel
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.arrays import Array
@@ -149,12 +149,7 @@ def centring(displacement: ArrayLike, velocity: ArrayLike) -> str:
     """
     x, v = np.asarray(displacement, dtype=float), np.asarray(velocity, dtype=float)
     turns = x[1:][np.signbit(v[1:]) != np.signbit(v[:-1])]
-    return judge_centring(float(np.sum(np.abs(np.diff(turns)))), float(np.sum(np.abs(turns[1:] + turns[:-1]))))
-
-
-def judge_centring(strokes: float, middles: float) -> str:
-    """Return the same of a motion with this sum of its strokes, and twice the distances of their middles, in m."""
-    if middles <= DRIFT_LIMIT * strokes:
+    if np.sum(np.abs(turns[1:] + turns[:-1])) <= DRIFT_LIMIT * np.sum(np.abs(np.diff(turns))):
         return ""
     return (
         f"the middles of the strokes lie more than {DRIFT_LIMIT:.0%} of half a stroke from x = 0: a model that"

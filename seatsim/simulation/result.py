@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.metrics import Metric
+from seatsim.kernel import channels
+from seatsim.metrics.table import Metric
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.content import Unwritten, written
 from seatsim.simulation.simulate import History
@@ -17,27 +18,7 @@ from seatsim.simulation.simulate import History
 if TYPE_CHECKING:
     import pandas as pd
 
-UNITS = {
-    "time": "s",
-    "floor_acceleration": "m/s^2",
-    "frame_acceleration": "m/s^2",
-    "driver_acceleration": "m/s^2",
-    "suspension_displacement": "m",
-    "suspension_velocity": "m/s",
-    "cushion_displacement": "m",
-    "cushion_velocity": "m/s",
-    "damper_force": "N",
-    "wanted_force": "N",
-    "force_served": "-",
-    "coil_current": "A",
-    "current_command": "A",
-    "damper_temperature": "degC",
-    "energy_floor": "J",
-    "energy_damper": "J",
-    "energy_suspension": "J",
-    "energy_cushion": "J",
-    "energy_stored": "J",
-}
+UNITS = {"time": "s", **channels.UNITS, "energy_stored": "J"}
 """Unit of every channel of a history."""
 SHOWN = 10
 """Runs that a result in a terminal shows."""

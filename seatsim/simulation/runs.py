@@ -5,18 +5,23 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future
+from functools import partial
 from pathlib import Path
 from threading import Lock, Thread
 from typing import TypeVar
 
+import numpy as np
+
 from seatsim.compilation.reasons import explain
-from seatsim.metrics import Metric, summarise
+from seatsim.metrics.table import Metric, summarise
 from seatsim.scenario.loading import load
 from seatsim.scenario.plausibility import list_doubts
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError, RunError, SynthesisError
+from seatsim.schema.files import write_whole
+from seatsim.schema.parquet import store_numbers, store_texts
 from seatsim.simulation.augment import augment_plant
-from seatsim.simulation.result import Result, Run
+from seatsim.simulation.result import UNITS, Result, Run
 from seatsim.simulation.simulate import History, simulate
 from seatsim.simulation.validity import explain_unweighted, list_reasons
 
@@ -125,3 +130,28 @@ def _map_on_threads(function: Callable[[Scenario], R], scenarios: Sequence[Scena
     finally:
         for future in futures:
             future.cancel()
+
+
+def write_histories(runs: Iterable[Run], path: Path) -> Path:
+    """Write all runs below each other, in single precision but for the time; column `run` holds their titles."""
+    return write_whole(path, partial(_write, runs))
+
+
+def _write(runs: Iterable[Run], path: Path) -> None:
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    fields = [pa.field("run", pa.dictionary(pa.int32(), pa.string()))]
+    fields += [
+        pa.field(name, pa.float64() if name == "time" else pa.float32(), metadata={"unit": unit})
+        for name, unit in UNITS.items()
+    ]
+    schema = pa.schema(fields)
+    with pq.ParquetWriter(path, schema, compression="zstd", compression_level=1) as writer:
+        for run in runs:
+            length = len(run.history["time"])
+            titles = pa.DictionaryArray.from_arrays(
+                store_numbers(np.zeros(length), pa.int32()), store_texts([run.scenario.title])
+            )
+            columns = [store_numbers(run.history[name], schema.field(name).type) for name in UNITS]
+            writer.write_table(pa.Table.from_arrays([titles, *columns], schema=schema))

@@ -14,20 +14,21 @@ from seatsim.effects.base import ON_DAMPER, acts_on
 from seatsim.excitations.base import Floor
 from seatsim.kernel.assumed_model import AssumedModel, InverseModel, TrueModel
 from seatsim.kernel.augmented import classes_of
-from seatsim.kernel.chain import state_at_rest
 from seatsim.kernel.channels import CHANNELS, CURRENT_COMMAND
+from seatsim.kernel.hooks import state_at_rest
+from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.loop import run_loop
 from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
-from seatsim.kernel.recorders import keep_rows
 from seatsim.kernel.rig import Rig
 from seatsim.rig.control import LawWithNotes, prepare_law
 from seatsim.rig.plant import Plant
 from seatsim.rig.sensors import Direct, at_rest
+from seatsim.rig.state import State
 from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Control, Scenario
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
-from seatsim.schema.registry import specification_of
+from seatsim.schema.registry import initial_state, specification_of
 from seatsim.simulation.augment import (
     augment_coil,
     augment_damper,
@@ -80,10 +81,7 @@ class History:
 
 
 def simulate(
-    scenario: Scenario,
-    floor: Floor | None = None,
-    forces: Forces | None = None,
-    carry_all_effects: bool | None = None,
+    scenario: Scenario, floor: Floor | None = None, forces: Forces | None = None, carry_all_effects: bool | None = None
 ) -> History:
     """Simulate one run, excited as the scenario says, or by a `floor` that is at hand.
 
@@ -92,7 +90,7 @@ def simulate(
 
     Raises:
         InputError: the scenario has no plant, or its times do not fit each other.
-        RunError: the solution grew beyond all bounds, or took more work than `seatsim.kernel.work` grants.
+        RunError: the solution grew beyond all bounds, or took more work than `seatsim.kernel.integration` grants.
     """
     if scenario.plant is None or scenario.control is None:
         raise InputError(f"{scenario.name}: a damper bench has no seat to simulate; it is replayed with 'seatsim gap'")
@@ -110,19 +108,26 @@ def simulate(
         inputs = inputs._replace(sensed=at_rest(scenario.start.displacement), noise=noise)
     # Each channel lies in one piece, as it is read afterwards: a transpose would take a third of the run's time.
     out = np.empty((len(CHANNELS), len(floor.acceleration))).T
-    recorder = keep_rows(out)
-    variable = setup.law, setup.inverse_model.damper, setup.sensors, recorder
+    variable = setup.law, setup.inverse_model.damper, setup.sensors
     parts = (*classes_of(setup.rig.damper), *map(type, setup.rig.effects), *map(type, variable))
-    states = (initial, _initial_state(setup.inverse_model), specification_of(type(scenario.control.law)).initial)
+    states = initial_states(scenario.control, setup, initial)
     if isinstance(unit, FmuDamper):
         reached = run_coupled(unit, setup, inputs, states, out)
     else:
-        reached, *_ = compiled(run_loop, parts)(setup, inputs, *states, recorder)
-    if reached < len(out) or np.isnan(out[:, CURRENT_COMMAND]).any():
+        reached = compiled(run_loop, parts)(setup, inputs, *states, out, np.empty(CELLS + 1))
+    if not is_whole(out, reached):
         raise explain_divergence(scenario, out[: reached + 1], setup.rig.plant.damper_ratio)
-    notes = setup.law.notes() if isinstance(setup.law, LawWithNotes) else ()
-    history = _history(setup.rig.plant, step, out, notes)
-    return _without_balance(history) if has_inner_masses(scenario.driver, scenario.effects) else history
+    return read_history(scenario, setup, out)
+
+
+def is_whole(out: Array, reached: int) -> bool:
+    """Return whether a run reached its end, and its law gave a finite number at every sample."""
+    return reached == len(out) and not np.isnan(out[:, CURRENT_COMMAND]).any()
+
+
+def initial_states(control: Control, setup: LoopSetup, rig: State) -> tuple[State, State, State]:
+    """Return the states with which a run begins: of the rig, of the damper that the inverse assumes, of the law."""
+    return rig, initial_state(type(setup.inverse_model.damper)), initial_state(type(control.law))
 
 
 def set_up(
@@ -164,11 +169,6 @@ def _assume_damper(scenario: Scenario, control: Control, carry_all_effects: bool
     return AssumedModel(
         record, specification_of(type(record)).current_order, factors, np.nan if temperature is None else temperature
     )
-
-
-def _initial_state(model: InverseModel) -> tuple[float, ...]:
-    initial: tuple[float, ...] = specification_of(type(model.damper)).initial
-    return initial
 
 
 def sample_period(step: float, control: Control) -> float:
@@ -222,26 +222,23 @@ def prepare_inputs(scenario: Scenario, control: Control, floor: Floor, forces: F
     )
 
 
-def _without_balance(history: History) -> History:
-    """Return the history without the energies that miss what moves within a driver's body."""
-    unknown = np.full(len(history["time"]), np.nan)
-    channels = {**history.channels, "energy_floor": unknown, "energy_stored": unknown}
-    return History(history.step, channels, history.notes)
+def read_history(scenario: Scenario, setup: LoopSetup, out: Array) -> History:
+    """Return the channels of a run that reached its end, out of its rows, shape (N, len(CHANNELS)).
 
-
-def _history(plant: Plant, step: float, out: Array, notes: tuple[str, ...]) -> History:
-    """Return the recorded channels with the time and the energy stored in masses, suspension and cushion springs."""
+    The time is added, and the energy stored in masses, suspension and cushion springs.
+    """
+    plant, step = setup.rig.plant, setup.timing.step
     channels: dict[str, Array] = {"time": step * np.arange(len(out), dtype=np.float64)}
     channels |= dict(zip(CHANNELS, out.T, strict=True))
-    v, driver = (
-        channels["suspension_velocity"],
-        channels["suspension_velocity"] + channels["cushion_velocity"],
-    )
-    x, cushion = channels["suspension_displacement"], channels["cushion_displacement"]
+    v, x = channels["suspension_velocity"], channels["suspension_displacement"]
+    driver, cushion = v + channels["cushion_velocity"], channels["cushion_displacement"]
     channels["energy_stored"] = 0.5 * (
         plant.frame_mass * v**2
         + plant.driver_mass * driver**2
         + plant.suspension_stiffness * x**2
         + plant.cushion_stiffness * cushion**2
     )
-    return History(step, channels, notes)
+    if has_inner_masses(scenario.driver, scenario.effects):
+        # Both miss what moves within the driver's body.
+        channels["energy_floor"] = channels["energy_stored"] = np.full(len(out), np.nan)
+    return History(step, channels, setup.law.notes() if isinstance(setup.law, LawWithNotes) else ())

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import NamedTuple
 
 import numpy as np
 
 from seatsim.cosimulation.damper import FmuDamper
-from seatsim.metrics import Metric
+from seatsim.metrics.table import Metric
 from seatsim.metrics.weighting import least_rate
 from seatsim.rig.plant import USUAL_TRAVEL
 from seatsim.scenario.scenario import Scenario
@@ -24,33 +23,13 @@ LARGEST_RESIDUAL = 1e-3
 """Share of the energy that may be unaccounted for before the figures of a run cannot be relied on."""
 
 
-class Excursions(NamedTuple):
-    """How far a run goes from what its models are made for.
-
-    fast, strong, foreign: shares of the samples above the speed, above the current and outside the temperatures of the
-    damper's data. travel: largest distance of the suspension from its mid-stroke in m. drift: what there is to say of
-    its strokes, mostly nothing.
-    """
-
-    fast: float
-    strong: float
-    foreign: float
-    travel: float
-    drift: str = ""
-
-
 def list_reasons(scenario: Scenario, history: History, metrics: Mapping[str, Metric]) -> tuple[str, ...]:
     """Return why the figures of a run are unverified; nothing where they can be relied on.
 
     A model was used outside the range of its data, a figure has no value, or more than `LARGEST_RESIDUAL` of the energy
     is unaccounted for. A driver of several masses has no energy balance, which is no reason by itself.
     """
-    return judge_run(scenario, _measure_excursions(scenario, history), metrics)
-
-
-def judge_run(scenario: Scenario, excursions: Excursions, metrics: Mapping[str, Metric]) -> tuple[str, ...]:
-    """Return the same for a run of which no history was kept."""
-    found = list(_list_ranges_left(scenario, excursions))
+    found = list(list_ranges_left(scenario, history))
     found += [f"{name} has no finite value" for name, metric in metrics.items() if not math.isfinite(metric.value)]
     residual = metrics.get("energy_residual")
     if residual is not None and residual.value > LARGEST_RESIDUAL:
@@ -71,63 +50,32 @@ def explain_unweighted(step: float, metrics: Mapping[str, Metric]) -> tuple[str,
 
 def list_ranges_left(scenario: Scenario, history: History) -> tuple[str, ...]:
     """Return a sentence for every range that a run leaves; those of the damper for more than 1 % of the time."""
-    return _list_ranges_left(scenario, _measure_excursions(scenario, history))
-
-
-def highest_current(max_current: float) -> float:
-    """Return the current in A from which on the laws of a damper with this `max_current` end, rounding allowed for."""
-    return max_current * (1 + 1e-9)
-
-
-def _measure_excursions(scenario: Scenario, history: History) -> Excursions:
     displacement, velocity = history["suspension_displacement"], history["suspension_velocity"]
-    travel = float(np.max(np.abs(displacement)))
+    doubts = _doubt_travel(scenario, float(np.max(np.abs(displacement))))
     record: object = scenario.damper.record
     if isinstance(record, FmuDamper):  # which states no ranges
-        return Excursions(0.0, 0.0, 0.0, travel)
-    specification = specification_of(type(record))
+        return doubts
+    specification, model = specification_of(type(record)), name_of("damper", type(record))
     ratio = scenario.plant.damper_ratio if scenario.plant else 1.0
     temperature, (coldest, hottest) = history["damper_temperature"], specification.temperatures
-    return Excursions(
-        float(np.mean(ratio * np.abs(velocity) > specification.max_speed)),
-        float(np.mean(history["coil_current"] > highest_current(specification.max_current))),
-        float(np.mean((temperature < coldest) | (temperature > hottest))),
-        travel,
-        centring(displacement, velocity) if specification.centred else "",
+    # A command at the end of the laws may exceed it by rounding.
+    fast = ratio * np.abs(velocity) > specification.max_speed
+    strong = history["coil_current"] > specification.max_current * (1 + 1e-9)
+    foreign = (temperature < coldest) | (temperature > hottest)
+    degrees = f"not at {coldest:g} degC" if coldest == hottest else f"outside {coldest:g} to {hottest:g} degC"
+    extrapolated = "the force there is an extrapolation"
+    checks = (
+        (fast, f"faster than {specification.max_speed:g} m/s", extrapolated),
+        (strong, f"above {specification.max_current:g} A", "its laws end there"),
+        (foreign, degrees, extrapolated),
     )
-
-
-def _list_ranges_left(scenario: Scenario, excursions: Excursions) -> tuple[str, ...]:
-    record: object = scenario.damper.record
-    if isinstance(record, FmuDamper):
-        return _doubt_travel(scenario, excursions.travel)
-    cls = type(scenario.damper.record)
-    specification, model = specification_of(cls), name_of("damper", cls)
-    coldest, hottest = specification.temperatures
-    checks = [
-        (
-            excursions.fast,
-            f"faster than {specification.max_speed:g} m/s",
-            "the force there is an extrapolation",
-        ),
-        (
-            excursions.strong,
-            f"above {specification.max_current:g} A",
-            "its laws end there",
-        ),
-        (
-            excursions.foreign,
-            f"not at {coldest:g} degC" if coldest == hottest else f"outside {coldest:g} to {hottest:g} degC",
-            "the force there is an extrapolation",
-        ),
-    ]
     found = [
         f"{model}: more than {SHARE:.0%} of a run is {what}, beyond the data behind the model; {consequence}"
-        for share, what, consequence in checks
-        if share > SHARE
+        for outside, what, consequence in checks
+        if np.mean(outside) > SHARE
     ]
-    found += [f"{model}: {excursions.drift}"] if excursions.drift else []
-    return (*_doubt_travel(scenario, excursions.travel), *found)
+    drift = centring(displacement, velocity) if specification.centred else ""
+    return (*doubts, *found, *([f"{model}: {drift}"] if drift else []))
 
 
 def _doubt_travel(scenario: Scenario, peak: float) -> tuple[str, ...]:

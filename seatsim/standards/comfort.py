@@ -8,10 +8,16 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from seatsim.metrics.comfort import Dose, dose, find_shocks, join_doses, motion_sickness_dose
-from seatsim.metrics.directions import DIRECTIONS, POINTS, Direction, direction, point_of
-from seatsim.metrics.exposure import Exposure, assess_exposure
-from seatsim.metrics.seat_transmission import SeatTransmission, seat_transmission
+from seatsim.metrics.comfort import (
+    Dose,
+    SeatTransmission,
+    dose,
+    find_shocks,
+    join_doses,
+    motion_sickness_dose,
+    seat_transmission,
+)
+from seatsim.metrics.exposure import DIRECTIONS, POINTS, Direction, Exposure, assess_exposure, direction, point_of
 from seatsim.metrics.weighting import weight
 from seatsim.recordings.quality.channels import say_implausible
 from seatsim.schema.arrays import Array
@@ -19,8 +25,7 @@ from seatsim.schema.content import Form, Joined, Unwritten, written
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.notebook import show_record
 from seatsim.schema.units import STANDARD_GRAVITY
-from seatsim.standards.acceleration_axes import choose_axes
-from seatsim.standards.acceleration_records import AccelerationRecord, load_accelerations
+from seatsim.standards.acceleration_records import AccelerationRecord, choose_axes, load_accelerations
 
 FLOOR = {"floor.x": "x", "floor.y": "y", "floor.z": "z"}
 """Axes at the base of the seat, and the axis of the seat whose weighting and SEAT factor they belong to."""
@@ -40,7 +45,7 @@ class AxisAssessment(NamedTuple):
     direction: Joined[Direction]
     dose: Joined[Dose]
     shocks: Annotated[tuple[str, ...], Form(key="reasons")]
-    """Why the basic method does not suffice (`seatsim.metrics.find_shocks`)."""
+    """Why the basic method does not suffice (`seatsim.metrics.comfort.find_shocks`)."""
     removed: Annotated[float, Form(key="removed_mean")]
     """Mean that was taken out of the record before weighting, in its unit: an offset of the sensor, or gravity."""
 
@@ -145,7 +150,7 @@ def comfort(
 def total_values(doses: Mapping[str, Dose]) -> dict[str, float]:
     """Return a_v = sqrt(sum over axes of k^2 a_w^2) in m/s^2 by point of contact, and of all points as `overall`.
 
-    Source: ISO 2631-1:1997, equation 10 in 8.2.2, and 8.2.3 for several points; k as in `seatsim.metrics.DIRECTIONS`.
+    Source: ISO 2631-1:1997, equation 10 in 8.2.2, and 8.2.3 for several points; k as in `seatsim.metrics.exposure`.
     """
     squares = {axis: (direction(axis).comfort * found.rms) ** 2 for axis, found in doses.items()}
     by_point = {point: sum(square for axis, square in squares.items() if point_of(axis) == point) for point in POINTS}

@@ -1,4 +1,9 @@
-"""The lines of a seat test: what was measured or simulated, and whether it is within the limits of ISO 7096."""
+"""What ISO 7096 asks of a seat, and the lines of its test: what was found, and whether it is within the limits.
+
+Values, persons and the damping test are *recalled*: the standard's own text was not read. The clause that each value
+belongs to is that of the 2000 edition; the 2020 edition adds a damping test for active and semi-active suspensions
+(5.5.3), not known here.
+"""
 
 from __future__ import annotations
 
@@ -6,13 +11,56 @@ from collections.abc import Sequence
 from typing import Annotated, NamedTuple
 
 from seatsim.excitations.iso7096 import SpectralClass
-from seatsim.metrics.comfort import Dose
-from seatsim.metrics.seat_transmission import SPREAD, seat_transmission
+from seatsim.metrics.comfort import SPREAD, Dose, seat_transmission
 from seatsim.schema.content import Form, written
 from seatsim.schema.notebook import show_record
 from seatsim.schema.text import join_names
-from seatsim.standards.damping_test import DampingTest
-from seatsim.standards.iso7096 import ACCEPTANCE, DAMPING, LIMITS, PERSONS, RECALLED, SEATED_SHARE
+
+ACCEPTANCE, DAMPING = "ISO 7096:2000, 5.5.1 and 6 (recalled)", "ISO 7096:2000, 5.5.2 and 6 (recalled)"
+"""Clauses of the simulated input vibration test and of the damping test with their acceptance values."""
+
+RECALLED = (
+    "limits, test persons and details of ISO 7096 are recalled, not read in the standard: no certificate rests on them"
+)
+
+
+class ClassLimits(NamedTuple):
+    """Acceptance values of one spectral class, and the machines that it stands for."""
+
+    seat: float
+    """Greatest SEAT factor."""
+    transmissibility: float
+    """Greatest transmissibility at resonance in the damping test."""
+    machines: str
+
+
+LIMITS: dict[SpectralClass, ClassLimits] = {
+    "EM1": ClassLimits(1.1, 1.5, "articulated or rigid frame dumper"),
+    "EM2": ClassLimits(0.9, 1.5, "scraper without axle or frame suspension"),
+    "EM3": ClassLimits(1.0, 1.5, "wheel loader"),
+    "EM4": ClassLimits(1.1, 1.5, "grader"),
+    "EM5": ClassLimits(0.7, 2.0, "wheel dozer, soil compactor, backhoe loader"),
+    "EM6": ClassLimits(0.7, 1.5, "crawler loader, crawler dozer"),
+    "EM7": ClassLimits(0.6, 2.0, "compact dumper"),
+    "EM8": ClassLimits(0.8, 2.0, "compact loader"),
+    "EM9": ClassLimits(0.9, 2.0, "skid-steer loader"),
+}
+
+PERSONS = {"light": 55.0, "heavy": 98.0}
+"""Mass of the two test persons in kg: 52 to 55 and 98 to 103 are permitted."""
+
+SEATED_SHARE = 0.736
+"""Share of a person's mass that rests on the seat, the feet on the floor (Boileau and Rakheja 1998; recalled)."""
+
+INERT_MASS = 75.0
+"""Mass on the seat in the damping test in kg (ISO 10326-1:2016, 10.3)."""
+
+STROKE_SHARE, LARGEST_STROKE = 0.4, 0.05
+"""Peak-to-peak motion of the floor in the damping test: this share of the travel, but no more than 50 mm (recalled)."""
+
+FREQUENCY_STEP = 0.05
+"""Hz between two tones of the damping test (recalled); they reach from half to twice the resonance expected."""
+
 
 SETTLE = 2.0
 """s; beginning of a run that is left out, while the floor fades in."""
@@ -51,6 +99,19 @@ class SeatRow(NamedTuple):
     def mass_on_seat(self) -> float:
         """Mass that rests on the seat in kg."""
         return SEATED_SHARE * self.mass
+
+
+class DampingTest(NamedTuple):
+    """Transmissibility at resonance of a seat."""
+
+    resonance: float
+    """Frequency in Hz of the tone with the largest transmissibility."""
+    transmissibility: float
+    """RMS acceleration of the inert mass over that of the floor, unweighted, at that tone."""
+    stroke: float
+    """Peak-to-peak displacement of the floor in m."""
+    frequencies: tuple[float, ...]
+    transmissibilities: tuple[float, ...]
 
 
 class DampingRow(NamedTuple):

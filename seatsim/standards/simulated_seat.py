@@ -8,23 +8,32 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from typing import NamedTuple, TypeVar
 
-from seatsim.effects.driver import Mass
+import numpy as np
+
+from seatsim.effects.seat import Mass
 from seatsim.excitations.iso7096 import Iso7096, SpectralClass
-from seatsim.metrics.comfort import dose
-from seatsim.metrics.motion import end_stop_hits
-from seatsim.metrics.seat_transmission import RUNS
+from seatsim.excitations.periodic import SteppedSine
+from seatsim.metrics.comfort import RUNS, dose
+from seatsim.metrics.motion import end_stop_hits, rms
 from seatsim.metrics.weighting import weight
-from seatsim.rig.plant import Plant
+from seatsim.rig.drivers import SINGLE_MASS, Driver
+from seatsim.rig.plant import Plant, natural_frequencies
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import specification_of
 from seatsim.schema.text import join_names
 from seatsim.simulation.augment import augment_plant
-from seatsim.simulation.simulate import simulate
-from seatsim.standards.damping_test import DampingTest, run_damping_test
-from seatsim.standards.iso7096 import PERSONS, RECALLED, SEATED_SHARE
+from seatsim.simulation.simulate import History, simulate
 from seatsim.standards.seat_rows import (
+    FREQUENCY_STEP,
+    INERT_MASS,
+    LARGEST_STROKE,
+    PERSONS,
+    RECALLED,
+    SEATED_SHARE,
     SETTLE,
+    STROKE_SHARE,
+    DampingTest,
     SeatFailure,
     SeatTest,
     Trial,
@@ -43,9 +52,7 @@ _Result = TypeVar("_Result", Trial, DampingTest)
 
 
 def assess_simulated_seats(
-    scenarios: Sequence[Scenario],
-    classes: Sequence[SpectralClass],
-    progress: Count = lambda done, of: None,
+    scenarios: Sequence[Scenario], classes: Sequence[SpectralClass], progress: Count = lambda done, of: None
 ) -> SeatTest:
     """Put the seats of scenarios to the test of ISO 7096, each in three runs a class and driver.
 
@@ -147,3 +154,40 @@ def _notes(seats: Mapping[str, _Seat]) -> Iterator[str]:
     without = [title for title, seat in seats.items() if seat.plant.end_stops is None]
     if without:
         yield f"no end stops are stated for {join_names(without)}, and none are checked; state plant.travel"
+
+
+FADE, CYCLES, EVALUATED = 1, 12, 6
+"""Periods over which a tone fades in and out, at full amplitude, and at its end that are evaluated."""
+
+
+def run_damping_test(scenario: Scenario, plant: Plant) -> DampingTest:
+    """Drive a seat through tones about its resonance and return the largest transmissibility.
+
+    The control law acts as the scenario says.
+
+    Raises:
+        RunError: the simulation could not be carried to its end.
+    """
+    stroke = min(STROKE_SHARE * (plant.travel[1] - plant.travel[0]), LARGEST_STROKE)
+    expected = natural_frequencies(plant._replace(driver_mass=INERT_MASS))[0]
+    tones = tuple(np.arange(0.5 * expected, 2.0 * expected + 0.5 * FREQUENCY_STEP, FREQUENCY_STEP).tolist())
+    tested = dataclasses.replace(
+        scenario,
+        driver=Driver(SINGLE_MASS),
+        excitation=SteppedSine(tones, CYCLES, 0.5 * stroke),
+        effects=(*scenario.effects, Mass(INERT_MASS - plant.driver_mass)),
+    )
+    ratios = _ratios(simulate(tested), tones)
+    largest = int(np.argmax(ratios))
+    return DampingTest(tones[largest], ratios[largest], stroke, tones, tuple(ratios))
+
+
+def _ratios(history: History, tones: tuple[float, ...]) -> list[float]:
+    ends = np.cumsum([(CYCLES + 2 * FADE) / tone for tone in tones])
+    ratios = []
+    for tone, end in zip(tones, ends, strict=True):
+        last = round((end - FADE / tone) / history.step)
+        steady = slice(last - round(EVALUATED / tone / history.step), last)
+        seat, floor = (history[name][steady] for name in ("driver_acceleration", "floor_acceleration"))
+        ratios.append(rms(seat) / rms(floor))
+    return ratios

@@ -14,9 +14,8 @@ from seatsim.excitations.base import Excitation, Floor
 from seatsim.metrics.table import METRICS, Metric
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import SeatsimError
-from seatsim.simulation.history_table import write_histories
 from seatsim.simulation.result import Run
-from seatsim.simulation.runs import measure_run
+from seatsim.simulation.runs import measure_run, write_histories
 from seatsim.simulation.simulate import simulate
 from seatsim.simulation.validity import list_reasons
 

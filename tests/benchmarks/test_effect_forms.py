@@ -5,7 +5,7 @@ import pytest
 from seatsim.blind.score.verdicts import Verdict
 from seatsim.effects.base import EFFECTS
 from seatsim.effects.coil import CurrentLimit
-from seatsim.effects.suspension import EndStop, Friction
+from seatsim.effects.seat import EndStop, Friction
 from seatsim.schema.registry import names
 
 

@@ -9,9 +9,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from typer.testing import CliRunner
 
-from seatsim.characterisation.model_tests import characterise_model
-from seatsim.characterisation.settings import choose_settings
-from seatsim.characterisation.specimen import load_specimen
+from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
 from seatsim.characterisation.summary import characterise
 from seatsim.cli.app import app
 from seatsim.cli.outputs.damper_tables import make_characterisation_tables

@@ -5,11 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.characterisation.measured_steps import measure_responses
-from seatsim.characterisation.model_tests import step_response
+from seatsim.characterisation.model_tests import DamperSpecimen, step_response
 from seatsim.characterisation.response import find_crossing
-from seatsim.characterisation.specimen import DamperSpecimen
-from seatsim.characterisation.steps import find_steps
+from seatsim.characterisation.steps import find_steps, measure_responses
 from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.rig.coil import Coil
 from seatsim.rig.temperature import TemperatureFactors

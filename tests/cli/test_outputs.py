@@ -17,7 +17,7 @@ from seatsim.cli.outputs.measured import write_diagnosis
 from seatsim.cli.outputs.simulated import Brackets
 from seatsim.cli.outputs.writing import write_outputs
 from seatsim.diagnosis.diagnose import BUDGET
-from seatsim.metrics import Metric
+from seatsim.metrics.table import Metric
 from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
 from seatsim.schema.yaml_source import Source

@@ -7,7 +7,7 @@ import pytest
 
 from seatsim.dampers.bingham import Bingham, OriginalBingham
 from seatsim.dampers.bouc_wen import BoucWen
-from seatsim.dampers.hyperbolic_tangent import KwokTanh
+from seatsim.dampers.s_curves import KwokTanh
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.errors import InputError, RunError
 from seatsim.simulation.damper_bench import bench_force, centring, sine_test

@@ -5,13 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.dampers.arctangent import WengArctangent
-from seatsim.dampers.asymmetric import Yu2019
 from seatsim.dampers.bouc_wen import ModifiedBoucWen, SimpleBoucWen
-from seatsim.dampers.hyperbolic_tangent import KwokTanh
-from seatsim.dampers.hysteresis_division import Yu2017
 from seatsim.dampers.pieces import branch, branch_rate
+from seatsim.dampers.s_curves import KwokTanh, WengArctangent
 from seatsim.dampers.sigmoid_gaussian import CURRENTS, TABLES, HongSigmoidGaussian, table_row
+from seatsim.dampers.yu import Yu2017, Yu2019
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.registry import specification_of
 from seatsim.simulation.damper_bench import bench_force, sine_test

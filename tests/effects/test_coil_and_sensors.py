@@ -43,30 +43,6 @@ def test_the_current_follows_the_changed_coil_exactly(bingham, name, values, coi
     assert np.max(np.abs(current - flowing(history, NOMINAL, 0))) > 0.01 or name == "coil.current_limit"
 
 
-def test_a_lag_slows_a_coil_that_falls_slowly_both_ways():
-    slower = record("coil.lag", time=0.002).coil(Coil(rate=176.0, rate_fall=70.0))
-    assert 1 / slower.rate == pytest.approx(1 / 176 + 0.002)
-    assert 1 / slower.rate_fall == pytest.approx(1 / 70 + 0.002)
-    fall = record("coil.asymmetric_lag", time=0.002).coil(Coil(rate=176.0, rate_fall=70.0))
-    assert (fall.rate, 1 / fall.rate_fall) == pytest.approx((176.0, 1 / 70 + 0.002))
-
-
-def test_a_step_of_the_command_rises_and_falls_with_the_time_constants_stated():
-    coil = record("coil.asymmetric_lag", time=0.01).coil(NOMINAL)
-    assert relax(coil, 0.0, 1.0, 1 / 130) == pytest.approx(1 - np.exp(-1))
-    assert relax(coil, 1.0, 0.0, 1 / 130 + 0.01) == pytest.approx(np.exp(-1))
-    limited = record("coil.current_limit", limit=0.4).coil(NOMINAL)
-    assert limited.max_current == 0.4
-    assert record("coil.current_limit", limit=5.0).coil(NOMINAL) == NOMINAL
-
-
-def test_a_limited_supply_never_exceeds_its_limit(bingham):
-    current = shaken(bingham, record("coil.current_limit", limit=0.6))["coil_current"]
-    assert 0.55 < np.max(current) <= 0.6
-    free = shaken(bingham, record("coil.current_limit", limit=2.0))["coil_current"]
-    assert np.max(free) > 0.9
-
-
 @pytest.mark.parametrize("name", BY_CHANNEL)
 def test_what_a_sensor_says_is_told_back_and_only_of_its_channel(name):
     effect = find("effect", name)(channel="damper_force", **BY_CHANNEL[name])
@@ -76,13 +52,6 @@ def test_what_a_sensor_says_is_told_back_and_only_of_its_channel(name):
     assert effect.truth("damper_force", STEP, read)[inner] == pytest.approx(WAVE[inner], abs=2e-3)
     for other in ("driver_acceleration", "current_command"):
         assert effect.reading(other, STEP, WAVE) is WAVE and effect.truth(other, STEP, WAVE) is WAVE
-
-
-def test_gain_and_bias_say_what_they_state():
-    gain = find("effect", "sensor.gain")(channel="damper_force", error=-0.1)
-    assert gain.reading("damper_force", STEP, WAVE) == pytest.approx(0.9 * WAVE)
-    bias = find("effect", "sensor.bias")(channel="damper_force", share=0.5, drift=0.1)
-    assert bias.reading("damper_force", STEP, WAVE) - WAVE == pytest.approx(100.0 * (0.5 + 0.1 * TIME))
 
 
 @pytest.mark.parametrize("time", [0.0004, 0.004, 0.05])

@@ -5,9 +5,6 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.rig.temperature import TemperatureFactors
-from seatsim.simulation.augment import augment_factors
-
 from .rigs import BINGHAM, INERT, STEP, bench, cycles, record, strokes, work
 
 STEADY = np.full(2001, 0.1)
@@ -24,12 +21,6 @@ def steady(effects, current, v=0.1, **options):
     speed = np.full(2001, v)
     force = bench(effects, 0.5 * STEP * v * np.arange(2001), speed, current, **options)[-1]
     return force - (BINGHAM.c_a + BINGHAM.c_b * current) * v
-
-
-def test_the_gas_spring_adds_preload_and_stiffness():
-    x, v = cycles()
-    gas = record("damper.gas_spring", preload=30.0, stiffness=800.0)
-    assert bench([gas], x, v) - bench([], x, v) == pytest.approx(30.0 + 800.0 * x[::2], abs=1e-9)
 
 
 @pytest.mark.parametrize("current", [0.0, 0.7])
@@ -124,12 +115,6 @@ def test_an_elastic_mount_keeps_the_gap():
         assert share[travel > gap + 4.0 * unloading] == pytest.approx(1.0, abs=0.01)
 
 
-def test_asymmetry_may_follow_the_sign_of_the_yield_force():
-    effect = record("damper.asymmetry", viscous=0.0, pulling=0.2, offset=0.5)
-    assert steady([effect], 0.7) == pytest.approx(1.3 * yielded(0.7), rel=1e-6)
-    assert steady([effect], 0.7, v=-0.1) == pytest.approx(-0.9 * yielded(0.7), rel=1e-6)
-
-
 @pytest.mark.parametrize("presliding", [0.0, 2e-4])
 def test_seal_friction_is_the_same_at_every_speed_and_current(presliding):
     effects = [record("damper.seal_friction", force=35.0, presliding=presliding)]
@@ -185,19 +170,3 @@ def test_thermal_fade_lowers_the_force_of_a_warm_damper_and_does_nothing_at_the_
     )  # fmt: skip
     assert warm == pytest.approx(bench([], x, v, damper=parts), rel=1e-9, abs=1e-9)
     assert np.all(np.abs(warm) <= np.abs(bench([], x, v)) + 1e-9)
-
-
-def test_the_fade_is_added_to_the_factors_that_the_damper_has():
-    factors = TemperatureFactors(viscous=-0.002, yield_force=-0.003, reference=25.0)
-    got = augment_factors([record("damper.thermal_fade", viscous=0.004, yielding=0.001)], factors)
-    assert got == pytest.approx(TemperatureFactors(-0.006, 0.0, -0.004, 25.0))
-
-
-def test_the_fluid_runs_ahead_of_its_thermocouple():
-    time = 0.01 * np.arange(12001)
-    fluid = 20.0 + 0.05 * time
-    thermocouple = 20.0 + 0.05 * (time - 30.0 * (1.0 - np.exp(-time / 30.0)))
-    effect = record("damper.thermal_fade", viscous=0.004, lag=30.0, rise=2.0)
-    got = effect.temperature(0.01, thermocouple)
-    inner = slice(500, -500)
-    assert got[inner] == pytest.approx(fluid[inner] + 2.0, abs=0.01)

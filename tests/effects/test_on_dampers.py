@@ -9,7 +9,7 @@ import pytest
 
 from seatsim.effects.base import ON_DAMPER, acts_on
 from seatsim.kernel.augmented import AugmentedDamper
-from seatsim.kernel.chain import state_at_rest
+from seatsim.kernel.hooks import state_at_rest
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.registry import find, names, specification_of
 

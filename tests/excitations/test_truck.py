@@ -6,8 +6,17 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from seatsim.excitations.bumps import Bumps
-from seatsim.excitations.road import LONGEST, SHORTEST, Road, displacement_density
-from seatsim.excitations.vehicle import TRUCK, Vehicle, floor_response, ring_down, state_space
+from seatsim.excitations.road import (
+    LONGEST,
+    SHORTEST,
+    TRUCK,
+    Road,
+    Vehicle,
+    displacement_density,
+    floor_response,
+    ring_down,
+    state_space,
+)
 from seatsim.schema.errors import InputError
 
 

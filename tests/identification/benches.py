@@ -7,7 +7,7 @@ import pandas as pd
 
 from seatsim.dampers.bingham import Bingham
 from seatsim.dampers.bouc_wen import BoucWen
-from seatsim.kernel.coil_current import simulate_current
+from seatsim.kernel.bench import simulate_current
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.rig.coil import Coil
 from seatsim.rig.temperature import TemperatureFactors

@@ -7,10 +7,16 @@ import numpy as np
 import pytest
 
 from seatsim.dampers.bouc_wen import BoucWen, ModifiedBoucWen
-from seatsim.identification.adjustment import fix_parameters, numeric_fields, rescale_damper
 from seatsim.identification.coordinates import Coordinates
-from seatsim.identification.current_laws import evaluate_law, interpolate_law
-from seatsim.identification.scales import Scales, parse_unit
+from seatsim.identification.damper_record import (
+    Scales,
+    evaluate_law,
+    fix_parameters,
+    interpolate_law,
+    numeric_fields,
+    parse_unit,
+    rescale_damper,
+)
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import bounds, param
 from seatsim.schema.registry import find, names, specification_of

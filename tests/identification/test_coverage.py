@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.identification.coverage import measure_coverage, note_limits
+from seatsim.identification.assessment import measure_coverage, note_limits
 from seatsim.identification.damper_record import find_model, find_specification
 
 from .benches import made

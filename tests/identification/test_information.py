@@ -14,7 +14,7 @@ from seatsim.identification.information import (
     compute_information,
     correlation_length,
 )
-from seatsim.identification.problem_statement import state_problem
+from seatsim.identification.problem import state_problem
 from seatsim.identification.settings import IdentificationSettings as Settings
 
 from .benches import BINGHAM, made

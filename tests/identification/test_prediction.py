@@ -6,13 +6,18 @@ import numpy as np
 import pytest
 
 from seatsim.dampers.bouc_wen import BoucWen
-from seatsim.identification.agreement import assess_agreement, mean_agreement
-from seatsim.identification.assessment import PredictionData, assess_fit, assess_predictions, load_prediction_data
-from seatsim.identification.prediction import BenchModel, predict_force, prepare_inputs
+from seatsim.identification.assessment import (
+    PredictionData,
+    assess_agreement,
+    assess_fit,
+    assess_predictions,
+    load_prediction_data,
+    mean_agreement,
+)
+from seatsim.identification.prediction import BenchModel, predict_force, prepare_inputs, sharpen, smooth
 from seatsim.identification.settings import IdentificationSettings as Settings
-from seatsim.identification.smoothing import sharpen, smooth
-from seatsim.identification.split import split_records
-from seatsim.kernel.coil_current import simulate_current
+from seatsim.identification.settings import split_records
+from seatsim.kernel.bench import simulate_current
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.rig.coil import Coil, relax
 from seatsim.rig.temperature import TemperatureFactors

@@ -9,8 +9,7 @@ import pytest
 from seatsim.dampers.bingham import Bingham
 from seatsim.identification.damper_record import find_model
 from seatsim.identification.prediction import BenchModel, predict_force
-from seatsim.identification.problem import compute_jacobian, weight_records
-from seatsim.identification.problem_statement import find_origin, state_problem
+from seatsim.identification.problem import compute_jacobian, find_origin, state_problem, weight_records
 from seatsim.identification.search import refine, search_globally
 from seatsim.identification.settings import IdentificationSettings as Settings
 from seatsim.rig.temperature import TemperatureFactors

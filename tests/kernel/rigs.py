@@ -5,11 +5,11 @@ import numpy as np
 from controllers.laws.constant import Replay
 from seatsim.compilation.cached import compiled
 from seatsim.kernel.assumed_model import TrueModel
-from seatsim.kernel.chain import state_at_rest
 from seatsim.kernel.channels import CHANNELS
+from seatsim.kernel.hooks import state_at_rest
+from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.loop import run_loop
 from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
-from seatsim.kernel.recorders import Rows, keep_rows
 from seatsim.kernel.rig import Rig
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant
@@ -59,10 +59,10 @@ def run(
         Rig(plant, damper, effects), coil, factors, thermal or Thermal(), law, model, timing, coil.max_current
     )
     out = np.empty((len(CHANNELS), rows)).T
-    loop = compiled(run_loop, (Rows, type(damper), type(law), type(model.damper), *map(type, effects)))
+    loop = compiled(run_loop, (type(damper), type(law), type(model.damper), *map(type, effects)))
     rest, followed = (specification_of(type(part)).initial for part in (damper, model.damper))
     at_rest = rest + state_at_rest([type(effect) for effect in effects])
-    reached, *_ = loop(setup, inputs, at_rest, followed, (), keep_rows(out))
+    reached = loop(setup, inputs, at_rest, followed, (), out, np.empty(CELLS + 1))
     assert reached == rows, f"stopped at row {reached} of {rows}"
     return dict(zip(CHANNELS, out.T, strict=True)) | {"floor_velocity": velocity}
 

@@ -7,7 +7,7 @@ from controllers.laws.skyhook import OnOffSkyhook
 from controllers.laws.static_output_feedback import OutputFeedback
 from seatsim.dampers.bingham import Bingham
 from seatsim.dampers.bouc_wen import BoucWen, ModifiedBoucWen
-from seatsim.effects.suspension import Friction
+from seatsim.effects.seat import Friction
 
 from .references import Yielding, bouc_wen_feedback, channels, skyhook
 from .rigs import deviations, driven, imbalance, refined, rough, run

@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import StateSpace, lsim
 
 from seatsim.dampers.bingham import Bingham
-from seatsim.effects.suspension import Friction
+from seatsim.effects.seat import Friction
 from seatsim.rig.plant import Plant, state_space
 
 from .rigs import SEAT, STEP, driven, imbalance, rough

@@ -6,8 +6,8 @@ import numba
 import numpy as np
 import pytest
 
-from seatsim.kernel import chain
-from seatsim.kernel.chain import effect_state, fold_hook, join_hook, leading_state, state_at_rest, sum_hook
+from seatsim.kernel import hooks
+from seatsim.kernel.hooks import effect_state, fold_hook, join_hook, leading_state, state_at_rest, sum_hook
 
 from .uncompiled import plugged
 
@@ -84,8 +84,8 @@ def test_the_state_is_parted_at_the_effects():
     assert effect_state(EFFECTS, z) == Z
     assert (leading_state((), z), effect_state((), z)) == (z, ())
     kinds = numba.typeof(EFFECTS)
-    assert chain._leading_state(kinds, z)(EFFECTS, z) == (0.1, 0.2)
-    assert chain._effect_state(kinds, z)(EFFECTS, z) == Z
+    assert hooks._leading_state(kinds, z)(EFFECTS, z) == (0.1, 0.2)
+    assert hooks._effect_state(kinds, z)(EFFECTS, z) == Z
 
 
 def test_what_is_no_tuple_of_records_is_refused():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatsim.kernel.coil_current import follow_command, simulate_current
+from seatsim.kernel.bench import follow_command, simulate_current
 from seatsim.rig.coil import Coil
 
 STEP = 2e-3

@@ -4,9 +4,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from seatsim.kernel.numbers import template_of
 from seatsim.scenario.loading import load
-from seatsim.simulation.device_lanes import as_device_lane
+from seatsim.simulation.device import as_device_lane
 
 from ..conftest import SEAT
 
@@ -37,5 +36,5 @@ def test_the_kernel_compiles_without_a_card(tmp_path, monkeypatch, settings):
     lane = as_device_lane(0, load(path, settings)[0])
     # Functions that a kernel calls ask for the card that they are compiled for.
     monkeypatch.setattr(dispatcher, "get_current_device", lambda: SimpleNamespace(compute_capability=(9, 0)))
-    code, _ = cuda.compile_ptx(make_kernel(template_of([lane.start])), SIGNATURE, cc=(9, 0))
+    code, _ = cuda.compile_ptx(make_kernel(lane.start), SIGNATURE, cc=(9, 0))
     assert ".target sm_90" in code and ".entry" in code

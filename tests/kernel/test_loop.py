@@ -9,9 +9,9 @@ import pytest
 from seatsim.kernel import step
 from seatsim.kernel.assumed_model import AssumedModel, TrueModel
 from seatsim.kernel.channels import CHANNELS
+from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.loop import run_loop
 from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
-from seatsim.kernel.recorders import keep_rows
 from seatsim.kernel.rig import Rig
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant
@@ -49,7 +49,7 @@ def run(
     )  # fmt: skip
     out = np.full((rows, len(CHANNELS)), np.nan)
     given = LoopInputs(floor, velocity, **(given | inputs))
-    reached, *_ = run_loop(setup, given, rest, followed, law_state, keep_rows(out))
+    reached = run_loop(setup, given, rest, followed, law_state, out, np.empty(CELLS + 1))
     return dict(zip(CHANNELS, out.T, strict=True)) | {"floor_velocity": velocity}, reached
 
 

@@ -6,7 +6,6 @@ import pytest
 from seatsim.kernel.assumed_model import TrueModel
 from seatsim.kernel.channels import CHANNELS, CURRENT_COMMAND
 from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing, step_inputs
-from seatsim.kernel.recorders import keep_rows
 from seatsim.kernel.rig import Rig
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant
@@ -30,7 +29,7 @@ def between(k, inputs=INPUTS, late=0, split=0.0, most=0.8, first=0.33):
     setup = LoopSetup(
         Rig(Plant(*range(1, 7)), Linear()), coil, TemperatureFactors(), Thermal(), law, model, timing, 1.0
     )
-    return step_inputs(setup, inputs, keep_rows(out), k, first, late, split, (0.5, 0.6))
+    return step_inputs(setup, inputs, out, k, first, late, split, (0.5, 0.6))
 
 
 def test_floor_and_forces_run_from_sample_to_sample():

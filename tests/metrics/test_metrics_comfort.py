@@ -7,20 +7,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from seatsim.metrics import (
+from seatsim.metrics.comfort import (
     crest_factor,
     daily_exposure,
     daily_vdv,
     dose,
     estimated_vdv,
-    frequency_response,
     mtvv,
     running_rms,
     seat_factor,
     vdv,
-    weight,
     weighted_rms,
 )
+from seatsim.metrics.weighting import frequency_response, weight
 from seatsim.schema.errors import InputError
 
 RATE = 1000.0

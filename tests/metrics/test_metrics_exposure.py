@@ -5,17 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.metrics import (
-    DIRECTIONS,
-    assess_exposure,
-    direction,
-    dose,
-    find_shocks,
-    join_doses,
-    motion_sickness_dose,
-    seat_transmission,
-    weight,
-)
+from seatsim.metrics.comfort import dose, find_shocks, join_doses, motion_sickness_dose, seat_transmission
+from seatsim.metrics.exposure import DIRECTIONS, assess_exposure, direction
+from seatsim.metrics.weighting import weight
 from seatsim.schema.errors import InputError
 
 RATE = 500.0

@@ -5,12 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.metrics import weight
 from seatsim.metrics.arrays import as_pair, as_signal, ratio, require_finite, require_positive
-from seatsim.metrics.record import MissingInput, RunChannels
+from seatsim.metrics.table import MissingInput, RunRecord
 from seatsim.schema.errors import InputError
-
-STEP = 0.002
 
 
 def test_signals_become_floats_of_one_dimension():
@@ -45,28 +42,8 @@ def test_a_ratio_over_nothing_is_no_number():
     assert math.isnan(ratio(1.0, 0.0)) and math.isnan(ratio(1.0, math.nan))
 
 
-def test_the_start_of_a_run_is_left_out_by_its_samples():
-    channels = RunChannels({"x": np.arange(10.0)}, STEP, settle=3 * STEP)
-    assert channels.sample_rate == pytest.approx(500.0)
-    assert channels.whole("x").tolist() == list(range(10))
-    assert channels.settled("x").tolist() == list(range(3, 10))
-
-
-def test_the_weighting_goes_over_the_start_before_that_is_left_out():
-    signal = np.random.default_rng(1).standard_normal(3000)
-    channels = RunChannels({"x": signal}, STEP, settle=2.0)
-    np.testing.assert_array_equal(channels.weighted("x"), weight(signal, 500.0)[1000:])
-
-
 def test_what_is_missing_is_said():
-    channels = RunChannels({"x": np.ones(5), "empty": np.full(5, math.nan)}, 0.01, settle=0.0)
-    for read, name in ((channels.whole, "y"), (channels.settled, "empty"), (channels.weighted, "x")):
+    run = RunRecord({"x": np.ones(5), "empty": np.full(5, math.nan)}, 0.01)
+    for read, name in ((run.__getitem__, "y"), (run.__getitem__, "empty"), (run.weighted, "x")):
         with pytest.raises(MissingInput, match=name):
             read(name)
-
-
-@pytest.mark.parametrize("settle", [-STEP, 5 * STEP, math.nan])
-def test_the_start_is_shorter_than_the_run(settle):
-    assert len(RunChannels({"x": np.ones(5)}, STEP, settle=4 * STEP).settled("x")) == 1
-    with pytest.raises(InputError, match="settle"):
-        RunChannels({"x": np.ones(5)}, STEP, settle)

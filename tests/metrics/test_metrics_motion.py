@@ -8,15 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import signal as sp
 
-from seatsim.metrics import (
-    electrical_energy,
-    end_stop_hits,
-    energy_residual,
-    force_tracking_error,
-    peak,
-    rms,
-    transmissibility,
-)
+from seatsim.metrics.motion import electrical_energy, end_stop_hits, energy_residual, force_tracking_error, peak, rms
+from seatsim.metrics.spectra import transmissibility
 from seatsim.schema.errors import InputError
 
 

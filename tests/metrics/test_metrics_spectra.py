@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from seatsim.metrics import cross_spectral_density, power_spectral_density
+from seatsim.metrics.spectra import cross_spectral_density, power_spectral_density
 
 
 @pytest.mark.parametrize(("samples", "length"), [(4000, 512), (4001, 511), (100, 100), (9, 1), (10, 3)])

@@ -8,8 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import seatsim.metrics
-from seatsim.metrics import METRICS, rms, seat_factor, summarise, weight
+from seatsim.metrics.comfort import seat_factor
+from seatsim.metrics.motion import rms
+from seatsim.metrics.table import METRICS, summarise
+from seatsim.metrics.weighting import weight
 from seatsim.schema.errors import InputError
 
 STEP = 0.001
@@ -96,14 +98,6 @@ def test_force_wanted_for_part_of_the_run_only():
     assert table["force_served_share"].value == 0.0
 
 
-def test_force_wanted_only_while_settling():
-    channels = history()
-    channels["wanted_force"][5000:] = channels["force_served"][5000:] = math.nan
-    table = summarise(channels, STEP, settle=6.0)
-    assert math.isnan(table["force_tracking_error"].value)
-    assert math.isnan(table["force_served_share"].value)
-
-
 def test_floor_at_rest():
     channels = history()
     channels["floor_acceleration"][:] = 0.0
@@ -112,24 +106,6 @@ def test_floor_at_rest():
     assert math.isnan(table["seat_factor"].value)
     assert math.isnan(table["driver_crest_factor"].value)
     assert table["driver_vdv"].value == table["driver_mtvv"].value == 0.0
-
-
-def test_settle_leaves_out_the_start():
-    channels = history()
-    plain = summarise(channels, STEP, settle=2.0, coil_resistance=1.0, travel=(-0.05, 0.05))
-    for name in ("driver_acceleration", "frame_acceleration", "suspension_displacement", "coil_current"):
-        channels[name][:1000] += 50.0
-    spoilt = summarise(channels, STEP, settle=2.0, coil_resistance=1.0, travel=(-0.05, 0.05))
-    untouched = [name for name in NAMES if name.endswith(("_rms", "_peak")) and "driver" not in name]
-    assert [spoilt[n].value for n in untouched] == [plain[n].value for n in untouched]
-    assert spoilt["driver_acceleration_rms"].value == plain["driver_acceleration_rms"].value
-    assert spoilt["electrical_energy"].value > plain["electrical_energy"].value
-    assert spoilt["end_stop_hits"].value < plain["end_stop_hits"].value
-    assert plain["damper_energy"].value == pytest.approx(60.0)
-
-
-def test_settle_may_leave_a_single_sample():
-    assert summarise({"coil_current": np.arange(11.0)}, STEP, settle=0.01)["current_rms"].value == 10.0
 
 
 def test_slow_record_keeps_what_needs_no_weighting():
@@ -148,9 +124,6 @@ def test_the_jerk_of_a_tone_is_its_acceleration_times_its_angular_frequency(step
 @pytest.mark.parametrize(("options", "message"), [
     ({"step": 0.0}, "step"),
     ({"step": math.nan}, "step"),
-    ({"settle": -1.0}, "settle"),
-    ({"settle": 11.0}, "settle: is 11.0 s"),
-    ({"settle": math.nan}, "settle"),
     ({"travel": (1.0, -1.0)}, "travel"),
     ({"coil_resistance": -1.0}, "resistance"),
 ])  # fmt: skip
@@ -188,8 +161,3 @@ def test_a_minute_at_one_kilohertz_is_quick():
         summarise(channels, STEP, travel=(-0.05, 0.05), coil_resistance=4.0)
         best = min(best, time.perf_counter() - start)
     assert best < 0.05
-
-
-def test_exports():
-    assert sorted(seatsim.metrics.__all__) == sorted(set(seatsim.metrics.__all__))
-    assert all(hasattr(seatsim.metrics, name) for name in seatsim.metrics.__all__)

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import signal as sp
 
-from seatsim.metrics import WEIGHTINGS, frequency_response, weight
+from seatsim.metrics.weighting import WEIGHTINGS, frequency_response, weight
 from seatsim.schema.errors import InputError
 
 NOMINAL = np.array([

@@ -6,7 +6,7 @@ The factors are those that the tests of phonometry 3.3 state as transcribed from
 import numpy as np
 import pytest
 
-from seatsim.metrics import WEIGHTINGS, frequency_response
+from seatsim.metrics.weighting import WEIGHTINGS, frequency_response
 
 LOWEST = {"Wf": -17, "Wh": -1}
 """Band of the first factor; band n has the centre 10^(n/10) Hz; -10 where none is listed."""

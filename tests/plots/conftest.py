@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatsim.dampers.bouc_wen import BoucWen
-from seatsim.metrics import summarise
+from seatsim.metrics.table import summarise
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant
 from seatsim.rig.temperature import TemperatureFactors

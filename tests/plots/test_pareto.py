@@ -7,7 +7,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Annotation
 
-from seatsim.metrics import Metric
+from seatsim.metrics.table import Metric
 from seatsim.plots.runs.pareto import BEST, BOUND, plot_pareto
 from seatsim.plots.runs.placing import place_names
 from seatsim.simulation.result import Run

@@ -7,7 +7,7 @@ import pytest
 
 from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.effects.base import EFFECTS
-from seatsim.metrics import summarise
+from seatsim.metrics.table import summarise
 from seatsim.plots import labels
 from seatsim.plots.runs import naming
 from seatsim.plots.runs.comparison import find_swept_number, plot_comparison

@@ -14,7 +14,7 @@ from seatsim.report.credibility.evidence import Evidence, collect_diagnosis, col
 from seatsim.report.credibility.rules import FACTORS, find_level
 from seatsim.scenario.loading import load
 from seatsim.simulation.runs import run_one
-from seatsim.simulation.step_error import measure_step_error
+from seatsim.simulation.trials import measure_step_error
 
 from .diagnoses import with_every_run
 

@@ -12,8 +12,7 @@ from seatsim.characterisation.rows import Row
 from seatsim.characterisation.summary import Characterisation
 from seatsim.cli.outputs.diagnosis_tables import make_gap_table
 from seatsim.cli.show_table import make_plain
-from seatsim.identification.agreement import Agreement
-from seatsim.identification.assessment import Assessment
+from seatsim.identification.assessment import Agreement, Assessment
 from seatsim.identification.information import Information, ParameterEstimate
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.recordings.gap import Gap, GapFigures, ReplayedPair

@@ -18,13 +18,11 @@ from seatsim.simulation.augment import (
     augment_factors,
     augment_plant,
     augment_temperature,
-    read_sensor,
     read_sensors,
     select_in_loop,
     sum_frame_forces,
     undo_reading,
 )
-from seatsim.simulation.effect_hooks import PLANT, READING
 
 PLANT_80 = Plant(20.0, 80.0, 4600.0, 150.0, 60000.0, 1500.0)
 COIL = Coil(rate=130.0, max_current=1.0)
@@ -82,7 +80,7 @@ def test_parts_are_changed_by_each_effect_in_turn():
 def test_without_effects_everything_is_handed_back():
     values = np.ones(3)
     assert augment_plant((), PLANT_80) is PLANT_80 and augment_coil((), COIL) is COIL
-    assert augment_temperature((), 0.1, values) is values and read_sensor((), values, "damper_force", 0.1) is values
+    assert augment_temperature((), 0.1, values) is values and undo_reading((), values, "damper_force", 0.1) is values
     assert sum_frame_forces((), values, 0).size == 0
 
 
@@ -93,11 +91,10 @@ def test_forces_on_the_frame_add_up():
 
 def test_readings_are_made_in_order_and_undone_in_the_opposite_one():
     effects, values = (Doubled(), Raised()), np.array([1.0, 4.0])
-    said = read_sensor(effects, values, "damper_force", 0.1)
-    assert said == pytest.approx([3.0, 9.0])
-    assert undo_reading(effects, said, "damper_force", 0.1) == pytest.approx(values)
     both = read_sensors(effects, 0.1, {"damper_force": values, "coil_current": values})
-    assert both["damper_force"] == pytest.approx(said) and both["coil_current"] == pytest.approx(values + 1.0)
+    assert both["damper_force"] == pytest.approx([3.0, 9.0])
+    assert undo_reading(effects, both["damper_force"], "damper_force", 0.1) == pytest.approx(values)
+    assert both["coil_current"] == pytest.approx(values + 1.0)
 
 
 @pytest.mark.parametrize("name", ["sensor.gain", "sensor.bias", "sensor.lag"])
@@ -106,17 +103,12 @@ def test_what_a_registered_sensor_effect_says_is_undone(name):
     true = np.sin(2 * np.pi * time)
     error = {"sensor.gain": "error", "sensor.bias": "share", "sensor.lag": "time"}[name]
     wrong = effect(name, channel="damper_force", **{error: 0.02})
-    said = read_sensor([wrong], true, "damper_force", 0.002)
-    assert np.max(np.abs(said - true)) > 0.015
-    assert undo_reading([wrong], said, "damper_force", 0.002)[5:-5] == pytest.approx(true[5:-5], abs=1e-3)
-    assert np.array_equal(read_sensor([wrong], true, "frame_acceleration", 0.002), true)
-
-
-def test_effects_without_a_hook_are_passed_over():
-    assert list(PLANT.of([effect("driver.mass", change=5.0), effect("coil.delay")])) == [
-        effect("driver.mass", change=5.0)
-    ]
-    assert list(READING.of([effect("coil.delay")])) == []
+    said = read_sensors([wrong], 0.002, {"damper_force": true, "frame_acceleration": true})
+    assert np.max(np.abs(said["damper_force"] - true)) > 0.015
+    assert undo_reading([wrong], said["damper_force"], "damper_force", 0.002)[5:-5] == pytest.approx(
+        true[5:-5], abs=1e-3
+    )
+    assert np.array_equal(said["frame_acceleration"], true)
 
 
 ALL_ON_DAMPER = {find("effect", name) for name in names("effect") if acts_on(find("effect", name), ON_DAMPER)}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seatsim.cli.tables import comparison
-from seatsim.metrics import Metric
+from seatsim.metrics.table import Metric
 from seatsim.scenario.loading import load, single
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import specification_of

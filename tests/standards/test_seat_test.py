@@ -9,13 +9,13 @@ from typer.testing import CliRunner
 from seatsim import load, run, seat_test
 from seatsim.cli.app import app
 from seatsim.excitations.iso7096 import Iso7096, acceleration_density
-from seatsim.metrics import frequency_response
+from seatsim.metrics.weighting import frequency_response
 from seatsim.recordings.writer import save_recording
 from seatsim.rig.plant import control_system
 from seatsim.schema.errors import InputError, RunError
 from seatsim.simulation.simulate import simulate
-from seatsim.standards.iso7096 import INERT_MASS, LIMITS, SEATED_SHARE
-from seatsim.standards.recorded_seat import weighted_input
+from seatsim.standards.seat_rows import INERT_MASS, LIMITS, SEATED_SHARE
+from seatsim.standards.seat_test import weighted_input
 
 from ..answers import check_answer
 

@@ -28,6 +28,7 @@ VARY = {
     ],
     "temperature": [20.0, 60.0, {"start": 20.0, "ambient": 10.0, "heat_capacity": 50.0, "conductance": 1.0}, 20.0],
     "actuator.delay": [0.0034, 0.0, 0.002, 0.0],
+    "driver": [{"model": name} for name in ("single_mass", "single_mass", "iso5982", "single_mass")],
     "excitation.duration": [0.03, 0.4, 0.03, 0.01],
     "plant.travel": [[-0.004, 0.004], [-0.05, 0.05], [-0.05, 0.05], [-0.05, 0.05]],
     "effects": [

@@ -33,9 +33,7 @@ def characterise(
     as_json: Json = False,
 ) -> None:
     """Show what a bench shows of a damper: loops, energy, asymmetry, offset and response times."""
-    from seatsim.characterisation.model_tests import characterise_model
-    from seatsim.characterisation.settings import choose_settings
-    from seatsim.characterisation.specimen import load_specimen
+    from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
     from seatsim.characterisation.summary import characterise as of_records
     from seatsim.cli.outputs.damper_tables import make_characterisation_tables
     from seatsim.cli.outputs.measured import write_characterisation

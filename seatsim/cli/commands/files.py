@@ -108,9 +108,7 @@ def describe(
 
 def _draw_loops(model: str, picture: Path) -> list[Path]:
     """Draw the loops of a damper as `seatsim characterise --model` does, and return the path of the picture."""
-    from seatsim.characterisation.model_tests import characterise_model
-    from seatsim.characterisation.settings import choose_settings
-    from seatsim.characterisation.specimen import load_specimen
+    from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
     from seatsim.plots.bench.loops import plot_loops
     from seatsim.plots.saving import save_figure
     from seatsim.schema.files import write_whole

@@ -14,7 +14,7 @@ from seatsim.characterisation.rows import Row
 from seatsim.characterisation.summary import Characterisation
 from seatsim.cli.show_table import make_table
 from seatsim.dampers.base import OWN
-from seatsim.identification.agreement import Agreement
+from seatsim.identification.assessment import Agreement
 from seatsim.identification.identify import Identification
 from seatsim.identification.model_benchmark import BenchmarkEntry
 

@@ -12,8 +12,7 @@ from seatsim.cli.show_table import make_table
 from seatsim.metrics.exposure import DAY, Exposure, ValueReached
 from seatsim.schema.text import join_names
 from seatsim.standards.comfort import Comfort
-from seatsim.standards.iso7096 import ACCEPTANCE, DAMPING, LIMITS
-from seatsim.standards.seat_rows import SeatTest
+from seatsim.standards.seat_rows import ACCEPTANCE, DAMPING, LIMITS, SeatTest
 
 AXIS = (
     "axis", "weighting", "k comfort", "k health", "a_w\n[m/s²]", "VDV\n[m/s¹·⁷⁵]", "eVDV\n[m/s¹·⁷⁵]", "MTVV\n[m/s²]",

@@ -14,9 +14,9 @@ from seatsim.provenance.manifest import write_documented
 from seatsim.report.runs import report_runs
 from seatsim.schema.content import IfAny, Joined, Unwritten
 from seatsim.schema.files import write_together
-from seatsim.simulation.history_table import write_histories
 from seatsim.simulation.performance_bounds import RigBounds, place_runs
 from seatsim.simulation.result import Result
+from seatsim.simulation.runs import write_histories
 from seatsim.sweeps.statistics.rows import Exceedance
 from seatsim.sweeps.statistics.sensitivity import Sensitivity
 

@@ -10,9 +10,8 @@ from seatsim.dampers.base import DAMPERS
 from seatsim.exchange.block import Block
 from seatsim.kernel.augmented import classes_of
 from seatsim.kernel.bench import MOST_PARTS, TOLERANCE, advance_state
-from seatsim.kernel.generic import scaling_at
+from seatsim.kernel.generic import DamperModel, scaling_at
 from seatsim.kernel.inverse import total_force
-from seatsim.kernel.protocols import DamperModel
 from seatsim.kernel.step import relaxed
 from seatsim.rig.coil import Coil
 from seatsim.rig.state import State

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from seatsim.effects.base import acts_on
 from seatsim.exchange.block import Block
 from seatsim.exchange.blocks.floor import GivenFloor
 from seatsim.exchange.blocks.held import nothing_held
@@ -20,7 +21,6 @@ from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Control, Scenario
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import initial_state, specification_of
-from seatsim.simulation.effect_hooks import FRAME_FORCE, READING, TEMPERATURE, TRUTH
 from seatsim.simulation.simulate import set_up
 
 _LONGEST_DELAY = 256
@@ -78,8 +78,8 @@ def _rest(scenario: Scenario, control: Control, p: RigParameters, u: RigInputs, 
 
 def _left_out(scenario: Scenario) -> list[str]:
     """Return what of a scenario an exported rig has not."""
-    hooks = (FRAME_FORCE, READING, TEMPERATURE, TRUTH)
-    acting = {type(effect).__name__ for hook in hooks for effect in hook.of(scenario.effects)}
+    hooks = ("frame_force", "reading", "temperature", "truth")
+    acting = {type(effect).__name__ for effect in scenario.effects if acts_on(type(effect), hooks)}
     notes = []
     if acting:
         notes.append(

@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.diagnosis.result import Diagnosis, Trace
-from seatsim.metrics import power_spectral_density, rms
+from seatsim.metrics.motion import rms
+from seatsim.metrics.spectra import power_spectral_density
 from seatsim.plots.thinning import Window, find_loudest
 from seatsim.recordings.replay import LEFT_OUT
 from seatsim.schema.arrays import Array

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator, NullLocator
 
 from seatsim.diagnosis.result import Diagnosis, Trace
-from seatsim.metrics import rms
+from seatsim.metrics.motion import rms
 from seatsim.plots import style
 from seatsim.plots.averaging import average_bands
 from seatsim.plots.diagnosis.bins import (

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from seatsim.dampers.base import DamperSpecification
-from seatsim.kernel.protocols import DamperModel
-from seatsim.metrics import rms
+from seatsim.kernel.generic import DamperModel
+from seatsim.metrics.motion import rms
 from seatsim.plots import labels, style
 from seatsim.plots.runs import naming
 from seatsim.plots.style import Entry, Grid

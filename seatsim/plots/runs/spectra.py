@@ -10,8 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from seatsim import metrics
-from seatsim.metrics.transmissibility import AVERAGES, LONGEST
+from seatsim.metrics.spectra import AVERAGES, LONGEST, power_spectral_density, transmissibility
 from seatsim.plots import style
 from seatsim.plots.runs import naming
 from seatsim.plots.style import GREY, Entry, Grid
@@ -99,7 +98,7 @@ def _find_distinct_floors(runs: Sequence[Run]) -> list[Run]:
 def _estimate_density(run: Run, channel: str) -> Density:
     values, rate = run.history[channel], 1 / run.history.step
     length = max(1, min(round(LONGEST * rate), 2 * len(values) // (AVERAGES + 1)))
-    frequency, power = metrics.power_spectral_density(values, rate, length)
+    frequency, power = power_spectral_density(values, rate, length)
     return _average_bands(frequency, power)
 
 
@@ -120,7 +119,7 @@ def _draw_gain(axes: Axes, run: Run, look: Entry) -> bool:
     """Draw the transmissibility of a run; return whether any of it can be trusted."""
     floor, driver = run.history["floor_acceleration"], run.history["driver_acceleration"]
     try:
-        found = metrics.transmissibility(floor, driver, 1 / run.history.step)
+        found = transmissibility(floor, driver, 1 / run.history.step)
     except InputError:
         return False
     inside = (found.frequency >= BAND[0]) & (found.frequency <= BAND[1])

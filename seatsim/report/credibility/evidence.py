@@ -17,7 +17,7 @@ from seatsim.schema.plausible import UNUSUAL
 from seatsim.schema.registry import name_of
 from seatsim.simulation.result import Run
 from seatsim.simulation.runs import share_a_loop
-from seatsim.simulation.step_error import measure_step_error
+from seatsim.simulation.trials import measure_step_error
 
 if TYPE_CHECKING:
     from seatsim.characterisation.summary import Characterisation

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Generator, Sequence
+from contextlib import suppress
 from importlib.util import find_spec
 from typing import NamedTuple
 
@@ -15,7 +16,8 @@ from numba.core import config
 
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError, RunError, SeatsimError
-from seatsim.simulation.validity import judge_run
+from seatsim.simulation.runs import measure_run
+from seatsim.simulation.validity import list_reasons
 from seatsim.sweeps.engines.base import Work
 from seatsim.sweeps.engines.local import LocalEngine
 from seatsim.sweeps.outcome import Outcome, floor_of, outcome_of
@@ -85,10 +87,12 @@ def _simulate_on_device(plan: Plan, runs: Sequence[int]) -> list[Outcome]:
     scenarios = [scenario for _, scenario in read]
     outcomes = []
     try:
-        for place, row in simulate_on_device(scenarios, floor_of):
+        for place, history in simulate_on_device(scenarios, floor_of):
             number, scenario = read[place]
-            reason = "; ".join(judge_run(scenario, row.excursions, row.metrics))
-            outcomes.append(outcome_of(number, scenario.seed, row.metrics, reason))
+            with suppress(SeatsimError):
+                metrics = measure_run(scenario, history)
+                reason = "; ".join(list_reasons(scenario, history, metrics))
+                outcomes.append(outcome_of(number, scenario.seed, metrics, reason))
     except Exception as error:  # numba and the driver have many errors of their own
         raise RunError(
             f"the CUDA device failed ({type(error).__name__}: {error}); what has ended is kept: go on with --resume and"

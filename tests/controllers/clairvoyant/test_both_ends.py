@@ -12,6 +12,7 @@ from controllers.clairvoyant.feasible import find_best_run
 from controllers.clairvoyant.problem import HeldForceProblem
 from controllers.clairvoyant.recursion import ForceBand
 from controllers.clairvoyant.transcription import transcribe
+from seatsim.metrics.comfort import weighted_rms
 from seatsim.schema.errors import InputError
 from seatsim.simulation.inputs import Forces
 from seatsim.simulation.simulate import simulate
@@ -74,7 +75,7 @@ def test_run_is_what_the_simulation_makes_of_its_force(scenarios, bracket):
     # The simulation takes forces as linear between samples: a step in the middle of one has the held force's impulse.
     push = -np.pad(0.5 * (force[1:] + force[:-1]), 1, mode="edge")
     history = simulate(free, floor, Forces(frame=push))
-    aw = seatsim.metrics.weighted_rms(history["driver_acceleration"], 1000.0)
+    aw = weighted_rms(history["driver_acceleration"], 1000.0)
     assert aw == pytest.approx(bracket.acceleration[0], rel=5e-3)
     assert np.sqrt(np.mean(history["suspension_displacement"] ** 2)) == pytest.approx(bracket.travel[0], rel=5e-3)
     w = np.diff(history["suspension_displacement"][::5]) / 0.005

@@ -11,9 +11,8 @@ from seatsim.diagnosis.parameters import Parameters
 from seatsim.effects.base import EFFECTS
 from seatsim.effects.coil import CoilLag, Delay
 from seatsim.effects.damper import FreePlay, GasSpring, SealFriction
-from seatsim.effects.driver import Mass
+from seatsim.effects.seat import Friction, Mass
 from seatsim.effects.sensor import Bias, ClockSkew, Gain, SensorLag
-from seatsim.effects.suspension import Friction
 from seatsim.recordings.recording import ChannelEntry
 from seatsim.rig.plant import Plant
 from seatsim.rig.temperature import TemperatureFactors

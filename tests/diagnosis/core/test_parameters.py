@@ -5,8 +5,8 @@ import pytest
 
 from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.parameters import Parameters
+from seatsim.effects.seat import EndStop
 from seatsim.effects.sensor import Gain
-from seatsim.effects.suspension import EndStop
 
 from .toy import offer, offer_two
 

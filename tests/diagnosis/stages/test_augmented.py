@@ -13,7 +13,7 @@ from seatsim.diagnosis.augmented import write_augmented
 from seatsim.diagnosis.candidates import Candidate, list_candidates
 from seatsim.diagnosis.nuisance import Nuisance
 from seatsim.diagnosis.parameters import Parameters
-from seatsim.effects.driver import Biodynamics
+from seatsim.effects.seat import Biodynamics
 from seatsim.effects.sensor import Bias
 from seatsim.exchange.blocks.rig import rig_block
 from seatsim.rig.drivers import BODIES, SINGLE_MASS

@@ -16,9 +16,8 @@ from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.diagnosis.solution import Method
 from seatsim.diagnosis.solve import solve
 from seatsim.effects.damper import GasSpring, SealFriction
-from seatsim.effects.driver import Mass
+from seatsim.effects.seat import Friction, Mass, ProgressiveSpring
 from seatsim.effects.sensor import Gain
-from seatsim.effects.suspension import Friction, ProgressiveSpring
 from seatsim.recordings.gap import measure_gap
 from seatsim.scenario.loading import single
 from seatsim.schema.errors import InputError

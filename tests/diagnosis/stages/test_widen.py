@@ -6,7 +6,7 @@ import pytest
 from seatsim.diagnosis.solution import Method
 from seatsim.diagnosis.solve import solve
 from seatsim.diagnosis.widen import find_at_bound, search_wider
-from seatsim.effects.driver import Mass
+from seatsim.effects.seat import Mass
 
 from .toy import CHANNELS, Added, offer, place, pose, record
 

@@ -19,8 +19,7 @@ from seatsim.diagnosis.problem import pose_problem
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.effects.base import EffectSpecification
 from seatsim.effects.damper import GasSpring, SealFriction
-from seatsim.effects.driver import Biodynamics
-from seatsim.effects.suspension import Friction, ProgressiveSpring
+from seatsim.effects.seat import Biodynamics, Friction, ProgressiveSpring
 from seatsim.recordings.recording import ChannelEntry, Header, Recording, RunEntry
 from seatsim.recordings.replay import recorded_inputs
 from seatsim.scenario.loading import single

@@ -1,4 +1,4 @@
-"""Arithmetic of states: tuples of floats, unrolled for their length when they are compiled."""
+"""What the integrations of loop and bench share: arithmetic of states, unrolled when compiled, and a limit of work."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import cast
 
 from numba import types
 
-from seatsim.compilation.jit import define, specialise
+from seatsim.compilation.jit import define, jit, specialise
 from seatsim.rig.state import State
 
 
@@ -40,3 +40,15 @@ def _unrolled(arguments: str, term: str, length: int) -> Callable[..., State]:
     body = "".join(term.format(j=j) + ", " for j in range(length))
     source = f"def unrolled({arguments}): return ({body})"
     return cast("Callable[..., State]", define(source, "unrolled", {"__name__": __name__}))
+
+
+MOST_WORK = 100
+"""Mean number of parts of a step at which a run is given up: it would take minutes, where others take milliseconds."""
+MOST_DEBT = 1000.0 * MOST_WORK
+"""Parts beyond that mean that are lent, so that a stiff start does not end a run."""
+
+
+@jit
+def owe(debt: float, parts: float) -> float:
+    """Return the parts owed after a step that took `parts` of them: what exceeds `MOST_WORK`, less what was saved."""
+    return max(0.0, debt + parts - MOST_WORK)
