@@ -45,17 +45,11 @@ class Chapter(NamedTuple):
 
 
 FAMILIES = {
-    "bingham": ("Bingham and bi-viscous dampers", ("bingham", "bingham_extended", "bingham_series", "biviscous")),
+    "bingham": ("Bingham and bi-viscous dampers", ("bingham", "biviscous")),
     "bouc_wen": ("Bouc-Wen dampers", ("bouc_wen", "bouc_wen_current", "bouc_wen_variants")),
-    "friction": ("Dahl and LuGre dampers", ("dahl", "lugre")),
-    "curves": (
-        "Dampers by a curve over velocity",
-        ("arctangent", "asymmetric", "hyperbolic_tangent", "hysteresis_division", "sigmoid", "sigmoid_gaussian"),
-    ),
-    "fluid": (
-        "Visco-elastic and hydraulic dampers",
-        ("ellis", "equivalent", "hydro_mechanical", "maxwell", "phase_transition", "viscoelastic_plastic"),
-    ),
+    "friction": ("Dahl and LuGre dampers", ("friction",)),
+    "curves": ("Dampers by a curve over velocity", ("s_curves", "sigmoid_gaussian", "yu")),
+    "fluid": ("Visco-elastic and hydraulic dampers", ("fluid", "series", "viscoelastic_plastic")),
 }
 """Page, title and modules of `seatsim.dampers` of each family."""
 
