@@ -8,11 +8,11 @@ from seatsim.compilation.jit import jit
 from seatsim.kernel.assumed_model import InverseModel, follow_state, model_scaling, model_state
 from seatsim.kernel.channels import Sample, write_row
 from seatsim.kernel.generic import advance_filters, evaluate_law, read, scaling_at, update, wants_force
-from seatsim.kernel.hooks import hook, leading_state
+from seatsim.kernel.hooks import leading_state
 from seatsim.kernel.inverse import invert
 from seatsim.kernel.loop_inputs import ControlledRig, LoopInputs, LoopSetup, sample_of, step_inputs
 from seatsim.kernel.rig import Disturbance
-from seatsim.kernel.step import IntegratorState, StepInputs, advance, relaxed, start
+from seatsim.kernel.step import IntegratorState, advance, relaxed, start
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import CompiledLaw, Measurement
 from seatsim.rig.state import CUSHION_VELOCITY, DAMPER_WORK, DISPLACEMENT, MECHANICAL, VELOCITY, State
@@ -44,7 +44,7 @@ def run_loop(
     disturbance = Disturbance(
         inputs.floor_acceleration[0], sample_of(inputs.frame_force, 0), sample_of(inputs.driver_force, 0)
     )
-    now = begin(setup, mechanical + rig_state, disturbance, current, factors, temperature)
+    now = start(setup.rig, mechanical + rig_state, disturbance, current, factors, step)
     command, wanted, served, sensed = 0.0, math.nan, math.nan, inputs.sensed
 
     for k in range(samples):
@@ -63,7 +63,7 @@ def run_loop(
             break
         acting = step_inputs(setup, inputs, out, k, current, late, split, kept)
         x, v, work = now.state[DISPLACEMENT], now.state[VELOCITY], now.state[DAMPER_WORK]
-        now, next_current, good = take_step(setup, acting, k, factors, now, temperature)
+        now, next_current, good = advance(setup.rig, coil, acting, factors, now, timing.tolerance)
         if not good:
             return k
         x_next, v_next = ratio * now.state[DISPLACEMENT], ratio * now.state[VELOCITY]
@@ -79,27 +79,6 @@ def run_loop(
             factors = scaling_at(setup.factors, temperature)
         current = next_current
     return samples
-
-
-@hook
-def begin(
-    setup: LoopSetup,
-    state: State,
-    disturbance: Disturbance,
-    current: float,
-    factors: TemperatureScaling,
-    temperature: float,
-) -> IntegratorState:
-    """State of the integration at the first sample; `temperature` is the damper's in degC."""
-    return start(setup.rig, state, disturbance, current, factors, setup.timing.step)
-
-
-@hook
-def take_step(
-    setup: LoopSetup, acting: StepInputs, k: int, factors: TemperatureScaling, now: IntegratorState, temperature: float
-) -> tuple[IntegratorState, float, bool]:
-    """State after the step from sample `k`, the current then in A, and whether the step succeeded (see `advance`)."""
-    return advance(setup.rig, setup.coil, acting, factors, now, setup.timing.tolerance)
 
 
 @jit

@@ -11,6 +11,7 @@ import math
 from typing import NamedTuple
 
 from seatsim.compilation.jit import jit, jit_apart
+from seatsim.kernel.hooks import hook
 from seatsim.kernel.integration import MOST_DEBT, axpy, combine, owe
 from seatsim.kernel.rig import STICKING, Disturbance, Rig, RigForces, derivative
 from seatsim.rig.coil import Coil, relax
@@ -113,7 +114,7 @@ def disturbance_at(inputs: StepInputs, time: float) -> Disturbance:
     )
 
 
-@jit
+@hook
 def start(
     rig: Rig, state: State, disturbance: Disturbance, current: float, scaling: TemperatureScaling, substep: float
 ) -> IntegratorState:
@@ -162,7 +163,7 @@ def take_substep(
     return state, rates, forces, k4, i_end
 
 
-@jit
+@hook
 def advance(
     rig: Rig, coil: Coil, inputs: StepInputs, scaling: TemperatureScaling, now: IntegratorState, tolerance: float
 ) -> tuple[IntegratorState, float, bool]:

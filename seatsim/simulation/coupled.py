@@ -24,11 +24,12 @@ from seatsim.cosimulation.unit import run_unit
 from seatsim.effects.base import ON_DAMPER, acts_on
 from seatsim.kernel.generic import wants_force
 from seatsim.kernel.inverse import CELLS
-from seatsim.kernel.loop import run_loop
+from seatsim.kernel.loop import run_loop, warm_up
 from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup
-from seatsim.kernel.rig import Disturbance
+from seatsim.kernel.rig import Disturbance, Rig
 from seatsim.kernel.step import IntegratorState, StepInputs, advance, disturbance_at, start
-from seatsim.rig.state import DISPLACEMENT, VELOCITY, State
+from seatsim.rig.coil import Coil
+from seatsim.rig.state import DAMPER_WORK, DISPLACEMENT, VELOCITY, State
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 from seatsim.scenario.scenario import DamperChoice, Scenario
 from seatsim.schema.arrays import Array
@@ -71,60 +72,51 @@ def run_coupled(
             " the inverse assumes: inverse: {model: NAME, parameters: {...}}"
         )
     with run_unit(damper) as unit:
-        seat = _CoupledSeat(*setup)
-        seat.damper, seat.unit, seat.parts = damper, unit, (CoupledForce, *map(type, setup.rig.effects))
-        return run_loop(seat, inputs, *states, out, np.empty(CELLS + 1))
+        rig = _CoupledRig(*setup.rig)
+        rig.damper_unit, rig.unit, rig.setup, rig.inputs = damper, unit, setup, inputs
+        return run_loop(setup._replace(rig=rig), inputs, *states, out, np.empty(CELLS + 1))
 
 
-class _CoupledSeat(LoopSetup):
-    """The constant parts of a run with a unit; the force of the rig's damper is the unit's at the last sample."""
+class _CoupledRig(Rig):
+    """A rig whose steps are made with a unit: `start` and `advance` of the time loop are its own methods.
 
-    damper: FmuDamper
+    `before` is the unit's force in N at the last sample but one, `temperature` the damper's in degC, `reached` the
+    number of steps that were made.
+    """
+
+    damper_unit: FmuDamper
     unit: RunningUnit
-    parts: tuple[type, ...]
+    setup: LoopSetup
+    inputs: LoopInputs
     before: float
+    temperature: float
+    reached: int = 0
 
-    def begin(
-        self, state: State, disturbance: Disturbance, current: float, factors: TemperatureScaling, temperature: float
+    def start(
+        self, state: State, disturbance: Disturbance, current: float, scaling: TemperatureScaling, substep: float
     ) -> IntegratorState:
         """Start the unit, and return the state of the integration under its force."""
-        self.before = self.unit.start(self.damper, self._motion(state, state, current, temperature))
-        return self._feel(self.before, state, disturbance, current, factors, self.timing.step)
+        self.temperature = float(self.inputs.temperature[0])
+        self.before = self.unit.start(self.damper_unit, self._motion(state, state, current))
+        return self._feel(self.before, state, disturbance, current, scaling, substep)
 
-    def _feel(
-        self,
-        force: float,
-        state: State,
-        disturbance: Disturbance,
-        current: float,
-        factors: TemperatureScaling,
-        substep: float,
-    ) -> IntegratorState:
-        """Return the integration begun in a state under a force of the unit in N."""
-        rig = self.rig._replace(damper=CoupledForce(force))
-        return compiled(start, self.parts)(rig, state, disturbance, current, factors, substep)
-
-    def take_step(
-        self, acting: StepInputs, k: int, factors: TemperatureScaling, now: IntegratorState, temperature: float
+    def advance(
+        self, coil: Coil, acting: StepInputs, scaling: TemperatureScaling, now: IntegratorState, tolerance: float
     ) -> tuple[IntegratorState, float, bool]:
-        """Return the rig and the current after the step from sample `k`, and whether the rig stayed within bounds."""
-        unit, force, reached = self.unit, now.forces.damper_force, True
+        """Return the rig and the current after the next step, and whether the rig stayed within bounds."""
+        unit, force, reached, time = self.unit, now.forces.damper_force, True, self.reached * acting.length
         found: tuple[IntegratorState, float, float] = (now, acting.current, force)
 
         def miss(trial: float) -> float:
             """Make the step as if the unit's force ended at `trial`, and return by how much it ends elsewhere."""
             nonlocal found, reached
             felt = 0.5 * (force + trial)
-            begun = self._feel(felt, now.state, disturbance_at(acting, 0.0), acting.current, factors, now.substep)
-            rig = self.rig._replace(damper=CoupledForce(felt))
-            later, current, reached = compiled(advance, self.parts)(
-                rig, self.coil, acting, factors, begun, self.timing.tolerance
-            )
+            begun = self._feel(felt, now.state, disturbance_at(acting, 0.0), acting.current, scaling, now.substep)
+            rig, parts = self._under(felt)
+            later, current, reached = compiled(_advance, parts)(rig, coil, acting, scaling, begun, tolerance)
             if not reached:
                 return 0.0
-            answer = unit.step(
-                k * acting.length, acting.length, self._motion(now.state, later.state, current, temperature)
-            )
+            answer = unit.step(time, acting.length, self._motion(now.state, later.state, current))
             found = later, current, answer
             return answer - trial
 
@@ -137,24 +129,67 @@ class _CoupledSeat(LoopSetup):
         else:
             miss(2.0 * force - self.before)
         later, current, self.before = *found[:2], force
+        self._go_on(coil, acting, now.state, later.state, current)
         at_end = disturbance_at(acting, acting.length)
-        return self._feel(found[2], later.state, at_end, current, factors, later.substep), current, reached
+        return self._feel(found[2], later.state, at_end, current, scaling, later.substep), current, reached
 
-    def _motion(self, first: State, last: State, current: float, temperature: float) -> dict[str, float]:
+    def _under(self, force: float) -> tuple[Rig, tuple[type, ...]]:
+        """Return the rig of compiled code under a force of the unit in N, and the classes that it is compiled for."""
+        return Rig(self.plant, CoupledForce(force), self.effects), (CoupledForce, *map(type, self.effects))
+
+    def _feel(
+        self,
+        force: float,
+        state: State,
+        disturbance: Disturbance,
+        current: float,
+        scaling: TemperatureScaling,
+        substep: float,
+    ) -> IntegratorState:
+        """Return the integration begun in a state under a force of the unit in N."""
+        rig, parts = self._under(force)
+        return compiled(_start, parts)(rig, state, disturbance, current, scaling, substep)
+
+    def _go_on(self, coil: Coil, acting: StepInputs, first: State, last: State, current: float) -> None:
+        """Count a step, and follow the damper's temperature in degC as the loop does."""
+        self.reached += 1
+        if self.setup.timing.self_heating:
+            work = last[DAMPER_WORK] - first[DAMPER_WORK]
+            self.temperature += warm_up(
+                self.setup.thermal, coil, self.temperature, work, acting.current, current, acting.length
+            )
+        else:
+            self.temperature = float(self.inputs.temperature[self.reached])
+
+    def _motion(self, first: State, last: State, current: float) -> dict[str, float]:
         """Return what the unit is given for a step: where it begins, and how it goes on where that can be said.
 
         A unit that takes an acceleration goes on by itself from the motion at the beginning of the step; any other
         holds what it is given, which is then the motion at the end.
         """
-        ratio, length = self.rig.plant.damper_ratio, self.timing.step
+        ratio, length = self.plant.damper_ratio, self.setup.timing.step
         given = first if self.unit.takes_acceleration else last
         return {
             "displacement": ratio * given[DISPLACEMENT],
             "velocity": ratio * given[VELOCITY],
             "acceleration": ratio * (last[VELOCITY] - first[VELOCITY]) / length,
             "current": current,
-            "temperature": temperature,
+            "temperature": self.temperature,
         }
+
+
+def _start(
+    rig: Rig, state: State, disturbance: Disturbance, current: float, scaling: TemperatureScaling, substep: float
+) -> IntegratorState:
+    """Return what the kernel's `start` does, as a function to be compiled by itself."""
+    return start(rig, state, disturbance, current, scaling, substep)
+
+
+def _advance(
+    rig: Rig, coil: Coil, acting: StepInputs, scaling: TemperatureScaling, now: IntegratorState, tolerance: float
+) -> tuple[IntegratorState, float, bool]:
+    """Return what the kernel's `advance` does, likewise."""
+    return advance(rig, coil, acting, scaling, now, tolerance)
 
 
 def _agree(miss: Callable[[float], float], guess: float, again: Callable[[], None]) -> None:
