@@ -127,7 +127,7 @@ def fit(
             high.append(most)
 
     def residual(x: Array) -> Array:
-        scenario = single(recording.nominal, nominal_at(start, free, mechanisms, x))
+        scenario = single(recording.nominal_file, nominal_at(start, free, mechanisms, x))
         measured, simulated = pool_runs(scenario, recording, list(recording.runs))
         return np.concatenate([((simulated[n] - measured[n]) / np.std(measured[n]))[counted] for n in measured])
 

@@ -30,7 +30,6 @@ from seatsim.blind.labels import Label
 from seatsim.blind.make.draw_case import CaseSpecification
 from seatsim.blind.make.make import case_name, draw_files, make_case
 from seatsim.blind.score.verdicts import Verdict, is_right, read_verdict
-from seatsim.cli.outputs.diagnosis import encode_diagnosis
 from seatsim.diagnosis.candidates import list_candidates
 from seatsim.diagnosis.design.collinearity import fit_member
 from seatsim.diagnosis.diagnose import diagnose
@@ -42,6 +41,7 @@ from seatsim.diagnosis.problem import DiagnosisProblem, pose_problem
 from seatsim.diagnosis.select import select_effects
 from seatsim.diagnosis.settings.judging import DecisionSettings
 from seatsim.recordings.recording import load_recording
+from seatsim.schema.content import to_content
 from seatsim.schema.files import write_json
 from seatsim.schema.processes import run_jobs
 from seatsim.schema.registry import names
@@ -61,7 +61,7 @@ class WithheldCase(NamedTuple):
 
 def diagnose_without(without: Sequence[str], case: Path) -> EncodedDiagnosis:
     """Return the diagnosis of a case by a library without some effects."""
-    return encode_diagnosis(diagnose(case, without=without))
+    return to_content(diagnose(case, without=without))
 
 
 def write_imitators(case: Path, effect: str) -> None:

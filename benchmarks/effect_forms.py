@@ -28,7 +28,6 @@ from typical_effects import FORMS, NOISE
 import seatsim
 from controllers.laws.constant import Replay
 from seatsim.blind.score.verdicts import NAMING, Verdict, read_verdict
-from seatsim.cli.outputs.diagnosis import encode_diagnosis
 from seatsim.diagnosis.problem import pose_problem
 from seatsim.diagnosis.settings.judging import DecisionSettings
 from seatsim.effects.base import EFFECTS
@@ -36,6 +35,7 @@ from seatsim.excitations.recording import interpolate_floor
 from seatsim.recordings.recording import SEAT_CHANNELS, load_recording
 from seatsim.recordings.writer import save_recording
 from seatsim.scenario.scenario import Control
+from seatsim.schema.content import to_content
 from seatsim.schema.fields import field_names
 from seatsim.schema.files import write_json, write_text
 from seatsim.schema.processes import run_jobs
@@ -148,9 +148,7 @@ def work(case: FormCase, out: Path) -> None:
         record_case(case, out)
     if not (folder / "moved.json").exists():
         write_json(folder / "moved.json", measure_movement(folder, case.record))
-    write_verdict(
-        folder / "diagnosis", lambda recording: encode_diagnosis(seatsim.diagnose(recording, budget=math.inf))
-    )
+    write_verdict(folder / "diagnosis", lambda recording: to_content(seatsim.diagnose(recording, budget=math.inf)))
 
 
 def load_found(case: FormCase, out: Path) -> FoundForm:

@@ -72,7 +72,7 @@ def rank_by_movement(recording: Recording) -> Ranked:
 
 def list_unknowns(recording: Recording) -> list[Unknown]:
     """Return what is fitted to a recording."""
-    nominal = YAML(typ="safe").load(recording.nominal)
+    nominal = YAML(typ="safe").load(recording.nominal_file)
     sections = {"plant": nominal.get("plant", {}), "damper.parameters": nominal["damper"]["parameters"]}
     sections["actuator"] = {"rate": nominal["actuator"].get("rate", 130.0)}
     found = []
@@ -93,7 +93,7 @@ def misfit(recording: Recording, unknowns: list[Unknown], x: Array) -> Array:
     values = [(u, u.nominal + (float(k) - 1.0) * u.limit) for u, k in zip(unknowns, x, strict=True)]
     settings = {u.kind: value for u, value in values if "." in u.kind}
     by_channel = {(u.kind, u.channel): value for u, value in values if "." not in u.kind}
-    scenario = single(recording.nominal, settings)
+    scenario = single(recording.nominal_file, settings)
     return np.concatenate([_misfit_of_run(recording, scenario, run, by_channel) for run in recording.runs])
 
 

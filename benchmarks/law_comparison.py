@@ -56,7 +56,7 @@ def load_bracket(scenario: Scenario, name: str, hold: float, folder: Path) -> Cl
     settings = hashlib.sha256(f"{scenario.rig} {hold} {WEIGHTS.tolist()}".encode()).hexdigest()[:12]
     path = folder / f"bracket-{name.replace(' ', '-')}-{settings}.json"
     if not path.exists():
-        write_json(path, clairvoyant(scenario, WEIGHTS, hold).as_dict())
+        write_json(path, clairvoyant(scenario, WEIGHTS, hold))
     kept = json.loads(path.read_text(encoding="utf-8"))
     weights, lower, acceleration, travel = (
         np.array(kept[key]) for key in ("weights", "lower", "acceleration", "travel")

@@ -31,7 +31,7 @@ from seatsim.blind.labels import Label
 from seatsim.blind.score.score import score_verdicts
 from seatsim.blind.score.verdicts import Verdict, is_right, is_wrong_name, read_verdict
 from seatsim.blind.sealed import unseal
-from seatsim.cli.outputs.diagnosis import encode_diagnosis
+from seatsim.schema.content import to_content
 from seatsim.schema.processes import run_jobs
 
 OUTCOMES = ("first", "pair", "wrong", "missed")
@@ -41,7 +41,7 @@ Labels = dict[Path, Label]
 
 def diagnose_by_seatsim(case: Path) -> Mapping[str, object]:
     """Return the verdict of seatsim."""
-    return encode_diagnosis(seatsim.diagnose(case))
+    return to_content(seatsim.diagnose(case))
 
 
 METHODS: dict[str, Diagnoser] = {"diagnosis": diagnose_by_seatsim, "joint-fit": diagnose_by_joint_fit, **BASELINES}

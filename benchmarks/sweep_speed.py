@@ -31,7 +31,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.cli.outputs.sweeps import report_sweep
+from seatsim.cli.outputs.simulated import write_sweep_report
 from seatsim.scenario.scenario import Scenario
 from seatsim.simulation import simulate as simulation
 from seatsim.sweeps.engines.base import simulate_one
@@ -132,7 +132,7 @@ def measure(what: str, runs: int, folder: Path | None) -> dict[str, Cost]:
         prepared = prepare(file)
         runs, few = prepared.plan.runs, min(prepared.plan.runs, SAMPLE)
         if what == "report":
-            return {what: cost_of(runs, partial(report_sweep, out, out))}
+            return {what: cost_of(runs, partial(write_sweep_report, out, out))}
         # What loads what is compiled is left out, as it is the same for any number of runs.
         run_all(prepared.plan, VARIANTS)
         if what == "loop":

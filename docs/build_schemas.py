@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping
 from pathlib import Path
 
-from seatsim.cli.outputs.answers import ANSWERS, answer_schema
+from seatsim.cli.outputs.answers import describe_answer, list_answers
 from seatsim.cli.outputs.schemas import FILES
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -15,7 +15,7 @@ ROOT = Path(__file__).resolve().parents[1]
 def schemas() -> Mapping[str, str]:
     """Return the text of every file by its path from the root."""
     files = {f"scenarios/schema/{kind}.json": json.dumps(FILES[kind]()) for kind in ("scenario", "recording", "sweep")}
-    answers = {f"docs/schemas/{name}.json": json.dumps(answer_schema(name), indent=1) for name in ANSWERS}
+    answers = {f"docs/schemas/{name}.json": json.dumps(describe_answer(name), indent=1) for name in list_answers()}
     return {path: f"{text}\n" for path, text in (files | answers).items()}
 
 

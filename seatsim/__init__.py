@@ -18,15 +18,15 @@ from importlib import import_module
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     __version__: str
-    from matplotlib.figure import Figure
 
     from seatsim.characterisation.summary import characterise as characterise
-    from seatsim.cli.outputs.sweeps import report_sweep
+    from seatsim.cli.outputs.simulated import write_sweep_report
     from seatsim.diagnosis.diagnose import diagnose as diagnose
     from seatsim.diagnosis.result import Diagnosis as Diagnosis
     from seatsim.exchange.export import export as export
     from seatsim.identification.identify import Identification as Identification
     from seatsim.identification.identify import identify as identify
+    from seatsim.plots.notebook import plot as plot
     from seatsim.recordings.gap import Gap as Gap
     from seatsim.recordings.gap import gap as gap
     from seatsim.recordings.prediction import Prediction as Prediction
@@ -52,20 +52,16 @@ if TYPE_CHECKING:
     from seatsim.sweeps.execute import sweep as sweep
     from seatsim.sweeps.parts import read_sweep as read_sweep
 
-    sweep_report = report_sweep
-
-    def plot(value: object) -> dict[str, Figure]:
-        """Return the figures of a result, gap, diagnosis or identification by name."""
-
+    sweep_report = write_sweep_report
 
 _HOMES = {
     "characterisation.summary": "characterise",
-    "cli.outputs.sweeps": "sweep_report=report_sweep",
+    "cli.outputs.simulated": "sweep_report=write_sweep_report",
     "diagnosis.diagnose": "diagnose",
     "diagnosis.result": "Diagnosis",
     "exchange.export": "export",
     "identification.identify": "Identification identify",
-    "plots.notebook": "plot=list_figures",
+    "plots.notebook": "plot",
     "recordings.gap": "Gap gap",
     "recordings.prediction": "Prediction predict_gap",
     "recordings.recording": "Recording load_recording",

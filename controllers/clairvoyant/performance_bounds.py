@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from seatsim.schema.arrays import Array
+from seatsim.schema.content import Unwritten, written
 
 
 @dataclass(frozen=True)
@@ -23,8 +24,8 @@ class ClairvoyantBounds:
     lower: Array
     acceleration: Array
     travel: Array
-    force: Array
-    step: float
+    force: Unwritten[Array]
+    step: Unwritten[float]
 
     @property
     def reached(self) -> Array:
@@ -33,21 +34,11 @@ class ClairvoyantBounds:
         return squares
 
     @property
+    @written()
     def width(self) -> Array:
         """sqrt(J reached / J bound) - 1, shape (K,): what is not known of the best damper."""
         ratio: Array = np.sqrt(self.reached / self.lower) - 1
         return ratio
-
-    def as_dict(self) -> dict[str, list[float]]:
-        """Return the curves as lists, without the forces."""
-        curves = {
-            "weights": self.weights,
-            "lower": self.lower,
-            "acceleration": self.acceleration,
-            "travel": self.travel,
-            "width": self.width,
-        }
-        return {name: [float(value) for value in curve] for name, curve in curves.items()}
 
     def bound(self, travel: ArrayLike) -> Array:
         """Return the aw in m/s^2 below which no damper comes at an RMS travel in m; the shape of `travel`."""

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from seatsim.schema.arrays import Array
+from seatsim.schema.content import Form, Unwritten
 
 SHARES = (0.05, 0.90, 0.95)
 """Shares of the change whose instants are stated."""
@@ -15,6 +16,12 @@ RESAMPLES = 200
 """Draws of the steps from which the deviation of t95 is taken: it is then known to some 5 %."""
 SETTLED_BY = 0.1
 """Largest difference of the curve's last but one fifth from 1, for a response that has settled."""
+
+
+Seconds = Annotated[float, Form(unit="s")]
+Amperes = Annotated[float, Form(unit="A")]
+Rate = Annotated[float, Form(unit="per_s")]
+Speed = Annotated[float, Form(unit="m_s")]
 
 
 class Response(NamedTuple):
@@ -31,41 +38,28 @@ class Response(NamedTuple):
     """
 
     record: str
-    before: float
-    after: float
+    before: Amperes
+    after: Amperes
     steps: int
     method: str
     note: str = ""
-    t5: float = math.nan
-    t90: float = math.nan
-    t95: float = math.nan
-    t95_sd: float = math.nan
-    rate_90: float = math.nan
-    rate_95: float = math.nan
-    rate: float = math.nan
-    delay: float = math.nan
-    current_t95: float = math.nan
-    speed: float = math.nan
-    time: Array | None = None
-    share: Array | None = None
+    t5: Seconds = math.nan
+    t90: Seconds = math.nan
+    t95: Seconds = math.nan
+    t95_sd: Seconds = math.nan
+    rate_90: Rate = math.nan
+    rate_95: Rate = math.nan
+    rate: Rate = math.nan
+    delay: Seconds = math.nan
+    current_t95: Seconds = math.nan
+    speed: Speed = math.nan
+    time: Unwritten[Array | None] = None
+    share: Unwritten[Array | None] = None
 
     @property
     def rises(self) -> bool:
         """Whether the current rises."""
         return self.after > self.before
-
-
-UNITS = {
-    "before": "A", "after": "A", "t5": "s", "t90": "s", "t95": "s", "t95_sd": "s", "rate_90": "per_s",
-    "rate_95": "per_s", "rate": "per_s", "delay": "s", "current_t95": "s", "speed": "m_s",
-}  # fmt: skip
-"""Units that the names of a response's figures end in where it is written."""
-
-
-def response_columns(answer: Response) -> dict[str, object]:
-    """Return a response as it is written: names with their units, without the curve."""
-    kept = {name: value for name, value in answer._asdict().items() if name not in ("time", "share")}
-    return {f"{name}_{UNITS[name]}" if name in UNITS else name: value for name, value in kept.items()}
 
 
 class StepEnsemble(NamedTuple):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +13,7 @@ from seatsim.characterisation.cycles import Cycle, average_loops, find_cycles, r
 from seatsim.metrics.motion import rms
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.schema.arrays import Array
+from seatsim.schema.content import Form, IfAny, Unwritten, to_content
 from seatsim.simulation.damper_bench import SineTest
 
 COARSE = 16
@@ -38,6 +39,16 @@ class Cloud(NamedTuple):
     current: Array
 
 
+Amperes = Annotated[float, Form(unit="A")]
+Celsius = Annotated[float, Form(unit="C")]
+Metres = Annotated[float, Form(unit="m")]
+Hertz = Annotated[float, Form(unit="Hz")]
+Speed = Annotated[float, Form(unit="m_s")]
+Newtons = Annotated[float, Form(unit="N")]
+Joules = Annotated[float, Form(unit="J")]
+Damping = Annotated[float, Form(unit="N_s_m")]
+
+
 class Row(NamedTuple):
     """Figures of one record; SI units, degC. NaN where a figure does not exist; `sd` is the spread over the cycles.
 
@@ -53,40 +64,33 @@ class Row(NamedTuple):
     file: str
     cycles: int
     left_out: int
-    current: float
-    temperature: float = math.nan
-    temperature_range: float = math.nan
-    amplitude: float = math.nan
-    frequency: float = math.nan
-    peak_speed: float = math.nan
-    peak_rebound: float = math.nan
-    peak_rebound_sd: float = math.nan
-    peak_compression: float = math.nan
-    peak_compression_sd: float = math.nan
-    energy: float = math.nan
-    energy_sd: float = math.nan
-    damping: float = math.nan
-    damping_sd: float = math.nan
-    offset: float = math.nan
-    offset_sd: float = math.nan
-    centre: float = math.nan
-    force_rms: float = math.nan
+    current: Amperes
+    temperature: Celsius = math.nan
+    temperature_range: Celsius = math.nan
+    amplitude: Metres = math.nan
+    frequency: Hertz = math.nan
+    peak_speed: Speed = math.nan
+    peak_rebound: Newtons = math.nan
+    peak_rebound_sd: Newtons = math.nan
+    peak_compression: Newtons = math.nan
+    peak_compression_sd: Newtons = math.nan
+    energy: Joules = math.nan
+    energy_sd: Joules = math.nan
+    damping: Damping = math.nan
+    damping_sd: Damping = math.nan
+    offset: Newtons = math.nan
+    offset_sd: Newtons = math.nan
+    centre: Newtons = math.nan
+    force_rms: Newtons = math.nan
     asymmetry: float = math.nan
-    asymmetry_peak: float = math.nan
+    asymmetry_peak: Newtons = math.nan
     asymmetry_of_shape: float = math.nan
     notes: tuple[str, ...] = ()
-    loop: SineTest | None = None
-    cloud: Cloud | None = None
-    cycle_values: dict[str, list[float]] | None = None
+    loop: Unwritten[SineTest | None] = None
+    cloud: Unwritten[Cloud | None] = None
+    cycle_values: IfAny[dict[str, list[float]] | None] = None
 
 
-UNITS = {
-    "current": "A", "temperature": "C", "temperature_range": "C", "amplitude": "m", "frequency": "Hz",
-    "peak_speed": "m_s", "peak_rebound": "N", "peak_rebound_sd": "N", "peak_compression": "N",
-    "peak_compression_sd": "N", "energy": "J", "energy_sd": "J", "damping": "N_s_m", "damping_sd": "N_s_m",
-    "offset": "N", "offset_sd": "N", "centre": "N", "force_rms": "N", "asymmetry_peak": "N",
-}  # fmt: skip
-"""Units that the columns of the table end in; the other columns are names, counts and ratios."""
 FIGURES: dict[str, Callable[[SineTest], float]] = {
     "peak_rebound": lambda loop: float(np.max(loop.force)),
     "peak_compression": lambda loop: float(np.min(loop.force)),
@@ -98,12 +102,8 @@ FIGURES: dict[str, Callable[[SineTest], float]] = {
 
 
 def row_columns(row: Row) -> dict[str, object]:
-    """Return a row as it stands in a table: names with their units, notes as one text."""
-    kept = row._asdict()
-    for name in ("loop", "cloud", "cycle_values"):
-        del kept[name]
-    named = {f"{name}_{UNITS[name]}" if name in UNITS else name: value for name, value in kept.items()}
-    return named | {"notes": "; ".join(row.notes)}
+    """Return a row as it stands in a table of cells: names with their units, notes as one text."""
+    return to_content(row._replace(cycle_values=None)) | {"notes": "; ".join(row.notes)}
 
 
 def summarise_loops(

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from seatsim.characterisation.cycles import find_cycles
-from seatsim.characterisation.response import Response, response_columns
-from seatsim.characterisation.rows import Row, row_columns, summarise_aperiodic_record, summarise_record
+from seatsim.characterisation.response import Response
+from seatsim.characterisation.rows import Row, summarise_aperiodic_record, summarise_record
 from seatsim.characterisation.steps import find_plateaus, measure_responses
 from seatsim.recordings.bench_tables import BenchRecord, load_bench, unused_columns
+from seatsim.schema.content import Form
+from seatsim.schema.notebook import show_record
 
 SETTLED = 0.2
 """Seconds after a step of current from which on cycles are counted."""
@@ -23,15 +25,36 @@ WARMER = 4.0
 class Characterisation(NamedTuple):
     """The rows of a damper's records (or of a model's tests), its responses to steps, and what is to be known of them.
 
-    measured: whether the rows are of records. source: the data, or the model with its parameters, as text.
+    It is the content of `characterisation.json`. measured: whether the rows are of records. source: the data, or the
+    model with its parameters, as text.
     """
 
     name: str
     source: str
     measured: bool
-    rows: list[Row]
-    responses: list[Response]
+    rows: Annotated[list[Row], Form(key="records")]
+    responses: Annotated[list[Response], Form(key="steps")]
     notes: list[str]
+
+    @property
+    def remarks(self) -> list[str]:
+        """Notes on the rows in sentences, records with the same note together."""
+        affected: dict[str, list[str]] = {}
+        for row in self.rows:
+            for note in row.notes:
+                affected.setdefault(note, []).append(row.record)
+        for answer in self.responses:
+            if answer.note:
+                who = f"step {answer.before:.2f} to {answer.after:.2f} A"
+                affected.setdefault(answer.note, []).append(f"{answer.record}, {who}" if answer.record else who)
+        return [*self.notes, *(f"{_list_names(names)}: {note}" for note, names in affected.items())]
+
+    def _repr_html_(self) -> str:
+        return show_record(self)
+
+
+def _list_names(names: Sequence[str]) -> str:
+    return ", ".join(names) if len(names) <= 3 else f"{names[0]} and {len(names) - 1} more"
 
 
 def characterise(data: str | Path | Sequence[BenchRecord], name: str = "", source: str = "") -> Characterisation:
@@ -59,19 +82,6 @@ def _rows(record: BenchRecord) -> list[Row]:
     ]
     cyclic = [row for row in rows if row.loop is not None]
     return cyclic or [summarise_aperiodic_record(record, find_cycles(record.displacement))]
-
-
-def contents(found: Characterisation) -> dict[str, object]:
-    """Return a characterisation as it stands in `characterisation.json`."""
-    records = []
-    for row in found.rows:
-        values = row_columns(row) | {"notes": list(row.notes)}
-        records.append(values | ({"cycle_values": row.cycle_values} if row.cycle_values and found.measured else {}))
-    steps = [response_columns(answer) for answer in found.responses]
-    return {
-        "name": found.name, "source": found.source, "measured": found.measured, "records": records, "steps": steps,
-        "notes": found.notes,
-    }  # fmt: skip
 
 
 def group_by_setting(rows: Sequence[Row]) -> list[list[Row]]:

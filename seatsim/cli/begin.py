@@ -1,10 +1,14 @@
-"""The first instants of a command, before anything heavy is imported: a signal ends it with a word, not a traceback."""
+"""The start of a command as a process of its own, and its orderly end.
+
+At its first instants, before anything heavy is imported, a signal ends it with a word, not a traceback.
+"""
 
 from __future__ import annotations
 
 import os
 import signal
-import sys
+
+from seatsim.cli.signals import SIGNALS, say_interrupted
 
 # For annotations only: the module `typing` takes longer to load than everything that is done here.
 TYPE_CHECKING = False
@@ -12,31 +16,29 @@ if TYPE_CHECKING:
     from types import FrameType
     from typing import NoReturn
 
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
-
 
 def begin() -> NoReturn:
-    """Run the command line; until `seatsim.cli.start` watches signals, one ends the process at once."""
+    """Run the command line; until `seatsim.cli.interrupts` watches signals, one ends the process at once."""
     for number in SIGNALS:
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, _end)
-    from seatsim.cli.start import start
+    from seatsim.cli.interrupts import end, watch_signals
 
-    start()
+    watch_signals()
+    status = 0
+    try:
+        from seatsim.cli.app import main
+
+        main()
+    except KeyboardInterrupt:
+        say_interrupted()
+    except SystemExit as ended:
+        if isinstance(ended.code, str):
+            raise
+        status = ended.code or 0
+    end(status)
 
 
 def _end(number: int, frame: FrameType | None) -> NoReturn:
     say_interrupted()
     os._exit(128 + number)
-
-
-def say_interrupted() -> None:
-    """Say why the command ends, by system calls alone, as what it prints with may be locked or not be loaded."""
-    try:
-        if os.isatty(2):
-            os.write(2, b"\x1b[?25h")  # a progress bar hides the cursor
-        os.write(2, b"error: interrupted\n")
-        if "--json" in sys.argv:
-            os.write(1, b'{"error": "interrupted"}\n')
-    except OSError:  # whoever read the output may have closed it
-        pass

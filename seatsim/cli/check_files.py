@@ -24,6 +24,7 @@ from seatsim.rig.temperature import TemperatureScaling
 from seatsim.scenario.describe import KINDS
 from seatsim.scenario.loading import load
 from seatsim.scenario.plausibility import list_doubts
+from seatsim.schema.content import Joined
 from seatsim.schema.errors import InputError, SeatsimError
 from seatsim.schema.fields import bounds, field_names
 from seatsim.schema.modules import UNIT, use
@@ -114,6 +115,13 @@ class Checked(NamedTuple):
     kind: str
     holds: list[str]
     warnings: list[str]
+
+
+class CheckedFile(NamedTuple):
+    """A file, and what is known of it."""
+
+    file: Path
+    checked: Joined[Checked]
 
 
 def check_file(path: Path) -> Checked:

@@ -6,9 +6,11 @@ file or a program has room for all of them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 
+from rich import box
 from rich.cells import cell_len
+from rich.markup import escape
 from rich.measure import Measurement
 from rich.table import Column, Table
 from rich.text import Text
@@ -17,6 +19,28 @@ from seatsim.cli.terminal import out, say
 
 WIDEST = 10_000
 """Letters that no table has in a line."""
+
+
+def make_table(
+    title: str,
+    headings: Sequence[str],
+    rows: Iterable[Sequence[str]],
+    left: Collection[int] = (0,),
+    caption: str | None = None,
+) -> Table:
+    """Return a table for the terminal; `left` are the columns of names, and an empty row is a line."""
+    table = Table(
+        title=escape(title), caption=caption, title_justify="left", caption_justify="left", box=box.SIMPLE_HEAD,
+        padding=(0, 1, 0, 0),
+    )  # fmt: skip
+    for k, heading in enumerate(headings):
+        table.add_column(escape(heading), justify="left" if k in left else "right", vertical="bottom", no_wrap=True)
+    for row in rows:
+        if row:
+            table.add_row(*row)
+        else:
+            table.add_section()
+    return table
 
 
 def show_table(table: Table) -> None:

@@ -7,7 +7,7 @@ import json
 import os
 import shlex
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TextIO
@@ -62,19 +62,21 @@ def answer_as_json(wanted: bool) -> bool:
     return wanted
 
 
-def answer(content: Mapping[str, object], paths: Iterable[Path] = ()) -> None:
-    """Print the answer of a command as one JSON object, with the files it wrote, where `--json` asks for it."""
+def answer(record: object, paths: Iterable[Path] = ()) -> None:
+    """Print what a command found as one JSON object, with the files it wrote, where `--json` asks for it."""
     if out.quiet:
-        from seatsim.schema.files import plain
+        from seatsim.schema.content import to_content
 
-        whole = {**content, "files": [str(path) for path in paths]}
-        _write_line(json.dumps(plain(whole), allow_nan=False))
+        content = {**to_content(record), "files": [str(path) for path in paths]}
+        _write_line(json.dumps(content, allow_nan=False))
 
 
 def announce(address: str) -> None:
     """Print the address of a page at once, since the command goes on until it is interrupted."""
+    from seatsim.cli.outputs.answers import ExploreAnswer
+
     say(address)
-    answer({"address": address})
+    answer(ExploreAnswer(address))
     sys.stdout.flush()
 
 

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.diagnosis.problem import DiagnosisProblem
-from seatsim.diagnosis.result import GapFigures, Gaps, RunGaps
-from seatsim.recordings.gap import Signals, compare_signals, loud_channels
+from seatsim.diagnosis.result import Gaps, RunGaps
+from seatsim.recordings.gap import GapFigures, Signals, compare_signals, loud_channels
 from seatsim.recordings.model_error import ModelError, measure_model_error
 from seatsim.recordings.replay import replay
 from seatsim.scenario.scenario import Scenario
@@ -73,8 +73,7 @@ def _measure_run(problem: DiagnosisProblem, run: ReplayedRun) -> RunGaps:
     measured = {name: run.measured[name] for name in loud_channels(problem.recording, run.measured)}
     gaps = [compare_signals(problem.recording, measured, simulated) for simulated in run.simulated]
     before, calibrated, after = (GapFigures(each.overall, each.channels) for each in gaps)
-    floor = GapFigures(gaps[0].floor["overall"], gaps[0].floor["channels"])
-    return RunGaps(run.name, before, calibrated, after, floor, 1.0 - after.overall / before.overall)
+    return RunGaps(run.name, before, calibrated, after, gaps[0].floor, 1.0 - after.overall / before.overall)
 
 
 def _bootstrap_shrink(

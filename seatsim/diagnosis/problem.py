@@ -22,7 +22,6 @@ from seatsim.recordings.quality.coverage import shows_falling_current
 from seatsim.recordings.quality.sensors import without_gravity
 from seatsim.recordings.recording import Recording
 from seatsim.recordings.replay import COMPARED, LEFT_OUT, recorded_inputs, stands_out
-from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario, Start
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, RunError
@@ -159,7 +158,7 @@ def pose_problem(recording: Recording, pool: Executor, settings: DiagnosisSettin
         InputError: the recording or its scenario is not right, or no output stands above its noise.
     """
     recording = without_gravity(recording)
-    scenario = single(recording.nominal)
+    scenario = recording.nominal
     interval = 1.0 / recording.header.sample_rate
     parts = max(1, math.ceil(interval / _COARSEST_STEP - 1e-9))
     solver = scenario.solver._replace(step=interval / parts)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
+from seatsim.recordings.gap import GapFigures
 from seatsim.recordings.model_error import ModelError
 from seatsim.schema.arrays import Array
-from seatsim.schema.notebook import Pictures, draw, html_table
+from seatsim.schema.content import Form, IfAny, Unwritten
+from seatsim.schema.notebook import show_record
 
 Content = Mapping[str, object]
 """What a YAML file holds: sections by key."""
@@ -52,17 +54,6 @@ class Share(NamedTuple):
     share: float
 
 
-class GapFigures(NamedTuple):
-    """A gap in standard deviations of the measured signals, overall and by channel."""
-
-    overall: float
-    channels: dict[str, float]
-
-    def as_dict(self) -> dict[str, object]:
-        """Return the figures as they stand in `diagnosis.json`."""
-        return {"overall": self.overall, "channels": self.channels}
-
-
 class RunGaps(NamedTuple):
     """Gaps of one run: nominal, with refitted parameters, with the effects, of the noise alone; what it shrinks by."""
 
@@ -101,7 +92,8 @@ class ErrorBudget(NamedTuple):
 class Gaps:
     """Gaps on held-out runs: nominal, with refitted parameters, with the effects, and that of the noise alone.
 
-    `shrink` is from before to after; `shrink_interval` is its 90 % interval on other runs of the kind.
+    `shrink` is from before to after; `shrink_interval` is its 90 % interval on other runs of the kind; `by_run` are the
+    gaps of every run under the same scenarios.
     """
 
     before: GapFigures
@@ -110,6 +102,7 @@ class Gaps:
     floor: GapFigures
     shrink: float
     shrink_interval: tuple[float, float]
+    by_run: Sequence[RunGaps] = ()
 
 
 @dataclass(frozen=True)
@@ -187,17 +180,10 @@ class ProposedExperiment:
     kind: Literal["excitation", "intervention", "none"]
     name: str
     reason: str
-    likeness_now: float
-    likeness_then: float
-    scenario: Content | None = None
-    set: Mapping[str, float] = field(default_factory=dict)
-
-    def as_dict(self) -> dict[str, object]:
-        """Return the proposal as it stands in `diagnosis.json`."""
-        file: dict[str, object] = {"file": "experiment.yaml"} if self.scenario is not None else {}
-        file |= {"set": dict(self.set)} if self.set else {}
-        likeness = {"alikeness_now": self.likeness_now, "alikeness_then": self.likeness_then}
-        return {"kind": self.kind, "name": self.name, "reason": self.reason, **likeness, **file}
+    likeness_now: Annotated[float, Form(key="alikeness_now")]
+    likeness_then: Annotated[float, Form(key="alikeness_then")]
+    scenario: Annotated[Content | None, Form(key="file", file="experiment.yaml", if_any=True)] = None
+    set: IfAny[Mapping[str, float]] = field(default_factory=dict)
 
 
 class DamperForm(NamedTuple):
@@ -221,13 +207,14 @@ class DamperForm(NamedTuple):
 class Diagnosis:
     """Where the gap between a recording and its nominal simulation lies, which effect causes it, how far it shrinks.
 
+    It is the content of `diagnosis.json`.
+
     `sentence` is the answer in one sentence. `notes` are sentences on the data, what the channels cannot distinguish,
     and on cautions. `stochastic` is the selected effect whose signal is random, else empty. `augmented` is the content
-    of `augmented.yaml`, `model_error` what that leaves, `by_run` the gaps of every run under the same scenarios.
-    `alternatives` are other models of the damper, the best first.
+    of `augmented.yaml`, `model_error` what that leaves. `alternatives` are other models of the damper, the best first.
     """
 
-    name: str
+    name: Unwritten[str]
     verdict: Literal["none", "known", "ambiguous", "unknown"]
     sentence: str
     where: list[Share]
@@ -235,31 +222,23 @@ class Diagnosis:
     probability_none: float
     probability_unknown: float
     selected: list[str]
-    stochastic: str
+    stochastic: Unwritten[str]
     indistinguishable: list[list[str]]
     experiment: ProposedExperiment | None
     held_out: list[str]
     isolable: list[list[str]]
     gap: Gaps
     notes: list[str]
-    augmented: Content
-    evidence: Evidence
+    augmented: Annotated[Content, Form(file="augmented.yaml")]
+    evidence: Unwritten[Evidence]
     alternatives: Sequence[DamperForm] = ()
-    by_run: list[RunGaps] = field(default_factory=list)
-    parameters: list[CalibratedParameter] = field(default_factory=list)
+    parameters: Annotated[list[CalibratedParameter], Form(key="calibrated_parameters")] = field(default_factory=list)
     model_error: ModelError | None = None
     error_budget: list[ErrorBudget] = field(default_factory=list)
-
-    def plot(self, *names: str) -> Pictures:
-        """Return its pictures, or those that are named, such as `ranking`; a notebook shows them."""
-        return draw(self, names)
 
     def __repr__(self) -> str:
         """Say what was found."""
         return f"<Diagnosis {self.verdict}: {', '.join(self.selected) or 'no effect'}; {self.sentence}>"
 
     def _repr_html_(self) -> str:
-        likely = [cause for cause in self.causes if cause.probability >= 0.01 or cause.effect in self.selected]
-        rows = [(cause.effect, cause.probability, cause.shrink) for cause in likely]
-        none, unknown = ("none", self.probability_none, ""), ("unknown", self.probability_unknown, "")
-        return html_table(self.sentence, ("effect", "probability", "own shrink"), [*rows, none, unknown])
+        return show_record(self, "verdict", "sentence", "probability_none", "probability_unknown", "where", "causes")

@@ -23,7 +23,7 @@ from seatsim.diagnosis.movement import name_immaterial, share_removable
 from seatsim.diagnosis.nuisance import list_calibrated
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
 from seatsim.diagnosis.parameters import Parameters
-from seatsim.diagnosis.result import Cause, DamperForm, Diagnosis, Evidence, Gaps, ProposedExperiment, RunGaps
+from seatsim.diagnosis.result import Cause, DamperForm, Diagnosis, Evidence, Gaps, ProposedExperiment
 from seatsim.diagnosis.revise import call_unknown, decide_without, doubt_single
 from seatsim.diagnosis.sentences import write_answer
 from seatsim.diagnosis.solution import Solution
@@ -35,7 +35,6 @@ from seatsim.diagnosis.validate import (
     shrink_by_run,
 )
 from seatsim.recordings.quality.coverage import measure_coverage
-from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import RunError
 
@@ -44,8 +43,7 @@ from seatsim.schema.errors import RunError
 class Validation:
     """A solution on a run held out of its fits: the rigs fitted without the run, and the gaps that they leave on it.
 
-    `runs` holds every run, replayed with the nominal, the calibrated and the augmented scenario, the three `scenarios`;
-    `by_run` their gaps.
+    `runs` holds every run, replayed with the nominal, the calibrated and the augmented scenario, the three `scenarios`.
     """
 
     solution: Solution
@@ -56,7 +54,6 @@ class Validation:
     scenarios: tuple[Scenario, Scenario, Scenario]
     runs: Sequence[ReplayedRun]
     gaps: Gaps
-    by_run: list[RunGaps]
 
     @property
     def fitted(self) -> Parameters:
@@ -83,7 +80,7 @@ def validate_on_held_out(solution: Solution) -> Validation:
     calibrated, augmented = refit_without(objective, chosen, run)
     if decision.verdict == "unknown" and not chosen.parameters.terms:
         augmented = selection.nominal
-    nominal = single(problem.recording.nominal)
+    nominal = problem.recording.nominal
     rigs = Parameters(problem.nominal), calibrated.parameters, augmented.parameters
     first, second, third = (make_scenario(problem, nominal, rig) for rig in rigs)
     try:
@@ -98,22 +95,22 @@ def validate_on_held_out(solution: Solution) -> Validation:
     # A single run has no spread: its standard deviation with n - 1 degrees of freedom would be NaN.
     spread = float(np.std(shrink, ddof=min(1, len(shrink) - 1)))
     gaps = measure_gaps(problem, next(each for each in runs if each.name == run), spread)
-    by_run = list_gaps(problem, runs)
-    raised = _name_raised_gap(gaps, run, by_run)
+    gaps = dataclasses.replace(gaps, by_run=list_gaps(problem, runs))
+    raised = _name_raised_gap(gaps, run)
     if decision.verdict == "unknown" and chosen.parameters.terms and raised:
         return validate_on_held_out(_give_up(solution, f"raises {raised} as fitted without {run}"))
     if not solution.stochastic and decision.verdict in ("known", "ambiguous"):
         taken = share_removable(objective.on_runs([run]), gaps.before.overall, gaps.after.overall)
         if taken < problem.settings.decision.least_taken:
             solution = solution._replace(decision=call_unknown(problem.settings.decision, decision))
-    return Validation(solution, nominal, run, calibrated, augmented, (first, second, third), runs, gaps, by_run)
+    return Validation(solution, nominal, run, calibrated, augmented, (first, second, third), runs, gaps)
 
 
-def _name_raised_gap(gaps: Gaps, held_out: str, runs: Sequence[RunGaps]) -> str:
+def _name_raised_gap(gaps: Gaps, held_out: str) -> str:
     """Return which gap the augmented scenario raises above the nominal's, in words; an empty word for none."""
     if gaps.after.overall >= gaps.before.overall:
         return f"the gap of {held_out}"
-    raised = sum(run.after.overall**2 for run in runs) > sum(run.before.overall**2 for run in runs)
+    raised = sum(run.after.overall**2 for run in gaps.by_run) > sum(run.before.overall**2 for run in gaps.by_run)
     return "the gap of all runs" if raised else ""
 
 
@@ -164,7 +161,7 @@ def state_diagnosis(
             *measure_coverage(recording).missing,
         ],
         augmented=write_augmented(problem, validation.augmented.parameters),
-        evidence=_collect_evidence(validation, nuisances, causes), alternatives=forms, by_run=validation.by_run,
+        evidence=_collect_evidence(validation, nuisances, causes), alternatives=forms,
         parameters=list_calibrated(problem.parameters, validation.fitted.deviations, at_bound),
         model_error=state_model_error(problem, runs),
         error_budget=budget_errors(problem, validation.scenarios[2], validation.run),

@@ -13,10 +13,10 @@ Parameters, inputs, state and outputs are records (NamedTuple), the functions pl
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple, cast, get_args
+from typing import Annotated, Any, NamedTuple, cast, get_args
 
 import numba
 from numba import types
@@ -26,6 +26,7 @@ from seatsim.exchange.printing.values import field_names as c_names
 from seatsim.exchange.printing.values import is_empty, is_row
 from seatsim.kernel.augmented import AugmentedDamper
 from seatsim.kernel.rig import Rig, SeatedBody
+from seatsim.schema.content import Form, Unwritten
 from seatsim.schema.fields import bounds, describe
 from seatsim.schema.registry import Record
 
@@ -73,12 +74,21 @@ class Variable(NamedTuple):
 
     name: str
     causality: str
-    value: float | int | bool
-    place: str
+    value: Annotated[float | int | bool, Form(key="start")]
+    place: Unwritten[str]
     unit: str = ""
     meaning: str = ""
-    low: float = -math.inf
-    high: float = math.inf
+    low: Unwritten[float] = -math.inf
+    high: Unwritten[float] = math.inf
+
+
+class ExportedBlock(NamedTuple):
+    """What was exported, with its step in s."""
+
+    name: str
+    step: float
+    variables: list[Variable]
+    notes: Sequence[str]
 
 
 def list_variables(block: Block) -> list[Variable]:

@@ -14,6 +14,7 @@ from seatsim.identification.prediction import BenchModel, predict_force, prepare
 from seatsim.identification.settings import Split
 from seatsim.recordings.bench_tables import BenchRecord, load_bench
 from seatsim.schema.arrays import Array
+from seatsim.schema.content import Joined, Unwritten, written
 from seatsim.schema.errors import InputError
 from seatsim.simulation.damper_bench import centring
 
@@ -61,10 +62,16 @@ class Assessment(NamedTuple):
     The force is NaN from where the state ran away; there it counts as zero in the agreement.
     """
 
-    record: BenchRecord
+    record: Unwritten[BenchRecord]
     part: str
-    predicted: Array
-    agreement: Agreement
+    predicted: Unwritten[Array]
+    agreement: Joined[Agreement]
+
+    @property
+    @written()
+    def current(self) -> float:
+        """Mean current in A."""
+        return self.record.mean_current
 
     @property
     def complete(self) -> bool:

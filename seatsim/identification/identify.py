@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from seatsim.dampers.base import find_confidence
 from seatsim.identification.assessment import (
     Agreement,
     Assessment,
@@ -30,8 +32,9 @@ from seatsim.identification.search import Progress, ignore_progress, search_para
 from seatsim.identification.settings import IdentificationSettings, split_records
 from seatsim.recordings.bench_tables import BenchRecord, load_bench, unused_columns
 from seatsim.schema.arrays import Array
+from seatsim.schema.content import Joined, Unwritten, plain, written
 from seatsim.schema.errors import RunError
-from seatsim.schema.notebook import Pictures, draw, html_table
+from seatsim.schema.notebook import show_record
 
 DEFAULTS = IdentificationSettings()
 NO_BETTER_THAN_MEAN = 1.01
@@ -43,21 +46,23 @@ TIMED_RUNS = 3
 class Identification(NamedTuple):
     """The model found: its bench, the agreement on every record, and what the data say of its parameters.
 
+    It is the content of `fit.json`.
+
     origin: displacement in m that counts as x = 0. bic: Bayesian information criterion, with the effective number of
     samples. seconds: duration of the identification; ns_per_step: of a step of the simulation. warm, commanded: whether
     the influence of temperature, and the rates of the coil, were fitted. coverage: ranges of the fitted data.
     """
 
     model: str
-    bench: BenchModel
-    origin: float
-    assessments: list[Assessment]
-    information: Information
+    bench: Unwritten[BenchModel]
+    origin: Unwritten[float]
+    assessments: Unwritten[list[Assessment]]
+    information: Joined[Information]
     bic: float
     seconds: float
     ns_per_step: float
-    warm: bool
-    commanded: bool
+    warm: Unwritten[bool]
+    commanded: Unwritten[bool]
     coverage: VisitedRanges
     notes: list[str]
 
@@ -66,9 +71,57 @@ class Identification(NamedTuple):
         each = [assessment.agreement for assessment in self.assessments if assessment.part == part]
         return mean_agreement(each) if each else None
 
-    def plot(self, *names: str) -> Pictures:
-        """Return its picture, which a notebook shows."""
-        return draw(self, names)
+    @property
+    @written()
+    def confidence(self) -> str:
+        """How far the model is proven, a word of `seatsim.dampers.base.CONFIDENCE`."""
+        return find_confidence(type(self.bench.damper))
+
+    @property
+    @written()
+    def train(self) -> Agreement | None:
+        """Mean agreement over the fitted records."""
+        return self.mean("train")
+
+    @property
+    @written()
+    def test(self) -> Agreement | None:
+        """Mean agreement over the records that were held out, None where none were."""
+        return self.mean("test")
+
+    @property
+    @written(if_any=True)
+    def predicted(self) -> Agreement | None:
+        """Mean agreement over the records that were predicted only."""
+        return self.mean("predicted")
+
+    @property
+    @written()
+    def records(self) -> dict[str, Assessment]:
+        """The agreement on each record by its name, with its part, or a number, where names alone are ambiguous."""
+        names = Counter(each.record.name for each in self.assessments)
+        found: dict[str, Assessment] = {}
+        for each in self.assessments:
+            name = each.record.name if names[each.record.name] == 1 else f"{each.record.name} ({each.part})"
+            again = sum(other.record.name == each.record.name and other.part == each.part for other in found.values())
+            found[f"{name} {again + 1}" if again else name] = each
+        return found
+
+    def to_scenario(self) -> dict[str, object]:
+        """Return the damper and its coil as a scenario has them, with what else the bench needs under `bench`.
+
+        That is the displacement in m that counts as zero, and the growth of the offset in N/K.
+        """
+        bench = self.bench
+        damper: dict[str, object] = {"model": self.model, "parameters": plain(bench.damper)}
+        if self.warm:
+            damper["temperature_factors"] = plain(bench.factors)
+        end = max(float(each.record.current.max()) for each in self.assessments if each.part != "predicted")
+        return {
+            "damper": damper,
+            "actuator": {"rate": float(bench.rise), "rate_fall": float(bench.fall), "max_current": end or 1.0},
+            "bench": {"displacement_origin": self.origin, "offset_per_kelvin": float(bench.offset_per_kelvin)},
+        }
 
     def __repr__(self) -> str:
         """Name the model and its parameters."""
@@ -76,10 +129,7 @@ class Identification(NamedTuple):
         return f"<Identification of {self.model}: {values}>"
 
     def _repr_html_(self) -> str:
-        mean = self.mean("test") or self.mean("train")
-        fit = f", mean fit {mean.fit_percent:.1f} %" if mean else ""
-        rows = [(each.name, each.value, each.std, each.unit) for each in self.information.estimates]
-        return html_table(f"{self.model}{fit}", ("parameter", "value", "standard deviation", "unit"), rows)
+        return show_record(self, "model", "train", "test", "parameters", "notes")
 
 
 def identify(

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from concurrent.futures import Executor
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from seatsim.identification.coordinates import Component
 from seatsim.identification.problem import OFFSET_PER_KELVIN, PER_KELVIN, IdentificationProblem, compute_jacobian
 from seatsim.schema.arrays import Array
+from seatsim.schema.content import Form, written
 from seatsim.schema.fields import describe
 
 IDENTIFIED = 0.1
@@ -40,9 +41,15 @@ class ParameterEstimate(NamedTuple):
 class Information(NamedTuple):
     """Estimates, pairs of parameters whose correlation is above 0.95 in size, and the effective number of samples."""
 
-    estimates: list[ParameterEstimate]
+    estimates: Annotated[list[ParameterEstimate], Form(key="parameters")]
     correlated: list[tuple[str, str, float]]
-    samples: float
+    samples: Annotated[float, Form(key="effective_samples")]
+
+    @property
+    @written()
+    def not_identified(self) -> list[str]:
+        """Names of the parameters that the data do not identify."""
+        return [estimate.name for estimate in self.estimates if not estimate.identified]
 
     def bic(self, cost: float) -> float:
         """Return the Bayesian information criterion, `n ln(cost) + P ln(n)` with the effective samples n."""

@@ -45,6 +45,12 @@ class BenchmarkEntry(NamedTuple):
     confidence: str = ""
 
 
+class League(NamedTuple):
+    """Several models, the best first."""
+
+    league: list[BenchmarkEntry]
+
+
 def benchmark_models(
     records: Sequence[BenchRecord],
     models: Sequence[str],

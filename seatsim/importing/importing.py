@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from seatsim.importing.assembly import Assembled, assemble, assemble_road, doubt_runs
 from seatsim.importing.import_map import FILE, ImportMap, check_files, read_map, write_map
@@ -18,6 +18,7 @@ from seatsim.recordings.quality.damage import QUIET, noise_of
 from seatsim.recordings.quality.examination import examine, merge_issues
 from seatsim.recordings.quality.issue import Issue
 from seatsim.recordings.recording import CHANNELS, COMMANDS, load_recording
+from seatsim.schema.content import Form, Unwritten, written
 from seatsim.schema.errors import InputError
 from seatsim.schema.leftovers import temporary_folder
 from seatsim.schema.text import name_some
@@ -35,24 +36,38 @@ class Import(NamedTuple):
     """
 
     folder: Path
-    map: ImportMap
-    is_proposed: bool
-    written: list[Path]
+    map: Unwritten[ImportMap]
+    is_proposed: Annotated[bool, Form(key="proposed")]
+    paths: Unwritten[list[Path]]
     notes: list[str]
     doubts: list[Issue]
-    rate: float | None = None
+    rate: Annotated[float | None, Form(key="sample_rate")] = None
     runs: tuple[str, ...] = ()
 
-    def as_dict(self) -> dict[str, object]:
-        """Return the import as JSON has it."""
-        channels = {name: {key: value for key, value in entry._asdict().items() if value is not None}
-                    for name, entry in self.map.channels.items()}  # fmt: skip
-        return {
-            "folder": str(self.folder), "rig": self.map.rig, "sample_rate": self.rate, "runs": list(self.runs),
-            "channels": channels, "proposed": self.is_proposed, "align": self.map.align,
-            "written": [path.name for path in self.written], "notes": self.notes,
-            "doubts": [issue._asdict() for issue in self.doubts],
-        }  # fmt: skip
+    @property
+    @written()
+    def rig(self) -> str:
+        """What was recorded: a seat, a damper on its bench, or a road."""
+        return self.map.rig
+
+    @property
+    @written()
+    def channels(self) -> dict[str, dict[str, object]]:
+        """Where each channel was taken from, as `map.yaml` states it."""
+        entries = {name: entry._asdict().items() for name, entry in self.map.channels.items()}
+        return {name: {key: value for key, value in held if value is not None} for name, held in entries.items()}
+
+    @property
+    @written()
+    def align(self) -> dict[str, float]:
+        """How records of several clocks were brought together."""
+        return self.map.align
+
+    @property
+    @written("written")
+    def names(self) -> list[str]:
+        """Names of the files that were written."""
+        return [path.name for path in self.paths]
 
 
 def import_files(

@@ -40,11 +40,11 @@ def inspect_recording(folder: Path) -> Inspection:
         found = [
             issue for name, values in table.items() for issue in doubt_channel(name, values, rate, quantity_of(name))
         ]
-        found += [] if recording.nominal.exists() else doubt_relations(table, rate)
+        found += [] if recording.nominal_file.exists() else doubt_relations(table, rate)
         doubts += place_in_run(run, found)
     doubts = merge_issues(doubts, len(recording.runs))
     doubts += _offered(recording, channels, doubts)
-    if recording.nominal.exists():
+    if recording.nominal_file.exists():
         doubts += examine(recording).issues
     else:
         text = f"{recording.header.nominal} is missing; signs, units and delays are not compared with a simulation"

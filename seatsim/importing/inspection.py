@@ -21,6 +21,7 @@ from seatsim.recordings.quality.damage import noise_of
 from seatsim.recordings.quality.issue import Issue
 from seatsim.recordings.recording import BENCH_CHANNELS, SEAT_CHANNELS
 from seatsim.schema.arrays import Array
+from seatsim.schema.content import Joined, Unwritten, written
 from seatsim.schema.units import conversion
 
 BLOCKS = "▁▂▃▄▅▆▇█"
@@ -49,19 +50,26 @@ class ChannelSummary(NamedTuple):
     spark: str
 
 
+class GroupedChannel(NamedTuple):
+    """A channel, and the group of the file in which it stands."""
+
+    group: str
+    summary: Joined[ChannelSummary]
+
+
 class Inspection(NamedTuple):
     """The channels of a file or a recording, by group, and the doubts about them."""
 
     source: str
     format: str
-    channels: dict[str, list[ChannelSummary]]
+    channels: Unwritten[dict[str, list[ChannelSummary]]]
     doubts: list[Issue]
 
-    def as_dict(self) -> dict[str, object]:
-        """Return the inspection as JSON has it."""
-        channels = [{"group": group, **each._asdict()} for group, held in self.channels.items() for each in held]
-        doubts = [issue._asdict() for issue in self.doubts]
-        return {"source": self.source, "format": self.format, "channels": channels, "doubts": doubts}
+    @property
+    @written("channels")
+    def rows(self) -> list[GroupedChannel]:
+        """Every channel with its group."""
+        return [GroupedChannel(group, each) for group, held in self.channels.items() for each in held]
 
 
 def inspect_file(path: Path, layout: TextLayout | None = None) -> Inspection:

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from seatsim.metrics.comfort import EIGHT_HOURS, Dose, daily_exposure, daily_vdv, estimated_vdv
+from seatsim.schema.content import Form, written
 from seatsim.schema.errors import InputError, nearest
 
 HOUR, DAY = 3600.0, 24.0
@@ -70,6 +71,18 @@ class Exposure(NamedTuple):
     zone_vdv: str
     """The same by equation B.2, from the estimated VDV of the day."""
 
+    @property
+    @written()
+    def zone_a8_text(self) -> str:
+        """What ISO 2631-1 says of the zone by equation B.1."""
+        return ZONES[self.zone_a8]
+
+    @property
+    @written()
+    def zone_vdv_text(self) -> str:
+        """What ISO 2631-1 says of the zone by equation B.2."""
+        return ZONES[self.zone_vdv]
+
 
 def assess_exposure(doses: dict[str, Dose], hours: float) -> Exposure | None:
     """Return the exposure of `hours` a day to vibration like that of a record; None where no axis counts for health.
@@ -126,9 +139,9 @@ class Direction(NamedTuple):
 
     weighting: str
     """Frequency weighting, a name of `seatsim.metrics.weighting.WEIGHTINGS`."""
-    comfort: float
+    comfort: Annotated[float, Form(key="factor_comfort")]
     """Factor k of the vibration total value for comfort (8.2.2); m/rad for rotation."""
-    health: float | None = None
+    health: Annotated[float | None, Form(key="factor_health")] = None
     """Factor k with regard to health (7.2.3); None where the standard has none."""
     unit: str = "m/s^2"
 

@@ -15,8 +15,8 @@ from seatsim.report.headline import describe_run
 from seatsim.report.run_pictures import show_signals
 from seatsim.scenario.loading import load, read_scenario
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.content import plain
 from seatsim.schema.errors import InputError
-from seatsim.schema.files import plain
 from seatsim.simulation.result import Run
 from seatsim.simulation.runs import run_one
 

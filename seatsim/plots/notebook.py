@@ -1,7 +1,10 @@
-"""The pictures that a notebook shows of a value, by name."""
+"""The pictures of a value by name, as Python gives them and a notebook shows them."""
 
 from __future__ import annotations
 
+import base64
+import html
+import io
 from functools import singledispatch
 
 from matplotlib.figure import Figure
@@ -13,31 +16,60 @@ from seatsim.plots.diagnosis.answer import plot_gap, plot_gaps, plot_location, p
 from seatsim.plots.diagnosis.signals import plot_signals
 from seatsim.plots.runs.draw import plot_result
 from seatsim.recordings.gap import Gap
+from seatsim.schema.errors import InputError, nearest
 from seatsim.simulation.result import Result
+
+DPI = 72
+"""Dots per inch of a picture in a notebook."""
+
+
+class Pictures(dict[str, Figure]):
+    """Figures by name; a notebook shows them below each other."""
+
+    def _repr_html_(self) -> str:
+        return "".join(f'<img alt="{html.escape(name)}" src="{_embed(figure)}">' for name, figure in self.items())
+
+
+def plot(value: object, *names: str) -> Pictures:
+    """Return the pictures of a result, gap, diagnosis or identification by name: those that are named, or all.
+
+    Raises:
+        InputError: it has no picture of that name.
+    """
+    figures = _list_figures(value)
+    for name in names:
+        if name not in figures:
+            raise InputError(f"no picture is called '{name}'{nearest(name, figures)}; permitted: {', '.join(figures)}")
+    return Pictures({name: figures[name] for name in names or figures})
+
+
+def _embed(figure: Figure) -> str:
+    image = io.BytesIO()
+    figure.savefig(image, format="png", dpi=DPI)
+    return "data:image/png;base64," + base64.b64encode(image.getvalue()).decode("ascii")
 
 
 @singledispatch
-def list_figures(value: object) -> dict[str, Figure]:
-    """Return the figures of a result, gap, diagnosis or identification by name."""
-    raise TypeError(f"nothing is drawn of a {type(value).__name__}")
+def _list_figures(value: object) -> dict[str, Figure]:
+    raise InputError(f"nothing is drawn of a {type(value).__name__}; give a result, gap, diagnosis or identification")
 
 
-@list_figures.register
+@_list_figures.register
 def _(value: Result) -> dict[str, Figure]:
     return plot_result(value)
 
 
-@list_figures.register
+@_list_figures.register
 def _(value: Gap) -> dict[str, Figure]:
     return {"gap": plot_gap(value)}
 
 
-@list_figures.register
+@_list_figures.register
 def _(value: Identification) -> dict[str, Figure]:
     return {"loops": plot_predictions(value)}
 
 
-@list_figures.register
+@_list_figures.register
 def _(value: Diagnosis) -> dict[str, Figure]:
     signals = {f"signals_{k}": picture for k, picture in enumerate(plot_signals(value), start=1)}
     found = {"gaps": plot_gaps(value), "location": plot_location(value), "ranking": plot_ranking(value), **signals}

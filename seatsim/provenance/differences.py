@@ -5,12 +5,11 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from seatsim.provenance.invocation import digest
-from seatsim.provenance.manifest import MANIFEST
+from seatsim.provenance.statement import MANIFEST, Manifest, state_file
 from seatsim.schema.errors import InputError
 from seatsim.schema.guarded import expect, read_bytes
 
@@ -25,29 +24,26 @@ class Difference(NamedTuple):
     problem: str
 
 
-def compare_outputs(
-    manifest: Mapping[str, Any], folder: Path, found: Mapping[str, Any], again: Path
-) -> Iterator[Difference]:
+def compare_outputs(manifest: Manifest, folder: Path, found: Manifest, again: Path) -> Iterator[Difference]:
     """Yield files that are not as the manifest states, or not what the command writes now."""
-    made = {each["path"]: each["sha256"] for each in found["outputs"]}
     # Files that a sweep varies may be read by other processes; their hashes stand in its configuration.
-    if found.get("configuration") != manifest.get("configuration"):
+    if found.configuration != manifest.configuration:
         yield Difference(MANIFEST, "the configuration of the sweep, or a file that it names, is another one")
-    for each in manifest["outputs"]:
-        name, fields = each["path"], manifest["measured"].get(each["path"], [])
+    stated, made = {each.path: each for each in manifest.outputs}, {each.path for each in found.outputs}
+    for name, each in stated.items():
         if Path(name).is_absolute() or ".." in Path(name).parts:
             raise InputError(f"{folder / MANIFEST}: output {name!r} lies outside its folder")
         if not (folder / name).is_file():
             yield Difference(name, "is not there any more")
             continue
         content = read_bytes(folder / name, LARGEST, "a file that seatsim wrote")
-        if digest(content).sha256 != each["sha256"]:
+        if state_file(name, content).sha256 != each.sha256:
             yield Difference(name, "was changed after it was written")
         if name not in made:
             yield Difference(name, "is not written any more")
-        elif not _is_same(content, (again / name).read_bytes(), name, fields):
+        elif not _is_same(content, (again / name).read_bytes(), name, manifest.measured.get(name, ())):
             yield Difference(name, "differs")
-    for name in made.keys() - {each["path"] for each in manifest["outputs"]}:
+    for name in made - stated.keys():
         yield Difference(name, "was not written before")
 
 
@@ -62,7 +58,5 @@ def _is_same(old: bytes, new: bytes, name: str, measured: Sequence[str]) -> bool
 def _without(content: bytes, name: str, fields: Sequence[str]) -> object:
     """Return the content of a JSON or CSV file without some keys or columns."""
     text = content.decode("utf-8")
-    if name.endswith(".json"):
-        return {key: value for key, value in json.loads(text).items() if key not in fields}
-    rows = csv.DictReader(io.StringIO(text))
+    rows = [json.loads(text)] if name.endswith(".json") else csv.DictReader(io.StringIO(text))
     return [{key: value for key, value in row.items() if key not in fields} for row in rows]

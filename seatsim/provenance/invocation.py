@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
@@ -11,6 +10,7 @@ from contextvars import ContextVar
 from pathlib import Path
 from typing import NamedTuple
 
+from seatsim.provenance.statement import StatedFile, state_file
 from seatsim.schema.guarded import watch_reads
 from seatsim.schema.modules import used_files
 
@@ -29,20 +29,13 @@ REPEATABLE: Mapping[str, frozenset[str]] = {
 """Commands that can be run again, with the options on which their answer hangs: none writes, loads code or connects."""
 
 
-class FileDigest(NamedTuple):
-    """A file as it was read: SHA-256 of its content, and its size in bytes."""
-
-    sha256: str
-    size: int
-
-
 class Invocation(NamedTuple):
     """A command at work; `reads` grows with every file that it reads, by absolute path."""
 
     command: str
     arguments: tuple[str, ...]
     directory: Path
-    reads: dict[Path, FileDigest]
+    reads: dict[Path, StatedFile]
 
 
 _current: ContextVar[Invocation | None] = ContextVar("invocation", default=None)
@@ -87,13 +80,9 @@ def state_command(otherwise: str) -> str:
     return shlex.join(["seatsim", invocation.command, *operands, *options, *code])
 
 
-def digest(content: bytes) -> FileDigest:
-    """Return hash and size of a content."""
-    return FileDigest(hashlib.sha256(content).hexdigest(), len(content))
-
-
 def _keep(invocation: Invocation, path: Path, content: bytes) -> None:
-    invocation.reads[Path(os.path.abspath(invocation.directory / path))] = digest(content)
+    whole = os.path.abspath(invocation.directory / path)
+    invocation.reads[Path(whole)] = state_file(whole, content)
 
 
 def _join(name: str, value: object) -> str:

@@ -10,13 +10,13 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 from seatsim.provenance.crate import CRATE, describe_crate
-from seatsim.provenance.invocation import Invocation, current_invocation, digest, relate
+from seatsim.provenance.invocation import Invocation, current_invocation, relate
+from seatsim.provenance.statement import MANIFEST, Manifest, state_file
 from seatsim.provenance.versions import list_platform, list_versions
 from seatsim.scenario.loading import EXAMPLES
 from seatsim.schema.files import write_json, write_together
 from seatsim.schema.modules import used_files
 
-MANIFEST = "manifest.json"
 EXAMPLE = "example:"
 """Begins the path of an input that comes with seatsim."""
 Measured = Mapping[str, tuple[str, ...]]
@@ -41,40 +41,41 @@ def write_documented(
         if invocation is None:
             return paths
         outputs = {path.relative_to(part).as_posix(): path for path in paths}
-        content = {
-            "seed": seed, "versions": list_versions(), **describe_invocation(invocation, folder),
-            **describe_outputs(outputs, measured),
-        }  # fmt: skip
-        return [*paths, write_json(part / MANIFEST, content), write_json(part / CRATE, describe_crate(content))]
+        manifest = describe(invocation, folder, outputs, list_versions(), seed, measured or {})
+        return [*paths, write_json(part / MANIFEST, manifest), write_json(part / CRATE, describe_crate(manifest))]
 
     return write_together(folder, write_all)
 
 
-def describe_invocation(invocation: Invocation, folder: Path) -> dict[str, object]:
-    """Return what a manifest in a folder states of the command at work."""
+def describe(
+    invocation: Invocation,
+    folder: Path,
+    outputs: Mapping[str, Path],
+    versions: Mapping[str, str],
+    seed: int | None = None,
+    measured: Measured | None = None,
+) -> Manifest:
+    """Return the manifest that a folder gets of the command at work, which wrote `outputs`, paths by name."""
     place = Path(os.path.abspath(folder))
-    inputs = [
-        {"path": _name(path, place), "sha256": found.sha256, "bytes": found.size}
-        for path, found in sorted(invocation.reads.items())
-        # Drafts that were read back are gone; a sweep that is gone on with reads the manifest that this one replaces.
-        if path.is_file() and path != place / MANIFEST
-    ]
-    code = [
-        {"path": relate(path, place), "sha256": digest(path.read_bytes()).sha256} for path in used_files()
-    ]  # fmt: skip
-    return {
-        "platform": list_platform(), "command": invocation.command, "arguments": list(invocation.arguments),
-        "directory": relate(invocation.directory, place), "folder": place.name, "own_code": code, "inputs": inputs,
-    }  # fmt: skip
-
-
-def describe_outputs(outputs: Mapping[str, Path], measured: Measured | None = None) -> dict[str, object]:
-    """Return what a manifest states of the files that were written, by name."""
-    found = {name: digest(path.read_bytes()) for name, path in outputs.items()}
-    return {
-        "outputs": [{"path": name, "sha256": each.sha256, "bytes": each.size} for name, each in found.items()],
-        "measured": {name: list(fields) for name, fields in (measured or {}).items() if name in outputs},
-    }
+    return Manifest(
+        command=invocation.command,
+        arguments=invocation.arguments,
+        directory=relate(invocation.directory, place),
+        folder=place.name,
+        versions=versions,
+        platform=list_platform(),
+        own_code=[state_file(relate(path, place), path.read_bytes()) for path in used_files()],
+        inputs=[
+            stated._replace(path=_name(path, place))
+            for path, stated in sorted(invocation.reads.items())
+            # Drafts that were read back are gone; a sweep that is gone on with reads the manifest that this one
+            # replaces.
+            if path.is_file() and path != place / MANIFEST
+        ],
+        outputs=[state_file(name, path.read_bytes()) for name, path in outputs.items()],
+        measured={name: fields for name, fields in (measured or {}).items() if name in outputs},
+        seed=seed,
+    )
 
 
 def _name(path: Path, folder: Path) -> str:

@@ -10,28 +10,23 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple, cast
+from typing import NamedTuple
 
 from seatsim.provenance.crate import CRATE
 from seatsim.provenance.differences import LARGEST, Difference, compare_outputs
-from seatsim.provenance.invocation import REPEATABLE, digest
-from seatsim.provenance.manifest import EXAMPLE, MANIFEST
+from seatsim.provenance.invocation import REPEATABLE
+from seatsim.provenance.manifest import EXAMPLE
+from seatsim.provenance.statement import MANIFEST, Manifest, read_manifest, state_file
 from seatsim.provenance.versions import list_platform, list_versions
 from seatsim.scenario.loading import EXAMPLES
 from seatsim.schema.errors import InputError, RunError, nearest
-from seatsim.schema.guarded import expect, is_there, read_bytes, read_json
+from seatsim.schema.guarded import is_there, read_bytes
 from seatsim.schema.leftovers import temporary_folder
-from seatsim.schema.text import explain_bad_name
 
-FIELDS = {
-    "command": str, "arguments": list, "directory": str, "folder": str, "own_code": list, "versions": dict,
-    "platform": dict, "inputs": list, "outputs": list, "measured": dict,
-}  # fmt: skip
 ANSWER = "reproduce.json"
 """File in which the command `reproduce` keeps what came of it."""
-KIND = "manifest of a command of seatsim"
 
 
 class Reproduction(NamedTuple):
@@ -69,58 +64,22 @@ def reproduce(
     arguments, directory = _check_arguments(manifest, folder), _find_directory(manifest, folder)
     _check_files(manifest, folder, directory)
     changed = [*_compare_inputs(manifest, folder), *_compare_code(manifest, own_code)]
-    command, unnamed = manifest["command"], _list_unnamed(manifest, folder)
+    command, unnamed = manifest.command, _list_unnamed(manifest, folder)
     if changed:
         return Reproduction(command, False, [], changed, versions, unnamed)
     with temporary_folder() as place:
-        again = Path(place) / manifest["folder"]
-        tell(f"running {command} again{_count_runs(manifest)}")
+        again = Path(place) / manifest.folder
+        runs = f": {manifest.counts['runs']} runs" if manifest.counts else ""
+        tell(f"running {command} again{runs}")
         again = _run(command, arguments, own_code, directory, again)
         differences = list(compare_outputs(manifest, folder, read_manifest(again), again))
-    compared = [each["path"] for each in manifest["outputs"]]
+    compared = [each.path for each in manifest.outputs]
     return Reproduction(command, not differences, compared, differences, versions, unnamed)
 
 
-def read_manifest(folder: Path) -> dict[str, Any]:
-    """Return the manifest of a folder, its form checked.
-
-    Raises:
-        InputError: there is none, or it is not one that `seatsim` writes.
-    """
-    path = folder / MANIFEST
-    if within := sorted(each.parent.as_posix() for each in folder.glob(f"*/{MANIFEST}")) if not is_there(path) else []:
-        raise InputError(f"{path}: is not there; folders in it have one each: 'seatsim reproduce {within[0]}'")
-    content = cast("dict[str, Any]", read_json(path, KIND))
-    with expect(path, KIND):
-        if "identity" in content:
-            _check_sweep(content, folder)
-        for key, kind in FIELDS.items():
-            if not isinstance(content[key], kind):
-                raise TypeError(f"{key} is {content[key]!r}")
-        for each in [*content["inputs"], *content["outputs"], *content["own_code"]]:
-            if not (isinstance(each["path"], str) and isinstance(each["sha256"], str)):
-                raise TypeError(f"{each!r} is no path with its sha256")
-        if not all(isinstance(each, str) for each in content["arguments"]):
-            raise TypeError("an argument is no text")
-    if problem := explain_bad_name(content["folder"]):
-        raise InputError(f"{path}: folder {content['folder']!r} {problem}")
-    return content
-
-
-def _check_sweep(content: Mapping[str, Any], folder: Path) -> None:
-    """Refuse a sweep that was not made by a command, or of which runs are missing."""
-    if "command" not in content:
-        raise InputError(
-            f"{folder}: holds a sweep that no command of seatsim made; run 'seatsim sweep FILE --out OTHER' and compare"
-            f" the rows: seatsim.read_sweep({folder.as_posix()!r}).equals(seatsim.read_sweep('OTHER'))"
-        )
-    if left := content["counts"]["pending"]:
-        raise InputError(f"{folder}: {left} runs of this sweep are missing; go on with it with --resume first")
-
-
-def _check_arguments(manifest: Mapping[str, Any], folder: Path) -> list[str]:
+def _check_arguments(manifest: Manifest, folder: Path) -> list[str]:
     """Return the arguments, refused where one could do more than say what is computed."""
-    command, arguments = manifest["command"], manifest["arguments"]
+    command, arguments = manifest.command, manifest.arguments
     if command not in REPEATABLE:
         raise InputError(
             f"{folder / MANIFEST}: command {command!r} is not run again{nearest(command, REPEATABLE)}; permitted:"
@@ -136,22 +95,22 @@ def _check_arguments(manifest: Mapping[str, Any], folder: Path) -> list[str]:
     return list(arguments)
 
 
-def _check_files(manifest: Mapping[str, Any], folder: Path, directory: Path) -> None:
+def _check_files(manifest: Manifest, folder: Path, directory: Path) -> None:
     """Refuse a file or folder among the arguments that holds none of the inputs, whose hashes are known."""
-    inputs = [_resolve(each["path"], folder).resolve() for each in manifest["inputs"]]
-    for text in manifest["arguments"]:
+    inputs = [_resolve(each.path, folder).resolve() for each in manifest.inputs]
+    for text in manifest.arguments:
         for word in (text, text.partition("=")[2]):
             path = (directory / word).resolve()
             if word and is_there(path) and not any(each.is_relative_to(path) for each in inputs):
                 raise InputError(f"{folder / MANIFEST}: {word!r} is there, but none of the inputs that it states")
 
 
-def _find_directory(manifest: Mapping[str, Any], folder: Path) -> Path:
+def _find_directory(manifest: Manifest, folder: Path) -> Path:
     """Return the folder in which the command was started; that of the manifest where examples alone are read."""
-    directory = _resolve(manifest["directory"], folder)
+    directory = _resolve(manifest.directory, folder)
     if directory.is_dir():
         return directory
-    if all(each["path"].startswith(EXAMPLE) for each in manifest["inputs"]):
+    if all(each.path.startswith(EXAMPLE) for each in manifest.inputs):
         return folder
     raise InputError(f"{directory}: the folder in which the command was started is not there; move {folder} with it")
 
@@ -167,39 +126,39 @@ def _resolve(name: str, folder: Path) -> Path:
     return folder.absolute() / name
 
 
-def _compare_inputs(manifest: Mapping[str, Any], folder: Path) -> Iterator[Difference]:
-    for each in manifest["inputs"]:
-        path = _resolve(each["path"], folder)
-        content = read_bytes(path, LARGEST, f"the input {each['path']}")
-        if digest(content).sha256 != each["sha256"]:
-            yield Difference(each["path"], "this input has changed")
+def _compare_inputs(manifest: Manifest, folder: Path) -> Iterator[Difference]:
+    for each in manifest.inputs:
+        path = _resolve(each.path, folder)
+        content = read_bytes(path, LARGEST, f"the input {each.path}")
+        if state_file(each.path, content).sha256 != each.sha256:
+            yield Difference(each.path, "this input has changed")
 
 
-def _compare_code(manifest: Mapping[str, Any], own_code: Sequence[Path]) -> Iterator[Difference]:
+def _compare_code(manifest: Manifest, own_code: Sequence[Path]) -> Iterator[Difference]:
     """Yield the own code that has changed; what the user does not name himself is never run."""
     given = {path.name: path for path in own_code}
-    for each in manifest["own_code"]:
-        name = Path(each["path"]).name
+    for each in manifest.own_code:
+        name = Path(each.path).name
         if name not in given:
             raise InputError(
                 f"{name}: this code of somebody's own took part, and is not run unless you name it; if you trust it:"
                 f" --with {name}"
             )
-        if digest(read_bytes(given[name], LARGEST, "own code")).sha256 != each["sha256"]:
-            yield Difference(each["path"], "this code has changed")
+        if state_file(name, read_bytes(given[name], LARGEST, "own code")).sha256 != each.sha256:
+            yield Difference(each.path, "this code has changed")
 
 
-def _compare_versions(manifest: Mapping[str, Any]) -> Iterator[str]:
+def _compare_versions(manifest: Manifest) -> Iterator[str]:
     now = {**list_versions(), **list_platform()}
-    for name, was in {**manifest["versions"], **manifest["platform"]}.items():
+    for name, was in {**manifest.versions, **manifest.platform}.items():
         # The own code of a sweep is among its sources.
-        if name in now and was != now[name] and not (name == "sources" and manifest["own_code"]):
+        if name in now and was != now[name] and not (name == "sources" and manifest.own_code):
             yield f"{name} was {was} and is {now[name]}"
 
 
-def _list_unnamed(manifest: Mapping[str, Any], folder: Path) -> list[str]:
+def _list_unnamed(manifest: Manifest, folder: Path) -> list[str]:
     """Return the files of a folder, but for folders with a manifest of their own, of which nothing is known."""
-    known = {MANIFEST, CRATE, ANSWER, *(each["path"] for each in manifest["outputs"])}
+    known = {MANIFEST, CRATE, ANSWER, *(each.path for each in manifest.outputs)}
     others = [path.parent for path in folder.glob(f"*/**/{MANIFEST}")]
     found = [
         path.relative_to(folder).as_posix()
@@ -219,14 +178,11 @@ def _run(command: str, arguments: Sequence[str], own_code: Sequence[Path], direc
     words = [sys.executable, "-P", "-m", "seatsim", command, "--json", "--out", str(out), *code, *arguments]
     # What the process would leave behind in the middle goes with the folder.
     place = {"TMPDIR": str(out.parent)}
-    done = subprocess.run(words, cwd=directory, capture_output=True, stdin=subprocess.DEVNULL, check=False,
-                          env=os.environ | place)  # fmt: skip
+    done = subprocess.run(
+        words, cwd=directory, capture_output=True, stdin=subprocess.DEVNULL, check=False, env=os.environ | place
+    )
     for folder in (out, out / out.name):
         if (folder / MANIFEST).is_file():
             return folder
     said = done.stderr.decode(errors="replace").strip().splitlines()
     raise RunError(f"{command} cannot be run again: {said[-1].removeprefix('error: ') if said else 'no reason'}")
-
-
-def _count_runs(manifest: Mapping[str, Any]) -> str:
-    return f": {manifest['counts']['runs']} runs" if "identity" in manifest else ""

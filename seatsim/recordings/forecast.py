@@ -3,50 +3,39 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-from seatsim.recordings.gap import Gap, measure_gap
+from seatsim.recordings.gap import Gap, GapFigures, measure_gap
 from seatsim.recordings.prediction import Prediction, predict_gap
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.recording import Recording, load_recording
 from seatsim.recordings.replay import COMPARED, note_unused_log
 from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.content import IfAny, Unwritten
 
 
-class MeasuredGaps(NamedTuple):
-    """The gaps that were measured with the nominal and with the augmented scenario."""
+class MeasuredShrink(NamedTuple):
+    """The gaps that were measured with the nominal and with the augmented scenario, and by how much the gap shrinks."""
 
-    before: Gap
-    after: Gap
-
-    @property
-    def shrink(self) -> float:
-        """By how much the gap shrinks."""
-        return 1.0 - self.after.overall / self.before.overall
-
-    def channel(self, name: str) -> tuple[float, float]:
-        """Return the gaps of a channel before and after, NaN where it is not compared."""
-        return self.before.channels.get(name, math.nan), self.after.channels.get(name, math.nan)
+    before: float
+    after: float
+    shrink: float
+    channels: Unwritten[dict[str, float]]
+    """Gaps of the channels with the nominal scenario."""
 
 
-class Forecast(NamedTuple):
-    """What is to be expected on a recording, what was measured if outputs are recorded, and notes on its data."""
+@dataclass(frozen=True)
+class Forecast(Gap):
+    """The gap with the augmented scenario, without figures where no outputs are recorded, and what was to be expected.
 
-    predicted: Prediction
-    measured: MeasuredGaps | None
-    notes: tuple[str, ...]
+    It is the content of `gap.json` where a diagnosis is given.
+    """
 
-    def as_dict(self) -> dict[str, object]:
-        """Return the forecast as it stands in `gap.json`, whose measured figures are null where there is none."""
-        none: dict[str, object] = {"overall": None, "channels": {}}
-        content: dict[str, object] = {"predicted": self.predicted.as_dict()}
-        if self.measured is None:
-            return none | {"floor": none, "notes": list(self.notes)} | content
-        before, after = self.measured.before.overall, self.measured.after.overall
-        measured = {"before": before, "after": after, "shrink": self.measured.shrink}
-        return self.measured.after.as_dict() | content | {"measured": measured, "notes": list(self.notes)}
+    predicted: Prediction = field(kw_only=True)
+    measured: IfAny[MeasuredShrink | None] = None
 
 
 def forecast_gap(scenario: str | Path | Scenario, recording: str | Path | Recording, diagnosis: str | Path) -> Forecast:
@@ -61,11 +50,12 @@ def forecast_gap(scenario: str | Path | Scenario, recording: str | Path | Record
     examination = examine(recording)
     refuse(examination)
     predicted = predict_gap(scenario, recording, diagnosis)
-    measured = None
-    if has_outputs(recording):
-        measured = MeasuredGaps(measure_gap(recording.nominal, recording), measure_gap(scenario, recording))
-    notes = dict.fromkeys([*note_unused_log(scenario, recording), *examination.sentences])
-    return Forecast(predicted, measured, tuple(notes))
+    notes = tuple(dict.fromkeys([*note_unused_log(scenario, recording), *examination.sentences]))
+    if not has_outputs(recording):
+        return Forecast(math.nan, {}, GapFigures(math.nan, {}), notes, predicted=predicted)
+    before, after = measure_gap(recording.nominal, recording), measure_gap(scenario, recording)
+    measured = MeasuredShrink(before.overall, after.overall, 1.0 - after.overall / before.overall, before.channels)
+    return Forecast(after.overall, after.channels, after.floor, notes, measured, predicted=predicted)
 
 
 def has_outputs(recording: Recording) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import NamedTuple, TypedDict
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,14 +18,15 @@ from seatsim.scenario.loading import single
 from seatsim.scenario.plausibility import list_doubts
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
+from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
-from seatsim.schema.notebook import Pictures, draw, html_table
+from seatsim.schema.notebook import show_record
 
 Signals = Mapping[str, Array]
 
 
-class NoiseFloor(TypedDict):
-    """The gap that noise alone leaves, in standard deviations of the measured signals."""
+class GapFigures(NamedTuple):
+    """A gap in standard deviations of the measured signals, overall and by channel."""
 
     overall: float
     channels: dict[str, float]
@@ -33,29 +34,21 @@ class NoiseFloor(TypedDict):
 
 @dataclass(frozen=True)
 class Gap:
-    """The gap of a simulation, in standard deviations of the measured signals.
-
-    `channels` holds `rms(measured - simulated) / std(measured)` by channel, `overall` is `sqrt(mean of its squares)`;
-    `floor` holds the same two for the stated noise alone, `notes` a sentence for each warning about the recording.
-    """
+    """The gap of a simulation, in standard deviations of the measured signals: the content of `gap.json`."""
 
     overall: float
+    """`sqrt(mean of the squares of the channels)`."""
     channels: dict[str, float]
-    floor: NoiseFloor
+    """`rms(measured - simulated) / std(measured)` by channel."""
+    floor: GapFigures
+    """The same two for the stated noise alone."""
     notes: tuple[str, ...] = ()
-
-    def as_dict(self) -> dict[str, object]:
-        """Return the gap as it stands in `gap.json`."""
-        return {"overall": self.overall, "channels": self.channels, "floor": self.floor, "notes": list(self.notes)}
-
-    def plot(self, *names: str) -> Pictures:
-        """Return its picture, which a notebook shows."""
-        return draw(self, names)
+    """A sentence for each warning about the recording."""
 
     def _repr_html_(self) -> str:
-        rows = [(name, value, self.floor["channels"][name] or "not stated") for name, value in self.channels.items()]
-        overall = ("overall", self.overall, self.floor["overall"] or "not stated")
-        return html_table("Gap in standard deviations", ("channel", "gap", "noise floor"), [*rows, overall])
+        floor = {name: value or "not stated" for name, value in self.floor.channels.items()}
+        stated = {"overall": self.floor.overall or "not stated", "channels": floor}
+        return show_record(to_content(self) | {"floor": stated})
 
 
 class ReplayedPair(NamedTuple):
@@ -120,7 +113,7 @@ def compare_signals(recording: Recording, measured: Signals, simulated: Signals)
     spreads = {name: float(np.std(values)) for name, values in measured.items()}
     channels = {name: rms(measured[name] - simulated[name]) / spread for name, spread in spreads.items()}
     floors = {name: recording.channels[name].noise_rms / spread for name, spread in spreads.items()}
-    return Gap(_overall(channels), channels, NoiseFloor(overall=_overall(floors), channels=floors))
+    return Gap(_overall(channels), channels, GapFigures(_overall(floors), floors))
 
 
 def _load(scenario: str | Path | Scenario, recording: str | Path | Recording) -> tuple[Scenario, Recording]:

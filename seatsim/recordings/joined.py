@@ -7,8 +7,6 @@ from dataclasses import replace
 
 from seatsim.recordings.header import RunEntry
 from seatsim.recordings.recording import HEADER, ChannelEntry, Recording
-from seatsim.scenario.loading import single
-from seatsim.scenario.numbers import list_numbers
 from seatsim.schema.errors import InputError
 
 _CURRENTS = ("current_command", "command_voltage", "coil_current")
@@ -56,14 +54,15 @@ def _check_alike(first: Recording, second: Recording) -> None:
 
 
 def _check_nominals(first: Recording, second: Recording) -> None:
-    one, other = single(first.nominal), single(second.nominal)
+    one, other = first.nominal, second.nominal
     if type(one.damper.record) is not type(other.damper.record) or one.effects != other.effects:
-        raise InputError(f"{second.nominal}: has another damper model or other effects than {first.nominal}")
-    numbers, others = list_numbers(one), list_numbers(other)
+        raise InputError(f"{second.nominal_file}: has another damper model or other effects than {first.nominal_file}")
+    numbers, others = first.nominal_numbers, second.nominal_numbers
     for key in [*numbers, *others]:
         if numbers.get(key) != others.get(key):
-            text = f"{key}: {others.get(key)} is not permitted beside {numbers.get(key)} of {first.nominal}"
-            raise InputError(f"{second.nominal}, {text}; state under 'set' of its runs what was changed on purpose")
+            text = f"{key}: {others.get(key)} is not permitted beside {numbers.get(key)} of {first.nominal_file}"
+            advice = "state under 'set' of its runs what was changed on purpose"
+            raise InputError(f"{second.nominal_file}, {text}; {advice}")
 
 
 def _louder(one: ChannelEntry, other: ChannelEntry) -> ChannelEntry:

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from seatsim.schema.arrays import Array
+from seatsim.schema.content import Form, Unwritten, written
 from seatsim.schema.errors import InputError
 
 _Signals = Mapping[str, Array]
@@ -42,6 +45,14 @@ def band_widths(rate: float, edges: Array) -> Array:
     return np.asarray(np.diff(limits) / (0.5 * rate))
 
 
+class RunError(NamedTuple):
+    """What is left of the channels of a run: the error by band, and the RMS of all bands together in the unit."""
+
+    run: str
+    channels: dict[str, Array]
+    missed_rms: dict[str, float]
+
+
 @dataclass(frozen=True)
 class ModelError:
     """What a scenario leaves of each measured channel beyond stated noise, by frequency band.
@@ -62,30 +73,32 @@ class ModelError:
         runs: names, in the order of the rows of `error`.
     """
 
-    edges: Array
-    noise: dict[str, float]
-    error: dict[str, Array]
-    ratio: dict[str, Array]
-    pooled: dict[str, Array]
-    missed: dict[str, Array]
-    runs: tuple[str, ...]
+    edges: Unwritten[Array]
+    noise: Annotated[dict[str, float], Form(key="noise_rms")]
+    error: Unwritten[dict[str, Array]]
+    ratio: Annotated[dict[str, Array], Form(key="measured_over_simulated")]
+    pooled: Annotated[dict[str, Array], Form(key="channels")]
+    missed: Unwritten[dict[str, Array]]
+    runs: Unwritten[tuple[str, ...]]
 
-    def as_dict(self) -> dict[str, object]:
-        """Return the content of `model_error` in `diagnosis.json`."""
-        return {
-            "bands": [list(pair) for pair in zip(self.edges.tolist(), [*self.edges[1:].tolist(), None], strict=True)],
-            "channels": {name: values.tolist() for name, values in self.pooled.items()},
-            "measured_over_simulated": {name: values.tolist() for name, values in self.ratio.items()},
-            "by_run": [
-                {
-                    "run": run,
-                    "channels": {name: values[k].tolist() for name, values in self.error.items()},
-                    "missed_rms": {name: float(np.sqrt(values[k])) for name, values in self.missed.items()},
-                }
-                for k, run in enumerate(self.runs)
-            ],
-            "noise_rms": self.noise,
-        }
+    @property
+    @written()
+    def bands(self) -> list[tuple[float, float]]:
+        """Lower and upper edge of each band in Hz; the last one has no upper edge."""
+        return list(pairwise([*map(float, self.edges), np.inf]))
+
+    @property
+    @written()
+    def by_run(self) -> list[RunError]:
+        """What was left of each run."""
+        return [
+            RunError(
+                run,
+                {name: values[k] for name, values in self.error.items()},
+                {name: float(np.sqrt(values[k])) for name, values in self.missed.items()},
+            )
+            for k, run in enumerate(self.runs)
+        ]
 
     def predict_amplitude(self, channel: str, simulated: Array, rate: float) -> Array:
         """Return the mean square to be expected of a measured channel by band, in the first place that of all bands."""

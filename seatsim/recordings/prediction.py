@@ -29,6 +29,7 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import bounds, replace_fields
 from seatsim.schema.guarded import expect, read_json
+from seatsim.schema.notebook import show_record
 from seatsim.schema.registry import Record
 
 _EXCITATION_STD = 0.15
@@ -58,6 +59,13 @@ class StatedCause(NamedTuple):
     stds: dict[str, float]
 
 
+class Expected(NamedTuple):
+    """The gap to be expected of a channel with the nominal and with the augmented scenario."""
+
+    before: float
+    after: float
+
+
 @dataclass(frozen=True)
 class Prediction:
     """The gap to be expected before and after, overall and by channel, and the shrink with its 90 % interval."""
@@ -66,15 +74,10 @@ class Prediction:
     after: float
     shrink: float
     shrink_interval: tuple[float, float]
-    channels: dict[str, tuple[float, float]]
+    channels: dict[str, Expected]
 
-    def as_dict(self) -> dict[str, object]:
-        """Return the prediction as it stands under `predicted` in `gap.json`."""
-        channels = {name: {"before": before, "after": after} for name, (before, after) in self.channels.items()}
-        return {
-            "before": self.before, "after": self.after, "shrink": self.shrink,
-            "shrink_interval": list(self.shrink_interval), "channels": channels,
-        }  # fmt: skip
+    def _repr_html_(self) -> str:
+        return show_record(self)
 
 
 def predict_gap(
@@ -100,7 +103,7 @@ def predict_gap(
         error, causes = read_model_error(stated, str(diagnosis)), _read_causes(stated)
         _check_augmented(augmented, stated, causes, Path(diagnosis))
     after = _simulate(augmented, recording, names)
-    before = _simulate(single(recording.nominal), recording, names)
+    before = _simulate(recording.nominal, recording, names)
     shifted = [_simulate(other, recording, names) for other in _move_parameters(augmented, causes)]
     simulated = SimulatedRigs(recording.header.sample_rate, before, after, shifted)
     return _combine(error, simulated, str(recording.folder))
@@ -133,7 +136,7 @@ def _combine(error: ModelError, rigs: SimulatedRigs, place: str) -> Prediction:
     gaps, share = _roots(changes, floor, rest), np.exp(_QUANTILE * _RATIO_STD * (changes > 0.0))
     least = share * _left(_roots(changes, floor, rest * np.exp(2.0 * width) + _QUANTILE**2 * doubt))
     most = _left(_roots(changes, floor, rest * np.exp(-2.0 * width))) / share
-    channels = {name: _roots(part[0], part[1], _mean_square(part[3:])) for name, part in parts.items()}
+    channels = {name: Expected(*_roots(part[0], part[1], _mean_square(part[3:]))) for name, part in parts.items()}
     return Prediction(*gaps, 1.0 - _left(gaps), (1.0 - least, 1.0 - most), channels)
 
 

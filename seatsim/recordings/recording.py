@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from functools import lru_cache
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
@@ -87,9 +87,23 @@ class Recording:
     removed: Mapping[str, float] = field(default_factory=dict, kw_only=True)
 
     @property
-    def nominal(self) -> Path:
+    def nominal_file(self) -> Path:
         """Path of the scenario that the rig's owner assumes."""
         return self.folder / self.header.nominal
+
+    @cached_property
+    def nominal(self) -> Scenario:
+        """The scenario that the rig's owner assumes, read when it is first asked for.
+
+        Raises:
+            InputError: there is none, or there is an error in it.
+        """
+        return single(self.nominal_file)
+
+    @cached_property
+    def nominal_numbers(self) -> Mapping[str, float]:
+        """The numbers of that scenario by dotted key."""
+        return list_numbers(self.nominal)
 
     def table(self, run: str) -> dict[str, Array]:
         """Return the recorded channels of a run in SI units, shape (N,) each, not to be written into.
@@ -121,7 +135,7 @@ class Recording:
             if key not in own:
                 problem = f"sets '{key}', which scenario '{scenario.name}' does not have{nearest(key, own)}"
                 raise InputError(f"{self.folder / HEADER}, run {run}: {problem}")
-        return change_numbers(scenario, changes, _nominal_numbers(self.nominal, _stamp(self.nominal)))
+        return change_numbers(scenario, changes, self.nominal_numbers)
 
 
 def _stamp(path: Path) -> _Stamp:
@@ -139,16 +153,13 @@ def load_recording(folder: str | Path) -> Recording:
     Raises:
         InputError: a key or channel is unknown, missing or of the wrong unit.
     """
-    recording, source = _load(Path(folder), _stamp(Path(folder) / HEADER))
+    kept, source = _load(Path(folder), _stamp(Path(folder) / HEADER))
+    # A recording of its own, since its nominal scenario may have changed, or code that it names.
+    recording = replace(kept)
     # The nominal scenario is read here only where something refers to its keys.
     if recording.header.own_tolerances or any(run.set for run in recording.runs.values()):
-        check_against(single(recording.nominal), recording.header, recording.runs.values(), source)
+        check_against(recording.nominal, recording.header, recording.runs.values(), source)
     return recording
-
-
-@lru_cache(maxsize=_KEPT)
-def _nominal_numbers(path: Path, stamp: _Stamp) -> Mapping[str, float]:
-    return list_numbers(single(path))
 
 
 @lru_cache(maxsize=_KEPT)

@@ -54,7 +54,7 @@ def report_gap(name: str, found: Gap, pairs: Mapping[str, ReplayedPair], evidenc
 
 def say_gap(found: Gap) -> str:
     """Return in a sentence how far a simulation is from its recording."""
-    floor = found.floor["overall"]
+    floor = found.floor.overall
     worst = max(found.channels, key=lambda name: found.channels[name])
     size = f"The simulation is off by {format_percent(found.overall)} of the recorded signals' spread"
     if found.overall <= NEAR_NOISE * floor:
@@ -66,7 +66,7 @@ def say_gap(found: Gap) -> str:
 
 
 def _advise(found: Gap) -> list[str]:
-    if found.overall <= NEAR_NOISE * found.floor["overall"]:
+    if found.overall <= NEAR_NOISE * found.floor.overall:
         return ["Use the scenario as it is; test it on a recording of another road or driver."]
     return ["Find the cause with seatsim diagnose: it names the effect, and says how far the gap shrinks with it."]
 
@@ -85,9 +85,9 @@ def _show_pairs(channels: Sequence[str], pairs: Mapping[str, ReplayedPair]) -> S
 
 
 def _make_table(found: Gap) -> Table:
-    rows = [["overall", format_percent(found.overall), format_noise(found.floor["overall"])]]
+    rows = [["overall", format_percent(found.overall), format_noise(found.floor.overall)]]
     rows += [
-        [name.replace("_", " "), format_percent(value), format_noise(found.floor["channels"][name])]
+        [name.replace("_", " "), format_percent(value), format_noise(found.floor.channels[name])]
         for name, value in found.channels.items()
     ]
     caption = "Gap over all runs, in per cent of the standard deviation of the measured signal"

@@ -31,12 +31,12 @@ def show_gaps(diagnosis: Diagnosis) -> list[Block]:
     head = ["channel", *(HEADINGS[key] for key in keys), "shrinks by"]
     blocks: list[Block] = [Text(_describe_shrink(diagnosis)), Text(EXPLAINED)]
     blocks += [Table(f"Gaps on {held}", head, rows, 1, [0]), _draw_stages(diagnosis, keys)]
-    if len(diagnosis.by_run) > 1:
+    if len(diagnosis.gap.by_run) > 1:
         lines = [
             [each.run, *(_format_gap(key, getattr(each, key).overall) for key in keys), format_percent(each.shrink)]
-            for each in diagnosis.by_run
+            for each in diagnosis.gap.by_run
         ]
-        strong = [k for k, each in enumerate(diagnosis.by_run) if each.run in diagnosis.held_out]
+        strong = [k for k, each in enumerate(diagnosis.gap.by_run) if each.run in diagnosis.held_out]
         blocks.append(Table("Gaps of every run, overall; held out in bold", ["run", *head[1:]], lines, 1, strong))
     if diagnosis.parameters:
         blocks.append(_list_parameters(diagnosis.parameters))

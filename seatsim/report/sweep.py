@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from seatsim.report.blocks import Block, Report, Section, Table, Text
@@ -11,7 +10,6 @@ from seatsim.report.credibility.card import show_card
 from seatsim.report.credibility.evidence import collect_sweep
 from seatsim.report.formatting import format_number, format_percent
 from seatsim.report.method import describe_method
-from seatsim.report.rendering import write_html
 from seatsim.report.sweep_choices import advise_on_keys, choose_choice, tabulate_best
 from seatsim.report.sweep_names import COMFORT, TRAVEL, describe_column, format_level
 from seatsim.report.sweep_pictures import draw_pareto, tabulate_maps
@@ -35,17 +33,6 @@ METHOD = (
     " they assume that keys vary independently, as this design has them.",
     "Shares of runs above a limit have Wilson's interval of 95 %.",
 )
-
-
-def write_sweep_report(
-    rows: SweepRows, quantiles: pd.DataFrame, found: Sensitivities, exceeded: Sequence[Exceedance], path: Path
-) -> Path:
-    """Write the report of a sweep as one self-contained HTML file, whole or not at all; return its path.
-
-    Raises:
-        InputError: the folder or the file cannot be written.
-    """
-    return write_html(report_sweep(rows, quantiles, found, exceeded), path)
 
 
 def report_sweep(

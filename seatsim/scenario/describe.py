@@ -29,6 +29,12 @@ class Page(NamedTuple):
     keys: list[FieldSpecification]
 
 
+class Pages(NamedTuple):
+    """All names, or the one that was asked for."""
+
+    names: list[Page]
+
+
 def describe(name: str = "") -> str:
     """Return the list of all names, a line for each, or the page of one.
 

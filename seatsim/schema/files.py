@@ -8,17 +8,16 @@ from __future__ import annotations
 
 import gzip
 import json
-import math
 import os
 import re
 import secrets
 import shutil
 import socket
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Protocol, runtime_checkable
 
+from seatsim.schema.content import plain
 from seatsim.schema.errors import InputError, OutputError
 from seatsim.schema.guarded import check_links_on, check_no_link
 from seatsim.schema.leftovers import noted, uncut
@@ -27,13 +26,6 @@ _HOST = re.sub(r"[^0-9A-Za-z]", "_", socket.gethostname())[:40]
 _PART = re.compile(r"\..+\.(\w+)-(\d+)-[0-9a-f]{8}\.part(\..*)?")
 _ABANDONED = 86_400.0
 """Seconds without a change after which what a process of another machine writes counts as left."""
-
-
-@runtime_checkable
-class _Named(Protocol):
-    """A record, as `typing.NamedTuple` makes them."""
-
-    def _asdict(self) -> Mapping[str, object]: ...
 
 
 def write_whole(path: Path, write: Callable[[Path], object], lasting: bool = False) -> Path:
@@ -244,18 +236,3 @@ def write_bytes(path: Path, content: bytes) -> Path:
 def write_json(path: Path, value: object, lasting: bool = False) -> Path:
     """Write JSON whole; numbers that JSON has no word for become null. `lasting` as for `write_whole`."""
     return write_text(path, json.dumps(plain(value), indent=2, allow_nan=False) + "\n", lasting)
-
-
-def plain(value: object) -> object:
-    """Return nested values as JSON has them; a record becomes an object."""
-    import numpy as np  # takes longer to load than the commands that check their options
-
-    if isinstance(value, _Named):
-        return plain(value._asdict())
-    if isinstance(value, dict):
-        return {str(key): plain(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [plain(item) for item in value]
-    if isinstance(value, float | np.floating):
-        return float(value) if math.isfinite(value) else None
-    return value.item() if isinstance(value, np.generic) else value

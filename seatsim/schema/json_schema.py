@@ -1,21 +1,38 @@
-"""JSON Schema of records, for editors that complete and check YAML files."""
+"""JSON Schema of records: of files that are read, for editors that complete and check them, and of what is written."""
 
 from __future__ import annotations
 
+import ast
+import inspect
+import textwrap
 import types
 from collections.abc import Callable, Iterable, Mapping
-from typing import Annotated, Union, cast, get_args, get_origin, get_type_hints
+from itertools import pairwise
+from pathlib import Path
+from typing import Annotated, Any, Literal, Union, cast, get_args, get_origin, get_type_hints
 
+import numpy as np
 from pydantic import TypeAdapter
 
+from seatsim.schema.content import find_record, is_record, list_written, plain
 from seatsim.schema.fields import default_values, field_names
-from seatsim.schema.files import plain
 from seatsim.schema.registry import find, names
 
 Schema = dict[str, object]
 ANYTHING: Schema = {}
 TEXT: Schema = {"type": "string"}
 BY_KEY: Schema = {"type": "object"}
+WORDS: Mapping[object, Schema] = {
+    # What is no finite number is written as null.
+    float: {"type": ["number", "null"]},
+    int: {"type": "integer"},
+    bool: {"type": "boolean"},
+    str: {"type": "string"},
+    Path: {"type": "string"},
+    types.NoneType: {"type": "null"},
+    np.ndarray: {"type": "array"},
+}
+"""Types of single values, and of arrays of whatever shape."""
 
 
 def head_schema(title: str, schema: Schema) -> Schema:
@@ -95,3 +112,70 @@ def _has_record(hint: object) -> bool:
         return True
     nested = get_origin(hint) in (Annotated, Union, types.UnionType)
     return nested and any(_has_record(part) for part in get_args(hint))
+
+
+def answer_schema(hint: Any) -> Schema:
+    """Return the schema of what `seatsim.schema.content.plain` makes of a record, or of one of several kinds."""
+    known: Schema = {}
+    schema = _written_record_schema(hint, known) if is_record(hint) else _written_schema(hint, known)
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema, "$defs": known}
+
+
+def _written_schema(hint: Any, known: Schema) -> Schema:
+    """Return the schema of what is written of values of a type; those of records are added to the `known` ones."""
+    origin, parts = get_origin(hint), get_args(hint)
+    found: Schema = {}
+    if hint in WORDS or origin in WORDS:
+        found = WORDS[hint if hint in WORDS else origin]
+    elif is_record(hint):
+        if hint.__name__ not in known:
+            known[hint.__name__] = found  # a record may hold its like
+            known[hint.__name__] = _written_record_schema(hint, known)
+        found = {"$ref": f"#/$defs/{hint.__name__}"}
+    elif origin is Annotated:
+        found = _written_schema(parts[0], known)
+    elif origin is Literal:
+        found = {"enum": list(parts)}
+    elif origin in (Union, types.UnionType):
+        found = {"anyOf": [_written_schema(part, known) for part in parts]}
+    elif isinstance(origin, type) and issubclass(origin, Mapping):
+        found = {"type": "object", "additionalProperties": _written_schema(parts[1], known)}
+    elif origin is tuple and ... not in parts:
+        items = [_written_schema(part, known) for part in parts]
+        found = {"type": "array", "prefixItems": items, "minItems": len(items), "maxItems": len(items)}
+    elif isinstance(origin, type) and issubclass(origin, Iterable):
+        found = {"type": "array", "items": _written_schema(parts[0], known)}
+    return found
+
+
+def _written_record_schema(record: type, known: Schema) -> Schema:
+    """Return the schema of a record: what it is by its docstring, and its fields by the texts below them."""
+    texts = _field_texts(record)
+    properties: Schema = {}
+    required: list[str] = []
+    for field in list_written(record):
+        joined = find_record(field.hint) if field.form.joined else None
+        if joined:
+            inner = _written_record_schema(joined, known)
+            properties |= cast("Schema", inner["properties"])
+            required += cast("list[str]", inner["required"])
+        elif not field.form.joined:
+            # What is joined and no record is given by a plug-in, and known by what it does alone.
+            told = {"description": texts[field.name]} if field.name in texts else {}
+            properties[field.key] = _written_schema(field.hint, known) | told
+            required += [] if field.form.if_any else [field.key]
+    about = inspect.getdoc(record)
+    return {"type": "object", "description": about, "properties": properties, "required": required}
+
+
+def _field_texts(record: type) -> Mapping[str, str]:
+    """Return what the source of a class says of its fields, below them, and of its properties."""
+    texts: dict[str, str] = {}
+    for kind in (each for each in reversed(record.__mro__) if is_record(each)):
+        body = cast("ast.ClassDef", ast.parse(textwrap.dedent(inspect.getsource(kind))).body[0]).body
+        texts |= {each.name: ast.get_docstring(each) or "" for each in body if isinstance(each, ast.FunctionDef)}
+        for field, below in pairwise(body):
+            match field, below:
+                case ast.AnnAssign(target=ast.Name(id=name)), ast.Expr(value=ast.Constant(value=str(text))):
+                    texts[name] = inspect.cleandoc(text)
+    return texts

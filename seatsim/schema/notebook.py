@@ -1,56 +1,52 @@
-"""How a notebook shows a value: its figures as a table, and pictures of it."""
+"""How a notebook shows a record: what it is as JSON, in tables."""
 
 from __future__ import annotations
 
-import base64
 import html
-import io
-from collections.abc import Iterable, Sequence
-from importlib import import_module
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.content import to_content
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-DPI = 72
-"""Dots per inch of a picture in a notebook."""
+SHOWN = 12
+"""Rows of a list of records that are shown: the first ones are those that matter."""
 
 
-class Pictures(dict[str, "Figure"]):
-    """Figures by name; a notebook shows them below each other."""
+def show_record(record: object, *keys: str) -> str:
+    """Return in HTML what a record is as JSON, or some keys of it: its values, then each list of records as a table.
 
-    def _repr_html_(self) -> str:
-        return "".join(f'<img alt="{html.escape(name)}" src="{_encode(figure)}">' for name, figure in self.items())
-
-
-def draw(value: object, names: Sequence[str]) -> Pictures:
-    """Return the pictures of a result, gap, diagnosis or identification; those that are named, or all.
-
-    Raises:
-        InputError: it has no picture of that name.
+    Keys of what lies deeper have dots; of the records in a list their single values are shown. Numbers are rounded to
+    four digits.
     """
-    # The package that draws stands above what it shows, and takes its time to load: it is imported when asked for.
-    figures: dict[str, Figure] = import_module("seatsim.plots.notebook").list_figures(value)
-    for name in names:
-        if name not in figures:
-            raise InputError(f"no picture is called '{name}'{nearest(name, figures)}; permitted: {', '.join(figures)}")
-    return Pictures({name: figures[name] for name in names or figures})
+    content = to_content(record)
+    values = dict(_flatten({key: content[key] for key in keys or content}))
+    lists = {key: value for key, value in values.items() if isinstance(value, list)}
+    tables = {key: rows for key, value in lists.items() if (rows := [row for row in value if isinstance(row, dict)])}
+    single = [{"": key, " ": value} for key, value in values.items() if key not in tables]
+    return "".join([_show_table("", single), *(_show_table(key, rows) for key, rows in tables.items())])
 
 
-def html_table(heading: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """Return a table under a heading; numbers are rounded to four digits."""
-    body = [_html_row("th", columns), *(_html_row("td", row) for row in rows)]
-    return f"<p>{html.escape(heading)}</p><table>{''.join(body)}</table>"
+def _flatten(content: Mapping[str, object], above: str = "") -> Iterator[tuple[str, object]]:
+    for key, value in content.items():
+        if isinstance(value, dict):
+            yield from _flatten(value, f"{above}{key}.")
+        else:
+            yield f"{above}{key}", value
 
 
-def _html_row(tag: str, cells: Sequence[object]) -> str:
-    shown = [f"{cell:.4g}" if isinstance(cell, float) else str(cell) for cell in cells]
-    return f"<tr>{''.join(f'<{tag}>{html.escape(cell)}</{tag}>' for cell in shown)}</tr>"
+def _show_table(name: str, rows: Sequence[Mapping[str, object]]) -> str:
+    shown = [{key: cell for key, cell in row.items() if not isinstance(cell, dict)} for row in rows]
+    columns = list(dict.fromkeys(key for row in shown for key in row))
+    lines = [_row("th", columns)] if name else []
+    lines += [_row("td", (row.get(key) for key in columns)) for row in shown[: SHOWN if name else None]]
+    heading = f"<p>{html.escape(name)}</p>" if name else ""
+    return f"{heading}<table>{''.join(lines)}</table>"
 
 
-def _encode(figure: Figure) -> str:
-    image = io.BytesIO()
-    figure.savefig(image, format="png", dpi=DPI)
-    return "data:image/png;base64," + base64.b64encode(image.getvalue()).decode("ascii")
+def _row(tag: str, cells: Iterable[object]) -> str:
+    return f"<tr>{''.join(f'<{tag}>{html.escape(_say(cell))}</{tag}>' for cell in cells)}</tr>"
+
+
+def _say(value: object) -> str:
+    if isinstance(value, list):
+        return ", ".join(map(_say, value))
+    return "" if value is None else f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -13,9 +13,10 @@ from numpy.typing import ArrayLike
 from seatsim.metrics.arrays import ratio
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
+from seatsim.schema.content import Joined
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import find
-from seatsim.simulation.result import Run
+from seatsim.simulation.result import Result, Run, RunName
 
 
 class PerformanceBounds(Protocol):
@@ -38,9 +39,6 @@ class PerformanceBounds(Protocol):
 
     def best(self, travel: ArrayLike) -> Array:
         """Return the acceleration in m/s^2 that an ideal damper reaches; NaN where the travel is too short."""
-
-    def as_dict(self) -> dict[str, list[float]]:
-        """Return the curves by name, for a file."""
 
 
 class BoundsMethod(Protocol):
@@ -71,6 +69,29 @@ def measure_distance(run: Run, bounds: PerformanceBounds) -> Distance:
     travel = run.metrics["suspension_displacement_rms"].value
     bound, best = float(bounds.bound(travel)), float(bounds.best(travel))
     return Distance(acceleration, travel, bound, best, ratio(acceleration, bound) - 1, ratio(acceleration, best) - 1)
+
+
+class RunStanding(NamedTuple):
+    """A run, and how far it is from the performance bounds of its rig."""
+
+    run: Joined[RunName]
+    distance: Joined[Distance]
+
+
+class RigBounds(NamedTuple):
+    """The performance bounds of a rig, and where each of its runs stands."""
+
+    bounds: Joined[PerformanceBounds]
+    runs: list[RunStanding]
+
+
+def place_runs(result: Result) -> list[RigBounds]:
+    """Return the bounds of every rig that has some, with its runs."""
+    found = []
+    for rig, bounds in result.brackets.items():
+        runs = [run for run in result.runs if run.scenario.rig == rig]
+        found.append(RigBounds(bounds, [RunStanding(run.name, measure_distance(run, bounds)) for run in runs]))
+    return found
 
 
 def explain_runs_below_bound(runs: Sequence[Run], found: Mapping[str, PerformanceBounds]) -> list[str]:

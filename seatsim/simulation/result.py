@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from seatsim.kernel import channels
 from seatsim.metrics.table import Metric
 from seatsim.scenario.scenario import Scenario
-from seatsim.schema.notebook import Pictures, draw
+from seatsim.schema.content import Unwritten, written
 from seatsim.simulation.simulate import History
 
 if TYPE_CHECKING:
@@ -53,6 +53,13 @@ class Channel(np.ndarray[tuple[int, ...], np.dtype[np.float64]]):
         return part
 
 
+class RunName(NamedTuple):
+    """The name of a run's scenario, and what sets the run apart from the others of it: variant, swept values."""
+
+    scenario: str
+    label: Mapping[str, object]
+
+
 @dataclass(frozen=True)
 class Run:
     """One simulated run: its scenario, its history, its metrics by name, and what its user is warned of.
@@ -61,11 +68,23 @@ class Run:
     (`seatsim.simulation.validity.list_reasons`).
     """
 
-    scenario: Scenario
-    history: History
+    scenario: Unwritten[Scenario]
+    history: Unwritten[History]
     metrics: dict[str, Metric]
     warnings: tuple[str, ...] = ()
     unverified: tuple[str, ...] = ()
+
+    @property
+    @written(joined=True)
+    def name(self) -> RunName:
+        """The name of its scenario, and what sets it apart."""
+        return RunName(self.scenario.name, self.scenario.label)
+
+    @property
+    @written()
+    def notes(self) -> Sequence[str]:
+        """What its history is to be read with."""
+        return self.history.notes
 
     def __repr__(self) -> str:
         """Say which scenario was run, and the figures that the table on the terminal has first."""
@@ -81,12 +100,12 @@ class Run:
 class Result:
     """The runs of one or several scenarios, performance bounds by rig (`Scenario.rig`) where asked for, and failures.
 
-    `failures` says why other runs of the scenarios were not carried to their end.
+    `failures` says why other runs of the scenarios were not carried to their end. It is the content of `summary.json`.
     """
 
     runs: Sequence[Run]
-    brackets: Mapping[str, Any] = field(default_factory=dict)
-    failures: Sequence[str] = ()
+    brackets: Unwritten[Mapping[str, Any]] = field(default_factory=dict)
+    failures: Unwritten[Sequence[str]] = ()
 
     def __repr__(self) -> str:
         """Show the first runs."""
@@ -117,10 +136,6 @@ class Result:
         import pandas as pd
 
         return pd.DataFrame(self.rows)
-
-    def plot(self, *names: str) -> Pictures:
-        """Return its pictures, or those that are named, such as `pareto`; a notebook shows them."""
-        return draw(self, names)
 
     def _repr_html_(self) -> str:
         return str(self.table.to_html(index=False, float_format="{:.4g}".format))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
@@ -21,7 +21,9 @@ from seatsim.metrics.exposure import DIRECTIONS, POINTS, Direction, Exposure, as
 from seatsim.metrics.weighting import weight
 from seatsim.recordings.quality.channels import say_implausible
 from seatsim.schema.arrays import Array
+from seatsim.schema.content import Form, Joined, Unwritten, written
 from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.notebook import show_record
 from seatsim.schema.units import STANDARD_GRAVITY
 from seatsim.standards.acceleration_records import AccelerationRecord, choose_axes, load_accelerations
 
@@ -40,14 +42,15 @@ class AxisAssessment(NamedTuple):
     """Figures of one axis, weighted but without multiplying factors."""
 
     column: str
-    direction: Direction
-    dose: Dose
-    shocks: tuple[str, ...]
+    direction: Joined[Direction]
+    dose: Joined[Dose]
+    shocks: Annotated[tuple[str, ...], Form(key="reasons")]
     """Why the basic method does not suffice (`seatsim.metrics.comfort.find_shocks`)."""
-    removed: float
+    removed: Annotated[float, Form(key="removed_mean")]
     """Mean that was taken out of the record before weighting, in its unit: an offset of the sensor, or gravity."""
 
     @property
+    @written()
     def method(self) -> str:
         """`basic` (a_w) or `additional` (MTVV and VDV beside it; ISO 2631-1:1997, 6.3)."""
         return "additional" if self.shocks else "basic"
@@ -61,21 +64,33 @@ class MotionSickness(NamedTuple):
 
 
 class Comfort(NamedTuple):
-    """What ISO 2631-1 says of a record, or of chosen blocks of its runs taken together."""
+    """What ISO 2631-1 says of a record, or of chosen blocks of its runs taken together: the content of `comfort.json`.
 
-    source: str
+    `duration` is in s, `sample_rate` in Hz.
+    """
+
+    source: Unwritten[str]
     runs: tuple[str, ...]
     duration: float
     sample_rate: float
     axes: Mapping[str, AxisAssessment]
     totals: Mapping[str, float]
     """Vibration total value a_v in m/s^2 by point of contact, and `overall` (ISO 2631-1:1997, 8.2.2 and 8.2.3)."""
-    exposure: Exposure | None
+    exposure: Joined[Exposure | None]
     """None where neither x, y nor z on the seat was recorded."""
     seat: Mapping[str, SeatTransmission]
     """SEAT factors by axis, where seat and floor were recorded."""
     motion_sickness: MotionSickness | None
     notes: tuple[str, ...]
+
+    @property
+    @written("source")
+    def name(self) -> str:
+        """Name of the file, or of the recording's folder."""
+        return Path(self.source).name
+
+    def _repr_html_(self) -> str:
+        return show_record(self)
 
 
 def comfort(

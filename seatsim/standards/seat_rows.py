@@ -8,10 +8,12 @@ belongs to is that of the 2000 edition; the 2020 edition adds a damping test for
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from seatsim.excitations.iso7096 import SpectralClass
 from seatsim.metrics.comfort import SPREAD, Dose, seat_transmission
+from seatsim.schema.content import Form, written
+from seatsim.schema.notebook import show_record
 from seatsim.schema.text import join_names
 
 ACCEPTANCE, DAMPING = "ISO 7096:2000, 5.5.1 and 6 (recalled)", "ISO 7096:2000, 5.5.2 and 6 (recalled)"
@@ -76,13 +78,13 @@ class SeatRow(NamedTuple):
     """One line of the table: a class with one driver, simulated or measured."""
 
     run: str
-    spectral_class: SpectralClass
+    spectral_class: Annotated[SpectralClass, Form(key="class")]
     person: str
     mass: float
     """Mass of the test person in kg, of which 73.6 % rest on the seat."""
     seat: float
     limit: float
-    passed: bool
+    passed: Annotated[bool, Form(key="pass")]
     clause: str
     platform: float
     """Mean weighted acceleration of the floor in m/s^2."""
@@ -91,6 +93,12 @@ class SeatRow(NamedTuple):
     within_spread: bool | None
     end_stop_hits: int | None
     """Excursions beyond the end stops; None where none are stated. No acceptance value of ISO 7096 depends on it."""
+
+    @property
+    @written()
+    def mass_on_seat(self) -> float:
+        """Mass that rests on the seat in kg."""
+        return SEATED_SHARE * self.mass
 
 
 class DampingTest(NamedTuple):
@@ -110,11 +118,11 @@ class DampingRow(NamedTuple):
     """One line of the table: the damping test of a seat, against the limit of a class."""
 
     run: str
-    spectral_class: SpectralClass
+    spectral_class: Annotated[SpectralClass, Form(key="class")]
     transmissibility: float
     resonance: float
     limit: float
-    passed: bool
+    passed: Annotated[bool, Form(key="pass")]
     clause: str
 
 
@@ -125,7 +133,7 @@ class SeatFailure(NamedTuple):
     """
 
     run: str
-    spectral_class: SpectralClass | None
+    spectral_class: Annotated[SpectralClass | None, Form(key="class")]
     person: str | None
     reason: str
 
@@ -133,14 +141,32 @@ class SeatFailure(NamedTuple):
 class SeatTest(NamedTuple):
     """Result of a test: lines by class and driver, lines of the damping test, the damping tests behind them by run.
 
-    A line of which a run is among the `failures` stands on its other runs, and is not passed.
+    It is the content of `seat_test.json`. A line of which a run is among the `failures` stands on its other runs, and
+    is not passed.
     """
 
-    rows: tuple[SeatRow, ...]
-    damping_rows: tuple[DampingRow, ...]
-    damping: dict[str, DampingTest]
+    rows: Annotated[tuple[SeatRow, ...], Form(key="classes")]
+    damping_rows: Annotated[tuple[DampingRow, ...], Form(key="damping")]
+    damping: Annotated[dict[str, DampingTest], Form(key="damping_tests")]
     notes: tuple[str, ...]
-    failures: tuple[SeatFailure, ...] = ()
+    failures: Annotated[tuple[SeatFailure, ...], Form(key="failed")] = ()
+    source: str = ""
+    """Name of the scenario, or of the recording's folder."""
+
+    @property
+    @written()
+    def standard(self) -> str:
+        """What the test is by."""
+        return "ISO 7096:2000 with ISO 10326-1:2016"
+
+    @property
+    @written()
+    def recalled(self) -> str:
+        """Which figures were not read in the standard."""
+        return RECALLED
+
+    def _repr_html_(self) -> str:
+        return show_record(self, "source", "standard", "classes", "damping", "notes")
 
 
 def state_row(

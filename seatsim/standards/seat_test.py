@@ -14,7 +14,7 @@ from seatsim.metrics.spectra import power_spectral_density
 from seatsim.metrics.weighting import frequency_response, weight
 from seatsim.recordings.recording import HEADER, Recording, load_recording
 from seatsim.rig.plant import Plant
-from seatsim.scenario.loading import load, single
+from seatsim.scenario.loading import load
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.text import join_names
@@ -53,8 +53,10 @@ def seat_test(
     """
     chosen = find_classes(classes) or tuple(LIMITS)
     if (Path(source) / HEADER).exists():
-        return assess_recorded_seat(load_recording(source), chosen)
-    return assess_simulated_seats(load(source, settings), chosen, progress)
+        found = assess_recorded_seat(load_recording(source), chosen)
+    else:
+        found = assess_simulated_seats(load(source, settings), chosen, progress)
+    return found._replace(source=Path(source).name)
 
 
 def find_classes(names: Sequence[str]) -> tuple[SpectralClass, ...]:
@@ -95,7 +97,7 @@ def assess_recorded_seat(recording: Recording, classes: Sequence[SpectralClass])
     Raises:
         InputError: the recording lacks a channel, or no run of it is of a class.
     """
-    nominal = single(recording.nominal)
+    nominal = recording.nominal
     plant = None if nominal.plant is None else augment_plant(nominal.effects, nominal.plant)
     if plant is None or any(name not in recording.channels for name in NEEDED):
         raise InputError(f"{recording.folder / HEADER}: the test of a seat needs the channels {join_names(NEEDED)}")

@@ -7,9 +7,10 @@ import time
 from collections.abc import Callable, Mapping
 from contextlib import closing
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 from seatsim.scenario.numbers import find_unit
+from seatsim.schema.content import Form, Unwritten
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.leftovers import uncut
 from seatsim.sweeps.definition import SweepDefinition, read_definition
@@ -64,13 +65,13 @@ def read_share(text: str) -> Share:
     return Share(int(number), int(of))
 
 
-class _SweepResult(NamedTuple):
+class SweepResult(NamedTuple):
     """A sweep after a command: its folder, its identity, runs by state, and reasons of the first runs that failed."""
 
-    folder: Path
+    folder: Unwritten[Path]
     identity: str
     counts: Mapping[str, int]
-    failures: list[str]
+    failures: Annotated[list[str], Form(key="failed")]
 
 
 class _PreparedSweep(NamedTuple):
@@ -102,7 +103,7 @@ def execute(
     keep_histories: bool = False,
     share: Share | None = None,
     progress: Progress = lambda done, runs: None,
-) -> _SweepResult:
+) -> SweepResult:
     """Carry out a sweep, or what is missing of it with `resume`, and keep its rows in a folder.
 
     On an interrupt what has ended is kept. A `share` is a part of the sweep that other commands complete.
@@ -135,7 +136,7 @@ def execute(
                 counts = count_states((state for _, state, _ in found), plan.runs)
                 write_manifest(folder, identity, definition.limits, counts)
     failures = [f"run {run}: {reason}" for run, state, reason in found if state == FAILED]
-    return _SweepResult(folder, identity.digest, counts, failures)
+    return SweepResult(folder, identity.digest, counts, failures)
 
 
 def sweep(file: str | Path, out: str | Path, jobs: int | None = None, resume: bool = False) -> pd.DataFrame:

@@ -15,7 +15,8 @@ from pathlib import Path
 from typing import Any, cast
 
 from seatsim.provenance.invocation import current_invocation
-from seatsim.provenance.manifest import describe_invocation, describe_outputs
+from seatsim.provenance.manifest import describe
+from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import make_folder, write_json
 from seatsim.schema.guarded import check_no_link, expect, open_in_place, read_json
@@ -83,15 +84,10 @@ def write_manifest(folder: Path, identity: Identity, limits: Mapping[str, float]
     """Write the manifest of a sweep, with what `seatsim reproduce` needs where a command is at work."""
     invocation = current_invocation()
     parts = {path.relative_to(folder).as_posix(): path for path in sorted(folder.glob("runs/part-*.parquet"))}
-    stated = (
-        {}
-        if invocation is None
-        else {
-            **describe_invocation(invocation, folder),
-            **describe_outputs({} if counts["pending"] else parts),
-        }
-    )
+    outputs = {} if counts["pending"] else parts
+    stated = {} if invocation is None else to_content(describe(invocation, folder, outputs, identity.versions))
     content = {
+        **stated,
         "identity": identity.digest,
         "versions": identity.versions,
         "seed": identity.seed,
@@ -99,7 +95,6 @@ def write_manifest(folder: Path, identity: Identity, limits: Mapping[str, float]
         "limits": limits,
         "configuration": identity.configuration,
         "design": identity.design,
-        **stated,
     }
     return write_json(folder / NAME, content, lasting=True)
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from seatsim.provenance.versions import list_versions
-from seatsim.schema.files import plain
+from seatsim.schema.content import plain
 from seatsim.schema.modules import used_files
 from seatsim.sweeps.definition import SweepDefinition
 from seatsim.sweeps.plan import Plan

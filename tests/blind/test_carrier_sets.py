@@ -18,7 +18,8 @@ from seatsim.blind.score.score import score_verdicts
 from seatsim.blind.score.tables import tables
 from seatsim.blind.score.verdicts import Verdict, is_right, is_wrong_name
 from seatsim.blind.sealed import unseal
-from seatsim.cli.outputs.power import make_power_table
+from seatsim.cli.outputs.diagnosis_tables import make_power_table
+from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
 
 from .carriers import bench_carrier, write_carrier
@@ -117,16 +118,16 @@ def test_power_looks_at_smaller_sizes_where_a_recording_allows_no_larger_one(tmp
     found = measure_power(quick_coil, tmp_path / "power", find_from_finest, ["coil.lag"], 1, processes=1)[0]
     assert found.trials[SIZES[2]] == [Trial(None, False)]
     assert [trial.found for trial in found.trials[SIZES[0]]] == [False]
-    assert (found.smallest, found.as_dict()["found"]) == (None, {"0.06": [False], "0.1": [False], "0.16": []})
+    assert (found.smallest, found.found) == (None, {"0.06": [False], "0.1": [False], "0.16": []})
 
 
 def test_power_of_what_is_never_found_has_no_size() -> None:
     power = Power("sensor.gain", None, {SIZES[-1]: [Trial({"error": 0.1}, False)]})
-    assert power.parameters() == {}
-    assert power.as_dict()["found"] == {"0.4": [False]}
-    assert Power(
-        "sensor.gain", 0.4, {0.4: [Trial({"error": -0.2}, True), Trial({"error": 0.4}, True)]}
-    ).parameters() == {"error": pytest.approx(0.3)}
+    assert power.parameters == {}
+    assert power.found == {"0.4": [False]}
+    assert Power("sensor.gain", 0.4, {0.4: [Trial({"error": -0.2}, True), Trial({"error": 0.4}, True)]}).parameters == {
+        "error": pytest.approx(0.3)
+    }
 
 
 CARRIED: dict[str, Any] = {
@@ -162,5 +163,5 @@ def test_a_score_counts_wrong_names_and_sizes_and_leaves_the_untouched_out() -> 
     assert (found.wrong_names.right, found.wrong_names.total) == (1, 2)
     assert found.untouched == {"driver.mass": 1}
     assert [(s.parameter, s.true, s.found) for s in found.found_sizes] == [("time", 0.01, 0.012)]
-    assert json.dumps(found.as_dict())
+    assert json.dumps(to_content(found))
     assert "sizes of effects that were found" in [str(table.title) for table in tables(found)]

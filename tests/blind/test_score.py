@@ -27,6 +27,7 @@ from seatsim.blind.score.shrink import score_shrink
 from seatsim.blind.score.tables import tables
 from seatsim.blind.score.verdicts import Verdict, is_right, read_verdict
 from seatsim.blind.sealed import Sealed, new_key, seal
+from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
 
 from .carriers import bench_carrier, write_yaml
@@ -74,9 +75,9 @@ def test_figures_of_a_small_set() -> None:
     assert (found.top1, found.block, found.block_coarse) == (Rate(1, 2), Rate(3, 5), Rate(4, 5))
     assert (found.two_recall, found.two_precision, found.detected) == (Rate(1, 2), Rate(1, 1), Rate(4, 5))
     assert found.confusion["damper.remanence"] == {"damper.remanence": 1, "missing": 1}
-    assert [failure["case"] for failure in found.failures] == ["a", "c", "f"]
+    assert [failure.case for failure in found.failures] == ["a", "c", "f"]
     assert found.brier == pytest.approx((0.9**2 + 1.0) / (5 * 24))
-    json.dumps(found.as_dict())
+    json.dumps(to_content(found))
     console = Console(record=True, width=200, file=io.StringIO())
     for table in tables(found):
         console.print(table)
@@ -117,12 +118,12 @@ def test_classes_and_failures_of_cases() -> None:
     assert missing_channels(ONE) == ["all channels"]
     wrong = Verdict("known", ("coil", "damper", "floor"), ("a", "b", "c", "d"), selected=("a",), groups=(("a", "b"),))
     failure = describe_failure(ScoredCase("case-0001", ONE, wrong))
-    assert (failure["named"], failure["where"], failure["groups"]) == (
+    assert (failure.named, failure.where, failure.groups) == (
         ["a", "b", "c"],
         ["coil", "damper"],
         [["a", "b"]],
     )
-    assert (failure["effects"], failure["verdict"], failure["missing"]) == (["damper.remanence"], "known", [])
+    assert (failure.effects, failure.verdict, failure.missing) == (["damper.remanence"], "known", [])
 
 
 def test_shrink_claimed_and_reached(tmp_path: Path) -> None:

@@ -92,7 +92,7 @@ def test_a_faultless_rig_of_any_kind_replays_to_within_its_noise(
     write_folder(tmp_path / "case", encode_recording(experiment, shown, np.random.default_rng(0), range(3)))
     gap = seatsim.gap(tmp_path / "case" / "nominal.yaml", tmp_path / "case")
     # what is left beside noise is the floor's, between its rows and through its own accelerometer
-    assert gap.overall < 1.5 * gap.floor["overall"] + 0.005
+    assert gap.overall < 1.5 * gap.floor.overall + 0.005
 
 
 @pytest.mark.parametrize("rate", draw_varied.SAMPLE_RATES)

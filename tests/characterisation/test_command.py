@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
 from seatsim.characterisation.summary import characterise
 from seatsim.cli.app import app
-from seatsim.cli.outputs.characterisation import make_tables
+from seatsim.cli.outputs.damper_tables import make_characterisation_tables
 from seatsim.plots.bench.characterisation import plot_characterisation
 from seatsim.schema.errors import InputError
 
@@ -138,7 +138,7 @@ def cases(record, sine):
 
 def test_pictures_are_labelled_and_inside_their_page(record, sine):
     for found in cases(record, sine):
-        assert make_tables(found)
+        assert make_characterisation_tables(found)
         for name, figure in plot_characterisation(found).items():
             canvas = FigureCanvasAgg(figure)
             canvas.draw()

@@ -1,19 +1,27 @@
 """`--json`: one object on standard output and nothing else there, of the form that is documented."""
 
 import json
+import math
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from pydantic import TypeAdapter
 from typer.main import get_command
 
+from seatsim.blind.score.cases import Rate
+from seatsim.blind.score.score import score_verdicts
+from seatsim.blind.score.shrink import ShrinkScore
+from seatsim.blind.score.verdicts import Verdict
 from seatsim.cli.app import app
-from seatsim.cli.outputs.answers import ANSWERS
-from seatsim.cli.outputs.diagnosis import encode_diagnosis
-from seatsim.schema.files import plain
+from seatsim.cli.outputs.answers import list_answers
+from seatsim.recordings.forecast import Forecast, MeasuredShrink
+from seatsim.recordings.gap import GapFigures
+from seatsim.recordings.prediction import Expected, Prediction
+from seatsim.schema.content import to_content
 
+from ..answers import check_answer
 from ..report.diagnoses import CASES
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -30,25 +38,22 @@ COMMANDS = {
     "check": ("check", RECORDING),
     "synthesise": ("synthesise", "h-infinity"),
     "new": ("new", "damper"),
+    "comfort": ("comfort", RECORDING),
+    "import": ("import", RECORDING / "run-1.csv.gz", "--nominal", RECORDING / "nominal.yaml"),
+    "inspect": ("inspect", RECORDING),
     "export": ("export", "quickstart", "--to", "c", "--what", "damper"),
 }
-
-
-def check(name, text):
-    """Return the object, which is of the documented form."""
-    found = json.loads(text)
-    TypeAdapter(ANSWERS[name]).validate_python(found)
-    return found
 
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_standard_output_is_one_object(name, seatsim_command, undrawn, tmp_path, monkeypatch):
     monkeypatch.setattr("seatsim.plots.bench.characterisation.plot_characterisation", lambda found: {})
-    place = [] if name in ("describe", "check") else [tmp_path / "my_own"] if name == "new" else ["--out", tmp_path]
+    own = {"describe": [], "check": [], "inspect": [], "new": [tmp_path / "my_own"]}
+    place = own.get(name, ["--out", tmp_path])
     place = ["--out", tmp_path / "damper.c"] if name == "export" else place
     status, out, _ = seatsim_command(*COMMANDS[name], *place, "--json")
     assert status == 0
-    found = check(name, out)
+    found = check_answer(name, out)
     assert all(Path(file).is_file() for file in found["files"])
     assert bool(found["files"]) == bool(place)
 
@@ -56,13 +61,29 @@ def test_standard_output_is_one_object(name, seatsim_command, undrawn, tmp_path,
 def test_an_identification_and_a_league(seatsim_command, tmp_path):
     data = (BENCH / "sine_4mm_4Hz.csv", "--json", "--fix", "v_ref=0.01", "--out", tmp_path)
     status, out, _ = seatsim_command("identify", *data, "--model", "bingham")
-    assert status == 0 and check("identify", out)["confidence"] == "published"
+    assert status == 0 and check_answer("identify", out)["confidence"] == "published"
 
 
 @pytest.mark.parametrize("case", CASES)
 def test_a_diagnosis_is_of_the_documented_form(case):
-    content = plain(encode_diagnosis(CASES[case]()))
-    TypeAdapter(ANSWERS["diagnose"]).validate_python({**content, "files": []})
+    check_answer("diagnose", json.dumps({**to_content(CASES[case]()), "files": []}))
+
+
+@pytest.mark.parametrize("measured", [None, MeasuredShrink(0.4, 0.1, 0.75, {"damper_force": 0.4})])
+def test_a_forecast_is_of_the_documented_form(measured):
+    predicted = Prediction(0.4, 0.1, 0.75, (0.7, 0.8), {"damper_force": Expected(0.4, 0.1)})
+    found = Forecast(math.nan, {}, GapFigures(math.nan, {}), ("a note",), measured, predicted=predicted)
+    content = check_answer("gap", json.dumps({**to_content(found), "files": []}))
+    assert ("measured" in content) == (measured is not None) and content["overall"] is None
+
+
+def test_a_score_is_of_the_documented_form():
+    wrong = Verdict("known", ("sensor",), ("sensor.gain",), {"sensor.gain": 0.9})
+    once = ShrinkScore(0.1, 0.0, Rate(1, 1), [("a", 0.5, 0.6, True)])
+    found = score_verdicts(
+        {"a": {"kind": "none", "effects": [], "blocks": []}}, {"a": wrong}, replace(once, predicted=once)
+    )
+    check_answer("blind-score", json.dumps({**to_content(found), "files": []}))
 
 
 @pytest.mark.parametrize(
@@ -75,14 +96,14 @@ def test_a_diagnosis_is_of_the_documented_form(case):
 )  # fmt: skip
 def test_a_wrong_use_of_the_command_line_is_an_object_too(seatsim_command, arguments, said):
     status, out, err = seatsim_command(*arguments, "--json")
-    assert status == 2 and said in check("error", out)["error"] and said in err
+    assert status == 2 and said in check_answer("error", out)["error"] and said in err
     assert seatsim_command(*arguments)[1] == ""
 
 
 def test_an_error_is_an_object_too(seatsim_command):
     status, out, err = seatsim_command("run", "quickstrat", "--json")
     assert status == 2
-    assert "did you mean 'quickstart'" in check("error", out)["error"] and "did you mean" in err
+    assert "did you mean 'quickstart'" in check_answer("error", out)["error"] and "did you mean" in err
 
 
 def test_the_next_command_prints_again(seatsim_command):
@@ -95,7 +116,7 @@ def test_every_command_has_it_and_a_documented_form():
     blind = {f"blind-{name}": command for name, command in commands.pop("blind").commands.items()}
     for name, command in {**commands, **blind}.items():
         assert any("--json" in option.opts for option in command.params), name
-        assert name == "schema" or name in ANSWERS, name
+        assert name == "schema" or name in list_answers(), name
 
 
 def test_the_schemas_in_the_documentation_are_up_to_date():

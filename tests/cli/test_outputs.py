@@ -1,36 +1,41 @@
 """What the commands write of runs, and how they shorten names and numbers."""
 
+import csv
 import inspect
-import json
 import math
+from dataclasses import dataclass
 from types import SimpleNamespace
 
 import numpy as np
+import pandas as pd
 import pytest
 from matplotlib.figure import Figure
-from ruamel.yaml import YAML
 
 from seatsim.cli.commands.recordings import diagnose as diagnose_command
-from seatsim.cli.outputs import characterisation as output
-from seatsim.cli.outputs import diagnosis
-from seatsim.cli.outputs import runs as outputs
+from seatsim.cli.outputs import damper_tables
+from seatsim.cli.outputs.measured import write_diagnosis
+from seatsim.cli.outputs.simulated import Brackets
+from seatsim.cli.outputs.writing import write_outputs
 from seatsim.diagnosis.diagnose import BUDGET
 from seatsim.metrics.table import Metric
+from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
-from seatsim.schema.files import plain
+from seatsim.schema.yaml_source import Source
+from seatsim.simulation.performance_bounds import place_runs
+from seatsim.simulation.result import Result, Run
 
 
+@dataclass(frozen=True)
 class Bounds:
     """A bound that falls by 20 m/s^2 a metre, and a best run 0.1 m/s^2 above it."""
+
+    travel: float = 0.01
 
     def bound(self, travel):
         return 1.0 - 20.0 * travel
 
     def best(self, travel):
         return self.bound(travel) + 0.1
-
-    def as_dict(self):
-        return {"travel_m": [0.01]}
 
 
 def run(name, rig, acceleration=0.88, travel=0.01):
@@ -39,14 +44,13 @@ def run(name, rig, acceleration=0.88, travel=0.01):
         "suspension_displacement_rms": Metric(travel, "m", "travel"),
     }
     scenario = SimpleNamespace(name=name, rig=rig, label={"variant": "soft"})
-    history = SimpleNamespace(notes=["n"])
-    return SimpleNamespace(scenario=scenario, metrics=metrics, warnings=("hot",), unverified=(), history=history)
+    return Run(scenario, SimpleNamespace(notes=["n"]), metrics, ("hot",))
 
 
 def test_each_rig_has_its_bounds_and_the_distances_of_its_runs():
-    result = SimpleNamespace(runs=[run("a", "one"), run("b", "two"), run("c", "one", 1.2)], brackets={"one": Bounds()})
-    [found] = outputs._encode_brackets(result)
-    assert found["travel_m"] == [0.01]
+    result = Result([run("a", "one"), run("b", "two"), run("c", "one", 1.2)], {"one": Bounds()})
+    [found] = to_content(Brackets(place_runs(result)))["rigs"]
+    assert found["travel"] == 0.01
     assert [each["scenario"] for each in found["runs"]] == ["a", "c"]
     first = found["runs"][0]
     assert list(first) == [
@@ -57,10 +61,14 @@ def test_each_rig_has_its_bounds_and_the_distances_of_its_runs():
 
 
 def test_a_summary_states_metrics_with_unit_and_meaning():
-    found = json.loads(json.dumps(plain(outputs._encode_summary(run("a", "one")))))
-    assert list(found) == ["scenario", "label", "metrics", "warnings", "unverified", "notes"]
-    assert found["metrics"]["suspension_displacement_rms"] == {"value": 0.01, "unit": "m", "meaning": "travel"}
-    assert found["warnings"] == ["hot"] and found["notes"] == ["n"]
+    [found] = to_content(Result([run("a", "one")]))["runs"]
+    assert found == {
+        "scenario": "a", "label": {"variant": "soft"}, "warnings": ["hot"], "unverified": [], "notes": ["n"],
+        "metrics": {
+            "driver_acceleration_weighted": {"value": 0.88, "unit": "m/s^2", "meaning": "weighted"},
+            "suspension_displacement_rms": {"value": 0.01, "unit": "m", "meaning": "travel"},
+        },
+    }  # fmt: skip
 
 
 def test_equal_figures_give_equal_files(tmp_path):
@@ -69,10 +77,18 @@ def test_equal_figures_give_equal_files(tmp_path):
         drawn.add_subplot().plot(np.arange(3))
         return drawn
 
-    paths = outputs.write_pictures({"a": figure(), "b": figure()}, tmp_path)
+    paths = write_outputs(tmp_path, {"a.png": figure(), "b.png": figure()})
     assert [path.name for path in paths] == ["a.png", "b.png"]
     first, second = (path.read_bytes() for path in paths)
     assert first == second and b"matplotlib" not in first
+
+
+@pytest.mark.parametrize("rows", [list, pd.DataFrame])
+def test_rows_become_cells_that_no_spreadsheet_computes(tmp_path, rows):
+    content = rows([{"name": "=1+1", "n": 3, "x": math.nan}, {"name": "b", "n": 4, "x": 0.25}])
+    [path] = write_outputs(tmp_path, {"t.csv": content})
+    cells = list(csv.reader(path.read_text().splitlines()))
+    assert cells == [["name", "n", "x"], ["'=1+1", "3", ""], ["b", "4", "0.25"]]
 
 
 @pytest.mark.parametrize(
@@ -80,26 +96,24 @@ def test_equal_figures_give_equal_files(tmp_path):
     [(1.25, ".1f", "1.2"), (-0.04, ".1f", "0.0"), (-0.06, ".1f", "-0.1"), (math.nan, ".0f", "-"), (math.inf, "g", "-")],
 )
 def test_numbers_of_a_table(value, form, text):
-    assert output._format_number(value, form) == text
+    assert damper_tables._format_number(value, form) == text
 
 
 def test_names_of_a_table_are_short():
-    assert output._shorten("sixteen letters!") == "sixteen letters!"
-    assert output._shorten("a name of a long record") == "a name …g record"
-    assert output._list_names(["a", "b", "c"]) == "a, b, c"
-    assert output._list_names(list("abcd")) == "a and 3 more"
+    assert damper_tables._shorten("sixteen letters!") == "sixteen letters!"
+    assert damper_tables._shorten("a name of a long record") == "a name …g record"
 
 
 @pytest.mark.parametrize("wrong", ["augmented", "experiment"])
 def test_a_scenario_that_cannot_be_loaded_again_is_not_written(tmp_path, kept_seat_file, wrong):
-    good, bad = (YAML(typ="safe").load(kept_seat_file.read_text()) for _ in range(2))
-    bad["plant"]["driver_mass"] = -4.8
+    good, bad = (dict(Source(kept_seat_file).data) for _ in range(2))
+    bad["plant"] = {**bad["plant"], "driver_mass": -4.8}
     contents = {"augmented": good, "experiment": good} | {wrong: bad}
     found = SimpleNamespace(
         augmented=contents["augmented"], experiment=SimpleNamespace(scenario=contents["experiment"])
     )
     with pytest.raises(InputError, match=r"driver_mass: -4\.8 is not permitted"):
-        diagnosis.write_diagnosis(found, tmp_path / "out")
+        write_diagnosis(found, tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
 

@@ -8,7 +8,7 @@ import pytest
 from ruamel.yaml import YAML
 
 import seatsim
-from seatsim.cli.outputs.diagnosis import encode_diagnosis, make_tables
+from seatsim.cli.outputs.diagnosis_tables import make_tables
 from seatsim.diagnosis.alternatives import (
     are_forms_due,
     compare_damper_forms,
@@ -24,6 +24,7 @@ from seatsim.recordings.gap import measure_gap
 from seatsim.recordings.recording import BENCH_CHANNELS, SEAT_CHANNELS
 from seatsim.report.diagnosis import write_report
 from seatsim.scenario.loading import single
+from seatsim.schema.content import to_content
 from seatsim.simulation.inputs import BenchInputs, SeatInputs
 from seatsim.simulation.respond import respond
 
@@ -110,7 +111,7 @@ def wrong_form(tmp_path_factory):
 
 
 def test_the_true_form_is_named_first_in_the_place_of_a_wrong_one(wrong_form):
-    nominal = single(wrong_form.recording.nominal)
+    nominal = wrong_form.recording.nominal
     found = compare_damper_forms(try_only(wrong_form, "biviscous", "bouc_wen"), nominal, nominal, "run-2")
     assert [form.model for form in found] == ["bouc_wen", "biviscous"]
     best = found[0]
@@ -131,7 +132,7 @@ def test_no_form_helps_a_right_one(tmp_path):
 def test_a_form_is_fitted_beside_the_effects_found_and_instead_of_them(tmp_path):
     effects = GasSpring(preload=80.0), Gain("damper_force", 0.2)
     problem = record(tmp_path / "rig", effects=effects)
-    nominal = single(problem.recording.nominal)
+    nominal = problem.recording.nominal
     augmented = dataclasses.replace(nominal, effects=effects)
     found = compare_damper_forms(try_only(problem, "bouc_wen"), nominal, augmented, "run-2")
     instead, beside = sorted(found, key=lambda form: form.beside)
@@ -145,7 +146,7 @@ def test_a_form_is_fitted_beside_the_effects_found_and_instead_of_them(tmp_path)
 def test_a_seat_is_simulated_with_the_form_that_fits_its_damper_force_best(tmp_path):
     outputs = "damper_force", "suspension_displacement", "frame_acceleration"
     problem = record(tmp_path / "rig", rig="seat", outputs=outputs)
-    nominal, true = single(problem.recording.nominal), single(tmp_path / "rig" / "true.yaml")
+    nominal, true = problem.recording.nominal, single(tmp_path / "rig" / "true.yaml")
     (form,) = compare_damper_forms(try_only(problem, "biviscous", "bouc_wen"), nominal, nominal, "run-2")
     before, best = (measure_gap(rig, problem.recording, ["run-2"]).overall for rig in (nominal, true))
     assert form.model == "bouc_wen"
@@ -202,7 +203,7 @@ def test_a_diagnosis_lists_the_forms_that_were_tried(wrong_form, tmp_path):
     settings = wrong_form.settings._replace(damper_forms=forms)
     found = seatsim.diagnose(wrong_form.recording, OTHERS, settings=settings, damper_forms=True)
     best = found.alternatives[0]
-    content = encode_diagnosis(found)
+    content = to_content(found)
     assert best.model == "bouc_wen" and best.shrink > 0.5
     assert content["alternatives"][0]["shrink"] == best.shrink
     assert set(content["alternatives"][0]["parameters"]) == set(TRUE)

@@ -47,7 +47,7 @@ def test_the_quarter_car_maps_onto_the_seat_with_its_resonance(real_rigs, record
     recording = seatsim.load_recording(tmp_path)
     assert recording.runs["repeat-3"].repeat_of == "repeat-2"
     found = seatsim.gap(recording.nominal, recording)
-    assert 5.0 * found.floor["overall"] < found.overall < 0.4
+    assert 5.0 * found.floor.overall < found.overall < 0.4
 
 
 @pytest.mark.slow

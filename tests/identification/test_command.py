@@ -10,7 +10,7 @@ from ruamel.yaml import YAML
 from typer.testing import CliRunner
 
 from seatsim.cli.app import app
-from seatsim.cli.outputs.identification import encode_identification, write_identification
+from seatsim.cli.outputs.measured import write_identification
 from seatsim.identification import model_benchmark as module
 from seatsim.identification.assessment import PredictionData
 from seatsim.identification.identify import identify
@@ -18,6 +18,7 @@ from seatsim.identification.model_benchmark import BenchmarkEntry, benchmark_mod
 from seatsim.identification.search import ignore_progress
 from seatsim.identification.settings import IdentificationSettings as Settings
 from seatsim.plots.bench.identification import plot_predictions
+from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
 
 from .benches import BINGHAM, made, sines, write
@@ -108,15 +109,15 @@ def test_factors_of_temperature_and_laws_are_written_and_read_again(tmp_path):
 
 
 def test_without_held_out_records_there_is_no_test(bench):
-    fit = encode_identification(identify(bench, "bingham"))
+    fit = to_content(identify(bench, "bingham"))
     assert fit["test"] is None and "predicted" not in fit
 
 
 def test_a_fraction_is_held_out_of_every_record(bench):
-    fit = encode_identification(identify(bench, "bingham", Settings(test_fraction=0.3)))
+    fit = to_content(identify(bench, "bingham", Settings(test_fraction=0.3)))
     parts = [record["part"] for record in fit["records"].values()]
     assert parts == ["train"] * 3 + ["test"] * 3 and "sine_4Hz, 0.5 A (test)" in fit["records"]
-    assert fit["test"].fit_percent > 97.0
+    assert fit["test"]["fit_percent"] > 97.0
 
 
 def test_the_picture_is_labelled_and_inside_its_page(bench):

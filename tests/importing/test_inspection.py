@@ -10,6 +10,7 @@ from ruamel.yaml import YAML
 from seatsim.importing.importing import import_files
 from seatsim.importing.inspected_recording import inspect_recording
 from seatsim.importing.inspection import inspect_file
+from seatsim.schema.content import to_content
 
 from .helpers import kinds, write_csv
 
@@ -26,7 +27,7 @@ def test_figures_of_a_channel(noisy_table, tmp_path):
     assert force.noise == pytest.approx(2.5, rel=0.15)
     assert channels["floor_acceleration"].noise == pytest.approx(0.01, rel=0.15)
     assert len(force.spark) == 24
-    json.dumps(found.as_dict())
+    json.dumps(to_content(found))
 
 
 def damaged(values, kind):

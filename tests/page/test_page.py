@@ -18,8 +18,8 @@ from seatsim.page.serve import Impatient, find_target, open_target
 from seatsim.report.blocks import Table
 from seatsim.report.packing import Axis, Panel, pack_signals
 from seatsim.scenario.loading import EXAMPLES, load, single
+from seatsim.schema.content import plain
 from seatsim.schema.errors import InputError
-from seatsim.schema.files import plain
 
 TOKEN, PORT = "a-token", 8123
 HOME = f"http://127.0.0.1:{PORT}"

@@ -10,9 +10,10 @@ import pytest
 from seatsim.cli.app import main
 from seatsim.provenance import reproduce as reproduction
 from seatsim.provenance.differences import _is_same, compare_outputs
-from seatsim.provenance.invocation import at_work, state_command
-from seatsim.provenance.manifest import describe_outputs
+from seatsim.provenance.invocation import at_work, current_invocation, state_command
+from seatsim.provenance.manifest import describe
 from seatsim.provenance.reproduce import reproduce
+from seatsim.provenance.statement import read_manifest
 from seatsim.provenance.versions import _list_sources
 from seatsim.schema.errors import InputError, RunError
 
@@ -96,9 +97,9 @@ def test_a_missing_input_is_an_error(project, never):
         ({"own_code": [{"path": "../../evil.py", "sha256": "0"}]}, "not run unless you name it"),
         ({"directory": "../nowhere"}, "is not there"),
         ({"outputs": 3}, "outputs is 3"),
-        ({"inputs": [{"path": "rec", "sha256": 3}]}, "is no path with its sha256"),
-        ({"outputs": [{"path": 3, "sha256": "0"}]}, "is no path with its sha256"),
-        ({"arguments": [3]}, "an argument is no text"),
+        ({"inputs": [{"path": "rec", "sha256": 3}]}, "inputs.0.sha256 is 3: input should be a valid string"),
+        ({"outputs": [{"path": 3, "sha256": "0"}]}, "outputs.0.path is 3"),
+        ({"arguments": [3]}, "arguments.0 is 3"),
     ],
 )
 def test_what_a_strangers_manifest_may_not_ask_for_is_refused(project, never, fields, said):
@@ -220,8 +221,8 @@ def test_the_crate_numbers_inputs_from_one_and_states_the_command(made):
 @pytest.mark.parametrize("name", ["/etc/passwd", "../comfort.json", "a/../../b"])
 def test_outputs_outside_the_folder_are_not_read(project, name):
     folder = project / "out" / "c"
-    manifest = json.loads((folder / "manifest.json").read_text())
-    manifest["outputs"] = [{"path": name, "sha256": "0"}]
+    change(project, outputs=[{"path": name, "sha256": "0"}])
+    manifest = read_manifest(folder)
     with pytest.raises(InputError, match=r"manifest\.json: output .* lies outside its folder"):
         list(compare_outputs(manifest, folder, manifest, folder))
 
@@ -255,8 +256,8 @@ def test_a_command_that_fails_says_why_with_its_last_line(project, monkeypatch):
 
 def test_measured_fields_are_stated_of_the_files_that_were_written(tmp_path):
     (tmp_path / "fit.json").write_text("{}")
-    stated = describe_outputs(
-        {"fit.json": tmp_path / "fit.json"}, {"fit.json": ("seconds",), "league.csv": ("seconds",)}
-    )
-    assert stated["measured"] == {"fit.json": ["seconds"]}
-    assert [(each["path"], each["bytes"]) for each in stated["outputs"]] == [("fit.json", 2)]
+    measured = {"fit.json": ("seconds",), "league.csv": ("seconds",)}
+    with at_work("identify", [], []):
+        stated = describe(current_invocation(), tmp_path, {"fit.json": tmp_path / "fit.json"}, {}, None, measured)
+    assert stated.measured == {"fit.json": ("seconds",)}
+    assert [(each.path, each.bytes) for each in stated.outputs] == [("fit.json", 2)]

@@ -11,6 +11,7 @@ from seatsim.recordings.gap import gap, measure_gap, pool_runs
 from seatsim.recordings.quality.examination import examine
 from seatsim.recordings.recording import load_recording
 from seatsim.scenario.loading import single
+from seatsim.schema.content import to_content
 
 from ..faulty_recordings import FAULTS, NOISE, WARNINGS, edit, rewrite, scaled, shifted
 
@@ -45,7 +46,7 @@ def test_a_warning_of_the_examination_is_a_note_of_the_gap(copy, name):
     found = seatsim.gap(copy / "nominal.yaml", copy)
     assert list(found.notes) == examine(load_recording(copy)).sentences
     assert any(words in sentence for sentence in found.notes)
-    assert found.as_dict()["notes"] == list(found.notes)
+    assert to_content(found)["notes"] == list(found.notes)
 
 
 def test_a_sound_recording_has_no_notes_and_any_scenario_is_held_against_it(copy):
@@ -107,9 +108,9 @@ def test_the_figures_are_those_of_the_definition(copy):
         assert np.array_equal(values, pooled)
         error = np.sqrt(np.mean((pooled - simulated[name]) ** 2))
         assert found.channels[name] == pytest.approx(error / np.std(pooled), rel=1e-12)
-        assert found.floor["channels"][name] == pytest.approx(NOISE[name] / np.std(pooled), rel=1e-12)
+        assert found.floor.channels[name] == pytest.approx(NOISE[name] / np.std(pooled), rel=1e-12)
     assert found.overall**2 == pytest.approx(np.mean(np.square(list(found.channels.values()))), rel=1e-12)
-    assert found.floor["overall"] < found.overall < 2 * found.floor["overall"]
+    assert found.floor.overall < found.overall < 2 * found.floor.overall
     k = "driver_acceleration"
     rewrite(copy, lambda frame: frame.assign(**{k: frame[k] + 3.0 * np.std(measured[k])}))
     assert measure_gap(nominal, recording).channels[k] == pytest.approx(3.0, rel=1e-2)

@@ -12,6 +12,7 @@ from seatsim.recordings.model_error import (
     measure_model_error,
     read_model_error,
 )
+from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
 
 RATE, N = 200.0, 4000
@@ -68,7 +69,7 @@ def test_stated_noise_is_no_error_and_a_silent_band_has_none():
 def test_it_is_read_as_it_was_written_and_refused_where_it_is_not_there():
     pairs = [(run, {"x": tone(3.0, 2.0)}, {"x": tone(3.0, size)}) for run, size in (("a", 1.5), ("b", 1.9))]
     found = measure_model_error(pairs, {"x": 0.01}, RATE, 64.0)
-    again = read_model_error({"model_error": found.as_dict()}, "diagnosis.json")
+    again = read_model_error({"model_error": to_content(found)}, "diagnosis.json")
     assert again.runs == ("a", "b") and again.noise == {"x": 0.01}
     assert np.array_equal(again.edges, found.edges) and np.array_equal(again.error["x"], found.error["x"])
     assert np.array_equal(again.ratio["x"], found.ratio["x"]) and np.array_equal(again.pooled["x"], found.pooled["x"])

@@ -15,6 +15,7 @@ from seatsim.recordings.prediction import predict_gap
 from seatsim.recordings.recording import load_recording
 from seatsim.recordings.replay import COMPARED
 from seatsim.scenario.loading import single
+from seatsim.schema.content import to_content
 
 from ..faulty_recordings import edit
 
@@ -93,7 +94,7 @@ def write_diagnosis(folder, recording, scenario):
     noise = {name: recording.channels[name].noise_rms for name in runs[0][1]}
     error = measure_model_error(runs, noise, recording.header.sample_rate, 100.0)
     path = folder / "diagnosis.json"
-    path.write_text(json.dumps({"model_error": error.as_dict(), "causes": []}))
+    path.write_text(json.dumps({"model_error": to_content(error), "causes": []}))
     return path
 
 

@@ -188,4 +188,4 @@ def test_every_recording_of_an_independent_rig_can_be_replayed(shared):
     gaps = [measure_gap(folder / "nominal.yaml", folder) for folder in folders]
     assert gaps
     for gap in gaps:
-        assert 0 < gap.floor["overall"] < gap.overall < 2
+        assert 0 < gap.floor.overall < gap.overall < 2

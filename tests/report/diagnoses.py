@@ -179,7 +179,7 @@ def with_every_run():
         RunGaps(run, gap.before, gap.calibrated, gap.after, gap.floor, gap.shrink)
         for run in ("run-a", "run-b", "run-c")
     ]
-    return replace(base, evidence=replace(base.evidence, other_traces=others), by_run=gaps)
+    return replace(base, evidence=replace(base.evidence, other_traces=others), gap=replace(base.gap, by_run=gaps))
 
 
 CASES = {

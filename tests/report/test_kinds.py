@@ -10,12 +10,12 @@ import pytest
 from seatsim.characterisation.response import Response
 from seatsim.characterisation.rows import Row
 from seatsim.characterisation.summary import Characterisation
-from seatsim.cli.gap_table import gap_table
+from seatsim.cli.outputs.diagnosis_tables import make_gap_table
 from seatsim.cli.show_table import make_plain
 from seatsim.identification.assessment import Agreement, Assessment
 from seatsim.identification.information import Information, ParameterEstimate
 from seatsim.recordings.bench_tables import BenchRecord
-from seatsim.recordings.gap import Gap, NoiseFloor, ReplayedPair
+from seatsim.recordings.gap import Gap, GapFigures, ReplayedPair
 from seatsim.report.characterisation import report_characterisation
 from seatsim.report.credibility.evidence import Evidence
 from seatsim.report.gap import report_gap, say_gap
@@ -87,7 +87,7 @@ def pair(noise):
 
 
 def gap(size, floor=0.02):
-    return Gap(size, {"damper_force": size}, NoiseFloor(overall=floor, channels={"damper_force": floor}), ("a note",))
+    return Gap(size, {"damper_force": size}, GapFigures(floor, {"damper_force": floor}), ("a note",))
 
 
 def test_a_gap_says_where_it_is_largest_and_what_to_do():
@@ -105,7 +105,7 @@ def test_noise_that_is_not_stated_is_not_printed_as_none():
     found = gap(0.3, floor=0.0)
     outline = Outline(render_report(report_gap("x", found, {"run-a": pair(20.0)}, Evidence(), "seatsim gap a b")))
     assert "no sensor noise is stated" in outline.headings[0]
-    shown = make_plain(gap_table(found)), found._repr_html_()
+    shown = make_plain(make_gap_table(found)), found._repr_html_()
     assert outline.rows("Gap over all runs")["damper force"] == ["30 %", "not stated"]
     assert all(text.count("not stated") == 2 for text in shown)
 

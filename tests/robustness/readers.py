@@ -22,7 +22,7 @@ from seatsim.cosimulation.description import DESCRIPTION, check_parameter, descr
 from seatsim.importing.importing import import_files
 from seatsim.importing.inspection import inspect_file
 from seatsim.metrics.table import METRICS
-from seatsim.provenance.reproduce import read_manifest
+from seatsim.provenance.statement import read_manifest
 from seatsim.recordings.bench_tables import load_bench
 from seatsim.recordings.recording import load_recording
 from seatsim.report.sweep import report_sweep
@@ -107,7 +107,7 @@ def _read_scenario(folder: Path) -> object:
 def _read_recording(folder: Path) -> object:
     recording = load_recording(folder)
     tables = [recording.table(run) for run in recording.runs]
-    return tables, single(recording.nominal)
+    return tables, recording.nominal
 
 
 def _read_bench(folder: Path) -> object:

@@ -17,6 +17,8 @@ from seatsim.simulation.simulate import simulate
 from seatsim.standards.seat_rows import INERT_MASS, LIMITS, SEATED_SHARE
 from seatsim.standards.seat_test import weighted_input
 
+from ..answers import check_answer
+
 DAMPING = 600.0
 SEAT = f"""
 plant: {{frame_mass: 20.0, driver_mass: 60.0, suspension_stiffness: 4600.0, suspension_damping: 150.0,
@@ -72,7 +74,7 @@ def test_damping_test_finds_the_resonance_under_the_inert_mass(scenario):
 
 def test_every_class_and_driver_has_a_line(scenario, tmp_path):
     done = CliRunner().invoke(app, ["seat-test", str(scenario), "--out", str(tmp_path), "--json"])
-    found = json.loads(done.stdout)
+    found = check_answer("seat-test", done.stdout)
     assert [(row["class"], row["mass"]) for row in found["classes"]] == [
         (each, m) for each in LIMITS for m in (55.0, 98.0)
     ]
@@ -124,7 +126,7 @@ def test_a_run_that_breaks_off_leaves_the_others_and_is_a_line_with_its_reason(s
 
     monkeypatch.setattr("seatsim.standards.simulated_seat.simulate", broken)
     done = CliRunner().invoke(app, ["seat-test", str(scenario), "--class", "EM5", "--out", str(tmp_path), "--json"])
-    found = json.loads(done.stdout)
+    found = check_answer("seat-test", done.stdout)
     assert done.exit_code == 1 and "failed: seat, EM5, light: a state ran away" in done.stderr
     assert [(each["class"], each["person"]) for each in found["failed"]] == [("EM5", "light"), ("EM5", "heavy")]
     assert len(found["classes"]) == 2 and not any(row["pass"] for row in found["classes"]) and found["damping"]

@@ -8,16 +8,11 @@ import subprocess
 import sys
 
 import pytest
-from pydantic import TypeAdapter
 
 import seatsim
-from seatsim.cli.outputs.answers import ANSWERS
 
+from ..answers import check_answer
 from .conftest import MASSES, bytes_of
-
-
-def answer_of(kind, out):
-    return TypeAdapter(ANSWERS[kind]).validate_json(out)
 
 
 def test_a_sweep_and_its_report(write_sweep, tmp_path, seatsim_command):
@@ -30,9 +25,9 @@ def test_a_sweep_and_its_report(write_sweep, tmp_path, seatsim_command):
     status, text, _ = seatsim_command("check", path)
     assert status == 0 and "sweep, no errors; 24 runs over plant.driver_mass" in text
     status, text, _ = seatsim_command("sweep", path, "--out", out, "--json")
-    assert status == 0 and answer_of("sweep", text)["counts"]["done"] == 24
+    assert status == 0 and check_answer("sweep", text)["counts"]["done"] == 24
     status, text, _ = seatsim_command("sweep-report", out, "--json")
-    content = answer_of("sweep-report", text)
+    content = check_answer("sweep-report", text)
     assert status == 0 and re.search("Of 2 varied keys plant.* matters most to the driver Wk RMS", content["sentence"])
     assert {row["group"]["excitation.spectral_class"] for row in content["exceeded"]} == {"EM1", "EM5"}
     page = (out / "report.html").read_text()

@@ -18,6 +18,7 @@ from seatsim.blind.carrier.recorded import Carrier, Change, encode_carrier, read
 from seatsim.blind.carrier.replays import Ruler
 from seatsim.blind.make.folder import write_folder
 from seatsim.blind.score.verdicts import is_right, read_verdict
+from seatsim.schema.content import Unwritten, written
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.files import write_json, write_text
 from seatsim.schema.guarded import expect, read_json
@@ -54,8 +55,10 @@ class Power(NamedTuple):
 
     effect: str
     smallest: float | None
-    trials: dict[float, list[Trial]]
+    trials: Unwritten[dict[float, list[Trial]]]
 
+    @property
+    @written()
     def parameters(self) -> dict[str, float]:
         """Return the mean size of the effect's parameters at the smallest size that is found."""
         trials = [] if self.smallest is None else self.trials[self.smallest]
@@ -63,13 +66,21 @@ class Power(NamedTuple):
         names = sorted(set.intersection(*(set(parameters) for parameters in put_in))) if put_in else []
         return {name: float(np.mean([abs(parameters[name]) for parameters in put_in])) for name in names}
 
-    def as_dict(self) -> dict[str, object]:
-        """Return the power as it stands in `power.json`."""
-        tried = {
+    @property
+    @written()
+    def found(self) -> dict[str, list[bool]]:
+        """Whether each draw that the recording allowed was found, by its size."""
+        return {
             f"{size:g}": [trial.found for trial in trials if trial.parameters is not None]
             for size, trials in self.trials.items()
         }
-        return {"effect": self.effect, "smallest": self.smallest, "parameters": self.parameters(), "found": tried}
+
+
+class Powers(NamedTuple):
+    """The smallest sizes found, of so many draws at each: the content of `power.json`."""
+
+    draws: int
+    effects: list[Power]
 
 
 def measure_power(

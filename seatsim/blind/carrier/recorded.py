@@ -95,7 +95,7 @@ def read_carrier(folder: Path) -> Carrier:
     if recording.conversions:  # tables are read in SI units, whatever the header states
         header["channels"] = {name: entry._asdict() for name, entry in recording.channels.items()}
     decimals = {name: _count_decimals([table[name] for table in tables.values()]) for name in recording.channels}
-    return Carrier(header, Source(recording.nominal).data, tables, decimals)
+    return Carrier(header, Source(recording.nominal_file).data, tables, decimals)
 
 
 def _count_decimals(runs: list[Array]) -> int:

@@ -6,13 +6,14 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, TypedDict
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.blind.labels import Label
 from seatsim.blind.score.verdicts import Verdict, is_right
+from seatsim.schema.content import written
 
 BINS = 10
 """Of the reliability table: each holds a tenth of all probabilities, 24 for each case."""
@@ -32,11 +33,13 @@ class Rate:
     total: int
 
     @property
+    @written("share")
     def value(self) -> float:
         """Share that is right; NaN of none."""
         return self.right / self.total if self.total else math.nan
 
     @property
+    @written()
     def interval(self) -> tuple[float, float]:
         """Wilson (1927): `(p + z^2/2n -+ z sqrt(p(1-p)/n + z^2/4n^2)) / (1 + z^2/n)`; it holds for few cases too."""
         if not self.total:
@@ -45,10 +48,6 @@ class Rate:
         centre = p + z * z / (2 * n)
         half = z * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
         return (max((centre - half) / (1 + z * z / n), 0.0), min((centre + half) / (1 + z * z / n), 1.0))
-
-    def as_dict(self) -> dict[str, object]:
-        """Return count, share and interval."""
-        return {"right": self.right, "total": self.total, "share": self.value, "interval": list(self.interval)}
 
 
 def count_true(flags: Sequence[bool]) -> Rate:
@@ -106,7 +105,7 @@ class ScoredCase:
         return is_right(self.label, self.verdict)
 
 
-class Failure(TypedDict):
+class Failure(NamedTuple):
     """A case whose verdict is wrong, as it stands in `score.json`."""
 
     case: str
@@ -201,19 +200,19 @@ def _true_name(label: Label) -> str:
 def describe_failure(case: ScoredCase) -> Failure:
     """Return what is true of a case whose verdict is wrong, and what was said."""
     label, verdict = case.label, case.verdict
-    return {
-        "case": case.name,
-        "kind": label["kind"],
-        "effects": label["effects"],
-        "forms": label.get("forms", []),
-        "materialities": label.get("materialities", []),
-        "missing": label.get("missing", []),
-        "verdict": verdict.verdict,
-        "named": list(verdict.causes[:NAMED]),
-        "selected": list(verdict.selected),
-        "groups": [list(group) for group in verdict.groups],
-        "where": list(verdict.blocks[:2]),
-    }
+    return Failure(
+        case=case.name,
+        kind=label["kind"],
+        effects=label["effects"],
+        forms=label.get("forms", []),
+        materialities=label.get("materialities", []),
+        missing=label.get("missing", []),
+        verdict=verdict.verdict,
+        named=list(verdict.causes[:NAMED]),
+        selected=list(verdict.selected),
+        groups=[list(group) for group in verdict.groups],
+        where=list(verdict.blocks[:2]),
+    )
 
 
 def pair(labels: Mapping[str, Label], verdicts: Mapping[str, Verdict]) -> list[ScoredCase]:

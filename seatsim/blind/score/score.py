@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -48,7 +47,7 @@ from seatsim.schema.processes import Progress
 
 @dataclass(frozen=True)
 class Score:
-    """All figures of a set, under the names of `score.json`; rates hold how many of how many."""
+    """All figures of a set, the content of `score.json`; rates hold how many of how many."""
 
     right: Rate
     kinds: dict[str, Rate]
@@ -87,21 +86,6 @@ class Score:
     """What was named first, and how often, on measured recordings without any effect put in; not scored."""
     found_sizes: list[FoundSize]
     """Parameters of carried effects that were found, beside the true ones."""
-
-    def as_dict(self) -> dict[str, object]:
-        """Return the score as it stands in `score.json`."""
-        return {field.name: _plain(getattr(self, field.name)) for field in dataclasses.fields(self)}
-
-
-def _plain(value: object) -> object:
-    """Return nested values as JSON has them."""
-    if isinstance(value, Rate):
-        return value.as_dict()
-    if dataclasses.is_dataclass(value):
-        return {field.name: _plain(getattr(value, field.name)) for field in dataclasses.fields(value)}
-    if isinstance(value, dict):
-        return {name: _plain(item) for name, item in value.items()}
-    return [_plain(item) for item in value] if isinstance(value, list | tuple) else value
 
 
 def score(

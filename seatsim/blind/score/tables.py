@@ -100,17 +100,17 @@ def _found_sizes(score: Score) -> Table:
 def _failures(score: Score, width: int) -> Table:
     table = _table("failures", "case", "truth", "limit x", "missing", "verdict", "named", "where")
     for failure in score.failures[:width]:
-        true = ", ".join(failure["effects"]) or ", ".join(failure["forms"]) or "none"
-        sizes = ", ".join(f"{size:.1f}" for size in failure["materialities"])
-        named = ", ".join(failure["selected"] or failure["named"][:1])
+        true = ", ".join(failure.effects) or ", ".join(failure.forms) or "none"
+        sizes = ", ".join(f"{size:.1f}" for size in failure.materialities)
+        named = ", ".join(failure.selected or failure.named[:1])
         table.add_row(
-            failure["case"],
+            failure.case,
             true,
             sizes,
-            ", ".join(failure["missing"]),
-            failure["verdict"],
+            ", ".join(failure.missing),
+            failure.verdict,
             named,
-            ", ".join(failure["where"]),
+            ", ".join(failure.where),
         )
     if len(score.failures) > width:
         table.add_row(f"and {len(score.failures) - width} more", *[""] * 6)

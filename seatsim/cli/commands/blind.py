@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
@@ -9,8 +10,10 @@ import typer
 
 from seatsim.cli.options import Json, NewFolder, Out, OwnCode, check_out
 from seatsim.cli.terminal import answer, count_progress, out, say, wrote_one
-from seatsim.schema.errors import InputError
+from seatsim.schema.errors import InputError, SeatsimError
 
+PROCESSES = 2
+"""Recordings of a set that are diagnosed at once."""
 blind = typer.Typer(help="Check diagnoses on recordings whose effects are sealed.", no_args_is_help=True)
 
 
@@ -32,6 +35,7 @@ def blind_make(
     """Draw rigs with hidden effects, write recordings of them and seal the labels; the key is printed once."""
     from seatsim.blind.carrier.make import make_on_carrier
     from seatsim.blind.make.make import make
+    from seatsim.cli.outputs.answers import BlindMakeAnswer
 
     if carrier is not None and kinds != "mixed":
         raise InputError(f"--kinds {kinds}: a measured recording carries one effect a case; leave out --kinds")
@@ -42,7 +46,7 @@ def blind_make(
             key = make(cases, seed, out_folder, sealed, count, kinds)
     out.print(f"written: {cases} recordings in {out_folder}, labels sealed in {sealed}", markup=False, highlight=False)
     say(f"key (shown once): {key}")
-    answer({"cases": cases, "folder": str(out_folder), "sealed": str(sealed), "key": key})
+    answer(BlindMakeAnswer(cases, out_folder, sealed, key))
 
 
 @blind.command("score")
@@ -60,7 +64,6 @@ def blind_score(
     from seatsim.blind.score.score import score
     from seatsim.blind.score.tables import tables
     from seatsim.blind.sealed import unseal
-    from seatsim.cli.outputs.diagnosis import diagnose_all
     from seatsim.cli.show_table import show_table
     from seatsim.schema.files import write_json
 
@@ -72,9 +75,9 @@ def blind_score(
         found = score(folder, sealed, key, progress=count)
     for table in tables(found):
         show_table(table)
-    path = write_json((out_folder or folder) / "score.json", found.as_dict())
+    path = write_json((out_folder or folder) / "score.json", found)
     wrote_one(path)
-    answer(found.as_dict(), [path])
+    answer(found, [path])
 
 
 @blind.command("power")
@@ -90,9 +93,8 @@ def blind_power(
     as_json: Json = False,
 ) -> None:
     """Put effects of ever smaller size into a recording, and print the smallest found in nine of ten draws."""
-    from seatsim.blind.carrier.power import SIZES, Power, measure_power
-    from seatsim.cli.outputs.diagnosis import diagnose_one
-    from seatsim.cli.outputs.power import make_power_table
+    from seatsim.blind.carrier.power import SIZES, Power, Powers, measure_power
+    from seatsim.cli.outputs.diagnosis_tables import make_power_table
     from seatsim.cli.show_table import show_table
     from seatsim.schema.files import write_json
 
@@ -106,7 +108,30 @@ def blind_power(
 
         found = measure_power(recording, folder, diagnose_one, tuple(effects or ()), draws, seed, progress=tell)
     show_table(make_power_table(found))
-    content = {"draws": draws, "effects": [power.as_dict() for power in found]}
-    path = write_json(folder / "power.json", content)
+    powers = Powers(draws, found)
+    path = write_json(folder / "power.json", powers)
     wrote_one(path)
-    answer(content, [path])
+    answer(powers, [path])
+
+
+def diagnose_all(folder: Path, count: Callable[[int, int], None]) -> None:
+    """Diagnose every case of a folder that has no diagnosis yet, into `CASE/diagnosis`; may be taken up again."""
+    from seatsim.schema.processes import run_jobs
+
+    cases = sorted(path.parent for path in folder.glob("case-*/recording.yaml"))
+    open_cases = [case for case in cases if not (case / "diagnosis" / "diagnosis.json").exists()]
+    count(len(cases) - len(open_cases), len(cases))
+    jobs, kept = [(case,) for case in open_cases], len(cases) - len(open_cases)
+    run_jobs(diagnose_one, jobs, PROCESSES, lambda done, _: count(kept + done, len(cases)))
+
+
+def diagnose_one(case: Path) -> None:
+    """Diagnose one case; one that cannot be diagnosed is left without, and counts as wrong."""
+    from seatsim.cli.outputs.measured import write_diagnosis
+    from seatsim.diagnosis.diagnose import diagnose
+    from seatsim.schema.files import write_json
+
+    try:
+        write_diagnosis(diagnose(case), case / "diagnosis")
+    except SeatsimError as error:
+        write_json(case / "diagnosis" / "error.json", {"error": str(error)})

@@ -35,8 +35,8 @@ def characterise(
     """Show what a bench shows of a damper: loops, energy, asymmetry, offset and response times."""
     from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
     from seatsim.characterisation.summary import characterise as of_records
-    from seatsim.characterisation.summary import contents
-    from seatsim.cli.outputs.characterisation import collect_remarks, make_tables, write_characterisation
+    from seatsim.cli.outputs.damper_tables import make_characterisation_tables
+    from seatsim.cli.outputs.measured import write_characterisation
     from seatsim.cli.show_table import show_table
     from seatsim.recordings.bench_tables import load_bench
 
@@ -49,13 +49,13 @@ def characterise(
     else:
         tested = load_specimen(model, parameters)
         found = characterise_model(tested, choose_settings(tested, *grid))
-    for table in make_tables(found):
+    for table in make_characterisation_tables(found):
         show_table(table)
-    warn(collect_remarks(found))
+    warn(found.remarks)
     folder = out_folder or Path("out") / f"characterise-{found.name}"
     paths = write_characterisation(found, folder)
     wrote(folder, paths)
-    answer(contents(found), paths)
+    answer(found, paths)
 
 
 def identify(
@@ -107,18 +107,19 @@ def identify(
 def _identify(
     records: list[BenchRecord], model: str, request: IdentificationSettings, beside: PredictionData, folder: Path
 ) -> None:
-    from seatsim.cli.outputs.identification import encode_identification, make_tables, write_identification
+    from seatsim.cli.outputs.damper_tables import make_identification_tables
+    from seatsim.cli.outputs.measured import write_identification
     from seatsim.cli.show_table import show_table
     from seatsim.identification.identify import identify_records, predict_records
 
     with show_progress() as progress:
         found = predict_records(identify_records(records, model, request, progress), beside)
         paths = write_identification(found, folder, request.seed)
-    for table in make_tables(found):
+    for table in make_identification_tables(found):
         show_table(table)
     warn(found.notes)
     wrote(folder, paths)
-    answer(encode_identification(found), paths)
+    answer(found, paths)
 
 
 def _benchmark_models(
@@ -129,9 +130,10 @@ def _benchmark_models(
     folder: Path,
 ) -> None:
     """Identify several models, print and write the table; exit 1 where one failed."""
-    from seatsim.cli.outputs.identification import make_league_table, write_league, write_member
+    from seatsim.cli.outputs.damper_tables import make_league_table
+    from seatsim.cli.outputs.measured import write_league, write_member
     from seatsim.cli.show_table import show_table
-    from seatsim.identification.model_benchmark import benchmark_models
+    from seatsim.identification.model_benchmark import League, benchmark_models
 
     with show_progress() as progress:
         places = benchmark_models(
@@ -149,7 +151,7 @@ def _benchmark_models(
         complain(f"failed: {place.failed}")
     paths = write_league(places, folder, request.seed)
     wrote(folder, paths)
-    answer({"league": places}, paths)
+    answer(League(places), paths)
     if failed:
         raise typer.Exit(1)
 

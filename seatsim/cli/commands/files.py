@@ -31,13 +31,14 @@ def new(
     as_json: Json = False,
 ) -> None:
     """Write a commented file that works as it stands, to be changed."""
-    from seatsim.cli.outputs.new_files import write_new
+    from seatsim.cli.new_files import write_new
+    from seatsim.cli.outputs.answers import NewAnswer
 
     paths = write_new(kind, Path(name))
     say(f"written: {', '.join(map(str, paths))}")
     file = name if kind == "recording" else paths[0]
     say(f"next: {NEXT[kind].format(name=Path(name).stem, file=file)}")
-    answer({"kind": kind}, paths)
+    answer(NewAnswer(kind), paths)
 
 
 def check(
@@ -46,7 +47,7 @@ def check(
     as_json: Json = False,
 ) -> None:
     """Read a file as the other commands would, without running it, and say what is wrong or doubtful."""
-    from seatsim.cli.check_files import check_file
+    from seatsim.cli.check_files import CheckedFile, check_file
 
     try:
         found = check_file(file)
@@ -55,7 +56,7 @@ def check(
         raise typer.Exit(error.exit_status) from error
     say(f"{file}: {found.kind}, no errors; {', '.join(found.holds)}")
     warn(found.warnings, "warning")
-    answer({"file": str(file), **found._asdict()})
+    answer(CheckedFile(file, found))
 
 
 def schema(
@@ -66,13 +67,13 @@ def schema(
     as_json: Json = False,
 ) -> None:
     """Print a JSON Schema, with which an editor completes and checks a file."""
-    from seatsim.cli.outputs.answers import ANSWERS, answer_schema
+    from seatsim.cli.outputs.answers import describe_answer, list_answers
     from seatsim.cli.outputs.schemas import FILES
 
-    if kind not in {**FILES, **ANSWERS}:
-        known = ", ".join([*FILES, *ANSWERS])
-        raise InputError(f"schema {kind}: no such kind{nearest(kind, [*FILES, *ANSWERS])}; permitted: {known}")
-    found = FILES[kind]() if kind in FILES else answer_schema(kind)
+    known = [*FILES, *list_answers()]
+    if kind not in known:
+        raise InputError(f"schema {kind}: no such kind{nearest(kind, known)}; permitted: {', '.join(known)}")
+    found = FILES[kind]() if kind in FILES else describe_answer(kind)
     # A schema is JSON with or without --json.
     sys.stdout.write(json.dumps(found) + "\n")
 
@@ -90,8 +91,8 @@ def describe(
     as_json: Json = False,
 ) -> None:
     """List dampers, laws, excitations and effects, or the keys of one of them with units and bounds."""
+    from seatsim.scenario.describe import Pages, find_page, list_pages
     from seatsim.scenario.describe import describe as describe_name
-    from seatsim.scenario.describe import find_page, list_pages
 
     pages = [find_page(name)] if name else list_pages()
     if picture is not None and (not name or pages[0].kind != "damper" or picture.suffix not in ENDINGS):
@@ -102,7 +103,7 @@ def describe(
     paths = _draw_loops(name, picture) if picture else []
     for path in paths:
         wrote_one(path)
-    answer({"names": pages}, paths)
+    answer(Pages(pages), paths)
 
 
 def _draw_loops(model: str, picture: Path) -> list[Path]:
@@ -131,7 +132,7 @@ def reproduce(
     """Run again what made a folder, and compare the bytes: exit 0 identical, 1 different."""
     from seatsim.provenance.reproduce import ANSWER
     from seatsim.provenance.reproduce import reproduce as run_again
-    from seatsim.schema.files import plain, write_json
+    from seatsim.schema.files import write_json
     from seatsim.schema.text import join_names
 
     with show_progress() as progress:
@@ -143,8 +144,8 @@ def reproduce(
         warn([f"no manifest names {join_names(found.unnamed)}: nothing is known of what made them"])
     if found.identical:
         say(f"{folder}: identical to what seatsim {found.command} writes now: {', '.join(found.compared)}")
-    path = write_json((out_folder or folder) / ANSWER, found._asdict())
+    path = write_json((out_folder or folder) / ANSWER, found)
     wrote_one(path)
-    answer({key: plain(value) for key, value in found._asdict().items()}, [path])
+    answer(found, [path])
     if not found.identical:
         raise typer.Exit(1)

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from seatsim.importing.inspection import ChannelSummary, Inspection
-    from seatsim.recordings.gap import Gap
     from seatsim.recordings.quality.issue import Issue
 
 
@@ -31,26 +30,19 @@ def gap(
     as_json: Json = False,
 ) -> None:
     """Replay a scenario against a recording and print the gap with the noise floor."""
-    from seatsim.cli.gap_table import forecast_table, gap_table
-    from seatsim.cli.outputs.gap import write_gap
+    from seatsim.cli.outputs.diagnosis_tables import make_gap_table
+    from seatsim.cli.outputs.measured import write_gap
     from seatsim.cli.show_table import show_table
     from seatsim.recordings.forecast import forecast_gap
     from seatsim.recordings.gap import gap as find_gap
 
-    if predict is None:
-        found = find_gap(scenario, recording)
-        table, notes, content = gap_table(found), found.notes, found.as_dict()
-        drawn: Gap | None = found
-    else:
-        forecast = forecast_gap(scenario, recording, predict)
-        table, notes, content = forecast_table(forecast), forecast.notes, forecast.as_dict()
-        drawn = forecast.measured.after if forecast.measured is not None else None
-    show_table(table)
-    warn(notes)
+    found = find_gap(scenario, recording) if predict is None else forecast_gap(scenario, recording, predict)
+    show_table(make_gap_table(found))
+    warn(found.notes)
     folder = out_folder or Path("out") / f"gap-{Path(recording).name}"
-    paths = write_gap(content, drawn, scenario, recording, folder)
+    paths = write_gap(found, scenario, recording, folder)
     wrote(folder, paths)
-    answer(content, paths)
+    answer(found, paths)
 
 
 def diagnose(
@@ -75,7 +67,8 @@ def diagnose(
     as_json: Json = False,
 ) -> None:
     """Say where the gap between a recording and its nominal scenario lies, what causes it and how far it shrinks."""
-    from seatsim.cli.outputs.diagnosis import encode_diagnosis, make_tables, write_diagnosis
+    from seatsim.cli.outputs.diagnosis_tables import make_tables
+    from seatsim.cli.outputs.measured import write_diagnosis
     from seatsim.cli.show_table import show_table
     from seatsim.diagnosis.diagnose import diagnose as find_cause
     from seatsim.effects.base import EFFECTS
@@ -93,7 +86,7 @@ def diagnose(
     folder = out_folder or Path("out") / f"diagnosis-{Path(recording).resolve().name}"
     paths = write_diagnosis(diagnosis, folder)
     wrote(folder, paths)
-    answer(encode_diagnosis(diagnosis), paths)
+    answer(diagnosis, paths)
 
 
 COLUMNS = ("unit", "Hz", "least", "greatest", "RMS", "noise", "swing", "mean", "is", "rows")
@@ -128,10 +121,10 @@ def import_data(
     for note in found.notes:
         say(note)
     _doubt(found.doubts)
-    wrote(folder, found.written)
+    wrote(folder, found.paths)
     if nominal is None and found.map.rig != "road":
         say(f"before gap or diagnose: state the rig in {folder / 'nominal.yaml'}, or import with --nominal SCENARIO")
-    answer(found.as_dict(), found.written)
+    answer(found, found.paths)
 
 
 def inspect_data(
@@ -146,7 +139,7 @@ def inspect_data(
     found = _inspected(data, map_file)
     _show(found)
     _doubt(found.doubts)
-    answer(found.as_dict())
+    answer(found)
 
 
 def _inspected(data: Path, map_file: Path | None) -> Inspection:

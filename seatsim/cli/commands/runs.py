@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
+from seatsim.cli.interrupts import go_on
 from seatsim.cli.options import Json, Out, OwnCode, Scenarios, Settings, scenario_settings
-from seatsim.cli.start import go_on
 from seatsim.cli.terminal import answer, complain, count_progress, show_progress, warn, wrote
 from seatsim.schema.errors import InputError, SeatsimError
 from seatsim.schema.leftovers import uncut
 
 if TYPE_CHECKING:
+    from seatsim.cli.outputs.simulated import RunTable
     from seatsim.scenario.scenario import Scenario
     from seatsim.simulation.performance_bounds import PerformanceBounds
     from seatsim.simulation.result import Run
@@ -72,22 +73,24 @@ def _execute(
     bracket: bool = False,
 ) -> None:
     """Run every group of files as one result, then print its table and write its files; exit 1 where a run failed."""
+    from seatsim.cli.outputs.simulated import RunAnswer
+
     groups = _load_groups(files, folders, settings)
     scenarios = [scenario for group in groups for scenario in group.scenarios]
     simulated = _simulate(scenarios)
-    encoded, paths = [], []
+    tables, paths = [], []
     for group in groups:
         runs = [simulated.runs[id(scenario)] for scenario in group.scenarios if id(scenario) in simulated.runs]
         failures = [simulated.failures[id(each)] for each in group.scenarios if id(each) in simulated.failures]
         if runs:
             # What an interrupt left done is kept before the process ends.
             with uncut() if simulated.interrupted else nullcontext():
-                content, written = _present(runs, failures, group.folder, bracket, simulated.interrupted)
-            encoded.append(content)
+                table, written = _present(runs, failures, group.folder, bracket, simulated.interrupted)
+            tables.append(table)
             paths += written
     if simulated.interrupted:
         raise KeyboardInterrupt
-    answer({"results": encoded, "failed": list(simulated.failures.values())}, paths)
+    answer(RunAnswer(tables, list(simulated.failures.values())), paths)
     if simulated.failures:
         raise typer.Exit(1)
 
@@ -146,11 +149,12 @@ def _title(scenarios: Sequence[Scenario]) -> str:
 
 def _present(
     runs: list[Run], failures: list[str], folder: Path, bracket: bool, interrupted: bool
-) -> tuple[dict[str, object], list[Path]]:
-    """Print the table of some runs, their bounds where wanted and the warnings; return their content and files."""
-    from seatsim.cli.outputs.runs import encode_result, write_interrupted, write_result
+) -> tuple[RunTable, list[Path]]:
+    """Print the table of some runs, their bounds where wanted and the warnings; return them and their files."""
+    from seatsim.cli.outputs.simulated import Brackets, RunTable, write_interrupted, write_result
     from seatsim.cli.show_table import show_table
     from seatsim.cli.tables import comparison, published_tables
+    from seatsim.simulation.performance_bounds import place_runs
     from seatsim.simulation.result import Result
 
     for table in [comparison(runs, _title([run.scenario for run in runs])), *published_tables(runs)]:
@@ -160,7 +164,7 @@ def _present(
     result = Result(runs, _performance_bounds(runs) if bracket and not interrupted else {}, failures)
     paths = write_interrupted(result, folder) if interrupted else write_result(result, folder)
     wrote(folder, paths)
-    return encode_result(result), paths
+    return RunTable(result, Brackets(place_runs(result))), paths
 
 
 def _performance_bounds(runs: list[Run]) -> dict[str, PerformanceBounds]:

@@ -33,7 +33,7 @@ def export(
     as_json: Json = False,
 ) -> None:
     """Write a scenario's rig, damper or controller for other programs: as an FMU, as C, or as a MAT file."""
-    from seatsim.exchange.block import list_variables
+    from seatsim.exchange.block import ExportedBlock, list_variables
     from seatsim.exchange.export import export as write
     from seatsim.scenario.loading import load
 
@@ -43,11 +43,7 @@ def export(
         block = write(run, form, what, out)
     warn(block.notes)
     wrote_one(out)
-    variables = [
-        {"name": v.name, "causality": v.causality, "unit": v.unit, "meaning": v.meaning, "start": v.value}
-        for v in list_variables(block)
-    ]
-    answer({"name": block.name, "step": block.step, "variables": variables, "notes": block.notes}, [out])
+    answer(ExportedBlock(block.name, block.step, list_variables(block), block.notes), [out])
 
 
 def _choose(name: str, runs: Sequence[Scenario], variant: str | None) -> Scenario:

@@ -32,24 +32,23 @@ def comfort(
     as_json: Json = False,
 ) -> None:
     """Work out the ISO 2631-1 figures of measured accelerations, a day's exposure and SEAT factors."""
-    from seatsim.cli.outputs.comfort import encode, list_sentences, make_tables
+    from seatsim.cli.outputs.seat_tables import list_comfort_sentences, make_comfort_tables
+    from seatsim.cli.outputs.writing import write_outputs
     from seatsim.cli.show_table import show_table
-    from seatsim.provenance.manifest import write_documented
-    from seatsim.schema.files import write_json
     from seatsim.standards.comfort import comfort as assess
 
     channels = dict(_split(text, "=", "--channel", "z=acc_z") for text in channel or [])
     blocks = [_stretch(text) for text in block or []]
     found = assess(file, channels, hours=hours, runs=run or (), blocks=blocks, rate=rate, unit=unit)
-    for table in make_tables(found):
+    for table in make_comfort_tables(found):
         show_table(table)
-    for sentence in list_sentences(found):
+    for sentence in list_comfort_sentences(found):
         say(sentence)
     warn(found.notes)
     folder = out_folder or Path("out") / f"comfort-{file.resolve().name.partition('.')[0]}"
-    paths = write_documented(folder, lambda part: [write_json(part / "comfort.json", encode(found))])
+    paths = write_outputs(folder, {"comfort.json": found})
     wrote(folder, paths)
-    answer(encode(found), paths)
+    answer(found, paths)
 
 
 def _split(text: str, sign: str, option: str, example: str) -> tuple[str, str]:
@@ -78,21 +77,22 @@ def seat_test(
     as_json: Json = False,
 ) -> None:
     """Put a seat to the test of ISO 7096: SEAT factors of two drivers, damping, end stops."""
-    from seatsim.cli.outputs.seat_test import encode, list_failures, make_tables, summarise, write_seat_test
+    from seatsim.cli.outputs.measured import write_seat_test
+    from seatsim.cli.outputs.seat_tables import list_seat_test_failures, make_seat_test_tables, summarise_seat_test
     from seatsim.cli.show_table import show_table
     from seatsim.standards.seat_test import seat_test as test
 
     with count_progress("simulating") as count:
         found = test(source, spectral_class or (), scenario_settings(settings), count)
-    for table in make_tables(found):
+    for table in make_seat_test_tables(found):
         show_table(table)
-    say(summarise(found))
-    for failure in list_failures(found):
+    say(summarise_seat_test(found))
+    for failure in list_seat_test_failures(found):
         complain(f"failed: {failure}")
     warn(found.notes)
     folder = out_folder or Path("out") / f"seat-test-{Path(source).stem}"
-    paths = write_seat_test(found, source, folder)
+    paths = write_seat_test(found, Path(source), folder)
     wrote(folder, paths)
-    answer(encode(found, source), paths)
+    answer(found, paths)
     if found.failures:
         raise typer.Exit(1)

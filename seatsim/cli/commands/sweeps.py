@@ -47,6 +47,7 @@ def sweep(
     as_json: Json = False,
 ) -> None:
     """Simulate a scenario with many values of its keys, and keep the metrics of every run."""
+    from seatsim.cli.outputs.answers import SlurmAnswer
     from seatsim.sweeps.engines.base import open_engine
     from seatsim.sweeps.execute import execute, prepare, read_share
     from seatsim.sweeps.folder import say_ended
@@ -60,7 +61,7 @@ def sweep(
         path = write_slurm(slurm, file, folder, prepared.plan, keep == "histories", own_code or [])
         wrote_one(path)
         say(f"next: sbatch {path}, then seatsim sweep-report {folder}")
-        return answer({"runs": prepared.plan.runs}, [path])
+        return answer(SlurmAnswer(prepared.plan.runs), [path])
     try:
         with (
             open_engine(engine, jobs or os.cpu_count() or 1, address, keep == "histories") as carry_out,
@@ -78,9 +79,7 @@ def sweep(
         complain(f"failed: {text}")
     if len(result.failures) > _FAILURES_SHOWN:
         complain(f"and {len(result.failures) - _FAILURES_SHOWN} more; their reasons stand in the rows")
-    answer(
-        {"identity": result.identity, "counts": result.counts, "failed": result.failures}, [folder / "manifest.json"]
-    )
+    answer(result, [folder / "manifest.json"])
     if result.failures:
         raise typer.Exit(1)
 
@@ -99,11 +98,11 @@ def sweep_report(
     as_json: Json = False,
 ) -> None:
     """Say what the runs of a sweep have in common: quantiles, sensitivities, probabilities, pictures."""
-    from seatsim.cli.outputs.sweeps import encode_report, report_sweep
+    from seatsim.cli.outputs.simulated import write_sweep_report
     from seatsim.metrics.table import SHORT
 
     with show_progress():
-        report = report_sweep(folder, out_folder)
+        report = write_sweep_report(folder, out_folder)
     say(report.sentence)
     for row in report.exceeded[:_EXCEEDED_SHOWN]:
         who = "".join(f"{value}: " for value in row.group.values())
@@ -113,4 +112,4 @@ def sweep_report(
             f" {100 * row.share:.3g} % ({100 * row.low:.3g} to {100 * row.high:.3g} %)"
         )
     wrote(out_folder or folder, report.paths)
-    answer(encode_report(report), report.paths)
+    answer(report, report.paths)

@@ -68,7 +68,7 @@ def plot_gaps(diagnosis: Diagnosis) -> Picture | None:
 
 def plot_gap(found: Gap) -> Figure:
     """Return the gap of each channel beside its noise floor."""
-    floor = [found.floor["overall"], *(found.floor["channels"][name] for name in found.channels)]
+    floor = [found.floor.overall, *(found.floor.channels[name] for name in found.channels)]
     rows = list(zip(floor, [found.overall, *found.channels.values()], strict=True))
     return _draw_gaps(["overall", *found.channels], [STAGES[0], STAGES[1]._replace(words="gap")], rows)
 

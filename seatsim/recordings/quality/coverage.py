@@ -15,7 +15,6 @@ import numpy as np
 
 from seatsim.recordings.recording import Recording
 from seatsim.rig.temperature import Thermal
-from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
 
@@ -63,7 +62,7 @@ def measure_coverage(recording: Recording) -> Coverage:
         InputError: a table or the nominal scenario cannot be read.
     """
     tables = [recording.table(run) for run in recording.runs]
-    nominal, rate = single(recording.nominal), recording.header.sample_rate
+    nominal, rate = recording.nominal, recording.header.sample_rate
     pools: dict[str, tuple[str, list[Array]]] = {}
     for table in tables:
         for name, (unit, values) in _quantities(recording, table).items():
@@ -79,7 +78,7 @@ def shows_falling_current(recording: Recording) -> bool:
     """Return whether the current falls enough somewhere to show what remembers it, or is not recorded at all."""
     runs = [_current(recording, recording.table(run)) for run in recording.runs]
     recorded = [current for current in runs if current is not None]
-    least = _DROP * single(recording.nominal).coil.max_current
+    least = _DROP * recording.nominal.coil.max_current
     return not recorded or _largest_drop(recorded, recording.header.sample_rate) >= least
 
 

@@ -20,7 +20,6 @@ from seatsim.recordings.quality.runs import check_all_runs, check_clock, check_r
 from seatsim.recordings.quality.sensors import check_floor_sensor, without_gravity
 from seatsim.recordings.recording import Recording
 from seatsim.recordings.replay import note_unused_log
-from seatsim.scenario.loading import single
 from seatsim.scenario.plausibility import list_doubts
 from seatsim.schema.errors import InputError
 
@@ -76,7 +75,7 @@ def refuse(examination: Examination) -> None:
 
 def _read(recording: Recording) -> tuple[list[RunUnderTest], list[Issue]]:
     """Return the runs that can be read, and the issues of their clocks and of the runs that cannot be read."""
-    nominal = single(recording.nominal)
+    nominal = recording.nominal
     runs, issues = [], [Issue("warning", "implausible", sentence) for sentence in list_doubts(nominal)]
     issues += [Issue("warning", "unused", sentence) for sentence in note_unused_log(nominal, recording)]
     for name in recording.runs:

@@ -133,12 +133,12 @@ def collect_gap(scenario: str, folder: Path, found: Gap) -> Evidence:
             step=_largest(steps),
             compared=len(recording.runs),
             error=found.overall,
-            noise=found.floor["overall"],
+            noise=found.floor.overall,
             doubts=found.notes,
             dampers=_judge_dampers([type(chosen.damper.record)]),
             held_out=len(recording.runs) if is_nominal and not is_fitted else 0,
             parameters_known=tolerance is not None and not is_fitted,
-            intervals=["the gap, as the noise of the sensors"] if found.floor["overall"] else [],
+            intervals=["the gap, as the noise of the sensors"] if found.floor.overall else [],
             runs=len(recording.runs),
         )
     )
@@ -156,7 +156,7 @@ def collect_diagnosis(diagnosis: Diagnosis) -> Evidence:
     return _record(
         Evidence(
             step=_largest(steps),
-            compared=max(len(diagnosis.by_run), len(diagnosis.held_out)),
+            compared=max(len(diagnosis.gap.by_run), len(diagnosis.held_out)),
             held_out=len(diagnosis.held_out),
             error=gap.after.overall,
             noise=gap.floor.overall,
@@ -168,7 +168,7 @@ def collect_diagnosis(diagnosis: Diagnosis) -> Evidence:
             parameter_intervals=bool(fitted),
             answer_interval=bool(uncertain),
             budget=bool(diagnosis.error_budget),
-            runs=len(diagnosis.by_run),
+            runs=len(diagnosis.gap.by_run),
             varied=[each.name for each in diagnosis.parameters],
         )
     )

@@ -32,7 +32,7 @@ def test_the_gaps_of_every_run_are_those_of_the_command(posed):
         for figures, scenario in zip((each.before, each.calibrated, each.after), scenarios, strict=True):
             expected = measure_gap(scenario, problem.recording, [each.run])
             assert (figures.overall, figures.channels) == (expected.overall, expected.channels)
-            assert each.floor.overall == expected.floor["overall"]
+            assert each.floor.overall == expected.floor.overall
         assert each.shrink == 1.0 - each.after.overall / each.before.overall
 
 

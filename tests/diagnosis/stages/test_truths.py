@@ -159,7 +159,7 @@ def test_the_gap_shrinks_within_its_interval_to_the_noise_where_all_is_explained
         assert found.gap.after == found.gap.before and found.gap.shrink == 0.0
     for amounts in (found.gap.before, found.gap.calibrated, found.gap.after):
         assert amounts.overall == pytest.approx(np.sqrt(np.mean(np.square(list(amounts.channels.values())))))
-    nominal = measure_gap(single(problem.recording.nominal), problem.recording, found.held_out)
+    nominal = measure_gap(problem.recording.nominal, problem.recording, found.held_out)
     assert found.gap.before.overall == pytest.approx(nominal.overall)
 
 
@@ -264,7 +264,7 @@ def test_a_second_recording_is_joined_to_the_first(heavier, tmp_path):
         folder.mkdir()
         write(heavier, folder, runs=runs)
     found = diagnose(folders[0], after=folders[1], settings=SETTINGS)
-    assert "driver.mass" in found.selected and len(found.by_run) == 3
+    assert "driver.mass" in found.selected and len(found.gap.by_run) == 3
 
 
 def test_noise_that_is_expected_too_large_hides_no_effect(solved):

@@ -129,7 +129,7 @@ def test_a_scenario_has_the_parameters_and_effects_of_a_rig_beside_its_own(folde
 
 
 def scenarios(problem, *amounts):
-    nominal = single(problem.recording.nominal)
+    nominal = problem.recording.nominal
     return tuple(
         make_scenario(problem, nominal, place(problem, (offer("x", "one"), a)) if a else place(problem))
         for a in amounts

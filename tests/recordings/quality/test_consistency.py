@@ -6,13 +6,12 @@ import pytest
 from seatsim.recordings.quality.consistency import check_consistency, check_exchanged_currents
 from seatsim.recordings.quality.issue import RunUnderTest
 from seatsim.recordings.recording import load_recording
-from seatsim.scenario.loading import single
 
 
 @pytest.fixture(scope="module")
 def run(sound):
     recording = load_recording(sound)
-    return RunUnderTest("run-1", recording.table("run-1"), recording, single(recording.nominal))
+    return RunUnderTest("run-1", recording.table("run-1"), recording, recording.nominal)
 
 
 def with_channel(run, **channels):

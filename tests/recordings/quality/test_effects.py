@@ -12,7 +12,6 @@ from seatsim.effects.base import EFFECTS
 from seatsim.recordings.quality.examination import examine
 from seatsim.recordings.recording import Recording, load_recording
 from seatsim.recordings.replay import recorded_inputs
-from seatsim.scenario.loading import single
 from seatsim.simulation.augment import read_sensors
 from seatsim.simulation.damper_bench import bench_force
 from seatsim.simulation.respond import respond
@@ -100,7 +99,7 @@ def bench(tmp_path_factory):
 
 def with_effect(recording, name, values):
     """Return the tables of a recording as a rig with an effect would have given them."""
-    effect, nominal = EFFECTS.find(name)(**values), single(recording.nominal)
+    effect, nominal = EFFECTS.find(name)(**values), recording.nominal
     on_sensor = (effect,) if name.startswith("sensor.") else ()
     rig = dataclasses.replace(nominal, effects=() if on_sensor else (effect,))
     interval, tables = 1.0 / recording.header.sample_rate, {}

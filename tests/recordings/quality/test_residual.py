@@ -7,7 +7,6 @@ from seatsim.recordings.quality.consistency import simulate_nominal
 from seatsim.recordings.quality.issue import RunUnderTest
 from seatsim.recordings.quality.relations import consistency_residuals, filter_band, find_delay
 from seatsim.recordings.recording import load_recording
-from seatsim.scenario.loading import single
 
 RATE = 250.0
 TIME = np.arange(5000) / RATE
@@ -81,7 +80,7 @@ def test_a_delay_is_found_in_rows(rows):
 
 def test_the_nominal_rig_is_driven_by_the_table_at_hand(sound):
     recording = load_recording(sound)
-    run = RunUnderTest("run-1", recording.table("run-1"), recording, single(recording.nominal))
+    run = RunUnderTest("run-1", recording.table("run-1"), recording, recording.nominal)
     outputs = simulate_nominal(run, run.table)
     found = consistency_residuals(run, run.table, outputs)
     assert max(found[name] for name in outputs) < 1e-3 and set(outputs) < set(found)

@@ -12,10 +12,10 @@ ROOT = Path(__file__).resolve().parents[2]
 STUCK = """
 import _imp
 import time
-from seatsim.cli import start, terminal
+from seatsim.cli import interrupts
 from seatsim.schema.leftovers import temporary_folder
-start.GRACE = 0.2
-start.watch_signals()
+interrupts.GRACE = 0.2
+interrupts.watch_signals()
 with temporary_folder() as folder:
     (folder / "file").write_text("unpacked")
     while True:
@@ -49,7 +49,7 @@ def test_a_main_thread_that_does_not_answer_is_not_waited_for(number, answer, tm
 
 
 def test_a_command_that_answers_goes_on(tmp_path):
-    process = stuck("start.go_on(); time.sleep(0.6); print('done', flush=True); break", tmp_path)
+    process = stuck("interrupts.go_on(); time.sleep(0.6); print('done', flush=True); break", tmp_path)
     process.send_signal(signal.SIGINT)
     shown, _ = process.communicate(timeout=10)
     assert process.returncode == 0 and shown.endswith(b"done\n")
@@ -86,8 +86,9 @@ def test_a_command_says_that_it_was_interrupted(number, command, tmp_path):
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("arguments", [[], ["--json"]])
 def test_a_signal_before_signals_are_watched_is_answered_with_a_word(number, arguments):
-    code = "import os, sys; from seatsim.cli import begin; sys.modules['seatsim.cli.start'] = Now(); begin.begin()"
-    now = f"class Now:\n    @staticmethod\n    def start():\n        import os; os.kill(os.getpid(), {int(number)})"
+    code = "import sys; from seatsim.cli import begin; sys.modules['seatsim.cli.interrupts'] = Now(); begin.begin()"
+    stop = f"import os; os.kill(os.getpid(), {int(number)})"
+    now = f"class Now:\n    end = None\n    @staticmethod\n    def watch_signals():\n        {stop}"
     program = f"{now}\n{code}"
     done = subprocess.run([sys.executable, "-c", program, *arguments], capture_output=True, timeout=20, check=False,
                           env=os.environ | {"PYTHONPATH": str(ROOT)})  # fmt: skip

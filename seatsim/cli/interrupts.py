@@ -1,9 +1,9 @@
-"""The start of a command as a process of its own, and its end by a signal: soon, whatever it is doing.
+"""The end of a command by a signal: soon, whatever it is doing.
 
 Ctrl-C (SIGINT) and SIGTERM raise KeyboardInterrupt in the main thread: what a command keeps is written, temporary
 folders are removed, the status is 128 and the number of the signal (130, 143). Python can only do so between two of its
 own instructions. Where the main thread compiles, runs compiled code or waits for other threads, another one ends the
-process `GRACE` seconds after the signal. Nothing heavy is imported before signals are watched.
+process `GRACE` seconds after the signal.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from threading import Event, Thread
 from types import FrameType
 from typing import NoReturn
 
-from seatsim.cli.begin import SIGNALS, say_interrupted
+from seatsim.cli.signals import SIGNALS, say_interrupted
 from seatsim.schema.leftovers import remove_leftovers
 
 GRACE = 1.2
@@ -28,20 +28,8 @@ _received: list[int] = []
 _answered = Event()
 
 
-def start() -> NoReturn:
-    """Run the command line; threads and the orderly end of compiled code, which takes a second, are not waited for."""
-    watch_signals()
-    status = 0
-    try:
-        from seatsim.cli.app import main
-
-        main()
-    except KeyboardInterrupt:
-        say_interrupted()
-    except SystemExit as ended:
-        if isinstance(ended.code, str):
-            raise
-        status = ended.code or 0
+def end(status: int) -> NoReturn:
+    """End the process; threads and the orderly end of compiled code, which takes a second, are not waited for."""
     for stream in (sys.stdout, sys.stderr):
         # Whoever read the output may have closed it.
         with suppress(BrokenPipeError):

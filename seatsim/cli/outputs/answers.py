@@ -1,0 +1,112 @@
+"""What each command prints with `--json`: the record that it makes, whose JSON Schema `seatsim schema COMMAND` prints.
+
+The records of commands that find nothing stand here, all others in the packages that make them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+FILES = {"properties": {"files": {"type": "array", "items": {"type": "string"}}}, "required": ["files"]}
+"""Schema of what all commands print: the files that were written."""
+
+
+class NewAnswer(NamedTuple):
+    """What was written."""
+
+    kind: str
+
+
+class ExploreAnswer(NamedTuple):
+    """A page that is served until the command is interrupted."""
+
+    address: str
+
+
+class BlindMakeAnswer(NamedTuple):
+    """A sealed set; the key is shown this once."""
+
+    cases: int
+    folder: Path
+    sealed: Path
+    key: str
+
+
+class SlurmAnswer(NamedTuple):
+    """A script for an array of tasks, which run a sweep of so many runs."""
+
+    runs: int
+
+
+class ErrorAnswer(NamedTuple):
+    """What any command prints where it ends with an error."""
+
+    error: str
+
+
+class SynthesisAnswer(NamedTuple):
+    """A design, as in `design.yaml`."""
+
+    measures: list[str]
+    gain: list[list[float]]
+    gamma: float
+    lower_bound: float
+
+
+def list_answers() -> Mapping[str, object]:
+    """Return the type of what each command prints, by its name; `error` is what any of them prints where it fails."""
+    from seatsim.blind.carrier.power import Powers
+    from seatsim.blind.score.score import Score
+    from seatsim.characterisation.summary import Characterisation
+    from seatsim.cli.check_files import CheckedFile
+    from seatsim.cli.outputs.simulated import RunAnswer, SweepReport
+    from seatsim.diagnosis.result import Diagnosis
+    from seatsim.exchange.block import ExportedBlock
+    from seatsim.identification.identify import Identification
+    from seatsim.identification.model_benchmark import League
+    from seatsim.importing.importing import Import
+    from seatsim.importing.inspection import Inspection
+    from seatsim.provenance.reproduce import Reproduction
+    from seatsim.recordings.forecast import Forecast
+    from seatsim.recordings.gap import Gap
+    from seatsim.scenario.describe import Pages
+    from seatsim.standards.comfort import Comfort
+    from seatsim.standards.seat_rows import SeatTest
+    from seatsim.sweeps.execute import SweepResult
+
+    return {
+        "run": RunAnswer,
+        "compare": RunAnswer,
+        "sweep": SweepResult | SlurmAnswer,
+        "sweep-report": SweepReport,
+        "synthesise": SynthesisAnswer,
+        "gap": Gap | Forecast,
+        "diagnose": Diagnosis,
+        "characterise": Characterisation,
+        "identify": Identification | League,
+        "describe": Pages,
+        "new": NewAnswer,
+        "check": CheckedFile,
+        "import": Import,
+        "inspect": Inspection,
+        "comfort": Comfort,
+        "seat-test": SeatTest,
+        "export": ExportedBlock,
+        "blind-make": BlindMakeAnswer,
+        "blind-score": Score,
+        "blind-power": Powers,
+        "explore": ExploreAnswer,
+        "reproduce": Reproduction,
+        "error": ErrorAnswer,
+    }
+
+
+def describe_answer(command: str) -> dict[str, object]:
+    """Return the JSON Schema of what a command prints with `--json`: its record, and the files that were written."""
+    from seatsim.schema.json_schema import answer_schema
+
+    schema = {"title": f"seatsim {command} --json", **answer_schema(list_answers()[command])}
+    # An error comes without files.
+    return schema if command == "error" else {**schema, "allOf": [FILES]}

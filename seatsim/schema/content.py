@@ -1,0 +1,141 @@
+"""What a record is as JSON: the one statement from which files, `--json` and its JSON Schema are made.
+
+A record is a `typing.NamedTuple` or a frozen dataclass. Its fields are written under their names, and its properties
+that are marked by `written`. The annotation of a field says where it is written in another way:
+
+    class Line(NamedTuple):
+        passed: Annotated[bool, Form(key="pass")]
+        force: Annotated[float, Form(unit="N")]   # `force_N`
+        history: Unwritten[Array]
+        dose: Joined[Dose]                        # its fields stand among those of the line
+        note: IfAny[str]                          # not written where it is empty
+
+        @property
+        @written()
+        def method(self) -> str: ...
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Iterator, Mapping, Sized
+from functools import cache
+from pathlib import PurePath
+from typing import Annotated, Any, NamedTuple, TypeVar, get_args, get_origin, get_type_hints
+
+T = TypeVar("T")
+F = TypeVar("F", bound=Callable[[Any], object])
+
+
+class Form(NamedTuple):
+    """How a field is written, where that is not under its own name and as it is.
+
+    key: its name in JSON. unit: ends its name there. file: the field is the content of a file, and is written as its
+    name. left_out: it is not written. joined: its fields are written beside those of its record. if_any: it is not
+    written where it is None or empty.
+    """
+
+    key: str = ""
+    unit: str = ""
+    file: str = ""
+    left_out: bool = False
+    joined: bool = False
+    if_any: bool = False
+
+
+Unwritten = Annotated[T, Form(left_out=True)]
+Joined = Annotated[T, Form(joined=True)]
+IfAny = Annotated[T, Form(if_any=True)]
+
+
+class WrittenField(NamedTuple):
+    """A field or property as it is written: its name in Python and in JSON, its form, and its type."""
+
+    name: str
+    key: str
+    form: Form
+    hint: Any
+
+
+def written(key: str = "", *, joined: bool = False, if_any: bool = False) -> Callable[[F], F]:
+    """Mark the function of a property, which is then written like a field (see `Form`)."""
+
+    def mark(function: F) -> F:
+        vars(function)["form"] = Form(key, joined=joined, if_any=if_any)
+        return function
+
+    return mark
+
+
+def is_record(kind: object) -> bool:
+    """Whether a class is that of records."""
+    return isinstance(kind, type) and (hasattr(kind, "_fields") or dataclasses.is_dataclass(kind))
+
+
+@cache
+def list_written(record: type) -> tuple[WrittenField, ...]:
+    """Return what is written of the records of a class: its fields in order, then its marked properties."""
+    hints = get_type_hints(record, include_extras=True)
+    found = []
+    for name in getattr(record, "_fields", None) or [field.name for field in dataclasses.fields(record)]:
+        form = _find_form(hints[name])
+        if not form.left_out:
+            key = form.key or (f"{name}_{form.unit}" if form.unit else name)
+            found.append(WrittenField(name, key, form, str if form.file else hints[name]))
+    for name, function in _list_properties(record):
+        form = vars(function)["form"]
+        found.append(
+            WrittenField(name, form.key or name, form, get_type_hints(function, include_extras=True)["return"])
+        )
+    return tuple(found)
+
+
+def _find_form(hint: object) -> Form:
+    marks = get_args(hint)[1:] if get_origin(hint) is Annotated else ()
+    return next((mark for mark in marks if isinstance(mark, Form)), Form())
+
+
+def _list_properties(record: type) -> Iterator[tuple[str, Any]]:
+    for kind in reversed(record.__mro__):
+        for name, value in vars(kind).items():
+            if isinstance(value, property) and "form" in vars(value.fget):
+                yield name, value.fget
+
+
+def find_record(hint: Any) -> type | None:
+    """Return the record class that a type is or may be, None for the types of other values."""
+    if get_origin(hint) is Annotated:
+        return find_record(get_args(hint)[0])
+    return next((kind for kind in (hint, *get_args(hint)) if is_record(kind)), None)
+
+
+def plain(value: object) -> object:
+    """Return nested values as JSON has them: a record is an object; what is no finite number is null."""
+    import numpy as np  # takes longer to load than the commands that check their options
+
+    if is_record(type(value)) or isinstance(value, Mapping):
+        return to_content(value)
+    if isinstance(value, list | tuple | np.ndarray):
+        return [plain(item) for item in value]
+    if isinstance(value, float | np.floating):
+        return float(value) if math.isfinite(value) else None
+    if isinstance(value, PurePath):
+        return str(value)
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def to_content(record: object) -> dict[str, object]:
+    """Return what a record, or a mapping, is as JSON, an object."""
+    if isinstance(record, Mapping):
+        return {str(key): plain(value) for key, value in record.items()}
+    content: dict[str, object] = {}
+    kind: type = type(record)
+    for field in list_written(kind):
+        value = getattr(record, field.name)
+        if field.form.joined:
+            joined = find_record(field.hint) if value is None else None
+            content |= dict.fromkeys(each.key for each in list_written(joined)) if joined else to_content(value)
+        elif not (field.form.if_any and (value is None or (isinstance(value, Sized) and not len(value)))):
+            content[field.key] = field.form.file if field.form.file and value is not None else plain(value)
+    return content

@@ -1,0 +1,108 @@
+"""A record is written as its fields say, and its JSON Schema says the same."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal, NamedTuple
+
+import jsonschema
+import numpy as np
+import pytest
+
+from seatsim.schema.arrays import Array
+from seatsim.schema.content import Form, IfAny, Joined, Unwritten, to_content, written
+from seatsim.schema.json_schema import answer_schema
+from seatsim.schema.notebook import show_record
+
+
+class Dose(NamedTuple):
+    """A dose."""
+
+    rms: float
+    """In m/s^2."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line of a table."""
+
+    kind: Literal["a", "b"]
+    passed: Annotated[bool, Form(key="pass")]
+    force: Annotated[float, Form(unit="N")]
+    history: Unwritten[Array]
+    dose: Joined[Dose | None]
+    scenario: Annotated[Mapping[str, object] | None, Form(key="file", file="x.yaml", if_any=True)]
+    curve: Array
+    place: Path = Path("a/b")
+    pair: tuple[str, float] = ("x", 1.0)
+    note: IfAny[str] = ""
+    inner: "Line | None" = None
+
+    @property
+    @written("count")
+    def number(self) -> int:
+        """How many."""
+        return len(self.curve)
+
+    @property
+    def other(self) -> int:
+        """Not written."""
+        return 1
+
+
+FULL = Line("a", True, math.nan, np.zeros(9), Dose(0.5), {"plant": {}}, np.array([[1.0, np.inf]]), note="n")
+BARE = Line("b", False, 2.0, np.zeros(9), None, None, np.array([]), inner=FULL)
+WRITTEN = {
+    "kind": "a", "pass": True, "force_N": None, "rms": 0.5, "file": "x.yaml", "curve": [[1.0, None]], "place": "a/b",
+    "pair": ["x", 1.0], "note": "n", "inner": None, "count": 1,
+}  # fmt: skip
+
+
+def test_a_record_is_written_as_its_fields_say():
+    assert to_content(FULL) == WRITTEN
+    bare = {
+        "kind": "b",
+        "pass": False,
+        "force_N": 2.0,
+        "rms": None,
+        "curve": [],
+        "place": "a/b",
+        "pair": ["x", 1.0],
+        "count": 0,
+    }
+    assert to_content(BARE) == bare | {"inner": WRITTEN}
+
+
+def test_the_schema_is_of_what_is_written_and_says_what_the_source_says():
+    schema = answer_schema(Line)
+    for record in (FULL, BARE):
+        jsonschema.validate(to_content(record), schema)
+    assert list(schema["properties"]) == [*WRITTEN]
+    assert set(schema["properties"]) - set(schema["required"]) == {"file", "note"}
+    assert schema["description"] == "A line of a table." and schema["properties"]["count"]["description"] == "How many."
+    assert schema["properties"]["rms"] == {"type": ["number", "null"], "description": "In m/s^2."}
+
+
+@pytest.mark.parametrize(
+    ("key", "wrong"),
+    [
+        ("kind", "c"),
+        ("pass", 1),
+        ("rms", "x"),
+        ("curve", 1.0),
+        ("inner", {"kind": "a"}),
+        ("count", 0.5),
+        ("pair", ["x"]),
+    ],
+)
+def test_the_schema_refuses_what_is_never_written(key, wrong):
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(WRITTEN | {key: wrong}, answer_schema(Line))
+
+
+def test_a_notebook_shows_values_and_records_in_lists_as_tables():
+    shown = show_record({"a": {"b": 0.123456}, "none": None, "rows": [{"x<": 1, "deep": {"y": 2}}] * 20})
+    assert "<td>a.b</td><td>0.1235</td>" in shown and "<td>none</td><td></td>" in shown
+    assert shown.count("<th>x&lt;</th>") == 1 and shown.count("<td>1</td>") == 12 and "deep" not in shown
+    assert "0.12" not in show_record({"a": {"b": 0.123456}, "c": 1}, "c")
