@@ -77,7 +77,8 @@ class Plant:
 
     def close(self, corner: tuple[Fraction, ...]) -> Exact:
         """Return A of the closed loop."""
-        return self.A + self.B2 @ self.gain(corner) @ self.C2
+        closed: Exact = self.A + self.B2 @ self.gain(corner) @ self.C2
+        return closed
 
     def _respond(self, s: Number | None) -> list[tuple[Exact, Exact]]:
         """Return P11, P12, P21, P22 at s; None is infinity."""

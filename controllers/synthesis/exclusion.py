@@ -11,8 +11,8 @@ these functions of it, each concave in every entry of K by itself, is at least z
 *a coefficient* of the characteristic polynomial of A + B2 K C2, which is affine in each entry: `g(K) = -c(K)`.
 
 Where a sum of such functions with weights >= 0 is at least zero, one of them is. A sum is smallest at a corner of a
-box. The weights are those of a matrix game, found by a linear program: near the best gain, where several peaks are equally
-high, their slopes cancel in the sum.
+box. The weights are those of a matrix game, found by a linear program: near the best gain, where several peaks are
+equally high, their slopes cancel in the sum.
 
 A third reason holds without a level: `F(K) = A + B2 K C2 - shift I` is affine in K. Where a symmetric X that is not
 positive semidefinite has F'X + X F < 0 at all corners, every loop of the box has a pole right of the shift, by the

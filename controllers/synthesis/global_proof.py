@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from controllers.synthesis.exclusion import AtPoint, BoxView, Complex, Inequalities, Unstable, WeightedSum, weigh
+from controllers.synthesis.exclusion import AtPoint, BoxView, Inequalities, Unstable, WeightedSum, weigh
 from controllers.synthesis.plant import MATRICES, GeneralisedPlant
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
@@ -139,12 +139,11 @@ def prove_no_better(
         if time.monotonic() - told > 1.0:
             told = time.monotonic()
             progress(f"no better gain in {100 * done:.1f} % of the box, {proof.boxes} boxes")
-        norms = [] if box.reason else [view.norm_at((box.low + box.high) / 2) for view in views]
-        if norms and all(norm < level for norm, _ in norms):
-            proof.better = views[0].gain((box.low + box.high)[None] / 2)[0]
-            break
-        found = box.reason or _exclude_or_split(views, box, [points for _, points in norms])
+        found = box.reason or _exclude_or_divide(views, box)
         if isinstance(found, _Division):
+            if found.better is not None:
+                proof.better = found.better
+                break
             proof.steps.append(found.split)
             waiting += [found.above, found.below]
         else:
@@ -163,16 +162,18 @@ class _Box(NamedTuple):
 
 
 class _Division(NamedTuple):
-    """A divided box."""
+    """A divided box, and a gain in it that is better than the level, if one was met."""
 
     split: Split
     below: _Box
     above: _Box
+    better: Array | None = None
 
 
-def _exclude_or_split(views: Sequence[BoxView], box: _Box, points: Sequence[Complex]) -> Reason | _Division:
+def _exclude_or_divide(views: Sequence[BoxView], box: _Box) -> Reason | _Division:
     """Return why no gain in a box is good enough, or its two parts."""
-    listed = [view.list_inequalities(box.low, box.high, own) for view, own in zip(views, points, strict=True)]
+    norms = [view.norm_at((box.low + box.high) / 2) for view in views]
+    listed = [view.list_inequalities(box.low, box.high, own) for view, (_, own) in zip(views, norms, strict=True)]
     values, sizes = np.vstack([one.values for one in listed]), np.concatenate([one.sizes for one in listed])
     inequalities = Inequalities(values, sizes, [row for one in listed for row in one.rows])
     reason, at_corners = weigh(inequalities)
@@ -182,7 +183,13 @@ def _exclude_or_split(views: Sequence[BoxView], box: _Box, points: Sequence[Comp
         unstable = view.prove_unstable(box.low, box.high)
         if unstable is not None:
             return unstable
-        slab = _largest_slab(np.vstack([values, at_corners]))
+        # Where the inequality is violated most is where a better gain is likely to be, if there is one.
+    corner = np.array(list(np.ndindex(*(2,) * len(box.low))))[int(at_corners.argmin())]
+    for values_met in ((box.low + box.high) / 2, np.where(corner == 1, box.high, box.low)):
+        if all(view.norm_at(values_met)[0] < view.level for view in views):
+            better = views[0].gain(values_met[None])[0]
+            return _divide(box, _Slab(0, 0.5, 0, False), None)._replace(better=better)
+    slab = _largest_slab(np.vstack([values, at_corners]))
     if slab.share > _LEAST_SHARE:
         alone = WeightedSum((1.0,), (inequalities.rows[slab.row],)) if slab.row < len(values) else reason
         return _divide(box, slab, alone)
