@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NotRequired, TypedDict, cast
 
@@ -11,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ruamel.yaml import YAML
 
 from controllers.synthesis.certify import Certificate
+from controllers.synthesis.global_proof import FACTOR, GlobalProof, prove_no_better
 from controllers.synthesis.plant import MATRICES, GeneralisedPlant
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
@@ -46,7 +48,8 @@ class Design:
 
     `gain` (nu, ny) is in the user's units, every entry at most `max_gain` in magnitude. `lower_bound` is what no linear
     controller of any order can go below. `gamma`, `certificate`, `peak_frequency`, `poles` and `plant` are those of
-    the worst loop. `measures` names what is measured, where its user has names for it.
+    the worst loop. `measures` names what is measured, where its user has names for it; `proof`, where it was asked for,
+    says whether any gain within `max_gain` is better (`prove_no_better`).
     """
 
     gain: Array
@@ -54,6 +57,7 @@ class Design:
     lower_bound: float
     loops: tuple[ClosedLoop, ...]
     measures: tuple[str, ...] = ()
+    proof: GlobalProof | None = None
 
     @property
     def worst(self) -> ClosedLoop:
@@ -80,9 +84,20 @@ class Design:
         """Poles of the worst loop in rad/s."""
         return self.worst.poles
 
+    def prove(self, progress: Callable[[str], object] = lambda text: None) -> Design:
+        """Return the design with the proof that no gain within `max_gain` is better by more than 0.1 %.
+
+        Raises:
+            InputError: it has more free gains than are searched over their whole box.
+        """
+        bounds = np.full(int(self.worst.plant.free.sum()), self.max_gain)
+        plants = [loop.plant for loop in self.loops]
+        return replace(self, proof=prove_no_better(plants, self.gamma * FACTOR, -bounds, bounds, progress=progress))
+
     def save(self, path: str | Path) -> None:
         """Write the design as YAML; the file appears whole or not at all."""
-        write_whole(Path(path), lambda part: _yaml().dump(_to_plain(self), part))
+        content = {**_to_plain(self), **({"global": _to_plain_global(self.proof)} if self.proof else {})}
+        write_whole(Path(path), lambda part: _yaml().dump(content, part))
 
     @classmethod
     def load(cls, path: str | Path) -> Design:
@@ -158,6 +173,12 @@ def _to_plain(design: Design) -> _PlainDesign:
         "certificate": _to_readable_proof(design.certificate),
         "loops": [_to_plain_loop(loop) for loop in design.loops],
     }
+
+
+def _to_plain_global(proof: GlobalProof) -> dict[str, object]:
+    """Return the box of the free gains, the level over gamma, the number of boxes, and whether all are excluded."""
+    box = [proof.low.tolist(), proof.high.tolist()]
+    return {"box": box, "factor": FACTOR, "boxes": proof.boxes, "proven": proof.is_proven}
 
 
 def _to_readable_proof(proof: Certificate | None) -> _ReadableProof | None:

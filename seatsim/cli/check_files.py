@@ -24,12 +24,13 @@ from seatsim.rig.temperature import TemperatureScaling
 from seatsim.scenario.describe import KINDS
 from seatsim.scenario.loading import load
 from seatsim.scenario.plausibility import list_doubts
-from seatsim.schema.content import Joined
+from seatsim.schema.content import IfAny, Joined
 from seatsim.schema.errors import InputError, SeatsimError
 from seatsim.schema.fields import bounds, field_names
 from seatsim.schema.modules import UNIT, use
 from seatsim.schema.registry import find, names
 from seatsim.schema.yaml_source import Source
+from seatsim.simulation.checks import CheckedRun, applicable_checks, check_run
 from seatsim.simulation.result import Run
 from seatsim.simulation.runs import run_one
 from seatsim.sweeps.definition import is_sweep
@@ -122,6 +123,20 @@ class CheckedFile(NamedTuple):
 
     file: Path
     checked: Joined[Checked]
+    checks: IfAny[tuple[CheckedRun, ...]] = ()
+    """What its runs gave for the checks that it states, with `--run`."""
+
+
+def run_checks(path: Path) -> tuple[CheckedRun, ...]:
+    """Run a scenario and return how it meets the checks that it states.
+
+    Raises:
+        InputError: it states none, or one that cannot be made. RunError: a run could not be carried to its end.
+    """
+    scenarios = [scenario for scenario in load(path) if applicable_checks(scenario)]
+    if not scenarios:
+        raise InputError(f"{path}: states nothing under 'checks', such as 'checks: {{seat_factor: {{max: 0.9}}}}'")
+    return tuple(checked for scenario in scenarios for checked in check_run(run_one(scenario)))
 
 
 def check_file(path: Path) -> Checked:

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from rich.table import Table
 
-from seatsim.rig.designs import CheckedLaw, DesignedLoop, SynthesisedDesign
+from seatsim.rig.designs import BoxProof, CheckedLaw, DesignedLoop, SynthesisedDesign
 from seatsim.scenario.scenario import Scenario
 from seatsim.simulation.simulate import DEFAULT_SAMPLE_TIME
 
@@ -32,6 +32,8 @@ def design_table(design: SynthesisedDesign, scenario: Scenario) -> Table:
         "peak": f"{design.peak_frequency / (2 * math.pi):.3g} Hz",
         "poles": ", ".join(f"{pole:.3g}" for pole in design.poles) + "  [rad/s]",
     }
+    if design.proof is not None:
+        rows["best gain"] = _describe_proof(design.proof)
     if len(design.loops) > 1:
         rows["plants"] = _describe_loops(design.loops)
     if not all(loop.norms_agree for loop in design.loops):
@@ -46,6 +48,14 @@ def _describe_disk_margin(margin: float) -> str:
     most = "any" if margin > 2 - 1e-6 else f"{(2 + margin) / (2 - margin):.3g}"
     least, turn = (2 - margin) / (2 + margin), 2 * math.degrees(math.atan(margin / 2))
     return f"gain times {max(least, 0.0):.2g} to {most}, phase {turn:.3g} degrees"
+
+
+def _describe_proof(proof: BoxProof) -> str:
+    if proof.better is not None:
+        return f"no: {', '.join(f'{value:.6g}' for value in proof.better.ravel())} is better"
+    if proof.is_proven:
+        return f"proven: no permitted gain is better by more than 0.1 % ({proof.boxes} boxes)"
+    return f"not decided in the time permitted ({proof.boxes} boxes)"
 
 
 def _describe_loops(loops: Sequence[DesignedLoop]) -> str:

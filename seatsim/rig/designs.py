@@ -28,6 +28,25 @@ class NormProof(Protocol):
         """Proven upper bound of the norm."""
 
 
+class BoxProof(Protocol):
+    """A proof that no gain in the box of the permitted ones is better than a level below `gamma`."""
+
+    @property
+    def is_proven(self) -> bool:
+        """Whether every part of the box is excluded."""
+
+    @property
+    def boxes(self) -> int:
+        """Number of boxes that are excluded."""
+
+    @property
+    def better(self) -> Array | None:
+        """A better gain that was met instead."""
+
+    def save(self, path: Path) -> None:
+        """Write the proof to a file; the file is complete or absent."""
+
+
 class DesignedLoop(Protocol):
     """Figures of one plant under the designed gain."""
 
@@ -86,6 +105,13 @@ class SynthesisedDesign(Protocol):
     @property
     def loops(self) -> Sequence[DesignedLoop]:
         """Every plant under the gain."""
+
+    @property
+    def proof(self) -> BoxProof | None:
+        """Whether any permitted gain is better by more than 0.1 %, where `prove` was asked."""
+
+    def prove(self, progress: Progress) -> SynthesisedDesign:
+        """Return the design with its `proof`."""
 
     def save(self, path: str | Path) -> None:
         """Write the design to a file; the file is complete or absent."""

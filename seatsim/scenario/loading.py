@@ -18,7 +18,7 @@ from seatsim.scenario.sections import NEEDED, NEEDED_BY_A_SEAT, OF_ALL_RUNS, SEC
 from seatsim.schema.errors import InputError, gathered, nearest, raise_all
 from seatsim.schema.guarded import is_there
 from seatsim.schema.text import join_names
-from seatsim.schema.validation import check_keys
+from seatsim.schema.validation import check_keys, mapping
 from seatsim.schema.yaml_source import Source
 
 EXAMPLES = (Path(__file__).parents[1] / "examples", Path(__file__).parents[2] / "scenarios")
@@ -70,7 +70,9 @@ def load(scenario: str | Path | Mapping[str, object], settings: Mapping[str, obj
         if len(errors) == _MOST_ERRORS:
             break
     raise_all(errors)
-    variants = {one.label["variant"]: None for one in scenarios if "variant" in one.label}
+    # A setting may leave the variants of the file out.
+    variants = {**mapping(source.data.get("variants", {}), source, ("variants",))}
+    variants |= {one.label["variant"]: None for one in scenarios if "variant" in one.label}
     require_variants(scenarios[0].checks, variants, source)
     return scenarios
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from seatsim.rig.control import LAWS, ForceLaw, prepare_law
 from seatsim.rig.sampled_loop import SampledLoop, build_sampled_loop
 from seatsim.scenario.checks import LOOP_FIGURES, STABLE, Check
 from seatsim.scenario.scenario import Scenario, Start
+from seatsim.schema.content import Form, Joined, written
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import specification_of
 from seatsim.simulation.augment import augment_plant
@@ -34,10 +35,11 @@ class Figure(NamedTuple):
     name: str
     value: float
     unit: str
-    low: float
-    high: float
+    low: Annotated[float, Form(key="min")]
+    high: Annotated[float, Form(key="max")]
 
     @property
+    @written("pass")
     def is_within(self) -> bool:
         """Whether the figure lies within its bounds; one that has no value does not."""
         return self.low <= self.value <= self.high
@@ -54,7 +56,10 @@ class CheckedRun(NamedTuple):
 
     run: str
     check: str
-    figure: Figure
+    figure: Joined[Figure]
+
+    def __str__(self) -> str:
+        return f"{self.run}, {self.check}: {self.figure}"
 
 
 def check_run(run: Run) -> Iterator[CheckedRun]:
@@ -102,10 +107,12 @@ def _measure_stability(scenario: Scenario) -> Iterator[Figure]:
     if isinstance(loop, SampledLoop):
         # The largest number below 1: a loop with a radius of 1 does not come to rest.
         radius, bound = loop.radius(_delay_samples(scenario, loop)), math.nextafter(1.0, 0.0)
-        yield Figure("spectral radius of the sampled loop", radius, "-", 0.0, bound)
+        yield Figure("spectral radius of the sampled loop", radius, "-", -math.inf, bound)
     released = simulate(replace(scenario, excitation=Rest(RELEASE_DURATION), start=RELEASE))
     speed = np.abs(released["suspension_velocity"][-round(2.0 / released.step) :])
-    yield Figure("speed of the suspension 10 to 12 s after a release", float(speed.max()), "m/s", 0.0, LARGEST_SPEED)
+    yield Figure(
+        "speed of the suspension 10 to 12 s after a release", float(speed.max()), "m/s", -math.inf, LARGEST_SPEED
+    )
 
 
 def _loop_figure(scenario: Scenario, name: str) -> float:

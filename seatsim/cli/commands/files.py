@@ -43,11 +43,14 @@ def new(
 
 def check(
     file: Annotated[Path, typer.Argument(help="A scenario, recording, sweep, damper, map of import, or Python file.")],
+    run: Annotated[
+        bool, typer.Option("--run", help="Run the scenario, and see whether it meets what it states under 'checks'.")
+    ] = False,
     own_code: OwnCode = None,
     as_json: Json = False,
 ) -> None:
-    """Read a file as the other commands would, without running it, and say what is wrong or doubtful."""
-    from seatsim.cli.check_files import CheckedFile, check_file
+    """Read a file as the other commands would, and say what is wrong or doubtful; it is run by --run alone."""
+    from seatsim.cli.check_files import CheckedFile, check_file, run_checks
 
     try:
         found = check_file(file)
@@ -56,7 +59,14 @@ def check(
         raise typer.Exit(error.exit_status) from error
     say(f"{file}: {found.kind}, no errors; {', '.join(found.holds)}")
     warn(found.warnings, "warning")
-    answer(CheckedFile(file, found))
+    with show_progress() as progress:
+        progress("running the scenario" if run else "reading")
+        checked = run_checks(file) if run else ()
+    for one in checked:
+        (say if one.figure.is_within else complain)(f"{'met' if one.figure.is_within else 'FAILED'}: {one}")
+    answer(CheckedFile(file, found, checked))
+    if not all(one.figure.is_within for one in checked):
+        raise typer.Exit(1)
 
 
 def schema(

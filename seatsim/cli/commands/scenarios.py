@@ -62,6 +62,9 @@ def _choose(name: str, runs: Sequence[Scenario], variant: str | None) -> Scenari
 def synthesise(
     scenario: OneScenario,
     out_folder: Out = None,
+    prove_best: Annotated[
+        bool, typer.Option("--global", help="Prove that no permitted gain is better by 0.1 % (up to four gains).")
+    ] = False,
     settings: Settings = None,
     own_code: OwnCode = None,
     as_json: Json = False,
@@ -77,12 +80,16 @@ def synthesise(
     chosen = single(scenario, scenario_settings(settings))
     with show_progress() as progress:
         design = synthesise_design(chosen, progress)
+        design = design.prove(progress) if prove_best else design
     show_table(design_table(design, chosen))
     folder = out_folder or Path("out") / chosen.name
 
     def write(part: Path) -> list[Path]:
         design.save(part / "design.yaml")
-        return [part / "design.yaml"]
+        if design.proof is None:
+            return [part / "design.yaml"]
+        design.proof.save(part / "global.json")
+        return [part / "design.yaml", part / "global.json"]
 
     paths = write_documented(folder, write, chosen.seed)
     wrote(folder, paths)

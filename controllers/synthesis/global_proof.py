@@ -1,0 +1,237 @@
+"""Proof that no gain in a box is better than a level: branch and bound over boxes of gains.
+
+`controllers.synthesis.exclusion` says why no gain in a box is good enough; a box of which it cannot say so is divided.
+Corners and inequalities are exact in binary, so that the list of boxes can be checked in fractions
+(`benchmarks/exact_certificates.py`). The cost grows with two to the power of the number of gains.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from controllers.synthesis.exclusion import AtPoint, BoxView, Inequalities, Unstable, WeightedSum, weigh
+from controllers.synthesis.plant import MATRICES, GeneralisedPlant
+from seatsim.schema.arrays import Array
+from seatsim.schema.errors import InputError
+from seatsim.schema.files import write_whole
+
+MOST_GAINS = 4
+"""Free gains up to which boxes are searched."""
+FACTOR = 1 - 1e-3
+"""Level that is proven, over the norm of the design."""
+_SMALLEST = 1e-12
+_LEAST_SHARE = 0.1
+# An inequality that holds in part of a box by interpolation holds there in floating-point numbers too.
+_ROUNDING = 1e-6
+
+
+class Split(NamedTuple):
+    """A box that was divided: the number of the free gain, and where."""
+
+    gain: int
+    at: float
+
+
+Reason = WeightedSum | Unstable
+
+
+@dataclass(eq=False)
+class GlobalProof:
+    """What is proven of a box `low` to `high` of the free gains (row by row), in the order in which boxes were halved.
+
+    `level` is what no gain in the box is below; `steps` lists, for a box, its halving followed by the steps of its
+    lower and then of its upper half, or what excludes it. `better` is a gain with a norm below the level that was
+    found on the way, `open_boxes` what time did not suffice for: with either nothing is proven.
+    """
+
+    plants: Sequence[GeneralisedPlant]
+    low: Array
+    high: Array
+    level: float
+    steps: list[Split | Reason] = field(default_factory=list)
+    better: Array | None = None
+    open_boxes: int = 0
+
+    @property
+    def is_proven(self) -> bool:
+        """Whether every part of the box is excluded."""
+        return self.better is None and self.open_boxes == 0
+
+    @property
+    def boxes(self) -> int:
+        """Number of boxes that are excluded."""
+        return sum(not isinstance(step, Split) for step in self.steps)
+
+    def save(self, path: Path) -> None:
+        """Write plants, box, level and steps as JSON; the file appears whole or not at all."""
+        plants = [
+            {name: getattr(plant, name).tolist() for name in MATRICES} | {"free": plant.free.astype(int).tolist()}
+            for plant in self.plants
+        ]
+        content = {"low": self.low.tolist(), "high": self.high.tolist(), "level": self.level, "plants": plants}
+        content["steps"] = [_to_plain(step) for step in self.steps]
+        write_whole(path, lambda part: part.write_text(json.dumps(content)))
+
+
+def _to_plain(step: Split | Reason) -> dict[str, object]:
+    if isinstance(step, Split):
+        return step._asdict()
+    if isinstance(step, Unstable):
+        return step._asdict() | {"X": step.X.tolist()}
+    named = []
+    for weight, inequality in zip(*step, strict=True):
+        plain = inequality._asdict() | {"weight": weight}
+        if isinstance(inequality, AtPoint):
+            s = inequality.s
+            plain |= {"s": [s.real, s.imag] if np.isfinite(s) else None}
+            plain |= {name: [[z.real, z.imag] for z in getattr(inequality, name)] for name in "pq"}
+        named.append(plain)
+    return {"inequalities": named}
+
+
+def prove_no_better(
+    plants: Sequence[GeneralisedPlant],
+    level: float,
+    low: ArrayLike,
+    high: ArrayLike,
+    time_budget: float = 600.0,
+    progress: Callable[[str], object] = lambda text: None,
+) -> GlobalProof:
+    """Return the proof that no gain in a box gives stable loops around all plants with norms below a level.
+
+    Boxes are searched depth first. Where the middle of a box is a gain below the level, the search ends with it.
+
+    Args:
+        plants: of one shape and structure; one gain serves all, and the largest norm counts.
+        level: positive; inf proves that no gain in the box makes all loops stable.
+        low: least values of the free gains, row by row, shape (free gains,).
+        high: largest values of the free gains.
+        time_budget: in s; what is not excluded by then is counted in `open_boxes`.
+        progress: is told, now and then, how much of the box is excluded.
+
+    Raises:
+        InputError: more free gains than `MOST_GAINS`, or a box of another shape.
+    """
+    low, high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
+    count = int(plants[0].free.sum())
+    if count > MOST_GAINS:
+        raise InputError(f"{count} free gains; at most {MOST_GAINS} are searched over their whole box")
+    if not low.shape == high.shape == (count,) or not np.all(low < high):
+        raise InputError(f"the box needs bounds low < high of {count} gains each")
+    proof = GlobalProof(plants, low, high, level)
+    views = [BoxView(number, plant, level) for number, plant in enumerate(plants)]
+    # Depth first, the lower half first: the order in which a checker walks through the steps again.
+    waiting = [_Box(low, high, 1.0, None)]
+    done, end, told = 0.0, time.monotonic() + time_budget, 0.0
+    while waiting:
+        box = waiting.pop()
+        if time.monotonic() > end or np.all(box.high - box.low < _SMALLEST * (high - low)):
+            proof.open_boxes = len(waiting) + 1
+            break
+        if time.monotonic() - told > 1.0:
+            told = time.monotonic()
+            progress(f"no better gain in {100 * done:.1f} % of the box, {proof.boxes} boxes")
+        found = box.reason or _exclude_or_divide(views, box)
+        if isinstance(found, _Division):
+            if found.better is not None:
+                proof.better = found.better
+                break
+            proof.steps.append(found.split)
+            waiting += [found.above, found.below]
+        else:
+            proof.steps.append(found)
+            done += box.share
+    return proof
+
+
+class _Box(NamedTuple):
+    """A box of free gains, its share of the whole, and why no gain in it is good enough, where that is known."""
+
+    low: Array
+    high: Array
+    share: float
+    reason: Reason | None
+
+
+class _Division(NamedTuple):
+    """A divided box, and a gain in it that is better than the level, if one was met."""
+
+    split: Split
+    below: _Box
+    above: _Box
+    better: Array | None = None
+
+
+def _exclude_or_divide(views: Sequence[BoxView], box: _Box) -> Reason | _Division:
+    """Return why no gain in a box is good enough, or its two parts."""
+    norms = [view.norm_at((box.low + box.high) / 2) for view in views]
+    listed = [view.list_inequalities(box.low, box.high, own) for view, (_, own) in zip(views, norms, strict=True)]
+    values, sizes = np.vstack([one.values for one in listed]), np.concatenate([one.sizes for one in listed])
+    inequalities = Inequalities(values, sizes, [row for one in listed for row in one.rows])
+    reason, at_corners = weigh(inequalities)
+    if at_corners.min() >= 0:
+        return reason
+    for view in views:
+        unstable = view.prove_unstable(box.low, box.high)
+        if unstable is not None:
+            return unstable
+        # Where the inequality is violated most is where a better gain is likely to be, if there is one.
+    corner = np.array(list(np.ndindex(*(2,) * len(box.low))))[int(at_corners.argmin())]
+    for values_met in ((box.low + box.high) / 2, np.where(corner == 1, box.high, box.low)):
+        if all(view.norm_at(values_met)[0] < view.level for view in views):
+            better = views[0].gain(values_met[None])[0]
+            return _divide(box, _Slab(0, 0.5, 0, False), None)._replace(better=better)
+    slab = _largest_slab(np.vstack([values, at_corners]))
+    if slab.share > _LEAST_SHARE:
+        alone = WeightedSum((1.0,), (inequalities.rows[slab.row],)) if slab.row < len(values) else reason
+        return _divide(box, slab, alone)
+    cube = values.reshape(len(values), *(2,) * len(box.low))
+    widest = int(np.argmax([np.abs(np.diff(cube, axis=axis)).mean() for axis in range(1, cube.ndim)]))
+    return _divide(box, _Slab(0, 0.5, widest, False), None)
+
+
+class _Slab(NamedTuple):
+    """The part of a box in which an inequality holds: its row, the share of the box, its gain, whether at its top."""
+
+    row: int
+    share: float
+    gain: int
+    at_the_top: bool
+
+
+def _largest_slab(values: Array) -> _Slab:
+    """Return the largest part of a box at one of its ends in which one of the inequalities holds; rows by corners.
+
+    Along an edge of the box an inequality is concave, hence at least as large as the straight line between its ends.
+    """
+    best = _Slab(0, 0.0, 0, False)
+    cube = values.reshape(len(values), *(2,) * (values.shape[1].bit_length() - 1))
+    for gain in range(cube.ndim - 1):
+        low, high = np.moveaxis(cube, gain + 1, 0).reshape(2, len(values), -1)
+        for near, far, at_the_top in ((low, high, False), (high, low, True)):
+            crossing = (near >= 0) & (far < 0)
+            shares = np.where(crossing, near / np.where(crossing, near - far, 1.0), 1.0).min(axis=1)
+            shares[near.min(axis=1) < 0] = 0.0
+            row = int(shares.argmax())
+            if shares[row] > best.share:
+                best = _Slab(row, float(shares[row]) * (1 - _ROUNDING), gain, at_the_top)
+    return best
+
+
+def _divide(box: _Box, slab: _Slab, reason: Reason | None) -> _Division:
+    """Cut a slab off a box, for which there is a reason or none."""
+    gain, part = slab.gain, 1 - slab.share if slab.at_the_top else slab.share
+    at = float(box.low[gain] + part * (box.high[gain] - box.low[gain]))
+    middle_low, middle_high = box.low.copy(), box.high.copy()
+    middle_low[gain] = middle_high[gain] = at
+    below = _Box(box.low, middle_high, box.share * part, None if slab.at_the_top else reason)
+    above = _Box(middle_low, box.high, box.share * (1 - part), reason if slab.at_the_top else None)
+    return _Division(Split(gain, at), below, above)

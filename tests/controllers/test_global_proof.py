@@ -1,0 +1,133 @@
+"""Proofs that no gain in a box is better: checked in fractions by code that shares nothing with the search."""
+
+import json
+
+import numpy as np
+import pytest
+
+from controllers import Design, GeneralisedPlant, synthesise
+from controllers.seat_plant import Weights, build_generalised_plant
+from controllers.synthesis.exclusion import adjugate
+from controllers.synthesis.global_proof import prove_no_better
+from controllers.synthesis.norm import hinf_norm
+from seatsim.rig.plant import Plant
+from seatsim.schema.errors import InputError
+
+SEAT = build_generalised_plant(Plant(20.0, 80.0, 4600.0, 150.0, 60000.0, 1500.0), Weights())
+LOW, HIGH = np.array([-5000.0, 0.0]), np.array([5000.0, 8000.0])
+
+
+def norm(plant, values):
+    return hinf_norm(plant.close(np.reshape(values, plant.free.shape))).value
+
+
+def least_norm(plant, low, high, count=40):
+    """Return the least norm on a grid of two gains, and where it is."""
+    grid = np.array(np.meshgrid(*(np.linspace(*ends, count) for ends in zip(low, high, strict=True)))).reshape(2, -1).T
+    norms = [norm(plant, values) for values in grid]
+    return min(norms), grid[int(np.argmin(norms))]
+
+
+@pytest.fixture
+def check(benchmark):
+    """Check the file of a proof in fractions."""
+    return benchmark("exact_global_proofs").check
+
+
+def two_by_two():
+    """A plant of two controls and two measurements."""
+    draw = np.random.default_rng(4)
+    A = draw.normal(size=(4, 4)) - 1.5 * np.eye(4)
+    shapes = ((4, 2), (4, 2), (2, 4), (2, 4))
+    B1, B2, C1, C2 = (draw.normal(size=shape) for shape in shapes)
+    return GeneralisedPlant(A, B1, B2, C1, C2, np.zeros((2, 2)), 0.3 * np.eye(2), np.zeros((2, 2)))
+
+
+def test_no_gain_of_a_seat_is_better_than_the_least_norm_on_a_grid_but_for_a_percent(check, tmp_path):
+    least, _ = least_norm(SEAT, LOW, HIGH)
+    proof = prove_no_better([SEAT], 0.99 * least, LOW, HIGH)
+    assert proof.is_proven
+    proof.save(tmp_path / "global.json")
+    assert check(tmp_path / "global.json") == f"proven in {proof.boxes} boxes"
+
+
+@pytest.mark.parametrize("fault", ["level", "box", "step", "weight"])
+def test_a_proof_of_too_much_is_refuted(check, tmp_path, fault):
+    proof = prove_no_better([SEAT], 0.99 * least_norm(SEAT, LOW, HIGH)[0], LOW, HIGH)
+    path = tmp_path / "global.json"
+    proof.save(path)
+    plain = json.loads(path.read_text())
+    if fault == "level":
+        plain["level"] *= 1.03
+    elif fault == "box":
+        plain["low"][1] = -3000.0
+    elif fault == "step":
+        plain["steps"].pop()
+    else:
+        step = next(step for step in plain["steps"] if "inequalities" in step)
+        step["inequalities"][0]["weight"] *= -1.0
+    path.write_text(json.dumps(plain))
+    assert check(path).startswith("REFUTED")
+
+
+def test_a_gain_that_is_better_is_found_and_not_denied():
+    least, _ = least_norm(SEAT, LOW, HIGH)
+    proof = prove_no_better([SEAT], 1.01 * least, LOW, HIGH)
+    assert not proof.is_proven
+    assert norm(SEAT, proof.better) < 1.01 * least
+
+
+def test_one_gain_for_two_plants_is_judged_by_the_worse(check, tmp_path):
+    hot = build_generalised_plant(Plant(20.0, 80.0, 4600.0, 150.0, 60000.0, 1500.0), Weights(), force_factor=0.5)
+    grid = np.array(np.meshgrid(np.linspace(-5000, 5000, 40), np.linspace(0, 8000, 40))).reshape(2, -1).T
+    least = min(max(norm(SEAT, values), norm(hot, values)) for values in grid)
+    proof = prove_no_better([SEAT, hot], 0.99 * least, LOW, HIGH)
+    proof.save(tmp_path / "global.json")
+    assert check(tmp_path / "global.json").startswith("proven")
+    assert least > least_norm(SEAT, LOW, HIGH)[0]
+
+
+def test_two_controls_and_two_measurements(check, tmp_path):
+    plant, bound = two_by_two(), np.full(4, 0.5)
+    least = synthesise(plant, max_gain=0.5).gamma
+    proof = prove_no_better([plant], 0.97 * least, -bound, bound, time_budget=60.0)
+    assert proof.is_proven
+    proof.save(tmp_path / "global.json")
+    assert check(tmp_path / "global.json").startswith("proven")
+
+
+def test_a_plant_that_no_gain_stabilises_is_proven_to_be_one(check, tmp_path):
+    # x'' = x' + k x: the sum of the poles is 1 whatever the gain.
+    one, zero = np.eye(2)[:, 1:], np.zeros((1, 1))
+    plant = GeneralisedPlant([[0.0, 1.0], [0.0, 1.0]], one, one, [[1.0, 0.0]], [[1.0, 0.0]], zero, zero, zero)
+    proof = prove_no_better([plant], np.inf, [-1e6], [1e6])
+    assert proof.is_proven
+
+
+def test_what_time_does_not_suffice_for_is_counted():
+    proof = prove_no_better([SEAT], 1.0, LOW, HIGH, time_budget=0.0)
+    assert (proof.is_proven, proof.open_boxes) == (False, 1)
+
+
+def test_the_adjugate_of_a_singular_matrix():
+    rng = np.random.default_rng(0)
+    L = rng.normal(size=(3, 3)) + 1j * rng.normal(size=(3, 3))
+    np.testing.assert_allclose(adjugate(L) @ L, np.linalg.det(L) * np.eye(3), atol=1e-12)
+    L[2] = L[0] + L[1]
+    np.testing.assert_allclose(adjugate(L) @ L, np.zeros((3, 3)), atol=1e-12)
+    assert np.abs(adjugate(L)).max() > 0.1
+
+
+@pytest.mark.parametrize(("low", "high", "said"), [([0.0], [1.0], "2 gains"), ([1.0, 0.0], [0.0, 1.0], "low < high")])
+def test_a_box_that_is_none_is_refused(low, high, said):
+    with pytest.raises(InputError, match=said):
+        prove_no_better([SEAT], 1.0, low, high)
+
+
+def test_a_design_says_in_its_file_what_was_proven(tmp_path):
+    design = synthesise(SEAT, max_gain=1e4).prove()
+    design.save(tmp_path / "design.yaml")
+    text = (tmp_path / "design.yaml").read_text()
+    assert design.proof.is_proven
+    assert "proven: true" in text
+    assert Design.load(tmp_path / "design.yaml").gain == pytest.approx(design.gain)
