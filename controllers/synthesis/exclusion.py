@@ -105,6 +105,9 @@ class BoxView:
         K[:, self.plant.free] = values
         return K
 
+    def _middle_and_corners(self, low: Array, high: Array) -> Array:
+        return self.gain(np.vstack([(low + high) / 2, low + self._corners * (high - low)]))
+
     def norm_at(self, values: Array) -> tuple[float, Complex]:
         """Return the norm of a gain, infinite where it is unstable, and the points that matter around it."""
         loop = self.plant.close(self.gain(values[None])[0])
@@ -117,7 +120,7 @@ class BoxView:
 
     def list_inequalities(self, low: Array, high: Array, points: Complex) -> Inequalities:
         """Return the inequalities of a box at the common points and at its own ones."""
-        K = self.gain(np.vstack([(low + high) / 2, low + self._corners * (high - low)]))
+        K = self._middle_and_corners(low, high)
         coefficients, terms = self._coefficients(K[1:])
         of_coefficients = [OfCoefficient(self.number, power) for power in range(self.plant.order)]
         if np.isinf(self.level):  # only instability counts, which no transfer matrix shows
@@ -146,7 +149,7 @@ class BoxView:
 
     def prove_unstable(self, low: Array, high: Array) -> Unstable | None:
         """Return the proof that all loops of a box are unstable, if that in its middle gives one."""
-        K = self.gain(np.vstack([(low + high) / 2, low + self._corners * (high - low)]))
+        K = self._middle_and_corners(low, high)
         A = self.plant.A + self.plant.B2 @ K @ self.plant.C2
         for shift in _gaps(np.linalg.eigvals(A[0]).real):
             F = A - shift * np.eye(self.plant.order)

@@ -2,7 +2,7 @@
 
 `controllers.synthesis.exclusion` says why no gain in a box is good enough; a box of which it cannot say so is divided.
 Corners and inequalities are exact in binary, so that the list of boxes can be checked in fractions
-(`benchmarks/exact_certificates.py`). The cost grows with two to the power of the number of gains.
+(`benchmarks/exact_global_proofs.py`). The cost grows with two to the power of the number of gains.
 """
 
 from __future__ import annotations
@@ -172,7 +172,8 @@ class _Division(NamedTuple):
 
 def _exclude_or_divide(views: Sequence[BoxView], box: _Box) -> Reason | _Division:
     """Return why no gain in a box is good enough, or its two parts."""
-    norms = [view.norm_at((box.low + box.high) / 2) for view in views]
+    middle = (box.low + box.high) / 2
+    norms = [view.norm_at(middle) for view in views]
     listed = [view.list_inequalities(box.low, box.high, own) for view, (_, own) in zip(views, norms, strict=True)]
     values, sizes = np.vstack([one.values for one in listed]), np.concatenate([one.sizes for one in listed])
     inequalities = Inequalities(values, sizes, [row for one in listed for row in one.rows])
@@ -184,9 +185,10 @@ def _exclude_or_divide(views: Sequence[BoxView], box: _Box) -> Reason | _Divisio
         if unstable is not None:
             return unstable
         # Where the inequality is violated most is where a better gain is likely to be, if there is one.
-    corner = np.array(list(np.ndindex(*(2,) * len(box.low))))[int(at_corners.argmin())]
-    for values_met in ((box.low + box.high) / 2, np.where(corner == 1, box.high, box.low)):
-        if all(view.norm_at(values_met)[0] < view.level for view in views):
+    is_high = np.unravel_index(int(at_corners.argmin()), (2,) * len(box.low))
+    corner = np.where(is_high, box.high, box.low)
+    for values_met, found in ((middle, norms), (corner, [view.norm_at(corner) for view in views])):
+        if all(norm < view.level for view, (norm, _) in zip(views, found, strict=True)):
             better = views[0].gain(values_met[None])[0]
             return _divide(box, _Slab(0, 0.5, 0, False), None)._replace(better=better)
     slab = _largest_slab(np.vstack([values, at_corners]))
