@@ -11,7 +11,7 @@ from starlette.responses import PlainTextResponse, RedirectResponse
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 POLICY = (
-    "default-src 'none'; script-src {script}; style-src {style}; connect-src 'self'; form-action 'none';"
+    "default-src 'none'; img-src data:; script-src {script}; style-src {style}; connect-src 'self'; form-action 'none';"
     " frame-ancestors 'none'; base-uri 'none'"
 )
 LARGEST_BODY = 100_000

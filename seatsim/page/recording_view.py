@@ -16,18 +16,17 @@ from seatsim.diagnosis.problem import pose_problem
 from seatsim.metrics.motion import rms
 from seatsim.page.controls import Choice, Slider, Switch, read_number
 from seatsim.page.scenario_view import View
+from seatsim.plots.labels import describe_channel, format_percent
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.recording import load_recording
-from seatsim.report.blocks import Bar, Bars, Table
+from seatsim.report.blocks import Table
 from seatsim.report.formatting import (
-    describe_channel,
     describe_effect,
     format_noise,
-    format_percent,
     format_sentence,
     say_noise,
 )
-from seatsim.report.packing import Axis, Panel, pack_signals
+from seatsim.report.packing import MEASURED, Panel, pack_signals
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import describe
@@ -70,7 +69,7 @@ class RecordingView:
         """
         parameters = self.choose(request)
         after = self._simulate(parameters) if parameters.terms else self.nominal
-        return View(self._say(parameters, after), [self._draw_gaps(after), self._tabulate(after)], self._pack(after))
+        return View(self._say(parameters, after), [self._tabulate(after)], self._pack(after))
 
     def choose(self, request: Mapping[str, Any]) -> Parameters:
         """Return the effects of a request with their values."""
@@ -114,18 +113,6 @@ class RecordingView:
             f" {format_percent(before)} to {format_percent(now)}; {noise}."
         )
 
-    def _draw_gaps(self, after: Mapping[str, Array]) -> Bars:
-        before, now = self._measure(self.nominal), self._measure(after)
-        most = float(max(before.max(), now.max(), 1e-9))
-        rows = [
-            Bar(f"{channel.replace('_', ' ')}, {words}", 0.0, round(100 * float(value) / most, 2),
-                format_percent(float(value)), look)
-            for channel, *values in zip(self.problem.channels, before, now, strict=True)
-            for words, value, look in zip(("nominal", "with effects"), values, ("high", "low"), strict=True)
-        ]  # fmt: skip
-        caption = "RMS of measured less simulated over the spread of the measured signal, over all runs."
-        return Bars("Gap of each channel", caption, "channel", "gap", rows)
-
     def _tabulate(self, after: Mapping[str, Array]) -> Table:
         before, now, floor = self._measure(self.nominal), self._measure(after), self.problem.noise / self.problem.spread
         rows = [
@@ -137,7 +124,11 @@ class RecordingView:
             ]
             for channel, old, new, noise in zip(self.problem.channels, before, now, floor, strict=True)
         ]
-        return Table("The same as a table", ["channel", "nominal", "with effects", "noise floor", "shrinks by"], rows)
+        return Table(
+            "Gap of each channel, RMS of measured less simulated over the spread of the measured signal, over all runs",
+            ["channel", "nominal", "with effects", "noise floor", "shrinks by"],
+            rows,
+        )
 
     def _pack(self, after: Mapping[str, Array]) -> Any:
         problem = self.problem
@@ -147,8 +138,8 @@ class RecordingView:
             for k, channel in enumerate(problem.channels)
         ]  # fmt: skip
         time = {run: (problem.skip + np.arange(problem.measured[run].shape[1])) / problem.rate for run in problem.runs}
-        lines = [("measured", 0), ("nominal", 1), ("with effects", 2)]
-        return pack_signals("signals-time", "Every run.", lines, Axis("time", "s", time), panels)
+        lines = [("measured", MEASURED), ("nominal", 1), ("with effects", 0)]
+        return pack_signals("Every run.", lines, time, panels)
 
 
 def _name(candidate: Candidate) -> str:

@@ -9,7 +9,10 @@ from typing import Any, NamedTuple
 
 from seatsim.metrics.table import SHORT
 from seatsim.page.controls import Choice, Slider, read_choice, read_number
-from seatsim.report.blocks import Block, Table
+from seatsim.plots.runs.naming import Shown
+from seatsim.plots.runs.spectra import plot_psd, plot_transmissibility
+from seatsim.plots.style import make_entries
+from seatsim.report.blocks import Block, Table, show_pictures
 from seatsim.report.formatting import format_quantity
 from seatsim.report.headline import describe_run
 from seatsim.report.run_pictures import show_signals
@@ -77,8 +80,10 @@ class ScenarioView:
             RunError: the run cannot be carried to its end.
         """
         run, own = run_one(self.choose(request)), self._own
-        signals = show_signals({"": {"as in the file": own, "as set": run}})
-        return View(describe_run(run), [_compare(own, run)], signals)
+        shown = Shown("", run.scenario.name, [own, run], make_entries(["as in the file", "as set"]), "")
+        figures = {"transmissibility": plot_transmissibility(shown), "psd": plot_psd(shown)}
+        blocks = [_compare(own, run), *show_pictures(figures, "transmissibility", "psd")]
+        return View(describe_run(run), blocks, show_signals([shown]))
 
     def choose(self, request: Mapping[str, Any]) -> Scenario:
         """Return the scenario that a request describes."""

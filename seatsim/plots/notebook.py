@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from seatsim.diagnosis.result import Diagnosis
 from seatsim.identification.identify import Identification
 from seatsim.plots.bench.identification import plot_predictions
-from seatsim.plots.diagnosis.answer import plot_gap, plot_gaps, plot_location, plot_ranking
-from seatsim.plots.diagnosis.signals import plot_signals
+from seatsim.plots.diagnosis.answer import plot_gap
+from seatsim.plots.diagnosis.draw import plot_diagnosis
 from seatsim.plots.runs.draw import plot_result
 from seatsim.recordings.gap import Gap
 from seatsim.schema.errors import InputError, nearest
@@ -71,6 +71,4 @@ def _(value: Identification) -> dict[str, Figure]:
 
 @_list_figures.register
 def _(value: Diagnosis) -> dict[str, Figure]:
-    signals = {f"signals_{k}": picture for k, picture in enumerate(plot_signals(value), start=1)}
-    found = {"gaps": plot_gaps(value), "location": plot_location(value), "ranking": plot_ranking(value), **signals}
-    return {name: picture.figure for name, picture in found.items() if picture is not None}
+    return plot_diagnosis(value)

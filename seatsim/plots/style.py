@@ -1,11 +1,13 @@
-"""The common look of all figures: colours, pages with fixed margins, legends above the panels.
+"""The common look of all pictures: colours, pages with fixed margins, legends above the panels, scales.
 
-Pages are laid out in inches: that costs nothing, where matplotlib's own layout engines draw every text first.
+Pages are laid out in inches: that costs nothing, where matplotlib's own layout engines draw every text first. A page is
+as wide as a telephone shows it legibly; a screen shows two side by side.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from textwrap import wrap
 from typing import Literal, NamedTuple, TypedDict
 
 import numpy as np
@@ -13,26 +15,34 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
+from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
-from matplotlib.ticker import Locator, NullLocator
+from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator, NullLocator
 from matplotlib.typing import LineStyleType
 from numpy.typing import ArrayLike
 
-WIDTH = 10.0
-"""Width of a page in inches: text of 9 points stays legible where a page of a paper shrinks it to 60 %."""
-MARGIN = 0.15
-LETTER = 0.082
-"""Width of a letter of a legend in inches, on average."""
-SAMPLE = 0.7
+from seatsim.plots.labels import RAISED, clean_text
+
+WIDTH = 5.8
+"""Width of a page in inches."""
+MARGIN = 0.12
+LETTER, BOLD = 0.078, 0.104
+"""Width of a letter of 9.5 points, and of one of a title, in inches, on average."""
+SAMPLE = 0.62
 """Width of a legend's sample of a line, with the gaps around it, in inches."""
-LINE = 0.23
+LINE = 0.21
 """Height of a line of text in inches."""
-GREY = "0.6"
-DARK = "0.25"
+ROW = 0.27
+"""Height of a row of bars in inches."""
+FONT = 9.5
+"""Size of text in points."""
+GREY, DARK = "0.6", "0.25"
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#882255", "#000000")
 """Okabe and Ito's palette for all kinds of colour vision; wine replaces its yellow, which fades on white."""
 DASHES: tuple[LineStyleType, ...] = ("-", (0.0, (5.0, 1.5)))
 """Every second line is dashed: two that coincide are both seen, and colour is not the only difference."""
+FREQUENCIES = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000)
+"""Hz that an axis names."""
 
 
 class Entry(NamedTuple):
@@ -58,11 +68,16 @@ class Grid(NamedTuple):
 
     heights: Sequence[float]
     columns: int = 1
-    left: float = 0.95
-    right: float = 0.2
-    top: float = 0.2
-    bottom: float = 0.6
-    gap: tuple[float, float] = (0.85, 0.75)
+    left: float = 0.8
+    right: float = 0.15
+    top: float = 0.12
+    bottom: float = 0.5
+    gap: tuple[float, float] = (0.75, 0.7)
+
+    @property
+    def width(self) -> float:
+        """Width of a panel in inches."""
+        return (WIDTH - self.left - self.right - self.gap[0] * (self.columns - 1)) / self.columns
 
 
 class _LineProperties(TypedDict):
@@ -93,33 +108,43 @@ def sample_colours(name: str, count: int) -> list[str]:
 def make_page(title: str, note: str, grid: Grid, legend: Sequence[Entry] = ()) -> Page:
     """Return a figure with a title, a note, a legend where there are entries, and empty panels.
 
-    The height follows from what stands on the page, so that no panel shrinks where a legend grows.
+    The height follows from what stands on the page, so that no panel shrinks where a legend grows. The two texts of the
+    figure are title and note: a report takes them out, and prints them beside the picture.
     """
-    columns = _legend_columns(legend)
-    header = MARGIN + 0.52 + LINE * -(-len(legend) // columns) + grid.top
-    height = header + sum(grid.heights) + grid.gap[1] * (len(grid.heights) - 1) + grid.bottom
+    lines = [wrap(clean_text(text, 400), int(WIDTH / wide)) for text, wide in ((title, BOLD), (note, LETTER))]
+    rows = -(-len(legend) // _count_columns(legend))
+    head = measure_head(*map(len, lines))
+    top = head + LINE * rows + grid.top
+    height = top + sum(grid.heights) + grid.gap[1] * (len(grid.heights) - 1) + grid.bottom
     figure = Figure(figsize=(WIDTH, height))
     left = MARGIN / WIDTH
-    figure.text(left, 1 - MARGIN / height, title, fontsize=12, fontweight="bold", va="top")
-    figure.text(left, 1 - (MARGIN + 0.27) / height, note, fontsize=10, color=DARK, va="top")
+    figure.text(left, 1 - MARGIN / height, "\n".join(lines[0]), fontsize=11.5, fontweight="bold", va="top")
+    below = MARGIN + LINE * (len(lines[0]) + 0.15)
+    figure.text(left, 1 - below / height, "\n".join(lines[1]), fontsize=FONT, color=DARK, va="top")
     if legend:
         figure.legend(
-            handles=[_handle(entry) for entry in legend], ncols=columns, loc="upper left", frameon=False,
-            bbox_to_anchor=(left, 1 - (MARGIN + 0.56) / height), borderaxespad=0, borderpad=0,
+            handles=[make_handle(entry) for entry in legend], ncols=_count_columns(legend), loc="upper left",
+            frameon=False, fontsize=FONT, bbox_to_anchor=(left, 1 - head / height), borderaxespad=0, borderpad=0,
+            columnspacing=1.2, handlelength=2.0, labelspacing=0.35,
         )  # fmt: skip
-    return Page(figure, add_panels(figure, grid, WIDTH, height - header))
+    return Page(figure, _add_panels(figure, grid, height - top))
+
+
+def measure_head(title: int, note: int) -> float:
+    """Return the height in inches of a title and a note of that many lines, which stand above everything else."""
+    return MARGIN + LINE * (title + note) + 0.12
 
 
 def draw_line(axes: Axes, x: ArrayLike, y: ArrayLike, look: Entry) -> None:
     """Draw the line through (x, y), shape (N,) each, with the look of its entry."""
-    axes.plot(np.asarray(x), np.asarray(y), label=look.label, **_style(look))
+    axes.plot(np.asarray(x), np.asarray(y), label=clean_text(look.label), **_style(look))
 
 
-def draw_legend_beside(axes: Axes, title: str) -> None:
+def draw_legend_beside(axes: Axes, title: str) -> Legend:
     """Put the legend of a panel to its right."""
-    axes.legend(
+    return axes.legend(
         title=title, alignment="left", loc="upper left", bbox_to_anchor=(1.02, 1.0), frameon=False,
-        borderaxespad=0,
+        borderaxespad=0, fontsize=FONT, title_fontsize=FONT, handlelength=1.2, handletextpad=0.5,
     )  # fmt: skip
 
 
@@ -129,21 +154,74 @@ def add_axes_beside(axes: Axes, gap: float, width: float) -> Axes:
     return axes.figure.add_axes((box.x1 + gap, box.y0, width, box.height))
 
 
-def set_plain_log_ticks(axis: Axis, locator: Locator) -> None:
-    """Label the ticks of a logarithmic axis by plain numbers in place of powers of ten, without ticks between them."""
-    axis.set_major_locator(locator)
-    axis.set_major_formatter("{x:g}")
+def set_title(axes: Axes, text: str) -> None:
+    """Put a title above a panel, as wide as the panel at most."""
+    width = axes.get_position().width * WIDTH
+    axes.set_title(clean_text(text, int(width / LETTER)), loc="left", fontsize=FONT)
+
+
+def set_plain_log_ticks(axis: Axis, low: float, high: float) -> None:
+    """Label a logarithmic axis from `low` to `high` by plain numbers: 1, 2, 5 of each decade, or decades of many."""
+    subs = (1, 2, 5) if high / low < 300 else (1,)
+    axis.set_major_locator(LogLocator(subs=subs, numticks=8))
+    axis.set_major_formatter(lambda value, _: _write_plainly(value))
     axis.set_minor_locator(NullLocator())
+
+
+def scale_frequency_axis(axes: Axes, low: float, high: float) -> None:
+    """Make the lower axis of a panel one of frequency in Hz, logarithmic, with both ends named."""
+    axes.set_xscale("log")
+    axes.set_xlim(low, high)
+    axes.xaxis.set_major_locator(FixedLocator([tick for tick in FREQUENCIES if low <= tick <= high]))
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.set_xlabel("frequency [Hz]")
+
+
+def name_rows(axes: Axes, names: Sequence[str], strong: Sequence[int] = ()) -> None:
+    """Make a panel of rows, the first one on top: names instead of a scale, grid lines upright only."""
+    axes.set_ylim(len(names) - 0.4, -0.6)
+    axes.set_yticks(np.arange(len(names)), [clean_text(name, 32) for name in names], fontsize=FONT)
+    for row in strong:
+        axes.get_yticklabels()[row].set_fontweight("bold")
+    axes.grid(False, axis="y")
+    axes.tick_params(axis="y", length=0)
+    axes.spines["left"].set_visible(False)
+
+
+def measure_names(names: Sequence[str]) -> float:
+    """Return the width in inches that the names of rows need."""
+    return 0.3 + LETTER * min(32, max(map(len, names), default=0))
+
+
+def draw_bars(axes: Axes, values: Sequence[float], colours: Sequence[str], texts: Sequence[str]) -> None:
+    """Draw a horizontal bar in each row, with a text at its end; a value that is not known has no bar."""
+    lengths = np.nan_to_num(np.asarray(values, dtype=float))
+    for row, (value, colour, text) in enumerate(zip(lengths, colours, texts, strict=True)):
+        axes.barh(row, value, height=0.66, color=colour, zorder=2)
+        axes.annotate(
+            text, (max(float(value), 0.0), row), xytext=(4, 0), textcoords="offset points", va="center",
+            fontsize=FONT, zorder=3,
+        )  # fmt: skip
 
 
 def explain_empty(axes: Axes, text: str) -> None:
     """Write into the middle of a panel why it is empty."""
     axes.set_yticks([])
-    axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", fontsize=11, color=DARK)
+    lines = wrap(text, int(axes.get_position().width * WIDTH / LETTER))
+    axes.text(0.5, 0.5, "\n".join(lines), transform=axes.transAxes, ha="center", va="center", color=DARK)
 
 
-def _handle(look: Entry) -> Line2D:
-    return Line2D([], [], label=look.label, **_style(look._replace(width=look.width + 0.5)))
+def make_handle(look: Entry) -> Line2D:
+    """Return the sample of a line for a legend, a little wider than the line, so that its colour is seen."""
+    return Line2D([], [], label=clean_text(look.label, 64), **_style(look._replace(width=look.width + 0.5)))
+
+
+def _write_plainly(value: float) -> str:
+    exponent = round(np.log10(value))
+    if -4 < exponent < 4:
+        return f"{value:g}"
+    return f"{value / 10.0**exponent:g}×10".removeprefix("1×") + str(exponent).translate(RAISED)
 
 
 def _style(look: Entry) -> _LineProperties:
@@ -153,9 +231,9 @@ def _style(look: Entry) -> _LineProperties:
     }  # fmt: skip
 
 
-def _legend_columns(legend: Sequence[Entry]) -> int:
+def _count_columns(legend: Sequence[Entry]) -> int:
     """Return the most columns that fit; the legend fills them one by one, the first ones fullest."""
-    letters = [len(entry.label) for entry in legend]
+    letters = [min(64, len(entry.label)) for entry in legend]
     for count in range(len(letters), 1, -1):
         widths = [LETTER * max(column) + SAMPLE for column in np.array_split(letters, count)]
         if sum(widths) <= WIDTH - 2 * MARGIN:
@@ -163,23 +241,24 @@ def _legend_columns(legend: Sequence[Entry]) -> int:
     return 1
 
 
-def add_panels(figure: Figure, grid: Grid, width: float, top: float) -> list[list[Axes]]:
-    """Return new axes in a grid, row by row, on a figure `width` inches wide, from `top` inches above its foot."""
-    height = float(figure.get_figheight())
-    wide = (width - grid.left - grid.right - grid.gap[0] * (grid.columns - 1)) / grid.columns
-    rows = []
+def _add_panels(figure: Figure, grid: Grid, top: float) -> list[list[Axes]]:
+    """Return new axes in a grid, row by row, from `top` inches above the foot of a figure."""
+    height, rows = float(figure.get_figheight()), []
     for tall in grid.heights:
-        lefts = [grid.left + column * (wide + grid.gap[0]) for column in range(grid.columns)]
-        bottom = (top - tall) / height
-        rows.append([_panel(figure, (x / width, bottom, wide / width, tall / height)) for x in lefts])
+        lefts = [grid.left + column * (grid.width + grid.gap[0]) for column in range(grid.columns)]
+        boxes = [(x / WIDTH, (top - tall) / height, grid.width / WIDTH, tall / height) for x in lefts]
+        rows.append([_add_panel(figure, box) for box in boxes])
         top -= tall + grid.gap[1]
     return rows
 
 
-def _panel(figure: Figure, place: tuple[float, float, float, float]) -> Axes:
+def _add_panel(figure: Figure, place: tuple[float, float, float, float]) -> Axes:
     axes = figure.add_axes(place)
     axes.grid(True, color="0.9", linewidth=0.7)
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
-    axes.tick_params(labelsize=9.5)
+    axes.tick_params(labelsize=FONT)
+    wide, tall = place[2] * WIDTH, place[3] * float(figure.get_figheight())
+    axes.xaxis.set_major_locator(MaxNLocator(max(2, int(wide / 0.5)), steps=(1, 2, 5, 10)))
+    axes.yaxis.set_major_locator(MaxNLocator(max(2, int(tall / 0.3)), steps=(1, 2, 5, 10)))
     return axes

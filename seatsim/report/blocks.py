@@ -1,4 +1,4 @@
-"""What a report is made of, as plain values: sentences, tables, bars, signals, planes.
+"""What a report is made of, as plain values: sentences, tables, pictures, signals.
 
 The template turns them into HTML. Every text is plain text, which it escapes, whatever file it came from.
 """
@@ -6,7 +6,12 @@ The template turns them into HTML. Every text is plain text, which it escapes, w
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from seatsim.plots.saving import Inline, render_inline
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 class Text(NamedTuple):
@@ -46,41 +51,8 @@ class Table(NamedTuple):
     kind: str = "table"
 
 
-class Bar(NamedTuple):
-    """A row of a bar chart: `start` and `end` in per cent of the width, an interval where it is known, and its text."""
-
-    name: str
-    start: float
-    end: float
-    text: str
-    look: str = "plain"
-    interval: tuple[float, float] | None = None
-
-
-class Bars(NamedTuple):
-    """A bar chart whose rows are those of a table; `heading` and `value` head its names and its figures."""
-
-    title: str
-    caption: str
-    heading: str
-    value: str
-    rows: Sequence[Bar]
-    kind: str = "bars"
-
-
-class Matrix(NamedTuple):
-    """A table of numbers with shades 0 to 9, a row for each name; an empty text is an empty cell."""
-
-    title: str
-    caption: str
-    corner: str
-    columns: Sequence[str]
-    rows: Sequence[tuple[str, Sequence[tuple[str, int]]]]
-    kind: str = "matrix"
-
-
 class Signals(NamedTuple):
-    """Linked pictures over time or frequency, packed for the script that draws them; `panels`: title, sentence."""
+    """Linked pictures over time, packed for the script that draws them; `panels`: title, sentence."""
 
     identity: str
     caption: str
@@ -91,47 +63,14 @@ class Signals(NamedTuple):
     kind: str = "signals"
 
 
-class Tick(NamedTuple):
-    """A mark of an axis: its place in per cent from the start, and its text."""
+class Pictures(NamedTuple):
+    """Pictures beside or below each other, as the page has room."""
 
-    at: float
-    text: str
-
-
-class Shape(NamedTuple):
-    """A path of a plane in a square of 1000 by 1000, drawn in look 0 to 7 as a line or as dots, or a cell's shade."""
-
-    path: str
-    look: int
-    form: str = "line"
+    pictures: Sequence[Inline]
+    kind: str = "pictures"
 
 
-class Plane(NamedTuple):
-    """A picture of one quantity over another, drawn as SVG: loops, clouds of points, maps."""
-
-    title: str
-    caption: str
-    x_axis: str
-    y_axis: str
-    x_ticks: Sequence[Tick]
-    y_ticks: Sequence[Tick]
-    shapes: Sequence[Shape]
-    legend: Sequence[tuple[str, int, str]]
-    empty: str = ""
-    kind: str = "plane"
-
-
-class Facets(NamedTuple):
-    """Planes of one figure, each under its title, with one legend."""
-
-    title: str
-    caption: str
-    planes: Sequence[Plane]
-    legend: Sequence[tuple[str, int, str]]
-    kind: str = "facets"
-
-
-Block = Text | Items | Code | Table | Bars | Matrix | Signals | Plane | Facets
+Block = Text | Items | Code | Table | Signals | Pictures
 
 
 class Section(NamedTuple):
@@ -143,11 +82,26 @@ class Section(NamedTuple):
 
 
 class Report(NamedTuple):
-    """A report: what it is on, a badge (look, words, explanation), the answer, what to do next, the sections."""
+    """A report: what it is on, the answer, what to do next, the sections; what makes the answer doubtful.
+
+    `badge`: look, words, explanation.
+    """
 
     about: str
     answer: str
     lead: Sequence[str]
     next_steps: Sequence[str]
     sections: Sequence[Section]
+    doubt: str = ""
     badge: tuple[str, str, str] | None = None
+
+
+def show_pictures(figures: Mapping[str, Figure], *starts: str) -> list[Block]:
+    """Return the figures whose names begin with one of some words, in the order of these words."""
+    chosen = {name: figure for start in starts for name, figure in figures.items() if name.startswith(start)}
+    return [Pictures([render_inline(figure, name) for name, figure in chosen.items()])] if chosen else []
+
+
+def list_notes(texts: Sequence[str]) -> list[Block]:
+    """Return sentences as a list, each once; nothing where there is none."""
+    return [Items(list(dict.fromkeys(texts)))] if texts else []

@@ -3,25 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from seatsim.characterisation.response import Response
 from seatsim.characterisation.rows import Row
 from seatsim.characterisation.summary import Characterisation, group_by_setting
-from seatsim.report.blocks import Block, Code, Items, Plane, Report, Section, Table, Text
-from seatsim.report.credibility.card import show_card
+from seatsim.plots.labels import format_number, format_percent
+from seatsim.report.blocks import Block, Code, Report, Section, Table, Text, list_notes, show_pictures
+from seatsim.report.credibility.card import say_doubt, show_card
 from seatsim.report.credibility.evidence import collect_characterisation
-from seatsim.report.formatting import format_number, format_percent, format_quantity, format_sentence
+from seatsim.report.formatting import format_quantity, format_sentence
 from seatsim.report.method import describe_method
-from seatsim.report.packing import Axis, Panel, pack_signals
-from seatsim.report.planes import Curve, draw_curves, join_planes
 
-MOST_SETTINGS = 6
-"""Settings of amplitude and frequency whose loops are drawn."""
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 MOST_ROWS = 60
-POINTS = 240
 ROUNDING = 1e-9
 """Share of the peak force below which an offset is no finding."""
 METHOD = (
@@ -33,17 +33,22 @@ METHOD = (
 )
 
 
-def report_characterisation(found: Characterisation, remarks: Sequence[str], command: str) -> Report:
+def report_characterisation(
+    found: Characterisation, figures: Mapping[str, Figure], remarks: Sequence[str], command: str
+) -> Report:
     """Return the report of a characterisation; `remarks` are sentences on it, `command` makes it again."""
+    evidence = collect_characterisation(found)
+    steps = [*show_pictures(figures, "steps"), *_show_steps(found.responses)]
     sections = [
+        Section("loops", "Force, energy and damping", show_pictures(figures, "loops", "energy", "asymmetry")),
         Section("figures", "Figures of each record", [_make_table(found)]),
-        Section("loops", "Loops", _draw_loops(found.rows)),
-        Section("steps", "Response to steps of the current", _show_steps(found.responses)),
-        Section("notes", "Notes", [Items([format_sentence(text) for text in remarks])] * bool(remarks)),
-        show_card(collect_characterisation(found)),
+        Section("steps", "Response to steps of the current", steps),
+        Section("notes", "Notes", list_notes([format_sentence(text) for text in remarks])),
+        show_card(evidence),
         describe_method(METHOD, command, [Text("What was tested:"), Code(found.source, "What was tested")]),
     ]
-    return Report(f"Characterisation: {found.name}", say_character(found), [], _advise(found), sections)
+    about, doubt = f"Characterisation: {found.name}", say_doubt(evidence)
+    return Report(about, say_character(found), [], _advise(found), sections, doubt)
 
 
 def say_character(found: Characterisation) -> str:
@@ -102,39 +107,6 @@ def _clean(row: Row) -> float:
     return 0.0 if abs(row.offset) < ROUNDING * abs(row.peak_rebound) else row.offset
 
 
-def _draw_loops(rows: Sequence[Row]) -> list[Block]:
-    """Return one figure of the loops over velocity and over travel, and one of records without steady cycles."""
-    planes: list[Plane] = []
-    groups = group_by_setting(rows)[:MOST_SETTINGS]
-    names = sorted({round(row.current, 2) for group in groups for row in group})
-    looks = {current: k % 8 for k, current in enumerate(names)}
-    for group in groups:
-        over_velocity, over_travel = [], []
-        for row in group[:8]:
-            if row.loop is not None:
-                name, look, force = f"{row.current:.2f} A", looks[round(row.current, 2)], _thin(row.loop.force)
-                over_velocity.append(Curve(name, _thin(row.loop.velocity), force, look))
-                over_travel.append(Curve(name, 1e3 * _thin(row.loop.displacement), force, look))
-        title = _name_motion(group[0])
-        planes.append(draw_curves(title, "", ("velocity [m/s]", "force [N]"), over_velocity))
-        planes.append(draw_curves(title, "", ("travel [mm]", "force [N]"), over_travel))
-    blocks: list[Block] = [join_planes("Damper force", "Mean cycle at each current.", planes)] if planes else []
-    clouds = [row for row in rows if row.cloud is not None][:8]
-    if clouds:
-        curves = [
-            Curve(f"{row.current:.2f} A", row.cloud.velocity, row.cloud.force, k % 8, "dots")
-            for k, row in enumerate(clouds) if row.cloud is not None
-        ]  # fmt: skip
-        axes = ("velocity [m/s]", "force [N]")
-        caption = "Samples, by the mean current of the record."
-        blocks.append(draw_curves("Records without steady cycles", caption, axes, curves))
-    return blocks
-
-
-def _thin(values: np.ndarray) -> np.ndarray:
-    return np.asarray(values)[:: max(1, len(values) // POINTS)]
-
-
 def _show_steps(answers: Sequence[Response]) -> list[Block]:
     if not answers:
         return []
@@ -148,14 +120,4 @@ def _show_steps(answers: Sequence[Response]) -> list[Block]:
         "record", "from [A]", "to [A]", "steps", "t90 [ms]", "t95 [ms]", "± [ms]", "delay [ms]", "rate [1/s]", "how",
     ]  # fmt: skip
     caption = "Time from the step of the current to 90 % and 95 % of the change of force"
-    blocks: list[Block] = [Table(caption, head, rows)]
-    known = [each for each in answers if each.time is not None and each.share is not None][:8]
-    if known:
-        time = max((np.asarray(each.time) for each in known), key=len)
-        lines = [(f"{each.before:.2f} to {each.after:.2f} A", k % 8) for k, each in enumerate(known)]
-        values = [np.interp(time, np.asarray(each.time), np.asarray(each.share)) for each in known]
-        panel = Panel("share of the change of force", "-", "", {"": list(values)})
-        axis = Axis("time from the step", "ms", {"": 1e3 * time})
-        caption = "Force after a step of the current, mean over the steps."
-        blocks.append(pack_signals("signals-steps", caption, lines, axis, [panel]))
-    return blocks
+    return [Table(caption, head, rows)]

@@ -5,25 +5,19 @@ from __future__ import annotations
 from pathlib import Path
 
 from seatsim.diagnosis.result import Cause, Diagnosis
-from seatsim.report.blocks import Report, Section
+from seatsim.plots.densities import METHOD as DENSITY
+from seatsim.plots.diagnosis.draw import plot_diagnosis
+from seatsim.plots.labels import format_percent
+from seatsim.report.blocks import Report, Section, show_pictures
 from seatsim.report.causes import show_causes, show_confusions, show_forms
-from seatsim.report.credibility.card import show_card
-from seatsim.report.credibility.evidence import collect_diagnosis
+from seatsim.report.credibility.card import say_doubt, show_card
+from seatsim.report.credibility.evidence import Evidence, collect_diagnosis
 from seatsim.report.effect_words import say_action, say_cause
-from seatsim.report.evidence import (
-    show_budget,
-    show_comfort,
-    show_discrepancy,
-    show_maps,
-    show_notes,
-    show_signals,
-    show_spectra,
-)
-from seatsim.report.formatting import format_percent, format_sentence, say_noise
+from seatsim.report.evidence import show_budget, show_comfort, show_discrepancy, show_notes, show_signals
+from seatsim.report.formatting import format_sentence, say_noise
 from seatsim.report.gap_stages import show_gaps
 from seatsim.report.method import describe_method
 from seatsim.report.rendering import write_html
-from seatsim.report.spectra import METHOD as SPECTRA
 from seatsim.schema.text import join_names
 
 BADGES = {
@@ -40,7 +34,7 @@ METHOD = (
     " first second of each run is left out.",
     "A parameter's ± is one standard deviation; 1.645 of them on either side are meant to hold the truth on nine of ten"
     " rigs. The documentation of the diagnosis says how often they and the interval of the shrink did in trials.",
-    SPECTRA,
+    f"Spectra: {DENSITY}",
 )
 
 
@@ -57,19 +51,19 @@ def write_report(diagnosis: Diagnosis, path: Path) -> Path:
 
 def report_diagnosis(diagnosis: Diagnosis) -> Report:
     """Return the report of a diagnosis; without a gap it has no evidence for causes."""
+    figures, evidence = plot_diagnosis(diagnosis), collect_diagnosis(diagnosis)
     sections = [
-        Section("gaps", "How far: gaps before and after", show_gaps(diagnosis)),
-        Section("causes", "Where it lies and what causes it", show_causes(diagnosis)),
-        Section("signals", "Measured and simulated, before and after", show_signals(diagnosis)),
-        Section("missing", "The missing signal", show_discrepancy(diagnosis)),
+        Section("causes", "Where it lies and what causes it", show_causes(diagnosis, figures)),
+        Section("gaps", "How far: gaps before and after", show_gaps(diagnosis, figures)),
+        Section("signals", "Measured and simulated, before and after", show_signals(diagnosis, figures)),
+        Section("missing", "The missing signal", show_discrepancy(diagnosis, figures)),
         Section("forms", "Other forms of the damper", show_forms(diagnosis)),
         Section("confusions", "Which effects look alike", show_confusions(diagnosis)),
-        Section("maps", "Where in the operating range the error is large", show_maps(diagnosis)),
-        Section("spectra", "Spectrum of the difference", show_spectra(diagnosis)),
+        Section("maps", "Where in the operating range the error is large", show_pictures(figures, "maps")),
         Section("budget", "What the remaining error is made of", show_budget(diagnosis)),
         Section("comfort", "Comfort and travel", show_comfort(diagnosis)),
         Section("notes", "Notes on the data", show_notes(diagnosis)),
-        show_card(collect_diagnosis(diagnosis)),
+        show_card(evidence),
         describe_method(METHOD, f"seatsim diagnose {diagnosis.name}"),
     ]
     if diagnosis.verdict == "none":
@@ -79,7 +73,8 @@ def report_diagnosis(diagnosis: Diagnosis) -> Report:
     words, explanation = BADGES.get(diagnosis.verdict, (diagnosis.verdict, ""))
     badge = (diagnosis.verdict, words, explanation)
     lead = [format_sentence(diagnosis.sentence)]
-    return Report(f"Diagnosis: {diagnosis.name}", say_diagnosis(diagnosis), lead, advise(diagnosis), sections, badge)
+    about, answer = f"Diagnosis: {diagnosis.name}", say_diagnosis(diagnosis)
+    return Report(about, answer, lead, advise(diagnosis), sections, _say_doubt(diagnosis, evidence), badge)
 
 
 def say_diagnosis(diagnosis: Diagnosis) -> str:
@@ -130,6 +125,16 @@ def advise(diagnosis: Diagnosis) -> list[str]:
     found.append(f"Check the result on another recording: seatsim gap augmented.yaml OTHER_RECORDING (the nominal"
                  f" scenario with {what}).")  # fmt: skip
     return found
+
+
+def _say_doubt(diagnosis: Diagnosis, evidence: Evidence) -> str:
+    """Return how sure the diagnosis is of its causes, and what its figures rest on the least."""
+    rest = [cause for cause in diagnosis.causes if cause.effect not in diagnosis.selected]
+    named = [f"{cause.effect} {format_percent(cause.probability)}" for cause in _select(diagnosis) if cause.probability]
+    following = [f"next {cause.effect} {format_percent(cause.probability)}" for cause in rest[:1]]
+    another = [f"another cause {format_percent(diagnosis.probability_unknown)}"]
+    probabilities = f"Probability of being at work: {', '.join([*named, *following, *another])}."
+    return f"{probabilities} {say_doubt(evidence)}".strip()
 
 
 def _select(diagnosis: Diagnosis) -> list[Cause]:

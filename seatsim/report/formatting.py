@@ -7,34 +7,9 @@ import math
 import re
 
 from seatsim.diagnosis.result import Estimate
-from seatsim.plots import labels
-from seatsim.plots.quantities import FACTORS, Quantity
+from seatsim.plots.labels import MINUS, UNKNOWN, describe_channel, format_number, format_percent
 from seatsim.schema import registry
 from seatsim.schema.errors import InputError
-
-UNKNOWN = "–"
-"""Printed in place of a value that is not known."""
-MINUS = "−"
-RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
-
-
-def describe_channel(name: str, unit: str) -> Quantity:
-    """Return how a channel in SI units is shown: its words, its unit and the factor to it."""
-    factor, shown = FACTORS.get(unit, (1.0, labels.format_unit(unit)))
-    return Quantity(name.replace("_", " "), shown or "-", factor)
-
-
-def format_number(value: float | None, digits: int = 3) -> str:
-    """Return a number with that many significant digits, in powers of ten only where it is very large or very small."""
-    if value is None or not math.isfinite(value):
-        return UNKNOWN
-    if value == 0:
-        return "0"
-    exponent = math.floor(math.log10(abs(float(f"{value:.{digits - 1}e}"))))
-    if not -5 < exponent < 7:
-        mantissa, _, power = f"{value:.{digits - 1}e}".partition("e")
-        return f"{mantissa} × 10{str(int(power)).translate(RAISED)}".replace("-", MINUS)
-    return f"{value:.{max(0, digits - 1 - exponent)}f}".replace("-", MINUS)
 
 
 def format_quantity(value: float, unit: str, digits: int = 3) -> str:
@@ -42,15 +17,6 @@ def format_quantity(value: float, unit: str, digits: int = 3) -> str:
     shown = describe_channel("", unit)
     text = format_number(shown.factor * value, digits)
     return text if shown.unit == "-" or text == UNKNOWN else f"{text} {shown.unit}"
-
-
-def format_percent(share: float | None) -> str:
-    """Return a share (1 is all) in per cent with two significant digits or more."""
-    if share is None or not math.isfinite(share):
-        return UNKNOWN
-    value = 100.0 * share
-    text = f"{value:.0f} %" if abs(value) >= 9.95 or value == 0 else f"{value:.1f} %"
-    return text.replace("-0.0", "0.0").replace("-", MINUS)
 
 
 def format_noise(share: float | None) -> str:

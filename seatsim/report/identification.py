@@ -2,28 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-import numpy as np
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from seatsim.identification.assessment import Agreement, Assessment
 from seatsim.identification.identify import Identification
-from seatsim.plots.labels import format_unit
-from seatsim.report.blocks import Block, Items, Report, Section, Table
-from seatsim.report.credibility.card import show_card
+from seatsim.plots.bench.identification import PARTS, select_records
+from seatsim.plots.labels import format_number, format_unit
+from seatsim.report.blocks import Block, Report, Section, Table, list_notes, show_pictures
+from seatsim.report.credibility.card import say_doubt, show_card
 from seatsim.report.credibility.evidence import collect_identification
-from seatsim.report.formatting import format_number, format_quantity, format_sentence
+from seatsim.report.formatting import format_quantity, format_sentence
 from seatsim.report.method import describe_method
-from seatsim.report.packing import Axis, Panel, pack_signals
-from seatsim.report.planes import Curve, draw_curves, join_planes
+from seatsim.report.packing import MEASURED, Panel, pack_signals
 from seatsim.schema.text import join_names
 
-MOST = 6
-"""Most records that are drawn."""
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 ROWS = 3000
 """Most rows of a record that are drawn over time, from the stretch with the highest speed."""
-POINTS = 1200
-PARTS = {"train": "fitted", "test": "held out", "predicted": "predicted only"}
 GOOD, FAIR = 90.0, 75.0
 """Fits in per cent from which on a model is called good, or usable."""
 METHOD = (
@@ -36,19 +34,20 @@ METHOD = (
 )
 
 
-def report_identification(found: Identification, command: str) -> Report:
+def report_identification(found: Identification, figures: Mapping[str, Figure], command: str) -> Report:
     """Return the report of an identified damper; `command` makes it again."""
-    chosen = _select_records(found.assessments)
+    evidence = collect_identification(found)
+    chosen = select_records(found.assessments)
     sections = [
-        Section("figures", "How well the force is predicted", [_make_table(found)]),
-        Section("loops", "Measured and predicted loops", _draw_loops(chosen)),
+        Section("figures", "How well the force is predicted", [*show_pictures(figures, "loops"), _make_table(found)]),
         Section("signals", "Measured and predicted over time", [_show_time(chosen)]),
         Section("parameters", "Parameters", _show_parameters(found)),
-        Section("notes", "Notes", [Items([format_sentence(note) for note in found.notes])] * bool(found.notes)),
-        show_card(collect_identification(found)),
+        Section("notes", "Notes", list_notes([format_sentence(note) for note in found.notes])),
+        show_card(evidence),
         describe_method(METHOD, command),
     ]
-    return Report(f"Identification: {found.model}", say_fit(found), [], _advise(found), sections)
+    about, doubt = f"Identification: {found.model}", say_doubt(evidence)
+    return Report(about, say_fit(found), [], _advise(found), sections, doubt)
 
 
 def say_fit(found: Identification) -> str:
@@ -105,29 +104,6 @@ def _format_agreement(found: Agreement) -> list[str]:
     return [fit, format_number(found.r2, 5), error, deviation]
 
 
-def _select_records(judged: Sequence[Assessment]) -> list[Assessment]:
-    """Return records spread evenly over the held-out ones, since only they show how well the model predicts."""
-    first = [each for each in judged if each.part != "train"] or list(judged)
-    places = np.unique(np.linspace(0, len(first) - 1, min(MOST, len(first))).round().astype(int))
-    return [first[place] for place in places]
-
-
-def _draw_loops(chosen: Sequence[Assessment]) -> list[Block]:
-    planes = []
-    for each in chosen:
-        record = each.record
-        start, stop = record.liveliest(POINTS)
-        part = slice(start, stop)
-        curves = [
-            Curve("measured", record.velocity[part], record.force[part], 0, "broad"),
-            Curve("predicted", record.velocity[part], each.predicted[part], 1),
-        ]
-        title = f"{record.name} ({PARTS[each.part]}), fit {format_number(each.agreement.fit_percent)} %"
-        planes.append(draw_curves(title, "", ("velocity [m/s]", "force [N]"), curves))
-    caption = "Of each record, the part with the highest speed."
-    return [join_planes("Damper force over velocity", caption, planes)] if planes else []
-
-
 def _show_time(chosen: Sequence[Assessment]) -> Block:
     names = [f"{k + 1}: {each.record.name}" for k, each in enumerate(chosen)]
     parts = [slice(*each.record.liveliest(ROWS)) for each in chosen]
@@ -138,22 +114,22 @@ def _show_time(chosen: Sequence[Assessment]) -> Block:
     }
     current = {name: [each.record.current[part], None] for name, each, part in zip(names, chosen, parts, strict=True)}
     panels = [Panel("damper force", "N", "", force), Panel("current", "A", "", current)]
-    lines = [("measured", 0), ("predicted", 1)]
+    lines = [("measured", MEASURED), ("predicted", 1)]
     caption = "The part of each record with the highest speed."
-    return pack_signals("signals-time", caption, lines, Axis("time", "s", times), panels)
+    return pack_signals(caption, lines, times, panels)
 
 
 def _show_parameters(found: Identification) -> list[Block]:
     known = found.information
     rows = [
-        [each.name, format_unit(each.unit), "determined" if each.identified else "not determined",
+        [each.name if each.identified else f"{each.name} (not determined)", format_unit(each.unit),
          format_number(each.value, 5), format_number(1.96 * each.std, 2)]
         for each in known.estimates
     ]  # fmt: skip
     strong = [k for k, each in enumerate(known.estimates) if not each.identified]
-    head = ["parameter", "unit", "by the data", "value", "±"]
+    head = ["parameter", "unit", "value", "±"]
     caption = "Fitted values, ± 1.96 standard deviations; in bold those that the data do not determine"
-    blocks: list[Block] = [Table(caption, head, rows, 3, strong)]
+    blocks: list[Block] = [Table(caption, head, rows, 2, strong)]
     if known.correlated:
         pairs = [[first, second, format_number(value)] for first, second, value in known.correlated]
         caption = "Pairs of parameters that can replace each other"

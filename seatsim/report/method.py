@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
 from importlib.metadata import version
 
 from seatsim.provenance.invocation import state_command
@@ -21,11 +20,5 @@ def describe_method(method: Sequence[str], command: str, settings: Sequence[Bloc
         settings: tables of them.
     """
     again: list[Block] = [Text("This command makes the report again:"), Code(state_command(command))]
-    versions = Table("Versions", ["package", "version"], list_versions(), 2)
+    versions = Table("Versions", ["package", "version"], [[name, version(name)] for name in PACKAGES], 2)
     return Section("method", "How this was made", [Items(list(method)), *settings, versions, *again])
-
-
-@lru_cache(maxsize=1)
-def list_versions() -> list[list[str]]:
-    """Return the packages on which the figures depend, each with its version."""
-    return [[name, version(name)] for name in PACKAGES]

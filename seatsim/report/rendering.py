@@ -22,7 +22,7 @@ def render_report(report: Report) -> str:
     """Return a report as HTML; the same report gives the same text. Every text is escaped by the template."""
     script, style = read_asset(SCRIPTS), read_asset(STYLES)
     sections = [section for section in report.sections if section.blocks]
-    policy = f"default-src 'none'; script-src {digest_of(script)}; style-src {digest_of(style)}"
+    policy = f"default-src 'none'; script-src {digest_of(script)}; img-src data:; style-src {digest_of(style)}"
     return (
         make_environment()
         .get_template("report.html")

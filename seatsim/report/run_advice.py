@@ -6,10 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from seatsim.plots.labels import format_number
+from seatsim.plots.runs.naming import label_runs
 from seatsim.report.alternatives import SAME, read_metric
-from seatsim.report.formatting import format_number, format_quantity
+from seatsim.report.formatting import format_quantity
 from seatsim.report.headline import count_times
-from seatsim.report.run_pictures import name_runs
 from seatsim.scenario.conditions import condition_of
 from seatsim.schema.errors import RunError
 from seatsim.schema.text import join_names, name_some
@@ -21,7 +22,7 @@ SEAT, HITS, PEAK = "seat_factor", "end_stop_hits", "suspension_displacement_peak
 
 def advise_on_runs(runs: Sequence[Run]) -> list[str]:
     """Return what to do next, each in a sentence or two; the worst run comes first, and others are counted."""
-    named = [(f"“{name}”", run) for name, run in zip(name_runs(runs), runs, strict=True) if not run.unverified]
+    named = [(f"“{name}”", run) for name, run in zip(label_runs(runs), runs, strict=True) if not run.unverified]
     found = []
     hitting = _rank_above(named, HITS, 0.0)
     if hitting:

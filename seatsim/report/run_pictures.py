@@ -1,73 +1,36 @@
-"""Pictures of simulated runs: signals over time, spectra, and loops of the damper, a line for each run."""
+"""Simulated runs over time, a line for each, to be zoomed."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
-from seatsim.plots.runs.naming import label_runs, select_shown
-from seatsim.report.blocks import Block, Text
-from seatsim.report.packing import Axis, Panel, make_density, pack_signals
-from seatsim.report.planes import Curve, draw_curves, join_planes
-from seatsim.report.spectra import estimate_spectrum
+from seatsim.plots.runs.naming import Shown
+from seatsim.report.blocks import Signals
+from seatsim.report.packing import Panel, pack_signals
 from seatsim.schema.arrays import Array
-from seatsim.simulation.result import UNITS, Run
-
-Groups = Mapping[str, Mapping[str, Run]]
-"""Runs that are drawn over each other, by name, in groups of which the reader chooses one; alone it has no name."""
+from seatsim.simulation.result import UNITS
 
 CHANNELS = (
     "driver_acceleration", "suspension_displacement", "damper_force", "coil_current", "frame_acceleration",
     "floor_acceleration", "damper_temperature",
 )  # fmt: skip
-HIGHEST = 50.0
-"""Hz up to which spectra are drawn: more than a seat passes on."""
-LOOP_SECONDS = 6.0
-"""Seconds of the loops: more of them hide each other."""
-DOTS = 1500
-"""Samples of a run in all its loops."""
 
 
-def name_runs(runs: Sequence[Run]) -> list[str]:
-    """Return what sets runs apart, numbered where two are alike; the name of a scenario only beside others."""
-    is_one = len(runs) > 1 and len({run.scenario.name for run in runs}) == 1
-    titles = label_runs(runs) if is_one else [run.scenario.title for run in runs]
-    return [f"{title} ({k + 1})" if titles.count(title) > 1 else title for k, title in enumerate(titles)]
-
-
-def group_runs(runs: Sequence[Run]) -> Groups:
-    """Return the runs that are drawn: one group, or one for each scenario where some of several have several runs."""
-    scenarios = list(dict.fromkeys(run.scenario.name for run in runs))
-    if 1 < len(scenarios) < len(runs):
-        parts = {name: [run for run in runs if run.scenario.name == name] for name in scenarios}
-    else:
-        parts = {"": list(runs)}
-    shown = {name: select_shown(part) for name, part in parts.items()}
-    return {name: dict(zip(name_runs(part), part, strict=True)) for name, part in shown.items()}
-
-
-def list_lines(groups: Groups) -> list[tuple[str, int]]:
-    """Return the names of the runs of all groups, each with the look in which it is drawn."""
-    names = list(dict.fromkeys(name for group in groups.values() for name in group))
-    return [(names[0], 2)] if len(names) == 1 else [(name, k % 8) for k, name in enumerate(names)]
-
-
-def show_signals(groups: Groups, note: str = "") -> Block:
-    """Return linked pictures of the channels that some run has, a line for each run of a group."""
-    lines = list_lines(groups)
-    time = {name: max((np.asarray(run["time"]) for run in group.values()), key=len) for name, group in groups.items()}
+def show_signals(groups: Sequence[Shown]) -> Signals:
+    """Return linked pictures of the channels that some run has; of several scenarios the reader chooses one."""
+    names = list(dict.fromkeys(look.label for shown in groups for look in shown.looks))
+    time = {shown.scenario: max((np.asarray(run["time"]) for run in shown.runs), key=len) for shown in groups}
     panels = []
     for channel in CHANNELS:
-        values = {
-            name: [_read_channel(group.get(line), channel, len(time[name])) for line, _ in lines]
-            for name, group in groups.items()
-        }
+        values = {shown.scenario: _read(shown, channel, names, len(time[shown.scenario])) for shown in groups}
         known = [[each for each in part if each is not None] for part in values.values()]
         if any(known):
             panels.append(Panel(channel, UNITS[channel], _note_equal(known), values))
     caption = "The list above the pictures has every scenario." if len(groups) > 1 else "All runs over time."
-    return pack_signals("signals-time", f"{caption}{note}", lines, Axis("time", "s", time), panels)
+    omitted = next((shown.omission for shown in groups if shown.omission), "")
+    return pack_signals(f"{caption}{omitted}", [(name, k % 8) for k, name in enumerate(names)], time, panels)
 
 
 def _note_equal(groups: Sequence[Sequence[Array]]) -> str:
@@ -77,59 +40,12 @@ def _note_equal(groups: Sequence[Sequence[Array]]) -> str:
     return "The same in all runs." if several and same else ""
 
 
-def _read_channel(run: Run | None, channel: str, length: int) -> Array | None:
-    """Return a channel, filled up with NaN to a length; None where it has none."""
-    if run is None or channel not in run.history.channels:
-        return None
-    values = np.asarray(run[channel], dtype=float)
-    if not np.isfinite(values).any():
-        return None
-    return np.pad(values, (0, length - len(values)), constant_values=np.nan)
-
-
-def show_spectra(groups: Groups) -> list[Block]:
-    """Return linked pictures of the spectra of driver and floor."""
-    lines, frequency = list_lines(groups), dict[str, Array]()
-    values: dict[str, dict[str, list[Array | None]]] = {"driver_acceleration": {}, "floor_acceleration": {}}
-    for name, group in groups.items():
-        for channel, found in values.items():
-            spectra = [_estimate_spectrum(group.get(line), channel) for line, _ in lines]
-            known = [each[0] for each in spectra if each is not None]
-            if not known:
-                return [Text("The runs are too short for a spectrum.")]
-            frequency[name] = min([*known, *([frequency[name]] if name in frequency else [])], key=len)
-            found[name] = [None if each is None or not each[1].any() else each[1] for each in spectra]
-    panels = [
-        make_density(channel.replace("_", " "), "m/s^2", {
-            name: [None if line is None else line[: len(frequency[name])] for line in part]
-            for name, part in found.items()
-        })
-        for channel, found in values.items()
-        if any(line is not None for part in found.values() for line in part)
-    ]  # fmt: skip
-    axis = Axis("frequency", "Hz", frequency, logarithmic=True)
-    caption = "Power spectral densities; a floor at rest has none."
-    return [pack_signals("signals-frequency", caption, lines, axis, panels, logarithmic=True)]
-
-
-def _estimate_spectrum(run: Run | None, channel: str) -> tuple[Array, Array] | None:
-    """Return the spectrum of a channel; None without a run, or where it is too short."""
-    return None if run is None else estimate_spectrum(np.asarray(run["time"]), np.asarray(run[channel]), HIGHEST)
-
-
-def draw_loops(groups: Groups) -> Block:
-    """Return one figure of the damper force over velocity, with a plane for each group."""
-    looks = dict(list_lines(groups))
-    axes = ("suspension velocity [m/s]", "damper force [N]")
-    planes = []
-    for title, group in groups.items():
-        curves = []
-        for name, run in group.items():
-            time = np.asarray(run["time"])
-            part = time >= time[-1] - LOOP_SECONDS
-            every = max(1, int(part.sum()) // (DOTS // len(groups)))
-            velocity, force = np.asarray(run["suspension_velocity"])[part], np.asarray(run["damper_force"])[part]
-            curves.append(Curve(name, velocity[::every], force[::every], looks[name], "dots"))
-        planes.append(draw_curves(title, "", axes, curves))
-    caption = f"Samples of the last {LOOP_SECONDS:g} s; positive force opposes extension."
-    return join_planes("Damper force over velocity", caption, planes)
+def _read(shown: Shown, channel: str, names: Sequence[str], length: int) -> list[Array | None]:
+    """Return a channel of each named run, filled up with NaN to a length; None where there is none."""
+    runs = {look.label: run for look, run in zip(shown.looks, shown.runs, strict=True)}
+    found: list[Array | None] = []
+    for run in map(runs.get, names):
+        values = np.asarray(run[channel]) if run is not None and channel in run.history.channels else np.full(1, np.nan)
+        known = np.isfinite(values).any()
+        found.append(np.pad(values, (0, length - len(values)), constant_values=np.nan) if known else None)
+    return found

@@ -2,32 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from seatsim.metrics.table import SHORT
-from seatsim.plots.labels import format_unit
-from seatsim.plots.runs.naming import find_unit
+from seatsim.plots.densities import METHOD as DENSITY
+from seatsim.plots.labels import describe_channel, format_number, format_unit
+from seatsim.plots.runs.naming import label_runs, show_runs
 from seatsim.report.alternatives import SAME, find_best, read_metric
-from seatsim.report.blocks import Block, Items, Report, Section, Table
-from seatsim.report.credibility.card import show_card
+from seatsim.report.blocks import Report, Section, Table, list_notes, show_pictures
+from seatsim.report.credibility.card import say_doubt, show_card
 from seatsim.report.credibility.evidence import collect_runs
-from seatsim.report.formatting import (
-    describe_channel,
-    format_number,
-    format_quantity,
-    format_sentence,
-    format_setting,
-)
+from seatsim.report.formatting import format_quantity, format_sentence, format_setting
 from seatsim.report.headline import compare_runs, describe_run
 from seatsim.report.method import describe_method
 from seatsim.report.run_advice import advise_on_runs
-from seatsim.report.run_pictures import draw_loops, group_runs, name_runs, show_signals, show_spectra
-from seatsim.report.spectra import METHOD as SPECTRA
-from seatsim.scenario.numbers import list_numbers
+from seatsim.report.run_pictures import show_signals
+from seatsim.scenario.numbers import find_unit, list_numbers
 from seatsim.schema.text import name_some
 from seatsim.simulation.result import Run
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 UNVERIFIED = "* unverified, and never the best: the notes say why."
 METHOD = (
@@ -35,40 +33,47 @@ METHOD = (
     " factor is that over the floor's.",
     "Floor, seed, temperature, driver and start are conditions, under which a seat has to do well; all else is a"
     f" choice. Only runs under one condition are compared. Figures within {100 * SAME:g} % count as equal.",
-    SPECTRA,
+    f"Spectra: {DENSITY}",
 )
 
 
-def report_runs(runs: Sequence[Run], command: str, title: str, failures: Sequence[str] = ()) -> Report:
+def report_runs(
+    runs: Sequence[Run], figures: Mapping[str, Figure], command: str, title: str, failures: Sequence[str] = ()
+) -> Report:
     """Return the report of runs: of a single one, or of a comparison.
 
     Args:
         runs: the runs, at least one.
+        figures: of their result, by name.
         command: what makes the report again.
-        title: of the folder that they share.
+        title: what they are on.
         failures: why others were not carried to their end.
     """
-    groups = group_runs(runs)
-    drawn = sum(map(len, groups.values()))
-    omitted = f" {drawn} of {len(runs)} runs are drawn." if drawn < len(runs) else ""
+    evidence = collect_runs(runs)
+    signals = [*show_pictures(figures, "time_histories"), show_signals(show_runs(runs))]
     sections = [
-        Section("figures", "Comfort, travel and effort", [_make_table(runs)]),
-        Section("signals", "Signals over time", [show_signals(groups, omitted)]),
-        Section("spectra", "Driver and floor over frequency", show_spectra(groups)),
-        Section("loops", "Loops", [draw_loops(groups)]),
-        Section("notes", "Notes", _list_notes(runs)),
-        show_card(collect_runs(runs)),
+        Section(
+            "figures",
+            "Comfort, travel and effort",
+            [*show_pictures(figures, "pareto", "comparison"), _make_table(runs)],
+        ),
+        Section("signals", "Signals over time", signals),
+        Section("spectra", "Driver and floor over frequency", show_pictures(figures, "transmissibility", "psd")),
+        Section("loops", "Loops of the damper", show_pictures(figures, "damper_loops", "force_velocity")),
+        Section("notes", "Notes", list_notes(_state_notes(runs))),
+        show_card(evidence),
         describe_method(METHOD, command, [_list_settings(runs)]),
     ]
     single = len(runs) == 1
     about = f"Simulated run: {title}" if single else f"Comparison of {len(runs)} simulated runs: {title}"
     answer, *others = [describe_run(runs[0])] if single else compare_runs(runs)
-    return Report(about, answer, [*others, *_list_gaps(runs, failures)], advise_on_runs(runs), sections)
+    lead = [*others, *_list_gaps(runs, failures)]
+    return Report(about, answer, lead, advise_on_runs(runs), sections, say_doubt(evidence))
 
 
 def _list_gaps(runs: Sequence[Run], failures: Sequence[str]) -> list[str]:
     """Return what the answer leaves out: runs that failed, and those whose figures cannot be relied on."""
-    doubtful = [f"“{name}”" for name, run in zip(name_runs(runs), runs, strict=True) if run.unverified]
+    doubtful = [f"“{name}”" for name, run in zip(label_runs(runs), runs, strict=True) if run.unverified]
     texts = [f"The figures of {name_some(doubtful)} cannot be relied on; the notes say why."] if doubtful else []
     if failures:
         others = f", and {len(failures) - 1} others" if len(failures) > 1 else ""
@@ -87,7 +92,7 @@ def _make_table(runs: Sequence[Run]) -> Table:
             f"{name} *" if run.unverified else name,
             *(_format_metric(metric, shown[metric].factor * read_metric(run, metric)) for metric in chosen),
         ]
-        for name, run in zip(name_runs(runs), runs, strict=True)
+        for name, run in zip(label_runs(runs), runs, strict=True)
     ]
     best = find_best(runs)
     bold = f" The most comfortable run{' of each condition' * (len(best) > 1)} is in bold." if best else ""
@@ -112,11 +117,11 @@ def _unit_of(runs: Sequence[Run], name: str) -> str:
     return next(run.metrics[name].unit for run in runs if name in run.metrics)
 
 
-def _list_notes(runs: Sequence[Run]) -> list[Block]:
+def _state_notes(runs: Sequence[Run]) -> list[str]:
     texts = [f"{run.scenario.title} is unverified: {reason}" for run in runs for reason in run.unverified]
     texts += [sentence for run in runs for sentence in run.warnings]
     texts += [f"{run.scenario.title}: {sentence}" for run in runs for sentence in run.history.notes]
-    return [Items([format_sentence(text) for text in dict.fromkeys(texts)])] if texts else []
+    return [format_sentence(text) for text in texts]
 
 
 def _list_settings(runs: Sequence[Run]) -> Table:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
-from seatsim.report.blocks import Block, Items, Report, Section, Table
-from seatsim.report.credibility.card import show_card
+from seatsim.plots.bench.resonance import plot_damping
+from seatsim.plots.labels import UNKNOWN, format_number, format_percent
+from seatsim.report.blocks import Block, Report, Section, Table, list_notes, show_pictures
+from seatsim.report.credibility.card import say_doubt, show_card
 from seatsim.report.credibility.evidence import collect_seat_test
-from seatsim.report.formatting import UNKNOWN, format_number, format_percent, format_sentence
+from seatsim.report.formatting import format_sentence
 from seatsim.report.method import describe_method
-from seatsim.report.planes import Curve, draw_curves
 from seatsim.schema.text import join_names
 from seatsim.standards.seat_rows import LIMITS, RECALLED, DampingRow, SeatRow, SeatTest
 
@@ -35,14 +34,16 @@ def report_seat_test(found: SeatTest, name: str, is_measured: bool, command: str
         command: what makes the report again.
     """
     texts = [*found.notes, *(f"{each.run} failed: {each.reason}" for each in found.failures)]
+    evidence, curves = collect_seat_test(found, is_measured), show_pictures(plot_damping(found), "damping")
     sections = [
         Section("classes", "SEAT factors", _tabulate_classes(found.rows)),
-        Section("damping", "Damping at resonance", [*_tabulate_damping(found.damping_rows), *_draw_damping(found)]),
-        Section("notes", "Notes", [Items([format_sentence(text) for text in texts])] * bool(texts)),
-        show_card(collect_seat_test(found, is_measured)),
+        Section("damping", "Damping at resonance", [*_tabulate_damping(found.damping_rows), *curves]),
+        Section("notes", "Notes", list_notes([format_sentence(text) for text in texts])),
+        show_card(evidence),
         describe_method(METHOD, command),
     ]
-    return Report(f"Seat test: {name}", say_seat_test(found), [], _advise(found), sections)
+    about, doubt = f"Seat test: {name}", say_doubt(evidence)
+    return Report(about, say_seat_test(found), [], _advise(found), sections, doubt)
 
 
 def say_seat_test(found: SeatTest) -> str:
@@ -90,13 +91,3 @@ def _tabulate_damping(rows: Sequence[DampingRow]) -> list[Block]:
     strong = [k for k, row in enumerate(rows) if not row.passed]
     caption = "Transmissibility at the resonance; in bold what is above its limit"
     return [Table(caption, head, lines, 3, strong)] * bool(lines)
-
-
-def _draw_damping(found: SeatTest) -> list[Block]:
-    curves = [
-        Curve(name, np.asarray(test.frequencies), np.asarray(test.transmissibilities), (k + 1) % 8)
-        for k, (name, test) in enumerate(found.damping.items())
-    ]
-    axes = ("frequency [Hz]", "transmissibility [-]")
-    caption = "Mass on the seat over floor, for sines from half to twice the resonance."
-    return [draw_curves("Transmissibility", caption, axes, curves)] * bool(curves)

@@ -5,15 +5,22 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from seatsim.report.blocks import Block, Report, Section, Table, Text
-from seatsim.report.credibility.card import show_card
+from seatsim.plots.labels import format_number, format_percent
+from seatsim.plots.sweeps import (
+    COMFORT,
+    TRAVEL,
+    describe_column,
+    format_level,
+    plot_comfort,
+    plot_means,
+    plot_shares,
+    plot_tornado,
+)
+from seatsim.report.blocks import Block, Report, Section, Table, Text, show_pictures
+from seatsim.report.credibility.card import say_doubt, show_card
 from seatsim.report.credibility.evidence import collect_sweep
-from seatsim.report.formatting import format_number, format_percent
 from seatsim.report.method import describe_method
 from seatsim.report.sweep_choices import advise_on_keys, choose_choice, tabulate_best
-from seatsim.report.sweep_names import COMFORT, TRAVEL, describe_column, format_level
-from seatsim.report.sweep_pictures import draw_pareto, tabulate_maps
-from seatsim.report.sweep_sensitivity import choose_metric, show_sensitivity
 from seatsim.scenario.conditions import is_condition
 from seatsim.sweeps.outcome import FAILED, UNVERIFIED
 from seatsim.sweeps.statistics.rows import NAMES, Exceedance, SweepRows
@@ -21,12 +28,15 @@ from seatsim.sweeps.statistics.sensitivity import Sensitivities, choose_key
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.figure import Figure
 
 SHOWN = (COMFORT, "driver_vdv", "seat_factor", TRAVEL, "suspension_displacement_peak", "end_stop_hits", "current_rms")
 """Metrics of the tables of the page; `table.csv` has all of them."""
 MOST_LINES = 60
 """Lines of a table on the page."""
 MOST_REASONS = 8
+ENOUGH = 0.8
+"""Share of the variance that an expansion must predict before nothing is said about it."""
 METHOD = (
     "Failed and unverified runs take no part in any figure.",
     "Shares of variance are Sobol indices of a polynomial chaos expansion, with 95 % intervals by resampling the runs;"
@@ -40,24 +50,26 @@ def report_sweep(
 ) -> Report:
     """Return the report of a sweep from its rows and the statistics on them."""
     settings = [Text(_say_seeds(rows)), Text(f"Identity of the sweep: {rows.manifest['identity']}")]
+    order, evidence = _order(found, rows), collect_sweep(rows, found, exceeded)
+    figures = _draw_figures(found, rows, order)
     sections = [
         Section("limits", "How often limits are exceeded", _show_limits(exceeded, rows)),
         Section("choices", "Best choice under each condition", tabulate_best(rows)),
-        Section("sensitivity", "What matters most", show_sensitivity(found, rows)),
-        Section("pareto", "Comfort and travel", draw_pareto(rows, _order(found, rows))),
-        Section("maps", "Means over two keys", tabulate_maps(rows, _order(found, rows))),
+        Section("sensitivity", "What matters most", _show_sensitivity(found, rows, figures)),
+        Section("pareto", "Comfort and travel", show_pictures(figures, "comfort")),
+        Section("maps", "Means over two keys", show_pictures(figures, "means")),
         Section("quantiles", "Quantiles", _show_quantiles(quantiles, rows)),
         Section("states", "Failed and unverified runs", _show_states(rows)),
-        show_card(collect_sweep(rows, found, exceeded)),
+        show_card(evidence),
         describe_method(METHOD, f"seatsim sweep-report {rows.folder.name}", settings),
     ]
-    about = f"Sweep: {rows.folder.name}"
-    return Report(about, state_importance(found, rows), [_count_runs(rows)], _advise(found, exceeded, rows), sections)
+    about, answer, doubt = f"Sweep: {rows.folder.name}", state_importance(found, rows), say_doubt(evidence)
+    return Report(about, answer, [_count_runs(rows)], _advise(found, exceeded, rows), sections, doubt)
 
 
 def state_importance(found: Sensitivities, rows: SweepRows) -> str:
     """Return in one sentence which key matters most to comfort, or to the first metric that varies."""
-    here = found.of(choose_metric(found)) if found.rows else []
+    here = found.of(_choose_metric(found)) if found.rows else []
     chosen = choose_key(here, rows)
     if chosen is None:
         return f"Which key matters most cannot be said: {found.problem or 'no key but the variant varies'}."
@@ -107,15 +119,56 @@ def _advise(found: Sensitivities, exceeded: Sequence[Exceedance], rows: SweepRow
         texts.append(f"Begin with the {shown.words}{f' of {where}' * bool(where)}: {worst.exceeding} of {worst.runs}"
                      f" runs are above the limit of {limit}.")  # fmt: skip
     if found.rows:
-        texts += advise_on_keys(found.of(choose_metric(found)), rows)
+        texts += advise_on_keys(found.of(_choose_metric(found)), rows)
     if len(rows.every) < rows.manifest["counts"]["runs"]:
         texts.append("Go on with the sweep: seatsim sweep with --resume.")
     return texts
 
 
+def _choose_metric(found: Sensitivities) -> str:
+    """Return comfort where it varies, else the first metric."""
+    metrics = dict.fromkeys(row.metric for row in found.rows)
+    return COMFORT if COMFORT in metrics else next(iter(metrics))
+
+
+def _list_metrics(found: Sensitivities, rows: SweepRows) -> list[str]:
+    """Return the metrics whose sensitivities are shown: comfort, travel and each limited one, or else the first."""
+    known = dict.fromkeys(name for name in (COMFORT, TRAVEL, *rows.manifest["limits"]) if found.of(name))
+    return list(known) or ([_choose_metric(found)] if found.rows else [])
+
+
+def _draw_figures(found: Sensitivities, rows: SweepRows, order: Sequence[str]) -> dict[str, Figure]:
+    figures: dict[str, Figure | None] = {}
+    for metric in _list_metrics(found, rows):
+        words = describe_column(metric, rows.units).words
+        figures |= {
+            f"shares_{metric}": plot_shares(found.of(metric), words),
+            f"tornado_{metric}": plot_tornado(found.of(metric), rows),
+        }
+    figures |= {"comfort": plot_comfort(rows, order)}
+    figures |= {f"means_{metric}": plot_means(rows, order, metric) for metric in (COMFORT, TRAVEL)}
+    return {name: figure for name, figure in figures.items() if figure is not None}
+
+
+def _show_sensitivity(found: Sensitivities, rows: SweepRows, figures: Mapping[str, Figure]) -> list[Block]:
+    """Return the shares of variance and the swings of comfort, travel and each limited metric."""
+    if not found.rows:
+        return [Text(f"{found.problem[0].upper()}{found.problem[1:]}.")]
+    blocks: list[Block] = []
+    for metric in _list_metrics(found, rows):
+        blocks += show_pictures(figures, f"shares_{metric}", f"tornado_{metric}")
+        explained, words = found.of(metric)[0].explained, describe_column(metric, rows.units).words
+        if explained < ENOUGH:
+            known = format_percent(max(0.0, explained))
+            blocks.append(Text(f"The shares rest on a polynomial that predicts {known} of the variance of the {words}"
+                               " in runs left out of its fit. The rest is the random road, sensor noise, or"
+                               " interactions that it has no terms for."))  # fmt: skip
+    return blocks
+
+
 def _order(found: Sensitivities, rows: SweepRows) -> list[str]:
     """Return the varied keys, what matters most to comfort first."""
-    ranked = [row.key for row in found.of(choose_metric(found))] if found.rows else []
+    ranked = [row.key for row in found.of(_choose_metric(found))] if found.rows else []
     return [*ranked, *(key for key in rows.keys if key not in ranked)]
 
 

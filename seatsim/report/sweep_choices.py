@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from seatsim.plots.labels import format_number, format_percent
+from seatsim.plots.sweeps import COMFORT, describe_column, format_level
 from seatsim.report.blocks import Block, Table
-from seatsim.report.formatting import format_number, format_percent
-from seatsim.report.sweep_names import COMFORT, describe_column, format_level
 from seatsim.scenario.conditions import is_condition
 from seatsim.sweeps.statistics.rows import SweepRows
 from seatsim.sweeps.statistics.sensitivity import Sensitivity, choose_key

@@ -16,7 +16,7 @@ from seatsim.page.folder import Folder, NotInFolderError, TooLargeError
 from seatsim.page.scenario_view import View
 from seatsim.page.serve import Impatient, find_target, open_target
 from seatsim.report.blocks import Table
-from seatsim.report.packing import Axis, Panel, pack_signals
+from seatsim.report.packing import Panel, pack_signals
 from seatsim.scenario.loading import EXAMPLES, load, single
 from seatsim.schema.content import plain
 from seatsim.schema.errors import InputError
@@ -36,7 +36,7 @@ class Plain:
         mass = read_number(request, self.sliders[0])
         time = np.arange(10.0)
         panel = Panel("damper_force", "N", "", {"": [mass * time]})
-        signals = pack_signals("signals-time", "", [("as set", 0)], Axis("time", "s", {"": time}), [panel])
+        signals = pack_signals("", [("as set", 0)], {"": time}, [panel])
         return View(f"{mass:g} kg <b>", [Table("t", ["a", "b"], [["<i>", f"{mass:g}"]])], signals)
 
     def encode(self, request):

@@ -9,16 +9,14 @@ from seatsim.plots.thinning import Window, find_loudest, spread_evenly
 def test_the_loudest_samples_are_those_of_the_largest_energy():
     values = np.array([0.0, 1.0, -3.0, 0.0, 2.0, 2.0, 0.0, 0.0])
     # Energies of pairs: 1, 10, 9, 4, 8, 4, and the last pair is never reached.
-    assert find_loudest(values, 2, 1) == 1
-    assert find_loudest(values, 2, 2) == 2
-    assert find_loudest(values, 2, 4) == 4
-    assert find_loudest(np.ones(9), 3, 1) == 0
+    assert [find_loudest(values, 1.0, 2.0, raster).start for raster in (1.0, 2.0, 4.0)] == [1.0, 2.0, 4.0]
+    assert find_loudest(np.ones(9), 1.0, 3.0, 1.0) == Window(0.0, 3.0)
 
 
 def test_the_loudest_samples_agree_with_a_sum_over_every_window():
     values = np.random.default_rng(0).standard_normal(200)
     energy = [np.sum(values[k : k + 30] ** 2) for k in range(170)]
-    assert find_loudest(values, 30, 1) == int(np.argmax(energy))
+    assert find_loudest(values, 0.1, 3.0, 0.1).start == pytest.approx(0.1 * np.argmax(energy))
 
 
 def test_items_are_spread_from_the_first_to_the_last():

@@ -154,7 +154,7 @@ def report(folder, settings):
     found = [one for _, one in run_many(load(path, settings), lambda _: None)]
     failures = [str(one) for one in found if isinstance(one, SeatsimError)]
     runs = [one for one in found if not isinstance(one, SeatsimError)]
-    return report_runs(runs, "seatsim run seat.yaml", "seat", failures)
+    return report_runs(runs, {}, "seatsim run seat.yaml", "seat", failures)
 
 
 @pytest.mark.parametrize(("settings", "expected"), CASES.values(), ids=CASES)

@@ -7,6 +7,10 @@ from seatsim.report.diagnosis import write_report
 from .browser import BLANK, open_chromium, open_page
 from .diagnoses import with_every_run
 
+COLOURS = """() => [...document.querySelectorAll('.pictures svg text')].map(text => getComputedStyle(text).fill)
+  .filter(fill => fill.startsWith('rgb(')).map(fill => fill.match(/[0-9]+/g).slice(0, 3).map(Number))"""
+"""The colours of the texts of the pictures."""
+
 
 @pytest.fixture(scope="module")
 def opened(tmp_path_factory):
@@ -18,11 +22,13 @@ def opened(tmp_path_factory):
 @pytest.mark.parametrize(("width", "scheme"), [(1280, "light"), (400, "dark")])
 def test_every_picture_is_drawn_and_nothing_is_cut_off(opened, width, scheme):
     page, complaints, requests = open_page(*opened, width, scheme)
-    assert page.locator(".plot").count() == page.locator(".plot[data-drawn=yes]").count() == 15
+    assert page.locator(".plot").count() == page.locator(".plot[data-drawn=yes]").count() == 5
     assert page.evaluate(BLANK) == 0
     assert page.evaluate("document.documentElement.scrollWidth <= document.documentElement.clientWidth")
     ends = page.evaluate("[...document.querySelectorAll('h1, p, figure')].map(e => e.getBoundingClientRect().right)")
-    assert max(ends) <= width
+    assert max(ends) <= width and page.locator(".pictures svg").count() == 9
+    texts = page.evaluate(COLOURS)
+    assert texts and all(min(colour) > 150 if scheme == "dark" else max(colour) < 110 for colour in texts)
     assert complaints == [] and requests == [opened[1]]
     page.close()
 

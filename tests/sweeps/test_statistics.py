@@ -5,8 +5,8 @@ import pandas as pd
 import pytest
 from scipy.stats import qmc
 
+from seatsim.plots.sweeps import find_front, plot_comfort
 from seatsim.report.sweep_choices import advise_on_keys, tabulate_best
-from seatsim.report.sweep_pictures import draw_pareto, find_front
 from seatsim.sweeps.statistics.rows import SweepRows, count_exceedances, tabulate_quantiles
 from seatsim.sweeps.statistics.sensitivity import analyse_sensitivity, choose_key
 
@@ -90,10 +90,10 @@ def test_each_road_has_a_picture_of_comfort_over_travel():
     )
     rows = rows_of(frame, ["plant.driver_mass", "excitation.road_class"])
     rows = rows._replace(metrics=[COMFORT, travel])
-    [figure] = draw_pareto(rows, rows.keys)
-    assert [plane.title[-1] for plane in figure.planes] == ["B", "C", "D"]
-    assert [name for name, *_ in figure.legend] == ["60.00", "80.00", "Pareto front"]
-    assert len(draw_pareto(rows, ["plant.driver_mass"])[0].planes) == 1
+    figure = plot_comfort(rows, rows.keys)
+    assert [axes.get_title(loc="left")[-1] for axes in figure.axes] == ["B", "C", "D"]
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["60.00", "80.00", "Pareto front"]
+    assert len(plot_comfort(rows, ["plant.driver_mass"]).axes) == 1
 
 
 def test_a_condition_is_never_advised_on_as_a_choice():

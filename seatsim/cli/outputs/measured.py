@@ -76,11 +76,12 @@ def write_characterisation(found: Characterisation, folder: Path) -> list[Path]:
     from seatsim.report.characterisation import report_characterisation
 
     command = f"seatsim characterise {found.source}" if found.measured else f"seatsim characterise --model {found.name}"
+    figures = plot_characterisation(found)
     contents = {
         "cycles.csv": [row_columns(row) for row in found.rows],
         "characterisation.json": found,
-        "report.html": report_characterisation(found, found.remarks, command),
-        **name_pictures(plot_characterisation(found)),
+        "report.html": report_characterisation(found, figures, found.remarks, command),
+        **name_pictures(figures),
     }
     return write_outputs(folder, contents)
 
@@ -99,11 +100,12 @@ def _contents_of_fit(found: Identification) -> dict[str, object]:
     from seatsim.plots.bench.identification import plot_predictions
     from seatsim.report.identification import report_identification
 
+    figures = {"loops": plot_predictions(found)}
     return {
         "parameters.yaml": HEAD + ("" if found.commanded else NO_COIL) + render_yaml(found.to_scenario()),
         "fit.json": found,
-        "report.html": report_identification(found, f"seatsim identify DATA --model {found.model}"),
-        **name_pictures({"loops": plot_predictions(found)}),
+        "report.html": report_identification(found, figures, f"seatsim identify DATA --model {found.model}"),
+        **name_pictures(figures),
     }
 
 

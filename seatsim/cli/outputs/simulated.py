@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
@@ -46,11 +45,14 @@ class RunAnswer(NamedTuple):
 
 def write_result(result: Result, folder: Path) -> list[Path]:
     """Write `summary.csv`, `summary.json`, `history.parquet`, `report.html` and the pictures; return their paths."""
-    title = os.path.basename(os.path.abspath(folder))
-    report = report_runs(result.runs, "seatsim run SCENARIO", title, result.failures)
+    from seatsim.plots.runs.draw import plot_result
+    from seatsim.plots.runs.naming import make_title
+
+    figures = plot_result(result)
+    report = report_runs(result.runs, figures, "seatsim run SCENARIO", make_title(result.runs), result.failures)
     seeds = {run.scenario.seed for run in result.runs}
     seed = seeds.pop() if len(seeds) == 1 else None
-    contents = {**_summarise(result), "report.html": report}
+    contents = {**_summarise(result), "report.html": report, **name_pictures(figures)}
     if result.brackets:
         contents["brackets.json"] = Brackets(place_runs(result))
     return write_documented(folder, partial(_write_run_files, result, contents), seed)
@@ -75,11 +77,7 @@ def _write_run_files(result: Result, contents: Mapping[str, object], folder: Pat
     with ThreadPoolExecutor(max_workers=1) as pool:
         # Compressing the histories, in a thread of its own, releases Python's lock to the drawing of the pictures.
         history = pool.submit(write_histories, result.runs, folder / "history.parquet")
-        from seatsim.plots.runs.draw import plot_result
-
-        paths = write_each(contents, folder)
-        pictures = write_each(name_pictures(plot_result(result)), folder)
-        return [*paths, history.result(), *pictures]
+        return [*write_each(contents, folder), history.result()]
 
 
 class SweepReport(NamedTuple):

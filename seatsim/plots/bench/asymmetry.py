@@ -9,13 +9,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from seatsim.characterisation.summary import Characterisation, group_by_setting
-from seatsim.plots import labels, style
-from seatsim.plots.bench.families import Family, order_by_current, order_by_temperature
+from seatsim.plots import style
+from seatsim.plots.bench.families import Family, measure_legend, order_by_current, order_by_temperature
 from seatsim.plots.bench.trends import BY_TEMPERATURE, RowFigure, choose_abscissas, choose_looks, draw_trend
 from seatsim.plots.style import Entry, Grid
 
-WHOLE = RowFigure("asymmetric part / RMS force [%]", lambda r: 100.0 * r.asymmetry)
-SHAPE = RowFigure("the same, less the offset [%]", lambda r: 100.0 * r.asymmetry_of_shape)
+WHOLE = RowFigure("asymmetric part /\nRMS force [%]", lambda r: 100.0 * r.asymmetry)
+SHAPE = RowFigure("the same, less\nthe offset [%]", lambda r: 100.0 * r.asymmetry_of_shape)
 
 
 def plot_asymmetry(found: Characterisation) -> Figure:
@@ -28,11 +28,9 @@ def plot_asymmetry(found: Characterisation) -> Figure:
     if any(across is BY_TEMPERATURE for across, _ in blocks) and len({row.current for row in group}) > 1:
         families.append(order_by_temperature(group))
     note = "Asymmetric part: difference from the centrosymmetric loop, (F(t) + F(t + T/2)) / 2; RMS over a cycle."
-    heights = (2.6,) * (len(blocks) + len(families))
-    widest = max(len(name) for family in families for name in [*family.names, family.legend])
-    grid = Grid(heights, columns=2, right=0.3 + style.SAMPLE + style.LETTER * widest, gap=(0.95, 0.85))
-    title = f"Asymmetry: {labels.clean_text(found.name, labels.LONGEST_TITLE)}"
-    page = style.make_page(title, note, grid, list(looks.values()))
+    heights = (1.8,) * (len(blocks) + len(families))
+    grid = Grid(heights, columns=2, right=measure_legend(families), top=0.2, gap=(0.8, 0.8))
+    page = style.make_page(f"Asymmetry: {found.name}", note, grid, list(looks.values()))
     for panels, (across, groups) in zip(page.rows, blocks, strict=False):
         for axes, figure in zip(panels, (WHOLE, SHAPE), strict=True):
             draw_trend(axes, across, figure, groups, looks)
@@ -56,10 +54,9 @@ def _draw_normalised(panels: Sequence[Axes], family: Family) -> None:
     # The scale of a symmetric loop would show nothing but rounding.
     if size < 1.0:
         panels[1].set_ylim(-1.0, 1.0)
-    panels[0].set_title(f"{family.title}: normalised loops", loc="left", fontsize=10.5)
-    panels[1].set_title("their asymmetric part", loc="left", fontsize=10.5)
+    panels[0].set_title(family.title, loc="left", fontsize=style.FONT)
     panels[0].set_ylabel("force / peak force [-]")
     panels[1].set_ylabel("asymmetric part [N]")
     for axes in panels:
-        axes.set_xlabel("velocity / peak velocity [-]")
+        axes.set_xlabel("velocity / peak [-]")
     style.draw_legend_beside(panels[1], family.legend)

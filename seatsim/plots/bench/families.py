@@ -92,6 +92,12 @@ def describe_setting(row: Row) -> str:
     return f"{1e3 * row.amplitude:.3g} mm, {row.frequency:.3g} Hz"
 
 
+def measure_legend(families: Sequence[Family]) -> float:
+    """Return the width in inches that the legends beside some families, or the bar of a cloud, need."""
+    letters = [len(name) for family in families for name in [*family.names, family.legend]]
+    return max(0.95, 0.55 + style.LETTER * max(letters, default=0))
+
+
 def _varies(values: Sequence[float], by: float) -> bool:
     known = [value for value in values if np.isfinite(value)]
     return len(known) > 1 and max(known) - min(known) > by

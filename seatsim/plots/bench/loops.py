@@ -12,49 +12,43 @@ from matplotlib.figure import Figure
 
 from seatsim.characterisation.rows import Row
 from seatsim.characterisation.summary import Characterisation
-from seatsim.plots import labels, style
-from seatsim.plots.bench.families import Family, find_families, group_clouds
-from seatsim.plots.style import LETTER, SAMPLE, Entry, Grid
+from seatsim.plots import style
+from seatsim.plots.bench.families import find_families, group_clouds, measure_legend
+from seatsim.plots.labels import clean_text
+from seatsim.plots.style import Entry, Grid
+
+DOTS = 2000
 
 
 def plot_loops(found: Characterisation) -> Figure:
     """Return the loops by current for each amplitude and frequency, by temperature where it varies, and clouds."""
     families, left_out = find_families(found.rows)
     clouds = group_clouds(found.rows)
-    drawn = len(families) + len(clouds)
-    names = [name for family in families for name in [*family.names, family.legend]]
-    names += [f"{row.current:.2f} A" for group in clouds for row in group]
-    right = max(1.3, 0.35 + SAMPLE + LETTER * max(map(len, names), default=0))
     note = "Mean of the steady cycles." if found.measured else "Last cycle of a sine test."
     note = note if families else "Records without steady cycles."
     note += f" {left_out} further settings are not shown." if left_out else ""
-    grid = Grid(heights=(2.6,) * drawn, columns=2, right=right, top=0.35, gap=(0.35, 0.95))
-    page = style.make_page(f"Loops: {labels.clean_text(found.name, labels.LONGEST_TITLE)}", note, grid)
+    heights = (1.9,) * (len(families) + len(clouds))
+    grid = Grid(heights, columns=2, right=measure_legend(families), top=0.3, gap=(0.2, 0.85))
+    page = style.make_page(f"Loops: {found.name}", note, grid)
     for panels, family in zip(page.rows, families, strict=False):
-        _draw_family(panels, family)
+        for row, name, colour in zip(family.rows, family.names, family.colours, strict=True):
+            if row.loop is not None:
+                look = Entry(name, colour, width=1.5)
+                middle = 0.5 * (np.max(row.loop.displacement) + np.min(row.loop.displacement))
+                style.draw_line(panels[0], row.loop.velocity, row.loop.force, look)
+                style.draw_line(panels[1], 1e3 * (row.loop.displacement - middle), row.loop.force, look)
+        _label_panels(panels, family.title, "from mid-stroke [mm]")
+        style.draw_legend_beside(panels[1], family.legend)
     for panels, group in zip(page.rows[len(families) :], clouds, strict=True):
         _draw_clouds(panels, group)
     return page.figure
 
 
-def _draw_family(panels: Sequence[Axes], family: Family) -> None:
-    for row, name, colour in zip(family.rows, family.names, family.colours, strict=True):
-        if row.loop is None:
-            continue
-        look = Entry(name, colour, width=1.5)
-        middle = 0.5 * (np.max(row.loop.displacement) + np.min(row.loop.displacement))
-        style.draw_line(panels[0], row.loop.velocity, row.loop.force, look)
-        style.draw_line(panels[1], 1e3 * (row.loop.displacement - middle), row.loop.force, look)
-    _label_panels(panels, family.title, "displacement from mid-stroke [mm]")
-    style.draw_legend_beside(panels[1], family.legend)
-
-
 def _label_panels(panels: Sequence[Axes], title: str, displacement: str) -> None:
-    panels[0].set_title(title, loc="left", fontsize=10.5)
+    panels[0].set_title(clean_text(title, 60), loc="left", fontsize=style.FONT)
     panels[0].set_xlabel("velocity [m/s]")
     panels[1].set_xlabel(displacement)
     panels[0].set_ylabel("damper force [N]")
-    panels[0].locator_params(axis="x", nbins=6)
     panels[1].set_ylim(panels[0].get_ylim())
     panels[1].tick_params(labelleft=False)
 
@@ -69,27 +63,24 @@ def _draw_clouds(panels: Sequence[Axes], group: Sequence[Row]) -> None:
     for row in sorted(group, key=lambda row: -row.current):
         if row.cloud is None:
             continue
-        x, v, force, current = row.cloud
+        x, v, force, current = (values[:: max(1, len(row.cloud.force) // DOTS)] for values in row.cloud)
         switched |= float(np.ptp(current)) > 0.05 * most
         for axes, across in ((panels[0], v), (panels[1], 1e3 * x)):
             dots = axes.scatter(
                 across, force, c=current, s=5, alpha=0.6, label=f"{row.current:.3g} A", cmap=colormaps["viridis"],
-                norm=norm, linewidths=0,
+                norm=norm, linewidths=0, rasterized=True,
             )  # fmt: skip
     names = list(dict.fromkeys(row.record.split(",")[0] for row in group))
     title = names[0] if len(names) == 1 else f"{names[0]} and {len(names) - 1} more"
-    _label_panels(panels, f"{labels.clean_text(title, labels.LONGEST)}, not cyclic", "displacement [mm]")
+    _label_panels(panels, f"{title}, not cyclic", "displacement [mm]")
     if switched:
-        beside = style.add_axes_beside(panels[1], 0.02, 0.015)
+        beside = style.add_axes_beside(panels[1], 0.02, 0.02)
         bar = panels[1].figure.colorbar(dots, cax=beside, label="current [A]")
         if bar.solids is not None:
             bar.solids.set_alpha(1.0)
         beside.set_ylim(0.0, most)
-    else:
-        legend = panels[1].legend(
-            title="current", alignment="left", loc="upper left", bbox_to_anchor=(1.02, 1.0), frameon=False,
-            borderaxespad=0, markerscale=2.5, reverse=True,
-        )  # fmt: skip
+    elif len(group) > 1:
+        legend = style.draw_legend_beside(panels[1], "current")
         for handle in legend.legend_handles:
             if handle is not None:
                 handle.set_alpha(1.0)

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from seatsim.characterisation.response import SHARES, Response
 from seatsim.characterisation.summary import Characterisation
-from seatsim.plots import labels, style
+from seatsim.plots import style
 from seatsim.plots.style import GREY, Entry, Grid
 
 MOST = 6
@@ -25,15 +25,14 @@ def plot_steps(found: Characterisation) -> Figure:
     speeds = {f"{answer.speed:.3g} m/s" for answer in known if math.isfinite(answer.speed)}
     at = f" at {speeds.pop()}" if len(speeds) == 1 else ""
     note = f"Force{at}, from its level before to that after the step; dots: 5, 90, 95 %. Thin: first order, same t95."
-    page = style.make_page(
-        f"Response to steps of current: {labels.clean_text(found.name, labels.LONGEST_TITLE - 20)}",
-        note, Grid((3.6,), columns=2, top=0.4, right=0.3, gap=(0.7, 0.7)),
-    )  # fmt: skip
+    title = f"Response to steps of current: {found.name}"
+    page = style.make_page(title, note, Grid((3.0,), columns=2, top=0.3, gap=(0.3, 0.0)))
     for axes, rises in zip(page.rows[0], (True, False), strict=True):
         chosen = [answer for answer in known if answer.rises == rises]
         _draw_responses(axes, chosen)
-        axes.set_title("current rises" if rises else "current falls", loc="left", fontsize=10.5)
+        axes.set_title("current rises" if rises else "current falls", loc="left", fontsize=style.FONT)
     page.rows[0][0].set_ylabel("share of the change [-]")
+    page.rows[0][1].tick_params(labelleft=False)
     return page.figure
 
 
@@ -55,6 +54,7 @@ def _draw_responses(axes: Axes, answers: list[Response]) -> None:
         lag = np.linspace(0.0, end, 200)
         axes.plot(1e3 * lag, 1.0 - np.exp(-answer.rate_95 * lag), color=colour, linewidth=0.8, alpha=0.8)
     axes.set_xlim(-0.08e3 * end, 1e3 * end)
-    axes.set_ylim(-0.1, 1.2)
     axes.set_xlabel("time from the step [ms]")
-    axes.legend(title="step, t95", loc="lower right", fontsize=9, framealpha=0.9, alignment="left")
+    axes.set_ylim(-0.25 - 0.17 * len(shown), 1.2)
+    axes.set_yticks([0, 0.5, 1])
+    axes.legend(title="step, t95", loc="lower right", fontsize=9, framealpha=0.9, alignment="left", handlelength=1.2)

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from seatsim.characterisation.rows import Row
 from seatsim.characterisation.summary import WARMER, Characterisation, group_by_setting
-from seatsim.plots import labels, style
+from seatsim.plots import style
 from seatsim.plots.bench.families import describe_setting, select_largest_current, select_lowest_temperature
 from seatsim.plots.style import Entry, Grid
 
@@ -38,11 +38,11 @@ class Abscissa(NamedTuple):
 
 PEAKS = (
     RowFigure(
-        "peak force in rebound [N]", lambda r: r.peak_rebound, lambda r: r.peak_rebound_sd,
+        "peak force\nin rebound [N]", lambda r: r.peak_rebound, lambda r: r.peak_rebound_sd,
         lambda r: (r.cycle_values or {}).get("peak_rebound", ()),
     ),
     RowFigure(
-        "peak force in compression [N]", lambda r: -r.peak_compression, lambda r: r.peak_compression_sd,
+        "peak force in\ncompression [N]", lambda r: -r.peak_compression, lambda r: r.peak_compression_sd,
         lambda r: [-value for value in (r.cycle_values or {}).get("peak_compression", ())],
     ),
 )  # fmt: skip
@@ -51,7 +51,7 @@ ENERGY = RowFigure(
     lambda r: (r.cycle_values or {}).get("energy", ()),
 )  # fmt: skip
 DAMPING = RowFigure(
-    "equivalent damping [kN·s/m]", lambda r: 1e-3 * r.damping, lambda r: 1e-3 * r.damping_sd,
+    "equivalent damping\n[kN·s/m]", lambda r: 1e-3 * r.damping, lambda r: 1e-3 * r.damping_sd,
     lambda r: [1e-3 * value for value in (r.cycle_values or {}).get("damping", ())],
 )  # fmt: skip
 BY_CURRENT = Abscissa("current [A]", lambda r: r.current, lambda r: f", {r.temperature:.0f} °C")
@@ -65,8 +65,8 @@ def plot_energy(found: Characterisation) -> Figure:
     blocks = choose_abscissas(rows)
     looks, note = choose_looks(blocks)
     figures = [[PEAKS[0], PEAKS[1]], [ENERGY, DAMPING]]
-    grid = Grid(heights=(2.7,) * (2 * len(blocks)), columns=2, right=0.3, gap=(0.95, 0.7))
-    title = f"Peak force, energy and damping: {labels.clean_text(found.name, labels.LONGEST_TITLE - 30)}"
+    grid = Grid(heights=(1.9,) * (2 * len(blocks)), columns=2, left=0.9, gap=(0.9, 0.65))
+    title = f"Peak force, energy and damping: {found.name}"
     page = style.make_page(title, note, grid, list(looks.values()))
     for index, (across, groups) in enumerate(blocks):
         for panels, row in zip(page.rows[2 * index : 2 * index + 2], figures, strict=True):

@@ -8,45 +8,33 @@ from typing import Literal, NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.ticker import LogLocator
 
-from seatsim.diagnosis.result import Cause, Diagnosis, Gaps
+from seatsim.diagnosis.result import Diagnosis, Gaps
 from seatsim.plots import style
-from seatsim.plots.frame import FONT, Picture, draw_bars, make_frame, name_rows
-from seatsim.plots.style import COLOURS, Grid
+from seatsim.plots.style import COLOURS, ROW, Entry, Grid, draw_bars, make_page, measure_names, name_rows
 from seatsim.recordings.gap import Gap
 
 MOST = 10
 """Causes that are shown."""
-ROW = 0.27
-"""Height of a row of bars in inches."""
+LIKELY = 0.01
+"""Probability from which on an effect has a row of its own."""
 CHOSEN, EQUIVALENT, OTHER, REST = COLOURS[0], COLOURS[4], "0.72", "0.45"
 """Colours of selected effects, of effects that explain the gap equally well, of others, of no or an unknown cause."""
-TICKS = (1, 2, 5)
+SMALLEST = 1e-4
+"""Gap below which none is drawn: a logarithmic scale has no zero."""
 Key = Literal["floor", "before", "calibrated", "after"]
+STAGES: dict[Key, Entry] = {
+    "floor": Entry("noise floor", "0.35", "none", mark="|"),
+    "before": Entry("nominal", COLOURS[1], "none", mark="o"),
+    "calibrated": Entry("refitted", COLOURS[2], "none", mark="D"),
+    "after": Entry("with effects", COLOURS[0], "none", mark="s"),
+}
+"""How each gap of a diagnosis is called and marked."""
 
 
-class Stage(NamedTuple):
-    """A gap of the diagnosis: its field in `Gaps`, what it is called, and its marker and colour."""
-
-    key: Key
-    words: str
-    marker: str
-    colour: str
-
-
-STAGES = (
-    Stage("floor", "noise floor", "|", "0.35"),
-    Stage("before", "nominal", "o", COLOURS[1]),
-    Stage("calibrated", "refitted", "D", COLOURS[2]),
-    Stage("after", "with effects", "s", COLOURS[0]),
-)
-
-
-def select_stages(diagnosis: Diagnosis) -> list[Stage]:
-    """Return the gaps that are shown: without effects, `after` would repeat the refit alone."""
-    return [stage for stage in STAGES if stage.key != "after" or diagnosis.selected]
+def select_stages(diagnosis: Diagnosis) -> list[Key]:
+    """Return the gaps that are shown, in the order of the diagnosis; without effects `after` is that of the refit."""
+    return ["before", "calibrated", *(["after"] if diagnosis.selected else []), "floor"]  # type: ignore[list-item]
 
 
 def read_gap(gaps: Gaps, key: Key, channel: str) -> float | None:
@@ -55,107 +43,138 @@ def read_gap(gaps: Gaps, key: Key, channel: str) -> float | None:
     return figures.overall if channel == "overall" else figures.channels.get(channel)
 
 
-def plot_gaps(diagnosis: Diagnosis) -> Picture | None:
+def plot_gaps(diagnosis: Diagnosis) -> Figure | None:
     """Return the gap of each channel on its way from the nominal simulation to the noise floor."""
     channels = list(diagnosis.gap.before.channels)
     if not channels:
         return None
-    names, stages = ["overall", *channels], select_stages(diagnosis)
-    rows = [[read_gap(diagnosis.gap, stage.key, name) or 0.0 for stage in stages] for name in names]
-    figure = _draw_gaps(names, stages, rows)
-    return Picture("Gap of each channel, on a logarithmic scale", "Held-out runs. Left is better.", figure)
+    names, keys = ["overall", *channels], select_stages(diagnosis)
+    rows = [[read_gap(diagnosis.gap, key, name) or 0.0 for key in keys] for name in names]
+    return _draw_gaps(
+        "Gap of each channel, before and after", names, [STAGES[key] for key in keys], rows, " of held-out runs"
+    )
 
 
 def plot_gap(found: Gap) -> Figure:
     """Return the gap of each channel beside its noise floor."""
     floor = [found.floor.overall, *(found.floor.channels[name] for name in found.channels)]
-    rows = list(zip(floor, [found.overall, *found.channels.values()], strict=True))
-    return _draw_gaps(["overall", *found.channels], [STAGES[0], STAGES[1]._replace(words="gap")], rows)
+    rows = list(zip([found.overall, *found.channels.values()], floor, strict=True))
+    stages = [STAGES["before"]._replace(label="gap"), STAGES["floor"]]
+    return _draw_gaps("Gap of each channel", ["overall", *found.channels], stages, rows)
 
 
-def _draw_gaps(names: Sequence[str], stages: Sequence[Stage], rows: Sequence[Sequence[float]]) -> Figure:
+def _draw_gaps(
+    title: str, names: Sequence[str], stages: Sequence[Entry], rows: Sequence[Sequence[float]], where: str = ""
+) -> Figure:
     """Return a figure with the gaps of each name, one for each stage."""
-    page = make_frame(Grid((ROW * len(names) + 0.15,), left=1.95, top=0.4, bottom=0.55))
+    known = [100 * value for row in rows for value in row if np.isfinite(value) and value > SMALLEST] or [1.0]
+    # A noise floor that nobody stated has no mark, and none in the legend.
+    legend = [
+        stage for stage, values in zip(stages, zip(*rows, strict=True), strict=True) if max(np.nan_to_num(values)) > 0
+    ]
+    shown = [name.replace("_", " ") for name in names]
+    note = f"RMS of measured less simulated over the spread of the signal{where}; further left is better."
+    page = make_page(title, note, Grid((ROW * len(names) + 0.15,), left=measure_names(shown)), legend)
     axes = page.rows[0][0]
-    name_rows(axes, [name.replace("_", " ") for name in names])
+    name_rows(axes, shown, [0])
+    low, high = min(known) / 1.4, max(known) * 1.4
     axes.set_xscale("log")
+    axes.set_xlim(low, high)
     for row, values in enumerate(rows):
-        _draw_stages(axes, row, [(stage, 100 * value) for stage, value in zip(stages, values, strict=True)])
+        seen = [(stage, 100 * value) for stage, value in zip(stages, values, strict=True) if value > SMALLEST]
+        if seen:
+            axes.plot([min(v for _, v in seen), max(v for _, v in seen)], [row, row], color="0.8", linewidth=1.5)
+        for stage, value in seen:
+            # The refit is hollow, so that what lies behind it is seen.
+            face = "1.0" if stage.mark == "D" else stage.colour
+            axes.plot(
+                [value], [row], linestyle="", marker=stage.mark, markeredgecolor=stage.colour, markerfacecolor=face,
+                markersize=13 if stage.mark == "|" else 7, markeredgewidth=2 if stage.mark in "|D" else 1, zorder=3,
+            )  # fmt: skip
     axes.axhline(0.5, color="0.8", linewidth=0.8)
-    style.set_plain_log_ticks(axes.xaxis, LogLocator(subs=TICKS))
-    axes.set_xlabel("gap [% of the signal's standard deviation]", fontsize=FONT)
-    handles = [_make_marker(stage, stage.words) for stage in stages]
-    page.figure.legend(
-        handles=handles, ncols=4, loc="upper left", bbox_to_anchor=(0.02, 0.995), frameon=False, fontsize=FONT,
-        columnspacing=1.2, handletextpad=0.2, borderpad=0.2, borderaxespad=0.2,
-    )  # fmt: skip
+    style.set_plain_log_ticks(axes.xaxis, low, high)
+    axes.set_xlabel("gap [%]")
     return page.figure
 
 
-def plot_location(diagnosis: Diagnosis) -> Picture | None:
+def plot_location(diagnosis: Diagnosis) -> Figure | None:
     """Return the shares of the gap that lie in the blocks."""
     shares = diagnosis.where
     if not shares:
         return None
-    page = make_frame(Grid((ROW * len(shares) + 0.1,), left=1.15, right=0.55, top=0.1, bottom=0.55))
-    axes = page.rows[0][0]
-    name_rows(axes, [share.block for share in shares])
-    values = [100 * share.share for share in shares]
-    merged = _equivalent_blocks(diagnosis)
-    colours = [
-        CHOSEN if row == 0 else EQUIVALENT if share.block in merged else OTHER for row, share in enumerate(shares)
-    ]
-    draw_bars(axes, values, colours, [_format_percent(value) for value in values], range(len(shares)))
-    axes.set_xlim(0, 100)
-    axes.set_xlabel("share of the gap [%]", fontsize=FONT)
-    first = shares[0]
+    alike = {name.partition(".")[0] for name in _find_equivalent(diagnosis)}
+    merged = [share.block for share in shares if share.block in alike]
+    first, note = shares[0], "The shares add up to 100 %."
     title = f"{_format_percent(100 * first.share)} of the gap lies in the {first.block}"
-    caption = "Shares of the gap by block; they add up to 100 %."
     if diagnosis.verdict == "unknown":
         title = f"What stays unexplained lies in the {first.block}"
-    elif first.block in merged and len(merged) > 1:
+    elif first.block in alike and len(merged) > 1:
         title = f"The gap lies in the {' or the '.join(merged)}"
-        caption += " Light blue: cannot be told from the first on this recording."
-    return Picture(title, caption, page.figure)
-
-
-def plot_ranking(diagnosis: Diagnosis) -> Picture | None:
-    """Return how probable the first causes are, and what each alone takes off the gap."""
-    causes = diagnosis.causes[:MOST]
-    if not causes:
-        return None
-    names = [*(cause.effect for cause in causes), "none", "unknown"]
-    page = make_frame(
-        Grid((ROW * len(names) + 0.1,), columns=2, left=2.2, right=0.5, top=0.1, bottom=0.72, gap=(0.6, 0.0))
-    )
-    left, right = page.rows[0]
-    colours = [_choose_colour(diagnosis, cause.effect) for cause in causes]
-    _draw_probabilities(left, diagnosis, names, colours)
-    _draw_shrinks(right, causes, len(names), colours)
-    for axes in (left, right):
-        axes.axhline(len(causes) - 0.5, color="0.8", linewidth=0.8)
-    for label, name in zip(left.get_yticklabels(), names, strict=True):
-        label.set_fontweight("bold" if name in diagnosis.selected else "normal")
-    equivalent = " Light blue: explain the gap as well." if EQUIVALENT in colours else ""
-    caption = f"Bold and blue: selected.{equivalent} Probabilities are of being at work: two can both be near 100 %."
-    return Picture(_make_headline(diagnosis), caption, page.figure)
-
-
-def _draw_probabilities(axes: Axes, diagnosis: Diagnosis, names: Sequence[str], colours: list[str]) -> None:
+        note += " Light blue: cannot be told from the first on this recording."
+    names = [share.block for share in shares]
+    page = make_page(title, note, Grid((ROW * len(shares) + 0.1,), left=measure_names(names), right=0.5, bottom=0.5))
+    axes = page.rows[0][0]
     name_rows(axes, names)
-    shown = [cause.probability for cause in diagnosis.causes[:MOST]]
-    values = [100 * p for p in (*shown, diagnosis.probability_none, diagnosis.probability_unknown)]
-    draw_bars(axes, values, [*colours, REST, REST], [_format_percent(value) for value in values], range(len(names)))
-    axes.set_xlim(0, 100)
-    axes.set_xlabel("probability [%]", fontsize=FONT)
+    values = [100 * share.share for share in shares]
+    colours = [CHOSEN if k == 0 else EQUIVALENT if share.block in alike else OTHER for k, share in enumerate(shares)]
+    draw_bars(axes, values, colours, [_format_percent(value) for value in values])
+    _scale_percent(axes, "share of the gap [%]")
+    return page.figure
 
 
-def _draw_shrinks(axes: Axes, causes: Sequence[Cause], rows: int, colours: list[str]) -> None:
-    name_rows(axes, [""] * rows)
-    values = [100 * cause.shrink if np.isfinite(cause.shrink) else 0.0 for cause in causes]
-    draw_bars(axes, values, colours, [_format_percent(value) for value in values], range(len(causes)))
-    axes.set_xlim(min(0.0, *values) * 1.1, max(10.0, *values))
-    axes.set_xlabel("alone takes off the\nrefitted gap [%]", fontsize=FONT)
+class _Row(NamedTuple):
+    name: str
+    probability: float
+    shrink: float
+    colour: str
+    text: str
+
+
+def plot_ranking(diagnosis: Diagnosis) -> Figure | None:
+    """Return how probable the first causes are, and what each alone takes off the gap; equal rows are one."""
+    if not diagnosis.causes:
+        return None
+    rows = _list_rows(diagnosis)
+    equivalent = " Light blue: explain the gap as well." if any(row.colour == EQUIVALENT for row in rows) else ""
+    note = (
+        f"Bold and blue: named by the diagnosis.{equivalent} Each figure is the probability of being at work: two can"
+        " both be near 100 %."
+    )
+    names = [row.name for row in rows]
+    grid = Grid((ROW * len(rows) + 0.1,), 2, left=measure_names(names), right=0.45, bottom=0.65, gap=(0.5, 0.0))
+    page = make_page("Which effects are at work", note, grid)
+    left, right = page.rows[0]
+    strong = [k for k, row in enumerate(rows) if row.colour == CHOSEN]
+    for axes, shown in ((left, names), (right, [""] * len(rows))):
+        name_rows(axes, shown, strong)
+        axes.axhline(len(rows) - 2.5, color="0.8", linewidth=0.8)
+    colours = [row.colour for row in rows]
+    draw_bars(left, [100 * row.probability for row in rows], colours, [row.text for row in rows])
+    _scale_percent(left, "probability [%]")
+    shrinks = [100 * row.shrink for row in rows]
+    draw_bars(right, shrinks, colours, [_format_percent(each) if np.isfinite(each) else "" for each in shrinks])
+    known = np.nan_to_num(shrinks)
+    right.set_xlim(min(0.0, *known) * 1.1, max(10.0, *known))
+    right.set_xlabel("alone takes off the\nrefitted gap [%]")
+    return page.figure
+
+
+def _list_rows(diagnosis: Diagnosis) -> list[_Row]:
+    alike = _find_equivalent(diagnosis)
+    ranked = [each for each in diagnosis.causes if each.effect in diagnosis.selected or each.probability >= LIKELY]
+    rows = [
+        _Row(each.effect, each.probability, each.shrink,
+             CHOSEN if each.effect in diagnosis.selected else EQUIVALENT if each.effect in alike else OTHER,
+             _format_percent(100 * each.probability))
+        for each in ranked[:MOST]
+    ]  # fmt: skip
+    rest = [each.probability for each in diagnosis.causes if each not in ranked[:MOST]]
+    if rest:
+        words = f"{len(rest)} other effect{'s' * (len(rest) > 1)}"
+        rows.append(_Row(words, max(rest), np.nan, OTHER, f"at most {_format_percent(100 * max(rest))}"
+                         if max(rest) >= LIKELY else f"below {LIKELY:.0%}".replace("%", " %")))  # fmt: skip
+    ends = (("no effect at all", diagnosis.probability_none), ("another cause", diagnosis.probability_unknown))
+    return [*rows, *(_Row(name, value, np.nan, REST, _format_percent(100 * value)) for name, value in ends)]
 
 
 def _find_equivalent(diagnosis: Diagnosis) -> list[str]:
@@ -164,55 +183,10 @@ def _find_equivalent(diagnosis: Diagnosis) -> list[str]:
     return [name for group in groups for name in group]
 
 
-def _equivalent_blocks(diagnosis: Diagnosis) -> list[str]:
-    """Return the blocks of those effects, in the order of their shares."""
-    found = {name.partition(".")[0] for name in _find_equivalent(diagnosis)}
-    return [share.block for share in diagnosis.where if share.block in found]
-
-
-def _choose_colour(diagnosis: Diagnosis, effect: str) -> str:
-    if effect in diagnosis.selected:
-        return CHOSEN
-    return EQUIVALENT if effect in _find_equivalent(diagnosis) else OTHER
-
-
-def _make_headline(diagnosis: Diagnosis) -> str:
-    first, *_ = diagnosis.causes
-    equivalent = _find_equivalent(diagnosis)
-    if equivalent:
-        likely = [cause for cause in diagnosis.causes if cause.effect in equivalent]
-        return " or ".join(f"{cause.effect} {_format_percent(100 * cause.probability)}" for cause in likely)
-    if diagnosis.verdict == "unknown":
-        return f"Unknown cause: {_format_percent(100 * diagnosis.probability_unknown)} probable"
-    chosen = [cause for cause in diagnosis.causes if cause.effect in diagnosis.selected] or [first]
-    named = ", ".join(f"{cause.effect} {_format_percent(100 * cause.probability)}" for cause in chosen)
-    others = [cause for cause in diagnosis.causes if cause not in chosen]
-    return f"{named}; next {others[0].effect} {_format_percent(100 * others[0].probability)}" if others else named
-
-
-def _draw_stages(axes: Axes, row: int, points: Sequence[tuple[Stage, float]]) -> None:
-    """Draw the gaps of one channel in per cent, joined by a line; one of zero has no place on a logarithmic scale."""
-    known = [value for _, value in points if value > 0]
-    if known:
-        axes.plot([min(known), max(known)], [row, row], color="0.8", linewidth=1.5, zorder=1)
-    for stage, value in points:
-        if value > 0:
-            look = _make_marker(stage, "")
-            look.set_data([value], [row])
-            axes.add_line(look)
-    axes.update_datalim([(value, row) for value in known])
-    axes.autoscale_view(scaley=False)
-
-
-def _make_marker(stage: Stage, words: str) -> Line2D:
-    marker, colour = stage.marker, stage.colour
-    # Markers of one area look unequal in size; the refit is hollow, so that what lies behind it is seen.
-    size = {"|": 13.0, "o": 8.0, "D": 6.0, "s": 6.5}[marker]
-    hollow = "white" if marker == "D" else colour
-    return Line2D(
-        [], [], linestyle="", marker=marker, markersize=size, markeredgecolor=colour, markerfacecolor=hollow,
-        markeredgewidth=2.2 if marker in "|D" else 1.0, label=words, zorder=3,
-    )  # fmt: skip
+def _scale_percent(axes: Axes, label: str) -> None:
+    axes.set_xlim(0, 100)
+    axes.set_xticks([0, 50, 100])
+    axes.set_xlabel(label)
 
 
 def _format_percent(value: float) -> str:

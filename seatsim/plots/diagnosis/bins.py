@@ -1,47 +1,23 @@
-"""Figures behind the pictures of a diagnosis: residuals in bins, spectra, the window with most energy."""
+"""Figures behind the pictures of a diagnosis: signals without their start, levels in bins."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
 from seatsim.diagnosis.result import Diagnosis, Trace
 from seatsim.metrics.motion import rms
-from seatsim.metrics.spectra import power_spectral_density
-from seatsim.plots.thinning import Window, find_loudest
 from seatsim.recordings.replay import LEFT_OUT
 from seatsim.schema.arrays import Array
 
 FEWEST = 20
 """Samples below which a bin is left empty: the standard error of an RMS is 1 / sqrt(2 n), a sixth of it at 20."""
-SEGMENT = 4.0
-"""Longest segment of a spectrum in s."""
-AVERAGES = 4
-"""Fewest half-overlapping segments of a spectrum."""
-SHORTEST = 64
-"""Rows of a run from which on it has a spectrum."""
-LOWEST = 0.25
-"""Hz from which on a spectrum is drawn: the distance of the lines of the longest segment."""
-STRIDE = 0.05
-"""Raster in s on which a window begins."""
 
 
-class Residual(NamedTuple):
-    """Residuals of a channel: measured less nominal, and measured less the simulation with the effects."""
-
-    before: Array
-    after: Array
-
-
-def compute_residual(trace: Trace) -> Residual:
-    """Return the residuals of a channel before and after, in its unit, shape (N,) each."""
-    return Residual(trace.measured - trace.nominal, trace.measured - trace.after)
-
-
-def group_by_channel(traces: list[Trace]) -> dict[str, list[Trace]]:
-    """Return the held-out signals of each channel, without the first second, in the order in which channels appear."""
+def group_by_channel(traces: Sequence[Trace]) -> dict[str, list[Trace]]:
+    """Return the signals of each channel, without the first second, in the order in which channels appear."""
     found: dict[str, list[Trace]] = {}
     for trace in traces:
         rest = drop_start(trace)
@@ -51,7 +27,7 @@ def group_by_channel(traces: list[Trace]) -> dict[str, list[Trace]]:
 
 
 def drop_start(trace: Trace) -> Trace:
-    """Return a held-out signal without the first second of its run, which no gap counts."""
+    """Return a signal without the first second of its run, which no gap counts."""
     part = slice(_first_row(trace.time), None)
     return replace(
         trace, time=trace.time[part], measured=trace.measured[part], nominal=trace.nominal[part],
@@ -76,24 +52,6 @@ def find_worst(diagnosis: Diagnosis) -> tuple[Trace, dict[str, Array]] | None:
     return drop_start(chosen), {name: values[begin:] for name, values in motion.items() if len(values) == length}
 
 
-def sample_step(time: Array) -> float:
-    """Return the interval between rows in s."""
-    return float((time[-1] - time[0]) / (len(time) - 1))
-
-
-def find_window(time: Array, values: Array, seconds: float) -> Window:
-    """Return the window of that many seconds in which sum x^2 is greatest, the first of equals.
-
-    time in s and values, shape (N,) each; a shorter signal is its own window.
-    """
-    interval = sample_step(time)
-    size = round(seconds / interval)
-    if size >= len(values):
-        return Window(float(time[0]), float(time[-1]))
-    start = find_loudest(values, size, max(1, round(STRIDE / interval)))
-    return Window(float(time[start]), float(time[start + size]))
-
-
 def bin_edges(values: Array, count: int) -> Array:
     """Return the borders of `count` equal bins over a quantity, shape (count + 1,).
 
@@ -116,31 +74,15 @@ def map_rms(x: Array, y: Array, values: Array, borders: tuple[Array, Array]) -> 
     ends = list(borders)
     count, _, _ = np.histogram2d(x, y, bins=ends)
     energy, _, _ = np.histogram2d(x, y, bins=ends, weights=np.square(values))
-    return _root_where_enough(energy, count).T
-
-
-def estimate_spectrum(time: Array, signals: list[Array]) -> tuple[Array, Array]:
-    """Return frequency in Hz and power spectral density by Welch's method, the mean over the signals of several runs.
-
-    The line at zero frequency is left out: segments have their means removed.
-    """
-    rate = 1.0 / sample_step(time)
-    shortest = min(len(values) for values in signals)
-    length = max(8, min(round(SEGMENT * rate), 2 * shortest // (AVERAGES + 1)))
-    found = [power_spectral_density(values, rate, min(length, shortest)) for values in signals]
-    return found[0][0][1:], np.mean([power for _, power in found], axis=0)[1:]
-
-
-def _first_row(time: Array) -> int:
-    # Times are multiples of a step: the slack keeps rounding from moving the cut by a row.
-    return int(np.searchsorted(time, LEFT_OUT - 1e-9))
+    return np.asarray(np.where(count >= FEWEST, np.sqrt(energy / np.maximum(count, 1)), np.nan)).T
 
 
 def nominal_gap(trace: Trace) -> float:
     """Return the nominal gap of one signal, RMS(measured - nominal) / std(measured); 0 where nothing was measured."""
     spread = float(np.std(trace.measured))
-    return rms(compute_residual(trace).before) / spread if spread > 0 else 0.0
+    return rms(trace.measured - trace.nominal) / spread if spread > 0 else 0.0
 
 
-def _root_where_enough(energy: Array, count: Array) -> Array:
-    return np.asarray(np.where(count >= FEWEST, np.sqrt(energy / np.maximum(count, 1)), np.nan))
+def _first_row(time: Array) -> int:
+    # Times are multiples of a step: the slack keeps rounding from moving the cut by a row.
+    return int(np.searchsorted(time, LEFT_OUT - 1e-9))

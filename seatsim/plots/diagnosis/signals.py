@@ -1,163 +1,161 @@
-"""Held-out signals before and after, with what is left of them, over time and over frequency."""
+"""Each compared channel: measured and simulated, what is left of it beside the sensor's noise, over time and frequency.
+
+The same picture shows a gap, with one simulation, and a diagnosis, with two.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
+
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.ticker import LogLocator, NullLocator
+from matplotlib.figure import Figure
 
 from seatsim.diagnosis.result import Diagnosis, Trace
 from seatsim.metrics.motion import rms
 from seatsim.plots import style
-from seatsim.plots.averaging import average_bands
-from seatsim.plots.diagnosis.bins import (
-    LOWEST,
-    SHORTEST,
-    compute_residual,
-    estimate_spectrum,
-    find_window,
-    group_by_channel,
-    nominal_gap,
-)
-from seatsim.plots.diagnosis.frame import MEASURED, NOISE, NOMINAL, choose_after_look, scale_frequency_axis
-from seatsim.plots.frame import FONT, Picture, describe_quantity, format_number, make_frame
-from seatsim.plots.quantities import Quantity
-from seatsim.plots.style import GREY, Entry, Grid
-from seatsim.plots.thinning import Window
+from seatsim.plots.densities import estimate_density
+from seatsim.plots.diagnosis.bins import group_by_channel, nominal_gap
+from seatsim.plots.labels import Quantity, describe_channel
+from seatsim.plots.style import COLOURS, DASHES, GREY, Entry, Grid
+from seatsim.plots.thinning import BINS, Window, find_loudest, thin_line
+from seatsim.recordings.gap import Gap, ReplayedPair
 from seatsim.schema.arrays import Array
 
-SECONDS = 2.0
-"""Length in s of the window that is shown."""
+SECONDS, RASTER = 2.0, 0.05
+"""Length in s of the window that is shown, and the raster on which it begins."""
 BAND = 2.0
 """Standard deviations of the noise that are shaded."""
 DECADES = 1.5
 """Decades below the noise that a spectrum shows at most."""
-PER_OCTAVE = 16
-"""Bands in an octave of a spectrum."""
 EXCESS = 1.1
 """RMS of a residual over its noise up to which it is called noise."""
-TALL = (1.85, 1.15)
-"""Heights in inches of the panels of the signals and of their residuals."""
-SHADE = "0.82"
+MEASURED = Entry("measured", "black", width=2.0)
+NOMINAL = Entry("nominal", COLOURS[1], DASHES[1], width=1.3)
+AFTER = Entry("with effects", COLOURS[0], width=1.1)
+NOISE = Entry("sensor noise", "0.55", ":", width=1.8)
+GRID = Grid((1.5, 1.0, 1.7), left=0.85, gap=(0.0, 0.16), bottom=0.5)
+OWN_AXIS = 0.42
+"""Room in inches above the spectrum for the axis of time."""
 
 
-def plot_signals(diagnosis: Diagnosis) -> list[Picture]:
-    """Return a picture of each channel: the window in which the nominal simulation is most wrong."""
-    look = choose_after_look(diagnosis)
-    return [_plot_signal(_find_worst_run(traces), look) for traces in _order_channels(diagnosis)]
+class Simulated(NamedTuple):
+    """A simulation that is compared with a measurement: how it looks, and its signal of a trace."""
+
+    look: Entry
+    read: Callable[[Trace], Array]
 
 
-def plot_spectra(diagnosis: Diagnosis) -> list[Picture]:
-    """Return a picture of each channel: spectra of what is left before and after, and of the noise."""
-    look = choose_after_look(diagnosis)
-    return [_plot_spectrum(traces, look) for traces in _order_channels(diagnosis) if len(traces[0].time) >= SHORTEST]
+def name_last(diagnosis: Diagnosis) -> str:
+    """Return what the simulation of `augmented.yaml` is called: without effects it is the refitted nominal one."""
+    return "with effects" if len(diagnosis.selected) > 1 else "with effect" if diagnosis.selected else "refitted"
 
 
-def _order_channels(diagnosis: Diagnosis) -> list[list[Trace]]:
-    """Return the signals by channel, the channel with the largest nominal gap first."""
-    return sorted(
-        group_by_channel(diagnosis.evidence.traces).values(), key=lambda traces: -nominal_gap(_find_worst_run(traces))
-    )
+def plot_signals(diagnosis: Diagnosis) -> dict[str, Figure]:
+    """Return a picture of each held-out channel, the channel with the largest nominal gap first."""
+    look = AFTER._replace(label=name_last(diagnosis), colour=COLOURS[0 if diagnosis.selected else 2])
+    lines = [Simulated(NOMINAL, lambda trace: trace.nominal), Simulated(look, lambda trace: trace.after)]
+    return _plot_channels(diagnosis.evidence.traces, lines)
 
 
-def _find_worst_run(traces: list[Trace]) -> Trace:
-    """Return the run in which the nominal simulation is most wrong."""
-    return max(traces, key=lambda trace: rms(compute_residual(trace).before))
+def plot_pairs(found: Gap, pairs: Mapping[str, ReplayedPair]) -> dict[str, Figure]:
+    """Return a picture of each channel of a gap, the channel with the largest gap first."""
+    spreads = {
+        name: float(np.std(np.concatenate([pair.measured[name] for pair in pairs.values() if name in pair.measured])))
+        for name in found.channels
+    }
+    traces = [
+        Trace(run, name, pair.units[name], found.floor.channels[name] * spreads[name], pair.time, pair.measured[name],
+              *[pair.simulated[name]] * 3)
+        for run, pair in pairs.items() for name in found.channels if name in pair.measured
+    ]  # fmt: skip
+    simulated = NOMINAL._replace(label="simulated", dashes="-")
+    return _plot_channels(traces, [Simulated(simulated, lambda trace: trace.nominal)])
 
 
-def _plot_signal(trace: Trace, look: Entry) -> Picture:
-    shown, left = describe_quantity(trace.channel, trace.unit), compute_residual(trace)
-    window = find_window(trace.time, left.before, SECONDS)
+def _plot_channels(traces: Sequence[Trace], lines: Sequence[Simulated]) -> dict[str, Figure]:
+    groups = group_by_channel(traces).values()
+    worst = [(max(group, key=lambda each: rms(each.measured - each.nominal)), group) for group in groups]
+    ordered = sorted(worst, key=lambda pair: -nominal_gap(pair[0]))
+    return {f"signal_{trace.channel}": _plot_channel(trace, group, lines) for trace, group in ordered}
+
+
+def _plot_channel(trace: Trace, group: Sequence[Trace], lines: Sequence[Simulated]) -> Figure:
+    """Return a picture of a channel: of its worst run over time, and of all of its runs over frequency."""
+    shown, left = describe_channel(trace.channel, trace.unit), trace.measured - lines[0].read(trace)
+    step = (trace.time[-1] - trace.time[0]) / (len(trace.time) - 1)
+    window = find_loudest(left, step, SECONDS, RASTER)
+    window = Window(window.start + trace.time[0], window.end + trace.time[0])
+    noise = shown.factor * trace.noise_rms
+    note = f"{window} of {trace.run}, where the difference has most energy; RMS over the whole run."
+    note += f" Grey band: ±{BAND:g} noise." if noise else ""
+    density = [estimate_density(step, [each.measured for each in group])]
+    density += [estimate_density(step, [each.measured - line.read(each) for each in group]) for line in lines]
+    has_spectrum = bool(len(density[0][0]))
+    grid = GRID if has_spectrum else GRID._replace(heights=GRID.heights[:2])
+    legend = [MEASURED, *(line.look for line in lines), *([NOISE] if noise and has_spectrum else [])]
+    page = style.make_page(_make_title(trace, shown, lines), note, grid, legend)
+    upper, lower = (row[0] for row in page.rows[:2])
+    _draw_time(upper, lower, trace, window, shown, lines)
+    lower.axhspan(-BAND * noise, BAND * noise, color="0.82", linewidth=0, zorder=0)
+    for [axes] in page.rows[2:]:
+        left_edge, bottom, width, height = axes.get_position().bounds
+        axes.set_position((left_edge, bottom, width, height * (1 - OWN_AXIS / GRID.heights[2])))
+        _draw_density(
+            axes, density, [MEASURED._replace(colour=GREY, width=1.2), *legend[1:]], shown, 2 * noise**2 * step
+        )
+    return page.figure
+
+
+def _draw_time(
+    upper: Axes, lower: Axes, trace: Trace, window: Window, shown: Quantity, lines: Sequence[Simulated]
+) -> None:
     inside = (trace.time >= window.start) & (trace.time <= window.end)
-    grid = Grid(TALL, left=0.95, right=0.25, top=0.1, bottom=0.5, gap=(0.0, 0.12))
-    page = make_frame(grid, [MEASURED, NOMINAL, look])
-    [upper], [lower] = page.rows
-    for signal, entry in ((trace.measured, MEASURED), (trace.after, look), (trace.nominal, NOMINAL)):
-        style.draw_line(upper, trace.time[inside], shown.factor * signal[inside], entry)
-    _draw_noise(lower, BAND * trace.noise_rms * shown.factor)
-    for signal, entry in ((left.after, look), (left.before, NOMINAL)):
-        style.draw_line(lower, trace.time[inside], shown.factor * signal[inside], entry)
-    _label_signal(upper, lower, window, shown)
-    return Picture(_make_signal_title(trace, shown, look), _make_signal_caption(trace, window), page.figure)
 
+    def draw(axes: Axes, values: Array, look: Entry) -> None:
+        style.draw_line(axes, *thin_line(trace.time[inside], shown.factor * values[inside], BINS), look)
 
-def _draw_noise(axes: Axes, half: float) -> None:
-    axes.axhspan(-half, half, color=SHADE, linewidth=0, zorder=0)
-    axes.axhline(0.0, color="0.6", linewidth=0.8, zorder=0.5)
-
-
-def _label_signal(upper: Axes, lower: Axes, window: Window, shown: Quantity) -> None:
+    draw(upper, trace.measured, MEASURED)
+    for line in lines:
+        draw(upper, line.read(trace), line.look)
+        draw(lower, trace.measured - line.read(trace), line.look)
+    lower.axhline(0.0, color="0.6", linewidth=0.8, zorder=0.5)
     upper.tick_params(labelbottom=False)
-    upper.set_ylabel(f"{shown.words}\n[{shown.unit}]", fontsize=FONT)
-    lower.set_ylabel(f"measured less\nsimulated [{shown.unit}]", fontsize=FONT)
-    lower.set_xlabel("time [s]", fontsize=FONT)
+    upper.set_ylabel(f"{shown.words}\n[{shown.unit}]")
+    lower.set_ylabel(f"difference\n[{shown.unit}]")
+    lower.set_xlabel("time [s]", labelpad=1)
     for axes in (upper, lower):
         axes.set_xlim(*window)
-        axes.yaxis.set_label_coords(-0.115, 0.5)
+        axes.yaxis.set_label_coords(-0.1, 0.5)
 
 
-def _make_signal_title(trace: Trace, shown: Quantity, look: Entry) -> str:
-    left = compute_residual(trace)
-    before, after = (shown.factor * rms(signal) for signal in left)
-    noise = f", noise {shown.factor * trace.noise_rms:.3g} {shown.unit}" if trace.noise_rms > 0 else ""
-    if rms(left.before) <= EXCESS * trace.noise_rms:
-        return f"{_capitalise(shown)}: nominal already within noise"
-    return f"{_capitalise(shown)}: RMS residual {before:.3g} nominal, {after:.3g} {look.label}{noise}"
-
-
-def _make_signal_caption(trace: Trace, window: Window) -> str:
-    noise = f" Grey band: ±{BAND:g} noise." if trace.noise_rms > 0 else ""
-    return f"{window} of {trace.run}, where the nominal residual has most energy.{noise} RMS over the whole run."
-
-
-def _plot_spectrum(traces: list[Trace], look: Entry) -> Picture:
-    first, shown = traces[0], describe_quantity(traces[0].channel, traces[0].unit)
-    # The one-sided density of white noise of RMS s, sampled every dt, is 2 s^2 dt.
-    noise = 2.0 * first.noise_rms**2 * float(np.median(np.diff(first.time)))
-    measured = Entry("measured", GREY, width=1.0)
-    legend = [measured, NOMINAL, look]
-    page = make_frame(Grid((2.2,), left=0.95, right=0.25, top=0.1, bottom=0.5), legend + [NOISE] * bool(noise))
-    axes = page.rows[0][0]
-    left = [compute_residual(trace) for trace in traces]
-    groups = ([t.measured for t in traces], [r.before for r in left], [r.after for r in left])
-    lines = [estimate_spectrum(first.time, signal) for signal in groups]
-    for (frequency, power), entry in zip(lines, legend, strict=True):
-        centres, density, _ = average_bands(frequency, shown.factor**2 * power, LOWEST, PER_OCTAVE)
-        style.draw_line(axes, centres, np.where(density > 0, density, np.nan), entry)
-    if noise:
-        style.draw_line(axes, [LOWEST, 1e4], [shown.factor**2 * noise] * 2, NOISE)
-    _scale_spectrum(axes, lines[0][0], shown.factor**2 * noise, shown)
-    noisy = max(rms(signal.before) for signal in left) <= EXCESS * first.noise_rms
-    said = "nominal already within noise" if noisy else _describe_peak(lines[1][0], lines[1][1], lines[2][1], look)
-    caption = f"Residuals of the simulation, nominal and {look.label}, and the measured signal. Welch's method."
-    return Picture(f"{_capitalise(shown)}: {said}", caption, page.figure)
-
-
-def _scale_spectrum(axes: Axes, frequency: Array, noise: float, shown: Quantity) -> None:
+def _draw_density(
+    axes: Axes, lines: Sequence[tuple[Array, Array]], looks: Sequence[Entry], shown: Quantity, noise: float
+) -> None:
+    """Draw densities, in SI units, and that of the noise, whose one-sided density is 2 s^2 dt where its RMS is s."""
+    frequency = lines[0][0]
     axes.set_yscale("log")
-    axes.set_xlim(LOWEST, frequency[-1])
-    scale_frequency_axis(axes, LOWEST, float(frequency[-1]))
-    axes.yaxis.set_major_locator(LogLocator(numticks=6))
-    axes.yaxis.set_minor_locator(NullLocator())
+    for (places, power), look in zip(lines, looks, strict=False):
+        style.draw_line(axes, places, np.where(power > 0, shown.factor**2 * power, np.nan), look)
+    if noise:
+        style.draw_line(axes, frequency[[0, -1]], [noise, noise], NOISE)
     low, high = axes.get_ylim()
-    axes.set_ylim(max(low, noise / 10**DECADES if noise else high / 1e9), high)
-    axes.set_xlabel("frequency [Hz]", fontsize=FONT)
-    unit = f"({shown.unit})²" if "/" in shown.unit or "·" in shown.unit else f"{shown.unit}²"
-    axes.set_ylabel(f"power density [{unit}/Hz]", fontsize=FONT)
+    low = max(low, noise / 10**DECADES if noise else high / 1e8)
+    axes.set_ylim(low, high)
+    style.set_plain_log_ticks(axes.yaxis, low, high)
+    style.scale_frequency_axis(axes, float(frequency[0]), float(frequency[-1]))
+    axes.set_ylabel(f"power density\n[{shown.square}/Hz]")
+    axes.yaxis.set_label_coords(-0.1, 0.5)
 
 
-def _describe_peak(frequency: Array, before: Array, after: Array, look: Entry) -> str:
-    """Return words on the octave in which most of the nominal residual lies, and on what is left of it there."""
-    energy = np.concatenate([[0.0], np.cumsum(np.where(frequency >= LOWEST, before, 0.0))])
-    first, last = (np.searchsorted(frequency, frequency * side) for side in (2**-0.5, 2**0.5))
-    # Power per width of the octave, so that white noise does not favour the highest octave.
-    octave = (energy[last] - energy[first]) / np.sqrt(frequency)
-    centre = float(frequency[int(np.argmax(octave))])
-    near = (frequency >= centre / np.sqrt(2)) & (frequency <= centre * np.sqrt(2))
-    ratio = float(np.sqrt(np.sum(after[near]) / max(np.sum(before[near]), 1e-300)))
-    place = f"near {format_number(centre)} Hz"
-    return f"nominal residual greatest {place}; {look.label}, {100 * ratio:.0f} % of it stays there"
-
-
-def _capitalise(shown: Quantity) -> str:
-    return shown.words[:1].upper() + shown.words[1:]
+def _make_title(trace: Trace, shown: Quantity, lines: Sequence[Simulated]) -> str:
+    sizes = [rms(trace.measured - line.read(trace)) for line in lines]
+    words = shown.words[:1].upper() + shown.words[1:]
+    if sizes[0] <= EXCESS * trace.noise_rms:
+        return f"{words}: the {lines[0].look.label} one is already within noise"
+    figures = [
+        f"{shown.factor * size:.3g} {shown.unit} {line.look.label}" for size, line in zip(sizes, lines, strict=True)
+    ]
+    noise = f"; noise {shown.factor * trace.noise_rms:.3g} {shown.unit}" if trace.noise_rms > 0 else ""
+    return f"{words}: RMS difference {', '.join(figures)}{noise}"

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from seatsim.plots import style
 from seatsim.plots.runs import naming
-from seatsim.plots.style import COLOURS, LETTER, Entry, Grid
+from seatsim.plots.style import COLOURS, ROW, Entry, Grid
 from seatsim.schema.arrays import Array
 from seatsim.simulation.result import Run
 
@@ -32,17 +32,16 @@ COMPARED = (
     Compared("seat_factor", "SEAT factor\n[-]"),
 )
 NOTE = "Over the whole run; the smaller the better."
-BAR = 0.32
-"""Height of a bar with its gap in inches."""
-LONGEST = 34
-"""Letters of the name of a bar."""
 
 
 def plot_comparison(runs: Sequence[Run]) -> Figure:
     """Return bars run by run, or lines over the number that is swept, one line for each variant."""
     key = find_swept_number(runs)
-    lines = _group_lines(runs, key)
-    return _plot_lines(key, lines) if key and len(lines) <= naming.MOST else _plot_bars(runs)
+    series: dict[str, list[Run]] = {}
+    for name, run in zip(naming.label_runs(runs, without=key), runs, strict=True):
+        series.setdefault(name, []).append(run)
+    title = f"Comparison: {naming.make_title(runs)}"
+    return _plot_lines(title, key, series) if key and len(series) <= naming.MOST else _plot_bars(title, runs)
 
 
 def find_swept_number(runs: Sequence[Run]) -> str:
@@ -56,56 +55,37 @@ def find_swept_number(runs: Sequence[Run]) -> str:
     return best if counts.get(best, 0) > 1 else ""
 
 
-def _plot_bars(runs: Sequence[Run]) -> Figure:
-    names = naming.label_runs(runs, LONGEST)
+def _plot_bars(title: str, runs: Sequence[Run]) -> Figure:
+    names = naming.label_runs(runs, 32)
     many = len(runs) > naming.MOST
     colours = [COLOURS[0]] * len(runs) if many else [entry.colour for entry in style.make_entries(names)]
-    left = 0.35 + LETTER * max(len(name) for name in names)
-    height = BAR * len(runs) + 0.2
-    grid = Grid((height,), columns=len(COMPARED), left=left, bottom=0.75, gap=(0.25, 0.0))
-    page = style.make_page(f"Comparison: {naming.make_title(runs)}", NOTE, grid)
-    for axes, compared in zip(page.rows[0], COMPARED, strict=True):
-        _draw_bars(axes, _read_metric(runs, compared), compared, colours)
-    page.rows[0][0].set_yticks(range(len(runs)), names, fontsize=10)
-    for axes in page.rows[0][1:]:
-        axes.set_yticks([])
+    left = style.measure_names(names)
+    grid = Grid((ROW * len(runs) + 0.1,) * 2, columns=2, left=left, bottom=0.65, gap=(0.2, 0.75))
+    page = style.make_page(title, NOTE, grid)
+    for row, pair in zip(page.rows, (COMPARED[:2], COMPARED[2:]), strict=True):
+        for column, (axes, compared) in enumerate(zip(row, pair, strict=True)):
+            values = _read_metric(runs, compared)
+            texts = [f"{value:.{compared.decimals}f}" if np.isfinite(value) else "none" for value in values]
+            style.name_rows(axes, [""] * len(names) if column else names)
+            style.draw_bars(axes, values.tolist(), colours, texts)
+            # Room for the figures at the ends of the bars.
+            axes.set_xlim(0.0, (1.0 + 0.45 / grid.width) * float(np.max(np.nan_to_num(values))) or 1.0)
+            axes.set_xlabel(compared.axis)
     return page.figure
 
 
-def _draw_bars(axes: Axes, values: Array, compared: Compared, colours: Sequence[str]) -> None:
-    bars = axes.barh(np.arange(len(values)), np.nan_to_num(values), height=0.62, color=colours)
-    texts = [f"{value:.{compared.decimals}f}" if np.isfinite(value) else "none" for value in values]
-    axes.bar_label(bars, texts, padding=3, fontsize=9.5)
-    longest = float(np.max(np.nan_to_num(values)))
-    axes.set_xlim(0.0, 1.3 * longest or 1.0)
-    axes.set_ylim(len(values) - 0.4, -0.6)
-    axes.grid(False, axis="y")
-    axes.locator_params(axis="x", nbins=4)
-    axes.set_xticks([tick for tick in axes.get_xticks() if tick <= longest])
-    axes.set_xlabel(compared.axis)
-
-
-def _group_lines(runs: Sequence[Run], key: str) -> dict[str, list[Run]]:
-    """Return the runs that differ in nothing but the swept number, by what else sets them apart."""
-    series: dict[str, list[Run]] = {}
-    for name, run in zip(naming.label_runs(runs, without=key), runs, strict=True):
-        series.setdefault(name, []).append(run)
-    return series
-
-
-def _plot_lines(key: str, series: dict[str, list[Run]]) -> Figure:
+def _plot_lines(title: str, key: str, series: dict[str, list[Run]]) -> Figure:
     runs = [run for group in series.values() for run in group]
     looks = style.make_entries(list(series))
     swept = sorted({float(run.scenario.label[key]) for run in runs})
-    page = style.make_page(f"Comparison: {naming.make_title(runs)}", NOTE, Grid((2.5, 2.5), 2, gap=(0.95, 0.7)), looks)
-    panels = [axes for row in page.rows for axes in row]
-    for axes, compared in zip(panels, COMPARED, strict=True):
+    page = style.make_page(title, NOTE, Grid((1.8, 1.8), 2, left=0.85, gap=(0.9, 0.65)), looks)
+    for axes, compared in zip((axes for row in page.rows for axes in row), COMPARED, strict=True):
         for look, group in zip(looks, series.values(), strict=True):
             _draw_curve(axes, group, key, compared, look)
         axes.set_xlabel(naming.label_axis(runs[0].scenario, key))
         axes.set_ylabel(compared.axis)
         axes.set_ylim(0, 1.05 * axes.get_ylim()[1])
-        if len(swept) <= naming.MOST:
+        if len(swept) <= 4:
             axes.set_xticks(swept)
     return page.figure
 

@@ -1,13 +1,16 @@
-"""Force-velocity and force-displacement loops of the dampers of a result, from sine tests."""
+"""Loops of the dampers of a result from sine tests, and the samples of a run between them."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
+import numpy as np
+from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 
 from seatsim.dampers.base import DamperSpecification
 from seatsim.kernel.generic import DamperModel
@@ -22,14 +25,16 @@ from seatsim.simulation.result import Run
 
 FREQUENCY = 1.5
 """Hz; near the resonance of a seat suspension, where its damper works most."""
-SMALLEST = 0.001
-"""m; least amplitude of a test."""
-AT_REST = 0.01
-"""m; amplitude of a test where nothing moves."""
+SMALLEST, AT_REST = 0.001, 0.01
+"""m; least amplitude of a test, and that where nothing moves."""
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
 """Currents of the loops over the actuator's largest."""
 MOST = 4
 """Most dampers in one picture."""
+MOST_SAMPLES = 3000
+"""Samples of a run that are drawn; more hide each other."""
+SLOWEST = 0.01
+"""m/s; least peak velocity of the curves beside a run."""
 
 
 class InstalledDamper(NamedTuple):
@@ -54,19 +59,27 @@ class InstalledDamper(NamedTuple):
         return name_of("damper", type(self.record))
 
 
+class _LoopRow(NamedTuple):
+    """Two panels: their title, that of the legend, and the name, colour and test of each loop."""
+
+    title: str
+    legend: str
+    loops: list[tuple[str, str, SineTest]]
+
+
 def plot_damper_loops(runs: Sequence[Run]) -> Figure:
-    """Return the loops of each distinct damper by current, and by temperature where that plays a part."""
+    """Return the loops of each distinct damper by current, and by temperature, where these change its force."""
     dampers = find_dampers(runs)
-    rows = [row for damper in dampers[:MOST] for row in _make_rows(damper, len(dampers) > 1)]
     amplitude = choose_amplitude(runs)
+    rows = [row for damper in dampers[:MOST] for row in _make_rows(damper, len(dampers) > 1, amplitude)]
     note = f"Sine test, amplitude {1e3 * amplitude:g} mm, frequency {FREQUENCY:g} Hz."
     if len(dampers) > MOST:
         note += f" {MOST} of {len(dampers)} dampers are shown."
-    grid = Grid(heights=(2.9,) * len(rows), columns=2, right=1.35, top=0.35, gap=(0.35, 0.95))
+    grid = Grid(heights=(2.1,) * len(rows), columns=2, right=1.15, top=0.3, gap=(0.2, 0.85))
     names = ", ".join(dict.fromkeys(damper.name for damper in dampers))
-    page = style.make_page(f"Damper loops: {labels.clean_text(names, labels.LONGEST_TITLE)}", note, grid)
+    page = style.make_page(f"Damper loops: {names}", note, grid)
     for panels, row in zip(page.rows, rows, strict=True):
-        _draw_row(panels, row, amplitude)
+        _draw_row(panels, row)
     return page.figure
 
 
@@ -83,7 +96,7 @@ def find_dampers(runs: Iterable[Run]) -> list[InstalledDamper]:
 
 def choose_amplitude(runs: Iterable[Run]) -> float:
     """Return the amplitude in m of the sine with the largest RMS damper stroke of the runs, to one digit."""
-    strokes = [stroke_ratio(run) * rms(run.history["suspension_displacement"]) for run in runs]
+    strokes = [_stroke_ratio(run) * rms(run.history["suspension_displacement"]) for run in runs]
     amplitude = math.sqrt(2) * max(strokes)
     if amplitude == 0.0:
         return AT_REST
@@ -91,48 +104,74 @@ def choose_amplitude(runs: Iterable[Run]) -> float:
     return max(SMALLEST, round(amplitude / digit) * digit)
 
 
-def stroke_ratio(run: Run) -> float:
+def plot_force_velocity(run: Run) -> Figure:
+    """Return delivered force over damper velocity, coloured by a current that changes, with the damper's own limits.
+
+    The limits are the damper's loops in a sine test at no and at the actuator's largest current, at the peak velocity
+    of the run.
+
+    Raises:
+        RunError: a sine test cannot be carried to its end.
+    """
+    [damper], temperature = find_dampers([run]), _start_temperature(run)
+    velocity = _stroke_ratio(run) * run.history["suspension_velocity"]
+    amplitude = max(SLOWEST, float(np.max(np.abs(velocity)))) / (2 * math.pi * FREQUENCY)
+    currents = (0.0, damper.max_current)
+    tests = _drop_equal((f"damper at {i:g} A", damper.loop(amplitude, i, temperature)) for i in currents)
+    looks = [Entry(name, colour, width=1.8) for (name, _), colour in zip(tests, ("0.45", "black"), strict=False)]
+    note = (
+        f"Dots: the run. Curves: sine test at {temperature:g} °C, amplitude {1e3 * amplitude:.3g} mm, {FREQUENCY:g} Hz."
+        " Shaded: the damper gives energy back."
+    )
+    page = style.make_page(f"Damper at work: {naming.make_title([run])}", note, Grid((3.3,), right=1.0), looks)
+    axes = page.rows[0][0]
+    _draw_samples(axes, velocity, run)
+    for look, (_, test) in zip(looks, tests, strict=True):
+        style.draw_line(axes, test.velocity, test.force, look)
+    _shade_active_quadrants(axes)
+    axes.set_xlabel("damper velocity [m/s]")
+    axes.set_ylabel("damper force [N]")
+    return page.figure
+
+
+def _drop_equal(tests: Iterable[tuple[str, SineTest]]) -> list[tuple[str, SineTest]]:
+    """Return named loops without those that repeat the first, as where no current changes a damper's force."""
+    first, *rest = tests
+    return [first, *(each for each in rest if not np.allclose(each[1].force, first[1].force))]
+
+
+def _stroke_ratio(run: Run) -> float:
     """Return the damper's stroke over the suspension's displacement."""
     return run.scenario.plant.damper_ratio if run.scenario.plant else 1.0
 
 
-def start_temperature(run: Run) -> float:
+def _start_temperature(run: Run) -> float:
     """Return the temperature in degC at which a run begins."""
     stated = run.scenario.temperature
     return stated.start if isinstance(stated, Thermal) else stated
 
 
-class _LoopRow(NamedTuple):
-    """Two panels: their title, that of the legend, and label, current, temperature, colour of each loop."""
-
-    damper: InstalledDamper
-    title: str
-    legend: str
-    loops: list[tuple[str, float, float, str]]
-
-
-def _make_rows(damper: InstalledDamper, several: bool) -> list[_LoopRow]:
-    start = start_temperature(damper.runs[0])
+def _make_rows(damper: InstalledDamper, several: bool, amplitude: float) -> Iterator[_LoopRow]:
+    start = _start_temperature(damper.runs[0])
     called = f"{damper.name} ({naming.label_runs(damper.runs)[0]})" if several else damper.name
+
+    def list_loops(places: Sequence[tuple[str, float, float]], colours: str) -> list[tuple[str, str, SineTest]]:
+        tests = _drop_equal((name, damper.loop(amplitude, *at)) for name, *at in places)
+        picked = style.sample_colours(colours, len(tests))
+        return [(name, colour, test) for (name, test), colour in zip(tests, picked, strict=True)]
+
     currents = [share * damper.max_current for share in SHARES]
-    by_current = [
-        (f"{current:g} A", current, start, colour)
-        for current, colour in zip(currents, style.sample_colours("viridis", len(currents)), strict=True)
-    ]
-    rows = [_LoopRow(damper, f"{called} at {start:g} °C", "current", by_current)]
+    by_current = list_loops([(f"{current:g} A", current, start) for current in currents], "viridis")
+    yield _LoopRow(f"{called} at {start:g} °C", "current", by_current)
     if any(damper.factors[:3]):
-        temperatures = _choose_temperatures(damper)
-        by_temperature = [
-            (f"{value:g} °C", damper.max_current, value, colour)
-            for value, colour in zip(temperatures, style.sample_colours("plasma", len(temperatures)), strict=True)
-        ]
-        rows.append(_LoopRow(damper, f"{called} at {damper.max_current:g} A", "temperature", by_temperature))
-    return rows
+        most, temperatures = damper.max_current, _choose_temperatures(damper)
+        by_temperature = list_loops([(f"{value:g} °C", most, value) for value in temperatures], "plasma")
+        yield _LoopRow(f"{called} at {most:g} A" if len(by_current) > 1 else called, "temperature", by_temperature)
 
 
 def _choose_temperatures(damper: InstalledDamper) -> list[float]:
     """Return the temperatures of the runs where these differ, else those between which the model holds."""
-    used = sorted({start_temperature(run) for run in damper.runs})
+    used = sorted({_start_temperature(run) for run in damper.runs})
     if len(used) > 1:
         return used
     specification: DamperSpecification = specification_of(type(damper.record))
@@ -140,16 +179,42 @@ def _choose_temperatures(damper: InstalledDamper) -> list[float]:
     return [low, 0.5 * (low + high), high]
 
 
-def _draw_row(panels: Sequence[Axes], row: _LoopRow, amplitude: float) -> None:
-    for name, current, temperature, colour in row.loops:
-        test = row.damper.loop(amplitude, current, temperature)
+def _draw_row(panels: Sequence[Axes], row: _LoopRow) -> None:
+    for name, colour, test in row.loops:
         look = Entry(name, colour, width=1.6)
         style.draw_line(panels[0], test.velocity, test.force, look)
         style.draw_line(panels[1], 1e3 * test.displacement, test.force, look)
-    panels[0].set_title(row.title, loc="left", fontsize=10.5)
+    label_loops(panels, row.title, "displacement [mm]")
+    if len(row.loops) > 1:
+        style.draw_legend_beside(panels[1], row.legend)
+
+
+def label_loops(panels: Sequence[Axes], title: str, displacement: str) -> None:
+    """Label two panels of one damper force, over velocity and over displacement, on one scale."""
+    panels[0].set_title(labels.clean_text(title, 60), loc="left", fontsize=style.FONT)
     panels[0].set_xlabel("velocity [m/s]")
-    panels[1].set_xlabel("displacement [mm]")
+    panels[1].set_xlabel(displacement)
     panels[0].set_ylabel("damper force [N]")
     panels[1].set_ylim(panels[0].get_ylim())
     panels[1].tick_params(labelleft=False)
-    style.draw_legend_beside(panels[1], row.legend)
+
+
+def _draw_samples(axes: Axes, velocity: np.ndarray, run: Run) -> None:
+    every = -(-len(velocity) // MOST_SAMPLES)
+    force, current = run.history["damper_force"][::every], run.history["coil_current"][::every]
+    changes = float(np.ptp(current)) > 0
+    dots = axes.scatter(
+        velocity[::every], force, s=7, linewidths=0, rasterized=True,
+        **({"c": current, "cmap": colormaps["viridis"]} if changes else {"color": style.COLOURS[0]}),
+    )  # fmt: skip
+    if changes:
+        axes.figure.colorbar(dots, cax=style.add_axes_beside(axes, 0.03, 0.025), label="coil current [A]")
+
+
+def _shade_active_quadrants(axes: Axes) -> None:
+    """Shade where force and velocity differ in sign: there a damper can only return what it stored."""
+    right, top = (max(abs(end) for end in ends) for ends in (axes.get_xlim(), axes.get_ylim()))
+    axes.set_xlim(-right, right)
+    axes.set_ylim(-top, top)
+    for corner in ((-right, 0.0), (0.0, -top)):
+        axes.add_patch(Rectangle(corner, right, top, facecolor="0.95", zorder=0))

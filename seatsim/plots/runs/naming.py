@@ -1,48 +1,67 @@
-"""What runs and swept values are called in a figure, and which of many runs it shows."""
+"""What runs and swept values are called in a picture, which of many runs it shows, and how each of them looks."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TypeGuard
+from typing import NamedTuple, TypeGuard
 
-from seatsim.plots.labels import LONGEST, LONGEST_TITLE, clean_text, format_unit
+from seatsim.plots.labels import LONGEST, format_unit, shorten
+from seatsim.plots.style import Entry, make_entries
 from seatsim.plots.thinning import spread_evenly
-from seatsim.rig.coil import Coil
-from seatsim.rig.plant import Plant
-from seatsim.rig.temperature import TemperatureFactors, Thermal
-from seatsim.scenario.scenario import Scenario, Solver
-from seatsim.schema.fields import describe
+from seatsim.scenario.numbers import find_unit
+from seatsim.scenario.scenario import Scenario
 from seatsim.simulation.result import Run
 
 MOST = 8
 """Most runs that lines of one panel can tell apart."""
 
 
-def select_shown(runs: Sequence[Run]) -> list[Run]:
-    """Return the runs that lines are drawn of.
+class Shown(NamedTuple):
+    """Runs that are drawn over each other: what they share, the runs, the look of each, and a note on those left out.
 
-    Up to eight runs are all drawn. Of more runs, those at the first swept values (one for each variant) are drawn,
-    or else eight that are spread evenly over their order, first and last included.
+    `scenario` is the name of theirs where there are pictures of others beside, and empty else.
     """
-    if len(runs) <= MOST:
-        return list(runs)
-    # Lines of the same swept values differ in their variant, which is what a reader compares.
-    first = _swept_values(runs[0])
-    group = [run for run in runs if _swept_values(run) == first]
-    if 1 < len(group) <= MOST:
-        return group
-    return spread_evenly(runs, MOST)
+
+    scenario: str
+    title: str
+    runs: Sequence[Run]
+    looks: Sequence[Entry]
+    omission: str
 
 
-def describe_omission(chosen: Sequence[Run], runs: Sequence[Run]) -> str:
-    """Return a sentence on how many runs are left out, with a space before it; empty where none is."""
-    return f" {len(chosen)} of {len(runs)} runs are shown." if len(chosen) < len(runs) else ""
+def show_runs(runs: Sequence[Run]) -> list[Shown]:
+    """Return the runs that are drawn over each other: all, or those of each scenario where one of several has several.
+
+    A name looks the same in all pictures. Up to eight runs are all drawn. Of more runs, those at the first swept values
+    (one for each variant) are drawn, or else eight that are spread evenly over their order, first and last included.
+    """
+    scenarios = list(dict.fromkeys(run.scenario.name for run in runs))
+    parts = [list(runs)]
+    if 1 < len(scenarios) < len(runs):
+        parts = [[run for run in runs if run.scenario.name == name] for name in scenarios]
+    chosen = [_select_shown(part) for part in parts]
+    names = [label_runs(part) for part in chosen]
+    looks = {look.label: look for look in make_entries(list(dict.fromkeys(name for part in names for name in part)))}
+    return [
+        Shown(
+            scenarios[k] if len(parts) > 1 else "", make_title(part), shown, [looks[name] for name in names[k]],
+            f" {len(shown)} of {len(part)} runs are shown." if len(shown) < len(part) else "",
+        )
+        for k, (part, shown) in enumerate(zip(parts, chosen, strict=True))
+    ]  # fmt: skip
 
 
 def label_runs(runs: Sequence[Run], longest: int = LONGEST, without: str = "") -> list[str]:
-    """Return what sets each run apart from the others: variant and swept values, less those of one key."""
+    """Return what sets each run apart from the others: variant and swept values, less those of one key.
+
+    Of runs of one scenario its name is left out; names that are alike are numbered.
+    """
     several = len({run.scenario.name for run in runs}) > 1
-    return [clean_text(_describe(run.scenario, several, without), longest) for run in runs]
+    names = [shorten(_describe(run.scenario, several, without), longest) for run in runs]
+    return [
+        f"{name} ({names[: k + 1].count(name)})" if not without and names.count(name) > 1 else name
+        for k, name in enumerate(names)
+    ]
 
 
 def distinguish_runs(group: Sequence[Run], runs: Sequence[Run]) -> tuple[str, list[str]]:
@@ -60,14 +79,14 @@ def distinguish_runs(group: Sequence[Run], runs: Sequence[Run]) -> tuple[str, li
         ", ".join([run.scenario.name] * (not same) + parts) or run.scenario.name
         for run, parts in zip(group, own, strict=True)
     ]
-    return clean_text(heading, LONGEST), [clean_text(name, LONGEST) for name in names]
+    return shorten(heading, 52), [shorten(name, 52) for name in names]
 
 
 def make_title(runs: Sequence[Run]) -> str:
     """Return the name of one run with what sets it apart, or the names of the scenarios of several."""
     if len(runs) == 1:
-        return clean_text(_describe(runs[0].scenario, True), LONGEST_TITLE)
-    return clean_text(", ".join(dict.fromkeys(run.scenario.name for run in runs)), LONGEST_TITLE)
+        return shorten(_describe(runs[0].scenario, True), 64)
+    return shorten(", ".join(dict.fromkeys(run.scenario.name for run in runs)), 64)
 
 
 def is_number(value: object) -> TypeGuard[float]:
@@ -80,31 +99,13 @@ def label_axis(scenario: Scenario, key: str) -> str:
     return f"{_name_key(key)} [{format_unit(find_unit(scenario, key)) or '-'}]"
 
 
-def find_unit(scenario: Scenario, key: str) -> str:
-    """Return the unit of the value under a dotted key of a scenario; empty where it has none."""
-    if key == "temperature":
-        return "degC"
-    section, _, name = key.rpartition(".")
-    record = _records(scenario).get(section)
-    specifications = describe(record) if record else []
-    found = next((specification.unit for specification in specifications if specification.name == name), "")
-    return "" if found == "-" else found
-
-
-def _records(scenario: Scenario) -> dict[str, type]:
-    """Return the class of parameters behind each section of a scenario file; their fields state the units."""
-    control, assumed = scenario.control, scenario.control.inverse if scenario.control else None
-    return {
-        "plant": Plant,
-        "damper.parameters": type(scenario.damper.record),
-        "damper.temperature_factors": TemperatureFactors,
-        "actuator": Coil,
-        "temperature": Thermal,
-        "controller": type(control.law) if control else tuple,
-        "controller.inverse.parameters": type(assumed.damper.record) if assumed else tuple,
-        "excitation": type(scenario.excitation),
-        "solver": Solver,
-    }
+def _select_shown(runs: Sequence[Run]) -> list[Run]:
+    if len(runs) <= MOST:
+        return list(runs)
+    # Lines of the same swept values differ in their variant, which is what a reader compares.
+    first = _swept_values(runs[0])
+    group = [run for run in runs if _swept_values(run) == first]
+    return group if 1 < len(group) <= MOST else spread_evenly(runs, MOST)
 
 
 def _describe(scenario: Scenario, named: bool, without: str = "") -> str:
@@ -117,9 +118,8 @@ def _describe_part(scenario: Scenario, key: str, value: object) -> str:
     if key == "variant":
         return str(value)
     text = f"{value:g}" if is_number(value) else str(value)
-    if key == "temperature" and is_number(value):
-        return f"{text} °C"
-    return f"{_name_key(key)} {text} {format_unit(find_unit(scenario, key))}".strip()
+    unit = format_unit(find_unit(scenario, key)).removesuffix("-")
+    return f"{text} {unit}" if key == "temperature" else f"{_name_key(key)} {text} {unit}".strip()
 
 
 def _name_key(key: str) -> str:

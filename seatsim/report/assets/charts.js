@@ -1,40 +1,22 @@
 "use strict";
 // Draws the groups of linked pictures of a page with uPlot. Everything it draws stands on the page as packed numbers.
 (() => {
-  const DASHES = [[], [7, 3], [], [2.5, 2.5], [10, 3, 2, 3], [], [5, 2], []];
-  const HEIGHT = 240, PAPER_WIDTH = 316, DECADES = 8;
-  const RAISED = Object.fromEntries([..."0123456789-"].map((letter, k) => [letter, "⁰¹²³⁴⁵⁶⁷⁸⁹⁻"[k]]));
+  const MEASURED = 8;
+  const HEIGHT = 240, PAPER_WIDTH = 680;
   const charts = [];
   const paper = matchMedia("print"), dark = matchMedia("(prefers-color-scheme: dark)");
-  const colour = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const probe = document.body.appendChild(document.createElement("i"));
+  const colour = name => { probe.style.color = `var(${name})`; return getComputedStyle(probe).color; };
 
-  function unpack(line, log) {
+  function unpack(line) {
     if (!line) return null;
     const bytes = Uint8Array.from(atob(line.bits), letter => letter.charCodeAt(0));
     const view = new DataView(bytes.buffer), values = new Array(bytes.length / 2);
     for (let k = 0; k < values.length; k++) {
       const whole = view.getInt16(2 * k, true);
-      values[k] = whole === -32768 ? null : log ? 10 ** (line.at + line.step * whole) : line.at + line.step * whole;
+      values[k] = whole === -32768 ? null : line.at + line.step * whole;
     }
     return values;
-  }
-
-  // Marks of a logarithmic axis: the given multiples of powers of ten.
-  function steps(low, high, multiples) {
-    const found = [];
-    for (let power = Math.floor(Math.log10(low)); power <= Math.log10(high); power++)
-      for (const multiple of multiples) {
-        const mark = Number(`${multiple}e${power}`);
-        if (mark >= low * 0.999 && mark <= high * 1.001) found.push(mark);
-      }
-    return found;
-  }
-
-  // Whole decades; a line of almost nothing does not stretch the scale.
-  function decadesAround(low, high) {
-    const top = Math.ceil(Math.log10(Math.max(high || 1, 1e-12)));
-    const bottom = Math.floor(Math.log10(Math.max(low || 0, 10 ** (top - DECADES))));
-    return [10 ** Math.min(bottom, top - 1), 10 ** top];
   }
 
   // A little room above and below; a line that never moves stands in the middle.
@@ -72,13 +54,12 @@
 
     places() {
       const x = this.data.runs[this.run];
-      if (x.list) return x.list;
       const length = Math.max(0, ...this.lines(0, true).map(line => line.length));
       return Array.from({ length }, (_, k) => x.first + k * x.step);
     }
 
     lines(panel, known) {
-      const found = this.data.panels[panel].runs[this.run].map(line => unpack(line, this.data.log));
+      const found = this.data.panels[panel].runs[this.run].map(unpack);
       return known ? found.filter(line => line) : found;
     }
 
@@ -94,22 +75,17 @@
       const lines = this.lines(number).map(line => line || new Array(x.length).fill(null));
       const axis = { stroke: colour("--ink"), grid: { stroke: colour("--line"), width: 1 }, ticks: { show: false },
         font: "13px system-ui, sans-serif", values: (plot, marks) => marks.map(mark => mark == null ? "" : String(Number(mark.toPrecision(6))).replace("-", "−")) };
-      const raised = mark => `10${String(Math.round(Math.log10(mark))).replace(/./g, letter => RAISED[letter])}`;
-      // uPlot would blank marks of its own choice, and a blank mark has no power to write.
-      const decades = { ...axis, splits: (plot, k, low, high) => steps(low, high, [1]), filter: (plot, marks) => marks,
-        values: (plot, marks) => marks.map((mark, k) => marks.length < 8 || k % 2 === 0 ? raised(mark) : "") };
-      const octaves = { ...axis, splits: (plot, k, low, high) => steps(low, high, [1, 2, 5]) };
       const options = {
         width: paper.matches ? PAPER_WIDTH : Math.max(200, box.clientWidth), height: HEIGHT,
         legend: { show: false },
         cursor: { sync: { key: this.element.id }, drag: { x: true, y: false, setScale: false }, y: false },
-        scales: { x: { time: false, distr: data.x.log ? 3 : 1, range: (plot, low, high) => [low, high] }, y: data.log ? { distr: 3, range: (plot, low, high) => decadesAround(low, high) } : { range: (plot, low, high) => roomAround(low, high) } },
+        scales: { x: { time: false, range: (plot, low, high) => [low, high] }, y: { range: (plot, low, high) => roomAround(low, high) } },
         axes: [
-          { ...(data.x.log ? octaves : axis), size: 30, gap: 4, label: `${data.x.name} [${data.x.unit}]`, labelSize: 18, labelGap: 0, labelFont: "13px system-ui, sans-serif" },
-          { ...(data.log ? decades : axis), size: 58 },
+          { ...axis, size: 30, gap: 4, label: "time [s]", labelSize: 18, labelGap: 0, labelFont: "13px system-ui, sans-serif" },
+          { ...axis, size: 58 },
         ],
         series: [{}, ...data.lines.map((line, k) => ({
-          label: line.name, stroke: colour(`--c${line.look % 8}`), dash: DASHES[line.look % 8], ...(line.look === 0 && k === 0 ? { width: 3.4, alpha: 0.55 } : { width: 1.4 }),
+          label: line.name, stroke: colour(`--c${line.look}`), ...(line.look === MEASURED ? { width: 3.4, alpha: 0.55 } : { width: 1.4, dash: line.look % 2 ? [7, 3] : [] }),
           points: { show: false }, spanGaps: false, show: this.switches[k] ? this.switches[k].checked : true,
         }))],
         hooks: {
@@ -133,7 +109,7 @@
       const row = plot.cursor.idx, { data } = this;
       if (row == null) { this.readouts[number].textContent = ""; return; }
       const values = data.lines.map((line, k) => plot.series[k + 1].show ? `${line.name} ${show(plot.data[k + 1][row])}` : "");
-      const place = `${data.x.name} ${show(plot.data[0][row])} ${data.x.unit}`;
+      const place = `time ${show(plot.data[0][row])} s`;
       this.readouts[number].textContent = `${place}: ${values.filter(text => text).join(" · ")} ${data.panels[number].unit}`;
     }
 
@@ -143,13 +119,11 @@
     }
 
     move(what) {
-      const log = this.data.x.log, into = value => log ? Math.log(value) : value, back = value => log ? Math.exp(value) : value;
-      const { min, max } = this.plots[0].scales.x, low = into(min), high = into(max), size = high - low;
-      const [first, last] = this.whole.map(into);
+      const { min: low, max: high } = this.plots[0].scales.x, size = high - low, [first, last] = this.whole;
       const shift = { left: -Math.min(size / 4, low - first), right: Math.min(size / 4, last - high) }[what];
       if (what === "all") this.zoom(...this.whole);
-      else if (shift !== undefined) this.zoom(back(low + shift), back(high + shift));
-      else { const grow = what === "in" ? -size / 4 : size / 2; this.zoom(back(low - grow), back(high + grow)); }
+      else if (shift !== undefined) this.zoom(low + shift, high + shift);
+      else { const grow = what === "in" ? -size / 4 : size / 2; this.zoom(low - grow, high + grow); }
     }
 
     listen() {

@@ -12,12 +12,9 @@ import numpy as np
 from seatsim.dampers.base import DAMPERS, find_confidence
 from seatsim.provenance.invocation import current_invocation
 from seatsim.recordings.header import NOT_STATED
-from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.plausible import UNUSUAL
 from seatsim.schema.registry import name_of
 from seatsim.simulation.result import Run
-from seatsim.simulation.runs import share_a_loop
-from seatsim.simulation.trials import measure_step_error
 
 if TYPE_CHECKING:
     from seatsim.characterisation.summary import Characterisation
@@ -29,26 +26,24 @@ if TYPE_CHECKING:
     from seatsim.sweeps.statistics.sensitivity import Sensitivities
 
 COMFORT = "driver_acceleration_weighted"
-MOST_HALVED = 24
-"""Runs of a comparison that are simulated again with half the step."""
 
 
 class Evidence(NamedTuple):
     """What is known of some figures; None where it does not exist, shares of 1.
 
-    is_simulated: False where the figures are measured alone. energy: largest part of the energy that is unaccounted
-    for. step: largest change of an output by halving the step. compared, held_out: recorded runs that were compared,
-    and those of them that took no part in a fit. error, noise: gap on the latter, where there are some, and that of the
-    sensors' noise. inputs: files whose hashes the manifest keeps. doubts: ranges left, values that no seat has.
-    dampers: models with the word on their source. parameters_known: the recording states how well, which is no default,
-    or records of this damper determine them. loose: parameters that no data determine. intervals: what has one.
-    parameter_intervals, answer_interval: whether parameters and the answer do. budget: the error is divided into its
-    parts. runs: that were simulated or recorded. varied: keys that were varied or refitted. drawn: those from a
-    distribution. explained: share of the variance that the keys explain. limits: shares of runs beyond limits are
-    known. versions: a manifest states them.
+    kind: of the result, with "measured" in it where no figure is simulated. energy: largest part of the energy that
+    is unaccounted for. step: largest change of an output by halving the step. compared, held_out: recorded runs
+    that were compared, and those of them that took no part in a fit. error, noise: gap on the latter, where there
+    are some, and that of the sensors' noise. inputs: files whose hashes the manifest keeps. doubts: ranges left,
+    values that no seat has. dampers: models with the word on their source. parameters_known: the recording states
+    how well, which is no default, or records of this damper determine them. loose: parameters that no data
+    determine. intervals: what has one. parameter_intervals, answer_interval: whether parameters and the answer do.
+    budget: the error is divided into its parts. runs: that were simulated or recorded. varied: keys that were
+    varied or refitted. drawn: those from a distribution. explained: share of the variance that the keys explain.
+    limits: shares of runs beyond limits are known.
     """
 
-    is_simulated: bool = True
+    kind: str
     energy: float | None = None
     step: float | None = None
     compared: int = 0
@@ -69,18 +64,15 @@ class Evidence(NamedTuple):
     drawn: Sequence[str] = ()
     explained: float | None = None
     limits: bool = False
-    versions: bool = False
 
 
 def collect_runs(runs: Sequence[Run]) -> Evidence:
-    """Return what is known of simulated runs; the first ones are simulated again with half the step."""
+    """Return what is known of simulated runs."""
     energies = [run.metrics["energy_residual"].value for run in runs if "energy_residual" in run.metrics]
-    carry_all = share_a_loop([run.scenario for run in runs])
-    steps = [_halve(run, carry_all) for run in runs[:MOST_HALVED]]
     return _record(
         Evidence(
+            "runs",
             energy=_largest(energies),
-            step=_largest(step for step in steps if step is not None),
             doubts=tuple(dict.fromkeys(text for run in runs for text in run.warnings)),
             dampers=_judge_dampers({type(run.scenario.damper.record) for run in runs}),
             runs=len(runs),
@@ -95,6 +87,7 @@ def collect_sweep(rows: SweepRows, found: Sensitivities, exceeded: Sequence[Exce
     model = damper.get("model") if isinstance(damper, dict) else None
     reasons = tuple(sorted({str(text) for text in rows.every.reason.dropna() if text}))
     return Evidence(
+        "sweep",
         energy=_largest(rows.usable["energy_residual"].dropna()) if "energy_residual" in rows.metrics else None,
         inputs=1 + len(stated.get("files", {})),
         doubts=reasons,
@@ -106,31 +99,21 @@ def collect_sweep(rows: SweepRows, found: Sensitivities, exceeded: Sequence[Exce
         drawn=rows.drawn,
         explained=next((row.explained for row in found.of(COMFORT) or found.rows), None),
         limits=bool(exceeded),
-        versions=True,
     )
 
 
 def collect_gap(scenario: str, folder: Path, found: Gap) -> Evidence:
-    """Return what is known of a gap; every run is replayed again with half the step."""
-    from seatsim.diagnosis.error_budget import measure_step_error as measure_replay_step_error
-    from seatsim.recordings.quality.sensors import without_gravity
+    """Return what is known of a gap."""
     from seatsim.recordings.recording import load_recording
-    from seatsim.recordings.replay import replay
     from seatsim.scenario.loading import single
 
-    chosen, recording = single(scenario), without_gravity(load_recording(folder))
-    steps = []
-    for run in recording.runs:
-        changes = measure_replay_step_error(chosen, recording, recording.table(run))
-        _, simulated = replay(chosen, recording, run)
-        spreads = {name: float(np.std(values)) for name, values in simulated.items()}
-        steps += [change / spreads[name] for name, change in changes.items() if spreads.get(name, 0.0) > 0]
+    chosen, recording = single(scenario), load_recording(folder)
     tolerance = recording.header.parameter_tolerance
     is_fitted = "fitted" in (tolerance.values() if isinstance(tolerance, Mapping) else [tolerance])
     is_nominal = Path(scenario).is_file() and Path(scenario).samefile(folder / recording.header.nominal)
     return _record(
         Evidence(
-            step=_largest(steps),
+            "gap",
             compared=len(recording.runs),
             error=found.overall,
             noise=found.floor.overall,
@@ -155,6 +138,7 @@ def collect_diagnosis(diagnosis: Diagnosis) -> Evidence:
     fitted = [cause for cause in diagnosis.causes if cause.effect in diagnosis.selected and cause.parameters]
     return _record(
         Evidence(
+            "diagnosis",
             step=_largest(steps),
             compared=max(len(diagnosis.gap.by_run), len(diagnosis.held_out)),
             held_out=len(diagnosis.held_out),
@@ -180,6 +164,7 @@ def collect_identification(found: Identification) -> Evidence:
     mean, parts = test or train, [each.part for each in found.assessments]
     return _record(
         Evidence(
+            "identification",
             compared=len(parts),
             held_out=parts.count("test"),
             error=None if mean is None else 1.0 - mean.fit_percent / 100.0,
@@ -198,7 +183,7 @@ def collect_characterisation(found: Characterisation) -> Evidence:
     models = [] if found.measured or found.name not in DAMPERS.names() else [DAMPERS.find(found.name)]
     return _record(
         Evidence(
-            is_simulated=not found.measured,
+            "measured bench" if found.measured else "simulated bench",
             doubts=tuple(dict.fromkeys([*found.notes, *(note for row in found.rows for note in row.notes)])),
             dampers=_judge_dampers(models),
             intervals=["the response times"] if any(math.isfinite(each.t95_sd) for each in found.responses) else [],
@@ -212,7 +197,7 @@ def collect_seat_test(found: SeatTest, is_measured: bool) -> Evidence:
     spread = [row for row in found.rows if row.within_spread is not None]
     return _record(
         Evidence(
-            is_simulated=not is_measured,
+            "measured seat test" if is_measured else "simulated seat test",
             doubts=(*found.notes, *(failure.reason for failure in found.failures)),
             intervals=["the SEAT factors, by the spread of their runs"] if spread else [],
             runs=len(found.rows),
@@ -227,14 +212,7 @@ def _record(evidence: Evidence) -> Evidence:
     if invocation is None:
         return evidence
     # Drafts that were read back are gone.
-    return evidence._replace(inputs=sum(path.is_file() for path in invocation.reads), versions=True)
-
-
-def _halve(run: Run, carry_all_effects: bool | None) -> float | None:
-    try:
-        return measure_step_error(run.scenario, run.history, carry_all_effects)
-    except (InputError, RunError):
-        return None
+    return evidence._replace(inputs=sum(path.is_file() for path in invocation.reads))
 
 
 def _largest(values: Iterable[float]) -> float | None:

@@ -10,8 +10,8 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from seatsim.dampers.base import CONFIDENCE
+from seatsim.plots.labels import format_number, format_percent
 from seatsim.report.credibility.evidence import Evidence
-from seatsim.report.formatting import format_number, format_percent
 from seatsim.schema.text import join_names
 
 SMALL, NEGLIGIBLE = 0.01, 0.001
@@ -38,16 +38,10 @@ class Factor(NamedTuple):
     name: str
     conditions: Sequence[Condition]
     describe: Callable[[Evidence], str]
-    only_simulated: bool = False
 
 
-def find_level(factor: Factor, evidence: Evidence) -> int | None:
-    """Return the level, 0 to 4: the number of conditions that hold before the first that does not.
-
-    None where the factor is one of simulated figures, and these are measured.
-    """
-    if factor.only_simulated and not evidence.is_simulated:
-        return None
+def find_level(factor: Factor, evidence: Evidence) -> int:
+    """Return the level, 0 to 4: the number of conditions that hold before the first that does not."""
     level = 0
     while level < len(factor.conditions) and factor.conditions[level].holds(evidence):
         level += 1
@@ -73,23 +67,19 @@ def _is_good(known: Evidence) -> bool:
 
 def _is_published(known: Evidence) -> bool:
     words = set(known.dampers.values())
-    return words == {"published"} or not (words or known.is_simulated)
+    return words == {"published"} or not (words or "measured" not in known.kind)
 
 
 def _say_verification(known: Evidence) -> str:
-    if not known.is_simulated:
-        return "the figures are of measured signals; nothing was integrated"
     parts = []
     if known.energy is not None:
         parts.append(f"up to {_format_share(known.energy)} of the energy is unaccounted for")
     if known.step is not None:
         parts.append(f"half the step changes an output by up to {_format_share(known.step)}")
-    return "; ".join(parts) or "neither an energy balance nor a run with half the step is known"
+    return "; ".join(parts) or "no energy balance is known"
 
 
 def _say_validation(known: Evidence) -> str:
-    if not known.is_simulated:
-        return "no model is compared: these are the measured signals themselves"
     if not known.compared or known.error is None:
         return "no recording of this rig was compared"
     held = f"{known.held_out} of {known.compared} took" if known.held_out else "none is known to have taken"
@@ -105,7 +95,7 @@ def _say_pedigree(known: Evidence) -> str:
     parts += [f"{name}: {word} ({CONFIDENCE[word]})" for name, word in known.dampers.items()]
     if known.parameters_known:
         parts.append("parameters are known within a stated tolerance, or fitted to records")
-    elif known.is_simulated:
+    elif "measured" not in known.kind:
         parts.append("no file says how well the parameters are known")
     return "; ".join([*parts, *([f"not determined: {join_names(known.loose)}"] if known.loose else [])])
 
@@ -126,10 +116,6 @@ def _say_robustness(known: Evidence) -> str:
     return f"{keys} varied{drawn} over {known.runs} runs{share}"
 
 
-def _say_history(known: Evidence) -> str:
-    return "manifest.json states command and versions; earlier uses: not recorded" if known.versions else "not recorded"
-
-
 def _format_share(value: float) -> str:
     """Return a share in per cent, or as a power of ten where it is small."""
     return format_percent(value) if value >= NEGLIGIBLE or value == 0 else format_number(value, 2)
@@ -137,9 +123,8 @@ def _format_share(value: float) -> str:
 
 VERIFICATION = (
     Condition("an energy balance or a run with half the step is known", lambda e: bool(_list_numerical_errors(e))),
-    Condition(f"neither is above {SMALL:.0%}", lambda e: max(_list_numerical_errors(e)) <= SMALL),
-    Condition("energy balance and a run with half the step are known", lambda e: len(_list_numerical_errors(e)) == 2),
-    Condition(f"both are at most {NEGLIGIBLE:.1%}", lambda e: max(_list_numerical_errors(e)) <= NEGLIGIBLE),
+    Condition(f"its error is at most {SMALL:.0%}", lambda e: max(_list_numerical_errors(e)) <= SMALL),
+    Condition(f"its error is at most {NEGLIGIBLE:.1%}", lambda e: max(_list_numerical_errors(e)) <= NEGLIGIBLE),
 )
 VALIDATION = (
     Condition("a recording is compared", lambda e: e.compared > 0 and e.error is not None),
@@ -183,15 +168,33 @@ ROBUSTNESS = (
         lambda e: bool(e.drawn) and e.runs >= ENOUGH_RUNS and e.limits,
     ),
 )
-HISTORY = (
-    Condition("a manifest states command and versions", lambda e: e.versions),
-    Condition("earlier uses are recorded, which seatsim does not do", lambda e: False),
-)
 FACTORS = (
-    Factor("verification", VERIFICATION, _say_verification, only_simulated=True),
-    Factor("validation", VALIDATION, _say_validation, only_simulated=True),
+    Factor("verification", VERIFICATION, _say_verification),
+    Factor("validation", VALIDATION, _say_validation),
     Factor("input pedigree", PEDIGREE, _say_pedigree),
     Factor("uncertainty", UNCERTAINTY, _say_uncertainty),
     Factor("robustness", ROBUSTNESS, _say_robustness),
-    Factor("use history", HISTORY, _say_history),
 )
+_ANY = Evidence("any", inputs=1, dampers={"any": "published"}, intervals=["any"], runs=2)
+_COMPARED = _ANY._replace(compared=2, held_out=2, error=0.05, parameters_known=True, parameter_intervals=True)
+REACH = {
+    "runs": _ANY._replace(energy=0.0, intervals=[]),
+    "sweep": _ANY._replace(
+        energy=0.0,
+        drawn=["any"],
+        answer_interval=True,
+        runs=ENOUGH_RUNS,
+        varied=["any"],
+        explained=1.0,
+        limits=True,
+    ),
+    "gap": _COMPARED._replace(noise=0.05, parameter_intervals=False),
+    "diagnosis": _COMPARED._replace(step=0.0, noise=0.05, answer_interval=True, budget=True, varied=["any"]),
+    "identification": _COMPARED,
+    "measured bench": _ANY,
+    "simulated bench": _ANY,
+    "measured seat test": _ANY._replace(varied=["any"]),
+    "simulated seat test": _ANY._replace(varied=["any"]),
+}
+REACH = {kind: most._replace(kind=kind) for kind, most in REACH.items()}
+"""The most that is ever known of a result of each kind: what it reaches is the most that can be reached."""

@@ -1,0 +1,43 @@
+"""Power spectral densities as pictures and reports show them: Welch's method, averaged over narrow bands."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from seatsim.metrics.spectra import AVERAGES, LONGEST, power_spectral_density
+from seatsim.schema.arrays import Array
+
+LOWEST = 0.1
+"""Hz from which on a density is drawn: the distance of the lines of the longest segment."""
+PER_OCTAVE = 12
+"""Bands in an octave, finer than the resonance of a seat is wide."""
+SHORTEST = 64
+"""Samples from which on a signal has a spectrum."""
+METHOD = f"Welch's method in segments of at most {LONGEST:g} s, averaged over 1/{PER_OCTAVE} octave."
+
+
+def estimate_density(step: float, signals: Sequence[Array]) -> tuple[Array, Array]:
+    """Return frequency in Hz and power spectral density, the mean over the signals of several runs, shape (F,) each.
+
+    step: interval of the samples in s. Signals, shape (N,) each, that are too short give none.
+    """
+    shortest = min(map(len, signals))
+    if shortest < SHORTEST:
+        return np.empty(0), np.empty(0)
+    length = min(round(LONGEST / step), 2 * (shortest // (AVERAGES + 1)))
+    found = [power_spectral_density(values, 1 / step, length) for values in signals]
+    return average_bands(found[0][0], np.mean([power for _, power in found], axis=0))
+
+
+def average_bands(frequency: Array, power: Array, lowest: float = LOWEST) -> tuple[Array, Array]:
+    """Return mean frequency and mean density of bands of equal width on a logarithmic axis.
+
+    Otherwise the many lines of the high decades would make the drawn line thick and noisy.
+    """
+    # Segments have their means removed, so that the first line holds nothing.
+    inside = frequency >= max(lowest, frequency[1])
+    band = np.floor(PER_OCTAVE * np.log2(frequency[inside] / lowest) + 1e-9).astype(int)
+    _, index, count = np.unique(band, return_inverse=True, return_counts=True)
+    return np.bincount(index, frequency[inside]) / count, np.bincount(index, power[inside]) / count

@@ -1,0 +1,20 @@
+"""All figures of a diagnosis."""
+
+from __future__ import annotations
+
+from matplotlib.figure import Figure
+
+from seatsim.diagnosis.result import Diagnosis
+from seatsim.plots.diagnosis.answer import plot_gaps, plot_location, plot_ranking
+from seatsim.plots.diagnosis.maps import plot_discrepancy, plot_maps
+from seatsim.plots.diagnosis.signals import plot_signals
+
+
+def plot_diagnosis(diagnosis: Diagnosis) -> dict[str, Figure]:
+    """Return the figures of a diagnosis by name; without a gap there is no evidence for causes to be drawn."""
+    found = {"gaps": plot_gaps(diagnosis)}
+    if diagnosis.verdict != "none":
+        found |= {"location": plot_location(diagnosis), "ranking": plot_ranking(diagnosis)}
+        found |= {"discrepancy": plot_discrepancy(diagnosis), "maps": plot_maps(diagnosis)}
+    found |= plot_signals(diagnosis)
+    return {name: figure for name, figure in found.items() if figure is not None}

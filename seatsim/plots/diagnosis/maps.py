@@ -1,0 +1,108 @@
+"""Over which motion and current the simulation is wrong: maps of the error, and the signal that it lacks."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+
+from seatsim.diagnosis.result import Diagnosis
+from seatsim.plots import style
+from seatsim.plots.diagnosis.bins import bin_edges, find_worst, map_rms, varies
+from seatsim.plots.diagnosis.signals import name_last
+from seatsim.plots.labels import describe_channel
+from seatsim.plots.style import COLOURS, Entry, Grid
+from seatsim.plots.thinning import thin_line
+
+BINS = (22, 13)
+"""Bins of a map over velocity and over the other quantity."""
+DOTS = 2500
+
+
+class _Motion(NamedTuple):
+    """The label of an axis of measured motion, and the factor to its unit."""
+
+    label: str
+    factor: float = 1.0
+
+
+MOTIONS = {
+    "velocity": _Motion("suspension velocity [m/s]"),
+    "displacement": _Motion("travel [mm]", 1e3),
+    "coil_current": _Motion("coil current [A]"),
+    "damper_temperature": _Motion("damper temperature [°C]"),
+}
+
+
+def plot_maps(diagnosis: Diagnosis) -> Figure | None:
+    """Return maps of what is left of the worst channel over velocity and current (or travel), before and after."""
+    found = find_worst(diagnosis)
+    if found is None:
+        return None
+    trace, motion = found
+    other = next((name for name in ("coil_current", "displacement") if varies(motion.get(name))), "")
+    if not other or not varies(motion.get("velocity")):
+        return None
+    x, y = (MOTIONS[name].factor * motion[name] for name in ("velocity", other))
+    borders = bin_edges(x, BINS[0]), bin_edges(y, BINS[1])
+    shown = describe_channel(trace.channel, trace.unit)
+    left = (trace.measured - trace.nominal, trace.measured - trace.after)
+    cells = [shown.factor * map_rms(x, y, signal, borders) for signal in left]
+    known = np.concatenate([each[np.isfinite(each)] for each in cells])
+    if not known.size or not known.max() > 0:
+        return None
+    title = f"Error of the {shown.words} over velocity and {other.replace('_', ' ')}"
+    note = f"RMS of measured less simulated on {trace.run}; cells of too few samples stay empty."
+    page = style.make_page(title, note, Grid((2.2,), 2, right=0.95, top=0.3, gap=(0.15, 0.0)))
+    low, high = max(float(known.min()), float(known.max()) / 100), float(known.max())
+    norm = LogNorm(low, high)
+    for axes, name, values in zip(page.rows[0], ("nominal", name_last(diagnosis)), cells, strict=True):
+        mesh = axes.pcolormesh(*borders, values, norm=norm, cmap=colormaps["viridis"], rasterized=True)
+        axes.set_xlabel(MOTIONS["velocity"].label)
+        style.set_title(axes, name)
+    page.rows[0][0].set_ylabel(MOTIONS[other].label)
+    page.rows[0][1].tick_params(labelleft=False)
+    beside = style.add_axes_beside(page.rows[0][1], 0.02, 0.025)
+    bar = page.figure.colorbar(mesh, cax=beside, label=f"error [{shown.unit}]")
+    style.set_plain_log_ticks(bar.ax.yaxis, low, high)
+    return page.figure
+
+
+def plot_discrepancy(diagnosis: Diagnosis) -> Figure | None:
+    """Return the signal that would close the gap, over time and over what may drive it."""
+    found = diagnosis.evidence.discrepancy
+    if found is None or len(found.values) < 2:
+        return None
+    shown = describe_channel(found.quantity, found.unit)
+    motion = {
+        name: values for name, values in diagnosis.evidence.motion.items()
+        if name in MOTIONS and len(values) == len(found.values) and varies(values)
+    }  # fmt: skip
+    rows = 1 + -(-len(motion) // 2)
+    page = style.make_page(
+        f"The missing {shown.words} of the {found.block}", "On the held-out run: over time, then over its motion.",
+        Grid((1.5,) * rows, columns=2, gap=(0.75, 0.6)),
+    )  # fmt: skip
+    [first, second], *others = page.rows
+    second.remove()
+    box = first.get_position()
+    first.set_position((box.x0, box.y0, 1 - 0.15 / style.WIDTH - box.x0, box.height))
+    look = Entry("", COLOURS[6], width=1.0)
+    style.draw_line(first, *thin_line(found.time, shown.factor * found.values), look)
+    first.set_xlabel("time [s]")
+    panels = [axes for row in others for axes in row]
+    every = max(1, len(found.values) // DOTS)
+    for axes, (name, values) in zip(panels, motion.items(), strict=False):
+        places = MOTIONS[name].factor * values[::every]
+        axes.scatter(
+            places, shown.factor * found.values[::every], s=3, color=look.colour, linewidths=0, rasterized=True
+        )
+        axes.set_xlabel(MOTIONS[name].label)
+    for axes in panels[len(motion) :]:
+        axes.remove()
+    for axes in (first, *panels[: len(motion)]):
+        axes.set_ylabel(shown.axis)
+    return page.figure

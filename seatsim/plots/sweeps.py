@@ -1,0 +1,203 @@
+"""Figures of a sweep: what matters most, how far keys move a metric, comfort against travel, means over two keys."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from seatsim.metrics.table import METRICS, SHORT
+from seatsim.plots import style
+from seatsim.plots.labels import Quantity, clean_text, describe_channel, format_number, format_percent, format_unit
+from seatsim.plots.style import COLOURS, DARK, ROW, Entry, Grid, draw_bars, make_page, measure_names, name_rows
+from seatsim.schema.arrays import Array
+from seatsim.sweeps.statistics.rows import SweepRows, is_number
+from seatsim.sweeps.statistics.sensitivity import Sensitivity
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+COMFORT, TRAVEL = "driver_acceleration_weighted", "suspension_displacement_rms"
+ROAD = "excitation."
+"""How the keys of the excitation begin; the first of them with few values gives each value a panel of its own."""
+MOST_KEYS = 14
+MOST_PANELS = 6
+MOST_POINTS = 4000
+"""Runs that are drawn in all panels; more of them hide each other."""
+MOST_GROUPS = 7
+MOST_LEVELS = 8
+"""Values of a key that have rows or columns of their own; numbers with more are taken in `BINS` of as many runs."""
+BINS = 5
+FRONT = Entry("Pareto front", "black", width=1.6)
+
+
+def describe_column(name: str, units: Mapping[str, str]) -> Quantity:
+    """Return how a key, by its name, or a metric, in words, is shown."""
+    shown = describe_channel(SHORT.get(name, name), units.get(name, ""))
+    return shown if name in METRICS else shown._replace(words=name)
+
+
+def format_level(value: object) -> str:
+    """Return the value of a key as text."""
+    return format_number(value, 4) if isinstance(value, float) else str(value)
+
+
+def plot_shares(found: Sequence[Sensitivity], words: str) -> Figure:
+    """Return the shares of the variance of a metric that its keys explain, alone and with others."""
+    rows = found[:MOST_KEYS]
+    cut = f" The {MOST_KEYS} strongest of {len(found)} keys." if len(found) > MOST_KEYS else ""
+    note = f"Bar: the key alone. Line: 95 % interval of its share together with its interactions.{cut}"
+    names = [row.key for row in rows]
+    grid = Grid((ROW * len(rows) + 0.1,), left=measure_names(names), right=1.1)
+    page = make_page(f"What determines the {words}", note, grid)
+    axes = page.rows[0][0]
+    name_rows(axes, names, [0])
+    colours = [COLOURS[0], *[style.GREY] * (len(rows) - 1)]
+    draw_bars(axes, [100 * _clip(row.first) for row in rows], colours, [""] * len(rows))
+    for k, row in enumerate(rows):
+        ends = [100 * _clip(end) for end in (row.total_low, row.total_high)]
+        axes.plot(ends, [k, k], color="black", linewidth=1.6, zorder=3)
+        texts = f"{format_percent(row.first)} / {format_percent(row.total)}"
+        axes.annotate(texts, (1.02, k), xycoords=("axes fraction", "data"), va="center", fontsize=style.FONT)
+    axes.annotate("alone / with", (1.02, 1.0), xycoords="axes fraction", va="bottom", fontsize=style.FONT, color=DARK)
+    axes.set_xlim(0, 100)
+    axes.set_xlabel("share of the variance [%]")
+    return page.figure
+
+
+def plot_tornado(found: Sequence[Sensitivity], rows: SweepRows) -> Figure:
+    """Return from where to where the mean of a metric goes between a low and a high value of each key."""
+    shown, strongest = describe_column(found[0].metric, rows.units), found[:MOST_KEYS]
+    note = "Mean at the key's 5 % (open) and 95 % quantile (full), or at the texts with the smallest and largest mean."
+    names = []
+    for row in strongest:
+        unit = format_unit(rows.units.get(row.key, "")).removesuffix("-")
+        names.append(f"{row.key}: {format_level(row.low)} to {format_level(row.high)} {unit}".strip())
+    grid = Grid((2 * ROW * len(strongest) + 0.1,), left=0.3, right=0.3)
+    page = make_page(f"How far each key moves the mean {shown.words}", note, grid)
+    axes = page.rows[0][0]
+    name_rows(axes, [""] * len(strongest))
+    for k, (row, name) in enumerate(zip(strongest, names, strict=True)):
+        ends = [shown.factor * row.at_low, shown.factor * row.at_high]
+        axes.plot(ends, [k, k], color=COLOURS[0], linewidth=4, solid_capstyle="butt", zorder=2)
+        for end, face in zip(ends, ("1.0", COLOURS[0]), strict=True):
+            axes.plot([end], [k], "o", markersize=7, markeredgecolor=COLOURS[0], markerfacecolor=face, zorder=3)
+        axes.annotate(clean_text(name, 64), (0.0, k - 0.33), xycoords=("axes fraction", "data"), fontsize=style.FONT)
+    axes.margins(x=0.08)
+    axes.set_xlabel(f"mean {shown.axis}")
+    return page.figure
+
+
+def plot_comfort(rows: SweepRows, order: Sequence[str]) -> Figure | None:
+    """Return comfort over travel, a panel for each road, coloured by what matters most of the other keys.
+
+    Args:
+        rows: the rows of the sweep.
+        order: its varied keys, what matters most first.
+    """
+    if not {COMFORT, TRAVEL} <= set(rows.metrics):
+        return None
+    shown = rows.usable.dropna(subset=[COMFORT, TRAVEL])
+    few = {key: shown[key].nunique() for key in order}
+    road = next((key for key in order if key.startswith(ROAD) and 1 < few[key] <= MOST_PANELS), None)
+    colour = next((key for key in order if key != road and few[key] <= MOST_GROUPS), None)
+    parts = [("", shown)] if road is None else [
+        (f"{road} {format_level(value)}", part) for value, part in shown.groupby(road)
+    ]  # fmt: skip
+    values = [] if colour is None else sorted(shown[colour].unique())
+    looks = [Entry(format_level(value), COLOURS[k], "none", mark="o") for k, value in enumerate(values)]
+    most = MOST_POINTS // len(parts)
+    drawn = sum(min(most, len(part)) for _, part in parts)
+    some = f" {drawn} of {len(shown)} runs are drawn." if drawn < len(shown) else ""
+    said = "" if colour in (None, "variant") else f" The colours are values of {colour}."
+    columns = min(2, len(parts))
+    grid = Grid((3.2 if columns == 1 else 2.0,) * -(-len(parts) // columns), columns, top=0.3, gap=(0.7, 0.85))
+    note = f"A point for each run; lower left is better.{said}{some}"
+    page = make_page("Comfort against travel", note, grid, [*looks, FRONT])
+    panels = [axes for row in page.rows for axes in row]
+    for axes, (title, part) in zip(panels, parts, strict=False):
+        _draw_runs(axes, part.sample(most, random_state=0) if len(part) > most else part, colour, values)
+        travel, comfort = (part[name].to_numpy(float) for name in (TRAVEL, COMFORT))
+        front = find_front(travel, comfort)
+        style.draw_line(axes, 1e3 * travel[front], comfort[front], FRONT)
+        style.set_title(axes, title)
+        axes.set_xlabel(f"{SHORT[TRAVEL]} [mm]")
+        axes.set_ylabel(f"{SHORT[COMFORT]} [m/s²]")
+    for axes in panels[len(parts) :]:
+        axes.remove()
+    return page.figure
+
+
+def find_front(travel: Array, comfort: Array) -> NDArray[np.intp]:
+    """Return the indices of the runs that no other is better than in both, by rising travel."""
+    order = np.lexsort((comfort, travel))
+    best = np.minimum.accumulate(comfort[order])
+    keep = np.concatenate([[True], comfort[order][1:] < best[:-1]])
+    front: NDArray[np.intp] = order[keep]
+    return front
+
+
+def _draw_runs(axes: Axes, drawn: pd.DataFrame, colour: str | None, values: Sequence[object]) -> None:
+    groups = [drawn] if colour is None else [drawn[drawn[colour] == value] for value in values]
+    for k, part in enumerate(groups):
+        axes.scatter(
+            1e3 * part[TRAVEL].to_numpy(float), part[COMFORT].to_numpy(float), s=14, linewidths=0, alpha=0.7,
+            color=COLOURS[k], rasterized=True,
+        )  # fmt: skip
+
+
+def plot_means(rows: SweepRows, order: Sequence[str], metric: str) -> Figure | None:
+    """Return the means of a metric over the two keys that matter most, none where fewer are varied.
+
+    None too where one of them is a text with too many values.
+    """
+    import pandas as pd
+
+    keys = [key for key in order if key != "variant"][:2]
+    cells = [_group(rows.usable[key]) for key in keys]
+    if len(keys) < 2 or metric not in rows.metrics or any(each is None for each in cells):
+        return None
+    shown = describe_column(metric, rows.units)
+    means = pd.DataFrame({"x": cells[0], "y": cells[1], "z": shown.factor * rows.usable[metric]})
+    table = means.groupby(["y", "x"], observed=True)["z"].mean().unstack()
+    values = table.to_numpy()
+    names = [str(name) for name in table.index]
+    grid = Grid((0.32 * len(names),), left=measure_names(names) + 0.25, right=0.15, bottom=0.55)
+    title = f"Mean {shown.words} over {keys[0]} and {keys[1]}"
+    page = make_page(title, f"Mean over the runs of each cell, in {shown.unit}; the darker, the larger.", grid)
+    axes = page.rows[0][0]
+    axes.grid(False)
+    axes.pcolormesh(values, cmap=colormaps["Blues"], rasterized=True)
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    for (row, column), value in np.ndenumerate(values):
+        if np.isfinite(value):
+            # Black and white stay so on dark paper, since the cells do.
+            ink = "#fffffe" if value > 0.5 * (low + high) else "#000001"
+            axes.text(column + 0.5, row + 0.5, format_number(value), ha="center", va="center", fontsize=9, color=ink)
+    axes.set_xticks(np.arange(values.shape[1]) + 0.5, [clean_text(str(name), 12) for name in table.columns], fontsize=9)
+    axes.set_yticks(np.arange(len(names)) + 0.5, [clean_text(name, 32) for name in names], fontsize=9)
+    for axis, key in ((axes.xaxis, keys[0]), (axes.yaxis, keys[1])):
+        axis.set_label_text(clean_text(describe_column(key, rows.units).axis))
+    return page.figure
+
+
+def _group(values: pd.Series) -> pd.Series | None:
+    """Return the values as ordered names of cells."""
+    import pandas as pd
+
+    if values.nunique() <= MOST_LEVELS:
+        names = pd.Categorical(values.map(format_level), [format_level(x) for x in sorted(values.unique())], True)
+        return pd.Series(names, index=values.index)
+    if not is_number(values):
+        return None
+    cells = pd.qcut(values, BINS, duplicates="drop")
+    return cells.cat.rename_categories([f"{c.left:.3g} to {c.right:.3g}" for c in cells.cat.categories])
+
+
+def _clip(share: float) -> float:
+    return min(1.0, max(0.0, share)) if np.isfinite(share) else 0.0

@@ -1,0 +1,195 @@
+"""Every picture of every kind of result: legible, inside its page, free of collisions, fit for a page of HTML.
+
+`contact_sheet.png`, in the folder of pytest's temporary files, shows all of them.
+"""
+
+import re
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.text import Text
+from PIL import Image
+
+from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
+from seatsim.diagnosis.result import Trace
+from seatsim.identification.assessment import Agreement, Assessment
+from seatsim.plots.bench.characterisation import plot_characterisation
+from seatsim.plots.bench.identification import plot_predictions
+from seatsim.plots.bench.resonance import plot_damping
+from seatsim.plots.diagnosis.answer import plot_gap, select_stages
+from seatsim.plots.diagnosis.bins import drop_start, find_worst
+from seatsim.plots.diagnosis.draw import plot_diagnosis
+from seatsim.plots.diagnosis.signals import plot_pairs
+from seatsim.plots.runs.draw import plot_result
+from seatsim.plots.saving import render_inline
+from seatsim.plots.style import WIDTH
+from seatsim.recordings.bench_tables import BenchRecord
+from seatsim.recordings.gap import Gap, GapFigures, ReplayedPair
+from seatsim.simulation.result import Result
+
+from ..report import diagnoses
+
+LONG = "a variant whose name goes on and on, beyond all use"
+RUNS = {
+    "single": lambda make: [make()],
+    "warming": lambda make: [make(wanted=False, warming=15.0)],
+    "at rest": lambda make: [make(motion=0.0, wanted=False)],
+    "short": lambda make: [make(seconds=0.5)],
+    "variants": lambda make: [make({"variant": v}, warming=5.0) for v in ("skyhook", "_passive $a$ b$")],
+    "files": lambda make: [make(name="a road"), make(name="b road", seconds=7.0)],
+    "scenarios": lambda make: [make({"variant": v}, name=n) for n in ("em1", "em5") for v in ("skyhook", "off")],
+    "sweep": lambda make: [make({"variant": v, "temperature": t}) for v in ("skyhook", LONG) for t in (20, 50, 80)],
+    "many": lambda make: [make({"variant": f"controller number {n}"}) for n in range(12)],
+}
+
+
+def draw_gap():
+    traces = {trace.channel: trace for trace in diagnoses.known().evidence.traces}
+    first: Trace = next(iter(traces.values()))
+    found = diagnoses.known().gap
+    pair = ReplayedPair(
+        first.time, {name: each.measured for name, each in traces.items()},
+        {name: each.nominal for name, each in traces.items()}, {name: each.unit for name, each in traces.items()},
+    )  # fmt: skip
+    gap = Gap(found.before.overall, found.before.channels, GapFigures(0.0, dict.fromkeys(traces, 0.0)), ())
+    return {"gap": plot_gap(gap), **plot_pairs(gap, {"run-c": pair})}
+
+
+def draw_identification():
+    phase = np.arange(900) / 30
+    x, v = 0.01 * np.sin(phase), 0.01 / 30 * 500 * np.cos(phase)
+    force = 500 * v + 80 * np.tanh(v / 0.01)
+    record = BenchRecord("sine, 1 A", "sine.csv", 500.0, x, v, force, np.ones(900), False, None)
+    judged = [Assessment(record, part, 0.97 * force, Agreement(0.99, 0.02, 5.0, 93.2)) for part in ("test", "test")]
+    return {
+        "loops": plot_predictions(
+            SimpleNamespace(model="bouc_wen", assessments=judged, mean=lambda part: judged[0].agreement)
+        )
+    }
+
+
+def draw_bench():
+    tested = load_specimen("bouc_wen", None)
+    return plot_characterisation(characterise_model(tested, choose_settings(tested)))
+
+
+def draw_seat_test():
+    frequencies = np.linspace(1.0, 3.0, 9)
+    test = SimpleNamespace(frequencies=frequencies, transmissibilities=2.0 - (frequencies - 1.7) ** 2)
+    return plot_damping(SimpleNamespace(damping={"em1": test, "em5": test}))
+
+
+OTHERS = {
+    **{f"diagnosis, {name}": lambda make=make: plot_diagnosis(make()) for name, make in diagnoses.CASES.items()},
+    "gap": draw_gap, "identification": draw_identification, "bench": draw_bench, "seat test": draw_seat_test,
+}  # fmt: skip
+DRAWN: dict[str, dict] = {}
+
+
+@pytest.fixture(scope="module", params=[*RUNS, *OTHERS])
+def figures(request, made_up):
+    kind = request.param
+    DRAWN[kind] = plot_result(Result(RUNS[kind](made_up))) if kind in RUNS else OTHERS[kind]()
+    for figure in DRAWN[kind].values():
+        FigureCanvasAgg(figure).draw()
+    return DRAWN[kind]
+
+
+def test_everything_is_legible_and_inside_the_page(figures):
+    for name, figure in figures.items():
+        width, height = figure.canvas.get_width_height()
+        assert figure.get_figwidth() == WIDTH and min(text.get_fontsize() for text in figure.findobj(Text)) >= 9
+        for part in [*figure.axes, *figure.texts, *figure.legends]:
+            box = part.get_tightbbox()
+            assert box.x0 >= 0 and box.x1 <= width and box.y0 >= 0 and box.y1 <= height, (name, part, box)
+
+
+def test_no_two_texts_collide(figures):
+    """Labels of ticks, of axes and titles, of all panels together."""
+    for name, figure in figures.items():
+        texts = list(figure.texts)
+        for axes in figure.axes:
+            texts += [axes.xaxis.label, axes.yaxis.label, axes._left_title]
+            for axis in (axes.xaxis, axes.yaxis):
+                low, high = sorted(axis.get_view_interval())
+                ticks = axis.get_major_ticks()
+                texts += [tick.label1 for tick in ticks if low <= tick.get_loc() <= high and tick.label1.get_visible()]
+        boxes = [(text, text.get_window_extent()) for text in texts if text.get_text().strip() and text.get_visible()]
+        for k, (text, box) in enumerate(boxes):
+            for other, second in boxes[:k]:
+                assert not box.padded(-1).overlaps(second.padded(-1)), (name, text, other)
+
+
+def test_every_axis_that_is_numbered_has_a_unit_and_lines_have_a_legend(figures):
+    for name, figure in figures.items():
+        for axes in figure.axes:
+            for axis in (axes.xaxis, axes.yaxis):
+                texts = [tick.label1.get_text() for tick in axis.get_major_ticks() if tick.label1.get_visible()]
+                numbered = any(re.match(r"[−\d.]+$", text) for text in texts)
+                assert not numbered or axis.get_label_text().endswith("]"), (name, texts)
+        if any(len(axes.lines) > 2 for axes in figure.axes) and "run" not in name:
+            assert figure.legends or any(axes.get_legend() for axes in figure.axes) or "ranking" in name, name
+
+
+def test_a_picture_inside_a_page_takes_the_page_colours_and_stands_alone(figures):
+    for name, figure in figures.items():
+        shown = render_inline(figure, name)
+        assert shown == render_inline(figure, name) and len(shown.svg) < 200_000
+        assert shown.title and shown.title in figure.texts[0].get_text().replace("\n", " ").replace(r"\$", "$")
+        assert 'role="img"' in shown.svg and "style=" not in shown.svg and "http" not in shown.svg
+        assert not re.search(r'"#[0-9a-fA-F]{6}"', shown.svg) and "<text" in shown.svg
+        used = re.findall(r"(?:url\(#|href=\"#)([\w-]+)", shown.svg)
+        assert set(used) <= set(re.findall(r' id="([\w-]+)"', shown.svg))
+        assert all(text.get_visible() for text in figure.texts)
+
+
+def test_stages_without_effects_do_not_repeat_the_refit():
+    assert select_stages(diagnoses.known()) == ["before", "calibrated", "after", "floor"]
+    assert select_stages(diagnoses.none()) == ["before", "calibrated", "floor"]
+
+
+def test_the_first_second_is_left_out_and_the_worst_channel_is_mapped():
+    diagnosis = diagnoses.known()
+    trace, motion = find_worst(diagnosis)
+    assert trace.channel == "frame_acceleration" and trace.time[0] == 1.0
+    assert len(motion["velocity"]) == len(trace.time) == len(drop_start(diagnosis.evidence.traces[0]).time)
+
+
+def test_equal_effects_are_one_row():
+    diagnosis = replace(diagnoses.known(), causes=diagnoses.ranked({"damper.remanence": 0.97}))
+    names = [tick.get_text() for tick in plot_diagnosis(diagnosis)["ranking"].axes[0].get_yticklabels()]
+    assert names[0] == "damper.remanence" and "7 other effects" in names and len(names) == 8
+
+
+def test_scenarios_have_pictures_of_their_own(made_up):
+    figures = plot_result(Result(RUNS["scenarios"](made_up)))
+    assert {"psd_em1", "psd_em5", "time_histories_em1", "transmissibility_em5"} <= set(figures) and "psd" not in figures
+    first, second = ([text.get_text() for text in figures[f"psd_{n}"].legends[0].get_texts()] for n in ("em1", "em5"))
+    assert first == second == ["skyhook", "off", "floor"]
+
+
+def test_a_run_is_not_changed_by_drawing_it(made_up):
+    run = made_up()
+    before = {name: values.copy() for name, values in run.history.channels.items()}
+    plot_result(Result([run]))
+    for name, values in run.history.channels.items():
+        np.testing.assert_array_equal(values, before[name])
+
+
+def test_the_contact_sheet(tmp_path_factory):
+    """All pictures that were drawn, in columns of one picture each; to be looked at."""
+    pictures = [figure for found in DRAWN.values() for figure in found.values()]
+    images = [Image.fromarray(np.asarray(figure.canvas.buffer_rgba())) for figure in pictures]
+    columns = 8
+    heights, places = [0] * columns, []
+    for image in images:
+        column = heights.index(min(heights))
+        places.append((column * (image.width + 20), heights[column]))
+        heights[column] += image.height + 20
+    sheet = Image.new("RGB", (columns * 600, max(heights, default=0) or 1), "#999")
+    for image, place in zip(images, places, strict=True):
+        sheet.paste(image, place)
+    sheet.save(tmp_path_factory.getbasetemp() / "contact_sheet.png")
