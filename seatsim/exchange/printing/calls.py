@@ -13,8 +13,7 @@ import numpy as np
 from numba import types
 
 from seatsim.compilation.jit import GENERIC
-from seatsim.exchange.printing.program import source_of
-from seatsim.exchange.printing.scope import Scope, address, build_tuple, element
+from seatsim.exchange.printing.program import Scope, address, build_tuple, element, source_of
 from seatsim.exchange.printing.values import (
     BOOLEAN,
     INTEGER,
