@@ -6,7 +6,8 @@ import math
 
 from seatsim.effects.base import acts_on
 from seatsim.exchange.block import Block
-from seatsim.exchange.blocks.held import GivenFloor, nothing_held
+from seatsim.exchange.blocks.floor import GivenFloor
+from seatsim.exchange.blocks.held import nothing_held
 from seatsim.exchange.blocks.rig_motion import RigInputs, RigParameters, RigState, advance, observe, start
 from seatsim.kernel.assumed_model import AssumedModel
 from seatsim.kernel.augmented import classes_of

@@ -10,7 +10,8 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from seatsim.compilation.jit import jit
-from seatsim.exchange.blocks.held import GivenFloor, Held, follow_floor, hold, leave_floor
+from seatsim.exchange.blocks.floor import GivenFloor, follow_floor, leave_floor
+from seatsim.exchange.blocks.held import Held, hold
 from seatsim.kernel.assumed_model import InverseModel, follow_state, model_scaling
 from seatsim.kernel.generic import advance_filters, read, update
 from seatsim.kernel.inverse import CELLS

@@ -153,9 +153,7 @@ class Scope:
 
     def name(self, wanted: str) -> str:
         """Return a name for a variable that is free within the function."""
-        name, k = identifier(wanted), 2
-        while name in self._names:
-            name, k = f"{identifier(wanted)}_{k}", k + 1
+        name = free_name(identifier(wanted), self._names)
         self._names.add(name)
         return name
 
@@ -226,15 +224,6 @@ def element(scope: Scope, owner: Value, index: int | Value, node: ast.AST | None
     if is_row(owner.type):
         return Value(f"{_member(held)}at[{index}]", kind)
     return Value(f"{_member(held)}{field_names(owner.type)[index]}", kind)
-
-
-def address(scope: Scope, record: Value) -> str:
-    """Return the address of a record, which is put into memory of its own where it is in none."""
-    if record.code.startswith("*"):
-        return record.code[1:]
-    if record.plain:
-        return f"&{record.code}"
-    return f"(const {scope.program.types.name(record.type)}[1]){{{record.code}}}"
 
 
 def _member(owner: Value) -> str:

@@ -74,7 +74,7 @@ class _DataFault(NamedTuple):
     may_be_effect: bool = False
 
 
-def list_faults(run: RunUnderTest, outputs: Table | None) -> Iterator[_DataFault]:
+def _list_faults(run: RunUnderTest, outputs: Table | None) -> Iterator[_DataFault]:
     """Yield every fault that a run may have; delays are relative to simulated outputs."""
     for channel in run.table:
         yield from _scales(run, channel, outputs or {})
@@ -199,7 +199,7 @@ def _possible(run: RunUnderTest, before: Mapping[str, float], outputs: Table | N
     if sum(before.values()) < _DELAYED:
         return
     is_driven_wrong = float(np.median([size for name, size in before.items() if name in MOTION])) > 0.5 * _DELAYED
-    for fault in list_faults(run, outputs):
+    for fault in _list_faults(run, outputs):
         if is_driven_wrong or not set(_INPUTS) & set(fault.channels):
             yield fault
 
