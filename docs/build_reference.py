@@ -45,6 +45,10 @@ class Chapter(NamedTuple):
     title: str
     names: list[str]
 
+    def link(self, name: str) -> str:
+        """Return the link to the section of a name."""
+        return f"[{name}]({self.file}#{name.replace('.', '')})"
+
 
 FAMILIES = {
     "bingham": ("Bingham and bi-viscous dampers", ("bingham", "biviscous")),
@@ -76,19 +80,17 @@ def list_chapters(kind: str) -> Iterator[Chapter]:
 
 
 def write_index(kind: str, chapters: list[Chapter]) -> str:
-    """Return the section of a kind: a table of its names, each a link to its page."""
+    """Return the section of a kind: of dampers a table for each family, of the other kinds the links to their page."""
     lines = [f"\n## {kind.capitalize()}s\n"]
-    if kind == "damper":
-        lines += ["Confidence says how far a model's equation is that of its source:\n"]
-        lines += [f"- {word}: {meaning}" for word, meaning in CONFIDENCE.items()]
+    if kind != "damper":
+        return "\n".join([*lines, *(", ".join(map(chapter.link, chapter.names)) for chapter in chapters)]) + "\n"
+    lines += ["Confidence says how far a model's equation is that of its source:\n"]
+    lines += [f"- {word}: {meaning}" for word, meaning in CONFIDENCE.items()]
     for chapter in chapters:
-        lines += [f"\n### {chapter.title}\n"] if kind == "damper" else []
-        heads = ["name", "is", *(("confidence",) if kind == "damper" else ())]
-        lines += [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
+        lines += [f"\n### {chapter.title}\n", "| name | is | confidence |", "|---|---|---|"]
         for name in chapter.names:
-            link = f"[{name}]({chapter.file}#{name.replace('.', '')})"
-            confidence = [find_confidence(registry.find(kind, name))] if kind == "damper" else []
-            lines.append(f"| {' | '.join([link, cell(find_page(name).title), *confidence])} |")
+            confidence = find_confidence(registry.find(kind, name))
+            lines.append(f"| {chapter.link(name)} | {cell(find_page(name).title)} | {confidence} |")
     return "\n".join(lines) + "\n"
 
 
@@ -112,8 +114,9 @@ def write_entry(page: Page) -> str:
 
 
 def shorten(fact: str) -> str:
-    """Return a fact with a link in place of what a word for confidence means."""
-    return re.sub(r"^(Confidence: )(\w+);.*", r"\1[\2](../reference.md#dampers)", fact)
+    """Return a fact in fewer words: a link in place of what a word for confidence means, ranges by dots."""
+    fact = re.sub(r"^(Confidence: )(\w+);.*", r"\1[\2](../reference.md#dampers)", fact)
+    return re.sub(r"(?<=\d) to (?=-?\d)", "..", fact) if fact.startswith("Range of the data") else fact
 
 
 def write_text(page: Page) -> Iterator[str]:

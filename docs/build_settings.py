@@ -7,17 +7,15 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
-from seatsim.diagnosis.settings.threshold import CONVENTION, NUMERICAL, SIMULATED_RIGS, Settings, list_thresholds
+from seatsim.diagnosis.settings.threshold import Settings, list_thresholds
 
 PAGE = Path(__file__).with_name("settings.md")
 BAR = r"\|"
-LETTERS = {SIMULATED_RIGS: "S", NUMERICAL: "N", CONVENTION: "C"}
-"""How most values were chosen, as the last column of the tables says it."""
-HEAD = f"""# Settings of a diagnosis
+HEAD = """# Settings of a diagnosis
 
-Every threshold on which a [diagnosis](diagnosis_theory.md) rests: value, unit, meaning, what is lost where it is raised
-or lowered, and how it was chosen: {"; ".join(f"{letter}, {chosen}" for chosen, letter in LETTERS.items())}. Built by
-`python docs/build_settings.py`. Another value is asked for in Python:
+Every threshold on which a [diagnosis](diagnosis_theory.md) rests. What is lost where it is raised or lowered, and how
+it was chosen, stands beside it in `seatsim/diagnosis/settings`. Built by `python docs/build_settings.py`. Another value
+is asked for in Python:
 
 <!-- not run -->
 ```python
@@ -43,10 +41,9 @@ def tables() -> Iterator[str]:
     for group, settings in DiagnosisSettings()._asdict().items():
         cls: type[Settings] = type(settings)
         yield f"\n## `{group}`\n\n{inspect.getdoc(cls)}\n"
-        yield "| name | value | unit | meaning | what it trades off | chosen |\n|---|---|---|---|---|---|"
+        yield "| name | value | unit | meaning |\n|---|---|---|---|"
         for name, threshold in list_thresholds(cls):
-            chosen = LETTERS.get(threshold.chosen, threshold.chosen)
-            cells = [f"`{name}`", show(getattr(settings, name)), *threshold[:3], chosen]
+            cells = [f"`{name}`", show(getattr(settings, name)), threshold.unit, threshold.meaning]
             yield f"| {' | '.join(cell.replace('|', BAR) for cell in cells)} |"
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import re
 from importlib.metadata import version as version_of
 from pathlib import Path
@@ -25,6 +26,7 @@ nitpicky = True
 # Types of signatures are shown, not linked: most are of libraries whose pages a build does not fetch.
 nitpick_ignore_regex = [("py:.*", ".*")]
 nb_execution_mode = "off"
+autodoc_preserve_defaults = True
 
 # Pages are read on GitHub as well: its anchors of headings, and its blocks of mathematics.
 myst_enable_extensions = ["amsmath", "dollarmath"]
@@ -69,6 +71,16 @@ def write_docstring_as_text(
     lines[:] = re.sub(r"(?m)(?<=\S)\n\n(?= {4}(?!:))", "\n\n::\n\n", text).split("\n")
 
 
+def skip_plain_field(app: Sphinx, kind: str, name: str, value: object, skip: bool, options: object) -> bool | None:
+    """Leave out fields of named tuples that say no more than their type, which stands in the signature."""
+    return True if getattr(value, "__doc__", None) and value.__doc__.startswith("Alias for field number") else None
+
+
+def name_fields(app: Sphinx, kind: str, name: str, value: type, *_: object) -> tuple[str, None] | None:
+    """Show of a class the names of its fields; their types and meanings are long, and stand in its docstring."""
+    return (f"({', '.join(inspect.signature(value).parameters)})", None) if kind == "class" else None
+
+
 def write_llms_file(app: Sphinx, error: Exception | None) -> None:
     """Write `llms.txt`, for programs that read: title, address and first sentence of each page."""
     if error or app.builder.format != "html":
@@ -89,4 +101,6 @@ def setup(app: Sphinx) -> None:
     app.connect("source-read", lead_to_page)
     # Before the extension that reads the sections of a docstring.
     app.connect("autodoc-process-docstring", write_docstring_as_text, priority=600)
+    app.connect("autodoc-skip-member", skip_plain_field)
+    app.connect("autodoc-process-signature", name_fields)
     app.connect("build-finished", write_llms_file)
