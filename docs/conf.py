@@ -73,7 +73,7 @@ def write_docstring_as_text(
 
 def skip_plain_field(app: Sphinx, kind: str, name: str, value: object, skip: bool, options: object) -> bool | None:
     """Leave out fields of named tuples that say no more than their type, which stands in the signature."""
-    return True if getattr(value, "__doc__", None) and value.__doc__.startswith("Alias for field number") else None
+    return True if (value.__doc__ or "").startswith("Alias for field number") else None
 
 
 def name_fields(app: Sphinx, kind: str, name: str, value: type, *_: object) -> tuple[str, None] | None:
@@ -100,7 +100,7 @@ def setup(app: Sphinx) -> None:
     app.add_html_math_renderer("mathml", (write_formula, None), (write_formula, None))
     app.connect("source-read", lead_to_page)
     # Before the extension that reads the sections of a docstring.
-    app.connect("autodoc-process-docstring", write_docstring_as_text, priority=600)
+    app.connect("autodoc-process-docstring", write_docstring_as_text, priority=400)
     app.connect("autodoc-skip-member", skip_plain_field)
     app.connect("autodoc-process-signature", name_fields)
     app.connect("build-finished", write_llms_file)
