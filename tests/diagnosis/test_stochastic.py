@@ -53,6 +53,7 @@ def test_a_wandering_zero_of_the_floor_is_told_from_a_motion_of_it(posed):
     assert (solution.stochastic, solution.discrepancy.channel) == ("sensor.bias", "floor_acceleration")
 
 
+@pytest.mark.slow
 def test_a_random_force_is_named_unless_it_is_withheld(posed):
     measured = {}
     for seed, run in enumerate(posed.runs):

@@ -69,12 +69,18 @@ class BadPush(NamedTuple):
 """
 
 
-@pytest.fixture
-def bad(tmp_path, forget_own_code):
-    """A file whose classes give what they must not."""
-    file = tmp_path / "bad.py"
+@pytest.fixture(scope="module")
+def bad_file(tmp_path_factory):
+    """A file whose classes give what they must not: one for all tests, so that a loop is compiled once."""
+    file = tmp_path_factory.mktemp("bad") / "bad.py"
     file.write_text(CODE)
-    seatsim.use(file)
+    return file
+
+
+@pytest.fixture
+def bad(bad_file, forget_own_code):
+    """The classes of that file."""
+    seatsim.use(bad_file)
 
 
 def scenario(seat_file, settings):

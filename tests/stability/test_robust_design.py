@@ -28,6 +28,7 @@ def cost(result):
     return np.hypot(22.6 * travel, metrics["driver_acceleration_weighted"].value)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("temperature", TEMPERATURES)
 @pytest.mark.parametrize("mass", MASSES)
 def test_it_beats_every_constant_current(gain, mass, temperature):

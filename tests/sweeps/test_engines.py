@@ -74,6 +74,7 @@ def test_the_runs_of_a_process_that_is_killed_are_simulated_by_others(deadly, ca
     assert bytes_of(tmp_path / "out") == bytes_of(tmp_path / "alone")
 
 
+@pytest.mark.slow
 def test_processes_that_are_lost_one_after_the_other_end_the_sweep(deadly, carry_out, tmp_path):
     with pytest.raises(RunError, match=r"processes were lost 4 times.* go on with --resume"):
         carry_out(deadly(10, runs=2000), engine=EAGER)
