@@ -35,9 +35,9 @@ gc.set_threshold(100_000, 50, 100)
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """Leave the checks of the scenario whose design takes half a minute to the slow tests."""
+    """Leave the checks of scenarios whose design or compilation takes long to the slow tests."""
     for item in items:
-        if item.path.name == "h-infinity-drivers.yaml":
+        if item.path.match("scenarios/h-infinity-drivers.yaml") or item.path.match("scenarios/yu2019/*.yaml"):
             item.add_marker(pytest.mark.slow)
 
 

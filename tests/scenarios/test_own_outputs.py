@@ -99,7 +99,7 @@ def test_a_law_that_gives_no_number_is_named_with_the_time(bad, seat_file, law, 
         simulate(cut)
 
 
-@pytest.mark.parametrize("damper", ["BadDamper", "BadState"])
+@pytest.mark.parametrize("damper", ["BadDamper", pytest.param("BadState", marks=pytest.mark.slow)])
 def test_a_damper_that_gives_no_number_is_named_with_its_motion(bad, seat_file, damper):
     with pytest.raises(RunError, match=rf"bad:{damper} gives no finite number at 0\.\d+ s, where x = .* v = -?0.01"):
         simulate(scenario(seat_file, {"damper": {"model": f"bad:{damper}"}}))

@@ -6,6 +6,7 @@ import pytest
 import seatsim
 
 NAME = "h-infinity-drivers"
+pytestmark = pytest.mark.slow
 MASSES = [50.0, 80.0, 120.0]
 TEMPERATURES = [20.0, 80.0]
 
@@ -28,7 +29,6 @@ def cost(result):
     return np.hypot(22.6 * travel, metrics["driver_acceleration_weighted"].value)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("temperature", TEMPERATURES)
 @pytest.mark.parametrize("mass", MASSES)
 def test_it_beats_every_constant_current(gain, mass, temperature):

@@ -71,6 +71,7 @@ def address(tmp_path):
         yield f"tcp://{host}:{port}"
 
 
+@pytest.mark.slow
 def test_an_embedded_cluster_gives_the_same_bytes(write_sweep, tmp_path, seatsim_command):
     path = write_sweep(runs=203)
     assert seatsim_command("sweep", path, "--out", tmp_path / "local")[0] == 0

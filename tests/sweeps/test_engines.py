@@ -81,6 +81,7 @@ def test_processes_that_are_lost_one_after_the_other_end_the_sweep(deadly, carry
     assert 0 < len(seatsim.read_sweep(tmp_path / "out")) < 2000
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
 def test_no_process_outlives_the_command(how, write_sweep, tmp_path):
     path = write_sweep(runs=100_000)
