@@ -13,12 +13,9 @@ PAGE = Path(__file__).with_name("settings.md")
 BAR = r"\|"
 HEAD = """# Settings of a diagnosis
 
-Every threshold on which a diagnosis rests: a frozen value with its unit and meaning, what is lost where it is raised or
-lowered, and how it was chosen. Built by `python docs/build_settings.py` from `seatsim/diagnosis/settings`. The stages
-that the groups belong to are described in [Diagnosis](diagnosis.md), their symbols in the
-[nomenclature](nomenclature.md).
-
-A diagnosis with another value is asked for in Python; the command line keeps to the values below:
+Every threshold on which a [diagnosis](diagnosis_theory.md) rests. What is lost where it is raised or lowered, and how
+it was chosen, stands beside it in `seatsim/diagnosis/settings`. Built by `python docs/build_settings.py`. Another value
+is asked for in Python:
 
 <!-- not run -->
 ```python
@@ -44,9 +41,9 @@ def tables() -> Iterator[str]:
     for group, settings in DiagnosisSettings()._asdict().items():
         cls: type[Settings] = type(settings)
         yield f"\n## `{group}`\n\n{inspect.getdoc(cls)}\n"
-        yield "| name | value | unit | meaning | what it trades off | how it was chosen |\n|---|---|---|---|---|---|"
+        yield "| name | value | unit | meaning |\n|---|---|---|---|"
         for name, threshold in list_thresholds(cls):
-            cells = [f"`{name}`", show(getattr(settings, name)), *threshold]
+            cells = [f"`{name}`", show(getattr(settings, name)), threshold.unit, threshold.meaning]
             yield f"| {' | '.join(cell.replace('|', BAR) for cell in cells)} |"
 
 
