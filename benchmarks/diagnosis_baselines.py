@@ -48,7 +48,7 @@ from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, pose_problem
 from seatsim.diagnosis.select import select_effects
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.recordings.recording import load_recording
 
 NAMED, NAMED_NEXT, LARGE = 0.85, 0.8, 0.02

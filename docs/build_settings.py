@@ -2,28 +2,31 @@
 
 from __future__ import annotations
 
+import ast
 import inspect
+import itertools
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
-from seatsim.diagnosis.settings.threshold import Settings, list_thresholds
+from seatsim.diagnosis.settings import DiagnosisSettings
 
 PAGE = Path(__file__).with_name("settings.md")
 BAR = r"\|"
 HEAD = """# Settings of a diagnosis
 
 Every threshold on which a diagnosis rests: a frozen value with its unit and meaning, what is lost where it is raised or
-lowered, and how it was chosen. Built by `python docs/build_settings.py` from `seatsim/diagnosis/settings`. The stages
-that the groups belong to are described in [Diagnosis](diagnosis.md), their symbols in the
-[nomenclature](nomenclature.md).
+lowered, and how it was chosen ("on simulated rigs": those whose effects have other functional forms than the
+candidates; "numerically": the result does not depend on it). Built by `python docs/build_settings.py` from
+`seatsim/diagnosis/settings`. The stages that the groups belong to are described in [Diagnosis](diagnosis.md), their
+symbols in the [nomenclature](nomenclature.md).
 
 A diagnosis with another value is asked for in Python; the command line keeps to the values below:
 
 <!-- not run -->
 ```python
 import seatsim
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis.settings import DiagnosisSettings
 
 usual = DiagnosisSettings()
 stricter = usual._replace(decision=usual.decision._replace(explained=0.06))
@@ -39,14 +42,28 @@ def show(value: object) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
+def stated(cls: type) -> dict[str, list[str]]:
+    """Return unit, meaning, trade-off and origin of each field of a group of settings, as its docstring has them."""
+    _, *body = ast.parse(inspect.getsource(cls)).body[0].body  # type: ignore[attr-defined]
+    found = {}
+    for field, text in itertools.pairwise(body):
+        if isinstance(field, ast.AnnAssign) and isinstance(text, ast.Expr):
+            said = " ".join(ast.literal_eval(text.value).split())
+            parts = re.fullmatch(r"(.+?)(?: \[(.+?)\])?\.(?: Trades off: (.+)\.)? Chosen: (.+)\.", said)
+            assert parts, f"{cls.__name__}: {said}"
+            meaning, unit, trade_off, chosen = parts.groups(default="-")
+            found[ast.unparse(field.target)] = [unit, meaning, trade_off, chosen]
+    return found
+
+
 def tables() -> Iterator[str]:
     """Yield a section for each group of settings."""
     for group, settings in DiagnosisSettings()._asdict().items():
-        cls: type[Settings] = type(settings)
+        cls = type(settings)
         yield f"\n## `{group}`\n\n{inspect.getdoc(cls)}\n"
         yield "| name | value | unit | meaning | what it trades off | how it was chosen |\n|---|---|---|---|---|---|"
-        for name, threshold in list_thresholds(cls):
-            cells = [f"`{name}`", show(getattr(settings, name)), *threshold]
+        for name, texts in stated(cls).items():
+            cells = [f"`{name}`", show(getattr(settings, name)), *texts]
             yield f"| {' | '.join(cell.replace('|', BAR) for cell in cells)} |"
 
 

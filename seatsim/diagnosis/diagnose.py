@@ -13,7 +13,7 @@ from threadpoolctl import threadpool_limits
 from seatsim.diagnosis.deadline import Deadline
 from seatsim.diagnosis.problem import DiagnosisProblem, check_nominal, pose_problem
 from seatsim.diagnosis.result import Diagnosis
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.diagnosis.solution import Method
 from seatsim.diagnosis.solve import solve
 from seatsim.diagnosis.state import state_diagnosis

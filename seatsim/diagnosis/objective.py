@@ -21,7 +21,7 @@ from seatsim.diagnosis.deadline import NEVER
 from seatsim.diagnosis.noise import NoiseWeights
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.schema.arrays import Array
 
 AT_ONCE = 16

@@ -14,8 +14,8 @@ from scipy.fft import prev_fast_len
 
 from seatsim.diagnosis.deadline import NEVER, Deadline
 from seatsim.diagnosis.nuisance import Nuisance, list_nuisances, vary
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
-from seatsim.diagnosis.settings.fitting import FitSettings
+from seatsim.diagnosis.settings import DiagnosisSettings
+from seatsim.diagnosis.settings.searching import FitSettings
 from seatsim.effects.base import replace_effects
 from seatsim.recordings.header import USUAL, Header, Tolerance
 from seatsim.recordings.quality.coverage import shows_falling_current

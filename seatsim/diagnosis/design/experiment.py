@@ -24,7 +24,7 @@ from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import Content, ProposedExperiment
-from seatsim.diagnosis.settings.designing import DesignSettings
+from seatsim.diagnosis.settings.examining import DesignSettings
 from seatsim.excitations.base import Floor
 from seatsim.recordings.replay import COMPARED
 from seatsim.scenario.numbers import change_numbers, list_numbers

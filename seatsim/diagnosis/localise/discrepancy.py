@@ -17,8 +17,8 @@ from seatsim.diagnosis.localise.regression import explain_signal
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import DiscrepancySignal
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
-from seatsim.diagnosis.settings.localising import LocalisationSettings
+from seatsim.diagnosis.settings import DiagnosisSettings
+from seatsim.diagnosis.settings.examining import LocalisationSettings
 from seatsim.schema.arrays import Array
 
 

@@ -11,7 +11,7 @@ from seatsim.diagnosis.noise import NoiseWeights
 from seatsim.diagnosis.objective import Objective
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
-from seatsim.diagnosis.settings.localising import ReconstructionSettings
+from seatsim.diagnosis.settings.examining import ReconstructionSettings
 from seatsim.diagnosis.spectra import Spectra, estimate_response, measure_power
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import RunError

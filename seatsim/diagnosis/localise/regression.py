@@ -13,7 +13,7 @@ from scipy.signal import decimate
 
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
-from seatsim.diagnosis.settings.localising import LocalisationSettings
+from seatsim.diagnosis.settings.examining import LocalisationSettings
 from seatsim.schema.arrays import Array
 
 

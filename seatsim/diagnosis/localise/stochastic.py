@@ -24,7 +24,7 @@ from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import Cause, Estimate, Share
 from seatsim.diagnosis.select import Selection
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.diagnosis.spectra import measure_power, smooth_spectrum
 from seatsim.schema.arrays import Array
 

@@ -7,7 +7,7 @@ import pytest
 from scipy.signal import decimate
 
 from seatsim.diagnosis.localise.regression import explain_signal, predict_share
-from seatsim.diagnosis.settings.localising import LocalisationSettings
+from seatsim.diagnosis.settings.examining import LocalisationSettings
 
 from .toy import CHANNELS, RATE, SKIP, place, pose, record
 

@@ -20,7 +20,7 @@ from seatsim.diagnosis.localise.stochastic import (
 from seatsim.diagnosis.noise import weigh_noise
 from seatsim.diagnosis.objective import Evaluation
 from seatsim.diagnosis.result import Cause, Estimate, Share
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.diagnosis.spectra import smooth_spectrum
 
 from .toy import CHANNELS, RATE, SIZES, SKIP, add_taps, place, pose, record

@@ -12,7 +12,7 @@ from ruamel.yaml import YAML
 from seatsim.diagnosis.diagnose import diagnose, diagnose_problem
 from seatsim.diagnosis.noise import weigh_noise
 from seatsim.diagnosis.result import Estimate, Share
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.diagnosis.solution import Method
 from seatsim.diagnosis.solve import solve
 from seatsim.effects.damper import GasSpring, SealFriction

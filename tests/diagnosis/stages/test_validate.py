@@ -9,7 +9,7 @@ from seatsim.diagnosis import every_run
 from seatsim.diagnosis.every_run import measure_gaps, replay_runs
 from seatsim.diagnosis.objective import Evaluation
 from seatsim.diagnosis.parameters import Parameters
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.diagnosis.validate import (
     choose_held_out_run,
     choose_typical_run,
