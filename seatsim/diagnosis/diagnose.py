@@ -10,8 +10,7 @@ from pathlib import Path
 
 from threadpoolctl import threadpool_limits
 
-from seatsim.diagnosis.deadline import Deadline
-from seatsim.diagnosis.problem import DiagnosisProblem, check_nominal, pose_problem
+from seatsim.diagnosis.problem import Deadline, DiagnosisProblem, check_nominal, pose_problem
 from seatsim.diagnosis.result import Diagnosis
 from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.diagnosis.solution import Method

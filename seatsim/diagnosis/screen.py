@@ -11,10 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.diagnosis.candidates import Candidate
-from seatsim.diagnosis.deadline import OutOfTimeError
 from seatsim.diagnosis.fit import solve_step
-from seatsim.diagnosis.objective import AT_ONCE, Evaluation, Linearisation, Objective
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.objective import AT_ONCE, Evaluation, Linearisation, Objective, Parameters
+from seatsim.diagnosis.problem import OutOfTimeError
 from seatsim.schema.arrays import Array
 
 

@@ -11,11 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.diagnosis.candidates import Candidate
-from seatsim.diagnosis.deadline import OutOfTimeError
-from seatsim.diagnosis.fit import fit
-from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, scale
-from seatsim.diagnosis.parameters import Parameters
-from seatsim.diagnosis.pattern_search import search_pattern
+from seatsim.diagnosis.fit import fit, search_pattern
+from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters, scale
+from seatsim.diagnosis.problem import OutOfTimeError
 from seatsim.diagnosis.screen import Sensitivities, measure_sensitivities, name_unstable, screen_candidates
 
 

@@ -10,10 +10,8 @@ import numpy as np
 
 from seatsim.diagnosis.candidates import list_candidates
 from seatsim.diagnosis.cross_validate import cross_validate, select_by_cross_validation
-from seatsim.diagnosis.deadline import OutOfTimeError
 from seatsim.diagnosis.decide import explain_after_all, shows_effect
 from seatsim.diagnosis.fit import refit
-from seatsim.diagnosis.input_noise import carry_force
 from seatsim.diagnosis.localise.discrepancy import describe_discrepancy
 from seatsim.diagnosis.localise.input_estimate import estimate_nonrepeatable_force
 from seatsim.diagnosis.localise.localisation import localise_remainder
@@ -25,14 +23,20 @@ from seatsim.diagnosis.localise.stochastic import (
     name_stochastic_effect,
 )
 from seatsim.diagnosis.movement import is_material, measure_gap_taken
-from seatsim.diagnosis.noise import measure_broadband, weigh_gap
-from seatsim.diagnosis.objective import Evaluation, Objective
-from seatsim.diagnosis.parameters import Parameters
-from seatsim.diagnosis.problem import DiagnosisProblem
+from seatsim.diagnosis.noise import carry_force, measure_broadband, weigh_gap
+from seatsim.diagnosis.objective import Evaluation, Objective, Parameters
+from seatsim.diagnosis.problem import DiagnosisProblem, OutOfTimeError
 from seatsim.diagnosis.result import Share
-from seatsim.diagnosis.revise import call_unknown, decide_beside_unknown
 from seatsim.diagnosis.select import Selection
-from seatsim.diagnosis.solution import Method, Progress, SearchTask, Solution, search
+from seatsim.diagnosis.solution import (
+    Method,
+    Progress,
+    SearchTask,
+    Solution,
+    call_unknown,
+    decide_beside_unknown,
+    search,
+)
 from seatsim.effects.base import EFFECTS
 from seatsim.schema.arrays import Array
 

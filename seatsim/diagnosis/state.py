@@ -8,31 +8,32 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from seatsim.diagnosis.alternatives import are_forms_due, compare_damper_forms, describe_forms, describe_obstacle
-from seatsim.diagnosis.augmented import write_augmented
+from seatsim.diagnosis.answer import write_answer, write_augmented
 from seatsim.diagnosis.decide import Decision
-from seatsim.diagnosis.design.collinearity import measure_collinearity
 from seatsim.diagnosis.design.experiment import propose_experiment
 from seatsim.diagnosis.design.isolability import describe_missing_sensors, find_isolable_groups
+from seatsim.diagnosis.design.separability import measure_collinearity
 from seatsim.diagnosis.error_budget import budget_errors
 from seatsim.diagnosis.estimates import compare_comfort, estimate_causes, trace_motion, trace_replayed, trace_run
-from seatsim.diagnosis.every_run import ReplayedRun, list_gaps, measure_gaps, replay_runs, state_model_error
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.localise.discrepancy import show_discrepancy
 from seatsim.diagnosis.localise.stochastic import add_strength
 from seatsim.diagnosis.movement import name_immaterial, share_removable
 from seatsim.diagnosis.nuisance import list_calibrated
-from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters
 from seatsim.diagnosis.result import Cause, DamperForm, Diagnosis, Evidence, Gaps, ProposedExperiment
-from seatsim.diagnosis.revise import call_unknown, decide_without, doubt_single
-from seatsim.diagnosis.sentences import write_answer
-from seatsim.diagnosis.solution import Solution
+from seatsim.diagnosis.solution import Solution, call_unknown, decide_without, doubt_single
 from seatsim.diagnosis.validate import (
+    ReplayedRun,
     choose_held_out_run,
     choose_typical_run,
+    list_gaps,
     make_scenario,
+    measure_gaps,
     refit_without,
+    replay_runs,
     shrink_by_run,
+    state_model_error,
 )
 from seatsim.recordings.quality.coverage import measure_coverage
 from seatsim.scenario.scenario import Scenario

@@ -14,12 +14,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.diagnosis.deadline import OutOfTimeError
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.nuisance import list_calibrated
-from seatsim.diagnosis.objective import Evaluation, Objective
-from seatsim.diagnosis.parameters import Parameters
-from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
+from seatsim.diagnosis.objective import Evaluation, Objective, Parameters
+from seatsim.diagnosis.problem import DiagnosisProblem, OutOfTimeError, normalise_rms_errors
 from seatsim.diagnosis.solution import Method, Progress, Solution
 from seatsim.diagnosis.solve import solve
 

@@ -1,16 +1,18 @@
-"""Candidate experiments that could be run next on a rig, cheapest first."""
+"""Candidate experiments that could be run next on a rig, cheapest first, and the best excitation among them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
+from scipy.optimize import minimize
 
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.excitations.base import EXCITATIONS as REGISTERED
 from seatsim.excitations.base import Floor
+from seatsim.schema.arrays import Array
 from seatsim.simulation.inputs import SeatInputs
 
 Keys = Mapping[str, str | float]
@@ -149,4 +151,34 @@ def _recorded_floor(problem: DiagnosisProblem) -> Floor:
     return Floor(
         1.0 / problem.rate, still, still, inputs.displacement, inputs.current_command, inputs.coil_current,
         inputs.damper_temperature,
+    )  # fmt: skip
+
+
+_FIRST_STEP = 0.6
+"""First step of the search in the natural logarithm of a key: a factor of 1.8."""
+_LARGEST_FACTOR = 2.4
+"""Largest factor on a key, either way: the sweep then ends below 50 Hz, which a step of 2 ms resolves."""
+
+
+def optimise_excitation(
+    problem: DiagnosisProblem, name: str, score: Callable[[CandidateExperiment], float], trials: int
+) -> None:
+    """Search the free keys of an excitation for the least score, by Nelder and Mead's simplex in their logarithms.
+
+    Args:
+        problem: the recording, whose coil bounds the current.
+        name: of the excitation in the menu.
+        score: called with every excitation that is tried; it keeps the best.
+        trials: most excitations that are tried, about four for each free key.
+    """
+    free = EXCITATIONS[name].free
+    largest = np.log(_LARGEST_FACTOR)
+
+    def score_at(logarithms: Array) -> float:
+        return score(excite(problem, name, dict(zip(free, np.exp(logarithms).tolist(), strict=True))))
+
+    corners = np.vstack([np.zeros(len(free)), _FIRST_STEP * np.eye(len(free))])
+    minimize(
+        score_at, corners[0], method="Nelder-Mead", bounds=[(-largest, largest)] * len(free),
+        options={"maxfev": trials, "initial_simplex": corners},
     )  # fmt: skip

@@ -14,14 +14,22 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from seatsim.diagnosis.augmented import write_augmented
-from seatsim.diagnosis.design.candidate_experiments import CandidateExperiment, list_candidate_experiments
-from seatsim.diagnosis.design.collinearity import fit_member, stack_jacobian, stack_whitened
-from seatsim.diagnosis.design.optimise import optimise_excitation
-from seatsim.diagnosis.design.projection import measure_likeness, project
-from seatsim.diagnosis.design.separability import PredictedExperiment, measure_separability
-from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.answer import write_augmented
+from seatsim.diagnosis.design.candidate_experiments import (
+    CandidateExperiment,
+    list_candidate_experiments,
+    optimise_excitation,
+)
+from seatsim.diagnosis.design.separability import (
+    PredictedExperiment,
+    fit_member,
+    measure_likeness,
+    measure_separability,
+    project,
+    stack_jacobian,
+    stack_whitened,
+)
+from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import Content, ProposedExperiment
 from seatsim.diagnosis.settings.examining import DesignSettings

@@ -8,8 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.diagnosis.noise import NoiseWeights
-from seatsim.diagnosis.objective import Objective
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.objective import Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.settings.examining import ReconstructionSettings
 from seatsim.diagnosis.spectra import Spectra, estimate_response, measure_power

@@ -12,15 +12,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from seatsim.diagnosis.decide import Decision
-from seatsim.diagnosis.input_noise import carry_force
 from seatsim.diagnosis.localise.discrepancy import Discrepancy, describe_discrepancy, is_bias_drift, is_from_outside
-from seatsim.diagnosis.localise.hypotheses import FaultHypothesis, evaluate_hypotheses
-from seatsim.diagnosis.localise.localisation import weigh_blocks
+from seatsim.diagnosis.localise.localisation import FaultHypothesis, evaluate_hypotheses, weigh_blocks
 from seatsim.diagnosis.localise.reconstruction import PORTS, reconstruct
 from seatsim.diagnosis.movement import measure_remainders
-from seatsim.diagnosis.noise import NoiseWeights
-from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.noise import NoiseWeights, carry_force
+from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import Cause, Estimate, Share
 from seatsim.diagnosis.select import Selection

@@ -13,8 +13,7 @@ from seatsim.dampers.bingham import Bingham
 from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.noise import weigh_uniformly
 from seatsim.diagnosis.nuisance import Nuisance
-from seatsim.diagnosis.objective import Objective
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.objective import Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.effects.base import EffectSpecification

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import decimate
 
-from seatsim.diagnosis.localise.regression import explain_signal, predict_share
+from seatsim.diagnosis.localise.discrepancy import explain_signal, predict_share
 from seatsim.diagnosis.settings.examining import LocalisationSettings
 
 from .toy import CHANNELS, RATE, SKIP, place, pose, record

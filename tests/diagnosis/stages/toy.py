@@ -13,8 +13,7 @@ from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.localise.reconstruction import PORTS, reconstruct
 from seatsim.diagnosis.noise import weigh_uniformly
 from seatsim.diagnosis.nuisance import Nuisance
-from seatsim.diagnosis.objective import Objective
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.objective import Objective, Parameters
 from seatsim.diagnosis.problem import pose_problem
 from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.effects.base import EffectSpecification
