@@ -26,10 +26,10 @@ import pandas as pd
 from cases import PROCESSES, Diagnoser, EncodedDiagnosis, show_progress, write_verdict
 from threadpoolctl import threadpool_limits
 
-from seatsim.blind.labels import Label
-from seatsim.blind.make.draw_case import CaseSpecification
+from seatsim.blind.make.compose import CaseSpecification
 from seatsim.blind.make.make import case_name, draw_files, make_case
 from seatsim.blind.score.verdicts import Verdict, is_right, read_verdict
+from seatsim.blind.sealed import Label
 from seatsim.diagnosis.candidates import list_candidates
 from seatsim.diagnosis.design.separability import fit_member
 from seatsim.diagnosis.diagnose import diagnose

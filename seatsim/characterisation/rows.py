@@ -9,7 +9,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from seatsim.characterisation.cycles import Cycle, average_loops, find_cycles, resample_loops, select_steady_cycles
+from seatsim.characterisation.response import Cycle, average_loops, find_cycles, resample_loops, select_steady_cycles
 from seatsim.metrics.motion import rms
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.schema.arrays import Array

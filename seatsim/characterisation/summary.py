@@ -6,8 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
-from seatsim.characterisation.cycles import find_cycles
-from seatsim.characterisation.response import Response
+from seatsim.characterisation.response import Response, find_cycles
 from seatsim.characterisation.rows import Row, summarise_aperiodic_record, summarise_record
 from seatsim.characterisation.steps import find_plateaus, measure_responses
 from seatsim.recordings.bench_tables import BenchRecord, load_bench, unused_columns

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Callable, Mapping
-from contextlib import closing
+from contextlib import AbstractContextManager, closing, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
@@ -14,10 +14,8 @@ from seatsim.schema.content import Form, Unwritten
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.leftovers import uncut
 from seatsim.sweeps.definition import SweepDefinition, read_definition
-from seatsim.sweeps.engines.base import Engine, Work
-from seatsim.sweeps.engines.local import LocalEngine
-from seatsim.sweeps.folder import check_resumable, count_states, hold_file, hold_folder, write_manifest
-from seatsim.sweeps.identity import identify_sweep
+from seatsim.sweeps.engines import Engine, LocalEngine, Work
+from seatsim.sweeps.folder import check_resumable, count_states, hold_file, hold_folder, identify_sweep, write_manifest
 from seatsim.sweeps.outcome import FAILED, Outcome
 from seatsim.sweeps.parts import (
     make_schema,
@@ -93,6 +91,28 @@ def prepare(path: Path, foresee: Callable[[int], None] = lambda runs: None) -> _
     definition = read_definition(path)
     plan = make_plan(definition, foresee)
     return _PreparedSweep(definition, plan, check_plan(plan))
+
+
+def open_engine(
+    name: str, jobs: int, address: str | None, keep_histories: bool = False
+) -> AbstractContextManager[Engine]:
+    """Return what opens the engine that is called `name`: so many runs at once, or on the scheduler at an address.
+
+    Raises:
+        InputError: the engine is not available here, or it takes no address, or keeps no histories.
+    """
+    if address is not None and name != "dask":
+        raise InputError(f"--address {address}: engine '{name}' takes none; add --engine dask")
+    if name == "cuda":
+        from seatsim.sweeps.device import CudaEngine, check_device
+
+        check_device(keep_histories)
+        return nullcontext(CudaEngine(jobs))
+    if name == "dask":
+        from seatsim.sweeps.cluster import open_cluster
+
+        return open_cluster(jobs, address)
+    return nullcontext(LocalEngine(jobs))
 
 
 def execute(

@@ -16,8 +16,8 @@ from seatsim.blind.carrier.readings import draw_delays, draw_limits, draw_sensor
 from seatsim.blind.carrier.recorded import Altered, Carrier, Change, encode_carrier, read_carrier
 from seatsim.blind.carrier.replays import MATERIAL_SHARE, Ruler
 from seatsim.blind.carrier.seat import draw_seat_changes
-from seatsim.blind.labels import Label
 from seatsim.blind.make.make import CaseFiles, make_set
+from seatsim.blind.sealed import Label
 from seatsim.schema.errors import InputError
 from seatsim.schema.processes import Progress
 

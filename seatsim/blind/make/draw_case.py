@@ -9,25 +9,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.random import Generator
 
-from seatsim.blind.labels import EFFECTS, Kind, Label
-from seatsim.blind.make.draw_experiment import SCATTER, draw_experiment
-from seatsim.blind.make.draw_varied import draw_varied_experiment
+from seatsim.blind.make.compose import CaseSpecification, find_severity
 from seatsim.blind.make.materiality import CommandedRuns, FaultlessRig, collinearity
-from seatsim.blind.make.severity import find_severity
+from seatsim.blind.sealed import EFFECTS, Label
 from seatsim.blind.truth.experiment import CHANNELS, Experiment, Readings, read_channels, simulate_run
 from seatsim.blind.truth.faults import Changes, Context, FaultScenario, Shape
 from seatsim.blind.truth.outside_faults import SCENARIOS, scenarios_of
 from seatsim.schema.errors import RunError
 
-_BINGHAM_SHARE = 0.5
-"""Of the rigs."""
-_COMPLETE_SHARE, _AT_MOST_ONE_MISSING = 0.6, 0.93
-"""Shares of the rigs that record every channel, and that lack at most one; the others lack two."""
-_OPTIONAL = {"damper_force": 0.7, "coil_current": 0.3}
-"""Channels that a rig may lack, and how likely each is the one: a load cell is what is saved first.
-
-A fade could not be found without thermometer, so that no rig lacks it, whatever is wrong with it.
-"""
 _ATTEMPTS = 8
 """Attempts with the same faults before others take their place: on some rigs an effect such as play is hardly seen."""
 _EXCHANGES = 20
@@ -42,40 +31,6 @@ _RAISE = 1.15
 """How much further than to the limit a fault is raised."""
 WEAKEST = 0.4
 """Materiality below which a fault is raised no faster, as response and severity are not proportional that far."""
-
-
-def draw_missing_channels(rng: Generator) -> tuple[str, ...]:
-    """Draw the channels that are not recorded: none in 60 % of cases, rarely two."""
-    u = rng.random()
-    if u < _COMPLETE_SHARE:
-        return ()
-    count = 1 if u < _AT_MOST_ONE_MISSING else 2
-    return tuple(str(name) for name in rng.choice(list(_OPTIONAL), count, replace=False, p=list(_OPTIONAL.values())))
-
-
-@dataclass(frozen=True)
-class CaseSpecification:
-    """Specification of a case: its kind, and its effects (or the scenarios outside the library).
-
-    `missing` are the channels not recorded (None: drawn), `background` is a random force on the frame, N rms, and
-    `scatter` the largest relative error of a nominal parameter. `varied`: the rig is drawn too, and these two with it.
-    """
-
-    kind: Kind
-    names: tuple[str, ...] = ()
-    missing: tuple[str, ...] | None = None
-    background: float = 0.0
-    scatter: float = SCATTER
-    varied: bool = False
-
-    def draw_rig(self, rng: Generator) -> Experiment:
-        """Draw a rig and its protocol; neither kind nor names are used, so that nothing of it tells what is wrong."""
-        gone = draw_missing_channels(rng) if self.missing is None else self.missing
-        channels = tuple(name for name in CHANNELS if name not in gone)
-        bingham = rng.random() < _BINGHAM_SHARE
-        if self.varied:
-            return draw_varied_experiment(rng, bingham, channels)
-        return draw_experiment(rng, bingham, channels, self.scatter, self.background)
 
 
 @dataclass(frozen=True)

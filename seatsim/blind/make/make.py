@@ -17,11 +17,10 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.random import Generator
 
-from seatsim.blind.labels import Label
-from seatsim.blind.make.compose import compose
-from seatsim.blind.make.draw_case import CaseSpecification, draw_case
+from seatsim.blind.make.compose import CaseSpecification, compose
+from seatsim.blind.make.draw_case import draw_case
 from seatsim.blind.make.folder import encode_recording, write_folder
-from seatsim.blind.sealed import SEAL, Sealed, new_key, seal
+from seatsim.blind.sealed import SEAL, Label, Sealed, new_key, seal
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import make_folder, write_bytes, write_text
 from seatsim.schema.processes import Progress, run_jobs

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.blind.labels import Label
 from seatsim.blind.score.verdicts import Verdict, is_right
+from seatsim.blind.sealed import Label
 from seatsim.schema.content import written
 
 BINS = 10
@@ -200,21 +200,6 @@ def _true_name(label: Label) -> str:
 def describe_failure(case: ScoredCase) -> Failure:
     """Return what is true of a case whose verdict is wrong, and what was said."""
     label, verdict = case.label, case.verdict
-    return Failure(
-        case=case.name,
-        kind=label["kind"],
-        effects=label["effects"],
-        forms=label.get("forms", []),
-        materialities=label.get("materialities", []),
-        missing=label.get("missing", []),
-        verdict=verdict.verdict,
-        named=list(verdict.causes[:NAMED]),
-        selected=list(verdict.selected),
-        groups=[list(group) for group in verdict.groups],
-        where=list(verdict.blocks[:2]),
-    )
-
-
-def pair(labels: Mapping[str, Label], verdicts: Mapping[str, Verdict]) -> list[ScoredCase]:
-    """Return labels and verdicts of the same names side by side."""
-    return [ScoredCase(name, label, verdicts[name]) for name, label in labels.items()]
+    known = label.get("forms", []), label.get("materialities", []), label.get("missing", [])
+    said = list(verdict.causes[:NAMED]), list(verdict.selected), [list(group) for group in verdict.groups]
+    return Failure(case.name, label["kind"], label["effects"], *known, verdict.verdict, *said, list(verdict.blocks[:2]))

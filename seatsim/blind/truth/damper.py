@@ -10,15 +10,14 @@ from __future__ import annotations
 import math
 
 from seatsim.blind.truth import state
-from seatsim.blind.truth.fluid import (
+from seatsim.blind.truth.coil import (
     viscous_factor,
     write_heat_rates,
     write_magnetisation_rate,
     yield_current,
     yield_factor,
 )
-from seatsim.blind.truth.parameters import RigParameters
-from seatsim.blind.truth.state import FASTEST, MICRO_DAMPING, bristle_rate, compiled
+from seatsim.blind.truth.state import FASTEST, MICRO_DAMPING, RigParameters, bristle_rate, compiled
 from seatsim.schema.arrays import Array
 
 _LEAST_GAS_COLUMN = 0.2

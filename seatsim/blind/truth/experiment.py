@@ -11,7 +11,6 @@ from scipy.signal import bilinear, lfilter, lfilter_zi
 
 from seatsim.blind.truth.excitation import NoiseColour, coloured_noise, frame_force
 from seatsim.blind.truth.faults import NEIGHBOUR, Changes, FrameForce, SensorFault
-from seatsim.blind.truth.parameters import parameter_record
 from seatsim.blind.truth.rig import (
     EXCITATION_RATE,
     INTEGRATION_STEP,
@@ -20,6 +19,7 @@ from seatsim.blind.truth.rig import (
     RigMotion,
     simulate,
 )
+from seatsim.blind.truth.state import parameter_record
 from seatsim.schema.arrays import Array
 
 Readings = dict[str, Array]

@@ -12,7 +12,7 @@ from typing import Literal
 
 from numpy.random import Generator
 
-from seatsim.blind.labels import EFFECTS, Block
+from seatsim.blind.sealed import BLOCKS, EFFECTS, Block
 
 Shape = dict[str, float]
 """The drawn choices of a scenario (lengths, time constants, signs, seeds), without its severity."""
@@ -132,24 +132,37 @@ class FaultScenario:
         return self.effect not in EFFECTS
 
 
-def _draw_nothing(rng: Generator, _: Context) -> Shape:
-    """Return an empty shape, for scenarios that have a severity alone."""
-    return {}
+def drawn(**ranges: tuple[float, float] | list[float]) -> Draw:
+    """Return what draws a shape: by name and in order, a number between two ends or one of a list."""
+
+    def draw(rng: Generator, _: Context) -> Shape:
+        return {
+            name: float(rng.choice(ends)) if isinstance(ends, list) else rng.uniform(*ends)
+            for name, ends in ranges.items()
+        }
+
+    return draw
 
 
 def enter(
     scenarios: dict[str, FaultScenario],
     name: str,
     effect: str,
-    block: Block,
     span: tuple[float, float],
-    draw: Draw = _draw_nothing,
+    draw: Draw = drawn(),  # noqa: B008 - it returns a function without state
+    *,
     bingham: bool = False,
 ) -> Callable[[Build], Build]:
-    """Return what enters a function as the `build` of a scenario; their order is part of what a seed means."""
+    """Return what enters a function as the `build` of a scenario; their order is part of what a seed means.
+
+    `effect` is one of the library, or `BLOCK.outside`.
+    """
 
     def enter_build(build: Build) -> Build:
-        scenarios[name] = FaultScenario(name, effect, block, span, draw, build, bingham)
+        block, _, kind = effect.partition(".")
+        known = next(each for each in BLOCKS if each == block)
+        named = kind if kind == "outside" else effect
+        scenarios[name] = FaultScenario(name, named, known, span, draw, build, bingham)
         return build
 
     return enter_build

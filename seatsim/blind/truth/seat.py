@@ -9,8 +9,7 @@ from __future__ import annotations
 import math
 
 from seatsim.blind.truth import state
-from seatsim.blind.truth.parameters import RigParameters
-from seatsim.blind.truth.state import FASTEST, MICRO_DAMPING, bristle_rate, compiled
+from seatsim.blind.truth.state import FASTEST, MICRO_DAMPING, RigParameters, bristle_rate, compiled
 from seatsim.schema.arrays import Array
 
 DEEPEST = 6.0

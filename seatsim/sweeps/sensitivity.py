@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.schema.arrays import Array
-from seatsim.sweeps.statistics.chaos import (
+from seatsim.sweeps.chaos import (
     DEGREES,
     RUNS_PER_TERM,
     Basis,
@@ -27,7 +27,7 @@ from seatsim.sweeps.statistics.chaos import (
     make_key_basis,
     predict_left_out,
 )
-from seatsim.sweeps.statistics.rows import SweepRows, is_number
+from seatsim.sweeps.rows import SweepRows, is_number
 
 if TYPE_CHECKING:
     import pandas as pd

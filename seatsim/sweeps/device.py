@@ -18,8 +18,7 @@ from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError, RunError, SeatsimError
 from seatsim.simulation.runs import measure_run
 from seatsim.simulation.validity import list_reasons
-from seatsim.sweeps.engines.base import Work
-from seatsim.sweeps.engines.local import LocalEngine
+from seatsim.sweeps.engines import LocalEngine, Work
 from seatsim.sweeps.outcome import Outcome, floor_of, outcome_of
 from seatsim.sweeps.plan import Plan
 

@@ -1,6 +1,7 @@
-"""Engine `local`: a thread of this process and, where they pay, further processes of this machine.
+"""Engines of a sweep: what an engine is given and returns, and the engine `local`.
 
-Most of a short run is Python between compiled calls. Threads of one process take turns with it, processes do not.
+It is a thread of this process and, where they pay, further processes of this machine. Most of a short run is Python
+between compiled calls. Threads of one process take turns with it, processes do not.
 """
 
 from __future__ import annotations
@@ -13,14 +14,42 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
 from dataclasses import replace
 from functools import partial
-from typing import Any, NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple, Protocol
 
 from threadpoolctl import threadpool_limits
 
 from seatsim.schema.errors import RunError
 from seatsim.schema.processes import open_pool
-from seatsim.sweeps.engines.base import Work, simulate_one
-from seatsim.sweeps.outcome import Outcome
+from seatsim.sweeps.outcome import Outcome, simulate_run
+from seatsim.sweeps.plan import Plan
+
+
+class Work(NamedTuple):
+    """The runs of a sweep that are to be simulated: tasks of run numbers, each from one part of the sweep.
+
+    `histories` is a folder in which channels are kept, or None.
+    """
+
+    plan: Plan
+    tasks: Sequence[Sequence[int]]
+    histories: Path | None
+
+
+class Engine(Protocol):
+    """Carries out work; one that takes lanes of one combination of models regroups the runs of several tasks."""
+
+    def __call__(self, work: Work) -> Generator[list[Outcome]]:
+        """Yield outcomes as they come, in any order and in lists of any length; each run of the work has one.
+
+        Where the iterator is closed, as on an interrupt, nothing of it keeps the process from ending.
+        """
+
+
+def simulate_one(plan: Plan, run: int, number: int, histories: Path | None) -> Outcome:
+    """Simulate run `run` of a plan, which has this `number` in the sweep."""
+    return simulate_run(number, lambda: plan.scenario(run), histories)
+
 
 BATCH, _LONGEST_BATCH = 20, 0.2
 """Most runs that a process is given at once, and seconds that they may take: so much is lost where it is killed."""
