@@ -80,9 +80,9 @@ class Label(TypedDict, total=False):
     """What the case was ordered to be, see `make.compose.CaseSpecification`."""
 
 
-LARGEST = 2**30
+_LARGEST = 2**30
 """Bytes of a sealed file."""
-LABELS = "labels.json"
+_LABELS = "labels.json"
 """Name of the labels inside the sealed file."""
 SEAL = "seal.txt"
 """Name of the hash beside the recordings."""
@@ -121,7 +121,7 @@ def seal(path: Path, folder: Path, key: str, content: Sealed) -> str:
     """
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as archive:
-        archive.writestr(LABELS, json.dumps({"made": content.made, "cases": content.labels}))
+        archive.writestr(_LABELS, json.dumps({"made": content.made, "cases": content.labels}))
         for case, files in content.unseen.items():
             for name, data in files.items():
                 archive.writestr(f"unseen/{case}/{name}", data)
@@ -138,7 +138,7 @@ def unseal(path: Path, key: str, folder: Path | None = None) -> Sealed:
     Raises:
         InputError: the file cannot be read, is not the one sealed for the folder, or the key does not open it.
     """
-    token = read_bytes(path, LARGEST, "a sealed file")
+    token = read_bytes(path, _LARGEST, "a sealed file")
     if folder is not None:
         _check_hash(path, token, folder)
     try:
@@ -147,7 +147,7 @@ def unseal(path: Path, key: str, folder: Path | None = None) -> Sealed:
         raise InputError(f"{path}: the key does not open it; give the key that `blind make` printed") from error
     with zipfile.ZipFile(io.BytesIO(packed)) as archive:
         # what opens was encrypted by `seal`, so its form need not be checked
-        head = json.loads(archive.read(LABELS))
+        head = json.loads(archive.read(_LABELS))
         unseen: dict[str, dict[str, bytes]] = {}
         for entry in archive.namelist():
             if entry.startswith("unseen/"):
@@ -162,6 +162,6 @@ def _check_hash(path: Path, token: bytes, folder: Path) -> None:
     note = folder / SEAL
     if not note.is_file():
         raise InputError(f"{note}: not there; {folder} is not a folder that `blind make` finished")
-    words = read_bytes(note, LARGEST, "a seal").decode(errors="replace").split()  # "sha256 HASH  NAME"
+    words = read_bytes(note, _LARGEST, "a seal").decode(errors="replace").split()  # "sha256 HASH  NAME"
     if len(words) < 2 or words[1] != hashlib.sha256(token).hexdigest():
         raise InputError(f"{path}: is not the file sealed for {folder} (its SHA-256 differs from {SEAL})")

@@ -14,15 +14,15 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.content import Form, Unwritten
 from seatsim.simulation.damper_bench import SineTest
 
-BAND = 0.2
+_BAND = 0.2
 """Half the width, over the amplitude, of the band about mid-stroke that a passage has to cross from side to side."""
-ALIKE = 0.03
+_ALIKE = 0.03
 """Largest difference of a steady cycle's amplitude and period from their median, relative."""
-CENTRED = 0.05
+_CENTRED = 0.05
 """Largest distance of the middle of a steady cycle from the median of the middles, over the amplitude."""
-LEAST_STEADY = 3
+_LEAST_STEADY = 3
 """Steady cycles that make a record cyclic; two where there are no others."""
-SAMPLES = (64, 2000)
+_SAMPLES = (64, 2000)
 """Least and most samples of a resampled cycle."""
 
 
@@ -55,7 +55,7 @@ def find_cycles(displacement: Array) -> list[Cycle]:
     centre, amplitude = 0.5 * (low + high), 0.5 * (high - low)
     if amplitude <= 0.0:
         return []
-    side = (displacement > centre + BAND * amplitude).astype(int) - (displacement < centre - BAND * amplitude)
+    side = (displacement > centre + _BAND * amplitude).astype(int) - (displacement < centre - _BAND * amplitude)
     outside = np.flatnonzero(side)
     upward = np.flatnonzero((side[outside][:-1] < 0) & (side[outside][1:] > 0))
     instants = [_passage(displacement, outside[k], outside[k + 1], centre) for k in upward]
@@ -84,17 +84,17 @@ def select_steady_cycles(cycles: Sequence[Cycle]) -> list[Cycle]:
         return []
     table = np.array([(cycle.amplitude, cycle.length, cycle.middle) for cycle in cycles])
     amplitude, length, middle = np.median(table, axis=0)
-    alike = np.abs(table[:, 0] - amplitude) <= ALIKE * amplitude
-    alike &= np.abs(table[:, 1] - length) <= ALIKE * length
-    alike &= np.abs(table[:, 2] - middle) <= CENTRED * amplitude
+    alike = np.abs(table[:, 0] - amplitude) <= _ALIKE * amplitude
+    alike &= np.abs(table[:, 1] - length) <= _ALIKE * length
+    alike &= np.abs(table[:, 2] - middle) <= _CENTRED * amplitude
     steady = [cycle for cycle, kept in zip(cycles, alike, strict=True) if kept]
-    enough = len(steady) >= min(LEAST_STEADY, max(2, len(cycles)))
+    enough = len(steady) >= min(_LEAST_STEADY, max(2, len(cycles)))
     return steady if enough and 2 * len(steady) >= len(cycles) else []
 
 
 def resample_loops(record: BenchRecord, cycles: Sequence[Cycle]) -> list[SineTest]:
     """Return cycles of a record as loops of equally many samples, both ends included, by linear interpolation."""
-    least, most = SAMPLES
+    least, most = _SAMPLES
     length = float(np.median([cycle.length for cycle in cycles]))
     samples = min(most, max(least, 2 * round(0.5 * length)))
     rows = np.arange(len(record.force))
@@ -114,16 +114,16 @@ def average_loops(loops: Sequence[SineTest]) -> SineTest:
 
 SHARES = (0.05, 0.90, 0.95)
 """Shares of the change whose instants are stated."""
-RESAMPLES = 200
+_RESAMPLES = 200
 """Draws of the steps from which the deviation of t95 is taken: it is then known to some 5 %."""
-SETTLED_BY = 0.1
+_SETTLED_BY = 0.1
 """Largest difference of the curve's last but one fifth from 1, for a response that has settled."""
 
 
-Seconds = Annotated[float, Form(unit="s")]
-Amperes = Annotated[float, Form(unit="A")]
-Rate = Annotated[float, Form(unit="per_s")]
-Speed = Annotated[float, Form(unit="m_s")]
+_Seconds = Annotated[float, Form(unit="s")]
+_Amperes = Annotated[float, Form(unit="A")]
+_Rate = Annotated[float, Form(unit="per_s")]
+_Speed = Annotated[float, Form(unit="m_s")]
 
 
 class Response(NamedTuple):
@@ -140,21 +140,21 @@ class Response(NamedTuple):
     """
 
     record: str
-    before: Amperes
-    after: Amperes
+    before: _Amperes
+    after: _Amperes
     steps: int
     method: str
     note: str = ""
-    t5: Seconds = math.nan
-    t90: Seconds = math.nan
-    t95: Seconds = math.nan
-    t95_sd: Seconds = math.nan
-    rate_90: Rate = math.nan
-    rate_95: Rate = math.nan
-    rate: Rate = math.nan
-    delay: Seconds = math.nan
-    current_t95: Seconds = math.nan
-    speed: Speed = math.nan
+    t5: _Seconds = math.nan
+    t90: _Seconds = math.nan
+    t95: _Seconds = math.nan
+    t95_sd: _Seconds = math.nan
+    rate_90: _Rate = math.nan
+    rate_95: _Rate = math.nan
+    rate: _Rate = math.nan
+    delay: _Seconds = math.nan
+    current_t95: _Seconds = math.nan
+    speed: _Speed = math.nan
     time: Unwritten[Array | None] = None
     share: Unwritten[Array | None] = None
 
@@ -191,7 +191,7 @@ def estimate_response(ensemble: StepEnsemble, blank: Response, window: int = 1) 
     top, bottom = (ensemble.force - ensemble.off) * wanted, wanted * wanted
     time = (np.arange(top.shape[1]) - ensemble.before_rows) / ensemble.rate + float(np.mean(ensemble.instants))
     share, end = _curve(top.sum(axis=0), bottom.sum(axis=0), time, window)
-    if not abs(end - 1.0) <= SETTLED_BY:
+    if not abs(end - 1.0) <= _SETTLED_BY:
         return blank._replace(method="", note=f"the force has not settled within {1e3 * time[-1]:.0f} ms of a step")
     t5, t90, t95 = (find_crossing(time, share, level) for level in SHARES)
     rate = math.log(19.0) / (t95 - t5) if t95 > t5 else math.nan
@@ -231,7 +231,7 @@ def _deviation(top: Array, bottom: Array, time: Array, window: int) -> float:
     steps = len(top)
     if steps < 3:
         return math.nan
-    draws = np.random.default_rng(0).integers(0, steps, (RESAMPLES, steps))
+    draws = np.random.default_rng(0).integers(0, steps, (_RESAMPLES, steps))
     counts = np.stack([np.bincount(draw, minlength=steps) for draw in draws]).astype(float)
     curves = (_curve(a, b, time, window)[0] for a, b in zip(counts @ top, counts @ bottom, strict=True))
     times = [find_crossing(time, curve, SHARES[-1]) for curve in curves]

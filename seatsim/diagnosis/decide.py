@@ -27,7 +27,7 @@ from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.settings.judging import DecisionSettings
 
-SENSORS = "sensor."
+_SENSORS = "sensor."
 """How the names of effects begin by which a sensor errs."""
 
 
@@ -40,7 +40,7 @@ class Evidence(NamedTuple):
 
     def weigh(self, names: frozenset[str], left: float) -> float:
         """Return the logarithm of the weight of a set of effects that leaves a mean square."""
-        priors = [self.prior_of_sensor if name.startswith(SENSORS) else self.prior for name in names]
+        priors = [self.prior_of_sensor if name.startswith(_SENSORS) else self.prior for name in names]
         return sum(math.log(prior) for prior in priors) - self.power * math.log(left)
 
 

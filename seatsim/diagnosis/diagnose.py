@@ -30,10 +30,14 @@ _CUT = "the budget of {budget:g} s was spent, so that the answer is the best so 
 
 
 def diagnose(
-    recording: str | Path | Recording, without: Sequence[str] = (), progress: Callable[[str], object] = lambda _: None,
-    settings: DiagnosisSettings | None = None, budget: float = BUDGET, damper_forms: bool = False,
+    recording: str | Path | Recording,
+    without: Sequence[str] = (),
+    progress: Callable[[str], object] = lambda _: None,
+    settings: DiagnosisSettings | None = None,
+    budget: float = BUDGET,
+    damper_forms: bool = False,
     after: str | Path | Recording | None = None,
-) -> Diagnosis:  # fmt: skip
+) -> Diagnosis:
     """Say where the gap between a recording and its nominal scenario lies, what causes it, and how far it shrinks.
 
     Args:
@@ -76,10 +80,14 @@ def _load(recording: str | Path | Recording) -> Recording:
 
 
 def diagnose_problem(
-    problem: DiagnosisProblem, notes: Sequence[str] = (), without: Sequence[str] = (),
-    progress: Callable[[str], object] = lambda _: None, method: Method | None = None, budget: float = math.inf,
+    problem: DiagnosisProblem,
+    notes: Sequence[str] = (),
+    without: Sequence[str] = (),
+    progress: Callable[[str], object] = lambda _: None,
+    method: Method | None = None,
+    budget: float = math.inf,
     damper_forms: bool = False,
-) -> Diagnosis:  # fmt: skip
+) -> Diagnosis:
     """Return the diagnosis of a problem; `notes` are sentences on the quality of its data, `budget` is as above.
 
     Simulations of several runs and rigs run in parallel, so linear algebra libraries are limited to one thread.

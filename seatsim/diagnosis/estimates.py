@@ -36,7 +36,7 @@ from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
 from seatsim.schema.fields import describe
 
-QUOTED = ("driver_acceleration", "frame_acceleration", "suspension_displacement")
+_QUOTED = ("driver_acceleration", "frame_acceleration", "suspension_displacement")
 """Channels whose RMS the report states."""
 _STATED_DIGITS = 2
 """Significant digits to which a probability is known."""
@@ -45,9 +45,14 @@ _SMOOTHED_ROWS = 5
 
 
 def estimate_causes(
-    objective: Objective, selection: Selection, decision: Decision, calibrated: Evaluation, augmented: Evaluation,
-    nominal: Scenario, run: str,
-) -> list[Cause]:  # fmt: skip
+    objective: Objective,
+    selection: Selection,
+    decision: Decision,
+    calibrated: Evaluation,
+    augmented: Evaluation,
+    nominal: Scenario,
+    run: str,
+) -> list[Cause]:
     """Return every effect, ranked by probability, with its own shrink on a held-out run and its parameters.
 
     Args:
@@ -149,11 +154,13 @@ def trace_motion(problem: DiagnosisProblem, run: str) -> dict[str, Array]:
 
 
 def compare_comfort(traces: Sequence[Trace]) -> list[ComfortFigure]:
-    """Return the RMS of the channels in `QUOTED`: measured, of the nominal and of the augmented rig."""
+    """Return the RMS of the channels in `_QUOTED`: measured, of the nominal and of the augmented rig."""
     return [
         ComfortFigure("RMS " + name.replace("_", " "), t.unit, rms(t.measured), rms(t.nominal), rms(t.after))
-        for name in QUOTED for t in traces if t.channel == name
-    ]  # fmt: skip
+        for name in _QUOTED
+        for t in traces
+        if t.channel == name
+    ]
 
 
 def estimate_standard_deviations(objective: Objective, evaluation: Evaluation, nuisances: Linearisation) -> Array:

@@ -91,7 +91,7 @@ def solve_step(
     return minimise_bounded(scaled, right / size, *room) / size
 
 
-DECIMALS = 9
+_DECIMALS = 9
 """Decimals, in natural sizes of the parameters, to which two points have to agree to be the same."""
 
 
@@ -124,7 +124,7 @@ def search_pattern(objective: Objective, start: Evaluation) -> Evaluation:
 
 def _locate(parameters: Parameters) -> bytes:
     """Return the key of a point: its vector without the rounding errors of the way that led there."""
-    return (np.round(parameters.vector, DECIMALS) + 0.0).tobytes()
+    return (np.round(parameters.vector, _DECIMALS) + 0.0).tobytes()
 
 
 def list_directions(count: int) -> Array:
@@ -133,7 +133,7 @@ def list_directions(count: int) -> Array:
     return np.array([step for step in steps if np.count_nonzero(step) in (1, 2)])
 
 
-PATIENCE = 3
+_PATIENCE = 3
 """Exchanges of whole blocks without fewer components out of place, after which one component at a time is exchanged."""
 _ALLOWANCE = 1e-12
 """Violations of a bound and gradients below this, in units of the largest right-hand side, are rounding errors."""
@@ -156,7 +156,7 @@ def minimise_bounded(matrix: Array, right: Array, low: Array, high: Array) -> Ar
     linear complementarity problems", Computers & Operations Research 21 (1994) 587-596 (recalled).
     """
     side = np.zeros(len(right), dtype=np.int8)
-    fewest, patience = len(right) + 1, PATIENCE
+    fewest, patience = len(right) + 1, _PATIENCE
     allowed = _ALLOWANCE * max(1.0, float(np.abs(right).max(initial=0.0)))
     while True:
         x = np.where(side < 0, low, np.where(side > 0, high, 0.0))
@@ -169,7 +169,7 @@ def minimise_bounded(matrix: Array, right: Array, low: Array, high: Array) -> Ar
         if not len(misplaced):
             return np.clip(x, low, high)
         if len(misplaced) < fewest:
-            fewest, patience = len(misplaced), PATIENCE
+            fewest, patience = len(misplaced), _PATIENCE
         else:
             patience -= 1
         changed = misplaced if patience >= 0 else misplaced[-1:]

@@ -195,9 +195,10 @@ def pose_problem(recording: Recording, pool: Executor, settings: DiagnosisSettin
     tables = {run: recording.table(run) for run in recording.runs}
     names = [name for name in COMPARED[recording.header.rig] if name in recording.channels]
     loud = [
-        name for name in names
+        name
+        for name in names
         if stands_out(np.concatenate([table[name] for table in tables.values()]), recording.channels[name].noise_rms)
-    ]  # fmt: skip
+    ]
     if not loud:
         raise InputError(f"{recording.folder}: no recorded output stands above its noise; there is nothing to diagnose")
     skip = round(LEFT_OUT * recording.header.sample_rate)

@@ -70,9 +70,12 @@ def call_unknown(settings: DecisionSettings, decision: Decision) -> Decision:
 
 
 def decide_beside_unknown(
-    settings: DecisionSettings, decision: Decision, chosen: Evaluation, equivalent: Sequence[Evaluation] = (),
+    settings: DecisionSettings,
+    decision: Decision,
+    chosen: Evaluation,
+    equivalent: Sequence[Evaluation] = (),
     tried: Sequence[tuple[Evaluation, float]] = (),
-) -> Decision:  # fmt: skip
+) -> Decision:
     """Return the decision `unknown` with another set of effects stated beside the unknown cause.
 
     Args:

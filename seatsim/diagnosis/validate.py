@@ -157,10 +157,15 @@ def _bootstrap_shrink(
     settings = problem.settings.validation
     length = max(1, round(settings.block_length * problem.rate))
     count = max(1, len(next(iter(measured.values()))) // length)
-    powers = np.array([
-        [_block_powers((values - outputs[name]) / np.std(values), count, length) for name, values in measured.items()]
-        for outputs in (simulated[0], simulated[-1])
-    ])  # fmt: skip
+    powers = np.array(
+        [
+            [
+                _block_powers((values - outputs[name]) / np.std(values), count, length)
+                for name, values in measured.items()
+            ]
+            for outputs in (simulated[0], simulated[-1])
+        ]
+    )
     # The same draws for every recording: equal input gives equal output.
     rng = np.random.default_rng(0)
     drawn = powers[:, :, rng.integers(0, count, (settings.draws, count))].mean(axis=(1, 3))

@@ -21,11 +21,14 @@ from seatsim.diagnosis.problem import DiagnosisProblem, OutOfTimeError, normalis
 from seatsim.diagnosis.solution import Method, Progress, Solution
 from seatsim.diagnosis.solve import solve
 
-Search = Callable[[], Solution]
+_Search = Callable[[], Solution]
 _THEIRS = {
-    "plant.driver_mass": "driver.mass", "actuator.rate": "coil.lag", "actuator.max_current": "coil.current_limit",
-    "damper.parameters.f0": "damper.gas_spring", "damper.parameters.k0": "damper.gas_spring",
-}  # fmt: skip
+    "plant.driver_mass": "driver.mass",
+    "actuator.rate": "coil.lag",
+    "actuator.max_current": "coil.current_limit",
+    "damper.parameters.f0": "damper.gas_spring",
+    "damper.parameters.k0": "damper.gas_spring",
+}
 """Parameters that an effect continues beyond their tolerance, so that they end at a bound where it is at work."""
 
 
@@ -77,7 +80,7 @@ def search_wider(
     return second or first, notes
 
 
-def _leave_less(wider: _Wider, search: Search, held: int) -> tuple[Solution | None, str]:
+def _leave_less(wider: _Wider, search: _Search, held: int) -> tuple[Solution | None, str]:
     """Return the second solution where it leaves clearly less than the first, with words on what it leaves."""
     settings, second = wider.judge.settings.widening, None
     left = _share_left(wider, refit(wider.judge, wider.start))
@@ -88,7 +91,7 @@ def _leave_less(wider: _Wider, search: Search, held: int) -> tuple[Solution | No
     return (second, said) if left <= settings.clearly_less else (None, f"{said}, which is not clearly less")
 
 
-def _need_fewer(wider: _Wider, search: Search, held: int) -> tuple[Solution | None, str]:
+def _need_fewer(wider: _Wider, search: _Search, held: int) -> tuple[Solution | None, str]:
     """Return the second solution where fewer effects leave nothing to explain, with words on that."""
     terms, little = wider.start.terms, wider.judge.settings.selection.nothing_left
     if len(terms) < 2 or held < wider.judge.settings.widening.strained:
@@ -110,8 +113,9 @@ def find_at_bound(problem: DiagnosisProblem, parameters: Parameters) -> dict[int
     listed = list_calibrated(problem.parameters, parameters.deviations, problem.settings.widening.at_bound)
     return {
         k: f"{each.name} {each.nominal:.4g} (fitted {each.value:.4g})"
-        for k, each in enumerate(listed) if each.at_bound and _THEIRS.get(each.name) not in parameters.names
-    }  # fmt: skip
+        for k, each in enumerate(listed)
+        if each.at_bound and _THEIRS.get(each.name) not in parameters.names
+    }
 
 
 def _widen(objective: Objective, parameters: Parameters, held: Sequence[int]) -> tuple[Parameters, Objective]:

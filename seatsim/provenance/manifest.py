@@ -33,8 +33,8 @@ from seatsim.schema.files import write_json, write_together
 from seatsim.schema.modules import used_files
 
 CRATE = "ro-crate-metadata.json"
-TEMPLATE = Path(__file__).with_name("crate.json")
-FORMATS = {
+_TEMPLATE = Path(__file__).with_name("crate.json")
+_FORMATS = {
     ".json": "application/json",
     ".csv": "text/csv",
     ".html": "text/html",
@@ -45,9 +45,9 @@ FORMATS = {
 }
 
 
-def describe_crate(manifest: Manifest) -> Mapping[str, object]:
+def _describe_crate(manifest: Manifest) -> Mapping[str, object]:
     """Return the research object crate that says what a manifest says."""
-    crate = json.loads(TEMPLATE.read_text(encoding="utf-8"))
+    crate = json.loads(_TEMPLATE.read_text(encoding="utf-8"))
     entities = {each["@id"]: each for each in crate["@graph"]}
     inputs, outputs = _describe_inputs(manifest), _describe_outputs(manifest)
     day, name, version = _state_day(), f"seatsim {manifest.command}", manifest.versions["seatsim"]
@@ -85,7 +85,7 @@ def _describe_outputs(manifest: Manifest) -> list[dict[str, str]]:
             "@id": quote(each.path),
             "@type": "File",
             "name": each.path,
-            "encodingFormat": FORMATS.get(PurePosixPath(each.path).suffix, "application/octet-stream"),
+            "encodingFormat": _FORMATS.get(PurePosixPath(each.path).suffix, "application/octet-stream"),
             "contentSize": str(each.bytes),
             "sha256": each.sha256,
         }
@@ -127,7 +127,7 @@ def write_documented(
             return paths
         outputs = {path.relative_to(part).as_posix(): path for path in paths}
         manifest = describe(invocation, folder, outputs, list_versions(), seed, measured or {})
-        return [*paths, write_json(part / MANIFEST, manifest), write_json(part / CRATE, describe_crate(manifest))]
+        return [*paths, write_json(part / MANIFEST, manifest), write_json(part / CRATE, _describe_crate(manifest))]
 
     return write_together(folder, write_all)
 

@@ -32,7 +32,7 @@ from seatsim.schema.errors import InputError, RunError, nearest
 from seatsim.schema.guarded import expect, is_there, read_bytes
 from seatsim.schema.leftovers import temporary_folder
 
-LARGEST = 2**32
+_LARGEST = 2**32
 """Bytes of an input or an output."""
 
 
@@ -55,7 +55,7 @@ def compare_outputs(manifest: Manifest, folder: Path, found: Manifest, again: Pa
         if not (folder / name).is_file():
             yield Difference(name, "is not there any more")
             continue
-        content = read_bytes(folder / name, LARGEST, "a file that seatsim wrote")
+        content = read_bytes(folder / name, _LARGEST, "a file that seatsim wrote")
         if state_file(name, content).sha256 != each.sha256:
             yield Difference(name, "was changed after it was written")
         if name not in made:
@@ -185,7 +185,7 @@ def _resolve(name: str, folder: Path) -> Path:
 def _compare_inputs(manifest: Manifest, folder: Path) -> Iterator[Difference]:
     for each in manifest.inputs:
         path = _resolve(each.path, folder)
-        content = read_bytes(path, LARGEST, f"the input {each.path}")
+        content = read_bytes(path, _LARGEST, f"the input {each.path}")
         if state_file(each.path, content).sha256 != each.sha256:
             yield Difference(each.path, "this input has changed")
 
@@ -200,7 +200,7 @@ def _compare_code(manifest: Manifest, own_code: Sequence[Path]) -> Iterator[Diff
                 f"{name}: this code of somebody's own took part, and is not run unless you name it; if you trust it:"
                 f" --with {name}"
             )
-        if state_file(name, read_bytes(given[name], LARGEST, "own code")).sha256 != each.sha256:
+        if state_file(name, read_bytes(given[name], _LARGEST, "own code")).sha256 != each.sha256:
             yield Difference(each.path, "this code has changed")
 
 

@@ -25,11 +25,11 @@ from seatsim.schema.guarded import expect, is_there, read_json, watch_reads
 from seatsim.schema.modules import import_named, shipped_packages, used_files
 from seatsim.schema.text import explain_bad_name
 
-LIBRARIES = ("numpy", "scipy", "numba", "pyarrow", "pandas", "matplotlib", "cvxpy", "clarabel", "cma")
+_LIBRARIES = ("numpy", "scipy", "numba", "pyarrow", "pandas", "matplotlib", "cvxpy", "clarabel", "cma")
 """Libraries that a figure, or the bytes of a file, may hang on."""
 
 
-def list_versions(libraries: Iterable[str] = LIBRARIES, files: Iterable[Path] = ()) -> Mapping[str, str]:
+def list_versions(libraries: Iterable[str] = _LIBRARIES, files: Iterable[Path] = ()) -> Mapping[str, str]:
     """Return the versions of Python, seatsim and some libraries, with a hash over all sources and `files`."""
     found = {"python": platform.python_version(), "seatsim": seatsim.__version__}
     found |= {name: _read_version(name) for name in libraries}
@@ -73,10 +73,10 @@ def _list_sources(folder: str) -> Iterator[str]:
 
 
 MANIFEST = "manifest.json"
-KIND = "manifest of a command of seatsim"
+_KIND = "manifest of a command of seatsim"
 
 
-class StatedFile(NamedTuple):
+class _StatedFile(NamedTuple):
     """A file by its path, relative to the manifest, with the SHA-256 of its content and its size in bytes."""
 
     path: str
@@ -98,18 +98,18 @@ class Manifest(NamedTuple):
     folder: str
     versions: Mapping[str, str]
     platform: Mapping[str, str]
-    own_code: Sequence[StatedFile]
-    inputs: Sequence[StatedFile]
-    outputs: Sequence[StatedFile]
+    own_code: Sequence[_StatedFile]
+    inputs: Sequence[_StatedFile]
+    outputs: Sequence[_StatedFile]
     measured: Mapping[str, Sequence[str]]
     seed: int | None = None
     configuration: IfAny[Mapping[str, object] | None] = None
     counts: IfAny[Mapping[str, int] | None] = None
 
 
-def state_file(path: str, content: bytes) -> StatedFile:
+def state_file(path: str, content: bytes) -> _StatedFile:
     """Return what a manifest states of a file."""
-    return StatedFile(path, hashlib.sha256(content).hexdigest(), len(content))
+    return _StatedFile(path, hashlib.sha256(content).hexdigest(), len(content))
 
 
 def read_manifest(folder: Path) -> Manifest:
@@ -121,8 +121,8 @@ def read_manifest(folder: Path) -> Manifest:
     path = folder / MANIFEST
     if within := sorted(each.parent.as_posix() for each in folder.glob(f"*/{MANIFEST}")) if not is_there(path) else []:
         raise InputError(f"{path}: is not there; folders in it have one each: 'seatsim reproduce {within[0]}'")
-    content = cast("Mapping[str, object]", read_json(path, KIND))
-    with expect(path, KIND):
+    content = cast("Mapping[str, object]", read_json(path, _KIND))
+    with expect(path, _KIND):
         if "identity" in content and "command" not in content:
             raise InputError(
                 f"{folder}: holds a sweep that no command of seatsim made; run 'seatsim sweep FILE --out OTHER' and"
@@ -135,7 +135,7 @@ def read_manifest(folder: Path) -> Manifest:
         first = error.errors(include_url=False)[0]
         place = ".".join(map(str, first["loc"]))
         problem = "is missing" if first["type"] == "missing" else f"is {first['input']!r}: {first['msg'].lower()}"
-        raise InputError(f"{path}: is no {KIND}: {place} {problem}") from None
+        raise InputError(f"{path}: is no {_KIND}: {place} {problem}") from None
     if found.counts and found.counts["pending"]:
         left = found.counts["pending"]
         raise InputError(f"{folder}: {left} runs of this sweep are missing; go on with it with --resume first")
@@ -165,7 +165,7 @@ class Invocation(NamedTuple):
     command: str
     arguments: tuple[str, ...]
     directory: Path
-    reads: dict[Path, StatedFile]
+    reads: dict[Path, _StatedFile]
 
 
 _current: ContextVar[Invocation | None] = ContextVar("invocation", default=None)

@@ -26,8 +26,8 @@ from seatsim.sweeps.plan import Plan, Selection
 if TYPE_CHECKING:
     from distributed import Client
 
-EXTRA = 'engine dask needs an extra; install it with: pip install "seatsim[cluster]"'
-AHEAD = 4
+_EXTRA = 'engine dask needs an extra; install it with: pip install "seatsim[cluster]"'
+_AHEAD = 4
 """Tasks for each worker that are sent before it has asked for them, so that it never waits for one."""
 LONGEST_SEARCH = 10
 """Seconds in which a scheduler must answer."""
@@ -43,7 +43,7 @@ def open_cluster(jobs: int, address: str | None) -> Iterator[_ClusterEngine]:
     try:
         import distributed  # noqa: F401
     except ImportError as error:
-        raise InputError(EXTRA) from error
+        raise InputError(_EXTRA) from error
     # What goes wrong is said once, by the error that reaches the user.
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
     with _embed(jobs) if address is None else _connect(address) as client:
@@ -71,7 +71,7 @@ class _ClusterEngine(NamedTuple):
                 self.client.submit(_simulate, _make_task(work, task), pure=False) for task in islice(waiting, count)
             ]
 
-        running = as_completed(submit(AHEAD * len(self.client.scheduler_info()["workers"])))
+        running = as_completed(submit(_AHEAD * len(self.client.scheduler_info()["workers"])))
         for future in running:
             yield _await_outcomes(future)
             future.release()
@@ -173,7 +173,7 @@ def _simulate(task: _Task) -> list[Outcome]:
 
 _MOST_TASKS = 256
 """Tasks of an array, well below the 1001 that Slurm permits unless it is configured otherwise."""
-SCRIPT = """\
+_SCRIPT = """\
 #!/bin/bash
 # {runs} runs of {file}, in {tasks} shares. Submit with: sbatch {script}
 # A task that ends early goes on where it was when it is submitted again: sbatch --array=NUMBER {script}
@@ -204,7 +204,7 @@ def write_slurm(
     words += [word for path in own_code for word in ("--with", str(path.resolve()))]
     logs = str(folder.resolve()).replace("%", "%%") + "/slurm-%a.log"  # a single % begins a pattern of Slurm
     names = {"file": file.name, "name": f"seatsim-{file.stem}", "script": str(script), "logs": logs}
-    text = SCRIPT.format(
+    text = _SCRIPT.format(
         runs=plan.runs,
         command=shlex.join(words),
         tasks=min(part_of(plan.runs - 1) + 1, _MOST_TASKS),

@@ -51,9 +51,9 @@ def simulate_one(plan: Plan, run: int, number: int, histories: Path | None) -> O
     return simulate_run(number, lambda: plan.scenario(run), histories)
 
 
-BATCH, _LONGEST_BATCH = 20, 0.2
+_BATCH, _LONGEST_BATCH = 20, 0.2
 """Most runs that a process is given at once, and seconds that they may take: so much is lost where it is killed."""
-SHARES = 4
+_SHARES = 4
 """Towards the end a batch is this part of what is left for each worker, so that all of them end together."""
 _AT_HAND = 2
 """Batches that a process has, one of which it works on."""
@@ -150,8 +150,8 @@ class _Crew:
             # Without the scenarios that the plan keeps: the thread adds to them at any time.
             work = Work(replace(self._work.plan), (), self._work.histories)
             self._pool = self._ends.enter_context(open_pool(self._processes, partial(_take_work, work)))
-        longest = min(BATCH, _LONGEST_BATCH // pace)
-        size = int(max(1, min(longest, len(self._waiting) // (SHARES * self._engine.jobs))))
+        longest = min(_BATCH, _LONGEST_BATCH // pace)
+        size = int(max(1, min(longest, len(self._waiting) // (_SHARES * self._engine.jobs))))
         while self._waiting and len(self._given) - (self._here is not None) < _AT_HAND * self._processes:
             batch = [self._waiting.popleft() for _ in range(min(size, len(self._waiting)))]
             try:

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 _FLUSH = 1.0
 """Seconds between two times at which unfinished parts are written: what a killed process may lose."""
-Progress = Callable[[int, int], None]
+_Progress = Callable[[int, int], None]
 """Is called with how many runs have ended, and of how many."""
 
 
@@ -122,7 +122,7 @@ def execute(
     resume: bool = False,
     keep_histories: bool = False,
     share: Share | None = None,
-    progress: Progress = lambda done, runs: None,
+    progress: _Progress = lambda done, runs: None,
 ) -> SweepResult:
     """Carry out a sweep, or what is missing of it with `resume`, and keep its rows in a folder.
 
@@ -181,7 +181,7 @@ def sweep(file: str | Path, out: str | Path, jobs: int | None = None, resume: bo
 class _Rows:
     """The rows of the parts of a share, or of all, that are not complete yet."""
 
-    def __init__(self, folder: Path, plan: Plan, share: Share | None, progress: Progress) -> None:
+    def __init__(self, folder: Path, plan: Plan, share: Share | None, progress: _Progress) -> None:
         self._folder, self._plan, self._progress = folder, plan, progress
         units = {key: find_unit(plan.scenario(0), key) for key in varied_keys(plan)}
         self._schema = make_schema(plan, units)

@@ -30,11 +30,11 @@ from seatsim.sweeps.plan import Plan
 
 LIBRARIES = ("numpy", "scipy", "numba", "pyarrow")
 """Libraries that a figure, or the bytes of a part, may hang on."""
-GROWING = ("runs", "replicates", "vary", "table")
+_GROWING = ("runs", "replicates", "vary", "table")
 """Parts of a configuration that may differ where the difference only adds runs."""
 
 
-class Identity(NamedTuple):
+class _Identity(NamedTuple):
     """What a sweep is: `digest` over all the rest. `configuration` is what its files state, without the limits."""
 
     digest: str
@@ -45,16 +45,16 @@ class Identity(NamedTuple):
     design: str
 
 
-def identify_sweep(definition: SweepDefinition, plan: Plan) -> Identity:
+def identify_sweep(definition: SweepDefinition, plan: Plan) -> _Identity:
     """Return the identity of a sweep."""
     stated = {key: value for key, value in definition.source.data.items() if key not in ("scenario", "seed", "limits")}
     configuration = {"scenario": definition.scenario.data, **stated, "files": dict(_digest_files(plan))}
-    versions, design = list_versions(LIBRARIES, used_files()), digest_design(plan, plan.runs)
+    versions, design = list_versions(LIBRARIES, used_files()), _digest_design(plan, plan.runs)
     whole = [configuration, design, versions, definition.seed]
-    return Identity(_digest(whole), definition.seed, versions, _read_back(configuration), plan.runs, design)
+    return _Identity(_digest(whole), definition.seed, versions, _read_back(configuration), plan.runs, design)
 
 
-def digest_design(plan: Plan, runs: int) -> str:
+def _digest_design(plan: Plan, runs: int) -> str:
     """Return a hash over the values of the first runs of a sweep."""
     state = hashlib.sha256()
     for run in range(runs):
@@ -161,12 +161,12 @@ def hold_file(path: Path, alone: bool = True, wait: bool = False) -> Iterator[No
         yield
 
 
-NAME = "manifest.json"
-FIELDS = {"identity": str, "versions": dict, "seed": int, "counts": dict, "limits": dict, "configuration": dict}
+_NAME = "manifest.json"
+_FIELDS = {"identity": str, "versions": dict, "seed": int, "counts": dict, "limits": dict, "configuration": dict}
 """What a manifest states, and of which kind each is."""
 
 
-def write_manifest(folder: Path, identity: Identity, limits: Mapping[str, float], counts: Mapping[str, int]) -> Path:
+def write_manifest(folder: Path, identity: _Identity, limits: Mapping[str, float], counts: Mapping[str, int]) -> Path:
     """Write the manifest of a sweep, with what `seatsim reproduce` needs where a command is at work."""
     invocation = current_invocation()
     parts = {path.relative_to(folder).as_posix(): path for path in sorted(folder.glob("runs/part-*.parquet"))}
@@ -182,7 +182,7 @@ def write_manifest(folder: Path, identity: Identity, limits: Mapping[str, float]
         "configuration": identity.configuration,
         "design": identity.design,
     }
-    return write_json(folder / NAME, content, lasting=True)
+    return write_json(folder / _NAME, content, lasting=True)
 
 
 def read_manifest(folder: Path) -> dict[str, Any]:
@@ -192,9 +192,9 @@ def read_manifest(folder: Path) -> dict[str, Any]:
         InputError: the folder holds no sweep.
     """
     try:
-        with expect(folder / NAME, "manifest of a sweep"):
-            content = cast("dict[str, Any]", read_json(folder / NAME, "manifest of a sweep"))
-            for key, kind in FIELDS.items():
+        with expect(folder / _NAME, "manifest of a sweep"):
+            content = cast("dict[str, Any]", read_json(folder / _NAME, "manifest of a sweep"))
+            for key, kind in _FIELDS.items():
                 if not isinstance(content[key], kind):
                     raise TypeError(f"{key} is {content[key]!r}")
             content["counts"]["runs"]
@@ -219,15 +219,15 @@ def say_ended(folder: Path) -> str:
     return f"{counts['runs'] - counts['pending']} of {counts['runs']} runs"
 
 
-def check_resumable(folder: Path, identity: Identity, plan: Plan, resume: bool) -> None:
+def check_resumable(folder: Path, identity: _Identity, plan: Plan, resume: bool) -> None:
     """Refuse to go on in a folder that holds another sweep; one that has fewer runs of the same is extended.
 
     Raises:
         InputError: the folder holds a sweep and `resume` is not set, or one that differs; the message names how.
     """
-    if not (folder / NAME).exists():
+    if not (folder / _NAME).exists():
         if any(folder.glob("runs/part-*.parquet")):
-            raise InputError(f"{folder}: holds the rows of a sweep without its {NAME}; choose another --out")
+            raise InputError(f"{folder}: holds the rows of a sweep without its {_NAME}; choose another --out")
         return
     old = read_manifest(folder)
     counts = old["counts"]
@@ -246,7 +246,7 @@ def check_resumable(folder: Path, identity: Identity, plan: Plan, resume: bool) 
         ),
         *list_differences(fixed[0], fixed[1]),
     ]
-    only_adds = plan.runs >= counts["runs"] and digest_design(plan, counts["runs"]) == old["design"]
+    only_adds = plan.runs >= counts["runs"] and _digest_design(plan, counts["runs"]) == old["design"]
     if not only_adds:
         differences += list_differences(_growing(old["configuration"]), _growing(identity.configuration))
     if differences or not only_adds:
@@ -258,8 +258,8 @@ def check_resumable(folder: Path, identity: Identity, plan: Plan, resume: bool) 
 
 
 def _without_growing(configuration: Mapping[str, object]) -> dict[str, object]:
-    return {key: value for key, value in configuration.items() if key not in GROWING}
+    return {key: value for key, value in configuration.items() if key not in _GROWING}
 
 
 def _growing(configuration: Mapping[str, object]) -> dict[str, object]:
-    return {key: value for key, value in configuration.items() if key in GROWING}
+    return {key: value for key, value in configuration.items() if key in _GROWING}

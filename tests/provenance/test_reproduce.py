@@ -90,7 +90,10 @@ def test_a_missing_input_is_an_error(project, never):
         ({"folder": "a/../../elsewhere"}, "holds a slash"),
         ({"inputs": [{"path": "/etc/passwd", "sha256": "0"}]}, "is an absolute path"),
         ({"inputs": [{"path": "\\\\host\\share", "sha256": "0"}]}, "is an absolute path"),
-        ({"inputs": [{"path": "example:../../pyproject.toml", "sha256": "0"}]}, "cannot be read"),
+        (
+            {"inputs": [{"path": "example:../pyproject.toml", "sha256": "0"}], "arguments": ["--hours=6.0", "--"]},
+            "examples/pyproject.toml: cannot be read",
+        ),
         ({"own_code": [{"path": "../../evil.py", "sha256": "0"}]}, "not run unless you name it"),
         ({"directory": "../nowhere"}, "is not there"),
         ({"outputs": 3}, "outputs is 3"),

@@ -18,7 +18,7 @@ from seatsim.blind.truth.outside_faults import scenarios_of
 from seatsim.schema.errors import InputError, nearest
 
 _PRESETS = ("mixed", "varied", "null", "background")
-BACKGROUND = 6.0
+_BACKGROUND = 6.0
 """Random force on the frame of the preset `background`, N rms: half of that which counts as an effect of severity 1."""
 _BINGHAM_SHARE = 0.5
 """Of the rigs."""
@@ -31,16 +31,16 @@ A fade could not be found without thermometer, so that no rig lacks it, whatever
 """
 LOG_TOLERANCE = 0.2
 """Of the logarithm of a materiality; closer would only cost simulations, as the target is drawn."""
-EVALUATIONS = 9
-MATERIAL = 1.03
+_EVALUATIONS = 9
+_MATERIAL = 1.03
 """A little above the limit, as sizes are measured with a coarse step."""
 _WEAKEST_TARGET, _STRONGEST_TARGET = 1.1, 8.0
-TINY = 1e-9
+_TINY = 1e-9
 """In place of a materiality of zero, where its logarithm is taken."""
 _UNSTABLE_FACTOR = 0.6
 """Of a severity at which the rig was unstable: the new upper bound."""
 
-Known = list[tuple[float, float]]
+_Known = list[tuple[float, float]]
 """Severities and their materialities."""
 
 
@@ -93,7 +93,7 @@ def compose(cases: int, kinds: str | Sequence[str], rng: Generator) -> list[Case
         subsets = null_subsets()
         specifications = [CaseSpecification("none", (), subsets[k % len(subsets)]) for k in range(cases)]
     elif kinds == "background":
-        specifications = [CaseSpecification("none", background=BACKGROUND) for _ in range(cases)]
+        specifications = [CaseSpecification("none", background=_BACKGROUND) for _ in range(cases)]
     else:
         specifications = _specify(_kinds(cases, kinds), rng, kinds == "varied")
     return [specifications[k] for k in rng.permutation(cases)]
@@ -175,9 +175,9 @@ def find_severity(
     """
     target = draw_target(rng)
     low, high = span
-    known: Known = []
+    known: _Known = []
     s = min(max(1.0, low), high)
-    for _ in range(EVALUATIONS):
+    for _ in range(_EVALUATIONS):
         size = size_of(s)
         if not math.isfinite(size):
             high = _UNSTABLE_FACTOR * s
@@ -186,7 +186,7 @@ def find_severity(
                 return None
             continue
         known.append((s, size))
-        if abs(math.log(max(size, TINY) / target)) < LOG_TOLERANCE:
+        if abs(math.log(max(size, _TINY) / target)) < LOG_TOLERANCE:
             break
         if size < target and s >= high * 0.999:
             if size < 1.15:
@@ -200,12 +200,12 @@ def find_severity(
     return _closest_material(known, target)
 
 
-def _closest_material(known: Known, target: float) -> tuple[float, float] | None:
-    material = [pair for pair in known if pair[1] >= MATERIAL]
+def _closest_material(known: _Known, target: float) -> tuple[float, float] | None:
+    material = [pair for pair in known if pair[1] >= _MATERIAL]
     return min(material, key=lambda pair: abs(math.log(pair[1] / target)), default=None)
 
 
-def _next_severity(known: Known, target: float, low: float, high: float) -> float:
+def _next_severity(known: _Known, target: float, low: float, high: float) -> float:
     """Return the next severity: between the closest below and above, else on from the closest.
 
     The secant keeps a tenth away from both ends, and an extrapolation to a factor of 0.1 to 6, as materiality is not
@@ -215,7 +215,7 @@ def _next_severity(known: Known, target: float, low: float, high: float) -> floa
     above = [pair for pair in known if pair[1] >= target]
     if below and above:
         (s0, m0), (s1, m1) = max(below, key=lambda pair: pair[1]), min(above, key=lambda pair: pair[1])
-        share = math.log(target / max(m0, TINY)) / math.log(m1 / max(m0, TINY))
+        share = math.log(target / max(m0, _TINY)) / math.log(m1 / max(m0, _TINY))
         return float(math.exp(math.log(s0) + min(max(share, 0.1), 0.9) * math.log(s1 / s0)))
     s, size = (below or above)[-1]
-    return float(min(max(s * min(max(target / max(size, TINY), 0.1), 6.0), low), high))
+    return float(min(max(s * min(max(target / max(size, _TINY), 0.1), 6.0), low), high))

@@ -24,7 +24,7 @@ _CaseShrink = tuple[str, float, float, bool | None]
 """Name, stated shrink, true shrink (NaN: cannot be replayed), whether the interval holds (None: none is given)."""
 
 
-ROUNDING = 1e-9
+_ROUNDING = 1e-9
 """By how much a true shrink may lie beyond an interval of no width, as of a scenario that is left as it is."""
 
 
@@ -80,7 +80,7 @@ def _find_augmented(verdict: Verdict) -> Path | None:
 def _compare_case(
     name: str, shrink: float | None, interval: tuple[float, float] | None, true: float | None
 ) -> _CaseShrink:
-    covered = None if interval is None or true is None else interval[0] - ROUNDING <= true <= interval[1] + ROUNDING
+    covered = None if interval is None or true is None else interval[0] - _ROUNDING <= true <= interval[1] + _ROUNDING
     return name, float(shrink or 0.0), math.nan if true is None else true, covered
 
 

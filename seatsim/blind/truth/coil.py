@@ -22,7 +22,7 @@ _SAG_TIME = 1.5
 """s, over which the supply averages the current that makes it sag."""
 _DROPOUT_GRID = 1e-3
 """s; a dropout may begin once in each of these intervals, which are longer than any step of a simulation."""
-OFF = 0.02
+_OFF = 0.02
 """A; below this target the driver is off and no voltage is left for the back EMF to reduce."""
 _FALL_AT_LOW_CURRENT = 1.6
 """Weight of the slow fall at no current; it goes to zero at 1 A."""
@@ -31,7 +31,7 @@ SCHEDULE, SKYHOOK, FEEDBACK = 0.0, 1.0, 2.0
 # The feedback's assumed damper model, by which it turns a force into a current: friction, N; viscous damping, N s/m;
 # yield force, N/A; rise of the viscous damping with current, N s/(m A). Near the nominal damper and never exact, as in
 # a real controller.
-FRICTION, VISCOUS, _YIELD_GAIN, _VISCOUS_GAIN = 40.0, 250.0, 600.0, 350.0
+_FRICTION, _VISCOUS, _YIELD_GAIN, _VISCOUS_GAIN = 40.0, 250.0, 600.0, 350.0
 
 
 @compiled
@@ -109,7 +109,7 @@ def write_coil_rates(y: Array, rates: Array, target: float, v: float, p: RigPara
     i = y[state.CURRENT]
     aim = target
     if p.back_emf != 0.0:
-        aim = max(aim - p.back_emf * abs(v) * (1.0 if aim > OFF else 0.0), 0.0)
+        aim = max(aim - p.back_emf * abs(v) * (1.0 if aim > _OFF else 0.0), 0.0)
     rate = _falling_rate(i, aim, p)
     if p.second_rate > 0.0:
         rates[state.CURRENT_2] = rate * (aim - y[state.CURRENT_2])
@@ -146,21 +146,21 @@ def command_of(law: Array, schedule: Array, row: int, y: Array, memory: Array, p
     wanted = law[2] * y[state.X] + law[3] * v + law[4] * memory[state.V_FRAME] + law[5] * memory[state.V_DRIVER]
     if wanted * v <= 0.0:
         return 0.0
-    current = (abs(wanted) - FRICTION - VISCOUS * abs(v)) / (_YIELD_GAIN + _VISCOUS_GAIN * abs(v))
+    current = (abs(wanted) - _FRICTION - _VISCOUS * abs(v)) / (_YIELD_GAIN + _VISCOUS_GAIN * abs(v))
     # a controller logs and sends four decimals
     return float(round(min(max(current, 0.0), law[1]), 4))
 
 
-REFERENCE = 20.0
+_REFERENCE = 20.0
 """degC at which the nominal parameters hold."""
-ZERO = 273.15
+_ZERO = 273.15
 """K at 0 degC."""
 _REFERENCE_KELVIN = 293.15
 _COLDEST = -15.0
 """K below the reference, where the hyperbola of the viscosity ends before its pole."""
 _SERIES = 1e-3
 """Argument below which the Langevin function is its own tangent, whose closed form would cancel."""
-RISE = 200.0
+_RISE = 200.0
 """1/s, at which a decaying magnetisation follows a rising current: within a row and a half."""
 
 
@@ -168,16 +168,16 @@ RISE = 200.0
 def viscous_factor(t: float, p: RigParameters) -> float:
     """Return viscosity at `t` degC over that at 20: Arrhenius `exp(B (1/T - 1/T20))` or `1 / (1 + b (t - 20))`."""
     if p.fade_law == 1.0:
-        return math.exp(p.fade_viscous * (1000.0 / (t + ZERO) - 1000.0 / _REFERENCE_KELVIN))
-    return 1.0 / (1.0 + p.fade_viscous * max(t - REFERENCE, _COLDEST))
+        return math.exp(p.fade_viscous * (1000.0 / (t + _ZERO) - 1000.0 / _REFERENCE_KELVIN))
+    return 1.0 / (1.0 + p.fade_viscous * max(t - _REFERENCE, _COLDEST))
 
 
 @compiled
 def yield_factor(t: float, p: RigParameters) -> float:
     """Return yield stress at `t` degC over that at 20: exponential or a power of the absolute temperature."""
     if p.fade_law == 1.0:
-        return math.exp(-p.fade_yield * (t - REFERENCE))
-    return float(((t + ZERO) / _REFERENCE_KELVIN) ** (-p.fade_yield))
+        return math.exp(-p.fade_yield * (t - _REFERENCE))
+    return float(((t + _ZERO) / _REFERENCE_KELVIN) ** (-p.fade_yield))
 
 
 @compiled
@@ -220,7 +220,7 @@ def write_magnetisation_rate(y: Array, rates: Array, p: RigParameters) -> None:
     if p.remanence_gain != 0.0:
         rise = y[state.CURRENT] - y[state.MAGNETISATION]
         fall_rate = rise * (0.4 - 2.0 * rise) / p.remanence_time
-        rates[state.MAGNETISATION] = rise * RISE if rise > 0.0 else fall_rate
+        rates[state.MAGNETISATION] = rise * _RISE if rise > 0.0 else fall_rate
 
 
 @compiled

@@ -27,7 +27,7 @@ from seatsim.blind.truth.faults import (
 
 SCENARIOS = damper_faults.SCENARIOS | seat_faults.SCENARIOS
 """All scenarios by name, those outside the library last."""
-WIDE = (0.02, 20.0)
+_WIDE = (0.02, 20.0)
 """Severities where nothing else is known."""
 
 
@@ -46,7 +46,7 @@ def _cavitation(s: float, d: Shape, _: Context) -> Changes:
     return set_parameters(cavitation_force=350.0 / s, cavitation_fill=0.4 + 0.8 * d["a"])
 
 
-@_outside("orifice", "damper.outside", WIDE)
+@_outside("orifice", "damper.outside", _WIDE)
 def _orifice(s: float, d: Shape, _: Context) -> Changes:
     return set_parameters(orifice_damping=500.0 * s)
 
@@ -113,17 +113,17 @@ def _creep(s: float, d: Shape, _: Context) -> Changes:
     return set_parameters(creep_stiffness=900.0 * s, creep_time=0.6 + 2.0 * d["a"])
 
 
-@_outside("memory-foam", "cushion.outside", WIDE)
+@_outside("memory-foam", "cushion.outside", _WIDE)
 def _memory_foam(s: float, d: Shape, _: Context) -> Changes:
     return set_parameters(zener_stiffness=12000.0 * s, zener_time=0.05 + 0.15 * d["a"])
 
 
-@_outside("cover-stick", "cushion.outside", WIDE)
+@_outside("cover-stick", "cushion.outside", _WIDE)
 def _cover(s: float, d: Shape, _: Context) -> Changes:
     return set_parameters(cover_force=20.0 * s, cover_length=1e-4 + 3e-4 * d["a"])
 
 
-@_outside("foam-speed", "cushion.outside", WIDE)
+@_outside("foam-speed", "cushion.outside", _WIDE)
 def _foam_speed(s: float, d: Shape, _: Context) -> Changes:
     return set_parameters(foam_rate=6.0 * s)
 
@@ -139,7 +139,7 @@ def _high_body(s: float, d: Shape, _: Context) -> Changes:
     return set_parameters(second_body_fraction=min(0.1 * s, 0.6), second_body_rate=rate, second_body_damping=damping)
 
 
-@_outside("feet-on-floor", "driver.outside", WIDE)
+@_outside("feet-on-floor", "driver.outside", _WIDE)
 def _feet(s: float, d: Shape, _: Context) -> Changes:
     return set_parameters(foot_stiffness=600.0 * s * (0.4 + d["a"]), foot_damping=60.0 * s * (0.4 + d["b"]))
 

@@ -173,7 +173,7 @@ class RigParameters:
     base_mass: float = 0.0  # kg, 0: the base is the floor
 
 
-RECORD = np.dtype([(field.name, np.float64) for field in dataclasses.fields(RigParameters)])
+_RECORD = np.dtype([(field.name, np.float64) for field in dataclasses.fields(RigParameters)])
 """The layout in which compiled functions see `RigParameters`."""
 
 
@@ -183,7 +183,7 @@ def parameter_record(values: Mapping[str, float]) -> np.void:
     Raises:
         TypeError: there is no parameter of a given name.
     """
-    record: np.void = np.array([dataclasses.astuple(RigParameters(**values))], dtype=RECORD)[0]
+    record: np.void = np.array([dataclasses.astuple(RigParameters(**values))], dtype=_RECORD)[0]
     return record
 
 

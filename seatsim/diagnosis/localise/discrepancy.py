@@ -147,9 +147,14 @@ def describe_discrepancy(
     """Return the unexplained signal in a block of the seat and what predicts it."""
     shares = explain_signal(problem, parameters, hypothesis.signals)
     return Discrepancy(
-        block, hypothesis.quantity, hypothesis.unit, hypothesis.signals, shares, hypothesis.channel,
+        block,
+        hypothesis.quantity,
+        hypothesis.unit,
+        hypothesis.signals,
+        shares,
+        hypothesis.channel,
         hypothesis.comparable,
-    )  # fmt: skip
+    )
 
 
 def is_from_outside(settings: DiagnosisSettings, found: Discrepancy, rate: float) -> bool:

@@ -33,7 +33,7 @@ from seatsim.diagnosis.spectra import as_complex
 from seatsim.recordings.quality.sensors import FLOOR, follows_floor
 from seatsim.schema.arrays import Array
 
-QUANTITIES = {"coil": ("current", "A"), "floor": ("acceleration", "m/s^2")}
+_QUANTITIES = {"coil": ("current", "A"), "floor": ("acceleration", "m/s^2")}
 """Quantity and unit of an unknown input by block, where it is not a force in N."""
 
 
@@ -70,7 +70,7 @@ def evaluate_hypotheses(
     for name in runs[problem.runs[0]]:
         estimates = {run: of_run[name] for run, of_run in runs.items()}
         signals = {run: estimate.signal for run, estimate in estimates.items()}
-        quantity, unit = QUANTITIES.get(name, ("force", "N"))
+        quantity, unit = _QUANTITIES.get(name, ("force", "N"))
         evidence = _negative_log_evidence(objective, nuisances, estimates)
         comparable = _make_comparable(estimates) if name in PORTS else {}
         hypotheses[name] = FaultHypothesis(evidence, quantity, unit, signals, comparable=comparable)

@@ -35,10 +35,12 @@ class Port(NamedTuple):
 
 
 PORTS = {
-    "damper": Port(frame_force=-1.0, load_cell_error=1.0), "suspension": Port(frame_force=1.0),
-    "cushion": Port(frame_force=-1.0, driver_force=1.0), "driver": Port(driver_force=1.0),
+    "damper": Port(frame_force=-1.0, load_cell_error=1.0),
+    "suspension": Port(frame_force=1.0),
+    "cushion": Port(frame_force=-1.0, driver_force=1.0),
+    "driver": Port(driver_force=1.0),
     "floor": Port(base_acceleration=1.0),
-}  # fmt: skip
+}
 """Port of each block that may hold an unknown input; the coil's is its logged current."""
 
 

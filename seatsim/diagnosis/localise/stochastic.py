@@ -119,9 +119,12 @@ def merge_effect(
     """Return the decision and the shares of the other causes, with the stochastic effect added to both."""
     probability, none, unknown = settings.decision.stochastic
     decision = dataclasses.replace(
-        decision, verdict="ambiguous" if decision.groups else "known",
-        probabilities=decision.probabilities | {effect: probability}, none=none, unknown=unknown,
-    )  # fmt: skip
+        decision,
+        verdict="ambiguous" if decision.groups else "known",
+        probabilities=decision.probabilities | {effect: probability},
+        none=none,
+        unknown=unknown,
+    )
     block, own = effect.partition(".")[0], settings.localisation.stochastic_share if where else 1.0
     others = [Share(s.block, s.share * (1.0 - own)) for s in where if s.block != block]
     return decision, [Share(block, 1.0 - sum(share for _, share in others)), *others]
