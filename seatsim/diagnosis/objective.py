@@ -219,15 +219,13 @@ class Objective:
         """
         shifts = [evaluation.parameters.shift(k, self.settings.fit.difference_step) for k in components]
         moved = self.evaluate([parameters for parameters, _ in shifts])
-        jacobian = {
-            run: np.array(
-                [
-                    (base - m.whitened[run]).ravel() / step if np.isfinite(m.cost) else np.zeros(base.size)
-                    for m, (_, step) in zip(moved, shifts, strict=True)
-                ]
-            ).reshape(len(shifts), base.size)
-            for run, base in evaluation.whitened.items()
-        }
+        jacobian = {}
+        for run, base in evaluation.whitened.items():
+            slopes = [
+                (base - m.whitened[run]).ravel() / step if np.isfinite(m.cost) else np.zeros(base.size)
+                for m, (_, step) in zip(moved, shifts, strict=True)
+            ]
+            jacobian[run] = np.array(slopes).reshape(len(shifts), base.size)
         return Linearisation(evaluation, jacobian)
 
     def linearise_nuisances(self, evaluation: Evaluation) -> Linearisation:

@@ -238,28 +238,16 @@ def check_resumable(folder: Path, identity: _Identity, plan: Plan, resume: bool)
         )
     if old["identity"] == identity.digest:
         return
-    fixed = [_without_growing(each) for each in (old["configuration"], identity.configuration)]
-    differences = [
-        *list_differences(
-            {"seed": old["seed"], "versions": old["versions"]},
-            {"seed": identity.seed, "versions": dict(identity.versions)},
-        ),
-        *list_differences(fixed[0], fixed[1]),
-    ]
     only_adds = plan.runs >= counts["runs"] and _digest_design(plan, counts["runs"]) == old["design"]
-    if not only_adds:
-        differences += list_differences(_growing(old["configuration"]), _growing(identity.configuration))
+    before = {"seed": old["seed"], "versions": old["versions"], **old["configuration"]}
+    now = {"seed": identity.seed, "versions": dict(identity.versions), **identity.configuration}
+    for key in _GROWING if only_adds else ():
+        before.pop(key, None)
+        now.pop(key, None)
+    differences = list(list_differences(before, now))
     if differences or not only_adds:
         shown = "; ".join(differences) or "the resolved design differs"
         raise InputError(
             f"{folder}: holds another sweep: {shown}. Only what adds runs after the others may differ (more runs of"
             " sobol, zip or cross, more replicates); choose another --out"
         )
-
-
-def _without_growing(configuration: Mapping[str, object]) -> dict[str, object]:
-    return {key: value for key, value in configuration.items() if key not in _GROWING}
-
-
-def _growing(configuration: Mapping[str, object]) -> dict[str, object]:
-    return {key: value for key, value in configuration.items() if key in _GROWING}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import io
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -13,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.signal import lfilter, savgol_filter
 
-from seatsim.blind.make.folder import encode_yaml, pack
+from seatsim.blind.make.folder import encode_table, encode_yaml
 from seatsim.recordings.recording import HEADER, load_recording
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
@@ -127,17 +126,12 @@ def _entry(carrier: Carrier, run: str, runs: tuple[str, ...]) -> Content:
 
 
 def _encode_table(carrier: Carrier, run: str) -> bytes:
-    """Return a run as a gzipped CSV whose bytes depend on nothing but the numbers.
-
-    A channel has as many digits as were recorded: more of them would tell which channel was changed.
-    """
+    """Return a run in which a channel has as many digits as were recorded: more would tell which was changed."""
     table = carrier.tables[run]
     rows = len(next(iter(table.values())))
-    columns = {"time": np.arange(rows) * carrier.step, **table}
+    columns = {"time": carrier.step * np.arange(rows, dtype=np.float64), **table}
     formats = ["%.10g", *(f"%.{carrier.decimals.get(name, _DECIMALS)}f" for name in table)]
-    text = io.StringIO()
-    np.savetxt(text, np.column_stack(list(columns.values())), formats, ",", header=",".join(columns), comments="")
-    return pack(text.getvalue().encode())
+    return encode_table(columns, formats)
 
 
 class Altered(NamedTuple):

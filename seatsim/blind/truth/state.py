@@ -1,9 +1,8 @@
 """The parameters of the true rig, and the places in its state vector and memory.
 
 The symbols of the nominal part are those of section 2 of the contract. A departure is off while its leading parameter
-(a force, share, gain or law) is zero; lengths, times and exponents of a departure that is off have no influence and
-carry a value that no formula divides by zero with. Motion is relative: `x = zs - z0` is the deflection of the
-suspension, `y = zc - zs` that of the cushion.
+(a force, share, gain or law) is zero; its lengths, times and exponents then carry a value that no formula divides by
+zero with. Motion is relative: `x = zs - z0` of the suspension, `y = zc - zs` of the cushion.
 
 numba keeps compiled code beside each source and looks only at that file's date: after an edit of a function that is
 called from another module, delete the `__pycache__` of this package.
