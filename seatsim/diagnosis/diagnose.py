@@ -13,7 +13,6 @@ from threadpoolctl import threadpool_limits
 from seatsim.diagnosis.problem import Deadline, DiagnosisProblem, check_nominal, pose_problem
 from seatsim.diagnosis.result import Diagnosis
 from seatsim.diagnosis.settings import DiagnosisSettings
-from seatsim.diagnosis.solution import Method
 from seatsim.diagnosis.solve import solve
 from seatsim.diagnosis.state import state_diagnosis
 from seatsim.diagnosis.widen import search_wider
@@ -84,7 +83,6 @@ def diagnose_problem(
     notes: Sequence[str] = (),
     without: Sequence[str] = (),
     progress: Callable[[str], object] = lambda _: None,
-    method: Method | None = None,
     budget: float = math.inf,
     damper_forms: bool = False,
 ) -> Diagnosis:
@@ -96,7 +94,6 @@ def diagnose_problem(
         RunError: the nominal rig cannot be simulated in a run.
     """
     stages: list[tuple[str, float]] = []
-    method = method or Method()
 
     def tell(stage: str) -> None:
         stages.append((stage, time.monotonic()))
@@ -105,8 +102,8 @@ def diagnose_problem(
     with threadpool_limits(1):
         check_nominal(problem)
         deadline = Deadline.after(problem.settings.fit.search_share * budget)
-        solution = solve(problem.until(deadline), without, tell, method)
-        solution, at_bound = search_wider(solution, without, tell, method)
+        solution = solve(problem.until(deadline), without, tell)
+        solution, at_bound = search_wider(solution, without, tell)
         cut = _list_cut(stages, deadline.end) if deadline.is_past else []
         said = [*notes, *at_bound, *([f"{_CUT.format(budget=budget)}: {', '.join(cut)}"] if cut else [])]
         solution = solution._replace(objective=solution.objective.unhurried)

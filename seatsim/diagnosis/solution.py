@@ -1,4 +1,4 @@
-"""The stages of a diagnosis, the solution that a search returns, and its decision revised by what is found later."""
+"""A search for effects, the solution that it returns, and its decision revised by what is found later."""
 
 from __future__ import annotations
 
@@ -11,9 +11,7 @@ import numpy as np
 from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.decide import Decision, Verdict, decide_verdict, weigh_effects
 from seatsim.diagnosis.localise.discrepancy import Discrepancy
-from seatsim.diagnosis.localise.localisation import Remainder, share_gap
 from seatsim.diagnosis.movement import group_equivalent, is_material, measure_remainders
-from seatsim.diagnosis.noise import NoiseWeights, weigh_noise
 from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import Cause, Share
@@ -23,24 +21,12 @@ from seatsim.diagnosis.settings.judging import DecisionSettings
 Progress = Callable[[str], object]
 
 
-class Method(NamedTuple):
-    """The stages of a diagnosis; a benchmark replaces one of them to measure its contribution."""
-
-    weigh_noise: Callable[[DiagnosisProblem], NoiseWeights] = weigh_noise
-    select_effects: Callable[
-        [Objective, Sequence[Candidate], Progress, int | None, LinearisedRig | None], Selection
-    ] = select_effects
-    decide_verdict: Callable[[DiagnosisProblem, Selection, Sequence[str]], Decision] = decide_verdict
-    share_gap: Callable[[Objective, Evaluation, Remainder | None], list[Share]] = share_gap
-
-
 class SearchTask(NamedTuple):
-    """Inputs of a search: the candidates, the names of all effects, the progress callback, and the method."""
+    """Inputs of a search: the candidates, the names of all effects, and the progress callback."""
 
     candidates: Sequence[Candidate]
     effects: Sequence[str]
     progress: Progress
-    method: Method
 
 
 class Solution(NamedTuple):
@@ -59,8 +45,8 @@ class Solution(NamedTuple):
 
 def search(task: SearchTask, objective: Objective, rig: LinearisedRig | None = None) -> Solution:
     """Select effects under the weights of an objective and decide; `rig` is the linearised rig where it is known."""
-    selection = task.method.select_effects(objective, task.candidates, task.progress, None, rig)
-    decision = task.method.decide_verdict(objective.problem, selection, task.effects)
+    selection = select_effects(objective, task.candidates, task.progress, rig=rig)
+    decision = decide_verdict(objective.problem, selection, task.effects)
     return Solution(objective, selection, decision)
 
 

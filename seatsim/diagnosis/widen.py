@@ -18,7 +18,7 @@ from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.nuisance import list_calibrated
 from seatsim.diagnosis.objective import Evaluation, Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, OutOfTimeError, normalise_rms_errors
-from seatsim.diagnosis.solution import Method, Progress, Solution
+from seatsim.diagnosis.solution import Progress, Solution
 from seatsim.diagnosis.solve import solve
 
 _Search = Callable[[], Solution]
@@ -44,16 +44,13 @@ class _Wider(NamedTuple):
         return self.judge.evaluate([solution.decision.chosen.parameters])[0]
 
 
-def search_wider(
-    first: Solution, without: Sequence[str], progress: Progress, method: Method
-) -> tuple[Solution, list[str]]:
+def search_wider(first: Solution, without: Sequence[str], progress: Progress) -> tuple[Solution, list[str]]:
     """Return the solution to state, and sentences on parameters at their bounds and on what a second search found.
 
     Args:
         first: the solution within the stated tolerances.
         without: names of effects that are withheld from the library.
         progress: called with what is being done.
-        method: the stages of the search.
     """
     problem = first.objective.problem
     best = min(first.decision.chosen, first.selection.sets[-1][0], key=lambda each: each.excess)
@@ -65,7 +62,7 @@ def search_wider(
 
     def search() -> Solution:
         progress("searching again with a wider tolerance of parameters at their bounds")
-        return solve(judge.problem, without, progress, method)
+        return solve(judge.problem, without, progress)
 
     attempt = _leave_less if best.excess > problem.settings.selection.nothing_left else _need_fewer
     notes = ["at the bound of their tolerance: " + ", ".join(held.values())]
