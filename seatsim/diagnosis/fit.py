@@ -98,6 +98,10 @@ _DECIMALS = 9
 def search_pattern(objective: Objective, start: Evaluation) -> Evaluation:
     """Return the evaluation that no step in the free parameters of the last effect improves any more.
 
+    All neighbours of the best point, a step away in one parameter or in two at once, are evaluated together; the best
+    of them is moved to if it costs less, or else the step becomes smaller (direct search: Kolda, Lewis and Torczon,
+    2003). A point that was evaluated before is not evaluated again, since it costs no less than the best.
+
     Args:
         objective: what is minimised; its settings hold the steps, in natural sizes of the parameters.
         start: evaluation of the rig at which the search starts.
@@ -140,7 +144,10 @@ _ALLOWANCE = 1e-12
 
 
 def minimise_bounded(matrix: Array, right: Array, low: Array, high: Array) -> Array:
-    """Return the x that minimises `x' matrix x - 2 right' x` with `low <= x <= high`.
+    """Return the x that minimises `x' matrix x - 2 right' x` with `low <= x <= high`, by block principal pivoting.
+
+    A bounded least-squares routine for tall matrices spends most of its time on factorising what is a matrix of some
+    twenty rows here; a diagnosis solves about a thousand of these.
 
     Each component is free or at one of its bounds. The free ones are solved for; then all that are out of place change
     sides: free ones beyond a bound go to it, and those at a bound whose gradient points inwards become free. Where that

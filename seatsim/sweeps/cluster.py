@@ -1,4 +1,8 @@
-"""Clusters: the engine `dask`, and an array script for Slurm, each of whose tasks runs a share of a sweep."""
+"""Clusters: the engine `dask`, and an array script for Slurm, each of whose tasks runs a share of a sweep.
+
+A task of dask is a part of the sweep with the values of its runs, so that a worker needs nothing but seatsim, the files
+that the scenario names and the user's own code, at the same paths. A task whose worker dies is given to another one.
+"""
 
 from __future__ import annotations
 

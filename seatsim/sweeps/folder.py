@@ -1,8 +1,7 @@
 """The folder of a sweep: who holds it, which sweep it is of, how far it is, and whether it may be gone on with.
 
-A sweep is its configuration, resolved design, versions and seed. A lock names its owner and dies with it (flock);
-commands for different shares of a sweep hold the folder together, which the locks of `filelock` cannot do.
-`manifest.json` holds the rest.
+A sweep is its configuration, design, versions and seed. A lock names its owner and dies with it (flock); commands for
+different shares hold the folder together, which `filelock` cannot do. `manifest.json` holds the rest.
 """
 
 from __future__ import annotations
