@@ -15,13 +15,9 @@ PAGE = Path(__file__).with_name("settings.md")
 BAR = r"\|"
 HEAD = """# Settings of a diagnosis
 
-Every threshold on which a diagnosis rests: a frozen value with its unit and meaning, what is lost where it is raised or
-lowered, and how it was chosen ("on simulated rigs": those whose effects have other functional forms than the
-candidates; "numerically": the result does not depend on it). Built by `python docs/build_settings.py` from
-`seatsim/diagnosis/settings`. The stages that the groups belong to are described in [Diagnosis](diagnosis.md), their
-symbols in the [nomenclature](nomenclature.md).
-
-A diagnosis with another value is asked for in Python; the command line keeps to the values below:
+Every threshold on which a [diagnosis](diagnosis_theory.md) rests. What is lost where it is raised or lowered, and how
+it was chosen, stands beside it in `seatsim/diagnosis/settings`. Built by `python docs/build_settings.py`. Another value
+is asked for in Python:
 
 <!-- not run -->
 ```python
@@ -43,7 +39,7 @@ def show(value: object) -> str:
 
 
 def stated(cls: type) -> dict[str, list[str]]:
-    """Return unit, meaning, trade-off and origin of each field of a group of settings, as its docstring has them."""
+    """Return unit and meaning of each field of a group of settings, whose docstring also has trade-off and origin."""
     _, *body = ast.parse(inspect.getsource(cls)).body[0].body  # type: ignore[attr-defined]
     found = {}
     for field, text in itertools.pairwise(body):
@@ -51,8 +47,8 @@ def stated(cls: type) -> dict[str, list[str]]:
             said = " ".join(ast.literal_eval(text.value).split())
             parts = re.fullmatch(r"(.+?)(?: \[(.+?)\])?\.(?: Trades off: (.+)\.)? Chosen: (.+)\.", said)
             assert parts, f"{cls.__name__}: {said}"
-            meaning, unit, trade_off, chosen = parts.groups(default="-")
-            found[ast.unparse(field.target)] = [unit, meaning, trade_off, chosen]
+            meaning, unit, *_ = parts.groups(default="-")
+            found[ast.unparse(field.target)] = [unit, meaning]
     return found
 
 
@@ -61,7 +57,7 @@ def tables() -> Iterator[str]:
     for group, settings in DiagnosisSettings()._asdict().items():
         cls = type(settings)
         yield f"\n## `{group}`\n\n{inspect.getdoc(cls)}\n"
-        yield "| name | value | unit | meaning | what it trades off | how it was chosen |\n|---|---|---|---|---|---|"
+        yield "| name | value | unit | meaning |\n|---|---|---|---|"
         for name, texts in stated(cls).items():
             cells = [f"`{name}`", show(getattr(settings, name)), *texts]
             yield f"| {' | '.join(cell.replace('|', BAR) for cell in cells)} |"
