@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import ast
 import inspect
+import itertools
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
-from seatsim.diagnosis.settings.threshold import Settings, list_thresholds
+from seatsim.diagnosis.settings import DiagnosisSettings
 
 PAGE = Path(__file__).with_name("settings.md")
 BAR = r"\|"
@@ -20,7 +22,7 @@ is asked for in Python:
 <!-- not run -->
 ```python
 import seatsim
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis.settings import DiagnosisSettings
 
 usual = DiagnosisSettings()
 stricter = usual._replace(decision=usual.decision._replace(explained=0.06))
@@ -36,14 +38,28 @@ def show(value: object) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
+def stated(cls: type) -> dict[str, list[str]]:
+    """Return unit and meaning of each field of a group of settings, whose docstring also has trade-off and origin."""
+    _, *body = ast.parse(inspect.getsource(cls)).body[0].body  # type: ignore[attr-defined]
+    found = {}
+    for field, text in itertools.pairwise(body):
+        if isinstance(field, ast.AnnAssign) and isinstance(text, ast.Expr):
+            said = " ".join(ast.literal_eval(text.value).split())
+            parts = re.fullmatch(r"(.+?)(?: \[(.+?)\])?\.(?: Trades off: (.+)\.)? Chosen: (.+)\.", said)
+            assert parts, f"{cls.__name__}: {said}"
+            meaning, unit, *_ = parts.groups(default="-")
+            found[ast.unparse(field.target)] = [unit, meaning]
+    return found
+
+
 def tables() -> Iterator[str]:
     """Yield a section for each group of settings."""
     for group, settings in DiagnosisSettings()._asdict().items():
-        cls: type[Settings] = type(settings)
+        cls = type(settings)
         yield f"\n## `{group}`\n\n{inspect.getdoc(cls)}\n"
         yield "| name | value | unit | meaning |\n|---|---|---|---|"
-        for name, threshold in list_thresholds(cls):
-            cells = [f"`{name}`", show(getattr(settings, name)), threshold.unit, threshold.meaning]
+        for name, texts in stated(cls).items():
+            cells = [f"`{name}`", show(getattr(settings, name)), *texts]
             yield f"| {' | '.join(cell.replace('|', BAR) for cell in cells)} |"
 
 

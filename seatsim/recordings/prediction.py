@@ -22,7 +22,7 @@ import numpy as np
 from seatsim.effects.base import EFFECTS
 from seatsim.recordings.model_error import ModelError, read_model_error
 from seatsim.recordings.recording import Recording, load_recording
-from seatsim.recordings.replay import NOISE_FACTOR, simulate_table
+from seatsim.recordings.replay import COMPARED, NOISE_FACTOR, simulate_table
 from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
@@ -40,6 +40,10 @@ _ONE_RUN_STD = 0.3
 """The same where a single run was diagnosed, so that its spread from run to run is not known."""
 _QUANTILE = 1.645
 """Of the normal distribution, at the ends of a 90 % interval."""
+
+
+class OtherRigError(InputError):
+    """A diagnosis is of another kind of rig than the recording."""
 
 
 class SimulatedRigs(NamedTuple):
@@ -92,8 +96,8 @@ def predict_gap(
         runs: all of the recording's where none are named.
 
     Raises:
-        InputError: the diagnosis is none or states no model error, the scenario lacks an effect that it found, or no
-            channel of it stands above its noise here.
+        InputError: the diagnosis is none or states no model error, it is of another rig (`OtherRigError`), the scenario
+            lacks an effect that it found, or no channel of it stands above its noise here.
         RunError: a simulation could not be carried to its end.
     """
     recording = recording if isinstance(recording, Recording) else load_recording(recording)
@@ -101,12 +105,21 @@ def predict_gap(
     stated, names = _read_diagnosis(Path(diagnosis)), list(runs) or list(recording.runs)
     with expect(diagnosis, "diagnosis"):
         error, causes = read_model_error(stated, str(diagnosis)), _read_causes(stated)
+        _check_rig(augmented, error, recording, diagnosis)
         _check_augmented(augmented, stated, causes, Path(diagnosis))
     after = _simulate(augmented, recording, names)
     before = _simulate(recording.nominal, recording, names)
     shifted = [_simulate(other, recording, names) for other in _move_parameters(augmented, causes)]
     simulated = SimulatedRigs(recording.header.sample_rate, before, after, shifted)
     return _combine(error, simulated, str(recording.folder))
+
+
+def _check_rig(augmented: Scenario, error: ModelError, recording: Recording, diagnosis: str | Path) -> None:
+    """Raise OtherRigError where a diagnosis is of a seat and the recording of a bench, or the other way round."""
+    rig = recording.header.rig
+    if (augmented.plant is None and rig == "seat") or not set(error.noise) <= set(COMPARED[rig]):
+        problem = f"{diagnosis}: is of another kind of rig than {recording.folder}, which is of rig '{rig}'"
+        raise OtherRigError(f"{problem}; give a diagnosis and its augmented scenario of a {rig}")
 
 
 def _check_augmented(

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from importlib.metadata import version
 
-from seatsim.provenance.invocation import state_command
+from seatsim.provenance.statement import state_command
 from seatsim.report.blocks import Block, Code, Items, Section, Table, Text
 
 PACKAGES = ("seatsim", "numpy", "scipy", "numba")

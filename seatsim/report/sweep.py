@@ -16,8 +16,8 @@ from seatsim.report.sweep_pictures import draw_pareto, tabulate_maps
 from seatsim.report.sweep_sensitivity import choose_metric, show_sensitivity
 from seatsim.scenario.conditions import is_condition
 from seatsim.sweeps.outcome import FAILED, UNVERIFIED
-from seatsim.sweeps.statistics.rows import NAMES, Exceedance, SweepRows
-from seatsim.sweeps.statistics.sensitivity import Sensitivities, choose_key
+from seatsim.sweeps.rows import NAMES, Exceedance, SweepRows
+from seatsim.sweeps.sensitivity import Sensitivities, choose_key
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -14,7 +14,7 @@ from seatsim.report.formatting import format_number
 from seatsim.report.planes import Curve, draw_curves, join_planes
 from seatsim.report.sweep_names import COMFORT, TRAVEL, describe_column, format_level
 from seatsim.schema.arrays import Array
-from seatsim.sweeps.statistics.rows import SweepRows, is_number
+from seatsim.sweeps.rows import SweepRows, is_number
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -10,8 +10,8 @@ from seatsim.plots.labels import format_unit
 from seatsim.report.blocks import Bar, Bars, Block, Text
 from seatsim.report.formatting import format_number, format_percent
 from seatsim.report.sweep_names import COMFORT, TRAVEL, describe_column, format_level
-from seatsim.sweeps.statistics.rows import SweepRows
-from seatsim.sweeps.statistics.sensitivity import Sensitivities, Sensitivity
+from seatsim.sweeps.rows import SweepRows
+from seatsim.sweeps.sensitivity import Sensitivities, Sensitivity
 
 MOST_KEYS = 14
 ENOUGH = 0.8

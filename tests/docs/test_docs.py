@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from seatsim.cli.app import app
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis.settings import DiagnosisSettings
 
 ROOT = Path(__file__).resolve().parents[2]
 BENCH = (

@@ -10,7 +10,7 @@ import pytest
 
 import seatsim
 from seatsim.schema.errors import RunError
-from seatsim.sweeps.engines.local import LocalEngine
+from seatsim.sweeps.engines import LocalEngine
 
 from .conftest import bytes_of
 
@@ -19,7 +19,7 @@ EAGER = LocalEngine(2, worth_a_process=1e-9)
 SWEEP = """
 import sys
 from pathlib import Path
-from seatsim.sweeps.engines.local import LocalEngine
+from seatsim.sweeps.engines import LocalEngine
 from seatsim.sweeps.execute import execute, prepare
 
 execute(prepare(Path(sys.argv[1])), Path(sys.argv[2]), LocalEngine(2, worth_a_process=1e-9))
