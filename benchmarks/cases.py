@@ -12,11 +12,10 @@ import pandas as pd
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from seatsim.blind.labels import KINDS, Label
 from seatsim.blind.score.cases import Rate
 from seatsim.blind.score.score import score_verdicts
 from seatsim.blind.score.verdicts import read_verdict
-from seatsim.blind.sealed import unseal
+from seatsim.blind.sealed import KINDS, Label, unseal
 from seatsim.diagnosis.design.isolability import find_isolable_groups
 from seatsim.diagnosis.noise import NoiseWeights, weigh_uniformly
 from seatsim.diagnosis.problem import DiagnosisProblem

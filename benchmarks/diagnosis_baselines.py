@@ -44,11 +44,10 @@ from cases import (
 from seatsim.diagnosis.candidates import list_candidates
 from seatsim.diagnosis.fit import fit
 from seatsim.diagnosis.movement import measure_movements
-from seatsim.diagnosis.objective import Evaluation, Objective
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.objective import Evaluation, Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, pose_problem
 from seatsim.diagnosis.select import select_effects
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.recordings.recording import load_recording
 
 NAMED, NAMED_NEXT, LARGE = 0.85, 0.8, 0.02

@@ -25,12 +25,11 @@ from threadpoolctl import threadpool_limits
 from typical_effects import CHANNELS
 
 from seatsim.diagnosis.candidates import Candidate, list_candidates
+from seatsim.diagnosis.estimates import estimate_standard_deviations
 from seatsim.diagnosis.noise import weigh_noise
 from seatsim.diagnosis.nuisance import vary
-from seatsim.diagnosis.objective import Evaluation, Objective
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.objective import Evaluation, Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, pose_problem
-from seatsim.diagnosis.uncertainty import estimate_standard_deviations
 from seatsim.diagnosis.validate import refit_closely
 from seatsim.recordings.header import Header, RunEntry
 from seatsim.recordings.recording import SEAT_CHANNELS, ChannelEntry, Recording

@@ -26,17 +26,16 @@ import pandas as pd
 from cases import PROCESSES, Diagnoser, EncodedDiagnosis, show_progress, write_verdict
 from threadpoolctl import threadpool_limits
 
-from seatsim.blind.labels import Label
-from seatsim.blind.make.draw_case import CaseSpecification
+from seatsim.blind.make.compose import CaseSpecification
 from seatsim.blind.make.make import case_name, draw_files, make_case
 from seatsim.blind.score.verdicts import Verdict, is_right, read_verdict
+from seatsim.blind.sealed import Label
 from seatsim.diagnosis.candidates import list_candidates
-from seatsim.diagnosis.design.collinearity import fit_member
+from seatsim.diagnosis.design.separability import fit_member
 from seatsim.diagnosis.diagnose import diagnose
 from seatsim.diagnosis.fit import fit
 from seatsim.diagnosis.noise import weigh_noise
-from seatsim.diagnosis.objective import Objective
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.objective import Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, pose_problem
 from seatsim.diagnosis.select import select_effects
 from seatsim.diagnosis.settings.judging import DecisionSettings

@@ -27,10 +27,9 @@ from rig_records import list_carriers
 
 import seatsim
 from seatsim.blind.carrier.make import make_on_carrier
-from seatsim.blind.labels import Label
 from seatsim.blind.score.score import score_verdicts
 from seatsim.blind.score.verdicts import Verdict, is_right, is_wrong_name, read_verdict
-from seatsim.blind.sealed import unseal
+from seatsim.blind.sealed import Label, unseal
 from seatsim.schema.content import to_content
 from seatsim.schema.processes import run_jobs
 

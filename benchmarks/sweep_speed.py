@@ -34,8 +34,7 @@ from numpy.typing import NDArray
 from seatsim.cli.outputs.simulated import write_sweep_report
 from seatsim.scenario.scenario import Scenario
 from seatsim.simulation import simulate as simulation
-from seatsim.sweeps.engines.base import simulate_one
-from seatsim.sweeps.engines.local import LocalEngine
+from seatsim.sweeps.engines import LocalEngine, simulate_one
 from seatsim.sweeps.execute import execute, prepare
 from seatsim.sweeps.plan import Plan
 

@@ -25,15 +25,17 @@ LOOPS = "images/loops"
 """Folder of the pictures of the dampers."""
 HEAD = """# Models, laws, floors and effects
 
-Every name that can stand in a scenario, with what it is; each leads to its equation, parameters, source and range.
-`seatsim describe NAME` prints the same in a terminal. Built from the code by `python docs/build_reference.py`.
+Every name that can stand in a scenario; each leads to its equation, parameters, source and range, which `seatsim
+describe NAME` prints in a terminal. Built from the code by `python docs/build_reference.py`. Which to take:
+[Which damper, which law, which file?](choose.md)
 """
 
 SHOWN = """
-The pictures show the force with the default parameters in a sine test, at no current, at half and at the whole current
-for which the model holds. Each picture has its own scale of force. `seatsim characterise --model NAME` draws the loops
-of any other test.
+The pictures show the force in a sine test with the default parameters, at no current, half and the whole current of the
+model's range. Defaults of UTFSM are fitted to measured sine tests of the damper in the public repository
+DanielMaurelE/vRTHS_AMBC_MRdamper (MIT).
 """
+FITTED = re.compile(r"defaults fitted by us to measured sine tests of the damper of UTFSM \(Chile, [^)]*\)")
 
 
 class Chapter(NamedTuple):
@@ -42,6 +44,10 @@ class Chapter(NamedTuple):
     file: str
     title: str
     names: list[str]
+
+    def link(self, name: str) -> str:
+        """Return the link to the section of a name."""
+        return f"[{name}]({self.file}#{name.replace('.', '')})"
 
 
 FAMILIES = {
@@ -74,33 +80,23 @@ def list_chapters(kind: str) -> Iterator[Chapter]:
 
 
 def write_index(kind: str, chapters: list[Chapter]) -> str:
-    """Return the section of a kind: a table of its names, each a link to its page."""
+    """Return the section of a kind: of dampers a table for each family, of the other kinds the links to their page."""
     lines = [f"\n## {kind.capitalize()}s\n"]
-    if kind == "damper":
-        lines += ["Confidence says how far a model's equation is that of its source:\n"]
-        lines += [f"- {word}: {meaning}" for word, meaning in CONFIDENCE.items()]
-    for chapter in chapters:
-        lines += [f"\n### {chapter.title}\n"] if kind == "damper" else []
-        heads = ["name", "is", *(("confidence", "states", "speed", "current") if kind == "damper" else ())]
-        lines += [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
-        for name in chapter.names:
-            link = f"[{name}]({chapter.file}#{name.replace('.', '')})"
-            lines.append(f"| {' | '.join([link, cell(find_page(name).title), *state_range(kind, name)])} |")
-    return "\n".join(lines) + "\n"
-
-
-def state_range(kind: str, name: str) -> list[str]:
-    """Return confidence, number of states and range of a damper, nothing of the other kinds."""
     if kind != "damper":
-        return []
-    cls = registry.find(kind, name)
-    known = registry.specification_of(cls)
-    return [find_confidence(cls), str(len(known.initial)), f"{known.max_speed:g} m/s", f"{known.max_current:g} A"]
+        return "\n".join([*lines, *(", ".join(map(chapter.link, chapter.names)) for chapter in chapters)]) + "\n"
+    lines += ["Confidence says how far a model's equation is that of its source:\n"]
+    lines += [f"- {word}: {meaning}" for word, meaning in CONFIDENCE.items()]
+    for chapter in chapters:
+        lines += [f"\n### {chapter.title}\n", "| name | is | confidence |", "|---|---|---|"]
+        for name in chapter.names:
+            confidence = find_confidence(registry.find(kind, name))
+            lines.append(f"| {chapter.link(name)} | {cell(find_page(name).title)} | {confidence} |")
+    return "\n".join(lines) + "\n"
 
 
 def write_chapter(chapter: Chapter) -> str:
     """Return the text of one page."""
-    head = f"# {chapter.title}\n\nBuilt from the code by `python docs/build_reference.py`.\n"
+    head = f"# {chapter.title}\n"
     if chapter.file.startswith("reference/dampers"):
         head += SHOWN
     return head + "".join(write_entry(find_page(name)) for name in chapter.names)
@@ -110,11 +106,17 @@ def write_entry(page: Page) -> str:
     """Return the section of one name: words and equations, parameters, source and range."""
     parts = [f"\n## {page.name}\n", *write_text(page)]
     if page.kind == "damper":
-        parts.append(f"![Force of {page.name} over velocity and displacement](../{LOOPS}/{page.name}.svg)\n")
+        parts.append(f"![loops of {page.name}](../{LOOPS}/{page.name}.svg)\n")
     cls = RECORDS[page.name] if page.kind == "section" else registry.find(page.kind, page.name)
     parts.append("\n".join(write_parameters(cls, page.keys)) if page.keys else "No parameters.\n")
-    facts = [f"Source: {page.source}"] * bool(page.source) + page.facts
-    return "\n".join([*parts, *(f"- {escape(fact)}" for fact in facts), ""])
+    facts = [f"Source: {FITTED.sub('defaults of UTFSM', page.source)}"] * bool(page.source) + page.facts
+    return "\n".join([*parts, *(f"- {shorten(escape(fact))}" for fact in facts), ""])
+
+
+def shorten(fact: str) -> str:
+    """Return a fact in fewer words: a link in place of what a word for confidence means, ranges by dots."""
+    fact = re.sub(r"^(Confidence: )(\w+);.*", r"\1[\2](../reference.md#dampers)", fact)
+    return re.sub(r"(?<=\d) to (?=-?\d)", "..", fact) if fact.startswith("Range of the data") else fact
 
 
 def write_text(page: Page) -> Iterator[str]:
@@ -130,11 +132,11 @@ def write_text(page: Page) -> Iterator[str]:
 
 def write_parameters(cls: type, keys: list[FieldSpecification]) -> Iterator[str]:
     """Yield the lines of the table of parameters."""
-    yield "| parameter | unit | default | range | meaning |\n|---|---|---|---|---|"
+    yield "| parameter | unit | default (a fit's start) | range | meaning |\n|---|---|---|---|---|"
     for key in keys:
         default = show(key.default)
         if key.required:
-            default = "required" if key.default is None else f"required, fit from {default}"
+            default = "required" if key.default is None else f"required ({default})"
         yield f"| {' | '.join([f'`{key.name}`', key.unit, default, show_range(cls, key.name), cell(key.meaning)])} |"
     yield ""
 
@@ -160,7 +162,7 @@ def show_range(cls: type, name: str) -> str:
     least = f"> {round(low, 8):g}" if open_below else f">= {low:g}"
     if math.isinf(high):
         return least
-    return f"{least}, <= {high:g}" if open_below else f"{low:g} to {high:g}"
+    return f"{least}, <= {high:g}" if open_below else f"{low:g}..{high:g}"
 
 
 def cell(text: str) -> str:

@@ -2,28 +2,27 @@
 
 from __future__ import annotations
 
+import ast
 import inspect
+import itertools
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
-from seatsim.diagnosis.settings.threshold import Settings, list_thresholds
+from seatsim.diagnosis.settings import DiagnosisSettings
 
 PAGE = Path(__file__).with_name("settings.md")
 BAR = r"\|"
 HEAD = """# Settings of a diagnosis
 
-Every threshold on which a diagnosis rests: a frozen value with its unit and meaning, what is lost where it is raised or
-lowered, and how it was chosen. Built by `python docs/build_settings.py` from `seatsim/diagnosis/settings`. The stages
-that the groups belong to are described in [Diagnosis](diagnosis.md), their symbols in the
-[nomenclature](nomenclature.md).
-
-A diagnosis with another value is asked for in Python; the command line keeps to the values below:
+Every threshold on which a [diagnosis](diagnosis_theory.md) rests. What is lost where it is raised or lowered, and how
+it was chosen, stands beside it in `seatsim/diagnosis/settings`. Built by `python docs/build_settings.py`. Another value
+is asked for in Python:
 
 <!-- not run -->
 ```python
 import seatsim
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis.settings import DiagnosisSettings
 
 usual = DiagnosisSettings()
 stricter = usual._replace(decision=usual.decision._replace(explained=0.06))
@@ -39,14 +38,28 @@ def show(value: object) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
+def stated(cls: type) -> dict[str, list[str]]:
+    """Return unit and meaning of each field of a group of settings, whose docstring also has trade-off and origin."""
+    _, *body = ast.parse(inspect.getsource(cls)).body[0].body  # type: ignore[attr-defined]
+    found = {}
+    for field, text in itertools.pairwise(body):
+        if isinstance(field, ast.AnnAssign) and isinstance(text, ast.Expr):
+            said = " ".join(ast.literal_eval(text.value).split())
+            parts = re.fullmatch(r"(.+?)(?: \[(.+?)\])?\.(?: Trades off: (.+)\.)? Chosen: (.+)\.", said)
+            assert parts, f"{cls.__name__}: {said}"
+            meaning, unit, *_ = parts.groups(default="-")
+            found[ast.unparse(field.target)] = [unit, meaning]
+    return found
+
+
 def tables() -> Iterator[str]:
     """Yield a section for each group of settings."""
     for group, settings in DiagnosisSettings()._asdict().items():
-        cls: type[Settings] = type(settings)
+        cls = type(settings)
         yield f"\n## `{group}`\n\n{inspect.getdoc(cls)}\n"
-        yield "| name | value | unit | meaning | what it trades off | how it was chosen |\n|---|---|---|---|---|---|"
-        for name, threshold in list_thresholds(cls):
-            cells = [f"`{name}`", show(getattr(settings, name)), *threshold]
+        yield "| name | value | unit | meaning |\n|---|---|---|---|"
+        for name, texts in stated(cls).items():
+            cells = [f"`{name}`", show(getattr(settings, name)), *texts]
             yield f"| {' | '.join(cell.replace('|', BAR) for cell in cells)} |"
 
 

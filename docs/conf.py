@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import inspect
+import re
 from importlib.metadata import version as version_of
+from pathlib import Path
 
 from docutils.nodes import SkipNode, math, math_block
 from docutils.utils.math import MathError
@@ -17,9 +20,13 @@ project = "seatsim"
 author = "the seatsim project"
 version = release = version_of("seatsim")
 
-extensions = ["myst_parser", "sphinx_copybutton"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
 exclude_patterns = ["schemas", "sweeps", "yu2019", "images"]
 nitpicky = True
+# Types of signatures are shown, not linked: most are of libraries whose pages a build does not fetch.
+nitpick_ignore_regex = [("py:.*", ".*")]
+nb_execution_mode = "off"
+autodoc_preserve_defaults = True
 
 # Pages are read on GitHub as well: its anchors of headings, and its blocks of mathematics.
 myst_enable_extensions = ["amsmath", "dollarmath"]
@@ -55,7 +62,45 @@ def lead_to_page(app: Sphinx, page: str, source: list[str]) -> None:
         source[0] = source[0].replace(f"](../{file}", f"]({including}")
 
 
+def write_docstring_as_text(
+    app: Sphinx, kind: str, name: str, value: object, options: object, lines: list[str]
+) -> None:
+    """Let a docstring be read as plain text: names in code, indented equations as they stand."""
+    text = re.sub(r"`([^`\n]+)`", r"``\1``", "\n".join(lines))
+    text = re.sub(r"(``.*?``)|([|*\\])", lambda found: found[1] or "\\" + found[2], text)
+    lines[:] = re.sub(r"(?m)(?<=\S)\n\n(?= {4}(?!:))", "\n\n::\n\n", text).split("\n")
+
+
+def skip_plain_field(app: Sphinx, kind: str, name: str, value: object, skip: bool, options: object) -> bool | None:
+    """Leave out fields of named tuples that say no more than their type, which stands in the signature."""
+    return True if (value.__doc__ or "").startswith("Alias for field number") else None
+
+
+def name_fields(app: Sphinx, kind: str, name: str, value: type, *_: object) -> tuple[str, None] | None:
+    """Show of a class the names of its fields; their types and meanings are long, and stand in its docstring."""
+    return (f"({', '.join(inspect.signature(value).parameters)})", None) if kind == "class" else None
+
+
+def write_llms_file(app: Sphinx, error: Exception | None) -> None:
+    """Write `llms.txt`, for programs that read: title, address and first sentence of each page."""
+    if error or app.builder.format != "html":
+        return
+    lines = [f"# {project} {version}", ""]
+    for page in sorted(app.env.found_docs):
+        source = Path(app.env.doc2path(page)).read_text(encoding="utf-8")
+        paragraph = re.search(r"^(?=[A-Z`])(?!```).+?(?=\n\n|\Z)", source, re.DOTALL | re.MULTILINE)
+        words = re.sub(r"\[(.+?)\]\(.+?\)", r"\1", " ".join(paragraph[0].split())) if paragraph else ""
+        sentence = re.split(r"(?<=\.) (?=[A-Z`])", words)[0]
+        lines.append(f"- [{app.env.titles[page].astext()}]({page}.html): {sentence}".rstrip(": "))
+    (Path(app.outdir) / "llms.txt").write_text("\n".join([*lines, ""]), encoding="utf-8")
+
+
 def setup(app: Sphinx) -> None:
     """Register what the site needs beyond its settings."""
     app.add_html_math_renderer("mathml", (write_formula, None), (write_formula, None))
     app.connect("source-read", lead_to_page)
+    # Before the extension that reads the sections of a docstring.
+    app.connect("autodoc-process-docstring", write_docstring_as_text, priority=400)
+    app.connect("autodoc-skip-member", skip_plain_field)
+    app.connect("autodoc-process-signature", name_fields)
+    app.connect("build-finished", write_llms_file)

@@ -1,4 +1,7 @@
-"""The sealed file: labels and unseen runs, encrypted (Fernet: AES-128-CBC with HMAC-SHA256), opened by a key alone."""
+"""The sealed file: labels and unseen runs, encrypted (Fernet: AES-128-CBC with HMAC-SHA256), opened by a key alone.
+
+A label is written in words of its own: kinds of cases, the contract's effects, the blocks of a rig.
+"""
 
 from __future__ import annotations
 
@@ -8,18 +11,78 @@ import json
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal, Required, TypedDict, get_args
 
 from cryptography.fernet import Fernet, InvalidToken
 
-from seatsim.blind.labels import Label
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import make_folder, write_bytes, write_text
 from seatsim.schema.guarded import read_bytes
 from seatsim.schema.text import explain_bad_name
 
-LARGEST = 2**30
+Kind = Literal["none", "one", "two", "outside"]
+KINDS: tuple[Kind, ...] = get_args(Kind)
+"""No effect, one or two effects of the library, something outside the library."""
+_CarriedKind = Literal["carried", "untouched"]
+"""One effect on a measured recording, and such a recording as it was measured, of which nobody knows what is true."""
+Block = Literal["damper", "coil", "suspension", "cushion", "driver", "floor", "sensor"]
+BLOCKS: tuple[Block, ...] = get_args(Block)
+_LIBRARY = {
+    "damper": (
+        "thermal_fade gas_spring asymmetry preyield_hysteresis magnetic_saturation remanence free_play seal_friction"
+    ),
+    "coil": "lag asymmetric_lag delay current_limit",
+    "suspension": "friction end_stop progressive_spring",
+    "cushion": "hardening separation",
+    "driver": "mass biodynamics",
+    "floor": "unmeasured_input",
+    "sensor": "gain bias lag clock_skew",
+}
+EFFECTS = tuple(f"{block}.{name}" for block, names in _LIBRARY.items() for name in names.split())
+"""The library of the contract, section 5, written again: the makers share no code with the candidates."""
+
+
+class Label(TypedDict, total=False):
+    """What is true of a case. Lists go in parallel, one entry for each fault; a hand-made label may hold less."""
+
+    kind: Required[Kind | _CarriedKind]
+    effects: Required[list[str]]
+    """Effects of the library that are at work; empty outside it."""
+    blocks: Required[list[str]]
+    """Block of each fault."""
+    forms: list[str]
+    """Name of each fault scenario."""
+    severities: list[float]
+    materialities: list[float]
+    """Of each fault beside the others; 1 is the material limit."""
+    net_materialities: list[float]
+    """The same, after what a refit inside the parameter tolerance takes away."""
+    shapes: list[dict[str, float]]
+    """Parameters of each fault; on a measured recording under the names that the effect's own parameters have."""
+    faulty_channels: list[str]
+    overlap: float
+    """Collinearity of the responses to two faults, 0..1."""
+    nominal: str
+    """Model of the nominal damper."""
+    missing: list[str]
+    """Channels that are not recorded."""
+    temperatures: list[float]
+    """Of the damper at the start of each run, degC."""
+    background: float
+    """Random force on the frame, N rms."""
+    sample_rate: float
+    """Hz."""
+    tolerance: float
+    """Relative error of nominal parameters that the owner states."""
+    rig: dict[str, float]
+    """Nominal parameters of seat, damper and coil."""
+    order: dict[str, object]
+    """What the case was ordered to be, see `make.compose.CaseSpecification`."""
+
+
+_LARGEST = 2**30
 """Bytes of a sealed file."""
-LABELS = "labels.json"
+_LABELS = "labels.json"
 """Name of the labels inside the sealed file."""
 SEAL = "seal.txt"
 """Name of the hash beside the recordings."""
@@ -58,7 +121,7 @@ def seal(path: Path, folder: Path, key: str, content: Sealed) -> str:
     """
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as archive:
-        archive.writestr(LABELS, json.dumps({"made": content.made, "cases": content.labels}))
+        archive.writestr(_LABELS, json.dumps({"made": content.made, "cases": content.labels}))
         for case, files in content.unseen.items():
             for name, data in files.items():
                 archive.writestr(f"unseen/{case}/{name}", data)
@@ -75,7 +138,7 @@ def unseal(path: Path, key: str, folder: Path | None = None) -> Sealed:
     Raises:
         InputError: the file cannot be read, is not the one sealed for the folder, or the key does not open it.
     """
-    token = read_bytes(path, LARGEST, "a sealed file")
+    token = read_bytes(path, _LARGEST, "a sealed file")
     if folder is not None:
         _check_hash(path, token, folder)
     try:
@@ -84,7 +147,7 @@ def unseal(path: Path, key: str, folder: Path | None = None) -> Sealed:
         raise InputError(f"{path}: the key does not open it; give the key that `blind make` printed") from error
     with zipfile.ZipFile(io.BytesIO(packed)) as archive:
         # what opens was encrypted by `seal`, so its form need not be checked
-        head = json.loads(archive.read(LABELS))
+        head = json.loads(archive.read(_LABELS))
         unseen: dict[str, dict[str, bytes]] = {}
         for entry in archive.namelist():
             if entry.startswith("unseen/"):
@@ -99,6 +162,6 @@ def _check_hash(path: Path, token: bytes, folder: Path) -> None:
     note = folder / SEAL
     if not note.is_file():
         raise InputError(f"{note}: not there; {folder} is not a folder that `blind make` finished")
-    words = read_bytes(note, LARGEST, "a seal").decode(errors="replace").split()  # "sha256 HASH  NAME"
+    words = read_bytes(note, _LARGEST, "a seal").decode(errors="replace").split()  # "sha256 HASH  NAME"
     if len(words) < 2 or words[1] != hashlib.sha256(token).hexdigest():
         raise InputError(f"{path}: is not the file sealed for {folder} (its SHA-256 differs from {SEAL})")

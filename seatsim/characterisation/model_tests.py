@@ -76,15 +76,15 @@ def _find_specification(cls: type) -> DamperSpecification:
     return cast("DamperSpecification", specification_of(cls))
 
 
-FASTEST = (2.0, 1.0, 0.5, 0.2, 0.1)
+_FASTEST = (2.0, 1.0, 0.5, 0.2, 0.1)
 """Hz; the first that keeps to the model's speeds is the highest frequency where none is stated."""
-LARGEST = 0.01
+_LARGEST = 0.01
 """m; largest amplitude where none is stated."""
-SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
+_SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
 """Currents over the largest for which the model holds."""
 
 
-class SweepSettings(NamedTuple):
+class _SweepSettings(NamedTuple):
     """Currents [A], temperatures [degC], amplitudes [m] and frequencies [Hz] of the tests."""
 
     currents: Sequence[float]
@@ -95,7 +95,7 @@ class SweepSettings(NamedTuple):
 
 def choose_settings(
     tested: DamperSpecimen, currents: str = "", temperatures: str = "", amplitudes: str = "", frequencies: str = ""
-) -> SweepSettings:
+) -> _SweepSettings:
     """Return the settings that are stated as numbers between commas, and for the others those for which a model holds.
 
     By default: five currents up to the largest; the least, mean and largest temperature where these matter, else the
@@ -113,14 +113,14 @@ def choose_settings(
     fast = _parse_numbers("--frequencies", frequencies, "Hz", "0.5,1,2", above=0.0)
     reach = specification.max_speed / (2.0 * math.pi)
     if not far:
-        largest_far = _round_down(min(LARGEST, reach / max(fast))) if fast else LARGEST
+        largest_far = _round_down(min(_LARGEST, reach / max(fast))) if fast else _LARGEST
         far = [0.5 * largest_far, largest_far]
     if not fast:
-        top = next((f for f in FASTEST if f * max(far) <= reach), FASTEST[-1])
+        top = next((f for f in _FASTEST if f * max(far) <= reach), _FASTEST[-1])
         fast = [0.25 * top, 0.5 * top, top]
-    return SweepSettings(
+    return _SweepSettings(
         _parse_numbers("--currents", currents, "A", "0,0.5,1", low=0.0)
-        or [round(share * largest, 9) for share in SHARES],
+        or [round(share * largest, 9) for share in _SHARES],
         _parse_numbers("--temperatures", temperatures, "degC", "20,50,80", low=-50.0, high=200.0) or list(warm),
         far,
         fast,
@@ -159,17 +159,17 @@ def _parse_numbers(
     return sorted(set(values))
 
 
-SETTLED = 3.0
+_SETTLED = 3.0
 """Seconds a sine runs at least before its last cycle is taken: models forget their start in that time."""
-STEP = 1e-4
+_STEP = 1e-4
 """Seconds of a step of current between two values of the force."""
-BEFORE = 0.2
+_BEFORE = 0.2
 """Seconds of constant speed before the step."""
-TIME_CONSTANTS = 12.0
+_TIME_CONSTANTS = 12.0
 """Time constants of the coil after the step."""
 
 
-def characterise_model(tested: DamperSpecimen, chosen: SweepSettings) -> Characterisation:
+def characterise_model(tested: DamperSpecimen, chosen: _SweepSettings) -> Characterisation:
     """Return what a bench would show of a model: sine tests at all settings, and steps of the command.
 
     Raises:
@@ -177,7 +177,7 @@ def characterise_model(tested: DamperSpecimen, chosen: SweepSettings) -> Charact
     """
     rows = []
     for x, f, warm, i in itertools.product(chosen.amplitudes, chosen.frequencies, chosen.temperatures, chosen.currents):
-        cycles = max(3, math.ceil(SETTLED * f) + 1)
+        cycles = max(3, math.ceil(_SETTLED * f) + 1)
         test = sine_test(tested.damper, x, f, i, warm, tested.factors, cycles)
         test = test._replace(time=test.time - test.time[0])
         row = summarise_loops([test], f"{1e3 * x:g} mm, {f:g} Hz, {i:g} A, {warm:g} degC", "", i, warm)
@@ -190,7 +190,7 @@ def characterise_model(tested: DamperSpecimen, chosen: SweepSettings) -> Charact
     )
 
 
-def _responses(tested: DamperSpecimen, chosen: SweepSettings, speed: float) -> Iterator[Response]:
+def _responses(tested: DamperSpecimen, chosen: _SweepSettings, speed: float) -> Iterator[Response]:
     currents = [i for i in chosen.currents if i <= tested.coil.max_current] or [0.0]
     low = min(currents)
     for pair in itertools.chain(((low, i) for i in currents if i > low), ((i, low) for i in currents if i > low)):
@@ -208,13 +208,13 @@ def step_response(tested: DamperSpecimen, before: float, after: float, speed: fl
     """
     coil = tested.coil
     slowest = min(rate for rate in (coil.rate, coil.rate_fall) if rate > 0.0)
-    lead, rows = round(BEFORE / STEP), round((coil.delay + TIME_CONSTANTS / slowest) / STEP)
-    time = np.asarray(0.5 * STEP * np.arange(-2 * lead, 2 * rows + 1), dtype=float)
+    lead, rows = round(_BEFORE / _STEP), round((coil.delay + _TIME_CONSTANTS / slowest) / _STEP)
+    time = np.asarray(0.5 * _STEP * np.arange(-2 * lead, 2 * rows + 1), dtype=float)
     late = np.maximum(time - coil.delay, 0.0)
     current = np.array([relax(coil, before, after, t) for t in late])
     motion = speed * time, np.full(len(time), speed)
     step, off, on = (
-        bench_force(tested.damper, *motion, i, temperature, STEP, tested.factors) for i in (current, before, after)
+        bench_force(tested.damper, *motion, i, temperature, _STEP, tested.factors) for i in (current, before, after)
     )
     share = (current[::2] - before) / (after - before)
     blank = Response("", before, after, 1, "simulated", speed=speed, current_t95=find_crossing(time[::2], share, 0.95))
@@ -223,10 +223,10 @@ def step_response(tested: DamperSpecimen, before: float, after: float, speed: fl
     if float(np.max(np.abs(on - off)[kept])) <= 1e-9 * float(np.max(np.abs(on))):
         return blank._replace(method="", note="the force does not depend on the current")
     step, off, on = (force[None, kept] for force in (step, off, on))
-    return estimate_response(StepEnsemble(step, off, on, np.zeros(1), lead - lead // 2, 1.0 / STEP), blank)
+    return estimate_response(StepEnsemble(step, off, on, np.zeros(1), lead - lead // 2, 1.0 / _STEP), blank)
 
 
-def _notes(tested: DamperSpecimen, chosen: SweepSettings) -> Iterator[str]:
+def _notes(tested: DamperSpecimen, chosen: _SweepSettings) -> Iterator[str]:
     """Yield what the user has to know of the settings."""
     specification = tested.specification
     if specification.complete and not tested.stated:

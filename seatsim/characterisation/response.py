@@ -1,27 +1,129 @@
-"""Response times of a force, or a current, to steps of the current, and the first-order rate that they imply."""
+"""Steady cycles of a record, and the response of a force or a current to steps of the current."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from itertools import pairwise
 from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.schema.arrays import Array
 from seatsim.schema.content import Form, Unwritten
+from seatsim.simulation.damper_bench import SineTest
+
+_BAND = 0.2
+"""Half the width, over the amplitude, of the band about mid-stroke that a passage has to cross from side to side."""
+_ALIKE = 0.03
+"""Largest difference of a steady cycle's amplitude and period from their median, relative."""
+_CENTRED = 0.05
+"""Largest distance of the middle of a steady cycle from the median of the middles, over the amplitude."""
+_LEAST_STEADY = 3
+"""Steady cycles that make a record cyclic; two where there are no others."""
+_SAMPLES = (64, 2000)
+"""Least and most samples of a resampled cycle."""
+
+
+class Cycle(NamedTuple):
+    """One cycle of a record: its ends as rows (with fractions), amplitude and mid-stroke in m."""
+
+    first: float
+    last: float
+    amplitude: float
+    middle: float
+
+    @property
+    def rows(self) -> slice:
+        """The rows inside."""
+        return slice(int(np.ceil(self.first)), int(self.last) + 1)
+
+    @property
+    def length(self) -> float:
+        """Number of rows, with fractions."""
+        return self.last - self.first
+
+
+def find_cycles(displacement: Array) -> list[Cycle]:
+    """Return the cycles of a displacement, shape (N,), from one upward passage of mid-stroke to the next.
+
+    Mid-stroke is halfway between the 1st and the 99th percentile. A passage leads from below a band about it to
+    above, so that noise makes none; its instant is where the straight line through its rows meets mid-stroke.
+    """
+    low, high = (float(q) for q in np.percentile(displacement, (1, 99)))
+    centre, amplitude = 0.5 * (low + high), 0.5 * (high - low)
+    if amplitude <= 0.0:
+        return []
+    side = (displacement > centre + _BAND * amplitude).astype(int) - (displacement < centre - _BAND * amplitude)
+    outside = np.flatnonzero(side)
+    upward = np.flatnonzero((side[outside][:-1] < 0) & (side[outside][1:] > 0))
+    instants = [_passage(displacement, outside[k], outside[k + 1], centre) for k in upward]
+    return [_cycle(displacement, a, b) for a, b in pairwise(instants)]
+
+
+def _passage(x: Array, first: int, last: int, centre: float) -> float:
+    rows = np.arange(first, last + 1)
+    slope, start = np.polyfit(rows - first, x[first : last + 1], 1)
+    return float(np.clip(first + (centre - start) / slope, first, last)) if slope > 0.0 else 0.5 * (first + last)
+
+
+def _cycle(x: Array, first: float, last: float) -> Cycle:
+    inside = x[int(first) : int(np.ceil(last)) + 1]
+    low, high = float(np.min(inside)), float(np.max(inside))
+    return Cycle(first, last, 0.5 * (high - low), 0.5 * (high + low))
+
+
+def select_steady_cycles(cycles: Sequence[Cycle]) -> list[Cycle]:
+    """Return the cycles whose amplitude, period and mid-stroke agree with their medians: no ring-up, no ring-down.
+
+    Empty where they are fewer than half of all, or fewer than three (two, where these are all): such a record is not
+    cyclic.
+    """
+    if not cycles:
+        return []
+    table = np.array([(cycle.amplitude, cycle.length, cycle.middle) for cycle in cycles])
+    amplitude, length, middle = np.median(table, axis=0)
+    alike = np.abs(table[:, 0] - amplitude) <= _ALIKE * amplitude
+    alike &= np.abs(table[:, 1] - length) <= _ALIKE * length
+    alike &= np.abs(table[:, 2] - middle) <= _CENTRED * amplitude
+    steady = [cycle for cycle, kept in zip(cycles, alike, strict=True) if kept]
+    enough = len(steady) >= min(_LEAST_STEADY, max(2, len(cycles)))
+    return steady if enough and 2 * len(steady) >= len(cycles) else []
+
+
+def resample_loops(record: BenchRecord, cycles: Sequence[Cycle]) -> list[SineTest]:
+    """Return cycles of a record as loops of equally many samples, both ends included, by linear interpolation."""
+    least, most = _SAMPLES
+    length = float(np.median([cycle.length for cycle in cycles]))
+    samples = min(most, max(least, 2 * round(0.5 * length)))
+    rows = np.arange(len(record.force))
+    loops = []
+    for cycle in cycles:
+        at = np.linspace(cycle.first, cycle.last, samples + 1)
+        x, v, force = (np.interp(at, rows, y) for y in (record.displacement, record.velocity, record.force))
+        loops.append(SineTest((at - cycle.first) / record.rate, x, v, force))
+    return loops
+
+
+def average_loops(loops: Sequence[SineTest]) -> SineTest:
+    """Return the mean of loops of equally many samples, phase by phase."""
+    time, x, v, force = (np.mean([loop[part] for loop in loops], axis=0) for part in range(4))
+    return SineTest(time, x, v, force)
+
 
 SHARES = (0.05, 0.90, 0.95)
 """Shares of the change whose instants are stated."""
-RESAMPLES = 200
+_RESAMPLES = 200
 """Draws of the steps from which the deviation of t95 is taken: it is then known to some 5 %."""
-SETTLED_BY = 0.1
+_SETTLED_BY = 0.1
 """Largest difference of the curve's last but one fifth from 1, for a response that has settled."""
 
 
-Seconds = Annotated[float, Form(unit="s")]
-Amperes = Annotated[float, Form(unit="A")]
-Rate = Annotated[float, Form(unit="per_s")]
-Speed = Annotated[float, Form(unit="m_s")]
+_Seconds = Annotated[float, Form(unit="s")]
+_Amperes = Annotated[float, Form(unit="A")]
+_Rate = Annotated[float, Form(unit="per_s")]
+_Speed = Annotated[float, Form(unit="m_s")]
 
 
 class Response(NamedTuple):
@@ -38,21 +140,21 @@ class Response(NamedTuple):
     """
 
     record: str
-    before: Amperes
-    after: Amperes
+    before: _Amperes
+    after: _Amperes
     steps: int
     method: str
     note: str = ""
-    t5: Seconds = math.nan
-    t90: Seconds = math.nan
-    t95: Seconds = math.nan
-    t95_sd: Seconds = math.nan
-    rate_90: Rate = math.nan
-    rate_95: Rate = math.nan
-    rate: Rate = math.nan
-    delay: Seconds = math.nan
-    current_t95: Seconds = math.nan
-    speed: Speed = math.nan
+    t5: _Seconds = math.nan
+    t90: _Seconds = math.nan
+    t95: _Seconds = math.nan
+    t95_sd: _Seconds = math.nan
+    rate_90: _Rate = math.nan
+    rate_95: _Rate = math.nan
+    rate: _Rate = math.nan
+    delay: _Seconds = math.nan
+    current_t95: _Seconds = math.nan
+    speed: _Speed = math.nan
     time: Unwritten[Array | None] = None
     share: Unwritten[Array | None] = None
 
@@ -89,7 +191,7 @@ def estimate_response(ensemble: StepEnsemble, blank: Response, window: int = 1) 
     top, bottom = (ensemble.force - ensemble.off) * wanted, wanted * wanted
     time = (np.arange(top.shape[1]) - ensemble.before_rows) / ensemble.rate + float(np.mean(ensemble.instants))
     share, end = _curve(top.sum(axis=0), bottom.sum(axis=0), time, window)
-    if not abs(end - 1.0) <= SETTLED_BY:
+    if not abs(end - 1.0) <= _SETTLED_BY:
         return blank._replace(method="", note=f"the force has not settled within {1e3 * time[-1]:.0f} ms of a step")
     t5, t90, t95 = (find_crossing(time, share, level) for level in SHARES)
     rate = math.log(19.0) / (t95 - t5) if t95 > t5 else math.nan
@@ -129,7 +231,7 @@ def _deviation(top: Array, bottom: Array, time: Array, window: int) -> float:
     steps = len(top)
     if steps < 3:
         return math.nan
-    draws = np.random.default_rng(0).integers(0, steps, (RESAMPLES, steps))
+    draws = np.random.default_rng(0).integers(0, steps, (_RESAMPLES, steps))
     counts = np.stack([np.bincount(draw, minlength=steps) for draw in draws]).astype(float)
     curves = (_curve(a, b, time, window)[0] for a, b in zip(counts @ top, counts @ bottom, strict=True))
     times = [find_crossing(time, curve, SHARES[-1]) for curve in curves]

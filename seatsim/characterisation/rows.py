@@ -9,24 +9,24 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from seatsim.characterisation.cycles import Cycle, average_loops, find_cycles, resample_loops, select_steady_cycles
+from seatsim.characterisation.response import Cycle, average_loops, find_cycles, resample_loops, select_steady_cycles
 from seatsim.metrics.motion import rms
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.schema.arrays import Array
 from seatsim.schema.content import Form, IfAny, Unwritten, to_content
 from seatsim.simulation.damper_bench import SineTest
 
-COARSE = 16
+_COARSE = 16
 """Rows of a cycle below which its peaks and areas are coarse."""
-DISAGREE = 0.05
+_DISAGREE = 0.05
 """Difference of the energy over displacement from that over velocity from which on a note says so, relative."""
-DRIFT = 0.1
+_DRIFT = 0.1
 """Change of the energy over the cycles from which on a note says so, relative to its mean."""
-UNEVEN = 0.05
+_UNEVEN = 0.05
 """Asymmetric part of the motion itself, RMS over that of the motion, from which on a note says so."""
-VARIES = 0.05
+_VARIES = 0.05
 """Range of a current, over its largest, from which on a note says so."""
-MOST_POINTS = 3000
+_MOST_POINTS = 3000
 """Points of the cloud of a record without cycles."""
 
 
@@ -39,14 +39,14 @@ class Cloud(NamedTuple):
     current: Array
 
 
-Amperes = Annotated[float, Form(unit="A")]
-Celsius = Annotated[float, Form(unit="C")]
-Metres = Annotated[float, Form(unit="m")]
-Hertz = Annotated[float, Form(unit="Hz")]
-Speed = Annotated[float, Form(unit="m_s")]
-Newtons = Annotated[float, Form(unit="N")]
-Joules = Annotated[float, Form(unit="J")]
-Damping = Annotated[float, Form(unit="N_s_m")]
+_Amperes = Annotated[float, Form(unit="A")]
+_Celsius = Annotated[float, Form(unit="C")]
+_Metres = Annotated[float, Form(unit="m")]
+_Hertz = Annotated[float, Form(unit="Hz")]
+_Speed = Annotated[float, Form(unit="m_s")]
+_Newtons = Annotated[float, Form(unit="N")]
+_Joules = Annotated[float, Form(unit="J")]
+_Damping = Annotated[float, Form(unit="N_s_m")]
 
 
 class Row(NamedTuple):
@@ -64,26 +64,26 @@ class Row(NamedTuple):
     file: str
     cycles: int
     left_out: int
-    current: Amperes
-    temperature: Celsius = math.nan
-    temperature_range: Celsius = math.nan
-    amplitude: Metres = math.nan
-    frequency: Hertz = math.nan
-    peak_speed: Speed = math.nan
-    peak_rebound: Newtons = math.nan
-    peak_rebound_sd: Newtons = math.nan
-    peak_compression: Newtons = math.nan
-    peak_compression_sd: Newtons = math.nan
-    energy: Joules = math.nan
-    energy_sd: Joules = math.nan
-    damping: Damping = math.nan
-    damping_sd: Damping = math.nan
-    offset: Newtons = math.nan
-    offset_sd: Newtons = math.nan
-    centre: Newtons = math.nan
-    force_rms: Newtons = math.nan
+    current: _Amperes
+    temperature: _Celsius = math.nan
+    temperature_range: _Celsius = math.nan
+    amplitude: _Metres = math.nan
+    frequency: _Hertz = math.nan
+    peak_speed: _Speed = math.nan
+    peak_rebound: _Newtons = math.nan
+    peak_rebound_sd: _Newtons = math.nan
+    peak_compression: _Newtons = math.nan
+    peak_compression_sd: _Newtons = math.nan
+    energy: _Joules = math.nan
+    energy_sd: _Joules = math.nan
+    damping: _Damping = math.nan
+    damping_sd: _Damping = math.nan
+    offset: _Newtons = math.nan
+    offset_sd: _Newtons = math.nan
+    centre: _Newtons = math.nan
+    force_rms: _Newtons = math.nan
     asymmetry: float = math.nan
-    asymmetry_peak: Newtons = math.nan
+    asymmetry_peak: _Newtons = math.nan
     asymmetry_of_shape: float = math.nan
     notes: tuple[str, ...] = ()
     loop: Unwritten[SineTest | None] = None
@@ -91,7 +91,7 @@ class Row(NamedTuple):
     cycle_values: IfAny[dict[str, list[float]] | None] = None
 
 
-FIGURES: dict[str, Callable[[SineTest], float]] = {
+_FIGURES: dict[str, Callable[[SineTest], float]] = {
     "peak_rebound": lambda loop: float(np.max(loop.force)),
     "peak_compression": lambda loop: float(np.min(loop.force)),
     "energy": lambda loop: loop.dissipated_energy,
@@ -118,7 +118,7 @@ def summarise_loops(
     """Return the row of a test: loops of equally many samples, and the temperature in degC of each (or one, or NaN)."""
     loop = average_loops(loops)
     warmth = np.broadcast_to(np.asarray(temperature, dtype=float), len(loops))
-    each = {name: np.array([figure(one) for one in loops]) for name, figure in FIGURES.items()}
+    each = {name: np.array([figure(one) for one in loops]) for name, figure in _FIGURES.items()}
     mean = {name: float(np.mean(values)) for name, values in each.items()}
     sd = {name: float(np.std(v, ddof=1)) if len(v) > 1 else math.nan for name, v in each.items()}
     force, part = loop.force[:-1], loop.asymmetric_part[:-1]
@@ -147,18 +147,23 @@ def summarise_record(record: BenchRecord) -> Row:
         return summarise_aperiodic_record(record, found)
     loops = resample_loops(record, steady)
     notes = [*_of_current(record), *_of_loops(loops), *_of_sign(record)]
-    if min(cycle.length for cycle in steady) < COARSE:
-        notes.append(f"fewer than {COARSE} rows a cycle: peaks and areas are coarse")
+    if min(cycle.length for cycle in steady) < _COARSE:
+        notes.append(f"fewer than {_COARSE} rows a cycle: peaks and areas are coarse")
     return summarise_loops(
-        loops, record.name, record.file, round(record.mean_current, 6), _temperatures(record, steady),
-        len(found) - len(steady), notes,
-    )  # fmt: skip
+        loops,
+        record.name,
+        record.file,
+        round(record.mean_current, 6),
+        _temperatures(record, steady),
+        len(found) - len(steady),
+        notes,
+    )
 
 
 def summarise_aperiodic_record(record: BenchRecord, found: Sequence[Cycle]) -> Row:
     """Return the row of a record that is no steady cycle: peaks, RMS and mean of the force, and what the motion is."""
     warmth = record.temperature if record.temperature is not None else np.array([math.nan])
-    every = slice(None, None, max(1, len(record.force) // MOST_POINTS))
+    every = slice(None, None, max(1, len(record.force) // _MOST_POINTS))
     cloud = Cloud(*(y[every] for y in (record.displacement, record.velocity, record.force, record.current)))
     return Row(
         record=record.name, file=record.file, cycles=0, left_out=len(found), current=round(record.mean_current, 6),
@@ -180,7 +185,7 @@ def _motion(record: BenchRecord, found: Sequence[Cycle]) -> str:
 
 def _of_current(record: BenchRecord) -> list[str]:
     low, high = (float(q) for q in np.percentile(record.current, (1, 99)))
-    return [f"the current varies from {low:.2f} to {high:.2f} A"] if high - low > VARIES * max(high, 1e-9) else []
+    return [f"the current varies from {low:.2f} to {high:.2f} A"] if high - low > _VARIES * max(high, 1e-9) else []
 
 
 def _of_sign(record: BenchRecord) -> list[str]:
@@ -193,16 +198,16 @@ def _of_loops(loops: Sequence[SineTest]) -> list[str]:
     loop = average_loops(loops)
     energy = loop.dissipated_energy
     over_stroke = float(np.trapezoid(loop.force, loop.displacement))
-    if abs(over_stroke - energy) > DISAGREE * abs(energy):
+    if abs(over_stroke - energy) > _DISAGREE * abs(energy):
         notes.append(f"velocity and displacement disagree: the area over displacement is {over_stroke:.3g} J")
     moved = loop._replace(force=loop.displacement - np.mean(loop.displacement[:-1]))
     uneven = _ratio(rms(moved.asymmetric_part), rms(moved.force))
-    if uneven > UNEVEN:
+    if uneven > _UNEVEN:
         notes.append(f"the motion itself is asymmetric by {uneven:.0%}")
     if len(loops) > 2:
         energies = np.array([one.dissipated_energy for one in loops])
         slope = np.polyfit(np.linspace(-0.5, 0.5, len(energies)), energies, 1)[0] / np.mean(energies)
-        if abs(slope) > DRIFT:
+        if abs(slope) > _DRIFT:
             notes.append(f"the energy changes by {slope:+.0%} over the cycles")
     return notes
 

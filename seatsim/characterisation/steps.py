@@ -13,21 +13,21 @@ from seatsim.characterisation.response import Response, StepEnsemble, estimate_r
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.schema.arrays import Array
 
-LEAST_RANGE = 0.02
+_LEAST_RANGE = 0.02
 """A; a current that varies less has no steps."""
-FLAT = 0.02
+_FLAT = 0.02
 """Standard deviation, over the range of the current, within a window at rest."""
-WINDOW = 0.004
+_WINDOW = 0.004
 """Seconds of the window in which a current has to rest, five rows at least."""
-APART = 0.1
+_APART = 0.1
 """Difference of two levels over the range of the current that makes a step."""
-LEFT = 0.05
+_LEFT = 0.05
 """Share of a step that has been covered where it begins."""
-TO_DEVIATION = 0.6745 * 6.0**0.5
+_TO_DEVIATION = 0.6745 * 6.0**0.5
 """Median magnitude of the second differences of white noise over its standard deviation."""
 
 
-class Plateau(NamedTuple):
+class _Plateau(NamedTuple):
     """Rows `first` to `last` (excluded) of a current that rests at a level in A."""
 
     first: int
@@ -35,12 +35,12 @@ class Plateau(NamedTuple):
     level: float
 
 
-class CurrentStep(NamedTuple):
+class _CurrentStep(NamedTuple):
     """A step of current: the row (with fraction) at which it begins, and the levels before and after it."""
 
     row: float
-    before: Plateau
-    after: Plateau
+    before: _Plateau
+    after: _Plateau
 
     @property
     def rises(self) -> bool:
@@ -48,78 +48,78 @@ class CurrentStep(NamedTuple):
         return self.after.level > self.before.level
 
 
-def find_steps(current: Array, rate: float, commanded: bool) -> list[CurrentStep]:
+def find_steps(current: Array, rate: float, commanded: bool) -> list[_CurrentStep]:
     """Return the steps of a current in A, shape (N,), at `rate` Hz, in their order.
 
     A step leads from one level at which the current rests to another. It begins at the row at which 5 % of it is
     covered: a command holds from its row on; between the rows of a measured current it is interpolated.
     """
     rests = find_plateaus(current, rate)
-    return [CurrentStep(_onset(current, a, b, commanded), a, b) for a, b in pairwise(rests)]
+    return [_CurrentStep(_onset(current, a, b, commanded), a, b) for a, b in pairwise(rests)]
 
 
-def find_plateaus(current: Array, rate: float) -> list[Plateau]:
+def find_plateaus(current: Array, rate: float) -> list[_Plateau]:
     """Return the stretches over which a current in A, shape (N,), at `rate` Hz rests, in their order.
 
-    None where it varies by less than `LEAST_RANGE` in all. A current rests where its standard deviation within
-    `WINDOW` is small; the level is the median of the later half, neighbours of the same level are one.
+    None where it varies by less than `_LEAST_RANGE` in all. A current rests where its standard deviation within
+    `_WINDOW` is small; the level is the median of the later half, neighbours of the same level are one.
     """
     span = float(np.ptp(current))
-    window = max(5, round(WINDOW * rate))
-    if span < LEAST_RANGE or len(current) < 4 * window:
+    window = max(5, round(_WINDOW * rate))
+    if span < _LEAST_RANGE or len(current) < 4 * window:
         return []
     spread = np.std(np.lib.stride_tricks.sliding_window_view(current, window), axis=1)
-    noise = float(np.median(np.abs(np.diff(current, 2)))) / TO_DEVIATION
-    flat = spread <= FLAT * span + 2.0 * noise
+    noise = float(np.median(np.abs(np.diff(current, 2)))) / _TO_DEVIATION
+    flat = spread <= _FLAT * span + 2.0 * noise
     edges = np.flatnonzero(np.diff(np.concatenate([[0], flat.astype(int), [0]])))
-    found: list[Plateau] = []
+    found: list[_Plateau] = []
     for first, after in edges.reshape(-1, 2):
         last = int(after) - 1 + window
         level = float(np.median(current[(first + last) // 2 : last]))
         begin = int(first)
-        if found and abs(level - found[-1].level) < APART * span:
+        if found and abs(level - found[-1].level) < _APART * span:
             begin = found.pop().first
-        found.append(Plateau(begin, last, level))
+        found.append(_Plateau(begin, last, level))
     return found
 
 
-def _onset(current: Array, before: Plateau, after: Plateau, commanded: bool) -> float:
+def _onset(current: Array, before: _Plateau, after: _Plateau, commanded: bool) -> float:
     covered = (current - before.level) / (after.level - before.level)
     start = max(before.first, min(before.last, after.first) - 1)
     half = start + int(np.argmax(covered[start : after.last] >= 0.5))
     low = half
-    while low > before.first and covered[low - 1] > LEFT:
+    while low > before.first and covered[low - 1] > _LEFT:
         low -= 1
     if commanded or low == 0 or covered[low] == covered[low - 1]:
         return float(low)
-    return low - 1 + float(np.clip((LEFT - covered[low - 1]) / (covered[low] - covered[low - 1]), 0.0, 1.0))
+    return low - 1 + float(np.clip((_LEFT - covered[low - 1]) / (covered[low] - covered[low - 1]), 0.0, 1.0))
 
 
-LONGEST = 0.5
+_LONGEST = 0.5
 """Seconds after a step that are looked at."""
-LENGTHS = (LONGEST, 0.3, 0.2, 0.12, 0.08, 0.05, 0.04, 0.025)
+_LENGTHS = (_LONGEST, 0.3, 0.2, 0.12, 0.08, 0.05, 0.04, 0.025)
 """Seconds after a step that are tried, the longest with enough steps first."""
-ENOUGH = 12
+_ENOUGH = 12
 """Steps that are wanted for the longest of the lengths."""
-LEAD = 0.015
+_LEAD = 0.015
 """Seconds before a step in which the current has to rest."""
-SAME_LEVEL = 0.05
+_SAME_LEVEL = 0.05
 """Difference of two levels of a current, over its range, up to which they are the same."""
-LEVEL_GRID = 0.1
+_LEVEL_GRID = 0.1
 """Grid of levels, over the range of the current, by which steps are put into pairs."""
-SPEED_HELD = 0.1
+_SPEED_HELD = 0.1
 """Largest change of a speed that counts as constant, relative."""
-SLOWEST = 0.1
+_SLOWEST = 0.1
 """Least speed of a stretch at constant speed, over the record's largest."""
-SETTLING = 0.03
+_SETTLING = 0.03
 """Seconds after a step from which on, at the earliest, the force counts as settled."""
-SMOOTHING = 0.001
+_SMOOTHING = 0.001
 """Seconds over which a demodulated response is smoothed."""
-KNEES = (0.05, 0.2, 0.6)
+_KNEES = (0.05, 0.2, 0.6)
 """Speeds over the RMS speed at which the steady force may bend."""
-LAGS = (0.0, 0.002, 0.005, 0.01)
+_LAGS = (0.0, 0.002, 0.005, 0.01)
 """Seconds by which the steady force may lag behind the velocity."""
-UNSURE = 0.1
+_UNSURE = 0.1
 """Largest error of the steady forces, over their difference and over the root of the number of steps."""
 
 
@@ -137,14 +137,14 @@ def measure_responses(record: BenchRecord) -> list[Response]:
     steps = find_steps(record.current, record.rate, record.commanded)
     if not steps:
         return []
-    unit = LEVEL_GRID * float(np.ptp(record.current))
-    pairs: dict[tuple[int, int], list[CurrentStep]] = {}
+    unit = _LEVEL_GRID * float(np.ptp(record.current))
+    pairs: dict[tuple[int, int], list[_CurrentStep]] = {}
     for step in steps:
         pairs.setdefault((round(step.before.level / unit), round(step.after.level / unit)), []).append(step)
     return [_of_pair(record, chosen, steps) for chosen in pairs.values()]
 
 
-def _of_pair(record: BenchRecord, steps: Sequence[CurrentStep], every: Sequence[CurrentStep]) -> Response:
+def _of_pair(record: BenchRecord, steps: Sequence[_CurrentStep], every: Sequence[_CurrentStep]) -> Response:
     before, after = (float(np.median([p.level for p in ps])) for ps in zip(*(s[1:] for s in steps), strict=True))
     blank = Response(record.name, before, after, len(steps), "")
     # A constant speed needs no model of the steady force, so it counts first where half of the steps have one.
@@ -157,22 +157,24 @@ def _of_pair(record: BenchRecord, steps: Sequence[CurrentStep], every: Sequence[
     return answer if record.commanded else answer._replace(current_t95=_of_current(record, steps))
 
 
-def _constant_speed_rows(record: BenchRecord, step: CurrentStep) -> tuple[CurrentStep, int, int] | None:
+def _constant_speed_rows(record: BenchRecord, step: _CurrentStep) -> tuple[_CurrentStep, int, int] | None:
     """Return the rows before and after a step over which the speed is constant, None where these are too few."""
     k, v = round(step.row), record.velocity
     here = float(np.median(v[max(0, k - 3) : k + 4]))
-    if abs(here) < SLOWEST * float(np.percentile(np.abs(v), 98)) or here == 0.0:
+    if abs(here) < _SLOWEST * float(np.percentile(np.abs(v), 98)) or here == 0.0:
         return None
-    uneven = np.abs(v - here) > SPEED_HELD * abs(here)
+    uneven = np.abs(v - here) > _SPEED_HELD * abs(here)
     behind, ahead = np.flatnonzero(uneven[:k]), np.flatnonzero(uneven[k:])
     first = max(step.before.first, int(behind[-1]) + 1 if behind.size else 0)
-    last = min(step.after.last, k + int(ahead[0]) if ahead.size else len(v), k + round(LONGEST * record.rate))
-    if k - first < max(5, LEAD * record.rate) or last - k < max(10, LENGTHS[-1] * record.rate):
+    last = min(step.after.last, k + int(ahead[0]) if ahead.size else len(v), k + round(_LONGEST * record.rate))
+    if k - first < max(5, _LEAD * record.rate) or last - k < max(10, _LENGTHS[-1] * record.rate):
         return None
     return step, k - first, last - k
 
 
-def _at_constant_speed(record: BenchRecord, found: Sequence[tuple[CurrentStep, int, int]], blank: Response) -> Response:
+def _at_constant_speed(
+    record: BenchRecord, found: Sequence[tuple[_CurrentStep, int, int]], blank: Response
+) -> Response:
     after = int(np.median([length for *_, length in found]))
     chosen = [one for one in found if one[2] >= after]
     before = min(*(one[1] for one in chosen), round(0.05 * record.rate))
@@ -190,15 +192,15 @@ def _at_constant_speed(record: BenchRecord, found: Sequence[tuple[CurrentStep, i
 
 
 def _demodulated(
-    record: BenchRecord, steps: Sequence[CurrentStep], every: Sequence[CurrentStep], blank: Response
+    record: BenchRecord, steps: Sequence[_CurrentStep], every: Sequence[_CurrentStep], blank: Response
 ) -> Response:
     rate = record.rate
-    led = [s for s in steps if s.row - s.before.first >= LEAD * rate]
+    led = [s for s in steps if s.row - s.before.first >= _LEAD * rate]
     lengths = [s.after.last - s.row for s in led]
-    after = next((n for n in LENGTHS if sum(m >= n * rate for m in lengths) >= min(ENOUGH, max(1, len(led)))), 0.0)
+    after = next((n for n in _LENGTHS if sum(m >= n * rate for m in lengths) >= min(_ENOUGH, max(1, len(led)))), 0.0)
     chosen = [step for step, length in zip(led, lengths, strict=True) if length >= after * rate]
     if not after or not chosen:
-        return blank._replace(note=f"the current never rests for {1e3 * LENGTHS[-1]:g} ms after a step")
+        return blank._replace(note=f"the current never rests for {1e3 * _LENGTHS[-1]:g} ms after a step")
     basis = _basis(record)
     steady = [_steady(record, basis, every, level) for level in (blank.before, blank.after)]
     if any(fit is None for fit in steady):
@@ -208,9 +210,9 @@ def _demodulated(
     force, off, on = (_about(y, chosen, before, rows) for y in (record.force, off, on))
     apart = math.sqrt(float(np.mean((on - off) ** 2)))
     blank = blank._replace(steps=len(chosen), method="demodulated")
-    if max(error_off, error_on) > UNSURE * apart * math.sqrt(len(chosen)):
+    if max(error_off, error_on) > _UNSURE * apart * math.sqrt(len(chosen)):
         return blank._replace(method="", note="the speed varies, and the steady forces are not known well enough")
-    window = max(3, 2 * round(0.5 * SMOOTHING * rate) + 1)
+    window = max(3, 2 * round(0.5 * _SMOOTHING * rate) + 1)
     instants = np.array([round(step.row) - step.row for step in chosen]) / rate
     return estimate_response(StepEnsemble(force, off, on, instants, before, rate), blank, window)
 
@@ -218,23 +220,23 @@ def _demodulated(
 def _basis(record: BenchRecord) -> Array:
     v = record.velocity
     parts = [np.ones(len(v)), record.displacement, v, np.gradient(v) * record.rate]
-    knees = np.array(KNEES) * max(float(np.sqrt(np.mean(v**2))), 1e-12)
-    parts += [np.tanh(np.roll(v, round(lag * record.rate)) / knee) for lag in LAGS for knee in knees]
+    knees = np.array(_KNEES) * max(float(np.sqrt(np.mean(v**2))), 1e-12)
+    parts += [np.tanh(np.roll(v, round(lag * record.rate)) / knee) for lag in _LAGS for knee in knees]
     basis = np.column_stack(parts)
     size: Array = np.sqrt(np.mean(basis**2, axis=0))
     return basis / np.maximum(size, 1e-12)
 
 
 def _steady(
-    record: BenchRecord, basis: Array, every: Sequence[CurrentStep], level: float
+    record: BenchRecord, basis: Array, every: Sequence[_CurrentStep], level: float
 ) -> tuple[Array, float] | None:
     """Return the steady force at a level, shape (N,), and its RMS error over the settled rows."""
-    near = SAME_LEVEL * float(np.ptp(record.current))
+    near = _SAME_LEVEL * float(np.ptp(record.current))
     settled = np.zeros(len(basis), dtype=bool)
     for step in every:
         rest = step.after
         if abs(rest.level - level) <= near:
-            settled[int(step.row + max(SETTLING * record.rate, 0.5 * (rest.last - step.row))) : rest.last] = True
+            settled[int(step.row + max(_SETTLING * record.rate, 0.5 * (rest.last - step.row))) : rest.last] = True
         if abs(step.before.level - level) <= near and step.before.first == 0:
             settled[step.before.last // 2 : step.before.last] = True
     if np.count_nonzero(settled) < 10 * basis.shape[1]:
@@ -245,7 +247,7 @@ def _steady(
     return force, math.sqrt(float(np.mean((record.force - force)[settled] ** 2)))
 
 
-def _of_current(record: BenchRecord, steps: Sequence[CurrentStep]) -> float:
+def _of_current(record: BenchRecord, steps: Sequence[_CurrentStep]) -> float:
     """Return the median time to 95 % of the steps of a measured current."""
     times = []
     for step in steps:
@@ -256,5 +258,5 @@ def _of_current(record: BenchRecord, steps: Sequence[CurrentStep]) -> float:
     return float(np.median(reached)) if reached else math.nan
 
 
-def _about(values: Array, steps: Sequence[CurrentStep], before: int, after: int) -> Array:
+def _about(values: Array, steps: Sequence[_CurrentStep], before: int, after: int) -> Array:
     return np.array([values[round(s.row) - before : round(s.row) + after] for s in steps])

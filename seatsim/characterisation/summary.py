@@ -6,17 +6,16 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
-from seatsim.characterisation.cycles import find_cycles
-from seatsim.characterisation.response import Response
+from seatsim.characterisation.response import Response, find_cycles
 from seatsim.characterisation.rows import Row, summarise_aperiodic_record, summarise_record
 from seatsim.characterisation.steps import find_plateaus, measure_responses
 from seatsim.recordings.bench_tables import BenchRecord, load_bench, unused_columns
 from seatsim.schema.content import Form
 from seatsim.schema.notebook import show_record
 
-SETTLED = 0.2
+_SETTLED = 0.2
 """Seconds after a step of current from which on cycles are counted."""
-ALIKE = 0.05
+_ALIKE = 0.05
 """Relative difference of amplitudes and frequencies that are the same setting."""
 WARMER = 4.0
 """degC; least difference of temperatures that are different settings."""
@@ -74,7 +73,7 @@ def _rows(record: BenchRecord) -> list[Row]:
     rests = find_plateaus(record.current, record.rate)
     if len(rests) < 2:
         return [summarise_record(record)]
-    skipped = round(SETTLED * record.rate)
+    skipped = round(_SETTLED * record.rate)
     parts = [(rest, record.part(rest.first + skipped, rest.last)) for rest in rests if rest.last > rest.first + skipped]
     rows = [
         summarise_record(part)._replace(record=f"{record.name}, {rest.first / record.rate:.1f} s")
@@ -103,4 +102,4 @@ def group_rows(rows: Sequence[Row], alike: Callable[[Row, Row], bool]) -> list[l
 
 
 def _same(a: Row, b: Row) -> bool:
-    return all(abs(p - q) <= ALIKE * p for p, q in ((a.amplitude, b.amplitude), (a.frequency, b.frequency)))
+    return all(abs(p - q) <= _ALIKE * p for p, q in ((a.amplitude, b.amplitude), (a.frequency, b.frequency)))

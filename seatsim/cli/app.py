@@ -38,7 +38,7 @@ class _Command(TyperCommand):
     """A command that a manifest can state: with the options that were given, and what it reads."""
 
     def invoke(self, ctx: Any) -> object:
-        from seatsim.provenance.invocation import at_work
+        from seatsim.provenance.statement import at_work
 
         options: list[tuple[str, object]] = []
         operands: list[object] = []

@@ -40,7 +40,7 @@ from seatsim.simulation.bench_response import fit_motion
 from seatsim.simulation.inputs import BenchInputs
 from seatsim.simulation.respond import respond
 
-MOTION = {"seat": "suspension_displacement", "damper_bench": "displacement"}
+_MOTION = {"seat": "suspension_displacement", "damper_bench": "displacement"}
 """Channel from which the motion of the damper is taken, by rig."""
 
 
@@ -62,7 +62,7 @@ def are_forms_due(problem: DiagnosisProblem, gaps: Gaps, verdict: str) -> bool:
 
 def describe_obstacle(problem: DiagnosisProblem) -> str:
     """Return why no other model of the damper can be judged on a recording, empty where one can."""
-    motion = MOTION[problem.recording.header.rig]
+    motion = _MOTION[problem.recording.header.rig]
     missing = [name for name in ("damper_force", motion) if name not in problem.recording.channels]
     if missing:
         return f"Other forms of the damper were not tried: {missing[0]} is not recorded."
@@ -163,7 +163,7 @@ def _isolate_damper(problem: DiagnosisProblem, rig: Scenario, run: str) -> Bench
     def true(channel: str, values: Array) -> Array:
         return undo_reading(rig.effects, values, channel, interval)
 
-    channel, ratio = MOTION[problem.recording.header.rig], rig.plant.damper_ratio if rig.plant else 1.0
+    channel, ratio = _MOTION[problem.recording.header.rig], rig.plant.damper_ratio if rig.plant else 1.0
     position, noise = ratio * true(channel, table[channel]), ratio * problem.recording.channels[channel].noise_rms
     spline, rows = fit_motion(interval, position.tobytes(), noise), interval * np.arange(len(position))
     warm = rig.temperature.start if isinstance(rig.temperature, Thermal) else rig.temperature
@@ -191,9 +191,10 @@ def _fit_form(problem: DiagnosisProblem, rig: Scenario, model: str, records: Seq
         )
         stated = stated._replace(factors=rig.damper.factors)
         start = (
-            descend_from_defaults(stated, problem.pool, most=settings.evaluations[0]).vector if known is None
+            descend_from_defaults(stated, problem.pool, most=settings.evaluations[0]).vector
+            if known is None
             else default_vector(stated)
-        )  # fmt: skip
+        )
         found = refine(stated, start, problem.pool, most=settings.evaluations[1])
     except (InputError, ArithmeticError, np.linalg.LinAlgError):
         return None

@@ -19,7 +19,7 @@ _Fixed = Mapping[str, float | str]
 """Parameters that no fit changes."""
 
 
-INPUTS = ("floor_acceleration", "displacement")
+_INPUTS = ("floor_acceleration", "displacement")
 """Recorded inputs whose sensor may err: it moves every channel that is simulated from them."""
 _SEAT_SPRING = 4600.0
 """N/m; spring of the seat for which the effects state the stiffnesses at which fits start."""
@@ -135,9 +135,13 @@ def _change(candidate: Candidate, own: Record) -> Candidate:
         start[0] = at[0] + candidate.start[0]
     low, high = np.minimum(candidate.low, at), np.maximum(candidate.high, at)
     return candidate._replace(
-        fixed={name: value for name, value in have.items() if name not in candidate.free}, nominal=float(at[0]),
-        start=tuple(start.tolist()), low=tuple(low.tolist()), high=tuple(high.tolist()), sizes=1,
-    )  # fmt: skip
+        fixed={name: value for name, value in have.items() if name not in candidate.free},
+        nominal=float(at[0]),
+        start=tuple(start.tolist()),
+        low=tuple(low.tolist()),
+        high=tuple(high.tolist()),
+        sizes=1,
+    )
 
 
 def _suit_spring(candidate: Candidate, problem: DiagnosisProblem) -> Candidate:
@@ -198,7 +202,7 @@ def _places(cls: type[Record], problem: DiagnosisProblem) -> list[_Fixed]:
     if not EFFECTS.specification_of(cls).by_channel:
         return [{}]
     known = choices(cls, "channel")
-    named = [*problem.channels, *INPUTS]
+    named = [*problem.channels, *_INPUTS]
     return [{"channel": name} for name in named if name in problem.recording.channels and name in known]
 
 

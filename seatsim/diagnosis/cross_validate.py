@@ -14,11 +14,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from seatsim.diagnosis.decide import Evidence
 from seatsim.diagnosis.fit import find_step, fit
 from seatsim.diagnosis.movement import is_material
-from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
-from seatsim.diagnosis.parameters import Parameters
-from seatsim.diagnosis.probability import Evidence
+from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters
 from seatsim.diagnosis.problem import normalise_rms_errors
 from seatsim.diagnosis.select import Selection
 from seatsim.schema.arrays import Array
@@ -38,7 +37,7 @@ class _Supported(NamedTuple):
 def select_by_cross_validation(objective: Objective, selection: Selection) -> _Supported:
     """Return the smallest set of effects that no larger one improves on left-out runs, and sets that help as much.
 
-    A larger set is chosen as long as its evidence is higher (see `seatsim.diagnosis.probability`); one without the
+    A larger set is chosen as long as its evidence is higher (see `seatsim.diagnosis.decide`); one without the
     effect chosen so far, a rival explanation, only where the evidence decides: a tie goes to the simpler explanation.
     """
     settings, problem = objective.settings.cross_validation, objective.problem

@@ -10,11 +10,9 @@ from pathlib import Path
 
 from threadpoolctl import threadpool_limits
 
-from seatsim.diagnosis.deadline import Deadline
-from seatsim.diagnosis.problem import DiagnosisProblem, check_nominal, pose_problem
+from seatsim.diagnosis.problem import Deadline, DiagnosisProblem, check_nominal, pose_problem
 from seatsim.diagnosis.result import Diagnosis
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
-from seatsim.diagnosis.solution import Method
+from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.diagnosis.solve import solve
 from seatsim.diagnosis.state import state_diagnosis
 from seatsim.diagnosis.widen import search_wider
@@ -31,10 +29,14 @@ _CUT = "the budget of {budget:g} s was spent, so that the answer is the best so 
 
 
 def diagnose(
-    recording: str | Path | Recording, without: Sequence[str] = (), progress: Callable[[str], object] = lambda _: None,
-    settings: DiagnosisSettings | None = None, budget: float = BUDGET, damper_forms: bool = False,
+    recording: str | Path | Recording,
+    without: Sequence[str] = (),
+    progress: Callable[[str], object] = lambda _: None,
+    settings: DiagnosisSettings | None = None,
+    budget: float = BUDGET,
+    damper_forms: bool = False,
     after: str | Path | Recording | None = None,
-) -> Diagnosis:  # fmt: skip
+) -> Diagnosis:
     """Say where the gap between a recording and its nominal scenario lies, what causes it, and how far it shrinks.
 
     Args:
@@ -77,10 +79,13 @@ def _load(recording: str | Path | Recording) -> Recording:
 
 
 def diagnose_problem(
-    problem: DiagnosisProblem, notes: Sequence[str] = (), without: Sequence[str] = (),
-    progress: Callable[[str], object] = lambda _: None, method: Method | None = None, budget: float = math.inf,
+    problem: DiagnosisProblem,
+    notes: Sequence[str] = (),
+    without: Sequence[str] = (),
+    progress: Callable[[str], object] = lambda _: None,
+    budget: float = math.inf,
     damper_forms: bool = False,
-) -> Diagnosis:  # fmt: skip
+) -> Diagnosis:
     """Return the diagnosis of a problem; `notes` are sentences on the quality of its data, `budget` is as above.
 
     Simulations of several runs and rigs run in parallel, so linear algebra libraries are limited to one thread.
@@ -89,7 +94,6 @@ def diagnose_problem(
         RunError: the nominal rig cannot be simulated in a run.
     """
     stages: list[tuple[str, float]] = []
-    method = method or Method()
 
     def tell(stage: str) -> None:
         stages.append((stage, time.monotonic()))
@@ -98,8 +102,8 @@ def diagnose_problem(
     with threadpool_limits(1):
         check_nominal(problem)
         deadline = Deadline.after(problem.settings.fit.search_share * budget)
-        solution = solve(problem.until(deadline), without, tell, method)
-        solution, at_bound = search_wider(solution, without, tell, method)
+        solution = solve(problem.until(deadline), without, tell)
+        solution, at_bound = search_wider(solution, without, tell)
         cut = _list_cut(stages, deadline.end) if deadline.is_past else []
         said = [*notes, *at_bound, *([f"{_CUT.format(budget=budget)}: {', '.join(cut)}"] if cut else [])]
         solution = solution._replace(objective=solution.objective.unhurried)

@@ -25,7 +25,7 @@ from seatsim.schema.arrays import Array
 from seatsim.simulation.inputs import BenchInputs
 from seatsim.simulation.respond import respond
 
-Table = Mapping[str, Array]
+_Table = Mapping[str, Array]
 
 _REPLICATES = 3
 """Simulations with newly drawn noise of the inputs."""
@@ -50,7 +50,7 @@ def _divide(channel: str, unit: str, error: float, numerical: float, inputs: flo
     return ErrorBudget(channel, unit, error, numerical, inputs, data, float(np.sqrt(max(left, 0.0))))
 
 
-def measure_step_error(scenario: Scenario, recording: Recording, table: Table) -> dict[str, float]:
+def measure_step_error(scenario: Scenario, recording: Recording, table: _Table) -> dict[str, float]:
     """Return the RMS change of each output as the step of the integration is halved.
 
     A method of order p leaves 1 / (2^p - 1) of that; friction and stops make p one at worst, hence the whole change.
@@ -91,7 +91,7 @@ def _smooth_motion(inputs: BenchInputs, parts: int) -> BenchInputs:
     )
 
 
-def carry_input_noise(scenario: Scenario, recording: Recording, table: Table) -> dict[str, float]:
+def carry_input_noise(scenario: Scenario, recording: Recording, table: _Table) -> dict[str, float]:
     """Return the RMS change of each output as newly drawn noise is added to the recorded inputs."""
     # The same draws for every recording: equal input gives equal output.
     rng = np.random.default_rng(0)
@@ -103,7 +103,7 @@ def carry_input_noise(scenario: Scenario, recording: Recording, table: Table) ->
     }
 
 
-def _add_noise(recording: Recording, table: Table, rng: np.random.Generator) -> dict[str, Array]:
+def _add_noise(recording: Recording, table: _Table, rng: np.random.Generator) -> dict[str, Array]:
     """Return a table with noise added to what drives the simulation: a coil current only in place of a command."""
     outputs = set(COMPARED[recording.header.rig])
     if not any(name in table for name in COMMANDS):

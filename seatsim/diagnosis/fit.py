@@ -1,19 +1,19 @@
-"""Fits of effects together with the nuisance parameters, by Gauss-Newton steps under bounds.
+"""Fits of effects together with the nuisance parameters: Gauss-Newton steps under bounds, and a pattern search.
 
 The sensitivities of the nuisance parameters hardly change as effects are added, but cost most of a linearisation. A fit
-therefore uses those that its caller passes in, and recomputes those of the effects at every step.
+therefore uses those that its caller passes in, and recomputes those of the effects at every step. Where the cost jumps,
+so that no sensitivity leads downwards, a pattern search descends in the parameters of one effect.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import product
 
 import numpy as np
 
-from seatsim.diagnosis.bounded import minimise_bounded
-from seatsim.diagnosis.deadline import OutOfTimeError
-from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters
+from seatsim.diagnosis.problem import OutOfTimeError
 from seatsim.schema.arrays import Array
 
 
@@ -89,3 +89,95 @@ def solve_step(
     # A component beyond its bound by rounding keeps an empty interval about its place.
     room = np.minimum(low - vector, 0.0) * size, np.maximum(high - vector, 0.0) * size
     return minimise_bounded(scaled, right / size, *room) / size
+
+
+_DECIMALS = 9
+"""Decimals, in natural sizes of the parameters, to which two points have to agree to be the same."""
+
+
+def search_pattern(objective: Objective, start: Evaluation) -> Evaluation:
+    """Return the evaluation that no step in the free parameters of the last effect improves any more.
+
+    All neighbours of the best point, a step away in one parameter or in two at once, are evaluated together; the best
+    of them is moved to if it costs less, or else the step becomes smaller (direct search: Kolda, Lewis and Torczon,
+    2003). A point that was evaluated before is not evaluated again, since it costs no less than the best.
+
+    Args:
+        objective: what is minimised; its settings hold the steps, in natural sizes of the parameters.
+        start: evaluation of the rig at which the search starts.
+
+    Raises:
+        OutOfTimeError: the deadline of the problem is past.
+    """
+    best, directions = start, list_directions(len(start.parameters.terms[-1].free))
+    known = {_locate(start.parameters)}
+    for step in objective.settings.fit.pattern_steps:
+        while True:
+            vector = best.parameters.vector
+            moves = np.tile(vector, (len(directions), 1))
+            moves[:, len(vector) - directions.shape[1] :] += step * directions
+            neighbours = {_locate(each): each for each in map(best.parameters.move_to, moves)}
+            untried = [neighbours[place] for place in neighbours if place not in known]
+            known.update(neighbours)
+            least = min([best, *objective.evaluate(untried)], key=lambda each: each.cost)
+            if least is best:
+                break
+            best = least
+    return best
+
+
+def _locate(parameters: Parameters) -> bytes:
+    """Return the key of a point: its vector without the rounding errors of the way that led there."""
+    return (np.round(parameters.vector, _DECIMALS) + 0.0).tobytes()
+
+
+def list_directions(count: int) -> Array:
+    """Return the directions along one parameter or the diagonals of two of `count`, shape (directions, count)."""
+    steps = product((-1.0, 0.0, 1.0), repeat=count)
+    return np.array([step for step in steps if np.count_nonzero(step) in (1, 2)])
+
+
+_PATIENCE = 3
+"""Exchanges of whole blocks without fewer components out of place, after which one component at a time is exchanged."""
+_ALLOWANCE = 1e-12
+"""Violations of a bound and gradients below this, in units of the largest right-hand side, are rounding errors."""
+
+
+def minimise_bounded(matrix: Array, right: Array, low: Array, high: Array) -> Array:
+    """Return the x that minimises `x' matrix x - 2 right' x` with `low <= x <= high`, by block principal pivoting.
+
+    A bounded least-squares routine for tall matrices spends most of its time on factorising what is a matrix of some
+    twenty rows here; a diagnosis solves about a thousand of these.
+
+    Each component is free or at one of its bounds. The free ones are solved for; then all that are out of place change
+    sides: free ones beyond a bound go to it, and those at a bound whose gradient points inwards become free. Where that
+    stops making progress only the last of them changes, which ends after finitely many exchanges.
+
+    Args:
+        matrix: symmetric and positive definite, shape (components, components), of a diagonal near 1.
+        right: shape (components,).
+        low: lower bounds, shape (components,), not above `high`.
+        high: upper bounds, shape (components,).
+
+    Source: J. J. Judice and F. M. Pires, "A block principal pivoting algorithm for large-scale strictly monotone
+    linear complementarity problems", Computers & Operations Research 21 (1994) 587-596 (recalled).
+    """
+    side = np.zeros(len(right), dtype=np.int8)
+    fewest, patience = len(right) + 1, _PATIENCE
+    allowed = _ALLOWANCE * max(1.0, float(np.abs(right).max(initial=0.0)))
+    while True:
+        x = np.where(side < 0, low, np.where(side > 0, high, 0.0))
+        free = side == 0
+        x[free] = np.linalg.solve(matrix[np.ix_(free, free)], right[free] - matrix[np.ix_(free, ~free)] @ x[~free])
+        gradient = matrix @ x - right
+        wanted = np.where(free, (x > high + allowed).astype(np.int8) - (x < low - allowed), side)
+        wanted[(side != 0) & (side * gradient > allowed)] = 0
+        misplaced = np.flatnonzero(wanted != side)
+        if not len(misplaced):
+            return np.clip(x, low, high)
+        if len(misplaced) < fewest:
+            fewest, patience = len(misplaced), _PATIENCE
+        else:
+            patience -= 1
+        changed = misplaced if patience >= 0 else misplaced[-1:]
+        side[changed] = wanted[changed]

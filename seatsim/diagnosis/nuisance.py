@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from seatsim.diagnosis.result import CalibratedParameter
+from seatsim.recordings.header import USUAL, Header, Tolerance
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
 from seatsim.schema.fields import bounds, describe, replace_fields
@@ -61,6 +62,19 @@ def list_calibrated(parameters: Sequence[Nuisance], deviations: Array, at_bound:
         )
         for each, deviation in zip(parameters, deviations.tolist(), strict=True)
     ]
+
+
+def list_varied(header: Header, scenario: Scenario, fitted: float) -> tuple[Nuisance, ...]:
+    """List the parameters that the tolerances of a recording let vary; `fitted` is that of those stated as fitted."""
+
+    def resolve(tolerance: Tolerance) -> float:
+        return fitted if tolerance == "fitted" else tolerance
+
+    own = {key: resolve(tolerance) for key, tolerance in header.own_tolerances.items()}
+    default = header.default_tolerance
+    # A fit leaves no parameter at zero exactly, so that one that is zero was not fitted.
+    of_zeros = USUAL if default == "fitted" else default
+    return tuple(list_nuisances(scenario, resolve(default), own, of_zeros))
 
 
 def list_nuisances(

@@ -1,9 +1,10 @@
-"""The problem of a diagnosis: a recording and its nominal scenario, prepared for repeated simulation."""
+"""The problem of a diagnosis: a recording and its nominal scenario, prepared for simulation until a deadline."""
 
 from __future__ import annotations
 
 import dataclasses
 import math
+import time
 from collections.abc import Collection, Container, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
@@ -12,12 +13,9 @@ from functools import cached_property
 import numpy as np
 from scipy.fft import prev_fast_len
 
-from seatsim.diagnosis.deadline import NEVER, Deadline
-from seatsim.diagnosis.nuisance import Nuisance, list_nuisances, vary
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
-from seatsim.diagnosis.settings.fitting import FitSettings
+from seatsim.diagnosis.nuisance import Nuisance, list_varied, vary
+from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.effects.base import replace_effects
-from seatsim.recordings.header import USUAL, Header, Tolerance
 from seatsim.recordings.quality.coverage import shows_falling_current
 from seatsim.recordings.quality.sensors import without_gravity
 from seatsim.recordings.recording import Recording
@@ -29,6 +27,37 @@ from seatsim.schema.registry import Record
 from seatsim.simulation.bench_response import FINER
 from seatsim.simulation.inputs import RigInputs
 from seatsim.simulation.respond import respond
+
+
+class OutOfTimeError(Exception):
+    """The time of a search is spent; who catches it goes on with the best found so far."""
+
+
+@dataclass(frozen=True)
+class Deadline:
+    """The instant at which a search ends, in seconds of `time.monotonic`."""
+
+    end: float = math.inf
+
+    @classmethod
+    def after(cls, seconds: float) -> Deadline:
+        """Return the deadline that lies so many seconds ahead."""
+        return cls(time.monotonic() + seconds)
+
+    @property
+    def is_past(self) -> bool:
+        """Whether the time is spent."""
+        return time.monotonic() >= self.end
+
+    def check(self) -> None:
+        """Raise OutOfTimeError where the time is spent."""
+        if self.is_past:
+            raise OutOfTimeError
+
+
+NEVER = Deadline()
+"""No limit."""
+
 
 _COARSEST_STEP = 0.002
 """s; longest step of the simulation: its adaptive sub-steps make a shorter one change no figure of a diagnosis."""
@@ -166,9 +195,10 @@ def pose_problem(recording: Recording, pool: Executor, settings: DiagnosisSettin
     tables = {run: recording.table(run) for run in recording.runs}
     names = [name for name in COMPARED[recording.header.rig] if name in recording.channels]
     loud = [
-        name for name in names
+        name
+        for name in names
         if stands_out(np.concatenate([table[name] for table in tables.values()]), recording.channels[name].noise_rms)
-    ]  # fmt: skip
+    ]
     if not loud:
         raise InputError(f"{recording.folder}: no recorded output stands above its noise; there is nothing to diagnose")
     skip = round(LEFT_OUT * recording.header.sample_rate)
@@ -177,7 +207,7 @@ def pose_problem(recording: Recording, pool: Executor, settings: DiagnosisSettin
     measured = {run: np.array([table[name][skip : ends[run]] for name in loud]) for run, table in tables.items()}
     inputs = {run: recorded_inputs(recording, table, solver.step) for run, table in tables.items()}
     settings = settings or DiagnosisSettings()
-    parameters = _list_parameters(recording.header, scenario, settings.fit)
+    parameters = list_varied(recording.header, scenario, settings.fit.fitted_tolerance)
     return DiagnosisProblem(
         recording, scenario, tuple(tables), tuple(loud), measured, inputs, parameters, settings, pool,
         current_falls=shows_falling_current(recording), reached=_measure_reach(recording.channels, tables.values()),
@@ -188,19 +218,6 @@ def _measure_reach(recorded: Container[str], tables: Collection[Mapping[str, Arr
     """Return the largest value of the first recorded channel of each unit, in any run."""
     first = {unit: next((name for name in names if name in recorded), "") for unit, names in _REACHED.items()}
     return {unit: max(float(np.abs(table[name]).max()) for table in tables) for unit, name in first.items() if name}
-
-
-def _list_parameters(header: Header, scenario: Scenario, settings: FitSettings) -> tuple[Nuisance, ...]:
-    """Return the parameters that the tolerances of a recording let vary."""
-
-    def resolve(tolerance: Tolerance) -> float:
-        return settings.fitted_tolerance if tolerance == "fitted" else tolerance
-
-    own = {key: resolve(tolerance) for key, tolerance in header.own_tolerances.items()}
-    default = header.default_tolerance
-    # A fit leaves no parameter at zero exactly, so that one that is zero was not fitted.
-    of_zeros = USUAL if default == "fitted" else default
-    return tuple(list_nuisances(scenario, resolve(default), own, of_zeros))
 
 
 def check_nominal(problem: DiagnosisProblem) -> None:

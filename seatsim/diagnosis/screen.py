@@ -11,10 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.diagnosis.candidates import Candidate
-from seatsim.diagnosis.deadline import OutOfTimeError
 from seatsim.diagnosis.fit import solve_step
-from seatsim.diagnosis.objective import AT_ONCE, Evaluation, Linearisation, Objective
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.objective import AT_ONCE, Evaluation, Linearisation, Objective, Parameters
+from seatsim.diagnosis.problem import OutOfTimeError
 from seatsim.schema.arrays import Array
 
 
@@ -35,7 +34,7 @@ class Sensitivities(NamedTuple):
         return [slice(end - each.sizes, end) for end, each in zip(ends, self.candidates, strict=True)]
 
 
-class Prediction(NamedTuple):
+class _Prediction(NamedTuple):
     """The cost that a linear model predicts for the best multiples of a candidate's sizes, and those multiples."""
 
     cost: float
@@ -107,7 +106,7 @@ def screen_candidates(
 
 def _predict(
     objective: Objective, base: Evaluation, offered: Sensitivities, nuisances: Linearisation
-) -> dict[int, Prediction]:
+) -> dict[int, _Prediction]:
     """Return the predicted cost of the best multiple of each candidate, for a rig that is linear in all parameters.
 
     Candidates are known by their place among those offered; those of the effects of the base are left out.
@@ -139,7 +138,7 @@ def _multiply(jacobian: Array, changes: Array, residuals: Array) -> tuple[Array,
 
 def _predict_one(
     objective: Objective, base: Evaluation, candidate: Candidate, matrix: Array, right: Array
-) -> Prediction:
+) -> _Prediction:
     """Return the prediction for a candidate, whose sizes are the last components of the normal equations."""
     vector, (low, high) = base.parameters.vector, base.parameters.limits
     count, stretch = len(base.parameters.deviations), objective.settings.selection.stretch
@@ -151,7 +150,7 @@ def _predict_one(
     start = np.append(vector, np.zeros(candidate.sizes))
     step = solve_step(matrix, right, count, start, low, high, objective.settings.fit.prior_std)
     cost = base.cost - 2.0 * float(step @ right) + float(step @ matrix @ step)
-    return Prediction(cost, step[-candidate.sizes :])
+    return _Prediction(cost, step[-candidate.sizes :])
 
 
 def _starts_around(

@@ -11,11 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.diagnosis.candidates import Candidate
-from seatsim.diagnosis.deadline import OutOfTimeError
-from seatsim.diagnosis.fit import fit
-from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, scale
-from seatsim.diagnosis.parameters import Parameters
-from seatsim.diagnosis.pattern_search import search_pattern
+from seatsim.diagnosis.fit import fit, search_pattern
+from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters, scale
+from seatsim.diagnosis.problem import OutOfTimeError
 from seatsim.diagnosis.screen import Sensitivities, measure_sensitivities, name_unstable, screen_candidates
 
 
@@ -78,9 +76,12 @@ class Selection:
 
 
 def select_effects(
-    objective: Objective, candidates: Sequence[Candidate], progress: Callable[[str], object],
-    largest: int | None = None, rig: LinearisedRig | None = None,
-) -> Selection:  # fmt: skip
+    objective: Objective,
+    candidates: Sequence[Candidate],
+    progress: Callable[[str], object],
+    largest: int | None = None,
+    rig: LinearisedRig | None = None,
+) -> Selection:
     """Fit the nuisance parameters alone, then single effects, then larger sets as long as the cost falls enough.
 
     Args:
@@ -145,9 +146,11 @@ def _gains(objective: Objective, sets: Sequence[Sequence[Evaluation]]) -> bool:
 
 
 def _extend(
-    objective: Objective, sets: Sequence[Sequence[Evaluation]], sensitivities: Sensitivities,
+    objective: Objective,
+    sets: Sequence[Sequence[Evaluation]],
+    sensitivities: Sensitivities,
     nuisances: Linearisation,
-) -> list[Evaluation]:  # fmt: skip
+) -> list[Evaluation]:
     """Return the fitted enlargements of the best sets by one effect, best first, one structure of each set."""
     settings = objective.settings.selection
     bases: Sequence[Evaluation] = sets[-1][: settings.beam]

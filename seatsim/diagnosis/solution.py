@@ -1,41 +1,32 @@
-"""The stages of a diagnosis, what a search needs, and the solution that it returns."""
+"""A search for effects, the solution that it returns, and its decision revised by what is found later."""
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
+import numpy as np
+
 from seatsim.diagnosis.candidates import Candidate
-from seatsim.diagnosis.decide import Decision, decide_verdict
+from seatsim.diagnosis.decide import Decision, Verdict, decide_verdict, weigh_effects
 from seatsim.diagnosis.localise.discrepancy import Discrepancy
-from seatsim.diagnosis.localise.localisation import Remainder, share_gap
-from seatsim.diagnosis.noise import NoiseWeights, weigh_noise
+from seatsim.diagnosis.movement import group_equivalent, is_material, measure_remainders
 from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.problem import DiagnosisProblem
-from seatsim.diagnosis.result import Share
+from seatsim.diagnosis.result import Cause, Share
 from seatsim.diagnosis.select import LinearisedRig, Selection, select_effects
+from seatsim.diagnosis.settings.judging import DecisionSettings
 
 Progress = Callable[[str], object]
 
 
-class Method(NamedTuple):
-    """The stages of a diagnosis; a benchmark replaces one of them to measure its contribution."""
-
-    weigh_noise: Callable[[DiagnosisProblem], NoiseWeights] = weigh_noise
-    select_effects: Callable[
-        [Objective, Sequence[Candidate], Progress, int | None, LinearisedRig | None], Selection
-    ] = select_effects
-    decide_verdict: Callable[[DiagnosisProblem, Selection, Sequence[str]], Decision] = decide_verdict
-    share_gap: Callable[[Objective, Evaluation, Remainder | None], list[Share]] = share_gap
-
-
 class SearchTask(NamedTuple):
-    """Inputs of a search: the candidates, the names of all effects, the progress callback, and the method."""
+    """Inputs of a search: the candidates, the names of all effects, and the progress callback."""
 
     candidates: Sequence[Candidate]
     effects: Sequence[str]
     progress: Progress
-    method: Method
 
 
 class Solution(NamedTuple):
@@ -54,6 +45,84 @@ class Solution(NamedTuple):
 
 def search(task: SearchTask, objective: Objective, rig: LinearisedRig | None = None) -> Solution:
     """Select effects under the weights of an objective and decide; `rig` is the linearised rig where it is known."""
-    selection = task.method.select_effects(objective, task.candidates, task.progress, None, rig)
-    decision = task.method.decide_verdict(objective.problem, selection, task.effects)
+    selection = select_effects(objective, task.candidates, task.progress, rig=rig)
+    decision = decide_verdict(objective.problem, selection, task.effects)
     return Solution(objective, selection, decision)
+
+
+def call_unknown(settings: DecisionSettings, decision: Decision) -> Decision:
+    """Return a decision whose effects stay, but take too little of the gap to be its causes alone."""
+    return dataclasses.replace(decision, verdict="unknown", unknown=max(decision.unknown, settings.unknown_if_unknown))
+
+
+def decide_beside_unknown(
+    settings: DecisionSettings,
+    decision: Decision,
+    chosen: Evaluation,
+    equivalent: Sequence[Evaluation] = (),
+    tried: Sequence[tuple[Evaluation, float]] = (),
+) -> Decision:
+    """Return the decision `unknown` with another set of effects stated beside the unknown cause.
+
+    Args:
+        settings: thresholds.
+        decision: the decision so far.
+        chosen: the set to be stated, possibly none.
+        equivalent: sets that do as well.
+        tried: sets with the logarithm of the weight that runs left out of its fit give each.
+    """
+    # Where no effect helps enough to be stated, the single ones are still ranked by how much they help.
+    size = max(1, len(chosen.parameters.terms))
+    compared = [(each.parameters.names, weight) for each, weight in tried if len(each.parameters.terms) <= size]
+    probabilities = weigh_effects(compared, list(decision.probabilities), settings.effect_bounds)
+    stated = dataclasses.replace(
+        decision, chosen=chosen, groups=group_equivalent(chosen, equivalent), probabilities=probabilities
+    )
+    return call_unknown(settings, stated)
+
+
+def decide_without(problem: DiagnosisProblem, decision: Decision, rig: Evaluation, given_up: Sequence[str]) -> Decision:
+    """Return the decision without effects that were given up; `rig` is the chosen set refitted without them.
+
+    Where no effect is left the verdict is `unknown`, or `none` where the rig leaves no channel a material gap.
+    """
+    settings = problem.settings.decision
+    least = settings.effect_bounds[0]
+    probabilities = {name: least if name in given_up else value for name, value in decision.probabilities.items()}
+    groups = [group for group in decision.groups if not set(group) & set(given_up)]
+    left = dataclasses.replace(decision, chosen=rig, groups=groups, probabilities=probabilities)
+    if not rig.parameters.terms:
+        if np.any(measure_remainders(problem, rig) >= settings.material):
+            return call_unknown(settings, left)
+        return dataclasses.replace(left, verdict="none", none=settings.none_least, unknown=settings.unknown_if_none)
+    verdict: Verdict = "known" if decision.verdict == "ambiguous" and not groups else decision.verdict
+    return dataclasses.replace(left, verdict=verdict)
+
+
+def doubt_single(
+    problem: DiagnosisProblem, selection: Selection, decision: Decision, causes: Sequence[Cause]
+) -> Decision:
+    """Return the decision on a single effect, in one group with those of which the held-out run speaks more highly.
+
+    The evidence charges an effect for its parameters, a run left out of the fit does not. Where the evidence is not
+    strong and that run contradicts it, either effect may be the cause.
+    """
+    if len(decision.chosen.parameters.terms) != 1:
+        return decision
+    settings, (name,) = problem.settings.decision, decision.chosen.parameters.names
+    first = next(cause for cause in causes if cause.effect == name)
+    group = next((group for group in decision.groups if name in group), [name])
+    rivals = [
+        cause.effect
+        for cause in causes
+        if cause.effect not in group
+        and cause.effect in selection.singles
+        and cause.probability * settings.strong_evidence > first.probability
+        and cause.shrink > first.shrink + settings.contradicted
+        and is_material(problem, selection.singles[cause.effect])
+    ]
+    if not rivals:
+        return decision
+    groups = [[*group, *rivals], *(each for each in decision.groups if each is not group)]
+    verdict: Verdict = "ambiguous" if decision.verdict == "known" else decision.verdict
+    return dataclasses.replace(decision, verdict=verdict, groups=groups)

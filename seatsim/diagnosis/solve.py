@@ -10,13 +10,11 @@ import numpy as np
 
 from seatsim.diagnosis.candidates import list_candidates
 from seatsim.diagnosis.cross_validate import cross_validate, select_by_cross_validation
-from seatsim.diagnosis.deadline import OutOfTimeError
 from seatsim.diagnosis.decide import explain_after_all, shows_effect
 from seatsim.diagnosis.fit import refit
-from seatsim.diagnosis.input_noise import carry_force
 from seatsim.diagnosis.localise.discrepancy import describe_discrepancy
 from seatsim.diagnosis.localise.input_estimate import estimate_nonrepeatable_force
-from seatsim.diagnosis.localise.localisation import localise_remainder
+from seatsim.diagnosis.localise.localisation import localise_remainder, share_gap
 from seatsim.diagnosis.localise.stochastic import (
     add_to_noise,
     find_bias_drift,
@@ -25,33 +23,37 @@ from seatsim.diagnosis.localise.stochastic import (
     name_stochastic_effect,
 )
 from seatsim.diagnosis.movement import is_material, measure_gap_taken
-from seatsim.diagnosis.noise import measure_broadband, weigh_gap
-from seatsim.diagnosis.objective import Evaluation, Objective
-from seatsim.diagnosis.parameters import Parameters
-from seatsim.diagnosis.problem import DiagnosisProblem
+from seatsim.diagnosis.noise import carry_force, measure_broadband, weigh_gap, weigh_noise
+from seatsim.diagnosis.objective import Evaluation, Objective, Parameters
+from seatsim.diagnosis.problem import DiagnosisProblem, OutOfTimeError
 from seatsim.diagnosis.result import Share
-from seatsim.diagnosis.revise import call_unknown, decide_beside_unknown
-from seatsim.diagnosis.select import Selection
-from seatsim.diagnosis.solution import Method, Progress, SearchTask, Solution, search
+from seatsim.diagnosis.select import Selection, select_effects
+from seatsim.diagnosis.solution import (
+    Progress,
+    SearchTask,
+    Solution,
+    call_unknown,
+    decide_beside_unknown,
+    search,
+)
 from seatsim.effects.base import EFFECTS
 from seatsim.schema.arrays import Array
 
 P = ParamSpec("P")
 
 
-def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress, method: Method) -> Solution:
+def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress) -> Solution:
     """Search for the causes; where the remainder is a stochastic disturbance, add it to the noise and search again.
 
     Args:
         problem: a recording beside its nominal scenario.
         without: names of effects that are withheld from the library.
         progress: called with what is being done.
-        method: the stages.
     """
     effects = [name for name in EFFECTS.names() if name not in without]
-    task = SearchTask(list_candidates(problem, without), effects, progress, method)
+    task = SearchTask(list_candidates(problem, without), effects, progress)
     progress("weighing the channels")
-    objective = Objective(problem, method.weigh_noise(problem))
+    objective = Objective(problem, weigh_noise(problem))
     forces = None if problem.bench else _estimate_nonrepeatable(objective)
     if forces is not None:
         objective = Objective(problem, objective.weights.add(carry_force(problem, forces)))
@@ -131,7 +133,7 @@ def _search_by_gap(task: SearchTask, first: Solution) -> Solution:
     objective = Objective(problem, weigh_gap(problem, first.selection.calibrated.residuals))
     largest = settings.selection.largest_uniform_set
     rig = first.selection.weigh_again(first.objective, objective)
-    selection = task.method.select_effects(objective, task.candidates, task.progress, largest, rig)
+    selection = select_effects(objective, task.candidates, task.progress, largest, rig)
     chosen, equivalent, tried = select_by_cross_validation(objective, selection)
     evident = None if chosen.parameters.terms else _fit_evident(first, objective, selection)
     if evident is None:
@@ -176,11 +178,11 @@ def _localise(task: SearchTask, solution: Solution) -> Solution:
     Every answer needs them, so that no deadline ends this stage.
     """
     objective, decision = solution.objective.unhurried, solution.decision
-    problem, share = objective.problem, task.method.share_gap
+    problem = objective.problem
     if decision.verdict == "none":
         return solution
     if decision.verdict != "unknown":
-        return solution._replace(where=share(objective, decision.chosen, None))
+        return solution._replace(where=share_gap(objective, decision.chosen, None))
     if problem.bench:
         # On a bench only the damper lies between the prescribed motion and the load cell.
         return solution._replace(where=[Share("damper", 1.0)])
@@ -189,7 +191,7 @@ def _localise(task: SearchTask, solution: Solution) -> Solution:
     found = describe_discrepancy(problem, rig.parameters, remainder.block, remainder.likeliest)
     if rig is not decision.chosen:
         decision = decide_beside_unknown(objective.settings.decision, decision, rig)
-    return solution._replace(decision=decision, where=share(objective, rig, remainder), discrepancy=found)
+    return solution._replace(decision=decision, where=share_gap(objective, rig, remainder), discrepancy=found)
 
 
 def _search_beside_disturbance(task: SearchTask, first: Solution, without: Sequence[str]) -> Solution:

@@ -11,7 +11,7 @@ Spectra = NDArray[np.complex128]
 
 _FEWEST_BINS = 4
 """Least half-width of the average in bins, so that the lowest frequencies are averaged at all."""
-TINY = 1e-30
+_TINY = 1e-30
 """Least power, so that nothing is divided by the zero of a silent channel."""
 
 
@@ -32,7 +32,7 @@ def smooth_spectrum(power: Array, half_width: float) -> Array:
 
 def measure_power(spectrum: Spectra, half_width: float) -> Array:
     """Return the smoothed power of a spectrum, shape (frequencies,), never zero."""
-    return np.asarray(smooth_spectrum(np.abs(spectrum[None]) ** 2, half_width)[0] + TINY)
+    return np.asarray(smooth_spectrum(np.abs(spectrum[None]) ** 2, half_width)[0] + _TINY)
 
 
 def estimate_response(outputs: Spectra, cause: Spectra, half_width: float) -> Spectra:

@@ -8,31 +8,32 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from seatsim.diagnosis.alternatives import are_forms_due, compare_damper_forms, describe_forms, describe_obstacle
-from seatsim.diagnosis.augmented import write_augmented
+from seatsim.diagnosis.answer import write_answer, write_augmented
 from seatsim.diagnosis.decide import Decision
-from seatsim.diagnosis.design.collinearity import measure_collinearity
 from seatsim.diagnosis.design.experiment import propose_experiment
 from seatsim.diagnosis.design.isolability import describe_missing_sensors, find_isolable_groups
+from seatsim.diagnosis.design.separability import measure_collinearity
 from seatsim.diagnosis.error_budget import budget_errors
 from seatsim.diagnosis.estimates import compare_comfort, estimate_causes, trace_motion, trace_replayed, trace_run
-from seatsim.diagnosis.every_run import ReplayedRun, list_gaps, measure_gaps, replay_runs, state_model_error
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.localise.discrepancy import show_discrepancy
 from seatsim.diagnosis.localise.stochastic import add_strength
 from seatsim.diagnosis.movement import name_immaterial, share_removable
 from seatsim.diagnosis.nuisance import list_calibrated
-from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters
 from seatsim.diagnosis.result import Cause, DamperForm, Diagnosis, Evidence, Gaps, ProposedExperiment
-from seatsim.diagnosis.revise import call_unknown, decide_without, doubt_single
-from seatsim.diagnosis.sentences import write_answer
-from seatsim.diagnosis.solution import Solution
+from seatsim.diagnosis.solution import Solution, call_unknown, decide_without, doubt_single
 from seatsim.diagnosis.validate import (
+    ReplayedRun,
     choose_held_out_run,
     choose_typical_run,
+    list_gaps,
     make_scenario,
+    measure_gaps,
     refit_without,
+    replay_runs,
     shrink_by_run,
+    state_model_error,
 )
 from seatsim.recordings.quality.coverage import measure_coverage
 from seatsim.scenario.scenario import Scenario
@@ -40,7 +41,7 @@ from seatsim.schema.errors import RunError
 
 
 @dataclasses.dataclass(frozen=True)
-class Validation:
+class _Validation:
     """A solution on a run held out of its fits: the rigs fitted without the run, and the gaps that they leave on it.
 
     `runs` holds every run, replayed with the nominal, the calibrated and the augmented scenario, the three `scenarios`.
@@ -67,7 +68,7 @@ class Validation:
         return nominal, self.calibrated.parameters, self.augmented.parameters
 
 
-def validate_on_held_out(solution: Solution) -> Validation:
+def validate_on_held_out(solution: Solution) -> _Validation:
     """Return a solution assessed on a held-out run; effects that fail there beside an unknown cause are dropped."""
     objective, decision, selection = solution.objective, solution.decision, solution.selection
     problem, chosen = objective.problem, decision.chosen
@@ -103,7 +104,7 @@ def validate_on_held_out(solution: Solution) -> Validation:
         taken = share_removable(objective.on_runs([run]), gaps.before.overall, gaps.after.overall)
         if taken < problem.settings.decision.least_taken:
             solution = solution._replace(decision=call_unknown(problem.settings.decision, decision))
-    return Validation(solution, nominal, run, calibrated, augmented, (first, second, third), runs, gaps)
+    return _Validation(solution, nominal, run, calibrated, augmented, (first, second, third), runs, gaps)
 
 
 def _name_raised_gap(gaps: Gaps, held_out: str) -> str:
@@ -170,19 +171,24 @@ def state_diagnosis(
     return dataclasses.replace(diagnosis, sentence=" ".join(filter(None, (write_answer(diagnosis), said))))
 
 
-def _list_causes(validation: Validation) -> list[Cause]:
+def _list_causes(validation: _Validation) -> list[Cause]:
     """Return every effect with its probability, shrink and parameters; a stochastic one with its strength."""
     solution, found = validation.solution, validation.solution.discrepancy
     causes = estimate_causes(
-        solution.objective, solution.selection, solution.decision, validation.calibrated, validation.augmented,
-        validation.nominal, validation.run,
-    )  # fmt: skip
+        solution.objective,
+        solution.selection,
+        solution.decision,
+        validation.calibrated,
+        validation.augmented,
+        validation.nominal,
+        validation.run,
+    )
     if found is None:
         return causes
     return [add_strength(cause, found) if cause.effect == solution.stochastic else cause for cause in causes]
 
 
-def _list_alternatives(validation: Validation, asked: bool, progress: Callable[[str], object]) -> list[DamperForm]:
+def _list_alternatives(validation: _Validation, asked: bool, progress: Callable[[str], object]) -> list[DamperForm]:
     """Return other models of the damper, none where they are neither asked for nor due, or cannot be judged."""
     problem, verdict = validation.solution.objective.problem, validation.solution.decision.verdict
     due = not describe_obstacle(problem) if asked else are_forms_due(problem, validation.gaps, verdict)
@@ -202,7 +208,7 @@ def _propose_experiment(
     return propose_experiment(objective, nuisances, decision.groups[0])
 
 
-def _collect_evidence(validation: Validation, nuisances: Linearisation, causes: Sequence[Cause]) -> Evidence:
+def _collect_evidence(validation: _Validation, nuisances: Linearisation, causes: Sequence[Cause]) -> Evidence:
     """Return the content of the report's figures, on the held-out run."""
     solution, run = validation.solution, validation.run
     problem, settings = solution.objective.problem, solution.objective.settings.design

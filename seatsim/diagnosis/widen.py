@@ -14,20 +14,21 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.diagnosis.deadline import OutOfTimeError
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.nuisance import list_calibrated
-from seatsim.diagnosis.objective import Evaluation, Objective
-from seatsim.diagnosis.parameters import Parameters
-from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
-from seatsim.diagnosis.solution import Method, Progress, Solution
+from seatsim.diagnosis.objective import Evaluation, Objective, Parameters
+from seatsim.diagnosis.problem import DiagnosisProblem, OutOfTimeError, normalise_rms_errors
+from seatsim.diagnosis.solution import Progress, Solution
 from seatsim.diagnosis.solve import solve
 
-Search = Callable[[], Solution]
+_Search = Callable[[], Solution]
 _THEIRS = {
-    "plant.driver_mass": "driver.mass", "actuator.rate": "coil.lag", "actuator.max_current": "coil.current_limit",
-    "damper.parameters.f0": "damper.gas_spring", "damper.parameters.k0": "damper.gas_spring",
-}  # fmt: skip
+    "plant.driver_mass": "driver.mass",
+    "actuator.rate": "coil.lag",
+    "actuator.max_current": "coil.current_limit",
+    "damper.parameters.f0": "damper.gas_spring",
+    "damper.parameters.k0": "damper.gas_spring",
+}
 """Parameters that an effect continues beyond their tolerance, so that they end at a bound where it is at work."""
 
 
@@ -43,16 +44,13 @@ class _Wider(NamedTuple):
         return self.judge.evaluate([solution.decision.chosen.parameters])[0]
 
 
-def search_wider(
-    first: Solution, without: Sequence[str], progress: Progress, method: Method
-) -> tuple[Solution, list[str]]:
+def search_wider(first: Solution, without: Sequence[str], progress: Progress) -> tuple[Solution, list[str]]:
     """Return the solution to state, and sentences on parameters at their bounds and on what a second search found.
 
     Args:
         first: the solution within the stated tolerances.
         without: names of effects that are withheld from the library.
         progress: called with what is being done.
-        method: the stages of the search.
     """
     problem = first.objective.problem
     best = min(first.decision.chosen, first.selection.sets[-1][0], key=lambda each: each.excess)
@@ -64,7 +62,7 @@ def search_wider(
 
     def search() -> Solution:
         progress("searching again with a wider tolerance of parameters at their bounds")
-        return solve(judge.problem, without, progress, method)
+        return solve(judge.problem, without, progress)
 
     attempt = _leave_less if best.excess > problem.settings.selection.nothing_left else _need_fewer
     notes = ["at the bound of their tolerance: " + ", ".join(held.values())]
@@ -79,7 +77,7 @@ def search_wider(
     return second or first, notes
 
 
-def _leave_less(wider: _Wider, search: Search, held: int) -> tuple[Solution | None, str]:
+def _leave_less(wider: _Wider, search: _Search, held: int) -> tuple[Solution | None, str]:
     """Return the second solution where it leaves clearly less than the first, with words on what it leaves."""
     settings, second = wider.judge.settings.widening, None
     left = _share_left(wider, refit(wider.judge, wider.start))
@@ -90,7 +88,7 @@ def _leave_less(wider: _Wider, search: Search, held: int) -> tuple[Solution | No
     return (second, said) if left <= settings.clearly_less else (None, f"{said}, which is not clearly less")
 
 
-def _need_fewer(wider: _Wider, search: Search, held: int) -> tuple[Solution | None, str]:
+def _need_fewer(wider: _Wider, search: _Search, held: int) -> tuple[Solution | None, str]:
     """Return the second solution where fewer effects leave nothing to explain, with words on that."""
     terms, little = wider.start.terms, wider.judge.settings.selection.nothing_left
     if len(terms) < 2 or held < wider.judge.settings.widening.strained:
@@ -112,8 +110,9 @@ def find_at_bound(problem: DiagnosisProblem, parameters: Parameters) -> dict[int
     listed = list_calibrated(problem.parameters, parameters.deviations, problem.settings.widening.at_bound)
     return {
         k: f"{each.name} {each.nominal:.4g} (fitted {each.value:.4g})"
-        for k, each in enumerate(listed) if each.at_bound and _THEIRS.get(each.name) not in parameters.names
-    }  # fmt: skip
+        for k, each in enumerate(listed)
+        if each.at_bound and _THEIRS.get(each.name) not in parameters.names
+    }
 
 
 def _widen(objective: Objective, parameters: Parameters, held: Sequence[int]) -> tuple[Parameters, Objective]:

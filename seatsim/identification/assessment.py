@@ -18,7 +18,7 @@ from seatsim.schema.content import Joined, Unwritten, written
 from seatsim.schema.errors import InputError
 from seatsim.simulation.damper_bench import centring
 
-GUARD = 0.05
+_GUARD = 0.05
 """Share of a record's peak force below which a measured force does not count in the mean deviation."""
 
 
@@ -45,7 +45,7 @@ def assess_agreement(measured: Array, predicted: Array) -> Agreement:
     error = measured - predicted
     spread = float(np.sum((measured - np.mean(measured)) ** 2))
     share = float(np.sum(error**2)) / spread if spread > 0.0 else np.inf
-    counted = np.abs(measured) > GUARD * np.max(np.abs(measured))
+    counted = np.abs(measured) > _GUARD * np.max(np.abs(measured))
     deviation = float(np.mean(np.abs(error[counted] / measured[counted]))) if counted.any() else np.inf
     rmse = float(np.sqrt(np.mean(error**2)))
     return Agreement(1.0 - share, deviation, rmse, 100.0 * (1.0 - share**0.5))
@@ -145,13 +145,13 @@ def _assess(record: BenchRecord, part: str, force: Array) -> Assessment:
     return Assessment(record, part, force, assess_agreement(record.force, np.where(np.isfinite(force), force, 0.0)))
 
 
-BEYOND = 1.05
+_BEYOND = 1.05
 """Factor from which a held-out record counts as beyond what was fitted."""
-POWER = (0.05, 0.95)
+_POWER = (0.05, 0.95)
 """Shares of the power of the velocity below the lowest and the highest frequency that count as covered."""
-SPEED_CLASSES = 10
+_SPEED_CLASSES = 10
 """Classes of speed whose shares of time are counted."""
-SAME_CURRENT = 4
+_SAME_CURRENT = 4
 """Decimals of a current in A that tell two steady currents apart."""
 
 
@@ -174,7 +174,7 @@ class VisitedRanges(NamedTuple):
 
 def measure_coverage(records: Sequence[BenchRecord]) -> VisitedRanges:
     """Return the ranges that the records visit."""
-    steady = {round(record.mean_current, SAME_CURRENT) for record in records if np.ptp(record.current) == 0.0}
+    steady = {round(record.mean_current, _SAME_CURRENT) for record in records if np.ptp(record.current) == 0.0}
     temperatures = [record.temperature for record in records if record.temperature is not None]
     bands = [_band(record) for record in records]
     return VisitedRanges(
@@ -199,7 +199,7 @@ def note_limits(
     for name, unit in (("velocity", "m/s"), ("current", "A"), ("displacement", "m")):
         fitted = max(_largest(record, name) for record in train)
         tested = max((_largest(record, name) for record in test), default=0.0)
-        if tested > BEYOND * fitted:
+        if tested > _BEYOND * fitted:
             notes.append(
                 f"held-out records reach {tested:.3g} {unit} of {name}, the fitted ones {fitted:.3g} {unit} only"
             )
@@ -219,12 +219,12 @@ def _band(record: BenchRecord) -> tuple[float, float]:
     """Return the frequencies in Hz between which nine tenths of the power of the velocity lie."""
     power = np.abs(np.fft.rfft(record.velocity - np.mean(record.velocity))) ** 2
     grown = np.cumsum(power) / max(float(np.sum(power)), 1e-300)
-    low, high = (float(np.searchsorted(grown, share)) * record.rate / len(record.velocity) for share in POWER)
+    low, high = (float(np.searchsorted(grown, share)) * record.rate / len(record.velocity) for share in _POWER)
     return low, high
 
 
 def _shares_of_time(records: Sequence[BenchRecord]) -> dict[str, float]:
     """Return the share of time at each tenth of the largest speed."""
     speed = np.concatenate([np.abs(record.velocity) for record in records])
-    counts, edges = np.histogram(speed, SPEED_CLASSES, (0.0, float(np.max(speed))))
+    counts, edges = np.histogram(speed, _SPEED_CLASSES, (0.0, float(np.max(speed))))
     return {f"{edge:.3g}": float(count / len(speed)) for edge, count in zip(edges[1:], counts, strict=True)}

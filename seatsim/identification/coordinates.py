@@ -28,12 +28,12 @@ from seatsim.identification.damper_record import (
 from seatsim.schema.arrays import Array
 from seatsim.schema.fields import bounds, describe
 
-SPAN = 1e3
+_SPAN = 1e3
 """Factor by which a positive parameter may differ from its start, and from its size in the data, where its bounds do
 not say."""
-DATA_SHARE = 0.1
+_DATA_SHARE = 0.1
 """Share of what its unit is worth in the data that a parameter counts in where it is zero at the start."""
-LEAST_RATIO = 1e-12
+_LEAST_RATIO = 1e-12
 """Least ratio of a positive parameter to its size, so that its logarithm exists."""
 
 
@@ -77,7 +77,7 @@ class Component(NamedTuple):
             assert isinstance(value, tuple)
             return float(evaluate_law(value, np.array([self.at]))[0]) / self.size
         number = self.read(value)
-        return math.log(max(number, LEAST_RATIO * self.size) / self.size) if self.logarithmic else number / self.size
+        return math.log(max(number, _LEAST_RATIO * self.size) / self.size) if self.logarithmic else number / self.size
 
     def to_value(self, number: float) -> float:
         """Return the parameter in its unit, or the value of the law, that a component stands for."""
@@ -107,7 +107,7 @@ class Coordinates:
             moot = scales.current == 0.0 and parse_unit(specification.unit).get("A", 0.0) != 0.0
             kept = specification.name in (*RANGE_FIELDS, *fixed) or moot
             if not kept and not isinstance(value, int | str):
-                natural = DATA_SHARE * scales.size(specification.unit)
+                natural = _DATA_SHARE * scales.size(specification.unit)
                 self.components += self._of_field(specification.name, specification.unit, value, natural)
         self.low = np.array([c.low for c in self.components])
         self.high = np.array([c.high for c in self.components])
@@ -119,8 +119,8 @@ class Coordinates:
         size = abs(value) or natural
         if low > 0.0 or (low == 0.0 and value > 0.0):
             # What the data are a thousand times larger than has no influence, whatever the default is.
-            least = max(low, min(size, natural) / SPAN)
-            most = high if math.isfinite(high) else SPAN * max(size, natural)
+            least = max(low, min(size, natural) / _SPAN)
+            most = high if math.isfinite(high) else _SPAN * max(size, natural)
             ends = math.log(least / size), math.log(most / size)
             return [Component(name, None, unit, size, natural, True, *ends, None)]
         return [Component(name, None, unit, size, natural, False, low / size, high / size, None)]

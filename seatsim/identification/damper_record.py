@@ -86,7 +86,7 @@ def interpolate_law(values: Array, end: float) -> list[float]:
     return [float(c / end**k) for k, c in enumerate(np.linalg.solve(powers, values))]
 
 
-UNIT = re.compile(r"(?<![A-Za-z\[])(N|m|s|A)(?![A-Za-z\]])(?:\^(-?\d+(?:\.\d+)?))?")
+_UNIT = re.compile(r"(?<![A-Za-z\[])(N|m|s|A)(?![A-Za-z\]])(?:\^(-?\d+(?:\.\d+)?))?")
 """One of N, m, s, A with its power; letters in brackets are other quantities, such as `[z]`."""
 
 
@@ -111,7 +111,7 @@ def parse_unit(unit: str) -> dict[str, float]:
     top, _, bottom = unit.partition("/")
     powers: dict[str, float] = {}
     for text, sign in ((top, 1.0), (bottom, -1.0)):
-        for name, power in UNIT.findall(text):
+        for name, power in _UNIT.findall(text):
             powers[name] = powers.get(name, 0.0) + sign * float(power or 1.0)
     return powers
 

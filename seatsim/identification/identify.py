@@ -36,10 +36,10 @@ from seatsim.schema.content import Joined, Unwritten, plain, written
 from seatsim.schema.errors import RunError
 from seatsim.schema.notebook import show_record
 
-DEFAULTS = IdentificationSettings()
-NO_BETTER_THAN_MEAN = 1.01
+_DEFAULTS = IdentificationSettings()
+_NO_BETTER_THAN_MEAN = 1.01
 """Mean square error over the variance of the force from which on a fit is none: the mean of each record leaves 1."""
-TIMED_RUNS = 3
+_TIMED_RUNS = 3
 """Runs of which the fastest counts: others only add what else the processor did."""
 
 
@@ -133,7 +133,7 @@ class Identification(NamedTuple):
 
 
 def identify(
-    data: str | Path, model: str, settings: IdentificationSettings = DEFAULTS, progress: Progress = ignore_progress
+    data: str | Path, model: str, settings: IdentificationSettings = _DEFAULTS, progress: Progress = ignore_progress
 ) -> Identification:
     """Fit a damper model to the bench records of a file or folder.
 
@@ -151,7 +151,7 @@ def identify(
 def identify_records(
     records: Sequence[BenchRecord],
     model: str,
-    settings: IdentificationSettings = DEFAULTS,
+    settings: IdentificationSettings = _DEFAULTS,
     progress: Progress = ignore_progress,
 ) -> Identification:
     """Fit a damper model to bench records; see `identify`."""
@@ -166,7 +166,7 @@ def identify_records(
     if diverged:
         raise RunError(f"{model}: no parameters were found with which its state stays finite on {', '.join(diverged)}")
     cost = problem.cost(vector)
-    if cost > NO_BETTER_THAN_MEAN:
+    if cost > _NO_BETTER_THAN_MEAN:
         left = f"the best parameters found leave {100.0 * cost**0.5:.0f} % of the force's standard deviation"
         raise RunError(f"{model}: {left}, so that its mean alone fits better; choose another model")
     tests = [each.record for each in assessments if each.part == "test"]
@@ -248,7 +248,7 @@ def _note_divergence(assessments: Sequence[Assessment]) -> Iterator[str]:
 def _time_step(bench: BenchModel, inputs: Sequence[RecordInputs]) -> float:
     """Return the nanoseconds of a step of the simulation."""
     times = []
-    for _ in range(TIMED_RUNS):
+    for _ in range(_TIMED_RUNS):
         began = time.perf_counter()
         for each in inputs:
             predict_force(bench, each)

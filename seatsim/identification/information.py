@@ -14,17 +14,17 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.content import Form, written
 from seatsim.schema.fields import describe
 
-IDENTIFIED = 0.1
+_IDENTIFIED = 0.1
 """Standard deviation, over the parameter's size, above which the data are said not to identify it."""
-CORRELATED = 0.95
+_CORRELATED = 0.95
 """Size of a correlation above which a pair is reported."""
-LEAST = 1e-13
+_LEAST = 1e-13
 """Sensitivity and eigenvalue of the information, over the largest, below which there is none."""
-LEAST_COST = 1e-30
+_LEAST_COST = 1e-30
 """Mean square of the scaled error that stands for a perfect fit."""
-DIFFERENCE_STEP = 1e-6
+_DIFFERENCE_STEP = 1e-6
 """Step of the differences by which parameters are taken from the vector, a smooth function without a simulation."""
-FINE_TOLERANCE = 1e-6
+_FINE_TOLERANCE = 1e-6
 """Tolerance of the simulation: at a fit's own, steps that divide otherwise would pass for an influence."""
 
 
@@ -53,7 +53,7 @@ class Information(NamedTuple):
 
     def bic(self, cost: float) -> float:
         """Return the Bayesian information criterion, `n ln(cost) + P ln(n)` with the effective samples n."""
-        return self.samples * math.log(max(cost, LEAST_COST)) + len(self.estimates) * math.log(self.samples)
+        return self.samples * math.log(max(cost, _LEAST_COST)) + len(self.estimates) * math.log(self.samples)
 
 
 def compute_information(problem: IdentificationProblem, vector: Array, executor: Executor) -> Information:
@@ -67,7 +67,7 @@ def compute_information(problem: IdentificationProblem, vector: Array, executor:
     standard deviation is at most a tenth of its size, or of a tenth of what its unit is worth in the data (a force of
     their RMS force) where it may be zero.
     """
-    problem = problem._replace(tolerance=FINE_TOLERANCE)
+    problem = problem._replace(tolerance=_FINE_TOLERANCE)
     residuals = problem.residuals(vector)
     pieces = np.split(residuals, np.cumsum([len(inputs.force) for inputs in problem.inputs])[:-1])
     memory = float(np.mean([correlation_length(piece) for piece in pieces]))
@@ -83,7 +83,7 @@ def _estimates(problem: IdentificationProblem, vector: Array, covariance: Array)
     std = np.sqrt(np.maximum(np.diag(derivatives @ covariance @ derivatives.T), 0.0))
     parts = zip(_names(problem), values, std, _sizes(problem, values), strict=True)
     return [
-        ParameterEstimate(name, float(value), float(deviation), unit, bool(deviation <= IDENTIFIED * size))
+        ParameterEstimate(name, float(value), float(deviation), unit, bool(deviation <= _IDENTIFIED * size))
         for (name, unit), value, deviation, size in parts
     ]
 
@@ -105,9 +105,9 @@ def _invert_normal_matrix(jacobian: Array) -> Array:
     """Return (J' J)^-1, large but finite in directions that the data say nothing of."""
     # Columns of equal length: the eigenvalues then show how collinear columns are, and not how their units differ.
     scale = np.sqrt(np.sum(jacobian**2, axis=0))
-    scale = np.maximum(scale, LEAST * (float(np.max(scale)) or 1.0))
+    scale = np.maximum(scale, _LEAST * (float(np.max(scale)) or 1.0))
     value, basis = np.linalg.eigh((jacobian / scale).T @ (jacobian / scale))
-    known = np.maximum(value, LEAST * (float(value[-1]) or 1.0))
+    known = np.maximum(value, _LEAST * (float(value[-1]) or 1.0))
     return np.asarray(((basis / known) @ basis.T) / np.outer(scale, scale))
 
 
@@ -117,7 +117,7 @@ def _correlated(labels: list[str], covariance: Array) -> list[tuple[str, str, fl
     correlation = covariance / np.outer(spread, spread)
     above = zip(*np.triu_indices(len(labels), 1), strict=True)
     pairs = [(labels[a], labels[b], float(correlation[a, b])) for a, b in above]
-    return sorted((pair for pair in pairs if abs(pair[2]) > CORRELATED), key=lambda pair: -abs(pair[2]))
+    return sorted((pair for pair in pairs if abs(pair[2]) > _CORRELATED), key=lambda pair: -abs(pair[2]))
 
 
 def _names(problem: IdentificationProblem) -> list[tuple[str, str]]:
@@ -154,7 +154,7 @@ def _parameter_derivatives(problem: IdentificationProblem, vector: Array) -> Arr
     """Return the derivatives of the parameters by the vector, shape (P, P)."""
     values = _values(problem, vector)
     moved = [
-        (_values(problem, vector + DIFFERENCE_STEP * unit) - values) / DIFFERENCE_STEP for unit in np.eye(len(vector))
+        (_values(problem, vector + _DIFFERENCE_STEP * unit) - values) / _DIFFERENCE_STEP for unit in np.eye(len(vector))
     ]
     return np.column_stack(moved)
 

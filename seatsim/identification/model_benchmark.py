@@ -23,7 +23,7 @@ from seatsim.schema.files import write_json
 from seatsim.schema.guarded import expect, read_json
 from seatsim.schema.registry import names
 
-ALL = "all"
+_ALL = "all"
 """Stands for every registered model."""
 
 
@@ -69,7 +69,7 @@ def benchmark_models(
     Raises:
         InputError: the settings do not fit the records, or name a parameter that no model has.
     """
-    models = names("damper") if ALL in models else models
+    models = names("damper") if _ALL in models else models
     split_records(records, settings)  # what cannot be held out is refused before the first fit
     _check_fixed(settings.fix, models)
     entries = []
@@ -101,10 +101,10 @@ def _benchmark_model(
         nothing = (math.nan, math.nan, 0, math.nan, math.nan, math.nan)
         return BenchmarkEntry(model, *nothing, str(error), find_confidence(find_model(model)))
     keep(predict_records(found, data))
-    return summarise(found)
+    return _summarise(found)
 
 
-def summarise(found: Identification) -> BenchmarkEntry:
+def _summarise(found: Identification) -> BenchmarkEntry:
     """Return the entry of an identification."""
     train, test = found.mean("train"), found.mean("test")
     return BenchmarkEntry(

@@ -16,9 +16,9 @@ from seatsim.rig.coil import Coil
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.arrays import Array
 
-FAST_ENOUGH = 400.0
+_FAST_ENOUGH = 400.0
 """Hz; at this rate and above every second row is the middle of a step."""
-ROOM_TEMPERATURE = 20.0
+_ROOM_TEMPERATURE = 20.0
 """degC, where no temperature was recorded."""
 
 
@@ -61,18 +61,23 @@ def prepare_inputs(record: BenchRecord, origin: float, every: bool) -> RecordInp
     origin: displacement in m that counts as x = 0.
     """
     x, v = record.displacement - origin, record.velocity
-    warm = np.full(len(x), ROOM_TEMPERATURE) if record.temperature is None else record.temperature
+    warm = np.full(len(x), _ROOM_TEMPERATURE) if record.temperature is None else record.temperature
     rate = record.rate
-    if not every and rate >= FAST_ENOUGH:
+    if not every and rate >= _FAST_ENOUGH:
         odd = slice(0, len(x) - 1 + len(x) % 2)
         x, v, current, warm = (np.ascontiguousarray(y[odd]) for y in (x, v, record.current, warm))
         return RecordInputs(x, v, current, record.commanded, warm, 2.0 / rate, record.force[odd][::2].copy())
     # A command holds until its next row; a current that was measured goes straight on to it.
     current = np.repeat(record.current, 2)[:-1] if record.commanded else _halve_linearly(record.current)
     return RecordInputs(
-        _halve_cubically(x), _halve_cubically(v), current, record.commanded, _halve_linearly(warm), 1.0 / rate,
+        _halve_cubically(x),
+        _halve_cubically(v),
+        current,
+        record.commanded,
+        _halve_linearly(warm),
+        1.0 / rate,
         record.force.copy(),
-    )  # fmt: skip
+    )
 
 
 def _halve_cubically(y: Array) -> Array:
@@ -108,7 +113,7 @@ def predict_force(
     return out + bench.offset_per_kelvin * (inputs.temperature[::2] - bench.factors.reference)
 
 
-RECOVERED = 0.85
+_RECOVERED = 0.85
 """Frequency up to which motion is sharpened, over the first one that a moving average removes altogether."""
 
 
@@ -135,7 +140,7 @@ def sharpen(record: BenchRecord, rows: int) -> BenchRecord:
     with np.errstate(invalid="ignore", divide="ignore"):
         response = np.sin(np.pi * frequency * rows / rate) / (rows * np.sin(np.pi * frequency / rate))
     response[0] = 1.0  # sin(0) / sin(0) was not a number
-    kept = frequency < RECOVERED * rate / rows
+    kept = frequency < _RECOVERED * rate / rows
     spectrum = np.where(kept, np.fft.rfft(mirrored) / np.where(kept, response, 1.0), 0.0)
     sharp = np.fft.irfft(spectrum, len(mirrored))[: len(x)]
     return record._replace(displacement=sharp, velocity=np.gradient(sharp, 1.0 / rate))

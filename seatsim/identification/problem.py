@@ -28,24 +28,24 @@ from seatsim.schema.fields import describe
 
 COIL_RATE = 130.0
 """1/s, the size of the coil's rates: those of Braz-Cesar and Barros 2012."""
-COIL_RATE_SPAN = 30.0
+_COIL_RATE_SPAN = 30.0
 """Factor by which they may differ from it."""
 PER_KELVIN = 0.01
 """1/K, the size of a temperature factor's component."""
-MOST_PER_KELVIN = 0.03
+_MOST_PER_KELVIN = 0.03
 """1/K; that much takes nine tenths of a force over 80 K."""
 OFFSET_PER_KELVIN = 1.0
 """N/K, the size of the component of the offset's growth."""
-LEAST_SPREAD = 0.05
+_LEAST_SPREAD = 0.05
 """Least standard deviation of a record's force, over the largest one's, that its residuals are divided by."""
 MOST_PARTS_IN_SEARCH = 32
 """Most parts of a step while a fit is looking: a stiffer model than that is a bad one, found quickly."""
-NEAR_BOUND = 1e-3
+_NEAR_BOUND = 1e-3
 """Distance from a bound, in components of order one, that counts as on it."""
-DIVERGED = 10.0
+_DIVERGED = 10.0
 """Scaled residual that stands for a force that is not finite, and that no other exceeds; over the mean force where that
 is larger than the standard deviation."""
-DIFFERENCE_STEP = 1e-3
+_DIFFERENCE_STEP = 1e-3
 """Step of the differences, in components of order one: well above the simulation's error, well below their range."""
 
 
@@ -80,15 +80,15 @@ class IdentificationProblem(NamedTuple):
     @property
     def bounds(self) -> tuple[Array, Array]:
         """Least and greatest value of every component, each of shape (P,)."""
-        coil = [math.log(COIL_RATE_SPAN)] * 2 * self.fits_coil
-        warm = [MOST_PER_KELVIN / PER_KELVIN] * 3 + [math.inf] if self.reference is not None else []
+        coil = [math.log(_COIL_RATE_SPAN)] * 2 * self.fits_coil
+        warm = [_MOST_PER_KELVIN / PER_KELVIN] * 3 + [math.inf] if self.reference is not None else []
         beside = np.array(coil + warm)
         return np.append(self.coordinates.low, -beside), np.append(self.coordinates.high, beside)
 
     def labels_at_bounds(self, vector: Array) -> list[str]:
         """Return what stands at the least or the greatest value that it may have."""
         low, high = self.bounds
-        near = (vector <= low + NEAR_BOUND) | (vector >= high - NEAR_BOUND)
+        near = (vector <= low + _NEAR_BOUND) | (vector >= high - _NEAR_BOUND)
         return [label for label, end in zip(self.labels, near, strict=True) if end]
 
     def to_vector(self, bench: BenchModel) -> Array:
@@ -118,7 +118,7 @@ class IdentificationProblem(NamedTuple):
             part = weight * (force - inputs.force)[inputs.counted :]
             # A mean of many standard deviations, as that of a gas force, is no divergence.
             offset = weight * len(part) ** 0.5 * abs(float(np.mean(inputs.force[inputs.counted :])))
-            limit = max(1.0, offset) * DIVERGED / math.sqrt(len(part))
+            limit = max(1.0, offset) * _DIVERGED / math.sqrt(len(part))
             parts.append(np.clip(np.where(np.isfinite(part), part, limit), -limit, limit))
         return np.concatenate(parts)
 
@@ -127,16 +127,16 @@ class IdentificationProblem(NamedTuple):
         return float(np.sum(self.residuals(vector) ** 2)) / len(self.inputs)
 
 
-def weight_records(records: Sequence[BenchRecord], inputs: Sequence[RecordInputs]) -> list[float]:
+def _weight_records(records: Sequence[BenchRecord], inputs: Sequence[RecordInputs]) -> list[float]:
     """Return the factors `1 / (std(y) sqrt(N))` that give every record the same weight."""
     spreads = np.array([np.std(record.force) for record in records])
-    least = LEAST_SPREAD * float(np.max(spreads))
+    least = _LEAST_SPREAD * float(np.max(spreads))
     counted = [len(each.force) - each.counted for each in inputs]
     return [1.0 / (max(s, least) * math.sqrt(n)) for s, n in zip(spreads, counted, strict=True)]
 
 
 def compute_jacobian(
-    problem: IdentificationProblem, vector: Array, residuals: Array, executor: Executor, step: float = DIFFERENCE_STEP
+    problem: IdentificationProblem, vector: Array, residuals: Array, executor: Executor, step: float = _DIFFERENCE_STEP
 ) -> Array:
     """Return the derivatives of the residuals, shape (N, P), by forward differences, a column a call of the executor.
 
@@ -153,15 +153,15 @@ def compute_jacobian(
     return np.column_stack(list(executor.map(column, range(len(vector)))))
 
 
-SEARCH_ROWS = 10000
+_SEARCH_ROWS = 10000
 """Rows of all records together that count in the global search."""
-LEAST_SEARCH_ROWS = 300
+_LEAST_SEARCH_ROWS = 300
 """Rows of a record that it takes at least."""
-LEAST_WARMING = 5.0
+_LEAST_WARMING = 5.0
 """K that the temperature must vary by for its influence to be fitted."""
-LEAST_CURRENT = 1e-3
+_LEAST_CURRENT = 1e-3
 """A; records that hold less hold none: a law stretched to the rounding of a current has no meaning."""
-OFF_CENTRE = 0.25
+_OFF_CENTRE = 0.25
 """Middle of all motion, over half its range, from which on it counts as the origin of the displacement."""
 
 
@@ -170,7 +170,7 @@ def find_origin(records: Sequence[BenchRecord]) -> float:
     low = min(float(np.min(record.displacement)) for record in records)
     high = max(float(np.max(record.displacement)) for record in records)
     middle = 0.5 * (low + high)
-    return round(middle, 4) if abs(middle) > OFF_CENTRE * 0.5 * (high - low) else 0.0
+    return round(middle, 4) if abs(middle) > _OFF_CENTRE * 0.5 * (high - low) else 0.0
 
 
 def state_problem(
@@ -192,12 +192,12 @@ def state_problem(
     reference = None if settings.ignore_temperature else _reference_temperature(records)
     fits_coil = any(record.commanded for record in records)
     inputs = [prepare_inputs(record, origin, False) for record in records]
-    rows = max(LEAST_SEARCH_ROWS, SEARCH_ROWS // len(records))
+    rows = max(_LEAST_SEARCH_ROWS, _SEARCH_ROWS // len(records))
     stretches = [record.liveliest(rows) for record in records]
     short = [_with_run_up(record, stretch, origin) for record, stretch in zip(records, stretches, strict=True)]
     parts = [record.part(*stretch) for record, stretch in zip(records, stretches, strict=True)]
-    whole = IdentificationProblem(coordinates, inputs, weight_records(records, inputs), fits_coil, reference)
-    return whole, whole._replace(inputs=short, weights=weight_records(parts, short))
+    whole = IdentificationProblem(coordinates, inputs, _weight_records(records, inputs), fits_coil, reference)
+    return whole, whole._replace(inputs=short, weights=_weight_records(parts, short))
 
 
 def _choose_coordinates(
@@ -233,7 +233,7 @@ def _measure_scales(records: Sequence[BenchRecord]) -> Scales:
     if min(force, stroke, speed) == 0.0:
         raise InputError("the records hold no motion or no force; identify a damper from records in which it moves")
     current = max(float(np.max(record.current)) for record in records)
-    return Scales(force, stroke, speed, current if current >= LEAST_CURRENT else 0.0)
+    return Scales(force, stroke, speed, current if current >= _LEAST_CURRENT else 0.0)
 
 
 def _count_levels(records: Sequence[BenchRecord]) -> int | None:
@@ -246,7 +246,7 @@ def _count_levels(records: Sequence[BenchRecord]) -> int | None:
 def _reference_temperature(records: Sequence[BenchRecord]) -> float | None:
     """Return the mean temperature in degC, None where it was not recorded or hardly varies."""
     warmth = [record.temperature for record in records if record.temperature is not None]
-    if len(warmth) < len(records) or max(map(np.max, warmth)) - min(map(np.min, warmth)) <= LEAST_WARMING:
+    if len(warmth) < len(records) or max(map(np.max, warmth)) - min(map(np.min, warmth)) <= _LEAST_WARMING:
         return None
     return float(np.mean(np.concatenate(warmth)))
 

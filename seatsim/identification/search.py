@@ -17,17 +17,17 @@ from seatsim.schema.arrays import Array
 Progress = Callable[[str], None]
 """Called with what is being done."""
 
-INITIAL_DEVIATION = 0.3
+_INITIAL_DEVIATION = 0.3
 """Standard deviation of the first generation, in components of order one."""
-PER_PARAMETER = 60
+_PER_PARAMETER = 60
 """Simulations of the global search for every parameter."""
-EVALUATIONS_ON_STRETCHES, EVALUATIONS_ON_RECORDS = 15, 60
+_EVALUATIONS_ON_STRETCHES, _EVALUATIONS_ON_RECORDS = 15, 60
 """Most evaluations of least squares on short stretches, which only choose a start, and on whole records."""
-INSIDE = 1e-9
+_INSIDE = 1e-9
 """Distance from the bounds, in components of order one, at which a descent starts: on them it could not leave."""
 
 
-class Minimum(NamedTuple):
+class _Minimum(NamedTuple):
     """Where least squares ended: the vector, shape (P,), and its cost."""
 
     vector: Array
@@ -53,10 +53,10 @@ def search_parameters(
     """
     default = default_vector(problem)
     first = descend_from_defaults(short, executor, progress)
-    reached = search_globally(short, first.vector, seed, PER_PARAMETER * len(default), executor, progress)
-    near = refine(short, reached, executor, progress, EVALUATIONS_ON_STRETCHES)
+    reached = search_globally(short, first.vector, seed, _PER_PARAMETER * len(default), executor, progress)
+    near = refine(short, reached, executor, progress, _EVALUATIONS_ON_STRETCHES)
     start = min((first, near), key=_cost).vector
-    found = refine(problem, start, executor, progress, EVALUATIONS_ON_RECORDS).vector
+    found = refine(problem, start, executor, progress, _EVALUATIONS_ON_RECORDS).vector
     jacobian = compute_jacobian(short, found, short.residuals(found), executor)
     return np.where(np.any(jacobian != 0.0, axis=0), found, default)
 
@@ -70,15 +70,15 @@ def descend_from_defaults(
     problem: IdentificationProblem,
     executor: Executor,
     progress: Progress = ignore_progress,
-    most: int = EVALUATIONS_ON_STRETCHES,
-) -> Minimum:
+    most: int = _EVALUATIONS_ON_STRETCHES,
+) -> _Minimum:
     """Return the better end of least squares from the defaults, as they are and with forces scaled to the data."""
     default = default_vector(problem)
     starts = default, _match_force(problem, default)
     return min((refine(problem, start, executor, progress, most) for start in starts), key=_cost)
 
 
-def _cost(end: Minimum) -> float:
+def _cost(end: _Minimum) -> float:
     return end.cost
 
 
@@ -111,7 +111,7 @@ def search_globally(
         "maxfevals": evaluations,
         "tolfun": 1e-7,
     }
-    strategy = cma.CMAEvolutionStrategy(list(start), INITIAL_DEVIATION, options)
+    strategy = cma.CMAEvolutionStrategy(list(start), _INITIAL_DEVIATION, options)
     while not strategy.stop():
         candidates = strategy.ask()
         strategy.tell(candidates, list(executor.map(problem.cost, map(np.asarray, candidates))))
@@ -124,8 +124,8 @@ def refine(
     start: Array,
     executor: Executor,
     progress: Progress = ignore_progress,
-    most: int = EVALUATIONS_ON_RECORDS,
-) -> Minimum:
+    most: int = _EVALUATIONS_ON_RECORDS,
+) -> _Minimum:
     """Return where least squares from `start` end after at most so many evaluations (Branch et al. 1999)."""
     from scipy.optimize import least_squares
 
@@ -145,8 +145,8 @@ def refine(
 
     low, high = problem.bounds
     found = least_squares(
-        evaluate, np.clip(start, low + INSIDE, high - INSIDE), differentiate, bounds=(low, high), x_scale="jac",
+        evaluate, np.clip(start, low + _INSIDE, high - _INSIDE), differentiate, bounds=(low, high), x_scale="jac",
         ftol=1e-6, xtol=1e-6, max_nfev=most,
     )  # fmt: skip
     # The solver's cost is half the sum of squares.
-    return Minimum(np.asarray(found.x), 2.0 * float(found.cost) / len(problem.inputs))
+    return _Minimum(np.asarray(found.x), 2.0 * float(found.cost) / len(problem.inputs))

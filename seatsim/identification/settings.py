@@ -42,7 +42,7 @@ def split_records(records: Sequence[BenchRecord], settings: IdentificationSettin
     share = settings.test_fraction
     if not 0.0 <= share < 1.0:
         raise InputError(f"--test-fraction {share:g} is not permitted; it must be at least 0 and below 1, such as 0.3")
-    held_out = match_records(records, settings.test)
+    held_out = _match_records(records, settings.test)
     train = [record for record in records if not _is_among(record, held_out)]
     if not train:
         raise InputError(f"--test {' '.join(settings.test)} holds out every record; leave some to fit to")
@@ -61,7 +61,7 @@ def _check_length(record: BenchRecord, fitted: BenchRecord, share: float) -> Non
         )
 
 
-def match_records(records: Sequence[BenchRecord], patterns: Sequence[str]) -> list[BenchRecord]:
+def _match_records(records: Sequence[BenchRecord], patterns: Sequence[str]) -> list[BenchRecord]:
     """Return the records whose file, or whose own name, matches one of the globs.
 
     Raises:

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from seatsim.diagnosis.augmented import write_augmented
+from seatsim.diagnosis.answer import write_augmented
 from seatsim.diagnosis.candidates import Candidate, list_candidates
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.objective import Parameters
 from seatsim.diagnosis.problem import pose_problem
 from seatsim.metrics.motion import rms
 from seatsim.page.controls import Choice, Slider, Switch, read_number

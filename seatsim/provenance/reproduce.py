@@ -7,6 +7,9 @@ manifest states, into a temporary folder. Code that it names is run only where t
 
 from __future__ import annotations
 
+import csv
+import io
+import json
 import os
 import subprocess
 import sys
@@ -14,16 +17,69 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from seatsim.provenance.crate import CRATE
-from seatsim.provenance.differences import LARGEST, Difference, compare_outputs
-from seatsim.provenance.invocation import REPEATABLE
-from seatsim.provenance.manifest import EXAMPLE
-from seatsim.provenance.statement import MANIFEST, Manifest, read_manifest, state_file
-from seatsim.provenance.versions import list_platform, list_versions
+from seatsim.provenance.manifest import CRATE, EXAMPLE
+from seatsim.provenance.statement import (
+    MANIFEST,
+    REPEATABLE,
+    Manifest,
+    list_platform,
+    list_versions,
+    read_manifest,
+    state_file,
+)
 from seatsim.scenario.loading import EXAMPLES
 from seatsim.schema.errors import InputError, RunError, nearest
-from seatsim.schema.guarded import is_there, read_bytes
+from seatsim.schema.guarded import expect, is_there, read_bytes
 from seatsim.schema.leftovers import temporary_folder
+
+_LARGEST = 2**32
+"""Bytes of an input or an output."""
+
+
+class Difference(NamedTuple):
+    """What is not as it was: an input, an output or a piece of the user's own code, and how it differs."""
+
+    path: str
+    problem: str
+
+
+def compare_outputs(manifest: Manifest, folder: Path, found: Manifest, again: Path) -> Iterator[Difference]:
+    """Yield files that are not as the manifest states, or not what the command writes now."""
+    # Files that a sweep varies may be read by other processes; their hashes stand in its configuration.
+    if found.configuration != manifest.configuration:
+        yield Difference(MANIFEST, "the configuration of the sweep, or a file that it names, is another one")
+    stated, made = {each.path: each for each in manifest.outputs}, {each.path for each in found.outputs}
+    for name, each in stated.items():
+        if Path(name).is_absolute() or ".." in Path(name).parts:
+            raise InputError(f"{folder / MANIFEST}: output {name!r} lies outside its folder")
+        if not (folder / name).is_file():
+            yield Difference(name, "is not there any more")
+            continue
+        content = read_bytes(folder / name, _LARGEST, "a file that seatsim wrote")
+        if state_file(name, content).sha256 != each.sha256:
+            yield Difference(name, "was changed after it was written")
+        if name not in made:
+            yield Difference(name, "is not written any more")
+        elif not _is_same(content, (again / name).read_bytes(), name, manifest.measured.get(name, ())):
+            yield Difference(name, "differs")
+    for name in made - stated.keys():
+        yield Difference(name, "was not written before")
+
+
+def _is_same(old: bytes, new: bytes, name: str, measured: Sequence[str]) -> bool:
+    """Tell whether two files are the same, bytes alike but for what was measured in them."""
+    if old == new or not measured:
+        return old == new
+    with expect(name, "file with measured times"):
+        return _without(old, name, measured) == _without(new, name, measured)
+
+
+def _without(content: bytes, name: str, fields: Sequence[str]) -> object:
+    """Return the content of a JSON or CSV file without some keys or columns."""
+    text = content.decode("utf-8")
+    rows = [json.loads(text)] if name.endswith(".json") else csv.DictReader(io.StringIO(text))
+    return [{key: value for key, value in row.items() if key not in fields} for row in rows]
+
 
 ANSWER = "reproduce.json"
 """File in which the command `reproduce` keeps what came of it."""
@@ -129,7 +185,7 @@ def _resolve(name: str, folder: Path) -> Path:
 def _compare_inputs(manifest: Manifest, folder: Path) -> Iterator[Difference]:
     for each in manifest.inputs:
         path = _resolve(each.path, folder)
-        content = read_bytes(path, LARGEST, f"the input {each.path}")
+        content = read_bytes(path, _LARGEST, f"the input {each.path}")
         if state_file(each.path, content).sha256 != each.sha256:
             yield Difference(each.path, "this input has changed")
 
@@ -144,7 +200,7 @@ def _compare_code(manifest: Manifest, own_code: Sequence[Path]) -> Iterator[Diff
                 f"{name}: this code of somebody's own took part, and is not run unless you name it; if you trust it:"
                 f" --with {name}"
             )
-        if state_file(name, read_bytes(given[name], LARGEST, "own code")).sha256 != each.sha256:
+        if state_file(name, read_bytes(given[name], _LARGEST, "own code")).sha256 != each.sha256:
             yield Difference(each.path, "this code has changed")
 
 

@@ -1,25 +1,82 @@
-"""What a manifest states: the command that made a folder, its inputs and files by hash, versions and platform."""
+"""What a manifest states: the command at work, its inputs and files by hash, versions and platform."""
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping, Sequence
+import os
+import platform
+import re
+import shlex
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from functools import cache
+from importlib.metadata import distribution
 from pathlib import Path
 from typing import NamedTuple, cast
 
 from pydantic import ValidationError
 
+import seatsim
 from seatsim.schema.content import IfAny
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import validated
-from seatsim.schema.guarded import expect, is_there, read_json
+from seatsim.schema.guarded import expect, is_there, read_json, watch_reads
+from seatsim.schema.modules import import_named, shipped_packages, used_files
 from seatsim.schema.text import explain_bad_name
 
+_LIBRARIES = ("numpy", "scipy", "numba", "pyarrow", "pandas", "matplotlib", "cvxpy", "clarabel", "cma")
+"""Libraries that a figure, or the bytes of a file, may hang on."""
+
+
+def list_versions(libraries: Iterable[str] = _LIBRARIES, files: Iterable[Path] = ()) -> Mapping[str, str]:
+    """Return the versions of Python, seatsim and some libraries, with a hash over all sources and `files`."""
+    found = {"python": platform.python_version(), "seatsim": seatsim.__version__}
+    found |= {name: _read_version(name) for name in libraries}
+    return found | {"sources": _digest_sources(tuple(files))}
+
+
+@cache
+def _read_version(name: str) -> str:
+    """Return the version of an installed library; `importlib.metadata.version` parses its long description, too."""
+    text = distribution(name).read_text("METADATA") or ""
+    found = re.search(r"^Version: (.+)$", text, re.MULTILINE)
+    return found[1].strip() if found else distribution(name).version
+
+
+@cache
+def list_platform() -> Mapping[str, str]:
+    """Return system, machine and processor, since compiled code and linear algebra are made for them."""
+    from llvmlite.binding import get_host_cpu_name
+
+    return {"system": platform.system(), "machine": platform.machine(), "processor": get_host_cpu_name()}
+
+
+@cache
+def _digest_sources(more: tuple[Path, ...]) -> str:
+    # What is being worked on keeps its version while its figures change.
+    state = hashlib.sha256()
+    folders = [next(iter(import_named(name).__path__)) for name in sorted(shipped_packages())]
+    sources = [Path(path) for folder in folders for path in _list_sources(folder)]
+    for path in (*sources, *more):
+        state.update(path.name.encode() + path.read_bytes())
+    return state.hexdigest()[:16]
+
+
+def _list_sources(folder: str) -> Iterator[str]:
+    """Yield the sources below a folder in order; `Path.rglob` takes as long as reading them."""
+    for entry in sorted(os.scandir(folder), key=lambda each: each.name):
+        if entry.is_dir(follow_symlinks=False):
+            yield from _list_sources(entry.path)
+        elif entry.name.endswith(".py"):
+            yield entry.path
+
+
 MANIFEST = "manifest.json"
-KIND = "manifest of a command of seatsim"
+_KIND = "manifest of a command of seatsim"
 
 
-class StatedFile(NamedTuple):
+class _StatedFile(NamedTuple):
     """A file by its path, relative to the manifest, with the SHA-256 of its content and its size in bytes."""
 
     path: str
@@ -41,18 +98,18 @@ class Manifest(NamedTuple):
     folder: str
     versions: Mapping[str, str]
     platform: Mapping[str, str]
-    own_code: Sequence[StatedFile]
-    inputs: Sequence[StatedFile]
-    outputs: Sequence[StatedFile]
+    own_code: Sequence[_StatedFile]
+    inputs: Sequence[_StatedFile]
+    outputs: Sequence[_StatedFile]
     measured: Mapping[str, Sequence[str]]
     seed: int | None = None
     configuration: IfAny[Mapping[str, object] | None] = None
     counts: IfAny[Mapping[str, int] | None] = None
 
 
-def state_file(path: str, content: bytes) -> StatedFile:
+def state_file(path: str, content: bytes) -> _StatedFile:
     """Return what a manifest states of a file."""
-    return StatedFile(path, hashlib.sha256(content).hexdigest(), len(content))
+    return _StatedFile(path, hashlib.sha256(content).hexdigest(), len(content))
 
 
 def read_manifest(folder: Path) -> Manifest:
@@ -64,8 +121,8 @@ def read_manifest(folder: Path) -> Manifest:
     path = folder / MANIFEST
     if within := sorted(each.parent.as_posix() for each in folder.glob(f"*/{MANIFEST}")) if not is_there(path) else []:
         raise InputError(f"{path}: is not there; folders in it have one each: 'seatsim reproduce {within[0]}'")
-    content = cast("Mapping[str, object]", read_json(path, KIND))
-    with expect(path, KIND):
+    content = cast("Mapping[str, object]", read_json(path, _KIND))
+    with expect(path, _KIND):
         if "identity" in content and "command" not in content:
             raise InputError(
                 f"{folder}: holds a sweep that no command of seatsim made; run 'seatsim sweep FILE --out OTHER' and"
@@ -78,10 +135,99 @@ def read_manifest(folder: Path) -> Manifest:
         first = error.errors(include_url=False)[0]
         place = ".".join(map(str, first["loc"]))
         problem = "is missing" if first["type"] == "missing" else f"is {first['input']!r}: {first['msg'].lower()}"
-        raise InputError(f"{path}: is no {KIND}: {place} {problem}") from None
+        raise InputError(f"{path}: is no {_KIND}: {place} {problem}") from None
     if found.counts and found.counts["pending"]:
         left = found.counts["pending"]
         raise InputError(f"{folder}: {left} runs of this sweep are missing; go on with it with --resume first")
     if problem := explain_bad_name(found.folder):
         raise InputError(f"{path}: folder {found.folder!r} {problem}")
     return found
+
+
+REPEATABLE: Mapping[str, frozenset[str]] = {
+    name: frozenset(options.split())
+    for name, options in {
+        "run": "--set", "compare": "--set --bracket", "synthesise": "--set", "gap": "--predict",
+        "diagnose": "--without --budget --damper-forms --after",
+        "characterise": "--model --parameters --currents --temperatures --amplitudes --frequencies",
+        "identify": "--model --test --test-fraction --fix --ignore-temperature --predict --moving-average --centred"
+                    " --seed",
+        "import": "--map --nominal", "comfort": "--channel --hours --run --block --rate --unit",
+        "seat-test": "--class --set", "sweep": "", "sweep-report": "",
+    }.items()
+}  # fmt: skip
+"""Commands that can be run again, with the options on which their answer hangs: none writes, loads code or connects."""
+
+
+class Invocation(NamedTuple):
+    """A command at work; `reads` grows with every file that it reads, by absolute path."""
+
+    command: str
+    arguments: tuple[str, ...]
+    directory: Path
+    reads: dict[Path, _StatedFile]
+
+
+_current: ContextVar[Invocation | None] = ContextVar("invocation", default=None)
+
+
+@contextmanager
+def at_work(command: str, options: Sequence[tuple[str, object]], operands: Sequence[object]) -> Iterator[None]:
+    """Keep, while a command is at work, what its manifest will state.
+
+    Args:
+        command: its name.
+        options: each that was given, with its value; True for one that takes none.
+        operands: what it was given besides, in order.
+    """
+    kept = [_join(name, value) for name, value in options if name in REPEATABLE.get(command, ())]
+    arguments = (*kept, "--", *map(_shorten, operands))
+    invocation = Invocation(command, arguments, Path.cwd(), {})
+    token = _current.set(invocation)
+    try:
+        with watch_reads(lambda path, content: _keep(invocation, path, content)):
+            yield
+    finally:
+        _current.reset(token)
+
+
+def current_invocation() -> Invocation | None:
+    """Return the command at work, None where seatsim is used from Python."""
+    return _current.get()
+
+
+def state_command(otherwise: str) -> str:
+    """Return the command at work as it can be typed again in the folder where it was started.
+
+    Own code is named by its files alone. `otherwise` is returned where seatsim is used from Python.
+    """
+    invocation = _current.get()
+    if invocation is None:
+        return otherwise
+    split = invocation.arguments.index("--")
+    options, operands = invocation.arguments[:split], invocation.arguments[split + 1 :]
+    code = [word for path in used_files() for word in ("--with", path.name)]
+    return shlex.join(["seatsim", invocation.command, *operands, *options, *code])
+
+
+def _keep(invocation: Invocation, path: Path, content: bytes) -> None:
+    whole = os.path.abspath(invocation.directory / path)
+    invocation.reads[Path(whole)] = state_file(whole, content)
+
+
+def _join(name: str, value: object) -> str:
+    return name if value is True else f"{name}={_shorten(value)}"
+
+
+def _shorten(value: object) -> str:
+    """Return an argument as text, an absolute path relative to the current folder: the tree may be moved."""
+    text = str(value)
+    return relate(Path(text), Path.cwd()) if os.path.isabs(text) and os.path.exists(text) else text
+
+
+def relate(path: Path, folder: Path) -> str:
+    """Return a path relative to a folder, with slashes; an absolute one where it lies on another drive."""
+    try:
+        return Path(os.path.relpath(path, folder)).as_posix()
+    except ValueError:
+        return path.as_posix()

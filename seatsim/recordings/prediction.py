@@ -22,7 +22,7 @@ import numpy as np
 from seatsim.effects.base import EFFECTS
 from seatsim.recordings.model_error import ModelError, read_model_error
 from seatsim.recordings.recording import Recording, load_recording
-from seatsim.recordings.replay import NOISE_FACTOR, simulate_table
+from seatsim.recordings.replay import COMPARED, NOISE_FACTOR, simulate_table
 from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
@@ -42,6 +42,10 @@ _QUANTILE = 1.645
 """Of the normal distribution, at the ends of a 90 % interval."""
 
 
+class OtherRigError(InputError):
+    """A diagnosis is of another kind of rig than the recording."""
+
+
 class SimulatedRigs(NamedTuple):
     """Outputs of the nominal and the augmented rig, and of that with each parameter of an effect moved, shape (N,)."""
 
@@ -51,7 +55,7 @@ class SimulatedRigs(NamedTuple):
     shifted: Sequence[Mapping[str, Array]]
 
 
-class StatedCause(NamedTuple):
+class _StatedCause(NamedTuple):
     """An effect of a `diagnosis.json`: its channel, if it acts on one, and its parameters' standard deviations."""
 
     effect: str
@@ -92,8 +96,8 @@ def predict_gap(
         runs: all of the recording's where none are named.
 
     Raises:
-        InputError: the diagnosis is none or states no model error, the scenario lacks an effect that it found, or no
-            channel of it stands above its noise here.
+        InputError: the diagnosis is none or states no model error, it is of another rig (`OtherRigError`), the scenario
+            lacks an effect that it found, or no channel of it stands above its noise here.
         RunError: a simulation could not be carried to its end.
     """
     recording = recording if isinstance(recording, Recording) else load_recording(recording)
@@ -101,6 +105,7 @@ def predict_gap(
     stated, names = _read_diagnosis(Path(diagnosis)), list(runs) or list(recording.runs)
     with expect(diagnosis, "diagnosis"):
         error, causes = read_model_error(stated, str(diagnosis)), _read_causes(stated)
+        _check_rig(augmented, error, recording, diagnosis)
         _check_augmented(augmented, stated, causes, Path(diagnosis))
     after = _simulate(augmented, recording, names)
     before = _simulate(recording.nominal, recording, names)
@@ -109,8 +114,16 @@ def predict_gap(
     return _combine(error, simulated, str(recording.folder))
 
 
+def _check_rig(augmented: Scenario, error: ModelError, recording: Recording, diagnosis: str | Path) -> None:
+    """Raise OtherRigError where a diagnosis is of a seat and the recording of a bench, or the other way round."""
+    rig = recording.header.rig
+    if (augmented.plant is None and rig == "seat") or not set(error.noise) <= set(COMPARED[rig]):
+        problem = f"{diagnosis}: is of another kind of rig than {recording.folder}, which is of rig '{rig}'"
+        raise OtherRigError(f"{problem}; give a diagnosis and its augmented scenario of a {rig}")
+
+
 def _check_augmented(
-    scenario: Scenario, stated: Mapping[str, object], causes: Sequence[StatedCause], diagnosis: Path
+    scenario: Scenario, stated: Mapping[str, object], causes: Sequence[_StatedCause], diagnosis: Path
 ) -> None:
     """Raise InputError where a scenario lacks an effect that the diagnosis found: it is not the augmented one."""
     present = {EFFECTS.name_of(type(effect)) for effect in scenario.effects}
@@ -182,7 +195,7 @@ def _simulate(scenario: Scenario, recording: Recording, runs: Sequence[str]) -> 
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
-def _move_parameters(scenario: Scenario, causes: Sequence[StatedCause]) -> Iterator[Scenario]:
+def _move_parameters(scenario: Scenario, causes: Sequence[_StatedCause]) -> Iterator[Scenario]:
     """Yield the augmented scenario with each parameter of its effects moved by its standard deviation."""
     for index, effect in enumerate(scenario.effects):
         name, channel = EFFECTS.name_of(type(effect)), effect._asdict().get("channel")
@@ -202,13 +215,13 @@ def _move(effect: Record, parameter: str, std: float) -> Record:
     return replace_fields(effect, {parameter: moved})
 
 
-def _read_causes(content: Mapping[str, object]) -> list[StatedCause]:
+def _read_causes(content: Mapping[str, object]) -> list[_StatedCause]:
     """Return the standard deviations of the parameters of every cause that states some."""
     found, causes = [], content.get("causes")
     for cause in causes if isinstance(causes, list) else []:
         stated = cause["parameters"]
         stds = {name: float(value["std"]) for name, value in stated.items() if isinstance(value, dict) and value["std"]}
-        found.append(StatedCause(cause["effect"], stated.get("channel"), stds))
+        found.append(_StatedCause(cause["effect"], stated.get("channel"), stds))
     return found
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from importlib.metadata import version
 
-from seatsim.provenance.invocation import state_command
+from seatsim.provenance.statement import state_command
 from seatsim.report.blocks import Block, Code, Items, Section, Table, Text
 
 PACKAGES = ("seatsim", "numpy", "scipy", "numba")

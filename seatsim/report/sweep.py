@@ -23,8 +23,8 @@ from seatsim.report.method import describe_method
 from seatsim.report.sweep_choices import advise_on_keys, choose_choice, tabulate_best
 from seatsim.scenario.conditions import is_condition
 from seatsim.sweeps.outcome import FAILED, UNVERIFIED
-from seatsim.sweeps.statistics.rows import NAMES, Exceedance, SweepRows
-from seatsim.sweeps.statistics.sensitivity import Sensitivities, choose_key
+from seatsim.sweeps.rows import NAMES, Exceedance, SweepRows
+from seatsim.sweeps.sensitivity import Sensitivities, choose_key
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -8,8 +8,8 @@ from seatsim.plots.labels import format_number, format_percent
 from seatsim.plots.sweeps import COMFORT, describe_column, format_level
 from seatsim.report.blocks import Block, Table
 from seatsim.scenario.conditions import is_condition
-from seatsim.sweeps.statistics.rows import SweepRows
-from seatsim.sweeps.statistics.sensitivity import Sensitivity, choose_key
+from seatsim.sweeps.rows import SweepRows
+from seatsim.sweeps.sensitivity import Sensitivity, choose_key
 
 MOST_LINES = 60
 """Conditions in the table."""

@@ -21,14 +21,14 @@ DISTRIBUTIONS = {
     "choice": "{value: probability, ...}",
 }
 """Names of distributions, and what each takes."""
-FORMS = "a list, {from: A, to: B, steps: N}, or a distribution: " + ", ".join(
+_FORMS = "a list, {from: A, to: B, steps: N}, or a distribution: " + ", ".join(
     f"{name}: {takes}" for name, takes in DISTRIBUTIONS.items()
 )
-MOST_STEPS = 1_000_000
+_MOST_STEPS = 1_000_000
 """Of a range; more would be a slip of the keyboard."""
-SLIGHTLY = 1e-9
+_SLIGHTLY = 1e-9
 """By how much probabilities may miss the sum of 1, for the sake of rounding."""
-EDGE = 2.0**-53
+_EDGE = 2.0**-53
 """Probability in either tail that no draw reaches: a quantile at 0 or 1 may be infinite."""
 
 
@@ -57,7 +57,7 @@ def read_axis(key: str, source: Source) -> Axis:
             raise source.error(where, "the list is empty; state at least one value")
         return _listed(key, stated)
     if not isinstance(stated, Mapping):
-        raise source.error(where, f"{stated!r} is a single value; permitted: {FORMS}")
+        raise source.error(where, f"{stated!r} is a single value; permitted: {_FORMS}")
     if {"from", "to", "steps"} & set(stated):
         return _listed(key, _read_range(stated, source, where))
     return Axis(key, None, _read_distribution(stated, source, where))
@@ -80,9 +80,9 @@ def _read_range(stated: Mapping[str, object], source: Source, where: KeyPath) ->
                 (*where, name), f"{stated.get(name)!r} is not a finite number; a range is {{from: A, to: B, steps: N}}"
             )
     steps, ends = stated["steps"], [stated["from"], stated["to"]]
-    if not isinstance(steps, int) or not 2 <= steps <= MOST_STEPS:
+    if not isinstance(steps, int) or not 2 <= steps <= _MOST_STEPS:
         raise source.error(
-            (*where, "steps"), f"{steps!r} is not permitted; it must be a whole number from 2 to {MOST_STEPS}"
+            (*where, "steps"), f"{steps!r} is not permitted; it must be a whole number from 2 to {_MOST_STEPS}"
         )
     values = np.linspace(float(str(ends[0])), float(str(ends[1])), steps).tolist()
     whole = all(isinstance(end, int) for end in ends) and all(value.is_integer() for value in values)
@@ -94,7 +94,7 @@ def _read_distribution(stated: Mapping[str, object], source: Source, where: KeyP
     check_keys(stated, (*DISTRIBUTIONS, "low", "high"), source, where)
     named = [name for name in DISTRIBUTIONS if name in stated]
     if len(named) != 1:
-        raise source.error(where, f"states {' and '.join(named) or 'no values'}; permitted: {FORMS}")
+        raise source.error(where, f"states {' and '.join(named) or 'no values'}; permitted: {_FORMS}")
     kind = named[0]
     if kind in ("uniform", "choice") and {"low", "high"} & set(stated):
         raise source.error(where, f"low and high truncate normal and lognormal; {kind} takes {DISTRIBUTIONS[kind]}")
@@ -137,7 +137,7 @@ def _truncated_normal(u: Array, mean: float, deviation: float, low: float, high:
     from scipy.stats import truncnorm
 
     drawn: Array = truncnorm.ppf(
-        np.clip(u, EDGE, 1 - EDGE), (low - mean) / deviation, (high - mean) / deviation, loc=mean, scale=deviation
+        np.clip(u, _EDGE, 1 - _EDGE), (low - mean) / deviation, (high - mean) / deviation, loc=mean, scale=deviation
     )
     return drawn
 
@@ -148,7 +148,7 @@ def _read_choice(stated: object, source: Source, where: KeyPath) -> Callable[[Ar
         if not is_finite_number(share) or share < 0:
             raise source.error((*where, value), f"{share!r} is not permitted; a probability is at least 0")
     probabilities = np.array(list(shares.values()), dtype=float)
-    if not shares or abs(probabilities.sum() - 1) > SLIGHTLY:
+    if not shares or abs(probabilities.sum() - 1) > _SLIGHTLY:
         raise source.error(where, f"the probabilities sum to {probabilities.sum():g}; they must sum to 1")
     return _choose([parse_value(value) for value in shares], probabilities)
 
@@ -162,7 +162,7 @@ def axis_schema() -> Schema:
     number: Schema = {"type": "number"}
     pair: Schema = {"type": "array", "items": number, "minItems": 2, "maxItems": 2}
     ends = {"low": number, "high": number}
-    steps: Schema = {"from": number, "to": number, "steps": {"type": "integer", "minimum": 2, "maximum": MOST_STEPS}}
+    steps: Schema = {"from": number, "to": number, "steps": {"type": "integer", "minimum": 2, "maximum": _MOST_STEPS}}
     choice: Schema = {"type": "object", "additionalProperties": number}
     forms = [
         mapping_schema(steps, steps),

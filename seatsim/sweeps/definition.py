@@ -27,14 +27,14 @@ from seatsim.sweeps.axes import Axis, axis_schema, read_axis
 
 _DesignName = Literal["cross", "zip", "lhs", "sobol", "table"]
 _DESIGNS: tuple[str, ...] = get_args(_DesignName)
-KEYS = ("scenario", "seed", "design", "runs", "replicates", "vary", "table", "limits")
+_KEYS = ("scenario", "seed", "design", "runs", "replicates", "vary", "table", "limits")
 MOST_RUNS = 10_000_000
 """Runs of a sweep: their numbers have this many digits, and more would be a slip of the keyboard."""
 _LARGEST_DESIGN = 2**30
 """Bytes of a table of runs."""
 
 
-class Table(NamedTuple):
+class _Table(NamedTuple):
     """A design that a CSV file states: values by key and row, and the file."""
 
     path: Path
@@ -54,7 +54,7 @@ class SweepDefinition(NamedTuple):
     runs: int | None
     replicates: int
     axes: tuple[Axis, ...]
-    table: Table | None
+    table: _Table | None
     limits: Mapping[str, float]
 
     def place(self, key: str) -> str:
@@ -83,7 +83,7 @@ def read_definition(path: Path) -> SweepDefinition:
     }
     found, errors = dict[str, Any](), list[InputError]()
     with gathered(errors):
-        check_keys(source.data, KEYS, source, ())
+        check_keys(source.data, _KEYS, source, ())
     for name, read in readers.items():
         with gathered(errors):
             found[name] = read()
@@ -159,7 +159,7 @@ def _read_limits(source: Source) -> Mapping[str, float]:
     return {name: float(str(value)) for name, value in stated.items()}
 
 
-def _read_table(source: Source) -> Table | None:
+def _read_table(source: Source) -> _Table | None:
     stated = source.data.get("table")
     if not _is_table(source):
         if "table" in source.data:
@@ -180,7 +180,7 @@ def _read_table(source: Source) -> Table | None:
     for number, row in enumerate(body, start=2):
         if len(row) != len(head):
             raise InputError(f"{path}, row {number}: has {len(row)} values; {len(head)} keys are named")
-    return Table(path, {key: [_read_cell(row[k]) for row in body] for k, key in enumerate(head)})
+    return _Table(path, {key: [_read_cell(row[k]) for row in body] for k, key in enumerate(head)})
 
 
 def _read_cell(text: str) -> object:

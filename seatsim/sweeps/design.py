@@ -16,7 +16,7 @@ from seatsim.schema.arrays import Array
 from seatsim.sweeps.axes import Axis
 from seatsim.sweeps.definition import SweepDefinition
 
-Columns = Mapping[str, list[object]]
+_Columns = Mapping[str, list[object]]
 """The values of every varied key, a list over the points each."""
 
 
@@ -30,7 +30,7 @@ def count_points(definition: SweepDefinition) -> int:
     return definition.runs or max(lengths, default=1)
 
 
-def resolve_design(definition: SweepDefinition) -> Columns:
+def resolve_design(definition: SweepDefinition) -> _Columns:
     """Return the points of a sweep, without its replicates and the variants of its scenario.
 
     Raises:
@@ -42,7 +42,7 @@ def resolve_design(definition: SweepDefinition) -> Columns:
     return resolve(definition)
 
 
-def _cross(definition: SweepDefinition) -> Columns:
+def _cross(definition: SweepDefinition) -> _Columns:
     """Return every combination of the listed values, each with the same joint draws of the others.
 
     The draws vary slowest, so that more of them only add points; of the lists the first varies slowest.
@@ -59,7 +59,7 @@ def _cross(definition: SweepDefinition) -> Columns:
     return {axis.key: found[axis.key] for axis in definition.axes}
 
 
-def _pair(definition: SweepDefinition) -> Columns:
+def _pair(definition: SweepDefinition) -> _Columns:
     """Return the first values of all keys, then the second ones, and so on; distributions are drawn as often.
 
     A value that is alone in its list goes with all the others.
@@ -78,7 +78,7 @@ def _pair(definition: SweepDefinition) -> Columns:
     return {axis.key: (listed | drawn)[axis.key] for axis in definition.axes}
 
 
-def _fill_hypercube(definition: SweepDefinition) -> Columns:
+def _fill_hypercube(definition: SweepDefinition) -> _Columns:
     from scipy.stats import qmc
 
     count = _count_draws(definition)
@@ -86,7 +86,7 @@ def _fill_hypercube(definition: SweepDefinition) -> Columns:
     return _map_cube(definition.axes, sampler.random(count))
 
 
-def _follow_sobol(definition: SweepDefinition) -> Columns:
+def _follow_sobol(definition: SweepDefinition) -> _Columns:
     from scipy.stats import qmc
 
     count = _count_draws(definition)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Callable, Mapping
-from contextlib import closing
+from contextlib import AbstractContextManager, closing, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
@@ -14,10 +14,8 @@ from seatsim.schema.content import Form, Unwritten
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.leftovers import uncut
 from seatsim.sweeps.definition import SweepDefinition, read_definition
-from seatsim.sweeps.engines.base import Engine, Work
-from seatsim.sweeps.engines.local import LocalEngine
-from seatsim.sweeps.folder import check_resumable, count_states, hold_file, hold_folder, write_manifest
-from seatsim.sweeps.identity import identify_sweep
+from seatsim.sweeps.engines import Engine, LocalEngine, Work
+from seatsim.sweeps.folder import check_resumable, count_states, hold_file, hold_folder, identify_sweep, write_manifest
 from seatsim.sweeps.outcome import FAILED, Outcome
 from seatsim.sweeps.parts import (
     make_schema,
@@ -37,7 +35,7 @@ if TYPE_CHECKING:
 
 _FLUSH = 1.0
 """Seconds between two times at which unfinished parts are written: what a killed process may lose."""
-Progress = Callable[[int, int], None]
+_Progress = Callable[[int, int], None]
 """Is called with how many runs have ended, and of how many."""
 
 
@@ -95,6 +93,28 @@ def prepare(path: Path, foresee: Callable[[int], None] = lambda runs: None) -> _
     return _PreparedSweep(definition, plan, check_plan(plan))
 
 
+def open_engine(
+    name: str, jobs: int, address: str | None, keep_histories: bool = False
+) -> AbstractContextManager[Engine]:
+    """Return what opens the engine that is called `name`: so many runs at once, or on the scheduler at an address.
+
+    Raises:
+        InputError: the engine is not available here, or it takes no address, or keeps no histories.
+    """
+    if address is not None and name != "dask":
+        raise InputError(f"--address {address}: engine '{name}' takes none; add --engine dask")
+    if name == "cuda":
+        from seatsim.sweeps.device import CudaEngine, check_device
+
+        check_device(keep_histories)
+        return nullcontext(CudaEngine(jobs))
+    if name == "dask":
+        from seatsim.sweeps.cluster import open_cluster
+
+        return open_cluster(jobs, address)
+    return nullcontext(LocalEngine(jobs))
+
+
 def execute(
     prepared: _PreparedSweep,
     folder: Path,
@@ -102,7 +122,7 @@ def execute(
     resume: bool = False,
     keep_histories: bool = False,
     share: Share | None = None,
-    progress: Progress = lambda done, runs: None,
+    progress: _Progress = lambda done, runs: None,
 ) -> SweepResult:
     """Carry out a sweep, or what is missing of it with `resume`, and keep its rows in a folder.
 
@@ -161,7 +181,7 @@ def sweep(file: str | Path, out: str | Path, jobs: int | None = None, resume: bo
 class _Rows:
     """The rows of the parts of a share, or of all, that are not complete yet."""
 
-    def __init__(self, folder: Path, plan: Plan, share: Share | None, progress: Progress) -> None:
+    def __init__(self, folder: Path, plan: Plan, share: Share | None, progress: _Progress) -> None:
         self._folder, self._plan, self._progress = folder, plan, progress
         units = {key: find_unit(plan.scenario(0), key) for key in varied_keys(plan)}
         self._schema = make_schema(plan, units)

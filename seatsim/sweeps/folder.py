@@ -1,28 +1,113 @@
-"""The folder of a sweep: who holds it, what it is of, how far it is, and whether it may be gone on with.
+"""The folder of a sweep: who holds it, which sweep it is of, how far it is, and whether it may be gone on with.
 
-A lock names its owner and dies with it (flock). Commands for different shares of a sweep hold the folder together,
-which the locks of `filelock` cannot do. `manifest.json` holds the rest.
+A sweep is its configuration, design, versions and seed. A lock names its owner and dies with it (flock); commands for
+different shares hold the folder together, which `filelock` cannot do. `manifest.json` holds the rest.
 """
 
 from __future__ import annotations
 
+import hashlib
+import json
 import os
 import socket
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
-from seatsim.provenance.invocation import current_invocation
 from seatsim.provenance.manifest import describe
-from seatsim.schema.content import to_content
+from seatsim.provenance.statement import current_invocation, list_versions
+from seatsim.schema.content import plain, to_content
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import make_folder, write_json
 from seatsim.schema.guarded import check_no_link, expect, open_in_place, read_json
-from seatsim.sweeps.identity import GROWING, Identity, digest_design, list_differences
+from seatsim.schema.modules import used_files
+from seatsim.sweeps.definition import SweepDefinition
 from seatsim.sweeps.outcome import STATES
 from seatsim.sweeps.plan import Plan
+
+LIBRARIES = ("numpy", "scipy", "numba", "pyarrow")
+"""Libraries that a figure, or the bytes of a part, may hang on."""
+_GROWING = ("runs", "replicates", "vary", "table")
+"""Parts of a configuration that may differ where the difference only adds runs."""
+
+
+class _Identity(NamedTuple):
+    """What a sweep is: `digest` over all the rest. `configuration` is what its files state, without the limits."""
+
+    digest: str
+    seed: int
+    versions: Mapping[str, str]
+    configuration: Mapping[str, object]
+    runs: int
+    design: str
+
+
+def identify_sweep(definition: SweepDefinition, plan: Plan) -> _Identity:
+    """Return the identity of a sweep."""
+    stated = {key: value for key, value in definition.source.data.items() if key not in ("scenario", "seed", "limits")}
+    configuration = {"scenario": definition.scenario.data, **stated, "files": dict(_digest_files(plan))}
+    versions, design = list_versions(LIBRARIES, used_files()), _digest_design(plan, plan.runs)
+    whole = [configuration, design, versions, definition.seed]
+    return _Identity(_digest(whole), definition.seed, versions, _read_back(configuration), plan.runs, design)
+
+
+def _digest_design(plan: Plan, runs: int) -> str:
+    """Return a hash over the values of the first runs of a sweep."""
+    state = hashlib.sha256()
+    for run in range(runs):
+        replicate = run // (plan.points * len(plan.bases))
+        state.update(json.dumps([replicate, *plan.values(run).values()], default=str).encode())
+    return state.hexdigest()
+
+
+def list_differences(old: object, new: object, keys: tuple[str, ...] = ()) -> Iterator[str]:
+    """Yield what differs between two nested values: its dotted key, the old and the new value."""
+    if isinstance(old, Mapping) and isinstance(new, Mapping):
+        for key in dict.fromkeys([*old, *new]):
+            yield from list_differences(old.get(key), new.get(key), (*keys, str(key)))
+    elif old != new:
+        yield f"{'.'.join(keys)} was {_shown(old)} and is {_shown(new)}"
+
+
+def _digest_files(plan: Plan) -> Iterator[tuple[str, str]]:
+    """Yield the files that the scenario or the design names, such as a measured road, with a hash of their content."""
+    folder = plan.bases[0].source.path.parent
+    stated = [base.source.data for base in plan.bases]
+    for name in sorted({*_texts(stated), *_texts(list(plan.columns.values()))}):
+        path = folder / name
+        if len(name) < 1000 and path.is_file():
+            yield name, hashlib.sha256(path.read_bytes()).hexdigest()[:16]
+
+
+def _texts(value: object) -> Iterator[str]:
+    if isinstance(value, Mapping):
+        value = list(value.values())
+    if isinstance(value, list | tuple):
+        for item in value:
+            yield from _texts(item)
+    elif isinstance(value, str):
+        yield value
+
+
+def _digest(value: object) -> str:
+    return hashlib.sha256(_encode(value)).hexdigest()
+
+
+def _encode(value: object) -> bytes:
+    return json.dumps(plain(value), sort_keys=True, default=str).encode()
+
+
+def _read_back(value: object) -> Mapping[str, object]:
+    """Return a mapping as it will be read from JSON, so that it equals what was written."""
+    found: Mapping[str, object] = json.loads(_encode(value))
+    return found
+
+
+def _shown(value: object) -> str:
+    text = "absent" if value is None else json.dumps(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 @contextmanager
@@ -75,12 +160,12 @@ def hold_file(path: Path, alone: bool = True, wait: bool = False) -> Iterator[No
         yield
 
 
-NAME = "manifest.json"
-FIELDS = {"identity": str, "versions": dict, "seed": int, "counts": dict, "limits": dict, "configuration": dict}
+_NAME = "manifest.json"
+_FIELDS = {"identity": str, "versions": dict, "seed": int, "counts": dict, "limits": dict, "configuration": dict}
 """What a manifest states, and of which kind each is."""
 
 
-def write_manifest(folder: Path, identity: Identity, limits: Mapping[str, float], counts: Mapping[str, int]) -> Path:
+def write_manifest(folder: Path, identity: _Identity, limits: Mapping[str, float], counts: Mapping[str, int]) -> Path:
     """Write the manifest of a sweep, with what `seatsim reproduce` needs where a command is at work."""
     invocation = current_invocation()
     parts = {path.relative_to(folder).as_posix(): path for path in sorted(folder.glob("runs/part-*.parquet"))}
@@ -96,7 +181,7 @@ def write_manifest(folder: Path, identity: Identity, limits: Mapping[str, float]
         "configuration": identity.configuration,
         "design": identity.design,
     }
-    return write_json(folder / NAME, content, lasting=True)
+    return write_json(folder / _NAME, content, lasting=True)
 
 
 def read_manifest(folder: Path) -> dict[str, Any]:
@@ -106,9 +191,9 @@ def read_manifest(folder: Path) -> dict[str, Any]:
         InputError: the folder holds no sweep.
     """
     try:
-        with expect(folder / NAME, "manifest of a sweep"):
-            content = cast("dict[str, Any]", read_json(folder / NAME, "manifest of a sweep"))
-            for key, kind in FIELDS.items():
+        with expect(folder / _NAME, "manifest of a sweep"):
+            content = cast("dict[str, Any]", read_json(folder / _NAME, "manifest of a sweep"))
+            for key, kind in _FIELDS.items():
                 if not isinstance(content[key], kind):
                     raise TypeError(f"{key} is {content[key]!r}")
             content["counts"]["runs"]
@@ -133,15 +218,15 @@ def say_ended(folder: Path) -> str:
     return f"{counts['runs'] - counts['pending']} of {counts['runs']} runs"
 
 
-def check_resumable(folder: Path, identity: Identity, plan: Plan, resume: bool) -> None:
+def check_resumable(folder: Path, identity: _Identity, plan: Plan, resume: bool) -> None:
     """Refuse to go on in a folder that holds another sweep; one that has fewer runs of the same is extended.
 
     Raises:
         InputError: the folder holds a sweep and `resume` is not set, or one that differs; the message names how.
     """
-    if not (folder / NAME).exists():
+    if not (folder / _NAME).exists():
         if any(folder.glob("runs/part-*.parquet")):
-            raise InputError(f"{folder}: holds the rows of a sweep without its {NAME}; choose another --out")
+            raise InputError(f"{folder}: holds the rows of a sweep without its {_NAME}; choose another --out")
         return
     old = read_manifest(folder)
     counts = old["counts"]
@@ -152,28 +237,16 @@ def check_resumable(folder: Path, identity: Identity, plan: Plan, resume: bool) 
         )
     if old["identity"] == identity.digest:
         return
-    fixed = [_without_growing(each) for each in (old["configuration"], identity.configuration)]
-    differences = [
-        *list_differences(
-            {"seed": old["seed"], "versions": old["versions"]},
-            {"seed": identity.seed, "versions": dict(identity.versions)},
-        ),
-        *list_differences(fixed[0], fixed[1]),
-    ]
-    only_adds = plan.runs >= counts["runs"] and digest_design(plan, counts["runs"]) == old["design"]
-    if not only_adds:
-        differences += list_differences(_growing(old["configuration"]), _growing(identity.configuration))
+    only_adds = plan.runs >= counts["runs"] and _digest_design(plan, counts["runs"]) == old["design"]
+    before = {"seed": old["seed"], "versions": old["versions"], **old["configuration"]}
+    now = {"seed": identity.seed, "versions": dict(identity.versions), **identity.configuration}
+    for key in _GROWING if only_adds else ():
+        before.pop(key, None)
+        now.pop(key, None)
+    differences = list(list_differences(before, now))
     if differences or not only_adds:
         shown = "; ".join(differences) or "the resolved design differs"
         raise InputError(
             f"{folder}: holds another sweep: {shown}. Only what adds runs after the others may differ (more runs of"
             " sobol, zip or cross, more replicates); choose another --out"
         )
-
-
-def _without_growing(configuration: Mapping[str, object]) -> dict[str, object]:
-    return {key: value for key, value in configuration.items() if key not in GROWING}
-
-
-def _growing(configuration: Mapping[str, object]) -> dict[str, object]:
-    return {key: value for key, value in configuration.items() if key in GROWING}

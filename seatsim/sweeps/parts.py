@@ -154,12 +154,12 @@ def _type_of(plan: Plan, key: str) -> pa.DataType:
 def _store(values: Sequence[object], kind: pa.DataType) -> pa.Array:
     """Return the values of a column: in one of texts, JSON of what is none."""
     if str(kind) == "string":
-        return store_texts([as_text(value) for value in values])
+        return store_texts([_as_text(value) for value in values])
     present = np.array([value is not None for value in values])
     return store_numbers(np.array([value if value is not None else 0 for value in values]), kind, present)
 
 
-def as_text(value: object) -> str:
+def _as_text(value: object) -> str:
     """Return any value of a scenario as text."""
     return value if isinstance(value, str) else json.dumps(value, default=str)
 

@@ -25,7 +25,7 @@ from seatsim.sweeps.definition import MOST_RUNS, SweepDefinition
 from seatsim.sweeps.design import count_points, resolve_design
 
 
-class Base(NamedTuple):
+class _Base(NamedTuple):
     """A scenario before the design changes it, and the label of its variant; the same in every point."""
 
     source: Source
@@ -39,7 +39,7 @@ class Plan:
     `columns` holds the values of every varied key, a list over the points each; `places` where each key is stated.
     """
 
-    bases: tuple[Base, ...]
+    bases: tuple[_Base, ...]
     columns: Mapping[str, Sequence[object]]
     places: Mapping[str, str]
     points: int
@@ -127,7 +127,7 @@ def make_plan(definition: SweepDefinition, foresee: Callable[[int], None] = lamb
         InputError: there are too many, the design cannot be resolved, or a varied key is one that the scenario varies
             itself.
     """
-    bases = tuple(Base(source, label) for source, label in expand(definition.scenario, {}))
+    bases = tuple(_Base(source, label) for source, label in expand(definition.scenario, {}))
     factors = {"points": count_points(definition), "variants": len(bases), "replicates": definition.replicates}
     runs = math.prod(factors.values())
     if runs > MOST_RUNS:
@@ -148,7 +148,7 @@ def make_plan(definition: SweepDefinition, foresee: Callable[[int], None] = lamb
 
 _MOST_FLOORS = 40
 """Floors that are made to see whether they can be; more would take longer than the message is worth."""
-MOST_LEVELS = 1000
+_MOST_LEVELS = 1000
 """Different numbers of a key from which on only the least and the greatest are looked at."""
 
 
@@ -198,7 +198,7 @@ def _list_telling_runs(plan: Plan) -> Iterator[int]:
         first: dict[float, int] = {}
         for point, value in enumerate(values):
             first.setdefault(value, point)
-        points |= set(first.values()) if len(first) <= MOST_LEVELS else set()
+        points |= set(first.values()) if len(first) <= _MOST_LEVELS else set()
     for point in points:
         yield from range(point * per_point, (point + 1) * per_point)
 

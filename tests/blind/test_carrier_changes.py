@@ -11,9 +11,9 @@ import pytest
 
 from seatsim.blind.carrier.make import DrawnCase, draw_amount, draw_changes
 from seatsim.blind.carrier.readings import draw_faster_coils
-from seatsim.blind.carrier.recorded import Carrier, Change, low_pass, shifted, shifted_rows, slide, slope
+from seatsim.blind.carrier.recorded import Carrier, Change
 from seatsim.blind.carrier.replays import Ruler
-from seatsim.blind.labels import EFFECTS
+from seatsim.blind.sealed import EFFECTS
 
 from .carriers import RATE, bench_carrier, seat_carrier
 
@@ -146,15 +146,3 @@ def put(carrier: Carrier) -> Any:
     from seatsim.blind.carrier.recorded import Altered
 
     return Altered(carrier, {})
-
-
-def test_signals() -> None:
-    time = np.arange(1000) / RATE
-    wave = np.sin(2.0 * np.pi * time)
-    assert np.allclose(slope(wave, 1.0 / RATE)[20:-20], 2.0 * np.pi * np.cos(2.0 * np.pi * time)[20:-20], atol=1e-3)
-    assert np.allclose(shifted(wave, 0.01, 1.0 / RATE)[10:], wave[:-5][5:], atol=1e-12)
-    assert np.array_equal(shifted_rows(wave, 3)[3:], wave[:-3])
-    late = low_pass(wave, 0.02, 1.0 / RATE)
-    assert np.allclose(late[400:], np.interp(time - 0.01987, time, wave)[400:] / np.hypot(1.0, 0.04 * np.pi), atol=2e-3)
-    rub = slide(np.array([0.0, 1.0, 2.0, 1.5, 1.0, 0.0]), 1.0)
-    assert np.allclose(rub, [0.0, 1.0, 1.0, 0.0, -1.0, -1.0])

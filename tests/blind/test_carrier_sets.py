@@ -13,11 +13,10 @@ from seatsim import load_recording
 from seatsim.blind.carrier.make import UNTOUCHED, make_on_carrier, take_turns
 from seatsim.blind.carrier.power import SIZES, Power, Trial, measure_power
 from seatsim.blind.carrier.recorded import read_carrier
-from seatsim.blind.labels import EFFECTS
 from seatsim.blind.score.score import score_verdicts
 from seatsim.blind.score.tables import tables
 from seatsim.blind.score.verdicts import Verdict, is_right, is_wrong_name
-from seatsim.blind.sealed import unseal
+from seatsim.blind.sealed import EFFECTS, unseal
 from seatsim.cli.outputs.diagnosis_tables import make_power_table
 from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
@@ -119,15 +118,6 @@ def test_power_looks_at_smaller_sizes_where_a_recording_allows_no_larger_one(tmp
     assert found.trials[SIZES[2]] == [Trial(None, False)]
     assert [trial.found for trial in found.trials[SIZES[0]]] == [False]
     assert (found.smallest, found.found) == (None, {"0.06": [False], "0.1": [False], "0.16": []})
-
-
-def test_power_of_what_is_never_found_has_no_size() -> None:
-    power = Power("sensor.gain", None, {SIZES[-1]: [Trial({"error": 0.1}, False)]})
-    assert power.parameters == {}
-    assert power.found == {"0.4": [False]}
-    assert Power("sensor.gain", 0.4, {0.4: [Trial({"error": -0.2}, True), Trial({"error": 0.4}, True)]}).parameters == {
-        "error": pytest.approx(0.3)
-    }
 
 
 CARRIED: dict[str, Any] = {

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from seatsim.blind.make import draw_case, draw_experiment, folder, materiality, severity
+from seatsim.blind.make import compose, draw_experiment, folder, materiality
 from seatsim.blind.make.materiality import ToleranceRefit, bounded_least_squares
 from seatsim.blind.truth.faults import Changes, SensorFault
 
@@ -30,7 +30,7 @@ def test_parameters_are_scattered_inside_the_width() -> None:
 
 def test_channels_are_missing_at_their_rates() -> None:
     rng = np.random.default_rng(0)
-    missing = [draw_case.draw_missing_channels(rng) for _ in range(4000)]
+    missing = [compose.draw_missing_channels(rng) for _ in range(4000)]
     shares = Counter(map(len, missing))
     assert [shares[k] / 4000 for k in range(3)] == pytest.approx([0.6, 0.33, 0.07], abs=0.03)
     single = Counter(some[0] for some in missing if len(some) == 1)
@@ -41,30 +41,23 @@ def test_channels_are_missing_at_their_rates() -> None:
 def test_a_severity_is_found_near_a_drawn_target(power: float) -> None:
     sizes, off = [], []
     for k in range(50):
-        found = severity.find_severity(lambda s: 0.4 * s**power, (0.01, 1e3), np.random.default_rng(k))
+        found = compose.find_severity(lambda s: 0.4 * s**power, (0.01, 1e3), np.random.default_rng(k))
         assert found is not None
-        off.append(abs(math.log(found[1] / severity.draw_target(np.random.default_rng(k)))))
+        off.append(abs(math.log(found[1] / compose.draw_target(np.random.default_rng(k)))))
         assert found[1] == pytest.approx(0.4 * found[0] ** power)
         sizes.append(found[1])
     assert min(sizes) >= 1.03 and max(sizes) > 5.0
-    assert np.quantile(off, 0.9) < severity.LOG_TOLERANCE
+    assert np.quantile(off, 0.9) < compose.LOG_TOLERANCE
 
 
 def test_a_severity_stays_inside_what_is_plausible_and_stable() -> None:
     rng = np.random.default_rng
-    assert severity.find_severity(lambda s: 0.1 * s, (0.1, 5.0), rng(0)) is None
-    weak = severity.find_severity(lambda s: 0.4 * s, (0.1, 5.0), rng(1))
+    assert compose.find_severity(lambda s: 0.1 * s, (0.1, 5.0), rng(0)) is None
+    weak = compose.find_severity(lambda s: 0.4 * s, (0.1, 5.0), rng(1))
     assert weak is not None and 1.03 <= weak[1] <= 2.0
-    unstable = severity.find_severity(lambda s: 2.0 * s if s < 0.9 else math.inf, (0.1, 50.0), rng(2))
+    unstable = compose.find_severity(lambda s: 2.0 * s if s < 0.9 else math.inf, (0.1, 50.0), rng(2))
     assert unstable is not None and unstable[0] < 0.9
-    assert severity.find_severity(lambda s: math.inf, (0.5, 5.0), rng(0)) is None
-
-
-def test_targets_are_log_uniform() -> None:
-    rng = np.random.default_rng(0)
-    logs = np.log([severity.draw_target(rng) for _ in range(4000)])
-    assert logs.min() == pytest.approx(math.log(1.1), abs=0.01) and logs.max() == pytest.approx(math.log(8.0), abs=0.01)
-    assert np.mean(logs) == pytest.approx(0.5 * (math.log(1.1) + math.log(8.0)), abs=0.03)
+    assert compose.find_severity(lambda s: math.inf, (0.5, 5.0), rng(0)) is None
 
 
 def test_materiality_of_a_gain_and_of_a_parameter() -> None:

@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 from seatsim import load_recording
-from seatsim.blind.labels import EFFECTS
 from seatsim.blind.make.compose import compose, null_subsets
 from seatsim.blind.make.make import make
-from seatsim.blind.sealed import unseal
+from seatsim.blind.sealed import EFFECTS, unseal
 from seatsim.schema.errors import InputError
 
 

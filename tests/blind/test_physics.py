@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pytest
 from scipy.signal import lsim
 
 from seatsim.blind.make.draw_experiment import BINGHAM, COIL, PLANT
-from seatsim.blind.truth import coil, damper, fluid, state
-from seatsim.blind.truth.parameters import parameter_record
+from seatsim.blind.truth import coil, damper, state
 from seatsim.blind.truth.rig import EXCITATION_RATE, INTEGRATION_STEP, SAMPLE_RATE, Inputs, simulate
+from seatsim.blind.truth.state import parameter_record
 
 BINGHAM_SEAT = PLANT | BINGHAM | COIL
 
@@ -23,36 +21,12 @@ def at(**values: float) -> np.ndarray:
     return y
 
 
-def test_a_record_takes_known_parameters_only() -> None:
-    record = parameter_record({"kf": 5.0})
-    assert (record["kf"], record["t_start"], record["mass_gain"]) == (5.0, 20.0, 0.0)
-    with pytest.raises(TypeError, match="kg"):
-        parameter_record({"kg": 1.0})
-
-
-def test_relays_remember_the_direction() -> None:
-    p = parameter_record(BINGHAM_SEAT | {"relay_share": 1.0, "relay_width": 0.2})
-    memory, relays, means = np.zeros(state.MEMORIES), np.zeros(state.RELAYS), []
-    for current in (0.5, 1.3, 0.5, -0.3):
-        fluid.update_relays(at(CURRENT=current), memory, relays, p)
-        means.append(memory[state.RELAYS_MEAN])
-    assert means[1] == 1.0 and means[3] == 0.0
-    assert means[0] == pytest.approx(0.4, abs=0.05)  # half a mean width late, on both sides
-    assert means[2] == pytest.approx(0.6, abs=0.05)
-
-
 def test_temperatures_keep_the_energy() -> None:
     rates = np.zeros(state.STATES)
     y = at(T_FLUID=50.0, T_HOUSING=30.0, T_THERMOMETER=25.0)
-    fluid.write_heat_rates(y, rates, -70.0, parameter_record(BINGHAM_SEAT))
+    coil.write_heat_rates(y, rates, -70.0, parameter_record(BINGHAM_SEAT))
     stored, lost = 60.0 * rates[state.T_FLUID] + 700.0 * rates[state.T_HOUSING], 1.5 * (30.0 - 20.0)
     assert stored == pytest.approx(70.0 - lost)
-
-
-def test_a_bristle_settles_at_its_sliding_level() -> None:
-    level = 1.0 + 0.4 * math.exp(-((0.01 / 0.02) ** 2))
-    assert state.bristle_rate(level, 0.01, 1e-4, 1.4, 0.02) == pytest.approx(0.0, abs=1e-9)
-    assert state.bristle_rate(0.0, 9.0, 1e-4, 1.4, 0.02) == state.FASTEST
 
 
 def test_a_loose_damper_bears_what_its_mount_transmits() -> None:
@@ -75,26 +49,6 @@ def test_dropouts_begin_at_the_same_times_whatever_the_step() -> None:
         return list(np.round(np.flatnonzero(np.diff(off.astype(int)) > 0) * h, 2))
 
     assert begins(1e-4) == begins(2.5e-4) != []
-
-
-def test_dropouts_last_their_time_and_come_at_their_rate() -> None:
-    p, h, memory = parameter_record({"dropout_interval": 0.05, "dropout_duration": 0.01}), 1e-3, np.zeros(6)
-    off = np.array([coil.drops_out(n * h, h, memory, p) for n in range(20000)])
-    lengths = np.diff(np.flatnonzero(np.diff(off.astype(int)) != 0))[::2]
-    assert set(lengths) <= {10, 11}
-    assert np.mean(off) == pytest.approx(0.01 / 0.06, rel=0.15)
-
-
-def test_control_laws() -> None:
-    p, schedule, memory = parameter_record(COIL), np.array([0.0, 1.4]), np.zeros(state.MEMORIES)
-    memory[state.V_FRAME] = 0.1
-
-    def command(law: list[float], **values: float) -> float:
-        return coil.command_of(np.array(law), schedule, 1, at(**values), memory, p)
-
-    assert command([coil.SCHEDULE, 0, 0, 0, 0, 0]) == 1.0
-    skyhook = [coil.SKYHOOK, 0.8, 0.01, 0, 0, 0]
-    assert [command(skyhook, V=v) for v in (0.02, -0.02, 0.005)] == [0.8, 0.0, 0.0]
 
 
 def test_a_linear_rig_moves_as_its_transfer_function() -> None:

@@ -13,10 +13,10 @@ import pytest
 
 from seatsim.blind.carrier.make import draw_changes
 from seatsim.blind.carrier.recorded import encode_carrier, read_carrier
-from seatsim.blind.labels import EFFECTS
-from seatsim.blind.make.compose import compose
-from seatsim.blind.make.draw_case import CaseSpecification, draw_case
+from seatsim.blind.make.compose import CaseSpecification, compose
+from seatsim.blind.make.draw_case import draw_case
 from seatsim.blind.make.folder import nominal_scenario, recording_header
+from seatsim.blind.sealed import EFFECTS
 from seatsim.blind.truth.experiment import Experiment
 from seatsim.blind.truth.rig import EXCITATION_RATE
 
@@ -60,6 +60,7 @@ def best_stump(features: np.ndarray, hits: np.ndarray) -> tuple[int, float, floa
     return best[1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kinds", "cases"), [("mixed", 2000), ("varied", 1200)])
 def test_a_classifier_of_all_but_the_signals_stays_at_chance(
     kinds: str, cases: int, monkeypatch: pytest.MonkeyPatch

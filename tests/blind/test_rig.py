@@ -11,8 +11,8 @@ import seatsim
 from seatsim.blind.make.folder import encode_recording, write_folder
 from seatsim.blind.truth.experiment import read_channels, simulate_run
 from seatsim.blind.truth.faults import Changes
-from seatsim.blind.truth.parameters import parameter_record
 from seatsim.blind.truth.rig import EXCITATION_RATE, INTEGRATION_STEP, Inputs, simulate
+from seatsim.blind.truth.state import parameter_record
 
 from .experiments import small_experiment
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from seatsim.blind.labels import BLOCKS, EFFECTS
-from seatsim.blind.make.severity import find_severity
+from seatsim.blind.make.compose import find_severity
+from seatsim.blind.sealed import BLOCKS, EFFECTS
 from seatsim.blind.truth.experiment import Readings, read_channels, simulate_run
 from seatsim.blind.truth.faults import Changes
 from seatsim.blind.truth.outside_faults import SCENARIOS, scenarios_of

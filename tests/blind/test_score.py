@@ -15,12 +15,8 @@ from rich.console import Console
 from seatsim.blind.carrier.recorded import encode_carrier
 from seatsim.blind.score.cases import (
     Rate,
-    ScoredCase,
     calibration_error,
-    describe_failure,
-    missing_channels,
     reliability,
-    strength_class,
 )
 from seatsim.blind.score.score import score, score_verdicts
 from seatsim.blind.score.shrink import score_shrink
@@ -30,7 +26,7 @@ from seatsim.blind.sealed import Sealed, new_key, seal
 from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
 
-from .carriers import bench_carrier, write_yaml
+from .carriers import bench_carrier, seat_carrier, write_carrier, write_yaml
 
 ONE = {"kind": "one", "effects": ["damper.remanence"], "blocks": ["damper"], "forms": ["remanence-decay"]}
 TWO = {"kind": "two", "effects": ["coil.lag", "driver.mass"], "blocks": ["coil", "driver"]}
@@ -110,22 +106,6 @@ def test_a_folder_is_scored_from_its_files(tmp_path: Path) -> None:
         read_verdict(place)
 
 
-def test_classes_and_failures_of_cases() -> None:
-    assert [strength_class({**ONE, "materialities": [size, 9.0]})[0] for size in (1.2, 1.5, 3.0, 4.0)] == [
-        "1.5 x limit or less", "2.5 x limit or less", "4.0 x limit or less", "stronger",
-    ]  # fmt: skip
-    assert missing_channels({**ONE, "missing": ["damper_force", "coil_current"]}) == ["damper_force coil_current"]
-    assert missing_channels(ONE) == ["all channels"]
-    wrong = Verdict("known", ("coil", "damper", "floor"), ("a", "b", "c", "d"), selected=("a",), groups=(("a", "b"),))
-    failure = describe_failure(ScoredCase("case-0001", ONE, wrong))
-    assert (failure.named, failure.where, failure.groups) == (
-        ["a", "b", "c"],
-        ["coil", "damper"],
-        [["a", "b"]],
-    )
-    assert (failure.effects, failure.verdict, failure.missing) == (["damper.remanence"], "known", [])
-
-
 def test_shrink_claimed_and_reached(tmp_path: Path) -> None:
     """The recording has an offset of the force that the nominal lacks and the augmented scenario has, or half of it."""
     base, carrier = tmp_path / "set", bench_carrier()
@@ -161,6 +141,24 @@ def test_shrink_claimed_and_reached(tmp_path: Path) -> None:
     off = np.array([0.9 - true["a"], 0.6 - true["b"], 0.1 - true["f"]])
     assert (found.mean_difference, found.bias) == pytest.approx((np.mean(np.abs(off)), np.mean(off)))
     assert score_shrink(base, opened, dict.fromkeys(said, Verdict("known")), 1, None) is None
+
+
+@pytest.mark.parametrize("bench_case", [True, False])
+def test_a_diagnosis_of_another_kind_of_rig_is_named(bench_case: bool, tmp_path: Path) -> None:
+    case, other = (bench_carrier(), seat_carrier()) if bench_case else (seat_carrier(), bench_carrier())
+    folder = write_carrier(case, tmp_path / "case-0001")
+    files = {path.name: path.read_bytes() for path in folder.iterdir()}
+    figures: dict[str, Any] = {"driver_acceleration" if bench_case else "damper_force": [0.1]}
+    missed = dict.fromkeys(figures, 0.1)
+    error = {
+        "bands": [[0.0, None]], "noise_rms": missed, "channels": figures, "measured_over_simulated": figures,
+        "by_run": [{"run": "a", "channels": figures, "missed_rms": missed}],
+    }  # fmt: skip
+    (folder / "diagnosis.json").write_text(json.dumps({"verdict": "known", "causes": [], "model_error": error}))
+    augmented = write_yaml(other.nominal, folder / "augmented.yaml")
+    said = Verdict("known", shrink=0.5, augmented=augmented)
+    with pytest.raises(InputError, match=r"is of another kind of rig than .*case-0001, which is of rig"):
+        score_shrink(tmp_path, Sealed({"case-0001": ONE}, {"case-0001": files}, {}), {"case-0001": said}, 1, None)
 
 
 def test_a_verdict_is_read_as_the_contract_has_it(tmp_path: Path) -> None:

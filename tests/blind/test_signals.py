@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy.signal import welch
 
-from seatsim.blind.truth import excitation, experiment
+from seatsim.blind.truth import experiment
 from seatsim.blind.truth.excitation import coloured_noise
-from seatsim.blind.truth.faults import FrameForce, SensorFault
-from seatsim.blind.truth.rig import EXCITATION_RATE, SAMPLE_RATE, RigMotion
+from seatsim.blind.truth.faults import SensorFault
+from seatsim.blind.truth.rig import SAMPLE_RATE, RigMotion
 
 
 def test_coloured_noise_has_unit_variance_and_its_slope() -> None:
@@ -27,45 +27,6 @@ def test_coloured_noise_has_unit_variance_and_its_slope() -> None:
     }
     assert at[10.0] / at[3.0] == pytest.approx(0.5, rel=0.3)
     assert at[20.0] / at[3.0] == pytest.approx(1.0 / 257.0, rel=0.4)
-
-
-def test_floors() -> None:
-    rng = np.random.default_rng(1)
-    road = excitation.draw_road(rng, 10.0, 1.4)
-    assert (road.size, np.std(road)) == (20_000, pytest.approx(1.4))
-    bumps = excitation.draw_bumps(rng, 10.0, 7.0)
-    assert 0.5 * 7.0 < np.max(np.abs(bumps)) < 1.2 * 7.0
-    assert abs(np.mean(bumps)) < 1e-9
-    sweep = excitation.draw_sweep(rng, 14.0, 1.0)
-    for part, low, high in ((slice(0, 8000), 0.5, 3.0), (slice(-4000, None), 6.0, 15.0)):
-        f, power = welch(sweep[part], EXCITATION_RATE, nperseg=4000)
-        assert low < f[np.argmax(power)] < high
-
-
-def test_current_steps_are_held_and_bounded() -> None:
-    schedule = excitation.draw_current_steps(np.random.default_rng(2), 100_000, 0.9)
-    edges = np.flatnonzero(np.diff(schedule)) + 1
-    assert schedule.min() == 0.0 and 0.8 < schedule.max() <= 0.9
-    assert np.diff(edges).min() >= 0.3 * SAMPLE_RATE
-    assert np.mean(schedule == 0.0) == pytest.approx(excitation.OFF_SHARE, abs=0.1)
-
-
-def test_frame_forces_are_repeatable_and_differ_by_run() -> None:
-    force = FrameForce("coloured", 12.0, 7)
-    first, again, other = (excitation.frame_force([force], run, 10.0) for run in (0, 0, 1))
-    assert np.std(first) == pytest.approx(12.0)
-    np.testing.assert_array_equal(first, again)
-    assert abs(np.corrcoef(first, other)[0, 1]) < 0.5
-    np.testing.assert_allclose(excitation.frame_force([force, force], 0, 10.0), 2.0 * first)
-    assert excitation.frame_force([], 0, 10.0).size == 1
-    hum = excitation.frame_force([FrameForce("hum", 3.0, 7, 12.0)], 0, 20.0)
-    f, power = welch(hum, EXCITATION_RATE, nperseg=8000)
-    assert f[np.argmax(power)] == pytest.approx(12.0, abs=0.6)
-    assert np.std(hum) == pytest.approx(3.0, rel=0.1)
-    knocks = excitation.frame_force([FrameForce("knock", 3.0, 7, 1.0)], 0, 60.0)
-    starts = np.count_nonzero(np.diff((knocks != 0.0).astype(int)) == 1)
-    assert np.std(knocks) == pytest.approx(3.0)
-    assert starts == pytest.approx(60.0 / 1.13, rel=0.25)
 
 
 def faulty(kind: str, u: np.ndarray, size: float, **other: float) -> np.ndarray:

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.characterisation.cycles import find_cycles, select_steady_cycles
+from seatsim.characterisation.response import find_cycles, select_steady_cycles
 from seatsim.characterisation.rows import summarise_record
 from seatsim.characterisation.summary import characterise
 from seatsim.dampers.bingham import Bingham
@@ -74,14 +74,6 @@ def test_each_rest_of_the_current_is_a_row(record, sine):
     found = characterise([record(motion, seconds, lambda t: np.where(t < 6.5, 0.0, 0.8))], "two")
     assert [row.current for row in found.rows] == [0.0, 0.8]
     assert found.rows[1].peak_rebound > 3.0 * found.rows[0].peak_rebound
-
-
-def test_temperature_is_kept_cycle_by_cycle(record, sine):
-    motion, seconds = sine(0.01, 2.0)
-    row = summarise_record(record(motion, seconds, temperature=lambda t: 20.0 + 5.0 * t))
-    warmth = row.cycle_values["temperature"]
-    assert np.diff(warmth) == pytest.approx(np.full(7, 2.5), rel=0.02)
-    assert row.temperature_range == pytest.approx(17.5, rel=0.02)
 
 
 def test_a_force_of_the_wrong_sign_and_a_velocity_of_the_wrong_unit_are_told(record, sine):

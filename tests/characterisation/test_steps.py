@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from seatsim.characterisation.model_tests import DamperSpecimen, step_response
-from seatsim.characterisation.response import find_crossing
 from seatsim.characterisation.steps import find_steps, measure_responses
 from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.rig.coil import Coil
@@ -84,13 +83,3 @@ def test_a_model_answers_with_the_rates_of_its_coil():
         assert answer.rate == pytest.approx(rate, rel=0.01) and answer.delay == pytest.approx(0.004, abs=2e-4)
         assert answer.t95 == pytest.approx(0.004 + math.log(20.0) / rate, rel=0.01)
         assert answer.current_t95 == pytest.approx(answer.t95, rel=0.01)
-
-
-def test_a_damper_without_current_has_no_response():
-    plain = DamperSpecimen(BoucWen(c_b=0.0, alpha_b=0.0), TemperatureFactors(), Coil())
-    assert "does not depend" in step_response(plain, 0.0, 1.0, 0.05, 20.0).note
-
-
-def test_crossing_is_interpolated():
-    assert find_crossing(np.array([-1.0, 0.0, 1.0, 2.0]), np.array([0.0, 0.0, 0.5, 1.0]), 0.75) == pytest.approx(1.5)
-    assert math.isnan(find_crossing(np.array([0.0, 1.0]), np.array([0.0, 0.5]), 0.9))

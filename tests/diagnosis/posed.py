@@ -3,7 +3,6 @@
 from concurrent.futures import ThreadPoolExecutor
 
 from seatsim.diagnosis.problem import pose_problem
-from seatsim.diagnosis.solution import Method
 from seatsim.diagnosis.solve import solve
 from seatsim.recordings.recording import load_recording
 
@@ -15,4 +14,4 @@ def pose(folder):
 
 
 def solved(problem, without=()):
-    return solve(problem, without, lambda _: None, Method())
+    return solve(problem, without, lambda _: None)

@@ -9,12 +9,11 @@ from ruamel.yaml import YAML
 
 import seatsim
 from seatsim.diagnosis.candidates import list_candidates
-from seatsim.diagnosis.design.collinearity import measure_collinearity
 from seatsim.diagnosis.design.experiment import propose_experiment
+from seatsim.diagnosis.design.separability import measure_collinearity
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.noise import weigh_noise
-from seatsim.diagnosis.objective import Objective
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.objective import Objective, Parameters
 from seatsim.effects.damper import GasSpring, SealFriction
 from seatsim.excitations.recording import RecordedRun
 from seatsim.recordings.recording import load_recording
@@ -25,6 +24,7 @@ from seatsim.simulation.simulate import simulate
 from ..faulty_recordings import edit, noisy, rewrite
 from .posed import pose
 
+pytestmark = pytest.mark.slow
 FRICTIONS = ["damper.seal_friction", "suspension.friction"]
 
 

@@ -6,11 +6,10 @@ import shutil
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.localise.hypotheses import evaluate_hypotheses
+from seatsim.diagnosis.localise.localisation import evaluate_hypotheses
 from seatsim.diagnosis.localise.reconstruction import PORTS
 from seatsim.diagnosis.noise import weigh_noise
-from seatsim.diagnosis.objective import Objective
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.objective import Objective, Parameters
 from seatsim.simulation.inputs import Forces
 from seatsim.simulation.simulate import simulate
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from seatsim.cli.app import app
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis.settings import DiagnosisSettings
 
 ROOT = Path(__file__).resolve().parents[2]
 BENCH = (
@@ -98,11 +98,11 @@ from seatsim.kernel.rig import Disturbance, Rig, derivative
 from seatsim.rig.state import MECHANICAL
 from seatsim.rig.temperature import TemperatureScaling
 
-use("example_0.py")
-use("example_1.py")
-AirDrag = use("example_2.py").AirDrag
+use("power_law.py")
+use("fast_strokes.py")
+AirDrag = use("bellows.py").AirDrag
 
-effects = [{"effect": "example_2:AirDrag", "parameters": {"drag": 350.0}}]
+effects = [{"effect": "bellows:AirDrag", "parameters": {"drag": 350.0}}]
 scenario, = load("quickstart", {"effects": effects, "variants": {}})
 assert scenario.effects == (AirDrag(350.0),)
 
@@ -125,16 +125,21 @@ assert [(candidate.effect, candidate.start, candidate.high) for candidate in fou
 """
 
 
-def test_the_contributors_examples_work(tmp_path):
-    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8"), re.DOTALL)
-    assert len(blocks) == 3
-    for index, block in enumerate(blocks):
-        (tmp_path / f"example_{index}.py").write_text(block, encoding="utf-8")
+def test_the_examples_of_own_parts_work(tmp_path):
+    for page in ("damper", "controller", "effect"):
+        text = (ROOT / "docs" / f"howto_{page}.md").read_text(encoding="utf-8")
+        ((name, block),) = re.findall(r"^cat > (\w+\.py) <<'PY'\n(.*?)^PY$", text, re.DOTALL | re.MULTILINE)
+        (tmp_path / name).write_text(block, encoding="utf-8")
     recording = f"RECORDING = {str(ROOT / 'scenarios' / 'data' / 'recording')!r}"
     done = subprocess.run(
         [sys.executable, "-c", recording + CODE], cwd=tmp_path, capture_output=True, encoding="utf-8", check=False
     )
     assert done.returncode == 0, done.stderr
+
+
+def test_the_citation_names_this_version():
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+    assert f"\nversion: {version}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
 
 
 def test_how_often_a_diagnosis_is_right_is_stated_on_one_page_only():

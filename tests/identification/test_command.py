@@ -5,7 +5,6 @@ import math
 
 import pandas as pd
 import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from ruamel.yaml import YAML
 from typer.testing import CliRunner
 
@@ -17,11 +16,10 @@ from seatsim.identification.identify import identify
 from seatsim.identification.model_benchmark import BenchmarkEntry, benchmark_models, rank_entries
 from seatsim.identification.search import ignore_progress
 from seatsim.identification.settings import IdentificationSettings as Settings
-from seatsim.plots.bench.identification import plot_predictions
 from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
 
-from .benches import BINGHAM, made, sines, write
+from .benches import BINGHAM, made, sines
 
 FILES = {"parameters.yaml", "fit.json", "report.html", "loops.png"}
 DOCUMENTED = {*FILES, "manifest.json", "ro-crate-metadata.json"}
@@ -108,30 +106,11 @@ def test_factors_of_temperature_and_laws_are_written_and_read_again(tmp_path):
     assert done.exit_code == 0, done.output
 
 
-def test_without_held_out_records_there_is_no_test(bench):
-    fit = to_content(identify(bench, "bingham"))
-    assert fit["test"] is None and "predicted" not in fit
-
-
 def test_a_fraction_is_held_out_of_every_record(bench):
     fit = to_content(identify(bench, "bingham", Settings(test_fraction=0.3)))
     parts = [record["part"] for record in fit["records"].values()]
     assert parts == ["train"] * 3 + ["test"] * 3 and "sine_4Hz, 0.5 A (test)" in fit["records"]
     assert fit["test"]["fit_percent"] > 97.0
-
-
-def test_the_picture_is_labelled_and_inside_its_page(bench):
-    found = identify(bench, "bingham", Settings(("*2.5Hz",)))
-    for chosen in (found.assessments, found.assessments[:1], found.assessments * 4):
-        figure = plot_predictions(found._replace(assessments=list(chosen)))
-        canvas = FigureCanvasAgg(figure)
-        canvas.draw()
-        width, height = canvas.get_width_height()
-        for part in [*figure.texts, *figure.legends, *figure.axes]:
-            box = part.get_tightbbox()
-            assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= width and box.y1 <= height, part
-        assert {axes.get_xlabel() for axes in figure.axes} == {"velocity [m/s]", "displacement [mm]", "time [s]"}
-    assert "held out" in plot_predictions(found).axes[0].get_title(loc="left")
 
 
 # --------------------------------------------------------------------------------------------------- the league
@@ -223,10 +202,3 @@ def test_bad_input_is_refused_and_nothing_written(options, problem, bench, tmp_p
     done = command("identify", bench, *options)
     assert isinstance(done.exception, InputError) and problem in str(done.exception)
     assert not list(tmp_path.iterdir())
-
-
-def test_a_folder_of_tables_is_named_after_its_data(bench, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    done = command("identify", write([made()], tmp_path / "bench") / "made.csv", "--model", "bingham")
-    assert done.exit_code == 0, done.output
-    assert {path.name for path in (tmp_path / "out" / "identify-made-bingham").iterdir()} == DOCUMENTED

@@ -12,9 +12,7 @@ from seatsim.identification.damper_record import (
     Scales,
     evaluate_law,
     fix_parameters,
-    interpolate_law,
     numeric_fields,
-    parse_unit,
     rescale_damper,
 )
 from seatsim.schema.errors import InputError
@@ -70,13 +68,6 @@ def test_stated_bounds_are_searched_whatever_the_default_is(default, true):
     assert between.to_record(between.high).bounded == pytest.approx(5e3)
 
 
-def test_held_fields_and_ranges_are_no_components():
-    between = coordinates(BoucWen())
-    assert {c.field for c in between.components}.isdisjoint({"A", "x0"})
-    assert "law_end" not in {c.field for c in coordinates(ModifiedBoucWen()).components}
-    assert "c_a" not in {c.field for c in Coordinates(BoucWen(), SCALES, ("c_a",)).components}
-
-
 def test_without_current_nothing_that_depends_on_it_is_free():
     between = coordinates(BoucWen(), SCALES._replace(current=0.0))
     assert {c.field for c in between.components}.isdisjoint({"c_b", "alpha_b"})
@@ -99,19 +90,6 @@ def test_a_law_that_is_nowhere_negative_stays_so():
     assert all(c.low == -math.inf for c in free.components if c.field in ("c0", "alpha"))
 
 
-def test_laws_are_polynomials_through_their_values():
-    values = np.array([3.0, 5.0, 4.0])
-    coefficients = interpolate_law(values, 1.6)
-    assert evaluate_law(coefficients, np.array([0.0, 0.8, 1.6])) == pytest.approx(values)
-
-
-def test_units_give_dimensions_and_sizes():
-    assert parse_unit("N s/(m A)") == {"N": 1.0, "s": 1.0, "m": -1.0, "A": -1.0}
-    assert parse_unit("1/m^2") == {"m": -2.0} and parse_unit("-") == {} and parse_unit("[z]/m") == {"m": -1.0}
-    assert SCALES.size("N s/m") == pytest.approx(400.0 / 0.06)
-    assert SCALES.size("N s^2/m^2") == pytest.approx(400.0 / 0.06**2)
-
-
 def test_a_damper_is_scaled_in_force_and_current():
     record = ModifiedBoucWen()
     other = rescale_damper(record, 3.0, 2.0)
@@ -127,11 +105,6 @@ def test_scaling_back_gives_the_record(model):
     record = find("damper", model)()
     end = float(getattr(record, "law_end", 1.0))
     same(rescale_damper(rescale_damper(record, 2.5, end), 0.4, end), record)
-
-
-def test_numbers_are_fixed():
-    record = fix_parameters(BoucWen(), {"n": 3, "k0": -5.0})
-    assert (record.n, record.k0) == (3.0, -5.0) and isinstance(record.n, float)
 
 
 @pytest.mark.parametrize(

@@ -22,18 +22,6 @@ def test_ranges_of_a_sine():
     assert found.frequency == pytest.approx([2.0, 2.0], abs=0.26)
 
 
-def test_a_current_that_varies_is_not_steady_and_temperatures_are_ranged():
-    varying = made(current=lambda t: 0.2 + 0.1 * np.sin(t), temperature=30.0)
-    found = measure_coverage([varying, made(temperature=41.0)])
-    assert found.steady_currents == [0.0] and found.temperature == [30.0, 41.0]
-
-
-def test_frequencies_hold_nine_tenths_of_the_power():
-    slow, fast = made(frequency=1.0, seconds=5.0), made(frequency=6.0, amplitude=0.002, seconds=5.0)
-    found = measure_coverage([slow, fast])
-    assert found.frequency == pytest.approx([1.0, 6.0], abs=0.25)
-
-
 def test_the_lowest_and_the_highest_tone_of_a_record_are_covered():
     slow, middle, fast = (made(frequency=f, amplitude=0.01 / f, seconds=5.0) for f in (1.0, 3.0, 6.0))
     found = measure_coverage([slow._replace(velocity=slow.velocity + middle.velocity + fast.velocity)])

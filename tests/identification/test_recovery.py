@@ -7,7 +7,6 @@ import pytest
 from ruamel.yaml import YAML
 
 import seatsim
-from seatsim.identification import identify as module
 from seatsim.identification.identify import identify_records
 from seatsim.identification.information import correlation_length
 from seatsim.identification.settings import IdentificationSettings as Settings
@@ -60,19 +59,6 @@ def test_temperature_factors_come_back_and_may_be_ignored():
     assert not cold.warm and cold.mean("train").fit_percent < 90.0
 
 
-def test_a_temperature_that_hardly_varies_is_no_input():
-    records = [record._replace(temperature=np.full(len(record.force), 30.0 + k)) for k, record in
-               enumerate(sines(BINGHAM))]  # fmt: skip
-    assert not identify_records(records, "bingham").warm
-
-
-def test_a_stroke_far_from_zero_has_an_origin_of_its_own():
-    moved = [record._replace(displacement=record.displacement + 0.03) for record in sines(BOUC_WEN)]
-    found = identify_records(moved, "bouc_wen")
-    assert found.origin == pytest.approx(0.03, abs=1e-3)
-    assert found.bench.damper.k0 == pytest.approx(BOUC_WEN.k0, rel=0.05)
-
-
 def test_what_is_fixed_stays():
     found = identify_records(sines(BOUC_WEN), "bouc_wen", Settings(fix={"n": 3, "A": 1500.0}))
     assert (found.bench.damper.n, found.bench.damper.A) == (3.0, 1500.0)
@@ -86,28 +72,6 @@ def test_one_current_leaves_its_influence_unknown_and_the_rest_known():
     pairs = {frozenset(pair[:2]) for pair in found.information.correlated}
     assert {frozenset(("c_a", "c_b")), frozenset(("fc_a", "fc_b"))} <= pairs
     assert estimates(found)["f0"].identified
-
-
-def test_an_offset_of_zero_is_known_to_be_zero():
-    found = identify_records(sines(BINGHAM._replace(f0=0.0)), "bingham")
-    assert abs(found.bench.damper.f0) < 1.0 and estimates(found)["f0"].identified
-
-
-def test_a_passive_damper_has_nothing_that_depends_on_current():
-    found = identify_records([made(noise=0.02)], "bingham")
-    assert set(estimates(found)) == {"c_a", "fc_a", "f0"}
-    assert found.bench.damper.c_a == pytest.approx(BINGHAM.c_a, rel=0.05)
-
-
-def test_the_same_seed_gives_the_same_parameters():
-    first, again = (identify_records(sines(BINGHAM), "bingham").bench.damper for _ in range(2))
-    assert first == again
-
-
-def test_motion_beyond_what_was_fitted_is_told():
-    found = identify_records([made(), made(amplitude=0.03, current=1.5, name="far")], "bingham", Settings(("far",)))
-    assert any("0.377 m/s of velocity, the fitted ones 0.126 m/s only" in note for note in found.notes)
-    assert any("1.5 A of current, the fitted ones 0 A only" in note for note in found.notes)
 
 
 def test_the_effective_number_of_samples_respects_memory():
@@ -124,12 +88,6 @@ def test_the_criterion_of_bayes_prefers_the_model_that_made_the_data(offset):
     records = sines(BINGHAM._replace(f0=offset))
     free, fixed = (identify_records(records, "bingham", Settings(fix=fix)).bic for fix in ({}, {"f0": 0.0}))
     assert (fixed < free) == (offset == 0.0)
-
-
-def test_the_function_of_the_package_reads_a_folder(bench):
-    found = seatsim.identify(bench, "bingham", Settings(("*2.5Hz",)))
-    assert [judged.record.name for judged in found.assessments if judged.part == "test"] == ["sine_2.5Hz, 1 A"]
-    assert isinstance(found, seatsim.Identification)
 
 
 def test_the_example_gives_the_damper_it_was_made_with():
@@ -172,12 +130,3 @@ def test_bad_requests_are_refused(bench):
     still = [record._replace(velocity=0.0 * record.velocity) for record in sines(BINGHAM)]
     with pytest.raises(InputError, match="no motion or no force"):
         identify_records(still, "bingham")
-
-
-def test_a_model_that_fails_says_so(monkeypatch):
-    def singular(*_):
-        raise np.linalg.LinAlgError("singular")
-
-    monkeypatch.setattr(module, "search_parameters", singular)
-    with pytest.raises(RunError, match="bingham: the fit failed: singular; hold a parameter by --fix"):
-        identify_records(sines(BINGHAM), "bingham")

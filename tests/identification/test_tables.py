@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from seatsim.recordings.bench_columns import KNOWN, meaning
+from seatsim.recordings.bench_columns import meaning
 from seatsim.recordings.bench_tables import load_bench, unused_columns
 from seatsim.schema.errors import InputError
 
@@ -45,14 +45,6 @@ def test_a_name_tells_quantity_and_unit(name, quantity, value):
 @pytest.mark.parametrize("name", ["f_Hz", "displacement_N", "displacement_cmd_m", "force_cmd_N", "amplitude_m", ""])
 def test_other_names_mean_nothing(name):
     assert meaning(name) is None
-
-
-def test_a_force_names_its_current():
-    assert (meaning("force_0p4A_N").at, meaning("force_0.4A_N").at, meaning("force_1A_kN").in_si(1.0)) == (
-        0.4,
-        0.4,
-        1e3,
-    )
 
 
 def test_units_are_turned_into_si(tmp_path):
@@ -215,7 +207,3 @@ def test_missing_and_empty_places_are_refused(tmp_path):
     for name in ("empty.csv", "no.csv.gz"):
         with pytest.raises(InputError, match=f"{name}: cannot be read as a table"):
             load_bench(tmp_path / name)
-
-
-def test_known_names_are_small_letters():
-    assert all(name == name.lower() and meaning(name) == KNOWN[name] for name in KNOWN)

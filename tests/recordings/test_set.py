@@ -8,11 +8,9 @@ import pytest
 
 import seatsim
 from seatsim.diagnosis.candidates import list_candidates
-from seatsim.diagnosis.design.collinearity import stack_jacobian, stack_whitened
-from seatsim.diagnosis.design.projection import project
+from seatsim.diagnosis.design.separability import project, stack_jacobian, stack_whitened
 from seatsim.diagnosis.noise import weigh_noise
-from seatsim.diagnosis.objective import Objective
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.objective import Objective, Parameters
 from seatsim.recordings.gap import measure_gap
 from seatsim.recordings.quality.examination import examine
 from seatsim.recordings.recording import load_recording

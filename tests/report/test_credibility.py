@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import seatsim
-from seatsim.provenance.invocation import at_work
+from seatsim.provenance.statement import at_work
 from seatsim.recordings.header import NOT_STATED
 from seatsim.report.credibility.card import say_doubt, show_card
 from seatsim.report.credibility.evidence import Evidence, collect_diagnosis, collect_gap, collect_runs

@@ -27,11 +27,11 @@ from seatsim.recordings.bench_tables import load_bench
 from seatsim.recordings.recording import load_recording
 from seatsim.report.sweep import report_sweep
 from seatsim.scenario.loading import load, single
-from seatsim.sweeps.engines.base import Work
+from seatsim.sweeps.engines import Work
 from seatsim.sweeps.execute import execute, prepare
 from seatsim.sweeps.outcome import DONE, Outcome
-from seatsim.sweeps.statistics.rows import count_exceedances, read_rows, tabulate_quantiles
-from seatsim.sweeps.statistics.sensitivity import analyse_sensitivity
+from seatsim.sweeps.rows import count_exceedances, read_rows, tabulate_quantiles
+from seatsim.sweeps.sensitivity import analyse_sensitivity
 
 from ..importing import exports
 

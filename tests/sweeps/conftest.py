@@ -3,7 +3,7 @@
 import pytest
 from ruamel.yaml import YAML
 
-from seatsim.sweeps.engines.local import LocalEngine
+from seatsim.sweeps.engines import LocalEngine
 from seatsim.sweeps.execute import execute, prepare
 
 from ..conftest import SEAT

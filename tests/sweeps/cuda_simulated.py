@@ -11,8 +11,7 @@ from numba.cuda.simulator.kernel import BlockManager, BlockThread
 import seatsim
 from seatsim.kernel import step
 from seatsim.simulation import simulate
-from seatsim.sweeps.engines.base import open_engine
-from seatsim.sweeps.execute import execute, prepare
+from seatsim.sweeps.execute import execute, open_engine, prepare
 
 
 def run_in_turn(manager, grid_point, *arguments):

@@ -103,7 +103,7 @@ def test_the_tasks_of_a_script_make_the_sweep(write_sweep, tmp_path, seatsim_com
 
 def test_an_engine_that_cannot_be_reached_leaves_nothing(write_sweep, tmp_path, seatsim_command, monkeypatch):
     pytest.importorskip("distributed")
-    from seatsim.sweeps.engines import cluster
+    from seatsim.sweeps import cluster
 
     monkeypatch.setattr(cluster, "LONGEST_SEARCH", 0.3)
     options = ["--engine", "dask", "--address", "tcp://127.0.0.1:9"]

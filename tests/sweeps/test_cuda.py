@@ -1,20 +1,12 @@
 """Engine `cuda`: the rows of engine `local` where numba simulates the device; what is refused without one."""
 
-import math
 import os
 import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
 from seatsim.kernel import cuda_lanes
-from seatsim.scenario.loading import load
-from seatsim.simulation import device as many
-from seatsim.sweeps.engines import device
-from seatsim.sweeps.outcome import floor_of
-
-from ..conftest import SEAT
+from seatsim.sweeps import device
 
 FEEDBACK = {"law": "static_output_feedback", "gain": [2.0, 2147.6], "sample_time": 0.005}
 NOISY = {"bandwidth": 80.0, "displacement_noise": 1e-4, "acceleration_noise": 0.05}
@@ -61,16 +53,3 @@ def test_what_cannot_be_done_is_one_sentence(write_sweep, tmp_path, seatsim_comm
         monkeypatch.setattr(cuda_lanes, "has_device", lambda: False)
         status, _, err = seatsim_command("sweep", path, "--out", out, "--engine", "cuda", *options)
         assert status == 2 and sentence in err and err.count("\n") == 1 and not out.exists()
-
-
-def test_models_that_do_not_compile_are_named(tmp_path, monkeypatch):
-    path = tmp_path / "seat.yaml"
-    path.write_text(SEAT)
-
-    def refuse(*arguments):
-        raise cuda_lanes.KernelError("TypingError: no such function")
-
-    monkeypatch.setattr(many, "free_memory", lambda: math.inf)
-    monkeypatch.setattr(many, "run_on_device", refuse)
-    with pytest.warns(UserWarning, match="BoucWen and OutputFeedback do not compile for a CUDA device: TypingError"):
-        assert list(many.simulate_on_device([load(path)[0]], floor_of)) == []

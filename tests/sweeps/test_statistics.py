@@ -7,8 +7,8 @@ from scipy.stats import qmc
 
 from seatsim.plots.sweeps import find_front, plot_comfort
 from seatsim.report.sweep_choices import advise_on_keys, tabulate_best
-from seatsim.sweeps.statistics.rows import SweepRows, count_exceedances, tabulate_quantiles
-from seatsim.sweeps.statistics.sensitivity import analyse_sensitivity, choose_key
+from seatsim.sweeps.rows import SweepRows, count_exceedances, tabulate_quantiles
+from seatsim.sweeps.sensitivity import analyse_sensitivity, choose_key
 
 COMFORT, HITS = "driver_acceleration_weighted", "end_stop_hits"
 

@@ -22,17 +22,17 @@ from seatsim.blind.carrier.recorded import (
 )
 from seatsim.schema.arrays import Array
 
-LARGEST = 1.5
+_LARGEST = 1.5
 """Of a force, in standard deviations of the recorded one."""
 _TRAVELS = (2e-5, 1.5e-4)
 """m; sliding travel of a seal, drawn log-uniform."""
 _CROSSED = (0.08, 0.2)
 """Share of the spread of the force at which a gap is crossed; less would need a motion faster than any recorded."""
-_LEAST_LEVELS, STANDING = 3, 0.03
+_LEAST_LEVELS, _STANDING = 3, 0.03
 """Levels of the current that tell a saturation from another yield force, and the share of the rows that makes one."""
-REFERENCE, LEAST_WARMING = 20.0, 10.0
+_REFERENCE, _LEAST_WARMING = 20.0, 10.0
 """degC at which a damper has its stated forces; K by which it must warm, else a fade is a smaller force throughout."""
-Forces = Callable[[Table], Array]
+_Forces = Callable[[Table], Array]
 
 
 def draw_damper_changes(carrier: Carrier, rng: Generator) -> list[Change]:
@@ -48,7 +48,7 @@ def _spread(carrier: Carrier) -> float:
     return float(np.std(carrier.pooled("damper_force")))
 
 
-def _added(carrier: Carrier, force: Forces) -> Carrier:
+def _added(carrier: Carrier, force: _Forces) -> Carrier:
     return with_tables(carrier, lambda table: {**table, "damper_force": table["damper_force"] + force(table)})
 
 
@@ -60,7 +60,7 @@ def _seal_friction(carrier: Carrier, rng: Generator) -> Change:
         added = _added(carrier, lambda table: amount * size * slide(table["displacement"], travel))
         return Altered(added, {"force": amount * size})
 
-    return Change("damper.seal_friction", "F sgn v", "", (0.0, LARGEST), alter)
+    return Change("damper.seal_friction", "F sgn v", "", (0.0, _LARGEST), alter)
 
 
 def _gas_spring(carrier: Carrier, rng: Generator) -> Change:
@@ -73,7 +73,7 @@ def _gas_spring(carrier: Carrier, rng: Generator) -> Change:
         added = _added(carrier, lambda table: preload + stiffness * (table["displacement"] - table["displacement"][0]))
         return Altered(added, {"preload": preload, "stiffness": stiffness})
 
-    return Change("damper.gas_spring", "preload and stiffness", "", (0.0, LARGEST), alter)
+    return Change("damper.gas_spring", "preload and stiffness", "", (0.0, _LARGEST), alter)
 
 
 def _preload(carrier: Carrier, rng: Generator) -> Change:
@@ -82,7 +82,7 @@ def _preload(carrier: Carrier, rng: Generator) -> Change:
     def alter(amount: float) -> Altered:
         return Altered(_added(carrier, lambda table: np.asarray(amount * size)), {"preload": amount * size})
 
-    return Change("damper.gas_spring", "preload", "", (0.0, LARGEST), alter)
+    return Change("damper.gas_spring", "preload", "", (0.0, _LARGEST), alter)
 
 
 def _asymmetry_by_force(carrier: Carrier, rng: Generator) -> Change:
@@ -169,7 +169,7 @@ def _saturation(carrier: Carrier) -> list[Change]:
 def _levels(command: Array) -> Array:
     """Return the values that a command stands at for long, in twentieths of its largest."""
     steps, counts = np.unique(np.round(20.0 * command / max(float(np.max(command)), 1e-9)), return_counts=True)
-    return np.asarray(steps[counts > STANDING * len(command)])
+    return np.asarray(steps[counts > _STANDING * len(command)])
 
 
 def _yield_shares(values: Mapping[str, object]) -> tuple[float, float, float, float] | None:
@@ -186,14 +186,14 @@ def _fade(carrier: Carrier) -> list[Change]:
     """Return a force that falls with the recorded temperature, from its value at the reference."""
     if (
         "damper_temperature" not in carrier.channels
-        or float(np.ptp(carrier.pooled("damper_temperature"))) < LEAST_WARMING
+        or float(np.ptp(carrier.pooled("damper_temperature"))) < _LEAST_WARMING
     ):
         return []
     middle = float(np.mean(carrier.pooled("damper_force")))
 
     def share(table: Table, rate: float) -> Array:
         smooth = _low_pass_temperature(table["damper_temperature"], carrier.step)
-        return 1.0 / (1.0 + rate * np.clip(smooth - REFERENCE, 0.0, None)) - 1.0
+        return 1.0 / (1.0 + rate * np.clip(smooth - _REFERENCE, 0.0, None)) - 1.0
 
     def alter(amount: float) -> Altered:
         return Altered(_added(carrier, lambda t: share(t, amount) * (t["damper_force"] - middle)), {"viscous": amount})

@@ -16,19 +16,19 @@ from seatsim.blind.carrier.readings import draw_delays, draw_limits, draw_sensor
 from seatsim.blind.carrier.recorded import Altered, Carrier, Change, encode_carrier, read_carrier
 from seatsim.blind.carrier.replays import MATERIAL_SHARE, Ruler
 from seatsim.blind.carrier.seat import draw_seat_changes
-from seatsim.blind.labels import Label
 from seatsim.blind.make.make import CaseFiles, make_set
+from seatsim.blind.sealed import Label
 from seatsim.schema.errors import InputError
 from seatsim.schema.processes import Progress
 
-WEAKEST, _STRONGEST = 0.06, 0.3
+_WEAKEST, _STRONGEST = 0.06, 0.3
 """Standard deviations of a compared channel by which a change moves it: just material, and strong."""
-MOST_RUNS = 6
+_MOST_RUNS = 6
 """Of a case, one of which may be withheld: a diagnosis is to take seconds."""
-CLOSE = 0.1
+_CLOSE = 0.1
 """Relative difference of a size from the one drawn that is close enough."""
-EVALUATIONS = 12
-DRAWERS = (
+_EVALUATIONS = 12
+_DRAWERS = (
     draw_damper_changes,
     draw_sensor_changes,
     draw_skewed_logs,
@@ -56,34 +56,34 @@ def draw_changes(carrier: Carrier, rng: Generator) -> list[Change]:
 
     Header and nominal are those of the carrier in every case, so that they do not tell what was done.
     """
-    return [change for draw in DRAWERS for change in draw(carrier, rng)]
+    return [change for draw in _DRAWERS for change in draw(carrier, rng)]
 
 
 def choose_runs(carrier: Carrier, rng: Generator) -> Carrier:
-    """Return the carrier with at most `MOST_RUNS` of its runs, drawn and in their own order."""
+    """Return the carrier with at most `_MOST_RUNS` of its runs, drawn and in their own order."""
     names = list(carrier.tables)
-    kept = sorted(rng.choice(len(names), min(MOST_RUNS, len(names)), replace=False))
+    kept = sorted(rng.choice(len(names), min(_MOST_RUNS, len(names)), replace=False))
     return dataclasses.replace(carrier, tables={names[k]: carrier.tables[names[k]] for k in kept})
 
 
 def draw_amount(ruler: Ruler, change: Change, size: float) -> DrawnCase | None:
     """Return the change at the amount at which it has a size, None where no amount inside its span has about that."""
     low, high = change.span
-    for _ in range(EVALUATIONS):
+    for _ in range(_EVALUATIONS):
         middle = 0.5 * (low + high) if low > 0.0 else 0.25 * high
         found = ruler.size(change.alter(middle).carrier)
-        if abs(found - size) < CLOSE * size:
+        if abs(found - size) < _CLOSE * size:
             break
         low, high = (middle, high) if found < size else (low, middle)
     altered = change.alter(middle)
     found = ruler.size(altered.carrier)
-    fits = 1.0 - 2.0 * CLOSE < found / size < 1.0 + 4.0 * CLOSE and ruler.stands_out(altered.carrier)
+    fits = 1.0 - 2.0 * _CLOSE < found / size < 1.0 + 4.0 * _CLOSE and ruler.stands_out(altered.carrier)
     return DrawnCase(change, altered, found) if fits else None
 
 
 def _draw_size(rng: Generator) -> float:
     """Draw a size, log-uniform from just material to strong."""
-    return float(np.exp(rng.uniform(math.log(WEAKEST), math.log(_STRONGEST))))
+    return float(np.exp(rng.uniform(math.log(_WEAKEST), math.log(_STRONGEST))))
 
 
 def make_on_carrier(
@@ -108,7 +108,7 @@ def make_on_carrier(
     def order(seed: int) -> list[str]:
         return take_turns(carrier, cases, np.random.default_rng(seed))
 
-    kinds, draw = f"carrier {source.resolve()}", functools.partial(draw_files, source)
+    kinds, draw = f"carrier {source.resolve()}", functools.partial(_draw_files, source)
     return make_set(cases, seed, kinds, Path(out), Path(sealed), order, draw, progress, processes)
 
 
@@ -119,14 +119,14 @@ def take_turns(carrier: Carrier, cases: int, rng: Generator) -> list[str]:
     return turns[:cases]
 
 
-def draw_files(source: Path, wanted: str, rng: Generator) -> CaseFiles:
+def _draw_files(source: Path, wanted: str, rng: Generator) -> CaseFiles:
     """Draw a case on the recording in a folder, of which the last run is withheld where there are enough.
 
     Raises:
         InputError: no effect of a material size can be put into the carrier.
     """
     carrier = choose_runs(read_carrier(source), rng)
-    drawn = None if wanted == UNTOUCHED else draw_case(carrier, wanted, rng)
+    drawn = None if wanted == UNTOUCHED else _draw_case(carrier, wanted, rng)
     told = carrier if drawn is None else drawn.altered.carrier
     runs = tuple(told.tables)
     withheld = runs[-1:] if len(runs) >= _LEAST_RUNS else ()
@@ -134,7 +134,7 @@ def draw_files(source: Path, wanted: str, rng: Generator) -> CaseFiles:
     return CaseFiles(shown, encode_carrier(told, withheld) if withheld else {}, label(drawn))
 
 
-def draw_case(carrier: Carrier, wanted: str, rng: Generator) -> DrawnCase:
+def _draw_case(carrier: Carrier, wanted: str, rng: Generator) -> DrawnCase:
     """Return the wanted effect at a drawn size, or another where the carrier allows no such size of it.
 
     Raises:

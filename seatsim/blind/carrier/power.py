@@ -26,10 +26,10 @@ from seatsim.schema.processes import run_jobs
 
 SIZES = (0.06, 0.1, 0.16, 0.25, 0.4)
 """Standard deviations by which the effect moves a compared channel: from just material to more than strong."""
-FOUND_SHARE = 0.9
-BATCH = 4
+_FOUND_SHARE = 0.9
+_BATCH = 4
 """Draws that are begun before those missed are counted."""
-Diagnose = Callable[[Path], None]
+_Diagnose = Callable[[Path], None]
 """Writes CASE/diagnosis/diagnosis.json; it must be picklable."""
 
 
@@ -40,12 +40,12 @@ class Trial(NamedTuple):
     found: bool
 
 
-class Setting(NamedTuple):
+class _Setting(NamedTuple):
     """What the trials of an effect have in common; it is picklable, for other processes."""
 
     recording: Path
     out: Path
-    diagnose: Diagnose
+    diagnose: _Diagnose
     effect: str
     seed: int
 
@@ -86,7 +86,7 @@ class Powers(NamedTuple):
 def measure_power(
     recording: Path,
     out: Path,
-    diagnose: Diagnose,
+    diagnose: _Diagnose,
     effects: Sequence[str] = (),
     draws: int = 10,
     seed: int = 0,
@@ -110,7 +110,7 @@ def measure_power(
     found: list[Power] = []
     chosen = list(effects) or possible
     for effect in chosen:
-        setting = Setting(recording, out, diagnose, effect, seed)
+        setting = _Setting(recording, out, diagnose, effect, seed)
         found.append(_bisect(setting, draws, processes))
         if progress:
             progress(found[-1], len(found), len(chosen))
@@ -121,7 +121,7 @@ def _draw_all(carrier: Carrier, rng: Generator) -> list[Change]:
     return draw_changes(carrier, rng) + draw_faster_coils(carrier, rng)
 
 
-def _bisect(setting: Setting, draws: int, processes: int) -> Power:
+def _bisect(setting: _Setting, draws: int, processes: int) -> Power:
     """Return the smallest size that is found, taking what is found at one size to be found at every larger one.
 
     Where a size is more than the recording allows, smaller ones are looked at.
@@ -132,26 +132,26 @@ def _bisect(setting: Setting, draws: int, processes: int) -> Power:
         middle = (low + high) // 2
         size = SIZES[middle]
         trials[size] = _try_size(setting, size, draws, processes)
-        found = sum(trial.found for trial in trials[size]) >= math.ceil(FOUND_SHARE * draws)
+        found = sum(trial.found for trial in trials[size]) >= math.ceil(_FOUND_SHARE * draws)
         too_large = all(trial.parameters is None for trial in trials[size])
         smallest = size if found else smallest
         low, high = (low, middle) if found or too_large else (middle, high)
     return Power(setting.effect, smallest, dict(sorted(trials.items())))
 
 
-def _try_size(setting: Setting, size: float, draws: int, processes: int) -> list[Trial]:
+def _try_size(setting: _Setting, size: float, draws: int, processes: int) -> list[Trial]:
     """Return the trials at a size, fewer than asked for where so many are missed already that it is not found."""
     trials: list[Trial] = []
-    allowed = draws - math.ceil(FOUND_SHARE * draws)
-    for first in range(0, draws, BATCH):
-        batch = range(first, min(first + BATCH, draws))
+    allowed = draws - math.ceil(_FOUND_SHARE * draws)
+    for first in range(0, draws, _BATCH):
+        batch = range(first, min(first + _BATCH, draws))
         trials += run_jobs(_try_draw, [(setting, size, k) for k in batch], processes)
         if sum(not trial.found for trial in trials) > allowed:
             break
     return trials
 
 
-def _try_draw(setting: Setting, size: float, draw: int) -> Trial:
+def _try_draw(setting: _Setting, size: float, draw: int) -> Trial:
     """Return one trial, read from its file where it was made before."""
     name = f"{setting.effect}-{size:g}-{draw + 1:02d}"
     case, note = setting.out / "cases" / name, setting.out / "cases" / f"{name}.json"
@@ -165,7 +165,7 @@ def _try_draw(setting: Setting, size: float, draw: int) -> Trial:
     return trial
 
 
-def _draw(setting: Setting, size: float, draw: int) -> DrawnCase | None:
+def _draw(setting: _Setting, size: float, draw: int) -> DrawnCase | None:
     rng = np.random.default_rng([setting.seed, draw])
     carrier = choose_runs(read_carrier(setting.recording), rng)
     changes = [change for change in _draw_all(carrier, rng) if change.effect == setting.effect]
@@ -173,7 +173,7 @@ def _draw(setting: Setting, size: float, draw: int) -> DrawnCase | None:
     return next((drawn for k in order if (drawn := draw_amount(ruler, changes[k], size)) is not None), None)
 
 
-def _diagnosed(setting: Setting, case: Path, drawn: DrawnCase) -> Trial:
+def _diagnosed(setting: _Setting, case: Path, drawn: DrawnCase) -> Trial:
     if case.is_dir():
         shutil.rmtree(case)
     carrier = drawn.altered.carrier

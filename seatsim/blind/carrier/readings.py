@@ -26,21 +26,21 @@ from seatsim.blind.carrier.recorded import (
 )
 from seatsim.schema.arrays import Array
 
-COMMANDS = ("current_command", "command_voltage")
-LONGEST_DELAY = 0.04
+_COMMANDS = ("current_command", "command_voltage")
+_LONGEST_DELAY = 0.04
 """s"""
-FASTEST = 3000.0
+_FASTEST = 3000.0
 """1/s; a coil that is faster follows at once."""
 _NEAR_TOP = 0.93
 """Share of the largest command from which on it counts as the limit."""
-SENSORS = (
+_SENSORS = (
     *("floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement"),
     *("displacement", "damper_force", "coil_current"),
 )
-SCALES = {"damper_force": 100.0, "coil_current": 0.1, "suspension_displacement": 0.01, "displacement": 0.01}
+_SCALES = {"damper_force": 100.0, "coil_current": 0.1, "suspension_displacement": 0.01, "displacement": 0.01}
 """Unit of a stated offset by channel; 1 m/s^2 for an acceleration."""
-INPUTS = ("floor_acceleration", "displacement")
-LOGGED = ("current_command", "command_voltage", "coil_current")
+_INPUTS = ("floor_acceleration", "displacement")
+_LOGGED = ("current_command", "command_voltage", "coil_current")
 _LARGEST_GAIN, _LONGEST_LAG, _LONGEST_SKEW = 0.4, 0.08, 0.04
 _LARGEST_OFFSET = 2.0
 """Standard deviations of the channel."""
@@ -57,7 +57,7 @@ def draw_delays(carrier: Carrier, rng: Generator) -> list[Change]:
         early = with_tables(carrier, lambda table: {**table, command: shifted_rows(table[command], -rows)})
         return Altered(early, {"time": rows * carrier.step})
 
-    return [Change("coil.delay", "command advanced", "", (0.0, LONGEST_DELAY), alter)]
+    return [Change("coil.delay", "command advanced", "", (0.0, _LONGEST_DELAY), alter)]
 
 
 def draw_faster_coils(carrier: Carrier, rng: Generator) -> list[Change]:
@@ -71,7 +71,7 @@ def draw_faster_coils(carrier: Carrier, rng: Generator) -> list[Change]:
     rate = number(coil.get("rate", 130.0))
     if command is None or not any(np.ptp(table[command]) > 0.0 for table in carrier.tables.values()):
         return []
-    longest = 1.0 / rate - 1.0 / FASTEST
+    longest = 1.0 / rate - 1.0 / _FASTEST
 
     def alter(amount: float) -> Altered:
         faster = {**carrier.nominal, "actuator": {**coil, "rate": float(f"{1.0 / (1.0 / rate - amount):.6g}")}}
@@ -118,7 +118,7 @@ def _raises(command: Array, top: float, rng: Generator) -> Array:
 
 def commanded(carrier: Carrier) -> str | None:
     """Return the channel that commands the coil, None where none is recorded."""
-    return next((name for name in COMMANDS if name in carrier.channels), None)
+    return next((name for name in _COMMANDS if name in carrier.channels), None)
 
 
 def draw_sensor_changes(carrier: Carrier, rng: Generator) -> list[Change]:
@@ -128,11 +128,11 @@ def draw_sensor_changes(carrier: Carrier, rng: Generator) -> list[Change]:
     that the replay would see as anything but a drift.
     """
     found: list[Change] = []
-    for channel in SENSORS:
+    for channel in _SENSORS:
         if channel not in carrier.channels or ("velocity" in carrier.channels and channel == "displacement"):
             continue
         found += [_gain(carrier, channel, rng), _lag(carrier, channel)]
-        if channel not in INPUTS:
+        if channel not in _INPUTS:
             found += [_offset(carrier, channel, rng), _drift(carrier, channel, rng)]
     return found
 
@@ -151,7 +151,7 @@ def _lag(carrier: Carrier, channel: str) -> Change:
 
 def _offset(carrier: Carrier, channel: str, rng: Generator) -> Change:
     size = _signed(rng) * float(np.std(carrier.pooled(channel)))
-    scale = SCALES.get(channel, 1.0)
+    scale = _SCALES.get(channel, 1.0)
 
     def at(amount: float) -> tuple[dict[str, float], Callable[[Array], Array]]:
         return {"share": size * amount / scale}, lambda y: y + size * amount
@@ -162,7 +162,7 @@ def _offset(carrier: Carrier, channel: str, rng: Generator) -> Change:
 def _drift(carrier: Carrier, channel: str, rng: Generator) -> Change:
     """Return a drift that begins at zero in every run and has reached the amount in the mean of the runs' lengths."""
     size = _signed(rng) * float(np.std(carrier.pooled(channel)))
-    scale, rows = SCALES.get(channel, 1.0), len(carrier.pooled(channel)) / len(carrier.tables)
+    scale, rows = _SCALES.get(channel, 1.0), len(carrier.pooled(channel)) / len(carrier.tables)
     rate = size / (rows * carrier.step)
 
     def at(amount: float) -> tuple[dict[str, float], Callable[[Array], Array]]:
@@ -196,7 +196,7 @@ def draw_skewed_logs(carrier: Carrier, rng: Generator) -> list[Change]:
 
     A log that runs ahead could as well be a delay of the coil where no current was recorded.
     """
-    logged = [name for name in LOGGED if name in carrier.channels]
+    logged = [name for name in _LOGGED if name in carrier.channels]
     if not any(_varies(carrier, name) for name in logged):
         return []
     sign = _signed(rng) if "coil_current" in logged and len(logged) > 1 else 1.0

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import io
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -13,23 +12,23 @@ from typing import NamedTuple
 import numpy as np
 from scipy.signal import lfilter, savgol_filter
 
-from seatsim.blind.make.folder import encode_yaml, pack
+from seatsim.blind.make.folder import encode_table, encode_yaml
 from seatsim.recordings.recording import HEADER, load_recording
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.yaml_source import Source
 
-LEFT_OUT = 1.0
+_LEFT_OUT = 1.0
 """s; start of each run that no gap counts (contract, section 4)."""
-LEAST_ROWS = 200
+_LEAST_ROWS = 200
 """Of a run beyond that."""
 Table = Mapping[str, Array]
 """Channels of a run, shape (N,) each."""
 Content = dict[str, object]
 """What a YAML file says."""
-DECIMALS = 12
+_DECIMALS = 12
 """Most digits after the point that are written."""
-SMOOTHING = 0.02
+_SMOOTHING = 0.02
 """s; window of the polynomial whose slope is the velocity."""
 
 
@@ -64,7 +63,7 @@ class Carrier:
 
     def pooled(self, channel: str) -> Array:
         """Return a channel over all runs, without the seconds that no gap counts."""
-        skip = round(LEFT_OUT / self.step)
+        skip = round(_LEFT_OUT / self.step)
         return np.concatenate([table[channel][skip:] for table in self.tables.values()])
 
 
@@ -87,7 +86,7 @@ def read_carrier(folder: Path) -> Carrier:
     """
     recording = load_recording(folder)
     tables = {run: recording.table(run) for run in recording.runs}
-    least = round(LEFT_OUT * recording.header.sample_rate) + LEAST_ROWS
+    least = round(_LEFT_OUT * recording.header.sample_rate) + _LEAST_ROWS
     for run, table in tables.items():
         if len(next(iter(table.values()))) < least:
             raise InputError(f"{folder}, run {run}: shorter than {least} rows; its first second is left out; drop it")
@@ -106,8 +105,8 @@ def _count_decimals(runs: list[Array]) -> int:
     values = np.concatenate(runs)
     spread = float(np.std(values))
     least = math.ceil(2.0 - math.log10(spread)) if spread > 0.0 else 0
-    enough = range(min(max(least, 0), DECIMALS), DECIMALS)
-    return next((n for n in enough if np.allclose(values, np.round(values, n), rtol=1e-14, atol=0.0)), DECIMALS)
+    enough = range(min(max(least, 0), _DECIMALS), _DECIMALS)
+    return next((n for n in enough if np.allclose(values, np.round(values, n), rtol=1e-14, atol=0.0)), _DECIMALS)
 
 
 def encode_carrier(carrier: Carrier, runs: tuple[str, ...]) -> dict[str, bytes]:
@@ -127,17 +126,12 @@ def _entry(carrier: Carrier, run: str, runs: tuple[str, ...]) -> Content:
 
 
 def _encode_table(carrier: Carrier, run: str) -> bytes:
-    """Return a run as a gzipped CSV whose bytes depend on nothing but the numbers.
-
-    A channel has as many digits as were recorded: more of them would tell which channel was changed.
-    """
+    """Return a run in which a channel has as many digits as were recorded: more would tell which was changed."""
     table = carrier.tables[run]
     rows = len(next(iter(table.values())))
-    columns = {"time": np.arange(rows) * carrier.step, **table}
-    formats = ["%.10g", *(f"%.{carrier.decimals.get(name, DECIMALS)}f" for name in table)]
-    text = io.StringIO()
-    np.savetxt(text, np.column_stack(list(columns.values())), formats, ",", header=",".join(columns), comments="")
-    return pack(text.getvalue().encode())
+    columns = {"time": carrier.step * np.arange(rows, dtype=np.float64), **table}
+    formats = ["%.10g", *(f"%.{carrier.decimals.get(name, _DECIMALS)}f" for name in table)]
+    return encode_table(columns, formats)
 
 
 class Altered(NamedTuple):
@@ -167,7 +161,7 @@ def with_tables(carrier: Carrier, table_of: Callable[[Table], Table]) -> Carrier
 
 def slope(values: Array, step: float) -> Array:
     """Return the time derivative of a recorded signal, shape (N,), by a sliding cubic (Savitzky and Golay 1964)."""
-    window = max(5, 2 * round(0.5 * SMOOTHING / step) + 1)
+    window = max(5, 2 * round(0.5 * _SMOOTHING / step) + 1)
     return np.asarray(savgol_filter(values, min(window, len(values) // 2 * 2 - 1), 3, deriv=1, delta=step))
 
 

@@ -23,11 +23,11 @@ _UNKNOWN_TOLERANCE = 0.05
 """Stands for a `parameter_tolerance` that is no single number."""
 _ZERO_SCALES = {"f0": 100.0, "fc_a": 100.0, "alpha_a": 100.0}
 """Scales of parameters known to be zero (contract, section 3), N."""
-EXACT = ("n", "x0", "v_ref")
+_EXACT = ("n", "x0", "v_ref")
 """Parameters of a damper that are exponents, lengths or regularisations: known."""
 _OWN_SHARE = 0.5
 """Of a change's own square by which it must at least raise that of the residuals."""
-Residuals = dict[str, Array]
+_Residuals = dict[str, Array]
 """Measured minus simulated by compared channel, over all runs, shape (N,) each."""
 
 
@@ -36,7 +36,7 @@ class Ruler:
 
     def __init__(self, carrier: Carrier) -> None:
         self.carrier = carrier
-        self.before = residuals(carrier)
+        self.before = _residuals(carrier)
         self.spread = {name: float(np.std(carrier.pooled(name))) for name in self.before}
         self.columns = self._sensitivities()
 
@@ -44,7 +44,7 @@ class Ruler:
         """Return how the residuals change where each parameter is up by its tolerance, in std, end to end."""
         found = []
         for nominal in _varied_nominals(self.carrier):
-            moved = residuals(dataclasses.replace(self.carrier, nominal=nominal))
+            moved = _residuals(dataclasses.replace(self.carrier, nominal=nominal))
             column = self._stack({name: moved[name] - self.before[name] for name in self.before})
             if np.all(np.isfinite(column)):
                 found.append(column)
@@ -78,7 +78,7 @@ class Ruler:
 
     def _change(self, changed: Carrier) -> Array:
         """Return what a change does to measured minus simulated, in std, end to end; NaN where channels are lost."""
-        after = residuals(changed)
+        after = _residuals(changed)
         if set(after) != set(self.before):
             return np.full(sum(map(len, self.before.values())), np.nan)
         return self._stack({name: after[name] - self.before[name] for name in self.before})
@@ -91,11 +91,11 @@ class Ruler:
 
     def gap(self, changed: Carrier) -> float:
         """Return the overall gap of a changed carrier, in std."""
-        after = residuals(changed)
+        after = _residuals(changed)
         return float(np.sqrt(np.mean([np.mean((after[n] / self.spread[n]) ** 2) for n in self.before])))
 
 
-def residuals(carrier: Carrier) -> Residuals:
+def _residuals(carrier: Carrier) -> _Residuals:
     """Return measured minus simulated of the channels that stand above their noise.
 
     The displacement of a bench is interpolated, not smoothed, which is much faster and enough for a size.
@@ -120,7 +120,7 @@ def residuals(carrier: Carrier) -> Residuals:
     return {n: values for n, values in pooled.items() if stands_out(carrier.pooled(n), carrier.noise(n))}
 
 
-def tolerance(carrier: Carrier) -> float:
+def _tolerance(carrier: Carrier) -> float:
     """Return the fraction to which parameters are taken to be known."""
     stated = carrier.header.get("parameter_tolerance", 0.02)
     return number(stated) if isinstance(stated, int | float) else _UNKNOWN_TOLERANCE
@@ -128,13 +128,13 @@ def tolerance(carrier: Carrier) -> float:
 
 def _varied_nominals(carrier: Carrier) -> list[Content]:
     """Return the nominal with each of its parameters, one after another, up by the tolerance."""
-    share, nominal = tolerance(carrier), carrier.nominal
+    share, nominal = _tolerance(carrier), carrier.nominal
     damper, plant, coil = section(nominal, "damper"), section(nominal, "plant"), section(nominal, "actuator")
     values = section(damper, "parameters")
     varied: list[Content] = []
     for key, value in values.items():
         step = share * (number(value) or _ZERO_SCALES.get(key, 0.0))
-        if key not in EXACT and step and np.isfinite(step):
+        if key not in _EXACT and step and np.isfinite(step):
             varied.append({**nominal, "damper": {**damper, "parameters": {**values, key: number(value) + step}}})
     for name, part in (("plant", plant), ("actuator", coil)):
         for key, value in part.items():

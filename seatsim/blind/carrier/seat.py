@@ -20,12 +20,12 @@ from seatsim.schema.arrays import Array
 
 _SUBSTEPS = 4
 """Of the integration in each row: friction is stiff."""
-Force = Callable[[float, float, float, float, float], tuple[float, float]]
+_Force = Callable[[float, float, float, float, float], tuple[float, float]]
 """Force on frame and driver from suspension x, v, cushion xc, vc and the driver's acceleration."""
-Parameters = Mapping[str, float]
+_Parameters = Mapping[str, float]
 
 
-class SeatMotion(NamedTuple):
+class _SeatMotion(NamedTuple):
     """Recorded motion: suspension x, v and cushion xc, vc, and the driver's acceleration, shape (N,) each."""
 
     x: Array
@@ -49,21 +49,21 @@ def draw_seat_changes(carrier: Carrier, rng: Generator) -> list[Change]:
     stop = float(rng.uniform(0.4, 0.7)) * peak
     seed, step = int(rng.integers(2**31)), carrier.step
 
-    def change(effect: str, form: str, largest: float, at: Callable[[float], tuple[Parameters, Force]]) -> Change:
+    def change(effect: str, form: str, largest: float, at: Callable[[float], tuple[_Parameters, _Force]]) -> Change:
         def alter(amount: float) -> Altered:
             # a force remembers what went before, so that each run begins with one of its own
             tables = {
-                run: {**table, **respond(carrier, plant, table, motions[run], at(amount)[1])}
+                run: {**table, **_respond(carrier, plant, table, motions[run], at(amount)[1])}
                 for run, table in carrier.tables.items()
             }
             return Altered(dataclasses.replace(carrier, tables=tables), at(amount)[0])
 
         return Change(effect, form, "", (0.0, largest), alter)
 
-    def stiffen(a: float) -> tuple[Parameters, Force]:
+    def stiffen(a: float) -> tuple[_Parameters, _Force]:
         return {"rise": a / travel**2}, _cubic(a * stiffness / travel**2)
 
-    def push(a: float) -> tuple[Parameters, Force]:
+    def push(a: float) -> tuple[_Parameters, _Force]:
         return {}, _random(a * force, seed, step)
 
     return [
@@ -80,8 +80,8 @@ def _is_linear(carrier: Carrier) -> bool:
     return all(number(values.get(name, 0.0)) == 0.0 for name in ("alpha_a", "alpha_b", "fc_a", "fc_b"))
 
 
-def respond(
-    carrier: Carrier, plant: Mapping[str, float], table: Table, motion: SeatMotion, force: Force
+def _respond(
+    carrier: Carrier, plant: Mapping[str, float], table: Table, motion: _SeatMotion, force: _Force
 ) -> dict[str, Array]:
     """Return the recorded outputs with what a force adds to them, shape (N,) each.
 
@@ -115,17 +115,17 @@ def _matrices(plant: Mapping[str, float]) -> tuple[Array, Array]:
     return A, np.array([[0, 0], [0, 0], [1 / ms, 0], [0, 1 / m]])
 
 
-def _motion(carrier: Carrier, plant: Mapping[str, float], table: Table) -> SeatMotion:
+def _motion(carrier: Carrier, plant: Mapping[str, float], table: Table) -> _SeatMotion:
     """Return the recorded motion; what is not recorded is that of the linear rig on the recorded floor."""
     step = carrier.step
     simulated = simulate_linear(plant, table["floor_acceleration"], step)
     x = table.get("suspension_displacement", simulated.x)
     v = slope(x, step) if "suspension_displacement" in table else simulated.v
     driver = table.get("driver_acceleration", simulated.driver)
-    return SeatMotion(x, v, simulated.xc, simulated.vc, driver)
+    return _SeatMotion(x, v, simulated.xc, simulated.vc, driver)
 
 
-def simulate_linear(plant: Mapping[str, float], floor: Array, step: float) -> SeatMotion:
+def simulate_linear(plant: Mapping[str, float], floor: Array, step: float) -> _SeatMotion:
     """Return the motion of the linear rig relative to its floor, which is an inertial force on both masses."""
     A, _ = _matrices(plant)
     b = np.array([[0.0], [0.0], [-1.0], [-1.0]])
@@ -134,10 +134,10 @@ def simulate_linear(plant: Mapping[str, float], floor: Array, step: float) -> Se
     for k, a in enumerate(floor):
         found[k] = d[0], d[2], d[1] - d[0], d[3] - d[2], (A @ d)[3]
         d = M[:4, :4] @ d + M[:4, 4] * a
-    return SeatMotion(*found.T)
+    return _SeatMotion(*found.T)
 
 
-def _friction(force: float, width: float) -> Force:
+def _friction(force: float, width: float) -> _Force:
     anchor = 0.0
 
     def friction(x: float, v: float, xc: float, vc: float, driver: float) -> tuple[float, float]:
@@ -148,19 +148,19 @@ def _friction(force: float, width: float) -> Force:
     return friction
 
 
-def _cubic(rise: float) -> Force:
+def _cubic(rise: float) -> _Force:
     return lambda x, v, xc, vc, driver: (-rise * x**3, 0.0)
 
 
-def _buffer(stiffness: float, stop: float) -> Force:
+def _buffer(stiffness: float, stop: float) -> _Force:
     return lambda x, v, xc, vc, driver: (-stiffness * (max(0.0, x - stop) + min(0.0, x + stop)), 0.0)
 
 
-def _mass(change: float) -> Force:
+def _mass(change: float) -> _Force:
     return lambda x, v, xc, vc, driver: (0.0, -change * driver)
 
 
-def _random(size: float, seed: int, step: float) -> Force:
+def _random(size: float, seed: int, step: float) -> _Force:
     """Return a force with a spectrum between 1 and 8 Hz, of two minutes."""
     white = np.random.default_rng(seed).standard_normal(round(120.0 / step))
     shaped = sosfiltfilt(butter(2, (1.0, 8.0), "bandpass", fs=1.0 / step, output="sos"), white)

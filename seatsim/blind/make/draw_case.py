@@ -9,73 +9,28 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.random import Generator
 
-from seatsim.blind.labels import EFFECTS, Kind, Label
-from seatsim.blind.make.draw_experiment import SCATTER, draw_experiment
-from seatsim.blind.make.draw_varied import draw_varied_experiment
+from seatsim.blind.make.compose import CaseSpecification, find_severity
 from seatsim.blind.make.materiality import CommandedRuns, FaultlessRig, collinearity
-from seatsim.blind.make.severity import find_severity
+from seatsim.blind.sealed import EFFECTS, Label
 from seatsim.blind.truth.experiment import CHANNELS, Experiment, Readings, read_channels, simulate_run
 from seatsim.blind.truth.faults import Changes, Context, FaultScenario, Shape
 from seatsim.blind.truth.outside_faults import SCENARIOS, scenarios_of
 from seatsim.schema.errors import RunError
 
-_BINGHAM_SHARE = 0.5
-"""Of the rigs."""
-_COMPLETE_SHARE, _AT_MOST_ONE_MISSING = 0.6, 0.93
-"""Shares of the rigs that record every channel, and that lack at most one; the others lack two."""
-_OPTIONAL = {"damper_force": 0.7, "coil_current": 0.3}
-"""Channels that a rig may lack, and how likely each is the one: a load cell is what is saved first.
-
-A fade could not be found without thermometer, so that no rig lacks it, whatever is wrong with it.
-"""
 _ATTEMPTS = 8
 """Attempts with the same faults before others take their place: on some rigs an effect such as play is hardly seen."""
 _EXCHANGES = 20
 """How often others take their place; some fault can be seen on every rig, so that more are never needed."""
-ROUNDS = 6
+_ROUNDS = 6
 """Of raising faults that are not material beside the others; each raises by 15 % or more."""
 _LARGEST_COLLINEARITY = 0.9
 """Two faults whose responses correlate above this are one fault to any diagnoser, and are not drawn together."""
-MATERIAL = 1.02
+_MATERIAL = 1.02
 """A little above the limit of 1, so that noise does not decide whether a fault is there."""
 _RAISE = 1.15
 """How much further than to the limit a fault is raised."""
-WEAKEST = 0.4
+_WEAKEST = 0.4
 """Materiality below which a fault is raised no faster, as response and severity are not proportional that far."""
-
-
-def draw_missing_channels(rng: Generator) -> tuple[str, ...]:
-    """Draw the channels that are not recorded: none in 60 % of cases, rarely two."""
-    u = rng.random()
-    if u < _COMPLETE_SHARE:
-        return ()
-    count = 1 if u < _AT_MOST_ONE_MISSING else 2
-    return tuple(str(name) for name in rng.choice(list(_OPTIONAL), count, replace=False, p=list(_OPTIONAL.values())))
-
-
-@dataclass(frozen=True)
-class CaseSpecification:
-    """Specification of a case: its kind, and its effects (or the scenarios outside the library).
-
-    `missing` are the channels not recorded (None: drawn), `background` is a random force on the frame, N rms, and
-    `scatter` the largest relative error of a nominal parameter. `varied`: the rig is drawn too, and these two with it.
-    """
-
-    kind: Kind
-    names: tuple[str, ...] = ()
-    missing: tuple[str, ...] | None = None
-    background: float = 0.0
-    scatter: float = SCATTER
-    varied: bool = False
-
-    def draw_rig(self, rng: Generator) -> Experiment:
-        """Draw a rig and its protocol; neither kind nor names are used, so that nothing of it tells what is wrong."""
-        gone = draw_missing_channels(rng) if self.missing is None else self.missing
-        channels = tuple(name for name in CHANNELS if name not in gone)
-        bingham = rng.random() < _BINGHAM_SHARE
-        if self.varied:
-            return draw_varied_experiment(rng, bingham, channels)
-        return draw_experiment(rng, bingham, channels, self.scatter, self.background)
 
 
 @dataclass(frozen=True)
@@ -91,7 +46,7 @@ class _DrawnFault:
 
 
 @dataclass(frozen=True)
-class Case:
+class _Case:
     """A drawn case: the rig, what is wrong with it, what its channels show without noise; the last run is unseen."""
 
     specification: CaseSpecification
@@ -124,7 +79,7 @@ class Case:
         }
 
 
-def draw_case(specification: CaseSpecification, rng: Generator) -> Case:
+def draw_case(specification: CaseSpecification, rng: Generator) -> _Case:
     """Draw a case to specification: a rig with its protocol, then faults that are material on it.
 
     The rig is drawn once and without regard to the faults: were it drawn again until they are material, its parameters
@@ -158,7 +113,7 @@ def _draw_scenarios(specification: CaseSpecification, rng: Generator) -> list[Fa
 
 def _attempt(
     specification: CaseSpecification, scenarios: Sequence[FaultScenario], rig: FaultlessRig, rng: Generator
-) -> Case | None:
+) -> _Case | None:
     """Draw shapes and severities once; None where a fault cannot be made material on this rig."""
     faults: list[_DrawnFault] = []
     for scenario in scenarios:
@@ -185,11 +140,11 @@ def _draw_fault(scenario: FaultScenario, rig: FaultlessRig, rng: Generator) -> _
     return _DrawnFault(scenario, shape, severity, size, scenario.build(severity, shape, rig.context))
 
 
-def _settle(specification: CaseSpecification, faults: list[_DrawnFault], rig: FaultlessRig) -> Case | None:
+def _settle(specification: CaseSpecification, faults: list[_DrawnFault], rig: FaultlessRig) -> _Case | None:
     """Close the loop with the faults in it; raise what is no longer material beside the others, or give up."""
     experiment = rig.experiment
     runs = range(len(experiment.runs))
-    for _ in range(ROUNDS):
+    for _ in range(_ROUNDS):
         total = _sum_of_changes(faults)
         motions = [simulate_run(experiment, total, k) for k in runs]
         if not all(np.all(np.isfinite(motion.frame)) for motion in motions):
@@ -199,9 +154,9 @@ def _settle(specification: CaseSpecification, faults: list[_DrawnFault], rig: Fa
         if measured is None:
             return None
         faults, alike = measured
-        if all(fault.net >= MATERIAL for fault in faults):
+        if all(fault.net >= _MATERIAL for fault in faults):
             readings = [read_channels(experiment, total, k, motion) for k, motion in enumerate(motions)]
-            return Case(specification, experiment, tuple(faults), readings, alike)
+            return _Case(specification, experiment, tuple(faults), readings, alike)
         faults = [_raise(fault, rig.context) for fault in faults]
     return None
 
@@ -232,7 +187,7 @@ def _measure(
 
 def _raise(fault: _DrawnFault, context: Context) -> _DrawnFault:
     """Return a fault that is not material net of tolerance at a higher severity, no higher than is plausible."""
-    if fault.net >= MATERIAL:
+    if fault.net >= _MATERIAL:
         return fault
-    severity = min(fault.severity * _RAISE / max(fault.net, WEAKEST), fault.scenario.span[1])
+    severity = min(fault.severity * _RAISE / max(fault.net, _WEAKEST), fault.scenario.span[1])
     return replace(fault, severity=severity, changes=fault.scenario.build(severity, fault.shape, context))

@@ -22,14 +22,14 @@ SCATTER = 0.015
 """Largest relative error of a nominal parameter; inside the stated tolerance of 2 %, so a faultless rig is one."""
 STEPPED = 0.4
 """Share of the rigs whose current is stepped in every run, not controlled in some."""
-STARTS, HOT = (20.0, 30.0, 45.0, 60.0), (55.0, 75.0)
+_STARTS, _HOT = (20.0, 30.0, 45.0, 60.0), (55.0, 75.0)
 """Temperatures of the damper at which runs start, to within 2 K, and the range of the one that is hot, degC."""
 PLANT = {"ms": 20.0, "m": 80.0, "kf": 4600.0, "cf": 150.0, "kc": 60000.0, "cc": 1500.0}
 COIL = {"rate": 130.0, "i_max": 1.0}
 _FORCES = {"c_a": 250.0, "c_b": 350.0, "y_a": 45.0, "y_b": 620.0}
 BINGHAM = {"is_bingham": 1.0, **_FORCES, "f0": 0.0, "v_ref": 0.004}
-HYSTERESIS = {"A": 2000.0, "beta": 1000.0, "gamma": 1000.0, "n": 2.0}
-BOUC_WEN = {"is_bingham": 0.0, **_FORCES, "k0": 0.0, "x0": 0.0, "f0": 0.0, **HYSTERESIS}
+_HYSTERESIS = {"A": 2000.0, "beta": 1000.0, "gamma": 1000.0, "n": 2.0}
+BOUC_WEN = {"is_bingham": 0.0, **_FORCES, "k0": 0.0, "x0": 0.0, "f0": 0.0, **_HYSTERESIS}
 EXACT = ("is_bingham", "n", "i_max", "damper_ratio")
 """Parameters that are choices, not measurements, and are never off."""
 
@@ -89,8 +89,8 @@ def draw_temperatures(rng: Generator, count: int) -> list[float]:
     A fade needs a hot run among the recorded ones, so every rig has one, whatever is wrong with it.
     """
     own = np.random.default_rng(rng.integers(2**63))
-    levels = own.choice(STARTS, count) + own.uniform(-2.0, 2.0, count)
-    levels[own.integers(count - 1)] = own.uniform(*HOT)
+    levels = own.choice(_STARTS, count) + own.uniform(-2.0, 2.0, count)
+    levels[own.integers(count - 1)] = own.uniform(*_HOT)
     return [float(level) for level in levels]
 
 

@@ -21,7 +21,7 @@ from seatsim.schema.arrays import Array
 SAMPLE_RATES = (256.0, 400.0, 500.0, 512.0, 800.0, 1000.0)
 """Hz, of common loggers."""
 _SMALLEST_TOLERANCE, _LARGEST_TOLERANCE = 0.01, 0.05
-NOISE_FACTOR = 2.0
+_NOISE_FACTOR = 2.0
 """Largest factor by which a channel's noise is above or below that of the usual sensors."""
 _BACKGROUND_SHARE = 1.0 / 3.0
 """Share of the rigs that have a force on the frame beside the floor, and a repeated run that shows it."""
@@ -52,7 +52,7 @@ _SEATS = (
     _SeatKind((28.0, 60.0), (1.0, 1.6), (0.4, 0.8)),  # truck seat on a scissor
     _SeatKind((22.0, 45.0), (1.1, 2.0), (0.8, 1.0)),  # tractor seat
 )
-DRIVER = (50.0, 110.0)
+_DRIVER = (50.0, 110.0)
 """kg."""
 _CUSHION_RESONANCE, _CUSHION_DAMPING = (3.5, 6.5), (0.12, 0.4)
 """Hz, and damping ratio, of the driver on the cushion."""
@@ -68,7 +68,7 @@ def draw_varied_experiment(rng: Generator, bingham: bool, channels: tuple[str, .
     tolerance = float(f"{tolerance:.2g}")
     nominal = draw_nominal(rng, bingham)
     noise = {
-        name: float(f"{value * _log_uniform(rng, 1.0 / NOISE_FACTOR, NOISE_FACTOR):.3g}")
+        name: float(f"{value * _log_uniform(rng, 1.0 / _NOISE_FACTOR, _NOISE_FACTOR):.3g}")
         for name, value in standard.noise_of(channels).items()
     }
     true = standard.scatter_parameters(nominal, rng, tolerance) | standard.draw_heat(rng)
@@ -96,7 +96,7 @@ def draw_nominal(rng: Generator, bingham: bool) -> dict[str, float]:
 
 def _draw_plant(rng: Generator, seat: _SeatKind) -> dict[str, float]:
     """Draw masses, and from natural frequencies and damping ratios the springs and dampings."""
-    ms, m = rng.uniform(*seat.frame), rng.uniform(*DRIVER)
+    ms, m = rng.uniform(*seat.frame), rng.uniform(*_DRIVER)
     w, cushion = (2.0 * math.pi * rng.uniform(*band) for band in (seat.resonance, _CUSHION_RESONANCE))
     suspension = {"kf": (ms + m) * w * w, "cf": 2.0 * rng.uniform(*_SUSPENSION_DAMPING) * (ms + m) * w}
     seated = {"kc": m * cushion * cushion, "cc": 2.0 * rng.uniform(*_CUSHION_DAMPING) * m * cushion}

@@ -85,21 +85,12 @@ def add_noise(experiment: Experiment, readings: Readings, rng: Generator) -> Rea
     return noisy
 
 
-def _encode_table(channels: Readings, rate: float) -> bytes:
-    """Return a run as a gzipped CSV whose bytes depend on nothing but the numbers."""
-    rows = next(iter(channels.values())).size
-    whole_milliseconds = 1000.0 % rate == 0.0
-    columns = [np.char.mod("%.3f" if whole_milliseconds else "%.9f", np.arange(rows) / rate)]
-    columns += [np.char.mod(f"%.{CHANNELS[name].digits}f", values) for name, values in channels.items()]
-    lines = [",".join(("time", *channels))] + [",".join(row) for row in zip(*columns, strict=True)]
-    return pack(("\n".join(lines) + "\n").encode())
-
-
-def pack(content: bytes) -> bytes:
-    """Return a gzipped file that holds neither a name nor a time."""
-    packed = io.BytesIO()
+def encode_table(columns: Readings, formats: Sequence[str]) -> bytes:
+    """Return a run as a gzipped CSV whose bytes depend on nothing but the numbers; a format for each column."""
+    text, packed = io.StringIO(), io.BytesIO()
+    np.savetxt(text, np.column_stack(list(columns.values())), list(formats), ",", header=",".join(columns), comments="")
     with gzip.GzipFile(fileobj=packed, mode="wb", mtime=0, compresslevel=6) as stream:
-        stream.write(content)
+        stream.write(text.getvalue().encode())
     return packed.getvalue()
 
 
@@ -121,8 +112,12 @@ def encode_recording(
         "recording.yaml": encode_yaml(recording_header(experiment, plans)),
         "nominal.yaml": encode_yaml(nominal_scenario(experiment)),
     }
+    rate = experiment.sample_rate
     for k, plan in zip(runs, plans, strict=True):
-        files[f"{plan.name}.csv.gz"] = _encode_table(add_noise(experiment, readings[k], rng), experiment.sample_rate)
+        noisy = add_noise(experiment, readings[k], rng)
+        time = np.arange(next(iter(noisy.values())).size) / rate
+        formats = ["%.3f" if 1000.0 % rate == 0.0 else "%.9f", *(f"%.{CHANNELS[name].digits}f" for name in noisy)]
+        files[f"{plan.name}.csv.gz"] = encode_table({"time": time, **noisy}, formats)
     return files
 
 

@@ -17,11 +17,10 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.random import Generator
 
-from seatsim.blind.labels import Label
-from seatsim.blind.make.compose import compose
-from seatsim.blind.make.draw_case import CaseSpecification, draw_case
+from seatsim.blind.make.compose import CaseSpecification, compose
+from seatsim.blind.make.draw_case import draw_case
 from seatsim.blind.make.folder import encode_recording, write_folder
-from seatsim.blind.sealed import SEAL, Sealed, new_key, seal
+from seatsim.blind.sealed import SEAL, Label, Sealed, new_key, seal
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import make_folder, write_bytes, write_text
 from seatsim.schema.processes import Progress, run_jobs
@@ -37,7 +36,7 @@ class CaseFiles(NamedTuple):
     label: Label
 
 
-Draw = Callable[[Wanted, Generator], CaseFiles]
+_Draw = Callable[[Wanted, Generator], CaseFiles]
 """Draws a case of what is wanted; it must be picklable, for other processes."""
 
 
@@ -83,7 +82,7 @@ def make_set(
     folder: Path,
     target: Path,
     order: Callable[[int], Sequence[Wanted]],
-    draw: Draw[Wanted],
+    draw: _Draw[Wanted],
     progress: Progress | None,
     processes: int,
 ) -> str:
@@ -144,7 +143,7 @@ def _is_finished(folder: Path, partial: Path, name: str) -> bool:
     return (folder / name).is_dir() and (partial / f"{name}.json").is_file()
 
 
-def make_case(draw: Draw[Wanted], k: int, wanted: Wanted, seed: int, folder: Path, partial: Path) -> None:
+def make_case(draw: _Draw[Wanted], k: int, wanted: Wanted, seed: int, folder: Path, partial: Path) -> None:
     """Draw the case with index k of a set and write its recording, its unseen run and, last, its label.
 
     The label marks the case as finished.

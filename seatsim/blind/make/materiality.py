@@ -24,11 +24,11 @@ from seatsim.blind.truth.faults import Changes, Context
 from seatsim.blind.truth.rig import RigMotion
 from seatsim.schema.arrays import Array
 
-MATERIAL_SHARE = 0.05
+_MATERIAL_SHARE = 0.05
 """Of a channel's spread (contract, section 4)."""
-NOISE_FACTOR = 3.0
+_NOISE_FACTOR = 3.0
 """A channel is compared where its spread is at least so many times its noise (contract, section 4)."""
-LEFT_OUT = 1.0
+_LEFT_OUT = 1.0
 """Seconds at the start of each run that no gap counts (contract, section 4)."""
 COARSE_STEP = 2.5e-4
 """Step of the simulations that only measure sizes, s: two and a half times as fast as those that are recorded."""
@@ -36,7 +36,7 @@ _REMEMBERED = 6
 """Sets of motions that are kept beside the first, which is that of the rig without the fault."""
 SECONDS = 12.0
 """Of each run that are looked at: half of it, as every parameter costs a simulation."""
-NEGLIGIBLE = 0.2
+_NEGLIGIBLE = 0.2
 """Materiality below which a fault is not material whatever a refit takes away."""
 
 
@@ -61,7 +61,7 @@ class CommandedRuns:
     @property
     def left_out(self) -> int:
         """Rows at the start of each run that no gap counts."""
-        return round(LEFT_OUT * self.experiment.sample_rate)
+        return round(_LEFT_OUT * self.experiment.sample_rate)
 
     def simulate(self, changes: Changes) -> list[RigMotion]:
         """Return the motion of each run; sensor faults do not change it, so one simulation serves all of those."""
@@ -101,12 +101,12 @@ class CommandedRuns:
         for name in self.experiment.compared:
             with_it = self._pooled(both, name)
             spread, noise = float(np.std(with_it)), self.experiment.noise[name]
-            if spread < NOISE_FACTOR * noise:
+            if spread < _NOISE_FACTOR * noise:
                 continue
             response[name] = with_it - self._pooled(rest, name)
             if replayed is not None:
                 response[name] -= replayed[name]
-            limits[name] = max(MATERIAL_SHARE * spread, noise)
+            limits[name] = max(_MATERIAL_SHARE * spread, noise)
         return response, limits
 
     def _response_of_replay(self, fault: Changes, others: Changes, shown: list[Readings]) -> dict[str, Array]:
@@ -166,7 +166,7 @@ class ToleranceRefit:
             return 1.0
         g = np.concatenate([response[name] / limits[name] for name in names])
         before = max(rms(response[name] / limits[name]) for name in names)
-        if not np.all(np.isfinite(g)) or before < NEGLIGIBLE:
+        if not np.all(np.isfinite(g)) or before < _NEGLIGIBLE:
             return 1.0
         columns = [np.concatenate([c[name] / limits[name] for name in names]) for c in self.sensitivities]
         J = np.column_stack(columns)

@@ -4,24 +4,24 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.blind.labels import Label
 from seatsim.blind.score.verdicts import Verdict, is_right
+from seatsim.blind.sealed import Label
 from seatsim.schema.content import written
 
-BINS = 10
+_BINS = 10
 """Of the reliability table: each holds a tenth of all probabilities, 24 for each case."""
 _Z_95 = 1.96
 """Standard normal quantile of a two-sided 95 % interval."""
-SIZES = (1.5, 2.5, 4.0)
+_SIZES = (1.5, 2.5, 4.0)
 """Upper edges, in material limits, of the classes by strength: just material, common, strong."""
-NAMED = 3
+_NAMED = 3
 """Causes of a wrong verdict that are listed."""
 
 
@@ -66,7 +66,7 @@ class Bin:
     high: float
 
 
-def reliability(stated: NDArray[np.float64], true: NDArray[np.bool_], bins: int = BINS) -> list[Bin]:
+def reliability(stated: NDArray[np.float64], true: NDArray[np.bool_], bins: int = _BINS) -> list[Bin]:
     """Return bins of equal mass of probabilities and of what came true, shape (n,) each.
 
     Sorted by what was stated; ties stay in their order. Equal mass, since most probabilities lie near zero and bins of
@@ -138,7 +138,7 @@ def rates_by(cases: Iterable[ScoredCase], classes_of: Callable[[Label], Sequence
 def strength_class(label: Label) -> list[str]:
     """Return the class of a case by the materiality of its weakest fault."""
     weakest = min(label.get("materialities") or [math.nan])
-    for edge in SIZES:
+    for edge in _SIZES:
         if weakest < edge:
             return [f"{edge:.1f} x limit or less"]
     return ["stronger"]
@@ -200,21 +200,6 @@ def _true_name(label: Label) -> str:
 def describe_failure(case: ScoredCase) -> Failure:
     """Return what is true of a case whose verdict is wrong, and what was said."""
     label, verdict = case.label, case.verdict
-    return Failure(
-        case=case.name,
-        kind=label["kind"],
-        effects=label["effects"],
-        forms=label.get("forms", []),
-        materialities=label.get("materialities", []),
-        missing=label.get("missing", []),
-        verdict=verdict.verdict,
-        named=list(verdict.causes[:NAMED]),
-        selected=list(verdict.selected),
-        groups=[list(group) for group in verdict.groups],
-        where=list(verdict.blocks[:2]),
-    )
-
-
-def pair(labels: Mapping[str, Label], verdicts: Mapping[str, Verdict]) -> list[ScoredCase]:
-    """Return labels and verdicts of the same names side by side."""
-    return [ScoredCase(name, label, verdicts[name]) for name, label in labels.items()]
+    known = label.get("forms", []), label.get("materialities", []), label.get("missing", [])
+    said = list(verdict.causes[:_NAMED]), list(verdict.selected), [list(group) for group in verdict.groups]
+    return Failure(case.name, label["kind"], label["effects"], *known, verdict.verdict, *said, list(verdict.blocks[:2]))

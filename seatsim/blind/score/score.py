@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.blind.labels import EFFECTS, KINDS, Label
 from seatsim.blind.score.cases import (
     Bin,
     Failure,
@@ -25,7 +24,6 @@ from seatsim.blind.score.cases import (
     count_true,
     describe_failure,
     missing_channels,
-    pair,
     rate_right,
     rates_by,
     reliability,
@@ -40,7 +38,7 @@ from seatsim.blind.score.verdicts import (
     is_wrong_name,
     read_verdict,
 )
-from seatsim.blind.sealed import unseal
+from seatsim.blind.sealed import EFFECTS, KINDS, Label, unseal
 from seatsim.schema.errors import InputError
 from seatsim.schema.processes import Progress
 
@@ -118,7 +116,7 @@ def score_verdicts(
     labels: Mapping[str, Label], verdicts: Mapping[str, Verdict], shrink: ShrinkScore | None = None
 ) -> Score:
     """Return the score of verdicts by case against labels by case."""
-    every = pair(labels, verdicts)
+    every = [ScoredCase(name, label, verdicts[name]) for name, label in labels.items()]
     cases = [case for case in every if case.label["kind"] != "untouched"]
     kinds = {kind: [case for case in cases if case.label["kind"] == kind] for kind in (*KINDS, "carried")}
     known = kinds["one"] + kinds["carried"]

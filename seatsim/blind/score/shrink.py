@@ -24,7 +24,7 @@ _CaseShrink = tuple[str, float, float, bool | None]
 """Name, stated shrink, true shrink (NaN: cannot be replayed), whether the interval holds (None: none is given)."""
 
 
-ROUNDING = 1e-9
+_ROUNDING = 1e-9
 """By how much a true shrink may lie beyond an interval of no width, as of a scenario that is left as it is."""
 
 
@@ -54,38 +54,33 @@ def score_shrink(
     base: Path, opened: Sealed, verdicts: dict[str, Verdict], processes: int, progress: Progress | None
 ) -> ShrinkScore | None:
     """Return stated against true shrink of the cases below `base` that state one; None where none does."""
-    claims = [name for name in opened.labels if _claims_shrink(verdicts[name])]
+    claims = {n: augmented for n in opened.labels if (augmented := _find_augmented(verdicts[n])) is not None}
     if not claims:
         return None
     with temporary_folder() as temporary:
         unseen = [opened.extract(name, Path(temporary)) for name in claims]
         jobs = [
-            (base / name / "nominal.yaml", verdicts[name].augmented, folder)
-            for name, folder in zip(claims, unseen, strict=True)
+            (base / n / "nominal.yaml", claimed, place)
+            for (n, claimed), place in zip(claims.items(), unseen, strict=True)
         ]
         found = run_jobs(_find_unseen_shrink, jobs, processes if len(jobs) >= _FEWEST_FOR_PROCESSES else 1, progress)
-    stated = [
-        _compare_case(name, verdicts[name].shrink, verdicts[name].shrink_interval, unseen.true)
-        for name, unseen in zip(claims, found, strict=True)
+    pairs = list(zip(claims, found, strict=True))
+    stated = [_compare_case(n, verdicts[n].shrink, verdicts[n].shrink_interval, each.true) for n, each in pairs]
+    expected = [
+        _compare_case(n, each.predicted, each.interval, each.true) for n, each in pairs if each.predicted is not None
     ]
-    predicted = [
-        _compare_case(name, unseen.predicted, unseen.interval, unseen.true)
-        for name, unseen in zip(claims, found, strict=True)
-        if unseen.predicted is not None
-    ]
-    return dataclasses.replace(_compare(stated), predicted=_compare(predicted) if predicted else None)
+    return dataclasses.replace(_compare(stated), predicted=_compare(expected) if expected else None)
 
 
-def _claims_shrink(verdict: Verdict) -> bool:
-    """Tell whether a verdict states a shrink that can be checked; under `none` there is nothing to shrink."""
-    said = verdict.verdict in (*NAMING, "unknown")
-    return said and verdict.shrink is not None and verdict.augmented is not None
+def _find_augmented(verdict: Verdict) -> Path | None:
+    """Return the scenario whose shrink can be checked, None where none is stated: under `none` nothing shrinks."""
+    return verdict.augmented if verdict.verdict in (*NAMING, "unknown") and verdict.shrink is not None else None
 
 
 def _compare_case(
     name: str, shrink: float | None, interval: tuple[float, float] | None, true: float | None
 ) -> _CaseShrink:
-    covered = None if interval is None or true is None else interval[0] - ROUNDING <= true <= interval[1] + ROUNDING
+    covered = None if interval is None or true is None else interval[0] - _ROUNDING <= true <= interval[1] + _ROUNDING
     return name, float(shrink or 0.0), math.nan if true is None else true, covered
 
 
@@ -97,21 +92,24 @@ def _compare(cases: Sequence[_CaseShrink]) -> ShrinkScore:
     return ShrinkScore(float(np.mean(np.abs(off))), float(np.mean(off)), coverage, list(cases))
 
 
-def _find_unseen_shrink(nominal: Path, augmented: Path | None, unseen: Path) -> _UnseenShrink:
-    """Return `1 - after / before` of the overall gap on the unseen recording, and what its inputs let one expect."""
+def _find_unseen_shrink(nominal: Path, augmented: Path, unseen: Path) -> _UnseenShrink:
+    """Return `1 - after / before` of the overall gap on the unseen recording, and what its inputs let one expect.
+
+    Raises:
+        InputError: the diagnosis is of another kind of rig, so that these are not the diagnoses of this set.
+    """
     # imported here, since both import the whole simulator, which only a score with unseen runs needs
     from seatsim.recordings.gap import measure_gap
-    from seatsim.recordings.prediction import predict_gap
+    from seatsim.recordings.prediction import OtherRigError, predict_gap
 
     try:
-        before = measure_gap(nominal, unseen).overall
-        after = measure_gap(augmented or nominal, unseen).overall
+        predicted = predict_gap(augmented, unseen, augmented.with_name("diagnosis.json"))
+    except OtherRigError:
+        raise
+    except SeatsimError:
+        predicted = None  # a diagnosis of another tool states no model error
+    try:
+        true = 1.0 - measure_gap(augmented, unseen).overall / measure_gap(nominal, unseen).overall
     except SeatsimError:
         return _UnseenShrink(None)
-    true = 1.0 - after / before
-    try:
-        predicted = predict_gap(augmented or nominal, unseen, (augmented or nominal).parent / "diagnosis.json")
-    except SeatsimError:
-        # A diagnosis of another tool states no model error.
-        return _UnseenShrink(true)
-    return _UnseenShrink(true, predicted.shrink, predicted.shrink_interval)
+    return _UnseenShrink(true, predicted.shrink, predicted.shrink_interval) if predicted else _UnseenShrink(true)

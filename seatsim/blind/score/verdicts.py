@@ -8,7 +8,7 @@ from pathlib import Path
 
 from pydantic import BaseModel, ValidationError
 
-from seatsim.blind.labels import Label
+from seatsim.blind.sealed import Label
 from seatsim.schema.errors import InputError
 from seatsim.schema.guarded import read_json
 

@@ -10,15 +10,14 @@ from __future__ import annotations
 import math
 
 from seatsim.blind.truth import state
-from seatsim.blind.truth.fluid import (
+from seatsim.blind.truth.coil import (
     viscous_factor,
     write_heat_rates,
     write_magnetisation_rate,
     yield_current,
     yield_factor,
 )
-from seatsim.blind.truth.parameters import RigParameters
-from seatsim.blind.truth.state import FASTEST, MICRO_DAMPING, bristle_rate, compiled
+from seatsim.blind.truth.state import FASTEST, MICRO_DAMPING, RigParameters, bristle_rate, compiled
 from seatsim.schema.arrays import Array
 
 _LEAST_GAS_COLUMN = 0.2
@@ -84,7 +83,7 @@ def _viscous_damping(y: Array, v: float, p: RigParameters) -> float:
 
 
 @compiled
-def yield_force(y: Array, memory: Array, z: float, p: RigParameters) -> float:
+def _yield_force(y: Array, memory: Array, z: float, p: RigParameters) -> float:
     """Return the yield force at the fluid's temperature and the direction of z, N."""
     strength = p.y_a + p.y_b * yield_current(y, memory, p)
     if p.fade_law != 0.0:
@@ -97,7 +96,7 @@ def yield_force(y: Array, memory: Array, z: float, p: RigParameters) -> float:
 def main_force(y: Array, memory: Array, x: float, v: float, p: RigParameters) -> float:
     """Return the force of fluid and field before seal and gas, N."""
     z = _yield_variable(y, v, p)
-    force = _viscous_damping(y, v, p) * v + p.k0 * (x - p.x0) + yield_force(y, memory, z, p) * z + p.f0
+    force = _viscous_damping(y, v, p) * v + p.k0 * (x - p.x0) + _yield_force(y, memory, z, p) * z + p.f0
     force += p.orifice_damping * v * abs(v) + p.field_stiffness * y[state.CURRENT] * x
     if p.bypass_share != 0.0:
         force *= 1.0 - p.bypass_share * math.exp(-((x / p.bypass_length) ** 2))
@@ -154,7 +153,7 @@ def update_cavity(y: Array, memory: Array, x: float, v: float, h: float, p: RigP
 
 
 @compiled
-def mount_force(u: float, p: RigParameters) -> float:
+def _mount_force(u: float, p: RigParameters) -> float:
     """Return the force of a mount stretched by u: contact outside a gap, or air that is squeezed before it carries."""
     if p.play_air > 0.0:
         return p.mount_stiffness * u * u * u / (u * u + p.play_air * p.play_air)
@@ -204,7 +203,7 @@ def bracketed_speed(y: Array, memory: Array, x: float, wanted: float, guess: flo
 
 
 @compiled
-def rests(stretch: float, speed: float, p: RigParameters) -> bool:
+def _rests(stretch: float, speed: float, p: RigParameters) -> bool:
     """Tell whether a damper with play rests: its motion has turned and the gap is not crossed yet."""
     return abs(stretch) < 0.5 * p.play_gap or stretch * speed <= 0.0
 
@@ -219,11 +218,11 @@ def damper_force(y: Array, rates: Array, memory: Array, x: float, speed: float, 
     """
     turning = p.play_turn != 0.0 and p.play_gap > 0.0
     loose = not turning and (p.play_gap > 0.0 or p.play_air > 0.0)
-    resting = turning and rests(y[state.MOUNT], speed, p)
+    resting = turning and _rests(y[state.MOUNT], speed, p)
     force = 0.0
     v = 0.0 if resting else speed
     if loose:
-        force = mount_force(y[state.MOUNT], p)
+        force = _mount_force(y[state.MOUNT], p)
         v = piston_speed(y, memory, x, force, p)
     if turning or loose:
         rates[state.MOUNT] = speed - v

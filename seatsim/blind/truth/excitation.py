@@ -15,9 +15,9 @@ from seatsim.blind.truth.faults import FrameForce
 from seatsim.blind.truth.rig import EXCITATION_RATE, SAMPLE_RATE
 from seatsim.schema.arrays import Array
 
-HIGHEST = 60.0
+_HIGHEST = 60.0
 """Hz, above which there is nothing, so that linear interpolation at 2 kHz and rows at 500 Hz lose nothing."""
-OFF_SHARE = 0.3
+_OFF_SHARE = 0.3
 """Share of the steps of a schedule that are without current, so that the damper's fall is seen as often as its rise."""
 _NO_FORCE = np.zeros(1)
 """A single sample, which the rig's loop takes for none."""
@@ -33,7 +33,7 @@ def coloured_noise(rng: Generator, samples: int, low: float, high: float, slope:
     f = np.fft.rfftfreq(samples, 1.0 / rate)
     f[0] = f[1]  # a falling slope has no value at 0 Hz
     edge = (f / low) ** 3 / np.sqrt(1.0 + (f / low) ** 6) / np.sqrt(1.0 + (f / high) ** 8)
-    value = np.fft.irfft(spectrum * f**slope * edge * (f < HIGHEST), samples)
+    value = np.fft.irfft(spectrum * f**slope * edge * (f < _HIGHEST), samples)
     return np.asarray(value / np.std(value))
 
 
@@ -115,7 +115,7 @@ def draw_current_steps(rng: Generator, rows: int, top: float, rate: float = SAMP
     at = 0
     while at < rows:
         hold = round(rng.uniform(0.3, 2.5) * rate)
-        level = 0.0 if rng.random() < OFF_SHARE else float(round(rng.uniform(0.05, top), 3))
+        level = 0.0 if rng.random() < _OFF_SHARE else float(round(rng.uniform(0.05, top), 3))
         out[at : at + hold] = level
         at += hold
     return out

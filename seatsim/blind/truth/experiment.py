@@ -11,7 +11,6 @@ from scipy.signal import bilinear, lfilter, lfilter_zi
 
 from seatsim.blind.truth.excitation import NoiseColour, coloured_noise, frame_force
 from seatsim.blind.truth.faults import NEIGHBOUR, Changes, FrameForce, SensorFault
-from seatsim.blind.truth.parameters import parameter_record
 from seatsim.blind.truth.rig import (
     EXCITATION_RATE,
     INTEGRATION_STEP,
@@ -20,11 +19,12 @@ from seatsim.blind.truth.rig import (
     RigMotion,
     simulate,
 )
+from seatsim.blind.truth.state import parameter_record
 from seatsim.schema.arrays import Array
 
 Readings = dict[str, Array]
 """What each channel reads in a run, shape (rows,) each."""
-ROUNDING = 1e-6
+_ROUNDING = 1e-6
 """Of a row: a time that lies on a row but for rounding counts as that row."""
 _EVEN_RUN_DRIFT = 0.6
 """Share of the clock's drift in runs of even number: a fault that is the same in all runs is easier to find."""
@@ -61,7 +61,7 @@ def _read_late_log(motion: RigMotion, fault: SensorFault, run: int) -> tuple[Arr
     time = np.arange(motion.frame.size) / motion.sample_rate
     late = fault.size * (1.0 - fault.detail * time / time[-1] * (1.0 if run % 2 else _EVEN_RUN_DRIFT))
     at = np.clip(time - late, 0.0, time[-1])
-    rows = np.floor(at * motion.sample_rate + ROUNDING).astype(int)
+    rows = np.floor(at * motion.sample_rate + _ROUNDING).astype(int)
     fine = np.arange(motion.fine_current.size) * (motion.command.size / (motion.sample_rate * motion.fine_current.size))
     return motion.command[rows], np.interp(at, fine, motion.fine_current)
 
@@ -90,9 +90,9 @@ def apply_fault(  # noqa: PLR0911 - one return per fault
             noise = coloured_noise(rng, u.size, 0.02, 0.1 + 0.1 * fault.detail, -1.0, rate)
             return u + size * (0.6 + noise)
         case "lag_second":
-            return low_pass(u, size, rate)
+            return _low_pass(u, size, rate)
         case "lag_average":
-            return moving_average(u, size, rate)
+            return _moving_average(u, size, rate)
         case "quantise":
             return np.asarray(np.round(u / size) * size)
         case "clip":
@@ -104,7 +104,7 @@ def apply_fault(  # noqa: PLR0911 - one return per fault
     raise ValueError(fault.kind)
 
 
-def low_pass(u: Array, delay: float, rate: float) -> Array:
+def _low_pass(u: Array, delay: float, rate: float) -> Array:
     """Return u through `w^2 / (s^2 + 1.6 w s + w^2)`, whose delay at low frequency is `1.6 / w = delay`, s.
 
     The corner stays below 0.9 of the Nyquist frequency, where the bilinear transform is still of use.
@@ -115,7 +115,7 @@ def low_pass(u: Array, delay: float, rate: float) -> Array:
     return np.asarray(out)
 
 
-def moving_average(u: Array, delay: float, rate: float) -> Array:
+def _moving_average(u: Array, delay: float, rate: float) -> Array:
     """Return the mean over the last `2 delay` seconds, the edge of the window between rows included in part."""
     width = 2.0 * delay * rate + 1.0
     whole = int(width)
@@ -136,11 +136,11 @@ def _follow_with_play(u: Array, width: float) -> Array:
 
 COMPARED = ("frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force", "coil_current")
 """Outputs that a gap compares, where they are recorded."""
-TOLERANCE = 0.02
+_TOLERANCE = 0.02
 """Relative error of nominal parameters that the owner states, unless an experiment has its own."""
 
 
-class Channel(NamedTuple):
+class _Channel(NamedTuple):
     """A recorded channel: its unit, the rms of its noise in that, the digits after the point that are written."""
 
     unit: str
@@ -149,14 +149,14 @@ class Channel(NamedTuple):
 
 
 CHANNELS = {
-    "floor_acceleration": Channel("m/s^2", 0.01),
-    "frame_acceleration": Channel("m/s^2", 0.03),
-    "driver_acceleration": Channel("m/s^2", 0.015),
-    "suspension_displacement": Channel("m", 5e-5, 6),
-    "damper_force": Channel("N", 2.5, 1),
-    "current_command": Channel("A"),
-    "coil_current": Channel("A", 0.003),
-    "damper_temperature": Channel("degC", 0.1, 2),
+    "floor_acceleration": _Channel("m/s^2", 0.01),
+    "frame_acceleration": _Channel("m/s^2", 0.03),
+    "driver_acceleration": _Channel("m/s^2", 0.015),
+    "suspension_displacement": _Channel("m", 5e-5, 6),
+    "damper_force": _Channel("N", 2.5, 1),
+    "current_command": _Channel("A"),
+    "coil_current": _Channel("A", 0.003),
+    "damper_temperature": _Channel("degC", 0.1, 2),
 }
 """In the contract's order, with the noise of common accelerometers, a laser, a load cell, a shunt, a thermocouple; the
 digits are a tenth of the noise or less."""
@@ -195,7 +195,7 @@ class Experiment:
     runs: tuple[RunPlan, ...]
     background: tuple[FrameForce, ...] = ()
     sample_rate: float = SAMPLE_RATE
-    tolerance: float = TOLERANCE
+    tolerance: float = _TOLERANCE
     colours: Mapping[str, NoiseColour] = field(default_factory=dict)
 
     @property

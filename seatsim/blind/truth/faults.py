@@ -12,11 +12,11 @@ from typing import Literal
 
 from numpy.random import Generator
 
-from seatsim.blind.labels import EFFECTS, Block
+from seatsim.blind.sealed import BLOCKS, EFFECTS, Block
 
 Shape = dict[str, float]
 """The drawn choices of a scenario (lengths, time constants, signs, seeds), without its severity."""
-Value = float | tuple[float, ...]
+_Value = float | tuple[float, ...]
 """One number, or one for each run."""
 _ForceKind = Literal["coloured", "hum", "knock"]
 _Misreading = Literal["gain", "gain_bent", "bias", "wander", "lag_second", "lag_average"]
@@ -76,7 +76,7 @@ class Changes:
     `parameters` are those of `parameters`, and `rate_factor`, by which the coil's true rate is multiplied.
     """
 
-    parameters: Mapping[str, Value] = field(default_factory=dict)
+    parameters: Mapping[str, _Value] = field(default_factory=dict)
     frame_forces: tuple[FrameForce, ...] = ()
     sensor_faults: tuple[SensorFault, ...] = ()
 
@@ -106,8 +106,8 @@ class Context:
     is_bingham: bool
 
 
-Draw = Callable[[Generator, Context], Shape]
-Build = Callable[[float, Shape, Context], Changes]
+_Draw = Callable[[Generator, Context], Shape]
+_Build = Callable[[float, Shape, Context], Changes]
 
 
 @dataclass(frozen=True)
@@ -122,8 +122,8 @@ class FaultScenario:
     effect: str
     block: Block
     span: tuple[float, float]
-    draw: Draw
-    build: Build
+    draw: _Draw
+    build: _Build
     bingham: bool = False
 
     @property
@@ -132,30 +132,43 @@ class FaultScenario:
         return self.effect not in EFFECTS
 
 
-def _draw_nothing(rng: Generator, _: Context) -> Shape:
-    """Return an empty shape, for scenarios that have a severity alone."""
-    return {}
+def drawn(**ranges: tuple[float, float] | list[float]) -> _Draw:
+    """Return what draws a shape: by name and in order, a number between two ends or one of a list."""
+
+    def draw(rng: Generator, _: Context) -> Shape:
+        return {
+            name: float(rng.choice(ends)) if isinstance(ends, list) else rng.uniform(*ends)
+            for name, ends in ranges.items()
+        }
+
+    return draw
 
 
 def enter(
     scenarios: dict[str, FaultScenario],
     name: str,
     effect: str,
-    block: Block,
     span: tuple[float, float],
-    draw: Draw = _draw_nothing,
+    draw: _Draw = drawn(),  # noqa: B008 - it returns a function without state
+    *,
     bingham: bool = False,
-) -> Callable[[Build], Build]:
-    """Return what enters a function as the `build` of a scenario; their order is part of what a seed means."""
+) -> Callable[[_Build], _Build]:
+    """Return what enters a function as the `build` of a scenario; their order is part of what a seed means.
 
-    def enter_build(build: Build) -> Build:
-        scenarios[name] = FaultScenario(name, effect, block, span, draw, build, bingham)
+    `effect` is one of the library, or `BLOCK.outside`.
+    """
+
+    def enter_build(build: _Build) -> _Build:
+        block, _, kind = effect.partition(".")
+        known = next(each for each in BLOCKS if each == block)
+        named = kind if kind == "outside" else effect
+        scenarios[name] = FaultScenario(name, named, known, span, draw, build, bingham)
         return build
 
     return enter_build
 
 
-def set_parameters(**values: Value) -> Changes:
+def set_parameters(**values: _Value) -> Changes:
     """Return changes of parameters only."""
     return Changes(dict(values))
 

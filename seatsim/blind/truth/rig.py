@@ -14,12 +14,10 @@ from typing import NamedTuple, cast
 import numpy as np
 
 from seatsim.blind.truth import state
-from seatsim.blind.truth.coil import ROUNDING, command_of, held_command, target_current, write_coil_rates
+from seatsim.blind.truth.coil import ROUNDING, command_of, held_command, target_current, update_relays, write_coil_rates
 from seatsim.blind.truth.damper import damper_force, update_cavity
-from seatsim.blind.truth.fluid import update_relays
-from seatsim.blind.truth.parameters import RigParameters
 from seatsim.blind.truth.seat import cushion_force, occupant_force, suspension_force, write_occupant_rates
-from seatsim.blind.truth.state import compiled
+from seatsim.blind.truth.state import RigParameters, compiled
 from seatsim.schema.arrays import Array
 
 SAMPLE_RATE = 500.0

@@ -9,13 +9,12 @@ from __future__ import annotations
 import math
 
 from seatsim.blind.truth import state
-from seatsim.blind.truth.parameters import RigParameters
-from seatsim.blind.truth.state import FASTEST, MICRO_DAMPING, bristle_rate, compiled
+from seatsim.blind.truth.state import FASTEST, MICRO_DAMPING, RigParameters, bristle_rate, compiled
 from seatsim.schema.arrays import Array
 
-DEEPEST = 6.0
+_DEEPEST = 6.0
 """Depth of an exponential buffer over its length, beyond which its force grows no further (400 times its scale)."""
-FARTHEST = 4.0
+_FARTHEST = 4.0
 """The same for the hyperbolic sine of the spring (27 times its scale)."""
 _LEAST_FRICTION = 0.2
 """Of the friction at mid travel, where it falls with travel; it never changes its sign."""
@@ -34,7 +33,7 @@ def _stop_force(x: float, v: float, p: RigParameters) -> float:
     if depth <= 0.0 or p.stop_stiffness == 0.0:
         return 0.0
     if p.stop_power == 0.0:
-        size = p.stop_stiffness * p.stop_length * (math.exp(min(depth / p.stop_length, DEEPEST)) - 1.0)
+        size = p.stop_stiffness * p.stop_length * (math.exp(min(depth / p.stop_length, _DEEPEST)) - 1.0)
     else:
         size = p.stop_stiffness * depth**p.stop_power
     return side * max(size * (1.0 + p.stop_loss * side * v), 0.0)
@@ -45,7 +44,7 @@ def _spring_force(x: float, p: RigParameters) -> float:
     """Return the spring force: linear; hardening as sinh or by a helper leaf; softening with the lever's angle."""
     force = p.kf * x
     if p.sinh_length > 0.0:
-        u = min(max(x / p.sinh_length, -FARTHEST), FARTHEST)
+        u = min(max(x / p.sinh_length, -_FARTHEST), _FARTHEST)
         force = p.kf * p.sinh_length * math.sinh(u)
     if p.leaf_gain != 0.0:
         force += p.kf * p.leaf_gain * x * x * x / (x * x + p.leaf_length * p.leaf_length)
@@ -55,7 +54,7 @@ def _spring_force(x: float, p: RigParameters) -> float:
 
 
 @compiled
-def linkage_friction(y: Array, rates: Array, p: RigParameters) -> float:
+def _linkage_friction(y: Array, rates: Array, p: RigParameters) -> float:
     """Return the linkage friction (LuGre), which may depend on travel, N, and write the rate of its bristle."""
     v = y[state.V]
     rate = bristle_rate(y[state.FRICTION], v, p.friction_length, p.friction_stribeck, p.friction_speed)
@@ -72,7 +71,7 @@ def suspension_force(y: Array, rates: Array, p: RigParameters) -> float:
     v = y[state.V]
     force = _spring_force(x, p) + p.cf * v + _stop_force(x, v, p)
     if p.friction_force != 0.0:
-        force += linkage_friction(y, rates, p)
+        force += _linkage_friction(y, rates, p)
     if p.bushing_stiffness != 0.0:
         rates[state.BUSHING] = v - y[state.BUSHING] / p.bushing_time
         force += p.bushing_stiffness * y[state.BUSHING]

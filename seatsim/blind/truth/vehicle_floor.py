@@ -12,18 +12,18 @@ from seatsim.blind.truth.excitation import coloured_noise
 from seatsim.blind.truth.rig import EXCITATION_RATE
 from seatsim.schema.arrays import Array
 
-Spectrum = NDArray[np.complex128]
+_Spectrum = NDArray[np.complex128]
 _ROUGHNESS = {"A": 16e-6, "B": 64e-6, "C": 256e-6, "D": 1024e-6}
 """Displacement power `Gd(n0)` of ISO 8608:2016 at the middle of each class, m^3."""
-REFERENCE = 0.1
+_REFERENCE = 0.1
 """n0 of ISO 8608, cycles per metre."""
-LOWEST, HIGHEST = 0.4, 90.0
+_LOWEST, _HIGHEST = 0.4, 90.0
 """Hz, the soft edges of what a floor does: no drift, and nothing that rows at 256 Hz would alias."""
 _QUIETEST, _LOUDEST = 0.4, 2.2
 """Rms that a floor is brought within, m/s^2: a smooth road still moves the seat, a rough one keeps it off its stops."""
 
 
-class Vehicle(NamedTuple):
+class _Vehicle(NamedTuple):
     """A vehicle between road and floor: natural frequencies (rad/s) and damping ratios of three modes; its engine."""
 
     body: float
@@ -37,16 +37,16 @@ class Vehicle(NamedTuple):
     hum: float  # m/s^2, rms of the engine
 
 
-def draw_vehicle(rng: Generator) -> Vehicle:
+def draw_vehicle(rng: Generator) -> _Vehicle:
     """Draw a bus, truck cab or tractor: body at 1-2.2 Hz, wheels at 8-14 Hz, a panel at 18-45 Hz, an engine."""
     radians = 2.0 * np.pi
     body = radians * rng.uniform(1.0, 2.2), rng.uniform(0.15, 0.35)
     wheel = radians * rng.uniform(8.0, 14.0), rng.uniform(0.08, 0.25)
     panel = radians * rng.uniform(18.0, 45.0), rng.uniform(0.03, 0.15), rng.uniform(0.1, 1.0)
-    return Vehicle(*body, *wheel, *panel, rng.uniform(22.0, 55.0), rng.uniform(0.02, 0.12))
+    return _Vehicle(*body, *wheel, *panel, rng.uniform(22.0, 55.0), rng.uniform(0.02, 0.12))
 
 
-def draw_vehicle_floor(rng: Generator, vehicle: Vehicle, seconds: float, bumps: float) -> Array:
+def draw_vehicle_floor(rng: Generator, vehicle: _Vehicle, seconds: float, bumps: float) -> Array:
     """Return the acceleration of the floor on a drive, m/s^2, at 2 kHz; `bumps` is their mean number per second.
 
     The vertical velocity of a road whose displacement power falls as `n^-2` (ISO 8608) is white, of one-sided power
@@ -54,9 +54,9 @@ def draw_vehicle_floor(rng: Generator, vehicle: Vehicle, seconds: float, bumps: 
     """
     samples = round(seconds * EXCITATION_RATE)
     speed = _draw_speed(rng, samples)
-    power = (2.0 * np.pi * REFERENCE) ** 2 * _draw_roughness(rng, samples) * speed
+    power = (2.0 * np.pi * _REFERENCE) ** 2 * _draw_roughness(rng, samples) * speed
     road = np.sqrt(0.5 * EXCITATION_RATE * power) * rng.standard_normal(samples)
-    floor = _through_vehicle(road + draw_bump_velocity(rng, speed, bumps), vehicle)
+    floor = _through_vehicle(road + _draw_bump_velocity(rng, speed, bumps), vehicle)
     level = float(np.std(floor))
     return floor * min(max(level, _QUIETEST), _LOUDEST) / level + _draw_engine(rng, vehicle, samples)
 
@@ -79,7 +79,7 @@ def _levels(rng: Generator, samples: int, low: float, high: float) -> Array:
     return np.interp(time, knots - knots[0], rng.uniform(low, high, knots.size))
 
 
-def draw_bump_velocity(rng: Generator, speed: Array, rate: float) -> Array:
+def _draw_bump_velocity(rng: Generator, speed: Array, rate: float) -> Array:
     """Return the vertical velocity of the wheel over bumps and holes, m/s, shape (samples,).
 
     They are raised cosines of 8-40 mm over 0.4-2 m, `rate` per second on average (Poisson), at the speed of the moment.
@@ -97,23 +97,23 @@ def draw_bump_velocity(rng: Generator, speed: Array, rate: float) -> Array:
     return velocity
 
 
-def _through_vehicle(velocity: Array, vehicle: Vehicle) -> Array:
+def _through_vehicle(velocity: Array, vehicle: _Vehicle) -> Array:
     """Return the floor's acceleration for the road's vertical velocity: wheel, body and panel in series."""
     f = np.fft.rfftfreq(velocity.size, 1.0 / EXCITATION_RATE)
-    s: Spectrum = np.asarray(2j * np.pi * f, dtype=np.complex128)
+    s: _Spectrum = np.asarray(2j * np.pi * f, dtype=np.complex128)
     wheel = _mode(s, vehicle.wheel, vehicle.wheel_damping)
     body = s * _mode(s, vehicle.body, vehicle.body_damping)
     panel = 1.0 + vehicle.panel_gain * (1.0 - _mode(s, vehicle.panel, vehicle.panel_damping))
-    edge = (f / LOWEST) ** 3 / np.sqrt(1.0 + (f / LOWEST) ** 6) / np.sqrt(1.0 + (f / HIGHEST) ** 8)
+    edge = (f / _LOWEST) ** 3 / np.sqrt(1.0 + (f / _LOWEST) ** 6) / np.sqrt(1.0 + (f / _HIGHEST) ** 8)
     return np.fft.irfft(np.fft.rfft(velocity) * wheel * body * panel * edge, velocity.size)
 
 
-def _mode(s: Spectrum, w: float, damping: float) -> Spectrum:
+def _mode(s: _Spectrum, w: float, damping: float) -> _Spectrum:
     """Return the transmissibility `(2 z w s + w^2) / (s^2 + 2 z w s + w^2)` of a sprung mass."""
     carried = 2.0 * damping * w * s + w * w
     return carried / (s * s + carried)
 
 
-def _draw_engine(rng: Generator, vehicle: Vehicle, samples: int) -> Array:
+def _draw_engine(rng: Generator, vehicle: _Vehicle, samples: int) -> Array:
     """Return the engine's part of the floor, m/s^2, shape (samples,): a narrow band about its frequency."""
     return vehicle.hum * coloured_noise(rng, samples, 0.97 * vehicle.engine, vehicle.engine, 0.0, EXCITATION_RATE)

@@ -48,10 +48,9 @@ def sweep(
 ) -> None:
     """Simulate a scenario with many values of its keys, and keep the metrics of every run."""
     from seatsim.cli.outputs.answers import SlurmAnswer
-    from seatsim.sweeps.engines.base import open_engine
-    from seatsim.sweeps.execute import execute, prepare, read_share
+    from seatsim.sweeps.cluster import write_slurm
+    from seatsim.sweeps.execute import execute, open_engine, prepare, read_share
     from seatsim.sweeps.folder import say_ended
-    from seatsim.sweeps.slurm import write_slurm
 
     folder = out_folder or Path("out") / file.stem
     part = read_share(share) if share else None

@@ -16,8 +16,8 @@ from seatsim.schema.files import write_together
 from seatsim.simulation.performance_bounds import RigBounds, place_runs
 from seatsim.simulation.result import Result
 from seatsim.simulation.runs import write_histories
-from seatsim.sweeps.statistics.rows import Exceedance
-from seatsim.sweeps.statistics.sensitivity import Sensitivity
+from seatsim.sweeps.rows import Exceedance
+from seatsim.sweeps.sensitivity import Sensitivity
 
 MOST_KEPT = 400_000
 """Rows of the histories that are written after an interrupt, which takes about half a second."""
@@ -98,8 +98,8 @@ def write_sweep_report(folder: str | Path, out: str | Path | None = None) -> Swe
         InputError: the folder holds no sweep, or none of its runs has ended.
     """
     from seatsim.report.sweep import report_sweep, state_importance
-    from seatsim.sweeps.statistics.rows import count_exceedances, read_rows, tabulate_quantiles
-    from seatsim.sweeps.statistics.sensitivity import analyse_sensitivity, tabulate_sensitivities
+    from seatsim.sweeps.rows import count_exceedances, read_rows, tabulate_quantiles
+    from seatsim.sweeps.sensitivity import analyse_sensitivity, tabulate_sensitivities
 
     folder = Path(folder)
     out = Path(out or folder)

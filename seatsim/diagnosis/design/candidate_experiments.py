@@ -1,22 +1,24 @@
-"""Candidate experiments that could be run next on a rig, cheapest first."""
+"""Candidate experiments that could be run next on a rig, cheapest first, and the best excitation among them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
+from scipy.optimize import minimize
 
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.excitations.base import EXCITATIONS as REGISTERED
 from seatsim.excitations.base import Floor
+from seatsim.schema.arrays import Array
 from seatsim.simulation.inputs import SeatInputs
 
-Keys = Mapping[str, str | float]
-NOTHING: Mapping[str, float] = MappingProxyType({})
+_Keys = Mapping[str, str | float]
+_NOTHING: Mapping[str, float] = MappingProxyType({})
 
-SWITCHING = 0.25
+_SWITCHING = 0.25
 """s; time between changes of a switched current: long compared with a coil's lag, short compared with the motion."""
 _NEARLY_FULL = 0.9
 """Share of the largest current that is switched, so that no supply is at its limit."""
@@ -36,46 +38,55 @@ class CandidateExperiment(NamedTuple):
     text: str
     floor: Floor
     added_sensors: tuple[str, ...] = ()
-    set: Mapping[str, float] = NOTHING
-    scenario: Mapping[str, Keys] | None = None
+    set: Mapping[str, float] = _NOTHING
+    scenario: Mapping[str, _Keys] | None = None
 
 
-class Excitation(NamedTuple):
+class _Excitation(NamedTuple):
     """An excitation of the menu: its text, control law, keys, and which of those keys may be optimised."""
 
     text: str
-    law: Keys
-    keys: Keys
+    law: _Keys
+    keys: _Keys
     free: tuple[str, ...]
 
 
-def _tone(frequency: float, amplitude: float, duration: float) -> Keys:
+def _tone(frequency: float, amplitude: float, duration: float) -> _Keys:
     return {"kind": "sine", "amplitude": amplitude, "frequency": frequency, "duration": duration}
 
 
-STEADY: Keys = {"law": "constant", "current": 0.3}
-SWITCHED: Keys = {"law": "on_off_skyhook", "on": _NEARLY_FULL}
-SWEPT: Keys = {
-    "kind": "chirp", "start_frequency": 1.0, "stop_frequency": 20.0, "amplitude": 1.5, "duration": 12.0,
+_STEADY: _Keys = {"law": "constant", "current": 0.3}
+_SWITCHED: _Keys = {"law": "on_off_skyhook", "on": _NEARLY_FULL}
+SWEPT: _Keys = {
+    "kind": "chirp",
+    "start_frequency": 1.0,
+    "stop_frequency": 20.0,
+    "amplitude": 1.5,
+    "duration": 12.0,
     "quantity": "acceleration",
-}  # fmt: skip
-BUMP: Keys = {
-    "kind": "bumps", "shape": "haversine", "height": 0.05, "length": 1.0, "speed": 3.0, "duration": 8.0,
+}
+_BUMP: _Keys = {
+    "kind": "bumps",
+    "shape": "haversine",
+    "height": 0.05,
+    "length": 1.0,
+    "speed": 3.0,
+    "duration": 8.0,
     "through": "direct",
-}  # fmt: skip
-SWEEP = "sweep the floor from {start_frequency:.3g} to {stop_frequency:.3g} Hz at {amplitude:.3g} m/s^2"
-STEPS = "switch the current about every 0.25 s on a tone of {frequency:.3g} Hz"
+}
+_SWEEP = "sweep the floor from {start_frequency:.3g} to {stop_frequency:.3g} Hz at {amplitude:.3g} m/s^2"
+_STEPS = "switch the current about every 0.25 s on a tone of {frequency:.3g} Hz"
 _OF_A_TONE = ("amplitude", "frequency", "current")
-EXCITATIONS: Mapping[str, Excitation] = {
-    "bump": Excitation("drive over a bump of {mm:.3g} mm", STEADY, BUMP, ("height", "speed", "current")),
-    "sweep": Excitation(SWEEP, STEADY, SWEPT, ("amplitude", "start_frequency", "stop_frequency", "current")),
-    "large_slow_sine": Excitation(
-        "shake the floor at {frequency:.3g} Hz with {mm:.3g} mm", STEADY, _tone(0.5, 0.025, 12.0), _OF_A_TONE
+EXCITATIONS: Mapping[str, _Excitation] = {
+    "bump": _Excitation("drive over a bump of {mm:.3g} mm", _STEADY, _BUMP, ("height", "speed", "current")),
+    "sweep": _Excitation(_SWEEP, _STEADY, SWEPT, ("amplitude", "start_frequency", "stop_frequency", "current")),
+    "large_slow_sine": _Excitation(
+        "shake the floor at {frequency:.3g} Hz with {mm:.3g} mm", _STEADY, _tone(0.5, 0.025, 12.0), _OF_A_TONE
     ),
-    "very_slow_sine": Excitation(
-        "move the floor at {frequency:.3g} Hz with {mm:.3g} mm", STEADY, _tone(0.05, 0.025, 20.0), _OF_A_TONE
+    "very_slow_sine": _Excitation(
+        "move the floor at {frequency:.3g} Hz with {mm:.3g} mm", _STEADY, _tone(0.05, 0.025, 20.0), _OF_A_TONE
     ),
-    "current_steps": Excitation(STEPS, SWITCHED, _tone(1.0, 0.03, 12.0), ("amplitude", "frequency", "on")),
+    "current_steps": _Excitation(_STEPS, _SWITCHED, _tone(1.0, 0.03, 12.0), ("amplitude", "frequency", "on")),
 }
 """The menu; currents are shares of the largest current."""
 
@@ -88,7 +99,7 @@ def list_candidate_experiments(problem: DiagnosisProblem) -> Iterator[CandidateE
     yield from _intervene(problem, _recorded_floor(problem))
 
 
-def excite(problem: DiagnosisProblem, name: str, factors: Mapping[str, float] = NOTHING) -> CandidateExperiment:
+def excite(problem: DiagnosisProblem, name: str, factors: Mapping[str, float] = _NOTHING) -> CandidateExperiment:
     """Return an excitation of the menu with its law and currents, as a floor and as sections of a scenario.
 
     `factors` change some of its free keys; no current exceeds the largest.
@@ -106,8 +117,8 @@ def excite(problem: DiagnosisProblem, name: str, factors: Mapping[str, float] = 
     }
     command = np.full(len(floor.time), law.get("current", 0.0))
     if "on" in law:
-        command = law["on"] * (np.floor(floor.time / SWITCHING) % 2.0)
-    scenario: Mapping[str, Keys] = {"controller": {"law": item.law["law"], **law}, "excitation": keys}
+        command = law["on"] * (np.floor(floor.time / _SWITCHING) % 2.0)
+    scenario: Mapping[str, _Keys] = {"controller": {"law": item.law["law"], **law}, "excitation": keys}
     text = text.replace("the floor", "the damper") if problem.bench else text
     return CandidateExperiment(name, text, floor._replace(command=command), scenario=scenario)
 
@@ -119,7 +130,7 @@ def _scale(value: str | float, factor: float) -> str | float:
 def _intervene(problem: DiagnosisProblem, floor: Floor) -> Iterator[CandidateExperiment]:
     """Yield changes of the rig, its sensors or its temperature, with the floor motion of a recorded run or none."""
     rest, time = np.zeros(len(floor.acceleration)), floor.time
-    steps = _NEARLY_FULL * problem.scenario.coil.max_current * (np.floor(time / SWITCHING) % 2.0)
+    steps = _NEARLY_FULL * problem.scenario.coil.max_current * (np.floor(time / _SWITCHING) % 2.0)
     still = Floor(floor.step, rest, rest, rest, steps)
     if "coil_current" not in problem.channels:
         text = "repeat a run and log the current of the coil"
@@ -147,6 +158,44 @@ def _recorded_floor(problem: DiagnosisProblem) -> Floor:
         return inputs.floor
     still = np.zeros(len(inputs.displacement))
     return Floor(
-        1.0 / problem.rate, still, still, inputs.displacement, inputs.current_command, inputs.coil_current,
+        1.0 / problem.rate,
+        still,
+        still,
+        inputs.displacement,
+        inputs.current_command,
+        inputs.coil_current,
         inputs.damper_temperature,
-    )  # fmt: skip
+    )
+
+
+_FIRST_STEP = 0.6
+"""First step of the search in the natural logarithm of a key: a factor of 1.8."""
+_LARGEST_FACTOR = 2.4
+"""Largest factor on a key, either way: the sweep then ends below 50 Hz, which a step of 2 ms resolves."""
+
+
+def optimise_excitation(
+    problem: DiagnosisProblem, name: str, score: Callable[[CandidateExperiment], float], trials: int
+) -> None:
+    """Search the free keys of an excitation for the least score, by Nelder and Mead's simplex in their logarithms.
+
+    Args:
+        problem: the recording, whose coil bounds the current.
+        name: of the excitation in the menu.
+        score: called with every excitation that is tried; it keeps the best.
+        trials: most excitations that are tried, about four for each free key.
+    """
+    free = EXCITATIONS[name].free
+    largest = np.log(_LARGEST_FACTOR)
+
+    def score_at(logarithms: Array) -> float:
+        return score(excite(problem, name, dict(zip(free, np.exp(logarithms).tolist(), strict=True))))
+
+    corners = np.vstack([np.zeros(len(free)), _FIRST_STEP * np.eye(len(free))])
+    minimize(
+        score_at,
+        corners[0],
+        method="Nelder-Mead",
+        bounds=[(-largest, largest)] * len(free),
+        options={"maxfev": trials, "initial_simplex": corners},
+    )

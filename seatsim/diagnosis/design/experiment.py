@@ -14,17 +14,25 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from seatsim.diagnosis.augmented import write_augmented
-from seatsim.diagnosis.design.candidate_experiments import CandidateExperiment, list_candidate_experiments
-from seatsim.diagnosis.design.collinearity import fit_member, stack_jacobian, stack_whitened
-from seatsim.diagnosis.design.optimise import optimise_excitation
-from seatsim.diagnosis.design.projection import measure_likeness, project
-from seatsim.diagnosis.design.separability import PredictedExperiment, measure_separability
-from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.answer import write_augmented
+from seatsim.diagnosis.design.candidate_experiments import (
+    CandidateExperiment,
+    list_candidate_experiments,
+    optimise_excitation,
+)
+from seatsim.diagnosis.design.separability import (
+    PredictedExperiment,
+    fit_member,
+    measure_likeness,
+    measure_separability,
+    project,
+    stack_jacobian,
+    stack_whitened,
+)
+from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import Content, ProposedExperiment
-from seatsim.diagnosis.settings.designing import DesignSettings
+from seatsim.diagnosis.settings.examining import DesignSettings
 from seatsim.excitations.base import Floor
 from seatsim.recordings.replay import COMPARED
 from seatsim.scenario.numbers import change_numbers, list_numbers
@@ -33,11 +41,11 @@ from seatsim.simulation.augment import augment_plant
 from seatsim.simulation.inputs import BenchInputs, RigInputs, SeatInputs
 from seatsim.simulation.respond import respond
 
-Kind = Literal["excitation", "intervention", "none"]
+_Kind = Literal["excitation", "intervention", "none"]
 
 USUAL_NOISE = dict(zip(COMPARED["seat"], (0.03, 0.015, 5e-5, 2.5, 0.003), strict=True))
 """Noise of usual sensors, for those that state none, in the unit of their channel."""
-BEYOND = 10.0
+_BEYOND = 10.0
 """Score of an excitation for each time that it takes the permitted travel beyond the first."""
 _NOT_REPEATED = ("start", "sweep", "variants", "published")
 """Sections of the nominal scenario that an experiment does not have."""
@@ -99,7 +107,7 @@ def _choose(objective: Objective, seen: Sequence[_Verdict], first: str, now: flo
     if candidate.set:
         stated = ", ".join(f"{key}: {value:g}" for key, value in candidate.set.items())
         reason += f"; its run in recording.yaml states set: {{{stated}}}"
-    kind: Kind = "excitation" if candidate.scenario else "intervention"
+    kind: _Kind = "excitation" if candidate.scenario else "intervention"
     proposal = _propose(kind, candidate.name, first + reason, now, best.likeness)
     scenario = _write_scenario(objective.problem, candidate)
     return dataclasses.replace(proposal, scenario=scenario, set=dict(candidate.set))
@@ -133,9 +141,10 @@ def _assess_candidates(
 
 
 def _assess_until_distinct(
-    settings: DesignSettings, assess: Callable[[CandidateExperiment], _Verdict],
+    settings: DesignSettings,
+    assess: Callable[[CandidateExperiment], _Verdict],
     candidates: Sequence[CandidateExperiment],
-) -> list[_Verdict]:  # fmt: skip
+) -> list[_Verdict]:
     seen: list[_Verdict] = []
     for candidate in candidates:
         seen.append(assess(candidate))
@@ -152,10 +161,10 @@ def _is_distinct(settings: DesignSettings, seen: _Verdict) -> bool:
 def _score(settings: DesignSettings, seen: _Verdict) -> float:
     """Return what an optimised excitation has least: likeness, lack of separability, travel beyond the permitted."""
     lacking = max(0.0, 1.0 - seen.separability / settings.separated)
-    return seen.likeness + lacking + BEYOND * max(0.0, seen.reach - 1.0)
+    return seen.likeness + lacking + _BEYOND * max(0.0, seen.reach - 1.0)
 
 
-def _propose(kind: Kind, name: str, reason: str, now: float, then: float) -> ProposedExperiment:
+def _propose(kind: _Kind, name: str, reason: str, now: float, then: float) -> ProposedExperiment:
     return ProposedExperiment(kind, name, reason, round(now, 4), round(then, 4))
 
 
@@ -230,9 +239,12 @@ def _weigh(problem: DiagnosisProblem, candidate: CandidateExperiment, outputs: A
 
 
 def _assess(
-    objective: Objective, nuisances: Linearisation, base: Evaluation, members: Sequence[Evaluation],
+    objective: Objective,
+    nuisances: Linearisation,
+    base: Evaluation,
+    members: Sequence[Evaluation],
     candidate: CandidateExperiment,
-) -> _Verdict:  # fmt: skip
+) -> _Verdict:
     """Return the prediction of an experiment, from a joint simulation of all rigs and their difference steps."""
     problem, settings = objective.problem, objective.settings
     rig, step, number = nuisances.evaluation.parameters, settings.fit.difference_step, len(members)

@@ -37,7 +37,7 @@ def _equation(unknowns: str, fault: str | None = None) -> Equation:
     return Equation(frozenset(unknowns.split()), fault)
 
 
-SEAT = (
+_SEAT = (
     _equation("as Fs Fc Fd", "floor"),  # ms as = Fc - Fs - Fd + what else shakes the frame
     _equation("Fs x v", "suspension"),  # Fs = kf x + cf v
     _equation("ac Fc", "driver"),  # m ac = -Fc
@@ -48,7 +48,7 @@ SEAT = (
     _equation("xc vc"),  # xc' = vc
     _equation("vc ac as"),  # vc' = ac - as
 )
-BENCH = (_equation("Fd x v i", "damper"), _equation("x v"))
+_BENCH = (_equation("Fd x v i", "damper"), _equation("x v"))
 """Equations of the two rigs, without coil and sensors."""
 _SENSED = {
     "floor_acceleration": "a0",
@@ -61,8 +61,8 @@ _SENSED = {
     "coil_current": "i",
 }
 """The unknown that each sensor measures; the command and the temperature are known inputs."""
-COMMANDS = ("current_command", "command_voltage")
-BLOCKS = {
+_COMMANDS = ("current_command", "command_voltage")
+_BLOCKS = {
     "seat": ("damper", "coil", "suspension", "cushion", "driver", "floor", "sensor"),
     "damper_bench": ("damper", "coil", "sensor"),
 }
@@ -83,7 +83,7 @@ _FOR_RIG = {
 
 
 def find_isolable_groups(rig: str, channels: Collection[str]) -> list[list[str]]:
-    """Return the groups of blocks that these channels can distinguish, in the order of `BLOCKS`.
+    """Return the groups of blocks that these channels can distinguish, in the order of `_BLOCKS`.
 
     Blocks of one group cannot be distinguished by structure. A block in no group enters no test: its faults leave no
     trace in these channels. `sensor` joins the first group with a block that a fault of some sensor cannot be
@@ -133,14 +133,14 @@ def describe_missing_sensors(rig: str, channels: Collection[str]) -> list[str]:
 
 def _equations(rig: str, channels: Collection[str]) -> list[Equation]:
     """Return the equations of a rig with these channels; a coil without any record carries a stated current."""
-    equations = list(SEAT if rig == "seat" else BENCH)
+    equations = list(_SEAT if rig == "seat" else _BENCH)
     if _is_recorded("current_command", channels) or "coil_current" not in channels:
         equations.append(_equation("i", "coil"))  # i' = rate (command - i), the command known
     return equations + [_equation(_SENSED[name], f"sensor {name}") for name in sorted(channels) if name in _SENSED]
 
 
 def _is_recorded(name: str, channels: Collection[str]) -> bool:
-    return name in channels or (name == "current_command" and any(command in channels for command in COMMANDS))
+    return name in channels or (name == "current_command" and any(command in channels for command in _COMMANDS))
 
 
 def _is_isolable(equations: list[Equation], first: int, second: int) -> bool:
@@ -165,7 +165,7 @@ def _block(fault: str | None) -> str:
 
 def _ordered(rig: str, classes: Iterable[set[str]]) -> list[list[str]]:
     """Return the groups in the order of BLOCKS; `sensor` appears once, in the first group with another block."""
-    order = BLOCKS[rig]
+    order = _BLOCKS[rig]
     groups = sorted((sorted(found, key=order.index) for found in classes), key=lambda group: order.index(group[0]))
     homes = [group for group in groups if "sensor" in group]
     for group in homes[1:]:

@@ -1,25 +1,123 @@
-"""The model discrepancy: the unexplained signal in a block, and the sentences on it.
+"""The model discrepancy: the unexplained signal in a block, what it depends on, and the sentences on it.
 
 A force comes from outside the rig where nothing predicts it on a left-out run and it is equally strong in every run. A
-rattle is hard to predict too, but its strength follows the motion.
+rattle is hard to predict too, but its strength follows the motion. The regressors come from the simulation driven by
+the measured floor, not from the measured motion, to which the unexplained force itself contributes.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
+from scipy.signal import decimate
 
-from seatsim.diagnosis.localise.hypotheses import FaultHypothesis
-from seatsim.diagnosis.localise.regression import explain_signal
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.localise.localisation import FaultHypothesis
+from seatsim.diagnosis.objective import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import DiscrepancySignal
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
-from seatsim.diagnosis.settings.localising import LocalisationSettings
+from seatsim.diagnosis.settings import DiagnosisSettings
+from seatsim.diagnosis.settings.examining import LocalisationSettings
 from seatsim.schema.arrays import Array
+
+
+def explain_signal(problem: DiagnosisProblem, parameters: Parameters, signals: Mapping[str, Array]) -> dict[str, float]:
+    """Return the share of a signal's variance (R2 on runs left out) that each family of regressors predicts.
+
+    `everything` stands for all families together; a family alone may predict better, since it overfits less.
+    """
+    settings = problem.settings.localisation
+    regressors = {run: _list_regressors(problem, parameters, run) for run in problem.runs}
+    target = {run: _decimate(problem, signals[run]) for run in problem.runs}
+    families = list(regressors[problem.runs[0]])
+    shares = {
+        family: predict_share(settings, {run: each[family] for run, each in regressors.items()}, target)
+        for family in families
+    }
+    everything = {run: np.concatenate(list(each.values())) for run, each in regressors.items()}
+    shares["everything"] = max(predict_share(settings, everything, target), *shares.values())
+    return shares
+
+
+def predict_share(
+    settings: LocalisationSettings, regressors: Mapping[str, Array], target: Mapping[str, Array]
+) -> float:
+    """Return the share of the runs' variance that a ridge regression on the other runs predicts, at least 0.
+
+    Args:
+        settings: the ridge.
+        regressors: by run, shape (regressors, samples).
+        target: by run, shape (samples,); a single run is cut into halves.
+    """
+    missed, power = 0.0, 0.0
+    for (inside, values), (outside, truth) in _folds(regressors, target):
+        error = truth - _regress(settings, inside, values) @ outside
+        missed, power = missed + float(error @ error), power + float(truth @ truth)
+    return max(0.0, 1.0 - missed / max(power, 1e-30))
+
+
+def _folds(
+    regressors: Mapping[str, Array], target: Mapping[str, Array]
+) -> Iterator[tuple[tuple[Array, Array], tuple[Array, Array]]]:
+    """Yield regressors and target to fit, and those left out: each run, or each half of a single one."""
+    runs = list(target)
+    if len(runs) == 1:
+        known, values = regressors[runs[0]], target[runs[0]]
+        middle = len(values) // 2
+        first, second = slice(0, middle), slice(middle, None)
+        for test, train in ((first, second), (second, first)):
+            yield (known[:, train], values[train]), (known[:, test], values[test])
+        return
+    for left_out in runs:
+        others = [run for run in runs if run != left_out]
+        fitted = np.hstack([regressors[run] for run in others]), np.concatenate([target[run] for run in others])
+        yield fitted, (regressors[left_out], target[left_out])
+
+
+def _regress(settings: LocalisationSettings, regressors: Array, target: Array) -> Array:
+    """Return the coefficients of a ridge regression, shape (regressors,), each regressor scaled to unit RMS."""
+    scale = np.sqrt(np.mean(regressors**2, axis=1)) + 1e-12
+    scaled = regressors / scale[:, None]
+    normal = scaled @ scaled.T
+    ridge = max(settings.ridge * np.trace(normal) / len(normal), settings.least_ridge) * np.eye(len(normal))
+    coefficients: Array = np.linalg.solve(normal + ridge, scaled @ target) / scale
+    return coefficients
+
+
+def _decimate(problem: DiagnosisProblem, values: Array) -> Array:
+    factor = max(1, round(problem.rate / problem.settings.localisation.regression_rate))
+    return np.asarray(decimate(values, factor, ftype="fir")) if factor > 1 else values
+
+
+def _list_regressors(problem: DiagnosisProblem, parameters: Parameters, run: str) -> dict[str, Array]:
+    """Return families of regressors at the regression's rate, shape (regressors, samples) each."""
+    settings = problem.settings.localisation
+    outputs = problem.simulated(run, parameters.deviations, parameters.effects)
+    simulated = dict(zip(problem.channels, outputs, strict=True))
+    samples, table = problem.measured[run].shape[1], problem.recording.table(run)
+    floor = table["floor_acceleration"][problem.skip : problem.skip + samples]
+    current = simulated.get("coil_current", table.get("coil_current", table.get("current_command", np.zeros(0))))
+    current = current[-samples:] if len(current) >= samples else np.zeros(samples)
+    x = simulated.get("suspension_displacement")
+    if x is None:
+        return {"floor motion": _lag(_decimate(problem, floor), settings.lags)}
+    v = np.gradient(x, 1.0 / problem.rate)
+    x, v, i, a = (_decimate(problem, values) for values in (x, v, current, floor))
+    slow, fast = np.tanh(v / settings.slow_slip), np.tanh(v / settings.fast_slip)
+    return {
+        "displacement": np.array([x, x * np.abs(x), x**3]),
+        "velocity": np.array([v, v * np.abs(v), v**3, slow, fast]),
+        "velocity and current": np.array([i, i * v, i * slow, i * fast, i**2 * slow, i * x, np.gradient(i)]),
+        "past motion": np.concatenate([_lag(x, settings.lags), _lag(v, settings.lags)]),
+        "floor motion": _lag(a, settings.lags),
+    }
+
+
+def _lag(values: Array, lags: int) -> Array:
+    """Return values and their past ones, shape (lags, samples); before the start the first value is repeated."""
+    return np.array([np.concatenate([np.full(k, values[0]), values[: len(values) - k]]) for k in range(lags)])
 
 
 class Discrepancy(NamedTuple):
@@ -49,9 +147,14 @@ def describe_discrepancy(
     """Return the unexplained signal in a block of the seat and what predicts it."""
     shares = explain_signal(problem, parameters, hypothesis.signals)
     return Discrepancy(
-        block, hypothesis.quantity, hypothesis.unit, hypothesis.signals, shares, hypothesis.channel,
+        block,
+        hypothesis.quantity,
+        hypothesis.unit,
+        hypothesis.signals,
+        shares,
+        hypothesis.channel,
         hypothesis.comparable,
-    )  # fmt: skip
+    )
 
 
 def is_from_outside(settings: DiagnosisSettings, found: Discrepancy, rate: float) -> bool:

@@ -1,16 +1,158 @@
-"""Which block the gap lies in: from the causes found, or from the fault hypotheses on an unknown input."""
+"""Which block the gap lies in: from the causes found, or from hypotheses on an unknown input.
+
+An unknown input acts in each block in turn, or one sensor errs. With r the whitened residuals without the input, h the
+frequency response of the channels to the input about the estimated signal, p the power of that signal, and S the
+sensitivities to the deviations u of the nuisance parameters, minus twice the log evidence is
+
+    min over u of  sum over f  (r - S u)* (I + h h* p / 2)^-1 (r - S u) + 2 log(1 + |h|^2 p / 2)  + prior(u).
+
+The logarithm is Occam's factor: it charges a block for every frequency at which it needs an input of its own.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Collection, Mapping
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.diagnosis.localise.hypotheses import FaultHypothesis, evaluate_hypotheses
+from seatsim.diagnosis.fit import solve_step
+from seatsim.diagnosis.localise.input_estimate import (
+    InputEstimate,
+    estimate_current,
+    estimate_error,
+    estimate_input,
+)
+from seatsim.diagnosis.localise.reconstruction import PORTS
 from seatsim.diagnosis.movement import measure_movements
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
 from seatsim.diagnosis.result import Share
+from seatsim.diagnosis.spectra import as_complex
+from seatsim.recordings.quality.sensors import FLOOR, follows_floor
+from seatsim.schema.arrays import Array
+
+_QUANTITIES = {"coil": ("current", "A"), "floor": ("acceleration", "m/s^2")}
+"""Quantity and unit of an unknown input by block, where it is not a force in N."""
+
+
+class FaultHypothesis(NamedTuple):
+    """A block that an unknown input may act in, with its negative log evidence per sample.
+
+    `negative_log_evidence` is minus twice the log evidence per number compared, less 1. `signals[run]`, shape
+    (samples,), is the input above its noise, a quantity in its unit; `channel` is the one that errs, for a sensor.
+    `comparable` is, for a port, the part of that input at the frequencies at which every run shows it.
+    """
+
+    negative_log_evidence: float
+    quantity: str
+    unit: str
+    signals: dict[str, Array]
+    channel: str = ""
+    comparable: Mapping[str, Array] = MappingProxyType({})
+
+
+def evaluate_hypotheses(
+    objective: Objective, nuisances: Linearisation, blocks: Collection[str] = tuple(PORTS)
+) -> dict[str, FaultHypothesis]:
+    """Return, by block, how an unknown input would explain what a rig leaves; errors of sensors are always among them.
+
+    Args:
+        objective: the problem and its weights.
+        nuisances: the rig's evaluation with its sensitivities to the nuisance parameters, which are refitted.
+        blocks: those with a port that are asked.
+    """
+    problem, evaluation = objective.problem, nuisances.evaluation
+    by_run = problem.pool.map(lambda run: _estimate_inputs(objective, evaluation, run, blocks), problem.runs)
+    runs = dict(zip(problem.runs, by_run, strict=True))
+    hypotheses = {}
+    for name in runs[problem.runs[0]]:
+        estimates = {run: of_run[name] for run, of_run in runs.items()}
+        signals = {run: estimate.signal for run, estimate in estimates.items()}
+        quantity, unit = _QUANTITIES.get(name, ("force", "N"))
+        evidence = _negative_log_evidence(objective, nuisances, estimates)
+        comparable = _make_comparable(estimates) if name in PORTS else {}
+        hypotheses[name] = FaultHypothesis(evidence, quantity, unit, signals, comparable=comparable)
+    errors = [
+        hypotheses.pop(name)._replace(
+            quantity=f"error of {name}", unit=problem.recording.channels[name].unit, channel=name
+        )
+        for name in problem.channels
+    ]
+    errors.append(_as_sensor_error(hypotheses.pop(FLOOR)))
+    if "floor" in hypotheses and not follows_floor(problem.recording):
+        errors.append(_as_sensor_error(hypotheses.pop("floor")))
+    return hypotheses | {"sensor": min(errors, key=lambda hypothesis: hypothesis.negative_log_evidence)}
+
+
+def _make_comparable(estimates: Mapping[str, InputEstimate]) -> dict[str, Array]:
+    """Return an input by run, of its spectrum only as much as every run shows.
+
+    A run in which more else moves shows less of the same input, which is no sign that the input is weaker there.
+    """
+    longest = max(len(estimate.gain) for estimate in estimates.values())
+    common = np.min([_resample(estimate.gain, longest) for estimate in estimates.values()], axis=0)
+    comparable = {}
+    for run, estimate in estimates.items():
+        gain, spectrum = estimate.gain, np.fft.rfft(estimate.signal)
+        share = np.divide(_resample(common, len(gain)), gain, out=np.zeros_like(gain), where=gain > 0.0)
+        spectrum[: len(gain)] *= share
+        comparable[run] = np.fft.irfft(spectrum, len(estimate.signal))
+    return comparable
+
+
+def _resample(values: Array, count: int) -> Array:
+    """Return values over a range of frequencies at another number of them."""
+    return np.interp(np.linspace(0.0, 1.0, count), np.linspace(0.0, 1.0, len(values)), values)
+
+
+def _as_sensor_error(motion: FaultHypothesis) -> FaultHypothesis:
+    """Return an unseen motion of the floor as the equivalent error of the floor's accelerometer."""
+    signals = {run: -values for run, values in motion.signals.items()}
+    return motion._replace(signals=signals, quantity=f"error of {FLOOR}", unit="m/s^2", channel=FLOOR)
+
+
+def _estimate_inputs(
+    objective: Objective, evaluation: Evaluation, run: str, blocks: Collection[str]
+) -> dict[str, InputEstimate]:
+    """Return the estimate of an input in some blocks, and of an error of each channel's sensor."""
+    channels = objective.problem.channels
+    estimates = {name: estimate_error(objective, evaluation, run, k) for k, name in enumerate(channels)}
+    # Without a load cell no channel distinguishes a force of the damper from one of the linkage.
+    merged = "damper_force" not in channels and "damper" in blocks
+    for block in blocks:
+        same = merged and block == "suspension"
+        estimates[block] = estimates["damper"] if same else estimate_input(objective, evaluation, run, PORTS[block])
+    # Below this frequency floors hardly move: what looks like a motion there is the drift of the accelerometer.
+    slow = objective.settings.localisation.slow_frequency
+    estimates[FLOOR] = estimate_input(objective, evaluation, run, PORTS["floor"], slow)
+    if "coil_current" in channels:
+        estimates["coil"] = estimate_current(objective, evaluation, run)
+    return estimates
+
+
+def _negative_log_evidence(
+    objective: Objective, nuisances: Linearisation, estimates: dict[str, InputEstimate]
+) -> float:
+    """Return minus twice the log evidence per number compared, less 1, the nuisances refitted to first order."""
+    deviations = nuisances.evaluation.parameters.deviations
+    count = len(deviations)
+    matrix, right, cost, rows = np.zeros((count, count)), np.zeros(count), 0.0, 0
+    for run, estimate in estimates.items():
+        shape = estimate.residuals.shape
+        whole = as_complex(np.concatenate([estimate.residuals[None], nuisances.jacobian[run].reshape(-1, *shape)]))
+        size = np.sum(np.abs(estimate.response) ** 2, axis=0)
+        along = np.sum(estimate.response.conj() * whole, axis=1, keepdims=True) / (size + 2.0 / estimate.power)
+        beyond = whole - estimate.response * along
+        cost += float(np.sum(2.0 * np.log1p(0.5 * size * estimate.power)))
+        products = (whole.reshape(count + 1, -1) @ beyond.reshape(count + 1, -1).conj().T).real
+        matrix, right, cost = matrix + products[1:, 1:], right + products[1:, 0], cost + products[0, 0]
+        rows += estimate.residuals.size
+    ones = np.ones(count)
+    step = solve_step(matrix, right, count, deviations, -ones, ones, objective.settings.fit.prior_std)
+    return float(cost - 2.0 * step @ right + step @ matrix @ step) / rows - 1.0
+
 
 _ON_FRAME = ("damper", "suspension", "floor")
 """Blocks whose unknown input is a force on the frame."""

@@ -8,10 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.diagnosis.noise import NoiseWeights
-from seatsim.diagnosis.objective import Objective
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.objective import Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
-from seatsim.diagnosis.settings.localising import ReconstructionSettings
+from seatsim.diagnosis.settings.examining import ReconstructionSettings
 from seatsim.diagnosis.spectra import Spectra, estimate_response, measure_power
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import RunError
@@ -36,10 +35,12 @@ class Port(NamedTuple):
 
 
 PORTS = {
-    "damper": Port(frame_force=-1.0, load_cell_error=1.0), "suspension": Port(frame_force=1.0),
-    "cushion": Port(frame_force=-1.0, driver_force=1.0), "driver": Port(driver_force=1.0),
+    "damper": Port(frame_force=-1.0, load_cell_error=1.0),
+    "suspension": Port(frame_force=1.0),
+    "cushion": Port(frame_force=-1.0, driver_force=1.0),
+    "driver": Port(driver_force=1.0),
     "floor": Port(base_acceleration=1.0),
-}  # fmt: skip
+}
 """Port of each block that may hold an unknown input; the coil's is its logged current."""
 
 

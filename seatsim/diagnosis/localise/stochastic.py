@@ -12,19 +12,16 @@ from collections.abc import Sequence
 import numpy as np
 
 from seatsim.diagnosis.decide import Decision
-from seatsim.diagnosis.input_noise import carry_force
 from seatsim.diagnosis.localise.discrepancy import Discrepancy, describe_discrepancy, is_bias_drift, is_from_outside
-from seatsim.diagnosis.localise.hypotheses import FaultHypothesis, evaluate_hypotheses
-from seatsim.diagnosis.localise.localisation import weigh_blocks
+from seatsim.diagnosis.localise.localisation import FaultHypothesis, evaluate_hypotheses, weigh_blocks
 from seatsim.diagnosis.localise.reconstruction import PORTS, reconstruct
 from seatsim.diagnosis.movement import measure_remainders
-from seatsim.diagnosis.noise import NoiseWeights
-from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.noise import NoiseWeights, carry_force
+from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import Cause, Estimate, Share
 from seatsim.diagnosis.select import Selection
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.diagnosis.spectra import measure_power, smooth_spectrum
 from seatsim.schema.arrays import Array
 
@@ -122,9 +119,12 @@ def merge_effect(
     """Return the decision and the shares of the other causes, with the stochastic effect added to both."""
     probability, none, unknown = settings.decision.stochastic
     decision = dataclasses.replace(
-        decision, verdict="ambiguous" if decision.groups else "known",
-        probabilities=decision.probabilities | {effect: probability}, none=none, unknown=unknown,
-    )  # fmt: skip
+        decision,
+        verdict="ambiguous" if decision.groups else "known",
+        probabilities=decision.probabilities | {effect: probability},
+        none=none,
+        unknown=unknown,
+    )
     block, own = effect.partition(".")[0], settings.localisation.stochastic_share if where else 1.0
     others = [Share(s.block, s.share * (1.0 - own)) for s in where if s.block != block]
     return decision, [Share(block, 1.0 - sum(share for _, share in others)), *others]

@@ -1,4 +1,36 @@
-"""Every threshold of a diagnosis in one immutable value, each with unit, meaning, what it trades off, and its origin.
+"""Every threshold of a diagnosis in one immutable value.
 
-Thresholds stand only here; what a definition fixes (rows left out, channels compared) stands with that definition.
+Below each field stand its meaning with its unit, what is lost where it is raised or lowered, and how its value was
+chosen: "on simulated rigs" whose effects have other functional forms than the candidates; "numerically", so that the
+result does not depend on it; "by convention"; or by what is said. Thresholds stand only here; what a definition fixes
+(rows left out, channels compared) stands with that definition.
 """
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from seatsim.diagnosis.settings.examining import (
+    DamperFormSettings,
+    DesignSettings,
+    LocalisationSettings,
+    ReconstructionSettings,
+)
+from seatsim.diagnosis.settings.judging import CrossValidationSettings, DecisionSettings, ValidationSettings
+from seatsim.diagnosis.settings.searching import FitSettings, NoiseSettings, SelectionSettings, WideningSettings
+
+
+class DiagnosisSettings(NamedTuple):
+    """The thresholds of every stage; `settings._replace(fit=settings.fit._replace(most_steps=3))` changes one."""
+
+    noise: NoiseSettings = NoiseSettings()
+    fit: FitSettings = FitSettings()
+    selection: SelectionSettings = SelectionSettings()
+    decision: DecisionSettings = DecisionSettings()
+    cross_validation: CrossValidationSettings = CrossValidationSettings()
+    validation: ValidationSettings = ValidationSettings()
+    reconstruction: ReconstructionSettings = ReconstructionSettings()
+    localisation: LocalisationSettings = LocalisationSettings()
+    design: DesignSettings = DesignSettings()
+    damper_forms: DamperFormSettings = DamperFormSettings()
+    widening: WideningSettings = WideningSettings()

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from seatsim.dampers.base import DAMPERS, find_confidence
-from seatsim.provenance.invocation import current_invocation
+from seatsim.provenance.statement import current_invocation
 from seatsim.recordings.header import NOT_STATED
 from seatsim.schema.plausible import UNUSUAL
 from seatsim.schema.registry import name_of
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from seatsim.identification.identify import Identification
     from seatsim.recordings.gap import Gap
     from seatsim.standards.seat_rows import SeatTest
-    from seatsim.sweeps.statistics.rows import Exceedance, SweepRows
-    from seatsim.sweeps.statistics.sensitivity import Sensitivities
+    from seatsim.sweeps.rows import Exceedance, SweepRows
+    from seatsim.sweeps.sensitivity import Sensitivities
 
 COMFORT = "driver_acceleration_weighted"
 

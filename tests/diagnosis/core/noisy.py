@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis.settings import DiagnosisSettings
 
 from .toy import add_up, draw_signals, make_problem
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.bounded import minimise_bounded
+from seatsim.diagnosis.fit import minimise_bounded
 
 
 def pose(count, collinear=0.0):

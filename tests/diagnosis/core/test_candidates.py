@@ -7,7 +7,7 @@ import pytest
 
 from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.diagnosis.candidates import list_candidates
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.objective import Parameters
 from seatsim.effects.base import EFFECTS
 from seatsim.effects.coil import CoilLag, Delay
 from seatsim.effects.damper import FreePlay, GasSpring, SealFriction

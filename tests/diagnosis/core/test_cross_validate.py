@@ -12,7 +12,7 @@ from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.noise import weigh_gap
 from seatsim.diagnosis.objective import Objective
 from seatsim.diagnosis.select import Selection
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis.settings import DiagnosisSettings
 
 from .toy import add_up, draw_signals, make_problem, offer, place, stack, weigh_stated
 

@@ -8,8 +8,8 @@ import pytest
 
 from seatsim.diagnosis.decide import decide_verdict, explain_after_all
 from seatsim.diagnosis.result import Cause
-from seatsim.diagnosis.revise import decide_beside_unknown, decide_without, doubt_single
 from seatsim.diagnosis.select import Selection
+from seatsim.diagnosis.solution import decide_beside_unknown, decide_without, doubt_single
 
 from .toy import offer, place, pose_tones
 

@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import lsq_linear
 
 from seatsim.diagnosis.fit import fit, solve_step
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis.settings import DiagnosisSettings
 
 from .toy import (
     Cubed,

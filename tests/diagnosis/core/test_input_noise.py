@@ -6,8 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from seatsim.diagnosis.input_noise import _draw_floor, carry_input_noise
-from seatsim.diagnosis.noise import weigh_noise
+from seatsim.diagnosis.noise import _draw_floor, carry_input_noise, weigh_noise
 from seatsim.diagnosis.problem import pose_problem
 from seatsim.recordings.recording import load_recording
 from seatsim.simulation.inputs import BenchInputs

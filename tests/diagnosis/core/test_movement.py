@@ -14,8 +14,7 @@ from seatsim.diagnosis.movement import (
     measure_remainders,
     measure_shares_left,
 )
-from seatsim.diagnosis.objective import Evaluation
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.objective import Evaluation, Parameters
 
 from .toy import offer, place, pose_tones
 

@@ -5,8 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.input_noise import carry_force
-from seatsim.diagnosis.noise import weigh_noise
+from seatsim.diagnosis.noise import carry_force, weigh_noise
 
 from .noisy import RUNS, draw, mean_squares, pose
 from .toy import NOISE, RATE

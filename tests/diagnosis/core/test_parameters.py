@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatsim.diagnosis.candidates import Candidate
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.objective import Parameters
 from seatsim.effects.seat import EndStop
 from seatsim.effects.sensor import Gain
 

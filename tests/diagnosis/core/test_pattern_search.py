@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.pattern_search import list_directions, search_pattern
+from seatsim.diagnosis.fit import list_directions, search_pattern
 
 from .toy import offer, place, pose_tones
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from seatsim.diagnosis.probability import Evidence, weigh_effects
+from seatsim.diagnosis.decide import Evidence, weigh_effects
 
 BOUNDS = (0.01, 0.9)
 NAMES = ["a", "b", "c"]

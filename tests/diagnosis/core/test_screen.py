@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import lsq_linear
 
 from seatsim.diagnosis.fit import refit
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.objective import Parameters
 from seatsim.diagnosis.screen import measure_sensitivities, name_unstable, screen_candidates
 
 from .toy import (

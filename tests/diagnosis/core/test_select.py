@@ -8,7 +8,7 @@ import pytest
 from scipy.optimize import lsq_linear
 
 from seatsim.diagnosis.select import select_effects
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis.settings import DiagnosisSettings
 
 from .toy import Cubed, add_up, draw_signals, make_problem, offer, stack, weigh_stated
 

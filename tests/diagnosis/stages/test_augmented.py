@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from ruamel.yaml import YAML
 
-from seatsim.diagnosis.augmented import write_augmented
+from seatsim.diagnosis.answer import write_augmented
 from seatsim.diagnosis.candidates import Candidate, list_candidates
 from seatsim.diagnosis.nuisance import Nuisance
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.objective import Parameters
 from seatsim.effects.seat import Biodynamics
 from seatsim.effects.sensor import Bias
 from seatsim.exchange.blocks.rig import rig_block

@@ -5,8 +5,8 @@ import pytest
 from scipy.optimize import lsq_linear
 
 from seatsim.diagnosis.candidates import list_candidates
-from seatsim.diagnosis.design.collinearity import fit_member, measure_collinearity, stack_whitened
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.design.separability import fit_member, measure_collinearity, stack_whitened
+from seatsim.diagnosis.objective import Parameters
 
 from .toy import Added, offer, place, pose, record, weigh_stated, whiten
 

@@ -9,8 +9,8 @@ from seatsim.diagnosis.localise.discrepancy import (
     is_bias_drift,
     is_from_outside,
 )
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
-from seatsim.diagnosis.settings.localising import LocalisationSettings
+from seatsim.diagnosis.settings import DiagnosisSettings
+from seatsim.diagnosis.settings.examining import LocalisationSettings
 
 from .toy import RATE
 

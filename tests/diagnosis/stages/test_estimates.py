@@ -10,12 +10,12 @@ from seatsim.diagnosis.decide import Decision
 from seatsim.diagnosis.estimates import (
     compare_comfort,
     estimate_causes,
+    estimate_standard_deviations,
     trace_motion,
 )
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.result import Trace
 from seatsim.diagnosis.select import Selection
-from seatsim.diagnosis.uncertainty import estimate_standard_deviations
 from seatsim.scenario.loading import single
 
 from .toy import (

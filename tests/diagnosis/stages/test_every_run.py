@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from seatsim.diagnosis.error_budget import budget_errors, carry_input_noise, measure_step_error
-from seatsim.diagnosis.every_run import list_gaps, replay_runs, state_model_error
-from seatsim.diagnosis.validate import make_scenario
+from seatsim.diagnosis.validate import list_gaps, make_scenario, replay_runs, state_model_error
 from seatsim.recordings.gap import measure_gap
 from seatsim.scenario.loading import single
 

@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from seatsim.diagnosis.localise import hypotheses
-from seatsim.diagnosis.localise.hypotheses import evaluate_hypotheses
+from seatsim.diagnosis.localise import localisation
 from seatsim.diagnosis.localise.input_estimate import InputEstimate
+from seatsim.diagnosis.localise.localisation import evaluate_hypotheses
 from seatsim.diagnosis.localise.reconstruction import PORTS, reconstruct
-from seatsim.diagnosis.objective import Evaluation, Linearisation
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.objective import Evaluation, Linearisation, Parameters
 
 from .toy import CHANNELS, RATE, SKIP, place, pose, record, weigh_stated
 
@@ -72,7 +71,7 @@ def test_the_evidence_is_that_of_the_dense_gaussian(folder, nuisances):
             shift = lsq_linear(rows, target, (-1.0 - now, 1.0 - now), tol=1e-14).x
         left = residuals - shift @ jacobian
         expected = (left @ inverse @ left + np.linalg.slogdet(covariance)[1]) / len(residuals) - 1.0
-        found = hypotheses._negative_log_evidence(objective, linearisation, estimates)
+        found = localisation._negative_log_evidence(objective, linearisation, estimates)
         assert found == pytest.approx(expected, abs=1e-5)
 
 

@@ -12,7 +12,7 @@ from seatsim.diagnosis.localise.input_estimate import (
     respond_to_error,
 )
 from seatsim.diagnosis.localise.reconstruction import PORTS, Port, reconstruct
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.objective import Parameters
 from seatsim.diagnosis.spectra import measure_power
 
 from .toy import CHANNELS, RATE, SIZES, SKIP, TAPS, add_taps, place, pose, record, weigh_stated

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.design.projection import measure_cosines, measure_likeness, project
+from seatsim.diagnosis.design.separability import measure_cosines, measure_likeness, project
 
 
 def regress(change, sensitivities, deviations):

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.signal import decimate
 
-from seatsim.diagnosis.localise.regression import explain_signal, predict_share
-from seatsim.diagnosis.settings.localising import LocalisationSettings
+from seatsim.diagnosis.localise.discrepancy import explain_signal, predict_share
+from seatsim.diagnosis.settings.examining import LocalisationSettings
 
 from .toy import CHANNELS, RATE, SKIP, place, pose, record
 

@@ -4,8 +4,8 @@ import dataclasses
 
 import pytest
 
+from seatsim.diagnosis.answer import write_answer
 from seatsim.diagnosis.result import Cause, Diagnosis, Estimate, GapFigures, Gaps, Share
-from seatsim.diagnosis.sentences import write_answer
 
 GAPS = Gaps(*(GapFigures(value, {}) for value in (0.5, 0.4, 0.1, 0.0521)), 0.8, (0.7, 0.9))
 MASS = Cause("driver.mass", 0.9, 0.7, {"change": Estimate(12.3456, 0.5, "kg")})

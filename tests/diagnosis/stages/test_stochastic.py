@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from seatsim.diagnosis.decide import Decision
-from seatsim.diagnosis.input_noise import carry_force
 from seatsim.diagnosis.localise.discrepancy import Discrepancy
 from seatsim.diagnosis.localise.stochastic import (
     BIAS_DRIFT,
@@ -17,10 +16,10 @@ from seatsim.diagnosis.localise.stochastic import (
     merge_effect,
     name_stochastic_effect,
 )
-from seatsim.diagnosis.noise import weigh_noise
+from seatsim.diagnosis.noise import carry_force, weigh_noise
 from seatsim.diagnosis.objective import Evaluation
 from seatsim.diagnosis.result import Cause, Estimate, Share
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.diagnosis.spectra import smooth_spectrum
 
 from .toy import CHANNELS, RATE, SIZES, SKIP, add_taps, place, pose, record

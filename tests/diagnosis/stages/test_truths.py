@@ -10,10 +10,8 @@ import pytest
 from ruamel.yaml import YAML
 
 from seatsim.diagnosis.diagnose import diagnose, diagnose_problem
-from seatsim.diagnosis.noise import weigh_noise
 from seatsim.diagnosis.result import Estimate, Share
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
-from seatsim.diagnosis.solution import Method
+from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.diagnosis.solve import solve
 from seatsim.effects.damper import GasSpring, SealFriction
 from seatsim.effects.seat import Friction, Mass, ProgressiveSpring
@@ -268,10 +266,12 @@ def test_a_second_recording_is_joined_to_the_first(heavier, tmp_path):
 
 
 def test_noise_that_is_expected_too_large_hides_no_effect(solved):
-    doubtful = Method(weigh_noise=lambda problem: weigh_noise(problem).scale(100.0))
-    found = diagnose_problem(solved("a heavier driver")[1], method=doubtful)
+    problem = solved("a heavier driver")[1]
+    doubtful = dataclasses.replace(problem.recording, header=problem.recording.header._replace(model_error=1.0))
+    problem = dataclasses.replace(problem, recording=doubtful)
+    found = diagnose_problem(problem)
     assert (found.verdict, found.selected) == ("known", ["driver.mass"])
-    chosen = solve(solved("a heavier driver")[1], (), lambda _: None, doubtful).decision.chosen
+    chosen = solve(problem, (), lambda _: None).decision.chosen
     assert chosen.cost == pytest.approx(chosen.rows, rel=0.05)
 
 
@@ -279,14 +279,14 @@ def test_noise_that_is_expected_too_large_hides_no_effect(solved):
 def test_a_force_by_which_repeats_differ_counts_as_noise(folder, repeats, verdict):
     floor = np.random.default_rng(4).standard_normal(SKIP + 400)
     runs, row = {"first": floor, "again": floor}, Row((Mass(30.0),), "known", disturb=pushed(20.0, "suspension"))
-    found = solve(pose(record_row(folder, row._replace(runs=runs), repeats), 1), (), lambda _: None, Method())
+    found = solve(pose(record_row(folder, row._replace(runs=runs), repeats), 1), (), lambda _: None)
     assert (found.decision.verdict, found.decision.chosen.parameters.names) == (verdict, {"driver.mass"})
 
 
 def test_on_a_bench_what_is_unexplained_lies_in_the_damper(folder):
     problem = pose(record(folder, (Added("three", 1.0),), MIDDLE, CHANNELS[:4], 0.02))
     bench = dataclasses.replace(problem.recording, header=problem.recording.header._replace(rig="damper_bench"))
-    found = solve(dataclasses.replace(problem, recording=bench), (), lambda _: None, Method())
+    found = solve(dataclasses.replace(problem, recording=bench), (), lambda _: None)
     assert found.decision.verdict == "unknown" and found.where == [Share("damper", 1.0)] and found.discrepancy is None
 
 

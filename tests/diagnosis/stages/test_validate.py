@@ -5,16 +5,16 @@ import dataclasses
 import numpy as np
 import pytest
 
-from seatsim.diagnosis import every_run
-from seatsim.diagnosis.every_run import measure_gaps, replay_runs
-from seatsim.diagnosis.objective import Evaluation
-from seatsim.diagnosis.parameters import Parameters
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis import validate
+from seatsim.diagnosis.objective import Evaluation, Parameters
+from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.diagnosis.validate import (
     choose_held_out_run,
     choose_typical_run,
     make_scenario,
+    measure_gaps,
     refit_without,
+    replay_runs,
 )
 from seatsim.effects.sensor import Gain
 from seatsim.scenario.loading import single
@@ -197,7 +197,7 @@ def draw_residuals(folder):
             for residual in left
         ]
         point = 1.0 - np.sqrt(np.mean(left[1] ** 2) / np.mean(left[0] ** 2))
-        return every_run._bootstrap_shrink(problem, measured, outputs, point, spread), point
+        return validate._bootstrap_shrink(problem, measured, outputs, point, spread), point
 
     return bootstrap
 

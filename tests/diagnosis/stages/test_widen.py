@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.solution import Method
 from seatsim.diagnosis.solve import solve
 from seatsim.diagnosis.widen import find_at_bound, search_wider
 from seatsim.effects.seat import Mass
@@ -15,9 +14,9 @@ WITHOUT = ["driver.mass"]
 
 
 def search(problem, said=None):
-    first = solve(problem, WITHOUT, lambda _: None, Method())
+    first = solve(problem, WITHOUT, lambda _: None)
     progress = (lambda _: None) if said is None else said.append
-    return first, *search_wider(first, WITHOUT, progress, Method())
+    return first, *search_wider(first, WITHOUT, progress)
 
 
 @pytest.fixture(scope="module")

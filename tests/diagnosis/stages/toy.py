@@ -13,10 +13,9 @@ from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.localise.reconstruction import PORTS, reconstruct
 from seatsim.diagnosis.noise import weigh_uniformly
 from seatsim.diagnosis.nuisance import Nuisance
-from seatsim.diagnosis.objective import Objective
-from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.objective import Objective, Parameters
 from seatsim.diagnosis.problem import pose_problem
-from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.effects.base import EffectSpecification
 from seatsim.effects.damper import GasSpring, SealFriction
 from seatsim.effects.seat import Biodynamics, Friction, ProgressiveSpring

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.schema.arrays import Array
-from seatsim.sweeps.statistics.chaos import (
+from seatsim.sweeps.chaos import (
     DEGREES,
     RUNS_PER_TERM,
     Basis,
@@ -27,17 +27,17 @@ from seatsim.sweeps.statistics.chaos import (
     make_key_basis,
     predict_left_out,
 )
-from seatsim.sweeps.statistics.rows import SweepRows, is_number
+from seatsim.sweeps.rows import SweepRows, is_number
 
 if TYPE_CHECKING:
     import pandas as pd
 
-RESAMPLES = 200
-MOST_RUNS = 4000
+_RESAMPLES = 200
+_MOST_RUNS = 4000
 """Runs that are used; more hardly narrow the intervals, and the bootstrap takes time for each."""
 _DEPENDENT = 0.3
 """Correlation of functions of two keys from which on these are dependent, and shares of variance have no meaning."""
-SAME = 0.95
+_SAME = 0.95
 """Correlation from which on two keys are one, however few their points."""
 _SWING = (0.05, 0.95)
 """Quantiles of a key between which a metric swings."""
@@ -79,7 +79,7 @@ class Sensitivities(NamedTuple):
 
 def analyse_sensitivity(rows: SweepRows) -> Sensitivities:
     """Return the sensitivity of every metric to every varied key, where the runs tell."""
-    usable = rows.usable.sample(MOST_RUNS, random_state=0) if len(rows.usable) > MOST_RUNS else rows.usable
+    usable = rows.usable.sample(_MOST_RUNS, random_state=0) if len(rows.usable) > _MOST_RUNS else rows.usable
     keys = [key for key in rows.keys if usable[key].nunique() > 1]
     if not keys:
         return Sensitivities([], "no key has two values among the runs that can be used")
@@ -124,7 +124,7 @@ def _find_dependent(columns: Sequence[Array]) -> tuple[int, int] | None:
         for b in range(a + 1, len(bases)):
             pairs = len(set(zip(columns[a].tolist(), columns[b].tolist(), strict=True)))
             # Few points are alike by chance, within three standard deviations of 1/sqrt(points); the same ones are not.
-            permitted = max(_DEPENDENT, min(SAME, 3 / np.sqrt(pairs)))
+            permitted = max(_DEPENDENT, min(_SAME, 3 / np.sqrt(pairs)))
             if np.abs(bases[a].T @ bases[b]).max() / len(bases[a]) > permitted:
                 return a, b
     return None
@@ -155,7 +155,7 @@ def _resample(basis: Basis, metrics: Array, draw: NDArray[np.intp]) -> Iterator[
     """Yield expansions of the runs with the draws taken anew, as often as chance has it; `draw` is that of each run."""
     rng = np.random.default_rng(0)
     draws = int(draw.max()) + 1
-    for _ in range(RESAMPLES):
+    for _ in range(_RESAMPLES):
         weights = np.sqrt(rng.multinomial(draws, np.full(draws, 1 / draws)))[draw, None]
         expansion = fit_expansion(weights * basis.values, weights * metrics)
         if expansion is not None:

@@ -1,13 +1,14 @@
-"""Engine `dask`: a cluster, embedded in this process or at the address of its scheduler.
+"""Clusters: the engine `dask`, and an array script for Slurm, each of whose tasks runs a share of a sweep.
 
-A task is a part of the sweep with the values of its runs, so that a worker needs nothing but seatsim, the files that
-the scenario names and the user's own code, at the same paths. A task whose worker dies is given to another one.
+A task of dask is a part of the sweep with the values of its runs, so that a worker needs nothing but seatsim, the files
+that the scenario names and the user's own code, at the same paths. A task whose worker dies is given to another one.
 """
 
 from __future__ import annotations
 
 import logging
 import os
+import shlex
 import signal
 import socket
 from collections.abc import Generator, Iterator, Mapping, Sequence
@@ -16,19 +17,21 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from seatsim.provenance.versions import list_versions
+from seatsim.provenance.statement import list_versions
 from seatsim.schema.errors import InputError, RunError
+from seatsim.schema.files import make_folder, write_text
 from seatsim.schema.modules import started_elsewhere, use_all, used_files
-from seatsim.sweeps.engines.base import Work, simulate_one
-from seatsim.sweeps.identity import LIBRARIES, list_differences
+from seatsim.sweeps.engines import Work, simulate_one
+from seatsim.sweeps.folder import LIBRARIES, list_differences
 from seatsim.sweeps.outcome import Outcome
-from seatsim.sweeps.plan import Selection
+from seatsim.sweeps.parts import part_of
+from seatsim.sweeps.plan import Plan, Selection
 
 if TYPE_CHECKING:
     from distributed import Client
 
-EXTRA = 'engine dask needs an extra; install it with: pip install "seatsim[cluster]"'
-AHEAD = 4
+_EXTRA = 'engine dask needs an extra; install it with: pip install "seatsim[cluster]"'
+_AHEAD = 4
 """Tasks for each worker that are sent before it has asked for them, so that it never waits for one."""
 LONGEST_SEARCH = 10
 """Seconds in which a scheduler must answer."""
@@ -44,7 +47,7 @@ def open_cluster(jobs: int, address: str | None) -> Iterator[_ClusterEngine]:
     try:
         import distributed  # noqa: F401
     except ImportError as error:
-        raise InputError(EXTRA) from error
+        raise InputError(_EXTRA) from error
     # What goes wrong is said once, by the error that reaches the user.
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
     with _embed(jobs) if address is None else _connect(address) as client:
@@ -72,7 +75,7 @@ class _ClusterEngine(NamedTuple):
                 self.client.submit(_simulate, _make_task(work, task), pure=False) for task in islice(waiting, count)
             ]
 
-        running = as_completed(submit(AHEAD * len(self.client.scheduler_info()["workers"])))
+        running = as_completed(submit(_AHEAD * len(self.client.scheduler_info()["workers"])))
         for future in running:
             yield _await_outcomes(future)
             future.release()
@@ -170,3 +173,45 @@ def _simulate(task: _Task) -> list[Outcome]:
         )
     selection, histories = task.selection, task.histories
     return [simulate_one(selection.plan, inner, number, histories) for number, inner in selection.runs]
+
+
+_MOST_TASKS = 256
+"""Tasks of an array, well below the 1001 that Slurm permits unless it is configured otherwise."""
+_SCRIPT = """\
+#!/bin/bash
+# {runs} runs of {file}, in {tasks} shares. Submit with: sbatch {script}
+# A task that ends early goes on where it was when it is submitted again: sbatch --array=NUMBER {script}
+#SBATCH --job-name={name}
+#SBATCH --array=1-{tasks}
+#SBATCH --cpus-per-task=1
+#SBATCH --output={logs}
+exec {command} --part "$SLURM_ARRAY_TASK_ID/{tasks}" --jobs "${{SLURM_CPUS_PER_TASK:-1}}" --resume
+"""
+
+
+def write_slurm(
+    script: Path, file: Path, folder: Path, plan: Plan, keep_histories: bool, own_code: Sequence[Path]
+) -> Path:
+    """Write the script for a sweep `file` whose rows go to `folder`; paths in it are absolute, and quoted.
+
+    Raises:
+        InputError: the script or the folder cannot be written, or a path has a line break, which would end its line.
+    """
+    for path in (script, file, folder, *own_code):
+        if not str(path.resolve()).isprintable():
+            raise InputError(
+                f"{str(path)!r}: a path in a script for Slurm has no line break or other control character; rename it"
+            )
+    make_folder(folder)
+    words = ["seatsim", "sweep", str(file.resolve()), "--out", str(folder.resolve())]
+    words += ["--keep", "histories"] if keep_histories else []
+    words += [word for path in own_code for word in ("--with", str(path.resolve()))]
+    logs = str(folder.resolve()).replace("%", "%%") + "/slurm-%a.log"  # a single % begins a pattern of Slurm
+    names = {"file": file.name, "name": f"seatsim-{file.stem}", "script": str(script), "logs": logs}
+    text = _SCRIPT.format(
+        runs=plan.runs,
+        command=shlex.join(words),
+        tasks=min(part_of(plan.runs - 1) + 1, _MOST_TASKS),
+        **{key: shlex.quote(name) for key, name in names.items()},
+    )
+    return write_text(script, text)

@@ -18,14 +18,13 @@ from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError, RunError, SeatsimError
 from seatsim.simulation.runs import measure_run
 from seatsim.simulation.validity import list_reasons
-from seatsim.sweeps.engines.base import Work
-from seatsim.sweeps.engines.local import LocalEngine
+from seatsim.sweeps.engines import LocalEngine, Work
 from seatsim.sweeps.outcome import Outcome, floor_of, outcome_of
 from seatsim.sweeps.plan import Plan
 
-AT_ONCE = 32_768
+_AT_ONCE = 32_768
 """Runs that are made ready together, as many as the largest devices simulate at once."""
-EXTRA = 'engine cuda needs an extra; install it with: pip install "seatsim[cuda]"'
+_EXTRA = 'engine cuda needs an extra; install it with: pip install "seatsim[cuda]"'
 
 
 def check_device(keep_histories: bool) -> None:
@@ -38,7 +37,7 @@ def check_device(keep_histories: bool) -> None:
         raise InputError("--engine cuda: no histories are kept on the device; choose --keep none, or --engine local")
     # The target for cards within numba itself cannot type the models.
     if not config.ENABLE_CUDASIM and find_spec("numba_cuda") is None:
-        raise InputError(EXTRA)
+        raise InputError(_EXTRA)
     from seatsim.kernel.cuda_lanes import has_device
 
     if not has_device():
@@ -60,8 +59,8 @@ class CudaEngine(NamedTuple):
             RunError: the device failed.
         """
         runs, others = [run for task in work.tasks for run in task], list[int]()
-        for first in range(0, len(runs), AT_ONCE):
-            batch = runs[first : first + AT_ONCE]
+        for first in range(0, len(runs), _AT_ONCE):
+            batch = runs[first : first + _AT_ONCE]
             outcomes = _simulate_on_device(work.plan, batch)
             done = {outcome.run for outcome in outcomes}
             others += [run for run in batch if run not in done]

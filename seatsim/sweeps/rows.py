@@ -73,16 +73,16 @@ def is_number(column: pd.Series[Any]) -> bool:
     return column.dtype.kind in "if"
 
 
-MOST_GROUPS = 60
+_MOST_GROUPS = 60
 """Combinations of texts up to which each has rows of its own; of more, all runs are taken together."""
-SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)
+_SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)
 NAMES = ("p05", "p25", "median", "p75", "p95")
 
 
-def group_rows(rows: SweepRows) -> Iterator[tuple[dict[str, object], pd.DataFrame]]:
+def _group_rows(rows: SweepRows) -> Iterator[tuple[dict[str, object], pd.DataFrame]]:
     """Yield each combination of the texts that were varied with its runs; all runs where there is none, or too many."""
     texts = rows.texts
-    if not texts or len(rows.usable.groupby(texts)) > MOST_GROUPS:
+    if not texts or len(rows.usable.groupby(texts)) > _MOST_GROUPS:
         yield dict.fromkeys(texts, "all"), rows.usable
         return
     for values, runs in rows.usable.groupby(texts, sort=False):
@@ -97,12 +97,12 @@ def tabulate_quantiles(rows: SweepRows) -> pd.DataFrame:
     import pandas as pd
 
     found = []
-    for group, runs in group_rows(rows):
+    for group, runs in _group_rows(rows):
         for metric in rows.metrics:
             values = runs[metric].dropna()
             if values.empty:
                 continue
-            quantiles = dict(zip(NAMES, values.quantile(list(SHARES)), strict=True))
+            quantiles = dict(zip(NAMES, values.quantile(list(_SHARES)), strict=True))
             found.append(
                 {
                     **group,
@@ -143,7 +143,7 @@ def count_exceedances(rows: SweepRows) -> list[Exceedance]:
 
     limits = rows.manifest["limits"] or _DEFAULT_LIMITS
     found = []
-    for group, runs in group_rows(rows):
+    for group, runs in _group_rows(rows):
         for metric, limit in limits.items():
             values = runs[metric].dropna()
             if values.empty:

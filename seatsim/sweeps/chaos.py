@@ -15,7 +15,7 @@ import numpy as np
 
 from seatsim.schema.arrays import Array
 
-MOST_VALUES = 40
+_MOST_VALUES = 40
 """Different texts of a key that have contrasts of their own."""
 RUNS_PER_TERM = 2
 """Runs for each coefficient that are needed at least."""
@@ -58,7 +58,7 @@ def make_key_basis(values: Array | Sequence[object], degree: int) -> Array:
         raw = np.polynomial.legendre.legvander(2 * rank - 1, min(degree, len(distinct) - 1))[:, 1:]
     else:
         distinct, index = np.unique(column.astype(str), return_inverse=True)
-        raw = (index[:, None] == np.arange(min(len(distinct), MOST_VALUES) - 1)).astype(float)
+        raw = (index[:, None] == np.arange(min(len(distinct), _MOST_VALUES) - 1)).astype(float)
     whole = np.column_stack([np.ones(len(column)), raw])
     q, r = np.linalg.qr(whole)
     # The sign of a column of Q is the library's choice; with that of R a function rises with the key.

@@ -1,6 +1,7 @@
-"""Engine `local`: a thread of this process and, where they pay, further processes of this machine.
+"""Engines of a sweep: what an engine is given and returns, and the engine `local`.
 
-Most of a short run is Python between compiled calls. Threads of one process take turns with it, processes do not.
+It is a thread of this process and, where they pay, further processes of this machine. Most of a short run is Python
+between compiled calls. Threads of one process take turns with it, processes do not.
 """
 
 from __future__ import annotations
@@ -13,18 +14,46 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
 from dataclasses import replace
 from functools import partial
-from typing import Any, NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple, Protocol
 
 from threadpoolctl import threadpool_limits
 
 from seatsim.schema.errors import RunError
 from seatsim.schema.processes import open_pool
-from seatsim.sweeps.engines.base import Work, simulate_one
-from seatsim.sweeps.outcome import Outcome
+from seatsim.sweeps.outcome import Outcome, simulate_run
+from seatsim.sweeps.plan import Plan
 
-BATCH, _LONGEST_BATCH = 20, 0.2
+
+class Work(NamedTuple):
+    """The runs of a sweep that are to be simulated: tasks of run numbers, each from one part of the sweep.
+
+    `histories` is a folder in which channels are kept, or None.
+    """
+
+    plan: Plan
+    tasks: Sequence[Sequence[int]]
+    histories: Path | None
+
+
+class Engine(Protocol):
+    """Carries out work; one that takes lanes of one combination of models regroups the runs of several tasks."""
+
+    def __call__(self, work: Work) -> Generator[list[Outcome]]:
+        """Yield outcomes as they come, in any order and in lists of any length; each run of the work has one.
+
+        Where the iterator is closed, as on an interrupt, nothing of it keeps the process from ending.
+        """
+
+
+def simulate_one(plan: Plan, run: int, number: int, histories: Path | None) -> Outcome:
+    """Simulate run `run` of a plan, which has this `number` in the sweep."""
+    return simulate_run(number, lambda: plan.scenario(run), histories)
+
+
+_BATCH, _LONGEST_BATCH = 20, 0.2
 """Most runs that a process is given at once, and seconds that they may take: so much is lost where it is killed."""
-SHARES = 4
+_SHARES = 4
 """Towards the end a batch is this part of what is left for each worker, so that all of them end together."""
 _AT_HAND = 2
 """Batches that a process has, one of which it works on."""
@@ -121,8 +150,8 @@ class _Crew:
             # Without the scenarios that the plan keeps: the thread adds to them at any time.
             work = Work(replace(self._work.plan), (), self._work.histories)
             self._pool = self._ends.enter_context(open_pool(self._processes, partial(_take_work, work)))
-        longest = min(BATCH, _LONGEST_BATCH // pace)
-        size = int(max(1, min(longest, len(self._waiting) // (SHARES * self._engine.jobs))))
+        longest = min(_BATCH, _LONGEST_BATCH // pace)
+        size = int(max(1, min(longest, len(self._waiting) // (_SHARES * self._engine.jobs))))
         while self._waiting and len(self._given) - (self._here is not None) < _AT_HAND * self._processes:
             batch = [self._waiting.popleft() for _ in range(min(size, len(self._waiting)))]
             try:

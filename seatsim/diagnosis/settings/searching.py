@@ -1,0 +1,189 @@
+"""Settings of the noise model, of the fits, of the search for effects, and of its second pass."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class NoiseSettings(NamedTuple):
+    """What counts as noise in the residuals, by channel and frequency."""
+
+    highest_frequency: float = 100.0
+    """Content above it is not compared [Hz].
+    Trades off: higher: broadband noise dilutes the evidence; lower: stops and clearances are seen less.
+    Chosen: above what a seat transmits, below what 500 rows per second resolve."""
+    model_error: float = 0.01
+    """Share of a channel's local amplitude spectrum that a right model may miss.
+    Trades off: higher: small effects stay unseen; lower: the form of the nominal model is taken for an effect.
+    Chosen: on simulated rigs."""
+    smoothing: float = 0.15
+    """Half-width, relative to the frequency, over which spectra are averaged.
+    Trades off: wider: narrow resonances are smeared; narrower: the weights themselves are random.
+    Chosen: by convention."""
+    replicates: int = 3
+    """Simulations with newly drawn input noise per run.
+    Trades off: more: smoother spectra of the carried noise; fewer: less time.
+    Chosen: numerically."""
+    least_power: float = 1e-6
+    """Least noise power, as a share of a channel's variance.
+    Trades off: a lower one lets noiseless channels dominate all others.
+    Chosen: numerically."""
+    broadband_excess: float = 2.0
+    """Factor on the stated noise power above `highest_frequency` from which a residual is broadband.
+    Trades off: lower: understated sensor noise is taken for a broadband residual.
+    Chosen: on simulated rigs."""
+    broadband_share: float = 0.5
+    """Share of what the best set leaves from which a broadband residual is added to the noise.
+    Trades off: lower: real effects are counted as noise; higher: a broadband residual makes a verdict unknown.
+    Chosen: on simulated rigs."""
+
+
+class FitSettings(NamedTuple):
+    """Gauss-Newton fits of nuisance parameters and effects."""
+
+    prior_std: float = 0.58
+    """Standard deviation of a nuisance parameter, as a share of its tolerance.
+    Trades off: lower: parameters absorb less of an effect.
+    Chosen: 1/sqrt(3), of a uniform distribution."""
+    difference_step: float = 0.02
+    """Step of the finite differences, in natural sizes of a parameter.
+    Trades off: larger: curvature enters; smaller: switching dampers make differences rough.
+    Chosen: numerically."""
+    most_steps: int = 6
+    """Most Gauss-Newton steps of a fit.
+    Trades off: more: hard fits end nearer their minimum, and take longer.
+    Chosen: numerically."""
+    settled: float = 0.01
+    """A fit ends where a step lowers its cost by less than this share.
+    Trades off: lower: more steps for no change of the verdict.
+    Chosen: numerically."""
+    backtracking: tuple[float, ...] = (1.0, 0.4, 0.12)
+    """Fractions of a step that are tried in turn.
+    Trades off: more of them: slower, safer descents.
+    Chosen: numerically."""
+    pattern_steps: tuple[float, ...] = (0.3, 0.15, 0.08, 0.04, 0.02)
+    """Steps of a pattern search, in natural sizes of a parameter.
+    Trades off: the first larger: other minima are reached; the last smaller: a nearer minimum, more time.
+    Chosen: numerically."""
+    search_share: float = 0.7
+    """Share of the time budget after which the search ends.
+    Trades off: higher: more is tried where time is short; lower: more of it is left to validate and state the
+    answer.
+    Chosen: by convention."""
+    fitted_tolerance: float = 0.5
+    """Tolerance of parameters that a recording states as `fitted`.
+    Trades off: higher: effects vanish in parameters; lower: what a fit has absorbed of an effect cannot be given
+    back.
+    Chosen: a viscous coefficient fitted in place of a missing friction came out twice as large."""
+
+
+class SelectionSettings(NamedTuple):
+    """Subset selection: screening by linear models, fits of single effects, then of larger sets."""
+
+    first_shortlist: int = 12
+    """Candidates whose fit is begun after the screening for a first effect.
+    Trades off: fewer: an effect that a linear model underrates is missed; more: time.
+    Chosen: on simulated rigs."""
+    further_shortlist: int = 7
+    """Candidates whose fit is begun after the screening for a further effect.
+    Trades off: as `first_shortlist`.
+    Chosen: on simulated rigs."""
+    finalists: int = 4
+    """Begun fits that are carried to their end.
+    Trades off: fewer: slow starters are lost; more: time.
+    Chosen: on simulated rigs."""
+    begun_steps: int = 2
+    """Steps after which a begun fit is compared with the others.
+    Trades off: as `finalists`.
+    Chosen: on simulated rigs."""
+    beam: int = 2
+    """Sets of each size from which the next larger ones are made.
+    Trades off: 1 is a greedy search, which a wrong first effect misleads.
+    Chosen: on simulated rigs."""
+    largest_set: int = 3
+    """Most effects of a set.
+    Trades off: more: time, and sets that explain anything.
+    Chosen: by convention."""
+    largest_uniform_set: int = 2
+    """Most effects of a set that is sought under uniform weights.
+    Trades off: more: time.
+    Chosen: by convention."""
+    stretch: float = 6.0
+    """Largest factor by which the screening enlarges the start of a candidate.
+    Trades off: larger: a linear model is trusted farther than it holds.
+    Chosen: on simulated rigs."""
+    swap_within: float = 1.5
+    """Factor on the cost of an effect within which another one is tried in its place.
+    Trades off: larger: more fits; smaller: a wrong member of a set stays.
+    Chosen: on simulated rigs."""
+    most_swaps: int = 3
+    """Effects that are tried in the place of each one.
+    Trades off: as `swap_within`.
+    Chosen: on simulated rigs."""
+    start_factors: tuple[float, ...] = (0.6, 1.0, 1.6)
+    """Multiples of the size that a linear model predicts at which a candidate is started.
+    Trades off: more: fewer fits that end in a wrong minimum, more time.
+    Chosen: on simulated rigs."""
+    limit_factors: tuple[float, ...] = (1.08, 1.16, 1.27)
+    """Factors that are tried on a limit that acts too much; their inverses where it acts too little.
+    Trades off: as `start_factors`: a limit acts by what exceeds it, so that its size must be near.
+    Chosen: on simulated rigs."""
+    limit_starts: tuple[float, ...] = (1.0, 0.5, 0.7, 1.4, 2.0)
+    """Factors on the start of a limit from which fits are begun.
+    Trades off: a fit does not feel a limit far beyond the motion.
+    Chosen: on simulated rigs."""
+    shape_reach: float = 8.0
+    """Factor by which a parameter of shape may leave its start.
+    Trades off: larger: effects imitate each other by extreme shapes.
+    Chosen: on simulated rigs."""
+    least_factor: float = 1e-3
+    """Factor on a start below which the data do not show the candidate at all.
+    Chosen: numerically."""
+    nothing_left: float = 0.15
+    """Reduced chi-square less 1 below which nothing is left to explain.
+    Trades off: lower: false alarms; higher: weak effects are missed.
+    Chosen: on simulated rigs."""
+    promising: float = 0.97
+    """Share of what is left so far that a further effect may leave, as predicted, for it to be tried.
+    Trades off: lower: further effects are missed; higher: time.
+    Chosen: effects that are far from linear were predicted to leave up to 0.95, and left 0.05."""
+    enlarge: float = 0.45
+    """Share of what is left that a further effect must leave at most.
+    Trades off: higher: a second effect is stated where the first has another form than its candidate.
+    Chosen: on simulated rigs."""
+    enlarge_explained: float = 0.7
+    """The same of a set that explains the recording already, where the gap falls too.
+    Trades off: as `enlarge`.
+    Chosen: on simulated rigs true second effects left up to 0.66, false ones 0.77 and more."""
+    gap_lowered: float = 0.85
+    """Share of the gap beyond noise that it then leaves at most.
+    Trades off: as `enlarge`.
+    Chosen: on simulated rigs true second effects left up to 0.8, false ones 0.9 and more."""
+    worthwhile: float = 0.85
+    """Larger sets are sought while the last enlargement left less than this share.
+    Trades off: higher: time.
+    Chosen: on simulated rigs."""
+
+
+class WideningSettings(NamedTuple):
+    """The second search, with wider tolerances of the parameters that end at their bounds."""
+
+    at_bound: float = 0.98
+    """Deviation, in tolerances, from which a parameter is at its bound.
+    Chosen: numerically."""
+    factor: float = 3.0
+    """Factor on the tolerance of parameters at their bounds.
+    Trades off: larger: a parameter takes the place of an effect; smaller: what a fit has absorbed stays absorbed.
+    Chosen: by convention."""
+    promising: float = 0.7
+    """Share of the remainder that the same effects may leave within the wider tolerance for a search to be made.
+    Trades off: lower: a wrong first set is kept; higher: time.
+    Chosen: on simulated rigs."""
+    clearly_less: float = 0.5
+    """Share of the remainder that the second search may leave for it to be stated.
+    Trades off: higher: stated tolerances are overruled by what lies outside the library.
+    Chosen: on simulated rigs."""
+    strained: int = 3
+    """Parameters at their bounds from which several effects that explain everything are tried with one less.
+    Trades off: lower: a true second effect is taken for a parameter; higher: a false one stays beside the true one.
+    Chosen: on simulated rigs."""
