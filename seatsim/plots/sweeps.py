@@ -167,9 +167,11 @@ def plot_means(rows: SweepRows, order: Sequence[str], metric: str) -> Figure | N
     table = means.groupby(["y", "x"], observed=True)["z"].mean().unstack()
     values = table.to_numpy()
     names = [str(name) for name in table.index]
-    grid = Grid((0.32 * len(names),), left=measure_names(names) + 0.25, right=0.15, bottom=0.55)
+    grid = Grid((0.32 * len(names),), left=measure_names(names), right=0.15, bottom=0.55)
     title = f"Mean {shown.words} over {keys[0]} and {keys[1]}"
-    page = make_page(title, f"Mean over the runs of each cell, in {shown.unit}; the darker, the larger.", grid)
+    page = make_page(
+        title, f"Rows: {keys[1]}. Mean over the runs of each cell, in {shown.unit}; the darker, the larger.", grid
+    )
     axes = page.rows[0][0]
     axes.grid(False)
     axes.pcolormesh(values, cmap=colormaps["Blues"], rasterized=True)
@@ -181,8 +183,7 @@ def plot_means(rows: SweepRows, order: Sequence[str], metric: str) -> Figure | N
             axes.text(column + 0.5, row + 0.5, format_number(value), ha="center", va="center", fontsize=9, color=ink)
     axes.set_xticks(np.arange(values.shape[1]) + 0.5, [clean_text(str(name), 12) for name in table.columns], fontsize=9)
     axes.set_yticks(np.arange(len(names)) + 0.5, [clean_text(name, 32) for name in names], fontsize=9)
-    for axis, key in ((axes.xaxis, keys[0]), (axes.yaxis, keys[1])):
-        axis.set_label_text(clean_text(describe_column(key, rows.units).axis))
+    axes.set_xlabel(clean_text(describe_column(keys[0], rows.units).axis))
     return page.figure
 
 
