@@ -229,18 +229,35 @@ def _line(event: yaml.Event) -> int:
     return int(event.start_mark.line) + 1
 
 
-def dump(content: object) -> str:
-    """Return the YAML of mappings, lists and plain values in their order, innermost ones in one line each."""
-    return str(
-        yaml.dump(content, None, _Dumper, default_flow_style=None, sort_keys=False, allow_unicode=True, width=9999)
-    )
+def dump(content: object, line_each: bool = False) -> str:
+    """Return the YAML of mappings, lists and plain values in their order.
+
+    The innermost ones stand in one line each, or with `line_each` every key and entry in a line of its own.
+    """
+    form = {"default_flow_style": False if line_each else None, "sort_keys": False, "allow_unicode": True}
+    return str(yaml.dump(content, None, _Dumper, width=9999, **form))
 
 
 def _represent_text(dumper: yaml.SafeDumper, text: str) -> yaml.ScalarNode:
-    """Return a text such that `parse` reads it as one: `1e5` stands in quotation marks."""
+    """Return a text such that `parse` reads it as one: `0o7` stands in quotation marks."""
     is_other = text and (text in _WORDS or _WHOLE.fullmatch(text) or _FLOAT.fullmatch(text))
     return dumper.represent_scalar("tag:yaml.org,2002:str", text, style="'" if is_other else None)
 
 
-_Dumper = type("_Dumper", (yaml.SafeDumper,), {})
-yaml.add_representer(str, _represent_text, _Dumper)
+def _represent_number(dumper: yaml.SafeDumper, number: float) -> yaml.ScalarNode:
+    """Return a number as Python writes it: `1e-05`, where YAML 1.1 has `1.0e-05`."""
+    if not math.isfinite(number):
+        return dumper.represent_float(number)
+    return dumper.represent_scalar("tag:yaml.org,2002:float", repr(number))
+
+
+class _Dumper(yaml.SafeDumper):  # type: ignore[misc]  # its types are not known
+    """Writes every value where it stands: no `*name` in place of one that stands elsewhere too."""
+
+    def ignore_aliases(self, data: object) -> bool:
+        return True
+
+
+_Dumper.add_implicit_resolver("tag:yaml.org,2002:float", _FLOAT, list("-+.0123456789"))
+_Dumper.add_representer(str, _represent_text)
+_Dumper.add_representer(float, _represent_number)

@@ -7,9 +7,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from seatsim.cli.outputs.writing import name_pictures, render_yaml, write_each, write_outputs
+from seatsim.cli.outputs.writing import name_pictures, write_each, write_outputs
 from seatsim.schema.files import write_text, write_together
 from seatsim.schema.leftovers import temporary_folder
+from seatsim.schema.yaml_text import dump
 
 if TYPE_CHECKING:
     from seatsim.characterisation.summary import Characterisation
@@ -59,9 +60,9 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> list[Path]:
     from seatsim.report.diagnosis import report_diagnosis
     from seatsim.scenario.loading import single
 
-    scenarios = {"augmented.yaml": render_yaml(diagnosis.augmented)}
+    scenarios = {"augmented.yaml": dump(diagnosis.augmented, line_each=True)}
     if diagnosis.experiment is not None and diagnosis.experiment.scenario is not None:
-        scenarios["experiment.yaml"] = render_yaml(diagnosis.experiment.scenario)
+        scenarios["experiment.yaml"] = dump(diagnosis.experiment.scenario, line_each=True)
     with temporary_folder() as drafts:
         for name, text in scenarios.items():
             single(write_text(Path(drafts) / name, text))
@@ -100,7 +101,7 @@ def _contents_of_fit(found: Identification) -> dict[str, object]:
     from seatsim.report.identification import report_identification
 
     return {
-        "parameters.yaml": HEAD + ("" if found.commanded else NO_COIL) + render_yaml(found.to_scenario()),
+        "parameters.yaml": HEAD + ("" if found.commanded else NO_COIL) + dump(found.to_scenario(), line_each=True),
         "fit.json": found,
         "report.html": report_identification(found, f"seatsim identify DATA --model {found.model}"),
         **name_pictures({"loops": plot_predictions(found)}),

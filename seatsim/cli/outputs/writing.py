@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import csv
-import io
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-
-from ruamel.yaml import YAML
 
 from seatsim.provenance.manifest import Measured, write_documented
 from seatsim.report.rendering import write_html
@@ -46,14 +43,6 @@ def write_each(contents: Mapping[str, object], folder: Path) -> list[Path]:
 def name_pictures(figures: Mapping[str, object]) -> dict[str, object]:
     """Return figures by the names of their files."""
     return {f"{name}.png": figure for name, figure in figures.items()}
-
-
-def render_yaml(content: Row) -> str:
-    """Return a mapping as YAML, a line for each key."""
-    text, yaml = io.StringIO(), YAML()
-    yaml.default_flow_style = False
-    yaml.dump(dict(content), text)
-    return text.getvalue()
 
 
 def _write_rows(path: Path, content: Sequence[Row] | pd.DataFrame) -> Path:
