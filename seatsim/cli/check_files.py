@@ -23,7 +23,7 @@ from seatsim.recordings.recording import HEADER, load_recording
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.scenario.describe import KINDS
 from seatsim.scenario.loading import load
-from seatsim.scenario.plausibility import list_doubts
+from seatsim.scenario.numbers import list_doubts
 from seatsim.schema.content import IfAny, Joined
 from seatsim.schema.errors import InputError, SeatsimError
 from seatsim.schema.fields import bounds, field_names

@@ -18,7 +18,7 @@ from types import FrameType
 from typing import NoReturn
 
 from seatsim.cli.signals import SIGNALS, say_interrupted
-from seatsim.schema.leftovers import remove_leftovers
+from seatsim.schema.guarded import remove_leftovers
 
 GRACE = 1.2
 """Seconds from a signal to the end of a process that does not end by itself."""

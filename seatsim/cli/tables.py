@@ -10,10 +10,10 @@ from rich import box
 from rich.markup import escape
 from rich.table import Table
 
-from seatsim.metrics.arrays import ratio
+from seatsim.metrics.motion import ratio
 from seatsim.metrics.table import SHORT
-from seatsim.scenario.conditions import group_by_condition
-from seatsim.scenario.published import Published, published_figures
+from seatsim.scenario.checks import Published, published_figures
+from seatsim.scenario.scenario import group_by_condition
 from seatsim.simulation.performance_bounds import measure_distance
 from seatsim.simulation.result import Run
 

@@ -20,8 +20,7 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 from seatsim.schema.errors import InputError, nearest
-from seatsim.schema.guarded import in_mib, read_bytes
-from seatsim.schema.leftovers import temporary_folder
+from seatsim.schema.guarded import in_mib, read_bytes, temporary_folder
 from seatsim.schema.modules import LARGEST_UNIT
 from seatsim.schema.units import Conversion, conversion
 from seatsim.schema.validation import is_finite_number

@@ -26,9 +26,8 @@ from seatsim.scenario.scenario import Scenario, Start
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import Record
-from seatsim.simulation.bench_response import FINER
 from seatsim.simulation.inputs import RigInputs
-from seatsim.simulation.respond import respond
+from seatsim.simulation.respond import FINER, respond
 
 _COARSEST_STEP = 0.002
 """s; longest step of the simulation: its adaptive sub-steps make a shorter one change no figure of a diagnosis."""

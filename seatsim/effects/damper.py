@@ -6,8 +6,7 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.compilation.jit import jit
-from seatsim.effects.base import Form, effect
-from seatsim.effects.laws import FRICTIONS, dahl_rate
+from seatsim.effects.base import FRICTIONS, Form, dahl_rate, effect
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param

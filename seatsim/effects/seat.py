@@ -7,8 +7,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from seatsim.effects.base import Form, effect
-from seatsim.effects.laws import FRICTIONS, buffer, dahl_rate
+from seatsim.effects.base import FRICTIONS, Form, buffer, dahl_rate, effect
 from seatsim.kernel.rig import SeatMotion
 from seatsim.rig.plant import Plant
 from seatsim.rig.state import State

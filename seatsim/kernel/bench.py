@@ -14,7 +14,7 @@ import numpy as np
 from seatsim.compilation.cached import compiled
 from seatsim.compilation.jit import jit
 from seatsim.kernel.generic import DamperModel, force, rates, scaling_at
-from seatsim.kernel.integration import MOST_DEBT, axpy, combine, owe
+from seatsim.kernel.hooks import MOST_DEBT, axpy, combine, owe
 from seatsim.kernel.inverse import total_force
 from seatsim.kernel.step import relaxed
 from seatsim.rig.coil import Coil
@@ -85,7 +85,7 @@ def run_bench(
     x [m], v [m/s], current [A] and temperature [degC] have shape (2 n + 1,), sampled every half step;
     temperature is constant over a step. `initial_state` is the damper's at the first sample, `step` in s. The number
     returned is n + 1 on success; otherwise the damper's state has diverged at the last sample reached, or is too stiff
-    (`seatsim.kernel.integration`).
+    (`seatsim.kernel.hooks`).
     Set-valued friction acts as `coulomb sgn(v)`, zero at v = 0. A step is divided into at most `most_parts` parts, so
     that it adds an error of `tolerance` at most, relative to the force plus `FORCE_SCALE`. To be compiled by
     `compiled`.

@@ -7,8 +7,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from seatsim.compilation.jit import jit
-from seatsim.kernel.assumed_model import InverseModel
 from seatsim.kernel.channels import CURRENT_COMMAND
+from seatsim.kernel.generic import InverseModel
 from seatsim.kernel.rig import Rig
 from seatsim.kernel.step import StepInputs
 from seatsim.rig.coil import Coil

@@ -11,8 +11,7 @@ import math
 from typing import NamedTuple
 
 from seatsim.compilation.jit import jit, jit_apart
-from seatsim.kernel.hooks import hook
-from seatsim.kernel.integration import MOST_DEBT, axpy, combine, owe
+from seatsim.kernel.hooks import MOST_DEBT, axpy, combine, hook, owe
 from seatsim.kernel.rig import STICKING, Disturbance, Rig, RigForces, derivative
 from seatsim.rig.coil import Coil, relax
 from seatsim.rig.state import CUSHION_DISPLACEMENT, CUSHION_VELOCITY, VELOCITY, State
@@ -69,7 +68,7 @@ class IntegratorState(NamedTuple):
     """State of the integration: state of the rig, its rates and forces, phase of the friction, next sub-step in s.
 
     `slip` is 0 without set-valued friction, -1 or 1 where the suspension slides, STICKING where it is stuck; `debt` the
-    sub-steps owed (`seatsim.kernel.integration.owe`).
+    sub-steps owed (`seatsim.kernel.hooks.owe`).
     """
 
     state: State
@@ -170,7 +169,7 @@ def advance(
     """Return the state of the integration after one step, the current then in A, and whether the step succeeded.
 
     A step fails where the error stays beyond `DIVERGED` even in the shortest sub-step, or is NaN; the last valid state
-    is then returned. So does one by which the run takes more work than `seatsim.kernel.integration` grants. `tolerance`
+    is then returned. So does one by which the run takes more work than `seatsim.kernel.hooks` grants. `tolerance`
     is the error in the velocities that a sub-step may add, relative to their size plus `SPEED_SCALE`; above about 0.1
     it has no effect.
     """

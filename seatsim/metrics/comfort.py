@@ -14,8 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from seatsim.metrics.arrays import as_pair, as_signal, ratio, require_positive
-from seatsim.metrics.motion import peak, rms
+from seatsim.metrics.motion import as_pair, as_signal, peak, ratio, require_positive, rms
 from seatsim.metrics.weighting import weight
 from seatsim.schema.arrays import Array
 

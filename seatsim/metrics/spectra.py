@@ -9,7 +9,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike
 from scipy import fft
 
-from seatsim.metrics.arrays import as_pair, require_positive
+from seatsim.metrics.motion import as_pair, require_positive
 from seatsim.metrics.weighting import ComplexArray
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError

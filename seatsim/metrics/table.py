@@ -9,9 +9,19 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from seatsim.metrics.arrays import as_signal, ratio, require_finite, require_positive
 from seatsim.metrics.comfort import crest_factor, mtvv, vdv
-from seatsim.metrics.motion import electrical_energy, end_stop_hits, energy_residual, force_tracking_error, peak, rms
+from seatsim.metrics.motion import (
+    as_signal,
+    electrical_energy,
+    end_stop_hits,
+    energy_residual,
+    force_tracking_error,
+    peak,
+    ratio,
+    require_finite,
+    require_positive,
+    rms,
+)
 from seatsim.metrics.weighting import can_weight, weight
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError

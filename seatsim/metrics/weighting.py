@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import fft
 
-from seatsim.metrics.arrays import as_signal, require_finite, require_positive
+from seatsim.metrics.motion import as_signal, require_finite, require_positive
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest
 

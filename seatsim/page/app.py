@@ -22,7 +22,7 @@ from seatsim.page.guard import POLICY, Guard
 from seatsim.report.rendering import digest_of, make_environment, read_asset
 from seatsim.schema.errors import InputError, SeatsimError
 from seatsim.schema.files import write_text
-from seatsim.schema.leftovers import temporary_folder
+from seatsim.schema.guarded import temporary_folder
 from seatsim.schema.yaml_text import dump
 
 if TYPE_CHECKING:

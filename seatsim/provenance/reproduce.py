@@ -22,8 +22,7 @@ from seatsim.provenance.statement import MANIFEST, Manifest, read_manifest, stat
 from seatsim.provenance.versions import list_platform, list_versions
 from seatsim.scenario.loading import EXAMPLES
 from seatsim.schema.errors import InputError, RunError, nearest
-from seatsim.schema.guarded import is_there, read_bytes
-from seatsim.schema.leftovers import temporary_folder
+from seatsim.schema.guarded import is_there, read_bytes, temporary_folder
 
 ANSWER = "reproduce.json"
 """File in which the command `reproduce` keeps what came of it."""

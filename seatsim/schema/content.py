@@ -18,8 +18,9 @@ that are marked by `written`. The annotation of a field says where it is written
 from __future__ import annotations
 
 import dataclasses
+import html
 import math
-from collections.abc import Callable, Iterator, Mapping, Sized
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Sized
 from functools import cache
 from pathlib import PurePath
 from typing import Annotated, Any, NamedTuple, TypeVar, get_args, get_origin, get_type_hints
@@ -139,3 +140,48 @@ def to_content(record: object) -> dict[str, object]:
         elif not (field.form.if_any and (value is None or (isinstance(value, Sized) and not len(value)))):
             content[field.key] = field.form.file if field.form.file and value is not None else plain(value)
     return content
+
+
+SHOWN = 12
+"""Rows of a list of records that are shown: the first ones are those that matter."""
+
+
+def show_record(record: object, *keys: str) -> str:
+    """Return in HTML what a record is as JSON, or some keys of it: its values, then each list of records as a table.
+
+    Keys of what lies deeper have dots; of the records in a list their single values are shown. Numbers are rounded to
+    four digits.
+    """
+    content = to_content(record)
+    values = dict(_flatten({key: content[key] for key in keys or content}))
+    lists = {key: value for key, value in values.items() if isinstance(value, list)}
+    tables = {key: rows for key, value in lists.items() if (rows := [row for row in value if isinstance(row, dict)])}
+    single = [{"": key, " ": value} for key, value in values.items() if key not in tables]
+    return "".join([_show_table("", single), *(_show_table(key, rows) for key, rows in tables.items())])
+
+
+def _flatten(content: Mapping[str, object], above: str = "") -> Iterator[tuple[str, object]]:
+    for key, value in content.items():
+        if isinstance(value, dict):
+            yield from _flatten(value, f"{above}{key}.")
+        else:
+            yield f"{above}{key}", value
+
+
+def _show_table(name: str, rows: Sequence[Mapping[str, object]]) -> str:
+    shown = [{key: cell for key, cell in row.items() if not isinstance(cell, dict)} for row in rows]
+    columns = list(dict.fromkeys(key for row in shown for key in row))
+    lines = [_row("th", columns)] if name else []
+    lines += [_row("td", (row.get(key) for key in columns)) for row in shown[: SHOWN if name else None]]
+    heading = f"<p>{html.escape(name)}</p>" if name else ""
+    return f"{heading}<table>{''.join(lines)}</table>"
+
+
+def _row(tag: str, cells: Iterable[object]) -> str:
+    return f"<tr>{''.join(f'<{tag}>{html.escape(_say(cell))}</{tag}>' for cell in cells)}</tr>"
+
+
+def _say(value: object) -> str:
+    if isinstance(value, list):
+        return ", ".join(map(_say, value))
+    return "" if value is None else f"{value:.4g}" if isinstance(value, float) else str(value)

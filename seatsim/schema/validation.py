@@ -10,8 +10,7 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from seatsim.schema.errors import InputError, find_nearest, nearest, raise_all
-from seatsim.schema.fields import describe, field_names, validated
-from seatsim.schema.plausible import guess
+from seatsim.schema.fields import describe, field_names, guess, validated
 from seatsim.schema.registry import Record, Registry
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import KeyPath

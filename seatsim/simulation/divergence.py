@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from seatsim.kernel.channels import CHANNELS
-from seatsim.kernel.integration import MOST_WORK
+from seatsim.kernel.hooks import MOST_WORK
 from seatsim.rig.control import LAWS
 from seatsim.rig.temperature import scaling
 from seatsim.scenario.scenario import Scenario

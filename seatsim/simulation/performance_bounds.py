@@ -10,7 +10,7 @@ from typing import NamedTuple, Protocol, cast
 
 from numpy.typing import ArrayLike
 
-from seatsim.metrics.arrays import ratio
+from seatsim.metrics.motion import ratio
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
 from seatsim.schema.content import Joined

@@ -15,11 +15,11 @@ import numpy as np
 from seatsim.compilation.reasons import explain
 from seatsim.metrics.table import Metric, summarise
 from seatsim.scenario.loading import load
-from seatsim.scenario.plausibility import list_doubts
+from seatsim.scenario.numbers import list_doubts
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.arrays import store_numbers, store_texts
 from seatsim.schema.errors import InputError, RunError, SynthesisError
 from seatsim.schema.files import write_whole
-from seatsim.schema.parquet import store_numbers, store_texts
 from seatsim.simulation.augment import augment_plant
 from seatsim.simulation.result import UNITS, Result, Run
 from seatsim.simulation.simulate import History, simulate

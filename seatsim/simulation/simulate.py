@@ -12,9 +12,9 @@ from seatsim.compilation.cached import compiled
 from seatsim.cosimulation.damper import FmuDamper
 from seatsim.effects.base import ON_DAMPER, acts_on
 from seatsim.excitations.base import Floor
-from seatsim.kernel.assumed_model import AssumedModel, InverseModel, TrueModel
 from seatsim.kernel.augmented import classes_of
 from seatsim.kernel.channels import CHANNELS, CURRENT_COMMAND
+from seatsim.kernel.generic import AssumedModel, InverseModel, TrueModel
 from seatsim.kernel.hooks import state_at_rest
 from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.loop import run_loop
@@ -90,7 +90,7 @@ def simulate(
 
     Raises:
         InputError: the scenario has no plant, or its times do not fit each other.
-        RunError: the solution grew beyond all bounds, or took more work than `seatsim.kernel.integration` grants.
+        RunError: the solution grew beyond all bounds, or took more work than `seatsim.kernel.hooks` grants.
     """
     if scenario.plant is None or scenario.control is None:
         raise InputError(f"{scenario.name}: a damper bench has no seat to simulate; it is replayed with 'seatsim gap'")

@@ -21,9 +21,8 @@ from seatsim.metrics.exposure import DIRECTIONS, POINTS, Direction, Exposure, as
 from seatsim.metrics.weighting import weight
 from seatsim.recordings.quality.channels import say_implausible
 from seatsim.schema.arrays import Array
-from seatsim.schema.content import Form, Joined, Unwritten, written
+from seatsim.schema.content import Form, Joined, Unwritten, show_record, written
 from seatsim.schema.errors import InputError, nearest
-from seatsim.schema.notebook import show_record
 from seatsim.schema.units import STANDARD_GRAVITY
 from seatsim.standards.acceleration_records import AccelerationRecord, choose_axes, load_accelerations
 

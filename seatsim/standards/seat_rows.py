@@ -12,8 +12,7 @@ from typing import Annotated, NamedTuple
 
 from seatsim.excitations.iso7096 import SpectralClass
 from seatsim.metrics.comfort import SPREAD, Dose, seat_transmission
-from seatsim.schema.content import Form, written
-from seatsim.schema.notebook import show_record
+from seatsim.schema.content import Form, show_record, written
 from seatsim.schema.text import join_names
 
 ACCEPTANCE, DAMPING = "ISO 7096:2000, 5.5.1 and 6 (recalled)", "ISO 7096:2000, 5.5.2 and 6 (recalled)"

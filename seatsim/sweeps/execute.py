@@ -14,7 +14,7 @@ from seatsim.scenario.numbers import find_unit
 from seatsim.schema.content import Form, Joined, Unwritten
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.fields import validated
-from seatsim.schema.leftovers import uncut
+from seatsim.schema.guarded import uncut
 from seatsim.sweeps.definition import SweepDefinition, read_definition
 from seatsim.sweeps.engines.base import Engine, Work
 from seatsim.sweeps.engines.local import LocalEngine

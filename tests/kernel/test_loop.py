@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from seatsim.kernel import step
-from seatsim.kernel.assumed_model import AssumedModel, TrueModel
 from seatsim.kernel.channels import CHANNELS
+from seatsim.kernel.generic import AssumedModel, TrueModel
 from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.loop import run_loop
 from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing

@@ -15,7 +15,7 @@ from seatsim.recordings.recording import ChannelEntry, load_recording
 from seatsim.recordings.replay import replay_table, select_compared, stands_out
 from seatsim.scenario.loading import single
 from seatsim.schema.arrays import Array
-from seatsim.schema.leftovers import temporary_folder
+from seatsim.schema.guarded import temporary_folder
 
 MATERIAL_SHARE = 0.05
 """Of a channel's standard deviation (contract, section 4)."""

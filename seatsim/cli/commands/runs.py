@@ -15,7 +15,7 @@ from seatsim.cli.interrupts import go_on
 from seatsim.cli.options import Json, Out, OwnCode, Scenarios, Settings, scenario_settings
 from seatsim.cli.terminal import answer, complain, count_progress, show_progress, warn, wrote
 from seatsim.schema.errors import InputError, SeatsimError
-from seatsim.schema.leftovers import uncut
+from seatsim.schema.guarded import uncut
 
 if TYPE_CHECKING:
     from seatsim.cli.outputs.simulated import RunTable

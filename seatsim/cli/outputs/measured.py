@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from seatsim.cli.outputs.writing import name_pictures, write_each, write_outputs
 from seatsim.schema.files import write_text, write_together
-from seatsim.schema.leftovers import temporary_folder
+from seatsim.schema.guarded import temporary_folder
 from seatsim.schema.yaml_text import dump
 
 if TYPE_CHECKING:
