@@ -6,6 +6,7 @@ file or a program has room for all of them.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Iterable, Sequence
 
 from rich import box
@@ -41,6 +42,13 @@ def make_table(
         else:
             table.add_section()
     return table
+
+
+def format_number(value: float, form: str) -> str:
+    """Return a number as a cell, `-` where it has no value."""
+    text = f"{value:{form}}" if math.isfinite(value) else "-"
+    # A value that rounds to zero loses its sign: -0.0 looks like a finding.
+    return text.replace("-", "", 1) if text.strip("-0.") == "" and text != "-" else text
 
 
 def show_table(table: Table) -> None:

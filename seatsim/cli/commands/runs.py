@@ -151,13 +151,13 @@ def _present(
     runs: list[Run], failures: list[str], folder: Path, bracket: bool, interrupted: bool
 ) -> tuple[RunTable, list[Path]]:
     """Print the table of some runs, their bounds where wanted and the warnings; return them and their files."""
+    from seatsim.cli.outputs.run_tables import make_comparison_table, make_published_tables
     from seatsim.cli.outputs.simulated import Brackets, RunTable, write_interrupted, write_result
     from seatsim.cli.show_table import show_table
-    from seatsim.cli.tables import comparison, published_tables
     from seatsim.simulation.performance_bounds import place_runs
     from seatsim.simulation.result import Result
 
-    for table in [comparison(runs, _title([run.scenario for run in runs])), *published_tables(runs)]:
+    for table in [make_comparison_table(runs, _title([run.scenario for run in runs])), *make_published_tables(runs)]:
         show_table(table)
     warn(dict.fromkeys(sentence for run in runs for sentence in run.warnings), "warning")
     warn(f"{run.scenario.title}: {sentence}" for run in runs for sentence in run.history.notes)
@@ -169,8 +169,8 @@ def _present(
 
 def _performance_bounds(runs: list[Run]) -> dict[str, PerformanceBounds]:
     """Work out the bounds and print how far from them each run is; an interrupt keeps what there is."""
+    from seatsim.cli.outputs.run_tables import make_bracket_table
     from seatsim.cli.show_table import show_table
-    from seatsim.cli.tables import distances
     from seatsim.simulation.performance_bounds import compute_performance_bounds, explain_runs_below_bound
 
     found: dict[str, PerformanceBounds] = {}
@@ -185,6 +185,6 @@ def _performance_bounds(runs: list[Run]) -> dict[str, PerformanceBounds]:
             go_on()
             warn(["interrupted: the brackets that were not finished are left out"])
     if found:
-        show_table(distances(runs, found))
+        show_table(make_bracket_table(runs, found))
     warn(explain_runs_below_bound(runs, found))
     return found

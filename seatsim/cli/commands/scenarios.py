@@ -70,7 +70,7 @@ def synthesise(
     as_json: Json = False,
 ) -> None:
     """Synthesise the H-infinity static output feedback of a scenario's plant and weights."""
-    from seatsim.cli.design_table import design_table
+    from seatsim.cli.outputs.run_tables import make_design_table
     from seatsim.cli.show_table import show_table
     from seatsim.provenance.manifest import write_documented
     from seatsim.scenario.loading import single
@@ -81,7 +81,7 @@ def synthesise(
     with show_progress() as progress:
         design = synthesise_design(chosen, progress)
         design = design.prove(progress) if prove_best else design
-    show_table(design_table(design, chosen))
+    show_table(make_design_table(design, chosen))
     folder = out_folder or Path("out") / chosen.name
 
     def write(part: Path) -> list[Path]:

@@ -12,7 +12,7 @@ from rich.table import Table
 from seatsim.characterisation.response import Response
 from seatsim.characterisation.rows import Row
 from seatsim.characterisation.summary import Characterisation
-from seatsim.cli.show_table import make_table
+from seatsim.cli.show_table import format_number, make_table
 from seatsim.dampers.base import OWN
 from seatsim.identification.assessment import Agreement
 from seatsim.identification.identify import Identification
@@ -68,7 +68,7 @@ def make_characterisation_tables(found: Characterisation) -> list[Table]:
 def _make_row_table(found: Characterisation) -> Table:
     shown = [column for column in COLUMNS if any(math.isfinite(column.value(row)) for row in found.rows)]
     rows = [
-        [escape(_name_record(row)), *(_format_number(column.value(row), column.form) for column in shown)]
+        [escape(_name_record(row)), *(format_number(column.value(row), column.form) for column in shown)]
         for row in found.rows[:ROWS_LISTED]
     ]
     of = f"the cycle of each {'record' if found.measured else 'test'}"
@@ -98,21 +98,15 @@ def _shorten(name: str) -> str:
 def _make_step_table(answers: Sequence[Response]) -> Table:
     rows = []
     for a in answers:
-        times = [_format_number(1e3 * t, ".1f") for t in (a.t5, a.t90, a.t95, a.t95_sd)]
-        ends = [_format_number(a.rate_95, ".0f"), _format_number(a.rate, ".0f")]
-        ends += [_format_number(1e3 * t, ".1f") for t in (a.delay, a.current_t95)]
+        times = [format_number(1e3 * t, ".1f") for t in (a.t5, a.t90, a.t95, a.t95_sd)]
+        ends = [format_number(a.rate_95, ".0f"), format_number(a.rate, ".0f")]
+        ends += [format_number(1e3 * t, ".1f") for t in (a.delay, a.current_t95)]
         steps = (f"{a.before:.2f}", f"{a.after:.2f}", str(a.steps))
         rows.append([escape(_shorten(a.record)), *steps, *times, *ends, a.method or "not determined"])
     first = int(not any(answer.record for answer in answers))
     title = "response of the force to steps of current; rates ln 20 / t95, and behind a delay ln 19 / (t95 - t5)"
     left = [k - first for k in (0, len(STEP) - 1)]
     return make_table(title, STEP[first:], [row[first:] for row in rows], left=left)
-
-
-def _format_number(value: float, form: str) -> str:
-    text = f"{value:{form}}" if math.isfinite(value) else "-"
-    # A value that rounds to zero loses its sign: -0.0 looks like a finding.
-    return text.replace("-", "", 1) if text.strip("-0.") == "" and text != "-" else text
 
 
 def make_identification_tables(found: Identification) -> list[Table]:
@@ -146,8 +140,8 @@ def make_league_table(places: Sequence[BenchmarkEntry]) -> Table:
     """Return the benchmark of models as a table."""
     rows = []
     for place in places:
-        fits = [_format_number(fit, ".1f") for fit in (place.train_fit_percent, place.test_fit_percent)]
-        rest = [_format_number(value, ".0f") for value in (place.ns_per_step, place.bic, place.seconds)]
+        fits = [format_number(fit, ".1f") for fit in (place.train_fit_percent, place.test_fit_percent)]
+        rest = [format_number(value, ".0f") for value in (place.ns_per_step, place.bic, place.seconds)]
         count = "-" if place.failed else str(place.parameters)
         rows.append((f"{place.model} ({OWN})" if place.confidence == OWN else place.model, *fits, count, *rest))
     return make_table("league", ("model", "train [%]", "test [%]", "parameters", "ns a step", "BIC", "s"), rows)
