@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from seatsim.characterisation.model_tests import load_specimen
-from seatsim.compilation.reasons import explain
+from seatsim.compilation.messages import explain
 from seatsim.cosimulation.description import describe_unit
 from seatsim.dampers.base import DAMPERS
 from seatsim.effects.base import EFFECTS, off

@@ -17,7 +17,7 @@ from threading import Event, Thread
 from types import FrameType
 from typing import NoReturn
 
-from seatsim.cli.signals import SIGNALS, say_interrupted
+from seatsim.cli.begin import SIGNALS, say_interrupted
 from seatsim.schema.guarded import remove_leftovers
 
 GRACE = 1.2

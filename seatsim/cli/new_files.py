@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 
 from seatsim.cli import templates
-from seatsim.cli.outputs.schemas import FILES
+from seatsim.cli.outputs.answers import FILES
 from seatsim.scenario.loading import EXAMPLES
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.files import write_together

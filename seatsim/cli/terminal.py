@@ -14,7 +14,7 @@ from typing import TextIO
 
 from rich.console import Console
 
-from seatsim.compilation.watch import watch_compilation
+from seatsim.compilation.messages import watch_compilation
 from seatsim.schema.errors import SeatsimError, list_sentences
 from seatsim.schema.modules import MissingModuleError
 from seatsim.schema.text import cut_words, make_printable
@@ -73,10 +73,8 @@ def answer(record: object, paths: Iterable[Path] = ()) -> None:
 
 def announce(address: str) -> None:
     """Print the address of a page at once, since the command goes on until it is interrupted."""
-    from seatsim.cli.outputs.answers import ExploreAnswer
-
     say(address)
-    answer(ExploreAnswer(address))
+    answer({"address": address})
     sys.stdout.flush()
 
 

@@ -31,7 +31,7 @@ from numba.core import event
 
 from seatsim.compilation.checked_cache import CheckedCache, find_foreign
 from seatsim.compilation.jit import ARITHMETIC
-from seatsim.compilation.watch import report
+from seatsim.compilation.messages import report
 from seatsim.schema.guarded import temporary_folder
 
 F = TypeVar("F", bound=Callable[..., object])

@@ -16,11 +16,10 @@ from numba import cuda, float64, int64, void
 from numpy.typing import NDArray
 
 from seatsim.compilation.jit import define, jit
-from seatsim.compilation.watch import report
-from seatsim.kernel.channels import CHANNELS
+from seatsim.compilation.messages import report
 from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.loop import run_loop
-from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup
+from seatsim.kernel.loop_data import CHANNELS, LoopInputs, LoopSetup
 from seatsim.rig.state import State
 from seatsim.schema.arrays import Array
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 from seatsim.compilation.jit import jit
-from seatsim.kernel.channels import Sample, write_row
 from seatsim.kernel.generic import (
     InverseModel,
     advance_filters,
@@ -20,7 +19,7 @@ from seatsim.kernel.generic import (
 )
 from seatsim.kernel.hooks import leading_state
 from seatsim.kernel.inverse import invert
-from seatsim.kernel.loop_inputs import ControlledRig, LoopInputs, LoopSetup, sample_of, step_inputs
+from seatsim.kernel.loop_data import ControlledRig, LoopInputs, LoopSetup, Sample, sample_of, step_inputs, write_row
 from seatsim.kernel.rig import Disturbance
 from seatsim.kernel.step import IntegratorState, advance, relaxed, start
 from seatsim.rig.coil import Coil

@@ -99,10 +99,15 @@ def find_file(path: Path) -> Path:
             for name in (inside, inside.with_name(f"{inside.name}.yaml")):
                 if is_there(folder / name):
                     return folder / name
-    found = {path.relative_to(folder) for folder in EXAMPLES if folder.is_dir() for path in folder.rglob("*.yaml")}
-    known = sorted(str(path.with_suffix("")) for path in found if "data" not in path.parts)
+    known = list_examples()
     near = nearest(path, [*known, *(str(file) for file in path.parent.glob("*.yaml"))])
     raise InputError(f"{path}: no such file{near}; give the path of a scenario, or an example: {', '.join(known)}")
+
+
+def list_examples() -> list[str]:
+    """Return the names of the examples, sorted."""
+    found = {path.relative_to(folder) for folder in EXAMPLES if folder.is_dir() for path in folder.rglob("*.yaml")}
+    return sorted(str(path.with_suffix("")) for path in found if "data" not in path.parts)
 
 
 _MOST_ERRORS = 20

@@ -25,7 +25,7 @@ from seatsim.effects.base import ON_DAMPER, acts_on
 from seatsim.kernel.generic import wants_force
 from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.loop import run_loop, warm_up
-from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup
+from seatsim.kernel.loop_data import LoopInputs, LoopSetup
 from seatsim.kernel.rig import Disturbance, Rig
 from seatsim.kernel.step import IntegratorState, StepInputs, advance, disturbance_at, start
 from seatsim.rig.coil import Coil

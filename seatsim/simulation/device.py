@@ -11,15 +11,16 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.excitations.base import Floor
-from seatsim.kernel.channels import CHANNELS
 from seatsim.kernel.cuda_lanes import DeviceInputs, KernelError, LaneStart, free_memory, numbers, run_on_device
+from seatsim.kernel.loop_data import CHANNELS
 from seatsim.rig.sensors import READINGS, Direct, at_rest
 from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import SeatsimError
 from seatsim.simulation.augment import acts_on_signals
-from seatsim.simulation.simulate import History, initial_states, is_whole, read_history, set_up
+from seatsim.simulation.result import History
+from seatsim.simulation.simulate import initial_states, is_whole, read_history, set_up
 
 MakeFloor = Callable[[Scenario], Floor | None]
 

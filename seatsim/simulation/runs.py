@@ -12,7 +12,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from seatsim.compilation.reasons import explain
+from seatsim.compilation.messages import explain
 from seatsim.metrics.table import Metric, summarise
 from seatsim.scenario.loading import load
 from seatsim.scenario.numbers import list_doubts
@@ -21,8 +21,8 @@ from seatsim.schema.arrays import store_numbers, store_texts
 from seatsim.schema.errors import InputError, RunError, SynthesisError
 from seatsim.schema.files import write_whole
 from seatsim.simulation.augment import augment_plant
-from seatsim.simulation.result import UNITS, Result, Run
-from seatsim.simulation.simulate import History, simulate
+from seatsim.simulation.result import UNITS, History, Result, Run
+from seatsim.simulation.simulate import simulate
 from seatsim.simulation.validity import explain_unweighted, list_reasons
 
 R = TypeVar("R")

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from seatsim.compilation.cached import compiled
@@ -13,12 +9,11 @@ from seatsim.cosimulation.damper import FmuDamper
 from seatsim.effects.base import ON_DAMPER, acts_on
 from seatsim.excitations.base import Floor
 from seatsim.kernel.augmented import classes_of
-from seatsim.kernel.channels import CHANNELS, CURRENT_COMMAND
 from seatsim.kernel.generic import AssumedModel, InverseModel, TrueModel
 from seatsim.kernel.hooks import state_at_rest
 from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.loop import run_loop
-from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
+from seatsim.kernel.loop_data import CHANNELS, CURRENT_COMMAND, LoopInputs, LoopSetup, Timing
 from seatsim.kernel.rig import Rig
 from seatsim.rig.control import LawWithNotes, prepare_law
 from seatsim.rig.plant import Plant
@@ -42,42 +37,14 @@ from seatsim.simulation.augment import (
     undo_reading,
 )
 from seatsim.simulation.coupled import run_coupled, stand_in
-from seatsim.simulation.divergence import explain_divergence
 from seatsim.simulation.inputs import NONE, Forces
-
-if TYPE_CHECKING:
-    import pandas as pd
+from seatsim.simulation.result import History
+from seatsim.simulation.validity import explain_divergence
 
 DEFAULT_SAMPLE_TIME = 0.001
 """Seconds between two samples of a law that states none, as common for embedded controllers of such seats."""
 SAME_TIME = 1e-9
 """Seconds by which a sample time may differ from a whole number of steps, for the sake of rounding."""
-
-
-@dataclass(frozen=True)
-class History:
-    """The channels of one run by name, shape (N,) each, sampled every `step` seconds; SI units, degrees Celsius.
-
-    `notes` are sentences that the law has for its user after the run.
-    """
-
-    step: float
-    channels: Mapping[str, Array]
-    notes: tuple[str, ...] = ()
-
-    def __getitem__(self, name: str) -> Array:
-        """Return one channel."""
-        return self.channels[name]
-
-    def __repr__(self) -> str:
-        """Say how long the run is, and which channels there are."""
-        return f"<History of {len(self.channels['time'])} rows every {self.step:g} s: {', '.join(self.channels)}>"
-
-    def to_pandas(self) -> pd.DataFrame:
-        """Return the channels as columns of a frame, a row for each step."""
-        import pandas as pd
-
-        return pd.DataFrame(dict(self.channels))
 
 
 def simulate(

@@ -19,8 +19,9 @@ from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import specification_of
+from seatsim.simulation.result import History
 from seatsim.simulation.runs import measure_run
-from seatsim.simulation.simulate import DEFAULT_SAMPLE_TIME, History, simulate
+from seatsim.simulation.simulate import DEFAULT_SAMPLE_TIME, simulate
 
 STRETCH = 20.0
 """Seconds from the start that are simulated."""

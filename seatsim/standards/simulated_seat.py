@@ -23,7 +23,8 @@ from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import specification_of
 from seatsim.schema.text import join_names
 from seatsim.simulation.augment import augment_plant
-from seatsim.simulation.simulate import History, simulate
+from seatsim.simulation.result import History
+from seatsim.simulation.simulate import simulate
 from seatsim.standards.seat_rows import (
     FREQUENCY_STEP,
     INERT_MASS,

@@ -13,9 +13,8 @@ from matplotlib.figure import Figure
 
 from seatsim.cli.commands.recordings import diagnose as diagnose_command
 from seatsim.cli.outputs import damper_tables
-from seatsim.cli.outputs.measured import write_diagnosis
 from seatsim.cli.outputs.simulated import Brackets
-from seatsim.cli.outputs.writing import write_outputs
+from seatsim.cli.outputs.writing import write_diagnosis, write_outputs
 from seatsim.cli.show_table import format_number
 from seatsim.diagnosis.diagnose import BUDGET
 from seatsim.metrics.table import Metric

@@ -10,9 +10,9 @@ from seatsim.metrics.table import Metric
 from seatsim.scenario.loading import load, single
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import specification_of
-from seatsim.simulation.result import UNITS, Channel, Result
+from seatsim.simulation.result import UNITS, Channel, History, Result
 from seatsim.simulation.runs import compare, run, run_many, run_one
-from seatsim.simulation.simulate import History, simulate
+from seatsim.simulation.simulate import simulate
 from seatsim.simulation.validity import LARGEST_RESIDUAL, list_ranges_left, list_reasons
 
 

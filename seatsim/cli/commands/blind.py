@@ -127,7 +127,7 @@ def diagnose_all(folder: Path, count: Callable[[int, int], None]) -> None:
 
 def diagnose_one(case: Path) -> None:
     """Diagnose one case; one that cannot be diagnosed is left without, and counts as wrong."""
-    from seatsim.cli.outputs.measured import write_diagnosis
+    from seatsim.cli.outputs.writing import write_diagnosis
     from seatsim.diagnosis.diagnose import diagnose
     from seatsim.schema.files import write_json
 

@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from seatsim.cli.options import Json, OwnCode, check_out
+from seatsim.cli.options import Json, OwnCode, check_out, complete, complete_kind
 from seatsim.cli.terminal import answer, complain, refuse, say, show_progress, warn, wrote_one
 from seatsim.schema.errors import InputError, nearest
 
@@ -26,7 +26,12 @@ NEXT = {
 
 
 def new(
-    kind: Annotated[str, typer.Argument(help="scenario, recording, damper, controller, effect or excitation.")],
+    kind: Annotated[
+        str,
+        typer.Argument(
+            help="scenario, recording, damper, controller, effect or excitation.", autocompletion=complete(*NEXT)
+        ),
+    ],
     name: Annotated[str, typer.Argument(help="Its name; a folder may stand before it.")],
     as_json: Json = False,
 ) -> None:
@@ -69,16 +74,25 @@ def check(
         raise typer.Exit(1)
 
 
+def _complete_schema(incomplete: str) -> list[str]:
+    from seatsim.cli.outputs.answers import FILES, list_answers
+
+    return complete(*FILES, *list_answers())(incomplete)
+
+
 def schema(
     kind: Annotated[
-        str, typer.Argument(help="scenario, recording, sweep or parameters; or a command, for what its --json prints.")
+        str,
+        typer.Argument(
+            help="scenario, recording, sweep or parameters; or a command, for what its --json prints.",
+            autocompletion=_complete_schema,
+        ),
     ] = "scenario",
     own_code: OwnCode = None,
     as_json: Json = False,
 ) -> None:
     """Print a JSON Schema, with which an editor completes and checks a file."""
-    from seatsim.cli.outputs.answers import describe_answer, list_answers
-    from seatsim.cli.outputs.schemas import FILES
+    from seatsim.cli.outputs.answers import FILES, describe_answer, list_answers
 
     known = [*FILES, *list_answers()]
     if kind not in known:
@@ -92,7 +106,13 @@ ENDINGS = (".png", ".svg", ".pdf")
 
 
 def describe(
-    name: Annotated[str, typer.Argument(help="A name, such as bouc_wen or road.")] = "",
+    name: Annotated[
+        str,
+        typer.Argument(
+            help="A name, such as bouc_wen or road.",
+            autocompletion=complete_kind("damper", "law", "excitation", "effect"),
+        ),
+    ] = "",
     picture: Annotated[
         Path | None,
         typer.Option("--picture", metavar="FILE", help="Draw the loops of a damper, as .png, .svg or .pdf."),

@@ -31,7 +31,7 @@ def gap(
 ) -> None:
     """Replay a scenario against a recording and print the gap with the noise floor."""
     from seatsim.cli.outputs.diagnosis_tables import make_gap_table
-    from seatsim.cli.outputs.measured import write_gap
+    from seatsim.cli.outputs.writing import write_gap
     from seatsim.cli.show_table import show_table
     from seatsim.recordings.forecast import forecast_gap
     from seatsim.recordings.gap import gap as find_gap
@@ -68,7 +68,7 @@ def diagnose(
 ) -> None:
     """Say where the gap between a recording and its nominal scenario lies, what causes it and how far it shrinks."""
     from seatsim.cli.outputs.diagnosis_tables import make_tables
-    from seatsim.cli.outputs.measured import write_diagnosis
+    from seatsim.cli.outputs.writing import write_diagnosis
     from seatsim.cli.show_table import show_table
     from seatsim.diagnosis.diagnose import diagnose as find_cause
     from seatsim.effects.base import EFFECTS

@@ -77,8 +77,8 @@ def seat_test(
     as_json: Json = False,
 ) -> None:
     """Put a seat to the test of ISO 7096: SEAT factors of two drivers, damping, end stops."""
-    from seatsim.cli.outputs.measured import write_seat_test
     from seatsim.cli.outputs.seat_tables import list_seat_test_failures, make_seat_test_tables, summarise_seat_test
+    from seatsim.cli.outputs.writing import write_seat_test
     from seatsim.cli.show_table import show_table
     from seatsim.standards.seat_test import seat_test as test
 

@@ -31,7 +31,7 @@ _SAME = 1e-9
 
 
 class RigParameters(NamedTuple):
-    """The constant parts of a run, as in `seatsim.kernel.loop_inputs.LoopSetup`."""
+    """The constant parts of a run, as in `seatsim.kernel.loop_data.LoopSetup`."""
 
     rig: Rig
     coil: Coil

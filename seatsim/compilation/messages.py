@@ -1,12 +1,37 @@
-"""Why a method of the user's own fails, in one sentence: numba's message quotes every function on the way there."""
+"""What the user is told of compilation: that a first run waits for it, and why a method of his own fails.
+
+Nothing heavy is imported here. The message of numba itself quotes every function on the way there.
+"""
 
 from __future__ import annotations
 
 import re
 import traceback
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from seatsim.schema.modules import used_files
+
+_Watcher = Callable[[int], None]
+_watchers: list[_Watcher] = []
+
+
+@contextmanager
+def watch_compilation(tell: _Watcher) -> Iterator[None]:
+    """Call `tell` with the number of functions compiled so far, each time one begins, and with 0 when all are done."""
+    _watchers.append(tell)
+    try:
+        yield
+    finally:
+        _watchers.remove(tell)
+
+
+def report(parts: int) -> None:
+    """Tell the watchers."""
+    for tell in _watchers:
+        tell(parts)
+
 
 FAILED = "Failed in nopython mode pipeline (step: nopython frontend)"
 CALL = re.compile(
