@@ -28,7 +28,7 @@ from seatsim.cli.terminal import answer_as_json, answer_error, fail, print_any_l
 from seatsim.compilation.messages import explain, is_compilation
 from seatsim.schema.errors import InputError, SeatsimError
 
-UsageError: Any = typer.BadParameter.__bases__[0]
+_UsageError: Any = typer.BadParameter.__bases__[0]
 """What is raised for options and arguments that a command does not have, before any of them is read."""
 TRACEBACK = "SEATSIM_TRACEBACK"
 """Set in the environment, it lets Python print what led to an error that was not foreseen."""
@@ -68,7 +68,7 @@ class _Commands(TyperGroup):
         try:
             with _interrupts_said():
                 return super().invoke(ctx)
-        except UsageError as error:
+        except _UsageError as error:
             answer_error(error.format_message())
             raise
 

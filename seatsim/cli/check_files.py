@@ -36,9 +36,9 @@ from seatsim.simulation.runs import run_one
 from seatsim.sweeps.definition import is_sweep
 from seatsim.sweeps.execute import prepare
 
-EXAMPLE = "em5"
-SECONDS = 0.1
-TRIED = (0.01, 0.1, 0.5)
+_EXAMPLE = "em5"
+_SECONDS = 0.1
+_TRIED = (0.01, 0.1, 0.5)
 """Displacement [m], velocity [m/s] and current [A] at which a damper is asked for its force."""
 
 
@@ -49,7 +49,7 @@ def _try_class(kind: str, name: str, cls: type) -> list[str]:
         InputError: it cannot be compiled or simulated, or does not do what it promises.
     """
     try:
-        return list(TRIALS[kind](name, cls)) if kind in TRIALS else []
+        return list(_TRIALS[kind](name, cls)) if kind in _TRIALS else []
     except SeatsimError as error:
         raise InputError(f"{kind} {name}: {error}") from error
     except Exception as error:  # the code of somebody else may raise anything
@@ -61,10 +61,10 @@ def _try_damper(name: str, cls: type) -> Iterator[str]:
     record: Any = cls(**values)
     state = DAMPERS.specification_of(cls).initial
     scaling = TemperatureScaling()
-    if not np.isfinite(float(record.force(*TRIED, scaling, state))):
-        raise InputError(f"force{TRIED} is no finite number")
+    if not np.isfinite(float(record.force(*_TRIED, scaling, state))):
+        raise InputError(f"force{_TRIED} is no finite number")
     if state:
-        rates = record.rates(*TRIED, scaling, state)
+        rates = record.rates(*_TRIED, scaling, state)
         if not isinstance(rates, tuple) or len(rates) != len(state):
             raise InputError(f"rates returns {rates!r}; permitted: a tuple of {len(state)}, such as (0.0,)")
     _simulate({"damper": {"model": name, "parameters": values}})
@@ -104,10 +104,10 @@ def _choose_value(cls: Any, field: str) -> object:
 
 
 def _simulate(settings: dict[str, object]) -> Run:
-    return run_one(load(EXAMPLE, {**settings, "variants": {}, "excitation.duration": SECONDS})[0])
+    return run_one(load(_EXAMPLE, {**settings, "variants": {}, "excitation.duration": _SECONDS})[0])
 
 
-TRIALS = {"damper": _try_damper, "law": _try_law, "effect": _try_effect}
+_TRIALS = {"damper": _try_damper, "law": _try_law, "effect": _try_effect}
 
 
 class Checked(NamedTuple):

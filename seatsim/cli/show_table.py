@@ -18,7 +18,7 @@ from rich.text import Text
 
 from seatsim.cli.terminal import out, say
 
-WIDEST = 10_000
+_WIDEST = 10_000
 """Letters that no table has in a line."""
 
 
@@ -88,7 +88,7 @@ def _fit(table: Table) -> list[str]:
 
 def _measure_least(table: Table) -> int:
     # Rich measures a table within the width of its options: these have more than any table needs.
-    return Measurement.get(out, out.options.update(width=WIDEST), table).minimum
+    return Measurement.get(out, out.options.update(width=_WIDEST), table).minimum
 
 
 def _widen(names: Sequence[Column], spare: int) -> None:

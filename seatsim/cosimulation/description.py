@@ -25,10 +25,10 @@ from seatsim.schema.modules import LARGEST_UNIT
 from seatsim.schema.units import Conversion, conversion
 from seatsim.schema.validation import is_finite_number
 
-UNPACKED = 4
+_UNPACKED = 4
 """What an archive holds may be this much larger than the largest archive."""
 _LARGEST_DESCRIPTION = 16 * 2**20
-MOST_FILES = 10_000
+_MOST_FILES = 10_000
 DESCRIPTION = "modelDescription.xml"
 _SYSTEMS = {
     "Linux": ("linux", "linux", ".so"),
@@ -56,11 +56,13 @@ def open_archive(path: Path) -> Iterator[zipfile.ZipFile]:
 
 
 def _check_entries(path: Path, entries: list[zipfile.ZipInfo]) -> None:
-    if len(entries) > MOST_FILES:
-        raise InputError(f"{path}: holds {len(entries)} files; permitted: at most {MOST_FILES}")
+    if len(entries) > _MOST_FILES:
+        raise InputError(f"{path}: holds {len(entries)} files; permitted: at most {_MOST_FILES}")
     size = sum(entry.file_size for entry in entries)
-    if size > UNPACKED * LARGEST_UNIT:
-        raise InputError(f"{path}: holds {in_mib(size)} unpacked; permitted: at most {in_mib(UNPACKED * LARGEST_UNIT)}")
+    if size > _UNPACKED * LARGEST_UNIT:
+        raise InputError(
+            f"{path}: holds {in_mib(size)} unpacked; permitted: at most {in_mib(_UNPACKED * LARGEST_UNIT)}"
+        )
     for entry in entries:
         name = entry.orig_filename
         parts = PurePosixPath(name).parts

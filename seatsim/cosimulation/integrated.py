@@ -17,7 +17,7 @@ from seatsim.cosimulation.description import UnitDescription
 from seatsim.cosimulation.running import RunningUnit
 from seatsim.schema.errors import RunError
 
-States = list[float]
+_States = list[float]
 
 
 class _Update(NamedTuple):
@@ -44,20 +44,20 @@ class _ContinuousModel:
         self.needs_completion = bool(described.modelExchange.needsCompletedIntegratorStep)
         self.has_indicators = described.numberOfEventIndicators > 0
 
-    def states(self) -> States:
+    def states(self) -> _States:
         """Return the continuous states."""
         if len(self._states):
             self._instance.getContinuousStates(self._states, len(self._states))
         return list(self._states)
 
-    def place(self, time: float, states: States) -> None:
+    def place(self, time: float, states: _States) -> None:
         """Give the unit a time in s and its continuous states."""
         self._instance.setTime(time)
         if states:
             self._states[:] = states
             self._instance.setContinuousStates(self._states, len(states))
 
-    def rates(self) -> States:
+    def rates(self) -> _States:
         """Return the time derivatives of the states, at the time, states and inputs that were given last."""
         if len(self._rates):
             ask = self._instance.getDerivatives if self._is_second else self._instance.getContinuousStateDerivatives
@@ -96,7 +96,7 @@ _MOST_EVENTS = 100
 """Most events within a step of the seat, and most times that a unit is asked to update at one of them."""
 
 
-class Motion(NamedTuple):
+class _Motion(NamedTuple):
     """What the unit is given over a step of `length` s that begins at `begin` s.
 
     The motion has the constant acceleration of `given`, the current runs linearly from `current` in A to that of
@@ -127,7 +127,7 @@ class _Saved(NamedTuple):
     `next_event` in s, infinite where none is known.
     """
 
-    states: States
+    states: _States
     signs: list[bool]
     next_event: float
     current: float
@@ -158,7 +158,7 @@ class IntegratedUnit(RunningUnit):
         Raises:
             RunError: the unit refuses a call, ends the run, has too many events, or its force is no finite number.
         """
-        motion = Motion(time, length, given, self._now.current)
+        motion = _Motion(time, length, given, self._now.current)
         part = length / max(1, math.ceil(length / self._longest - _LOCATED))
         end, events = time + length, 0
         while end - time > _LOCATED * length:
@@ -189,7 +189,7 @@ class IntegratedUnit(RunningUnit):
         if self._unit.saves:
             super().drop(state.own)
 
-    def _advance(self, motion: Motion, time: float, reach: float) -> tuple[float, bool]:
+    def _advance(self, motion: _Motion, time: float, reach: float) -> tuple[float, bool]:
         """Go on from a time to another, or to the first event before; return the time and whether an event is there."""
         begun = self._now.states
         states = self._runge_kutta(motion, time, reach - time, begun)
@@ -212,7 +212,7 @@ class IntegratedUnit(RunningUnit):
         self._now = self._now._replace(states=states, signs=signs)
         return high, has_crossed or wants_event or high >= self._now.next_event
 
-    def _runge_kutta(self, motion: Motion, time: float, h: float, y: States) -> States:
+    def _runge_kutta(self, motion: _Motion, time: float, h: float, y: _States) -> _States:
         """Return the states after `h` seconds, by the classical method of order 4."""
         k1 = self._rates_at(motion, time, y)
         k2 = self._rates_at(motion, time + 0.5 * h, [a + 0.5 * h * k for a, k in zip(y, k1, strict=True)])
@@ -221,14 +221,14 @@ class IntegratedUnit(RunningUnit):
         slopes = zip(y, k1, k2, k3, k4, strict=True)
         return [a + h / 6.0 * (p + 2.0 * (q + r) + s) for a, p, q, r, s in slopes]
 
-    def _rates_at(self, motion: Motion, time: float, states: States) -> States:
+    def _rates_at(self, motion: _Motion, time: float, states: _States) -> _States:
         if not states:
             return states
         self._model.place(time, states)
         self._give(motion.at(time), time)
         return self._model.rates()
 
-    def _signs_at(self, motion: Motion, time: float, states: States) -> list[bool]:
+    def _signs_at(self, motion: _Motion, time: float, states: _States) -> list[bool]:
         self._model.place(time, states)
         self._give(motion.at(time), time)
         return self._model.signs()

@@ -11,7 +11,7 @@ from seatsim.cosimulation.damper import FmuDamper
 from seatsim.cosimulation.description import FORCE, REAL, UnitDescription, find_conversion_of, find_variable
 from seatsim.schema.errors import RunError
 
-T = TypeVar("T")
+_T = TypeVar("_T")
 
 
 class RunningUnit:
@@ -91,7 +91,7 @@ class RunningUnit:
         word = "Real" if found.type in REAL and self._unit.version == 2 else found.type
         getattr(self._instance, f"set{word}")([found.valueReference], [value])
 
-    def _call(self, what: Callable[[], T], of: str) -> T:
+    def _call(self, what: Callable[[], _T], of: str) -> _T:
         """Call the unit; what it says where it fails stands in the error."""
         try:
             return what()

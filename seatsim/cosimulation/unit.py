@@ -18,7 +18,7 @@ from seatsim.schema.modules import check_in_use
 
 PATIENCE = 30.0
 """Seconds that a library may take to load and to make an instance; others take milliseconds."""
-TRIAL = """
+_TRIAL = """
 import sys
 from pathlib import Path
 from seatsim.cosimulation.unit import describe_unit, load_unit
@@ -76,7 +76,7 @@ def _try_to_load(path: Path, folder: Path, library: Path) -> None:
     content = library.read_bytes()
     if content in _tried:
         return
-    words = [sys.executable, "-P", "-c", TRIAL, *map(str, (path, folder, library))]
+    words = [sys.executable, "-P", "-c", _TRIAL, *map(str, (path, folder, library))]
     try:
         done = subprocess.run(words, capture_output=True, stdin=subprocess.DEVNULL, timeout=PATIENCE, check=False)
     except subprocess.TimeoutExpired:

@@ -10,14 +10,14 @@ from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
-HYSTERESIS = "z, the hysteretic displacement"
+_HYSTERESIS = "z, the hysteretic displacement"
 
 
 @damper(
     "bouc_wen",
     source="Wen 1976; Spencer et al. 1997, J. Eng. Mech. 123:230",
     initial=(0.0,),
-    state=HYSTERESIS,
+    state=_HYSTERESIS,
     current_order=1,
     complete=True,
     confidence="published",
@@ -60,7 +60,7 @@ class BoucWen(NamedTuple):
     source="Braz-Cesar and Barros 2012, eqs 2.2-2.3 (A, beta, gamma, k0, n as printed); its current laws"
     " 4.3-4.4 are lost: alpha and c0 fitted by us to its modified Bouc-Wen model of the RD-1005-3",
     initial=(0.0,),
-    state=HYSTERESIS,
+    state=_HYSTERESIS,
     max_speed=0.13,
     max_current=1.0,
     confidence="published",

@@ -18,7 +18,7 @@ from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.arrays import Array
 from seatsim.schema.fields import param
 
-Row = tuple[float, float, float, float, float]
+_Row = tuple[float, float, float, float, float]
 
 CURRENTS = np.array([0.0, 0.25, 0.5, 0.75, 1.0, 2.0])
 """Test currents in A; the paper prints the third as 0.25 again."""
@@ -52,20 +52,20 @@ def _cubics() -> Array:
     return np.array([np.moveaxis(PchipInterpolator(CURRENTS, table).c, 0, -1) for table in TABLES])
 
 
-def table_row(test: int, current: float) -> Row:
+def table_row(test: int, current: float) -> _Row:
     """Return (a, b, c, sigma, r) of test 1 or 2, monotone between the test currents and held beyond them."""
     return _row(_cubics()[test - 1], current)
 
 
 @specialise(table_row)
-def _compile_table_row(test: types.Type, current: types.Type) -> Callable[[int, float], Row]:
+def _compile_table_row(test: types.Type, current: types.Type) -> Callable[[int, float], _Row]:
     """Return `table_row` for compiled code, of which the cubics are constants."""
     cubics = _cubics()
     return lambda test, current: _row(cubics[test - 1], current)
 
 
 @jit
-def _row(cubics: Array, current: float) -> Row:
+def _row(cubics: Array, current: float) -> _Row:
     held = min(max(current, CURRENTS[0]), CURRENTS[-1])
     cell = 0
     while cell < len(CURRENTS) - 2 and held >= CURRENTS[cell + 1]:

@@ -12,11 +12,11 @@ from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 from seatsim.schema.registry import specification_of
 
-SHORTEST = 2e-5
+_SHORTEST = 2e-5
 """m; least travel over which a force returns at the end of a gap."""
-FASTEST = 1000.0
+_FASTEST = 1000.0
 """1/s; greatest rate at which a yield force builds up."""
-SWITCH = 0.01
+_SWITCH = 0.01
 """m/s; width of the transition from compression to rebound, unless stated otherwise."""
 
 
@@ -39,7 +39,7 @@ class GasSpring(NamedTuple):
 @effect(
     "damper.asymmetry",
     source="Yu et al. 2019 (Front. Mater. 6:227): rebound and compression differ",
-    off={"speed": SWITCH},
+    off={"speed": _SWITCH},
     forms=(
         Form({"viscous": 0.1, "yielding": 0.1}, sizes=2),
         Form({"viscous": 0.1, "yielding": 0.1, "speed": 0.03}, sizes=2),
@@ -57,7 +57,7 @@ class Asymmetry(NamedTuple):
 
     viscous: Annotated[float, param("-", "a of the viscous part", low=-0.9, high=0.9)]
     yielding: Annotated[float, param("-", "a of the yield part", low=-0.9, high=0.9)] = 0.0
-    speed: Annotated[float, param("m/s", "speed over which one turns into the other", above=0, high=1)] = SWITCH
+    speed: Annotated[float, param("m/s", "speed over which one turns into the other", above=0, high=1)] = _SWITCH
     offset: Annotated[float, param("-", "mean of both sides over a", low=-1, high=1)] = 0.0
     pulling: Annotated[float, param("-", "a of the yield part, by its own sign", low=-0.9, high=0.9)] = 0.0
 
@@ -160,7 +160,7 @@ class FreePlay(NamedTuple):
 def _transmitted_share(gap: float, softness: float, demanded: float, g: float) -> float:
     """Return h, the share of speed and force that the gap transmits."""
     missing = 0.5 * gap - g * math.copysign(1.0, demanded)
-    s = min(1.0, max(0.0, 1.0 - missing / max(softness * gap, SHORTEST)))
+    s = min(1.0, max(0.0, 1.0 - missing / max(softness * gap, _SHORTEST)))
     return s * s * (3.0 - 2.0 * s)
 
 
@@ -209,5 +209,5 @@ class PreyieldHysteresis(NamedTuple):
         rate = abs(v) / self.travel if self.travel > 0.0 else 0.0
         if self.lag > 0.0:
             rate += 1.0 / self.lag
-        following = (v - z[1]) / max(self.behind, 1.0 / FASTEST) if self.behind > 0.0 else 0.0
-        return (rate / (1.0 + rate / FASTEST) * (target - z[0]), following)
+        following = (v - z[1]) / max(self.behind, 1.0 / _FASTEST) if self.behind > 0.0 else 0.0
+        return (rate / (1.0 + rate / _FASTEST) * (target - z[0]), following)

@@ -19,8 +19,8 @@ from seatsim.compilation.jit import define, jit, specialise
 from seatsim.rig.state import State
 from seatsim.schema.registry import specification_of
 
-P = ParamSpec("P")
-R = TypeVar("R")
+_P = ParamSpec("_P")
+_R = TypeVar("_R")
 
 
 def method_of(cls: type, name: str) -> Callable[..., object] | None:
@@ -41,18 +41,18 @@ def record_class(kind: types.Type) -> type:
     return cls
 
 
-def hook(default: Callable[P, R]) -> Callable[P, R]:
+def hook(default: Callable[_P, _R]) -> Callable[_P, _R]:
     """Make the generic function that calls a record's method of the default's name, or else the default."""
     name = default.__name__
 
-    def method(cls: type) -> Callable[P, R]:
+    def method(cls: type) -> Callable[_P, _R]:
         own = method_of(cls, name)
-        return cast("Callable[P, R]", own) if own else default
+        return cast("Callable[_P, _R]", own) if own else default
 
-    def generic(*arguments: P.args, **named: P.kwargs) -> R:
+    def generic(*arguments: _P.args, **named: _P.kwargs) -> _R:
         return method(type(arguments[0]))(*arguments, **named)
 
-    def resolve(record: types.Type, *arguments: types.Type) -> Callable[P, R] | None:
+    def resolve(record: types.Type, *arguments: types.Type) -> Callable[_P, _R] | None:
         return method(record_class(record)) if isinstance(record, types.BaseNamedTuple) else None
 
     generic.__name__ = generic.__qualname__ = name
@@ -60,26 +60,26 @@ def hook(default: Callable[P, R]) -> Callable[P, R]:
     return generic
 
 
-T = TypeVar("T")
+_T = TypeVar("_T")
 Effects = tuple[tuple[object, ...], ...]
 """Effect records: a `typing.NamedTuple` each, with a method for each hook that it uses."""
 
 
-class SummedHook(Protocol):
+class _SummedHook(Protocol):
     """Sum of the values that the records' methods return."""
 
     def __call__(self, effects: Effects, z: State, /, *arguments: object) -> float:
         """Return the sum, 0 where no record has the method."""
 
 
-class FoldedHook(Protocol):
+class _FoldedHook(Protocol):
     """A value that is passed from record to record."""
 
-    def __call__(self, effects: Effects, z: State, value: T, /, *arguments: object) -> T:
+    def __call__(self, effects: Effects, z: State, value: _T, /, *arguments: object) -> _T:
         """Return `value` after all records changed it; unchanged where no record has the method."""
 
 
-class JoinedHook(Protocol):
+class _JoinedHook(Protocol):
     """Tuples of the records, one after another."""
 
     def __call__(self, effects: Effects, z: State, /, *arguments: object) -> State:
@@ -138,19 +138,19 @@ def _chain(name: str, first: str, line: str, last: str) -> Callable[..., object]
     return generic
 
 
-def sum_hook(name: str) -> SummedHook:
+def sum_hook(name: str) -> _SummedHook:
     """Make the function that sums the records' values for the hook `name`."""
-    return cast(SummedHook, _chain(name, "r = 0.0", "r += {call}", "return r"))
+    return cast(_SummedHook, _chain(name, "r = 0.0", "r += {call}", "return r"))
 
 
-def fold_hook(name: str) -> FoldedHook:
+def fold_hook(name: str) -> _FoldedHook:
     """Make the function that passes its first argument from record to record, each of which may change it."""
-    return cast(FoldedHook, _chain(name, "", "a0 = {call}", "return a0"))
+    return cast(_FoldedHook, _chain(name, "", "a0 = {call}", "return a0"))
 
 
-def join_hook(name: str) -> JoinedHook:
+def join_hook(name: str) -> _JoinedHook:
     """Make the function that joins the records' tuples, one after another, in the order of the states."""
-    return cast(JoinedHook, _chain(name, "r = ()", "r = r + {call}", "return r"))
+    return cast(_JoinedHook, _chain(name, "r = ()", "r = r + {call}", "return r"))
 
 
 def leading_state(effects: Effects, z: State) -> State:

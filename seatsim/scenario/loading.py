@@ -27,7 +27,7 @@ from seatsim.schema.validation import check_keys, mapping
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import KeyPath
 
-MOST_RUNS = 10_000
+_MOST_RUNS = 10_000
 """Runs of one scenario file, whose histories are all held at once."""
 
 
@@ -43,9 +43,9 @@ def expand(source: Source, settings: Mapping[str, object]) -> Iterator[tuple[Sou
         sweep["temperature"] = base.data["temperature"]
     lists = {key: _swept_values(values, base, key) for key, values in sweep.items()}
     runs = math.prod(map(len, lists.values())) * max(len(variants), 1)
-    if runs > MOST_RUNS:
+    if runs > _MOST_RUNS:
         raise base.error(
-            ("sweep",), f"makes {runs} runs; a scenario has at most {MOST_RUNS}, and 'seatsim sweep' takes more"
+            ("sweep",), f"makes {runs} runs; a scenario has at most {_MOST_RUNS}, and 'seatsim sweep' takes more"
         )
     for name, changes in variants.items() or [(None, {})]:
         for chosen in itertools.product(*lists.values()):

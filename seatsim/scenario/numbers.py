@@ -93,7 +93,7 @@ def check_number(scenario: Scenario, key: str, value: float, source: Source, key
     check_value(record, field, value, source, keys)
 
 
-def list_records(scenario: Scenario) -> dict[str, Record]:
+def _list_records(scenario: Scenario) -> dict[str, Record]:
     """Return the records whose fields are keys of a scenario, by the dotted key that they stand under in its file.
 
     A temperature that is stated as a number is the start of one that changes; sensors that are not stated are those
@@ -123,7 +123,7 @@ def list_keys(scenario: Scenario) -> dict[str, FieldSpecification]:
     """Return the dotted keys of a scenario that are fields of a record, with unit and meaning of each."""
     fields = {
         f"{section}.{field.name}": field
-        for section, record in list_records(scenario).items()
+        for section, record in _list_records(scenario).items()
         for field in describe(type(record))
     }
     return {**fields, TEMPERATURE: fields[f"{TEMPERATURE}.start"]}
@@ -138,7 +138,7 @@ def find_unit(scenario: Scenario, key: str) -> str:
 
 def _records(scenario: Scenario) -> dict[str, Record]:
     """Return the records of numbers by the section of the file that they stand under."""
-    known = list_records(scenario)
+    known = _list_records(scenario)
     sections = (*PARAMETERS, LAW, *([TEMPERATURE] if isinstance(scenario.temperature, Thermal) else []))
     return {section: known[section] for section in sections if section in known}
 
@@ -146,7 +146,7 @@ def _records(scenario: Scenario) -> dict[str, Record]:
 def list_doubts(scenario: Scenario) -> list[str]:
     """Return a sentence for each value that is unusual for a seat, and for each that changes nothing."""
     doubts = []
-    for section, record in list_records(scenario).items():
+    for section, record in _list_records(scenario).items():
         for field in describe(type(record)):
             problem = doubt(field, getattr(record, field.name))
             if problem:

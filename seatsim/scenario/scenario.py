@@ -121,7 +121,7 @@ _CONDITIONS = ("excitation", "seed", "temperature", "driver", "start", "plant.dr
 """Sections and keys of a file that state a condition."""
 _OF_CONDITIONS = ("driver.", "floor.")
 """Beginnings of the names of effects that act on driver or floor."""
-T = TypeVar("T")
+_T = TypeVar("_T")
 
 
 def is_condition(key: str) -> bool:
@@ -147,9 +147,9 @@ def _is_outside(effect: Record) -> bool:
     return name_of("effect", type(effect)).startswith(_OF_CONDITIONS)
 
 
-def group_by_condition(items: Iterable[tuple[Scenario, T]]) -> list[list[T]]:
+def group_by_condition(items: Iterable[tuple[Scenario, _T]]) -> list[list[_T]]:
     """Return what belongs to scenarios, in groups of one condition each, in the order given."""
-    groups: dict[str, list[T]] = {}
+    groups: dict[str, list[_T]] = {}
     for scenario, item in items:
         groups.setdefault(condition_of(scenario), []).append(item)
     return list(groups.values())

@@ -43,7 +43,7 @@ def require_samples(values: object, giver: str, count: int, step: float) -> Arra
     return found
 
 
-BYTES_OF_NUMBER = 8
+_BYTES_OF_NUMBER = 8
 
 
 def open_parquet(content: bytes) -> ParquetFile:
@@ -58,7 +58,7 @@ def open_parquet(content: bytes) -> ParquetFile:
     file = ParquetFile(pa.BufferReader(content))
     stated = file.metadata
     packed = sum(stated.row_group(index).total_byte_size for index in range(stated.num_row_groups))
-    numbers = BYTES_OF_NUMBER * stated.num_rows * stated.num_columns
+    numbers = _BYTES_OF_NUMBER * stated.num_rows * stated.num_columns
     check_made(max(packed, numbers), len(content), "what its columns state")
     return file
 

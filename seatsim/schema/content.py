@@ -25,7 +25,7 @@ from functools import cache
 from pathlib import PurePath
 from typing import Annotated, Any, NamedTuple, TypeVar, get_args, get_origin, get_type_hints
 
-T = TypeVar("T")
+_T = TypeVar("_T")
 F = TypeVar("F", bound=Callable[[Any], object])
 
 
@@ -45,12 +45,12 @@ class Form(NamedTuple):
     if_any: bool = False
 
 
-Unwritten = Annotated[T, Form(left_out=True)]
-Joined = Annotated[T, Form(joined=True)]
-IfAny = Annotated[T, Form(if_any=True)]
+Unwritten = Annotated[_T, Form(left_out=True)]
+Joined = Annotated[_T, Form(joined=True)]
+IfAny = Annotated[_T, Form(if_any=True)]
 
 
-class WrittenField(NamedTuple):
+class _WrittenField(NamedTuple):
     """A field or property as it is written: its name in Python and in JSON, its form, and its type."""
 
     name: str
@@ -75,7 +75,7 @@ def is_record(kind: object) -> bool:
 
 
 @cache
-def list_written(record: type) -> tuple[WrittenField, ...]:
+def list_written(record: type) -> tuple[_WrittenField, ...]:
     """Return what is written of the records of a class: its fields in order, then its marked properties."""
     hints = get_type_hints(record, include_extras=True)
     found = []
@@ -83,11 +83,11 @@ def list_written(record: type) -> tuple[WrittenField, ...]:
         form = _find_form(hints[name])
         if not form.left_out:
             key = form.key or (f"{name}_{form.unit}" if form.unit else name)
-            found.append(WrittenField(name, key, form, str if form.file else hints[name]))
+            found.append(_WrittenField(name, key, form, str if form.file else hints[name]))
     for name, function in _list_properties(record):
         form = vars(function)["form"]
         found.append(
-            WrittenField(name, form.key or name, form, get_type_hints(function, include_extras=True)["return"])
+            _WrittenField(name, form.key or name, form, get_type_hints(function, include_extras=True)["return"])
         )
     return tuple(found)
 
@@ -142,7 +142,7 @@ def to_content(record: object) -> dict[str, object]:
     return content
 
 
-SHOWN = 12
+_SHOWN = 12
 """Rows of a list of records that are shown: the first ones are those that matter."""
 
 
@@ -172,7 +172,7 @@ def _show_table(name: str, rows: Sequence[Mapping[str, object]]) -> str:
     shown = [{key: cell for key, cell in row.items() if not isinstance(cell, dict)} for row in rows]
     columns = list(dict.fromkeys(key for row in shown for key in row))
     lines = [_row("th", columns)] if name else []
-    lines += [_row("td", (row.get(key) for key in columns)) for row in shown[: SHOWN if name else None]]
+    lines += [_row("td", (row.get(key) for key in columns)) for row in shown[: _SHOWN if name else None]]
     heading = f"<p>{html.escape(name)}</p>" if name else ""
     return f"{heading}<table>{''.join(lines)}</table>"
 

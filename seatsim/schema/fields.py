@@ -22,7 +22,7 @@ from pydantic.fields import FieldInfo
 
 from seatsim.schema.registry import Record
 
-R = TypeVar("R")
+_R = TypeVar("_R")
 N = TypeVar("N", bound=Record)
 SLIGHTLY = 1e-9
 """How far above an open bound a value may come."""
@@ -67,10 +67,10 @@ def default_values(record: type) -> Mapping[str, object]:
     return defaults
 
 
-def validated(record: type[R], values: object) -> R:
+def validated(record: type[_R], values: object) -> _R:
     """Return the record of a class with the given values; raises `pydantic.ValidationError` where they do not fit."""
     known: type = record
-    return cast("R", adapter(known).validate_python(values))
+    return cast("_R", adapter(known).validate_python(values))
 
 
 @cache

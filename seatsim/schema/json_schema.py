@@ -22,7 +22,7 @@ Schema = dict[str, object]
 ANYTHING: Schema = {}
 TEXT: Schema = {"type": "string"}
 BY_KEY: Schema = {"type": "object"}
-WORDS: Mapping[object, Schema] = {
+_WORDS: Mapping[object, Schema] = {
     # What is no finite number is written as null.
     float: {"type": ["number", "null"]},
     int: {"type": "integer"},
@@ -125,8 +125,8 @@ def _written_schema(hint: Any, known: Schema) -> Schema:
     """Return the schema of what is written of values of a type; those of records are added to the `known` ones."""
     origin, parts = get_origin(hint), get_args(hint)
     found: Schema = {}
-    if hint in WORDS or origin in WORDS:
-        found = WORDS[hint if hint in WORDS else origin]
+    if hint in _WORDS or origin in _WORDS:
+        found = _WORDS[hint if hint in _WORDS else origin]
     elif is_record(hint):
         if hint.__name__ not in known:
             known[hint.__name__] = found  # a record may hold its like

@@ -70,7 +70,7 @@ OWN_SPELLINGS = {
     "m": {'"': "inch", "in": "inch", "zoll": "inch"},
 }  # fmt: skip
 """Spellings that mean something else, or nothing, to pint, by the unit that is wanted: `g` of a mass is a gram."""
-SIGNS = {
+_SIGNS = {
     "⁻²": "^-2", "²": "^2", "³": "^3", "°": "deg", "℃": "degC", "℉": "degF", "µ": "u", "μ": "u", "·": "*", "⋅": "*",
 }  # fmt: skip
 
@@ -94,7 +94,7 @@ def conversion(unit: str, wanted: str) -> Conversion:
     return found
 
 
-LONGEST = 60
+_LONGEST = 60
 """Letters of a unit: pint takes ever longer for more."""
 
 
@@ -108,7 +108,7 @@ def find_conversion(unit: str, wanted: str) -> Conversion | None:
 def is_unit(text: str) -> bool:
     """Say whether a text is a unit, of whatever quantity."""
     plain = text.strip().lower()
-    if len(text) > LONGEST or not plain or plain in _NO_UNITS or plain.isdigit():
+    if len(text) > _LONGEST or not plain or plain in _NO_UNITS or plain.isdigit():
         return False
     if any(text in units for units in USUAL.values()) or any(plain in units for units in OWN_SPELLINGS.values()):
         return True
@@ -121,7 +121,7 @@ def is_unit(text: str) -> bool:
 
 def _look_up(unit: str, wanted: str) -> Conversion | None:
     """Return the conversion that pint knows."""
-    if len(unit) > LONGEST:
+    if len(unit) > _LONGEST:
         return None
     text, target = _spelt(unit, wanted), _spelt(wanted, wanted)
     if text == target:
@@ -145,7 +145,7 @@ def _spelt(unit: str, wanted: str) -> str:
     own = OWN_SPELLINGS.get(wanted, {}).get(plain.lower())
     if own is not None:
         plain = own
-    for sign, ascii_sign in SIGNS.items():
+    for sign, ascii_sign in _SIGNS.items():
         plain = plain.replace(sign, ascii_sign)
     plain = re.sub(r"^([A-Za-z]+)_([A-Za-z]+\d?)$", r"\1/\2", plain) if own is None else plain
     plain = re.sub(r"\bsec\b", "s", plain)

@@ -15,14 +15,14 @@ from seatsim.schema.registry import Record, Registry
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import KeyPath
 
-R = TypeVar("R")
-P = TypeVar("P")
-S = TypeVar("S")
+_R = TypeVar("_R")
+_P = TypeVar("_P")
+_S = TypeVar("_S")
 
 
 def build(
-    record: type[R], values: object, source: Source, keys: KeyPath, required: Iterable[str] = (), hint: str = ""
-) -> R:
+    record: type[_R], values: object, source: Source, keys: KeyPath, required: Iterable[str] = (), hint: str = ""
+) -> _R:
     """Return the `record` with the given values, which stand under `keys` in the source.
 
     `required` names fields that must be given although the record has defaults; `hint` is added to errors of a
@@ -101,8 +101,8 @@ def choose(values: Mapping[str, object], key: str, source: Source, keys: KeyPath
 
 
 def chosen_class(
-    registry: Registry[P, S], values: Mapping[str, object], key: str, source: Source, keys: KeyPath
-) -> type[P]:
+    registry: Registry[_P, _S], values: Mapping[str, object], key: str, source: Source, keys: KeyPath
+) -> type[_P]:
     """Return the registered class that is named under a key, or raise InputError at that place."""
     name = choose(values, key, source, keys)
     try:

@@ -18,8 +18,8 @@ LARGEST = 8 * 2**20
 """Bytes of a text."""
 DEEPEST = 32
 """Lists and mappings within each other."""
-MOST_VALUES = 300_000
-LONGEST_NUMBER = 40
+_MOST_VALUES = 300_000
+_LONGEST_NUMBER = 40
 """Digits of a whole number: twice what any seed has."""
 _TOO_DEEP = f"lists and mappings nest more than {DEEPEST} deep"
 
@@ -45,7 +45,7 @@ class YamlError(Exception):
         self.line = line
 
 
-class Content(NamedTuple):
+class _Content(NamedTuple):
     """The value of a text, and the line of every key and entry."""
 
     value: object
@@ -64,14 +64,14 @@ class _Node(NamedTuple):
     size: int = 1
 
 
-def parse(text: str) -> Content:
+def parse(text: str) -> _Content:
     """Return the value of a text.
 
     Raises:
         YamlError: it is no YAML, or beyond the limits.
     """
     lines: dict[KeyPath, int] = {}
-    return Content(_plain(_Composer(text).compose(), (), lines), lines)
+    return _Content(_plain(_Composer(text).compose(), (), lines), lines)
 
 
 def parse_value(text: str) -> object:
@@ -127,8 +127,8 @@ class _Composer:
     def _node(self, event: yaml.Event, depth: int) -> _Node:
         line = _line(event)
         self.count += 1
-        if self.count > MOST_VALUES:
-            raise YamlError(f"more than {MOST_VALUES} values", line)
+        if self.count > _MOST_VALUES:
+            raise YamlError(f"more than {_MOST_VALUES} values", line)
         if isinstance(event, yaml.AliasEvent):
             if event.anchor not in self.anchors:
                 raise YamlError(f"*{event.anchor} refers to nothing that ends before it", line)
@@ -174,8 +174,8 @@ class _Composer:
 def _sum_sizes(line: int, nodes: Iterable[_Node]) -> int:
     """Return the size of a node that holds others."""
     size = 1 + sum(node.size for node in nodes)
-    if size > MOST_VALUES:
-        raise YamlError(f"more than {MOST_VALUES} values once its aliases are put in", line)
+    if size > _MOST_VALUES:
+        raise YamlError(f"more than {_MOST_VALUES} values once its aliases are put in", line)
     return size
 
 
@@ -209,8 +209,8 @@ def _read_scalar(text: str, line: int) -> _Scalar:
     if text in _WORDS:
         return _WORDS[text]
     if _WHOLE.fullmatch(text):
-        if len(text) > LONGEST_NUMBER:
-            raise YamlError(f"a whole number of {len(text)} digits; permitted: at most {LONGEST_NUMBER}", line)
+        if len(text) > _LONGEST_NUMBER:
+            raise YamlError(f"a whole number of {len(text)} digits; permitted: at most {_LONGEST_NUMBER}", line)
         return int(text, 0) if text[:2] in ("0x", "0o") else int(text)
     return float(text) if _FLOAT.fullmatch(text) else text
 

@@ -22,9 +22,9 @@ from seatsim.schema.arrays import Array, require_samples
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import specification_of
 
-T = TypeVar("T")
+_T = TypeVar("_T")
 
-NONE = np.zeros(0)
+_NONE = np.zeros(0)
 
 
 def augment_plant(effects: Sequence[object], plant: Plant) -> Plant:
@@ -73,7 +73,7 @@ def sum_frame_forces(effects: Sequence[object], time: Array, seed: int) -> Array
     forces = [
         _checked(effect, "frame_force", push(time, seed), time, step) for effect, push in _with(effects, "frame_force")
     ]
-    return np.asarray(np.sum(forces, axis=0)) if forces else NONE
+    return np.asarray(np.sum(forces, axis=0)) if forces else _NONE
 
 
 def acts_on_signals(effects: Sequence[object]) -> bool:
@@ -87,7 +87,7 @@ def _with(effects: Sequence[object], hook: str) -> Iterator[tuple[object, Callab
     return ((effect, getattr(effect, hook)) for effect in effects if hasattr(effect, hook))
 
 
-def _change(effects: Sequence[object], hook: str, value: T) -> T:
+def _change(effects: Sequence[object], hook: str, value: _T) -> _T:
     """Return a record as the effects leave it, one after another."""
     for _, change in _with(effects, hook):
         value = change(value)

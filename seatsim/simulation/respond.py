@@ -36,7 +36,7 @@ FINER = 16
 """Parts of a row by which a log may be shifted, an even number: a sixteenth of 5 ms is far below any coil's lag."""
 
 
-def simulate_bench(scenario: Scenario, inputs: BenchInputs, carry_all_effects: bool = False) -> dict[str, Array]:
+def _simulate_bench(scenario: Scenario, inputs: BenchInputs, carry_all_effects: bool = False) -> dict[str, Array]:
     """Return the simulated `damper_force` and `coil_current` of a bench at the rows of its inputs, shape (N,) each.
 
     Displacement follows a quintic spline smoothed to within its stated noise, velocity its derivative or, where it is
@@ -169,7 +169,7 @@ def respond(scenario: Scenario, inputs: RigInputs, carry_all_effects: bool = Fal
         RunError: the solution grew beyond all bounds.
     """
     if isinstance(inputs, BenchInputs):
-        return simulate_bench(scenario, inputs, carry_all_effects)
+        return _simulate_bench(scenario, inputs, carry_all_effects)
     return _respond_seat(scenario, inputs, carry_all_effects)
 
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 UNITS = {"time": "s", **LOOP_UNITS, "energy_stored": "J"}
 """Unit of every channel of a history."""
-SHOWN = 10
+_SHOWN = 10
 """Runs that a result in a terminal shows."""
 
 
@@ -135,8 +135,8 @@ class Result:
 
     def __repr__(self) -> str:
         """Show the first runs."""
-        left = len(self.runs) - SHOWN
-        lines = [f"<Result of {len(self.runs)} runs>", *map(repr, self.runs[:SHOWN])]
+        left = len(self.runs) - _SHOWN
+        lines = [f"<Result of {len(self.runs)} runs>", *map(repr, self.runs[:_SHOWN])]
         return "\n".join([*lines, f"and {left} more: see .table"] if left > 0 else lines)
 
     def __getitem__(self, name: str) -> Channel:

@@ -25,7 +25,7 @@ from seatsim.simulation.result import UNITS, History, Result, Run
 from seatsim.simulation.simulate import simulate
 from seatsim.simulation.validity import explain_unweighted, list_reasons
 
-R = TypeVar("R")
+_R = TypeVar("_R")
 
 
 def run(scenario: str | Path | Mapping[str, object] | Scenario, settings: Mapping[str, object] | None = None) -> Result:
@@ -102,12 +102,12 @@ def run_many(
     yield from zip(scenarios, _map_on_threads(attempt, scenarios), strict=True)
 
 
-def _map_on_threads(function: Callable[[Scenario], R], scenarios: Sequence[Scenario]) -> Iterator[R]:
+def _map_on_threads(function: Callable[[Scenario], _R], scenarios: Sequence[Scenario]) -> Iterator[_R]:
     """Call a function with each scenario on as many threads as there are processors, and yield what it returns.
 
     The threads are daemons: an interrupt does not wait for runs that have begun.
     """
-    futures: list[Future[R]] = [Future() for _ in scenarios]
+    futures: list[Future[_R]] = [Future() for _ in scenarios]
     waiting = iter(zip(scenarios, futures, strict=True))
     taking = Lock()
 

@@ -43,7 +43,7 @@ from seatsim.simulation.validity import explain_divergence
 
 DEFAULT_SAMPLE_TIME = 0.001
 """Seconds between two samples of a law that states none, as common for embedded controllers of such seats."""
-SAME_TIME = 1e-9
+_SAME_TIME = 1e-9
 """Seconds by which a sample time may differ from a whole number of steps, for the sake of rounding."""
 
 
@@ -69,7 +69,7 @@ def simulate(
             floor = scenario.excitation.floor(step, scenario.seed)
     is_recorded = floor.temperature is not None
     setup, initial = set_up(scenario, scenario.plant, scenario.control, is_recorded, carry_all_effects)
-    inputs = prepare_inputs(scenario, scenario.control, floor, forces or Forces())
+    inputs = _prepare_inputs(scenario, scenario.control, floor, forces or Forces())
     if scenario.control.sensors:
         noise = scenario.control.sensors.noise(-(-len(floor.acceleration) // setup.timing.sample_every), scenario.seed)
         inputs = inputs._replace(sensed=at_rest(scenario.start.displacement), noise=noise)
@@ -148,7 +148,7 @@ def _count_steps(step: float, control: Control) -> int:
     if control.sample_time is None:
         return 1 if specification_of(type(control.law)).replays else max(1, round(DEFAULT_SAMPLE_TIME / step))
     every = round(control.sample_time / step)
-    if every < 1 or abs(every * step - control.sample_time) > SAME_TIME:
+    if every < 1 or abs(every * step - control.sample_time) > _SAME_TIME:
         raise InputError(
             f"sample_time {control.sample_time:g} s is not a multiple of solver.step"
             f" {step:g} s; choose {max(1, every) * step:g} s"
@@ -156,7 +156,7 @@ def _count_steps(step: float, control: Control) -> int:
     return every
 
 
-def prepare_inputs(scenario: Scenario, control: Control, floor: Floor, forces: Forces) -> LoopInputs:
+def _prepare_inputs(scenario: Scenario, control: Control, floor: Floor, forces: Forces) -> LoopInputs:
     """Return what drives a run of the loop, under a floor and with forces beside those of the effects."""
     step, effects, samples = scenario.solver.step, scenario.effects, len(floor.acceleration)
     acceleration = undo_reading(effects, floor.acceleration, "floor_acceleration", step)

@@ -23,7 +23,7 @@ from seatsim.simulation.augment import augment_plant
 from seatsim.simulation.damper_bench import centring
 from seatsim.simulation.result import History
 
-SHARE = 0.01
+_SHARE = 0.01
 """Share of the run that may lie outside a range before it is worth a warning: a single peak changes no metric."""
 LARGEST_RESIDUAL = 1e-3
 """Share of the energy that may be unaccounted for before the figures of a run cannot be relied on."""
@@ -76,9 +76,9 @@ def list_ranges_left(scenario: Scenario, history: History) -> tuple[str, ...]:
         (foreign, degrees, extrapolated),
     )
     found = [
-        f"{model}: more than {SHARE:.0%} of a run is {what}, beyond the data behind the model; {consequence}"
+        f"{model}: more than {_SHARE:.0%} of a run is {what}, beyond the data behind the model; {consequence}"
         for outside, what, consequence in checks
-        if np.mean(outside) > SHARE
+        if np.mean(outside) > _SHARE
     ]
     drift = centring(displacement, velocity) if specification.centred else ""
     return (*doubts, *found, *([f"{model}: {drift}"] if drift else []))

@@ -14,7 +14,7 @@ from seatsim.cli.options import Json, OwnCode, check_out, complete, complete_kin
 from seatsim.cli.terminal import answer, complain, refuse, say, show_progress, warn, wrote_one
 from seatsim.schema.errors import InputError, nearest
 
-NEXT = {
+_NEXT = {
     "scenario": "seatsim run {file}",
     "recording": "seatsim check {file}, then seatsim diagnose {file}",
     "damper": "seatsim describe {name} --with {file} --picture loops.png, then model: {name} in a scenario",
@@ -29,7 +29,7 @@ def new(
     kind: Annotated[
         str,
         typer.Argument(
-            help="scenario, recording, damper, controller, effect or excitation.", autocompletion=complete(*NEXT)
+            help="scenario, recording, damper, controller, effect or excitation.", autocompletion=complete(*_NEXT)
         ),
     ],
     name: Annotated[str, typer.Argument(help="Its name; a folder may stand before it.")],
@@ -42,7 +42,7 @@ def new(
     paths = write_new(kind, Path(name))
     say(f"written: {', '.join(map(str, paths))}")
     file = name if kind == "recording" else paths[0]
-    say(f"next: {NEXT[kind].format(name=Path(name).stem, file=file)}")
+    say(f"next: {_NEXT[kind].format(name=Path(name).stem, file=file)}")
     answer(NewAnswer(kind), paths)
 
 
@@ -102,7 +102,7 @@ def schema(
     sys.stdout.write(json.dumps(found) + "\n")
 
 
-ENDINGS = (".png", ".svg", ".pdf")
+_ENDINGS = (".png", ".svg", ".pdf")
 
 
 def describe(
@@ -125,9 +125,9 @@ def describe(
     from seatsim.scenario.describe import describe as describe_name
 
     pages = [find_page(name)] if name else list_pages()
-    if picture is not None and (not name or pages[0].kind != "damper" or picture.suffix not in ENDINGS):
+    if picture is not None and (not name or pages[0].kind != "damper" or picture.suffix not in _ENDINGS):
         raise InputError(
-            f"--picture {picture}: one damper, as {', '.join(ENDINGS)}: seatsim describe bouc_wen --picture loops.svg"
+            f"--picture {picture}: one damper, as {', '.join(_ENDINGS)}: seatsim describe bouc_wen --picture loops.svg"
         )
     say(describe_name(name))
     paths = _draw_loops(name, picture) if picture else []

@@ -89,7 +89,7 @@ def diagnose(
     answer(diagnosis, paths)
 
 
-COLUMNS = ("unit", "Hz", "least", "greatest", "RMS", "noise", "swing", "mean", "is", "rows")
+_COLUMNS = ("unit", "Hz", "least", "greatest", "RMS", "noise", "swing", "mean", "is", "rows")
 """Columns of the table of channels: `is` names the channel that a column was recognised as."""
 
 
@@ -172,7 +172,7 @@ def _table(title: str, channels: list[ChannelSummary]) -> Table:
 
     table = Table(title=escape(make_printable(title)), title_justify="left", box=None, header_style="bold")
     table.add_column("channel", no_wrap=True)
-    for name in COLUMNS:
+    for name in _COLUMNS:
         table.add_column(name, justify="left" if name in ("unit", "swing", "is") else "right", no_wrap=True)
     for each in channels:
         cells = {
@@ -187,7 +187,7 @@ def _table(title: str, channels: list[ChannelSummary]) -> Table:
             "is": each.channel or "",
             "rows": str(each.rows),
         }
-        table.add_row(escape(each.name), *(cells[name] for name in COLUMNS))
+        table.add_row(escape(each.name), *(cells[name] for name in _COLUMNS))
     return table
 
 

@@ -27,7 +27,7 @@ class NewAnswer(NamedTuple):
     kind: str
 
 
-class ExploreAnswer(NamedTuple):
+class _ExploreAnswer(NamedTuple):
     """A page that is served until the command is interrupted."""
 
     address: str
@@ -48,13 +48,13 @@ class SlurmAnswer(NamedTuple):
     runs: int
 
 
-class ErrorAnswer(NamedTuple):
+class _ErrorAnswer(NamedTuple):
     """What any command prints where it ends with an error."""
 
     error: str
 
 
-class SynthesisAnswer(NamedTuple):
+class _SynthesisAnswer(NamedTuple):
     """A design, as in `design.yaml`."""
 
     measures: list[str]
@@ -89,7 +89,7 @@ def list_answers() -> Mapping[str, object]:
         "compare": RunAnswer,
         "sweep": SweepResult | SlurmAnswer,
         "sweep-report": SweepReport,
-        "synthesise": SynthesisAnswer,
+        "synthesise": _SynthesisAnswer,
         "gap": Gap | Forecast,
         "diagnose": Diagnosis,
         "characterise": Characterisation,
@@ -105,9 +105,9 @@ def list_answers() -> Mapping[str, object]:
         "blind-make": BlindMakeAnswer,
         "blind-score": Score,
         "blind-power": Powers,
-        "explore": ExploreAnswer,
+        "explore": _ExploreAnswer,
         "reproduce": Reproduction,
-        "error": ErrorAnswer,
+        "error": _ErrorAnswer,
     }
 
 
@@ -120,7 +120,7 @@ def describe_answer(command: str) -> dict[str, object]:
     return schema if command == "error" else {**schema, "allOf": [_WRITTEN]}
 
 
-def recording_schema() -> Schema:
+def _recording_schema() -> Schema:
     """Return the schema of `recording.yaml`."""
     keys = dict(cast("Schema", record_schema(Header)["properties"]))
     tolerance = {"anyOf": [{"type": "number", "minimum": 0, "maximum": 1}, {"const": "fitted"}, BY_KEY]}
@@ -134,7 +134,7 @@ def recording_schema() -> Schema:
     return head_schema("seatsim recording", mapping_schema(keys, ("rig", "sample_rate", "nominal", "runs", "channels")))
 
 
-def parameters_schema() -> Schema:
+def _parameters_schema() -> Schema:
     """Return the schema of a damper with its coil, as `seatsim identify` writes it."""
     keys = {"damper": damper_schema(), "actuator": record_schema(Coil, ("rate", "max_current")), "bench": BY_KEY}
     return head_schema("seatsim damper parameters", mapping_schema(keys, ("damper",)) | schema_of_models())
@@ -142,8 +142,8 @@ def parameters_schema() -> Schema:
 
 FILES: Mapping[str, Callable[[], Schema]] = {
     "scenario": scenario_schema,
-    "recording": recording_schema,
-    "parameters": parameters_schema,
+    "recording": _recording_schema,
+    "parameters": _parameters_schema,
     "sweep": sweep_schema,
 }
 """Schemas of files by kind."""

@@ -14,7 +14,7 @@ from seatsim.schema.text import join_names
 from seatsim.standards.comfort import Comfort
 from seatsim.standards.seat_rows import ACCEPTANCE, DAMPING, LIMITS, SeatTest
 
-AXIS = (
+_AXIS = (
     "axis", "weighting", "k comfort", "k health", "a_w\n[m/s²]", "VDV\n[m/s¹·⁷⁵]", "eVDV\n[m/s¹·⁷⁵]", "MTVV\n[m/s²]",
     "crest\nfactor", "method\n(6.3)",
 )  # fmt: skip
@@ -37,7 +37,7 @@ def make_comfort_tables(found: Comfort) -> list[Table]:
         )
         for axis, seat in found.seat.items()
     ]  # fmt: skip
-    tables = [make_table(f"ISO 2631-1 figures of {found.source}, {found.duration:g} s", AXIS, axes, left=(0, 1))]
+    tables = [make_table(f"ISO 2631-1 figures of {found.source}, {found.duration:g} s", _AXIS, axes, left=(0, 1))]
     headings = ("axis", "SEAT\n(RMS)", "SEAT\n(VDV)", "of each run", "spread", "three runs\nwithin 5 %")
     return [*tables, *([make_table("SEAT factors (ISO 10326-1)", headings, seats, left=())] if seats else [])]
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from seatsim.standards.seat_rows import SeatTest
 
 
-Row = Mapping[str, object]
+_Row = Mapping[str, object]
 
 
 def write_outputs(
@@ -47,7 +47,7 @@ def write_outputs(
 
 def write_each(contents: Mapping[str, object], folder: Path) -> list[Path]:
     """Write the files of `write_outputs` to a folder, one after the other; return their paths."""
-    return [WRITERS[Path(name).suffix](folder / name, content) for name, content in contents.items()]
+    return [_WRITERS[Path(name).suffix](folder / name, content) for name, content in contents.items()]
 
 
 def name_pictures(figures: Mapping[str, object]) -> dict[str, object]:
@@ -55,7 +55,7 @@ def name_pictures(figures: Mapping[str, object]) -> dict[str, object]:
     return {f"{name}.png": figure for name, figure in figures.items()}
 
 
-def _write_rows(path: Path, content: Sequence[Row] | pd.DataFrame) -> Path:
+def _write_rows(path: Path, content: Sequence[_Row] | pd.DataFrame) -> Path:
     """Write rows below each other, with a column for every name; what is absent or NaN stays empty."""
 
     def write(part: Path) -> None:
@@ -83,7 +83,7 @@ def _write_picture(path: Path, figure: Any) -> Path:
     return write_whole(path, partial(save_figure, figure))
 
 
-WRITERS: Mapping[str, Callable[[Path, Any], Path]] = {
+_WRITERS: Mapping[str, Callable[[Path, Any], Path]] = {
     ".json": write_json,
     ".csv": _write_rows,
     ".html": lambda path, report: write_html(report, path),
@@ -93,13 +93,13 @@ WRITERS: Mapping[str, Callable[[Path, Any], Path]] = {
 """Writers by the ending of a file."""
 
 
-TIMES = ("seconds", "ns_per_step")
+_TIMES = ("seconds", "ns_per_step")
 """What a fit and a step took, which differs each time."""
-HEAD = """\
+_HEAD = """\
 # Found by `seatsim identify`. `damper` and `actuator` are as a scenario has them; under `bench`: the displacement [m]
 # that counts as zero, and the growth of the offset with temperature [N/K].
 """
-NO_COIL = "# No command that changes was recorded: the rates of the actuator are defaults.\n"
+_NO_COIL = "# No command that changes was recorded: the rates of the actuator are defaults.\n"
 
 
 def write_gap(found: Gap, scenario: str, recording: Path, folder: Path) -> list[Path]:
@@ -161,7 +161,7 @@ def write_characterisation(found: Characterisation, folder: Path) -> list[Path]:
 
 def write_identification(found: Identification, folder: str | Path, seed: int = 0) -> list[Path]:
     """Write `parameters.yaml`, `fit.json`, `report.html` and the picture of an identification; return their paths."""
-    return write_outputs(Path(folder), _contents_of_fit(found), seed, {"fit.json": TIMES})
+    return write_outputs(Path(folder), _contents_of_fit(found), seed, {"fit.json": _TIMES})
 
 
 def write_member(found: Identification, folder: Path) -> list[Path]:
@@ -174,7 +174,7 @@ def _contents_of_fit(found: Identification) -> dict[str, object]:
     from seatsim.report.identification import report_identification
 
     return {
-        "parameters.yaml": HEAD + ("" if found.commanded else NO_COIL) + dump(found.to_scenario(), line_each=True),
+        "parameters.yaml": _HEAD + ("" if found.commanded else _NO_COIL) + dump(found.to_scenario(), line_each=True),
         "fit.json": found,
         "report.html": report_identification(found, f"seatsim identify DATA --model {found.model}"),
         **name_pictures({"loops": plot_predictions(found)}),
@@ -183,7 +183,7 @@ def _contents_of_fit(found: Identification) -> dict[str, object]:
 
 def write_league(places: Sequence[BenchmarkEntry], folder: Path, seed: int) -> list[Path]:
     """Write `league.csv`, the best model first."""
-    return write_outputs(folder, {"league.csv": [place._asdict() for place in places]}, seed, {"league.csv": TIMES})
+    return write_outputs(folder, {"league.csv": [place._asdict() for place in places]}, seed, {"league.csv": _TIMES})
 
 
 def write_seat_test(found: SeatTest, source: Path, folder: Path) -> list[Path]:
