@@ -30,10 +30,8 @@ def make_table(
     caption: str | None = None,
 ) -> Table:
     """Return a table for the terminal; `left` are the columns of names, and an empty row is a line."""
-    table = Table(
-        title=escape(title), caption=caption, title_justify="left", caption_justify="left", box=box.SIMPLE_HEAD,
-        padding=(0, 1, 0, 0),
-    )  # fmt: skip
+    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), title_justify="left", caption_justify="left")
+    table.title, table.caption = escape(title), caption
     for k, heading in enumerate(headings):
         table.add_column(escape(heading), justify="left" if k in left else "right", vertical="bottom", no_wrap=True)
     for row in rows:

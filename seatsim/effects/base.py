@@ -165,9 +165,11 @@ _REFERENCE_DEPTH = 0.01
 """m; depth at which the force of a buffer does not depend on its exponent."""
 
 FRICTIONS: tuple[dict[str, float], ...] = (
-    {"force": 20.0, "presliding": 2e-4}, {"force": 20.0, "presliding": 1e-3, "lubrication": 20.0},
-    {"force": 120.0, "presliding": 1e-3, "lubrication": 20.0}, {"force": 20.0},
-)  # fmt: skip
+    {"force": 20.0, "presliding": 2e-4},
+    {"force": 20.0, "presliding": 1e-3, "lubrication": 20.0},
+    {"force": 120.0, "presliding": 1e-3, "lubrication": 20.0},
+    {"force": 20.0},
+)
 """Starts of a friction's fit; the last is set-valued, as the record is by itself."""
 
 

@@ -46,7 +46,7 @@ class GasSpring(NamedTuple):
         Form({"viscous": 0.1, "yielding": 0.1, "speed": 0.03, "offset": 0.5}, sizes=2),
         Form({"viscous": 0.1, "pulling": 0.1, "speed": 0.03, "offset": 0.5}, sizes=2),
     ),
-)  # fmt: skip
+)
 class Asymmetry(NamedTuple):
     """Rebound stronger and compression weaker: both parts of the force times `1 + a (tanh(v / speed) + offset)`.
 
@@ -108,11 +108,12 @@ class SealFriction(NamedTuple):
     initial=(0.0,),
     off={"softness": 0.3},
     forms=(
-        *({"gap": gap} for gap in (1e-4, 3e-4, 1e-3, 2e-3)), {"gap": 3e-4, "softness": 0.9},
+        *({"gap": gap} for gap in (1e-4, 3e-4, 1e-3, 2e-3)),
+        {"gap": 3e-4, "softness": 0.9},
         *(Form({"gap": gap, "stiffness": 3e6}, within={"stiffness": (1e6, 1e9)}) for gap in (3e-5, 1e-4, 3e-4, 8e-4)),
         *(Form({"gap": 1e-4 * 1.32**k}, {"softness": 0.05, "turning": 3e-4}) for k in range(12)),
     ),
-)  # fmt: skip
+)
 class FreePlay(NamedTuple):
     """Backlash at the mount or trapped air: after each reversal a travel `gap` without force.
 
@@ -175,11 +176,15 @@ def _without_state(damper: object) -> bool:
     initial=(0.0, 0.0),
     off={"share": 1.0},
     forms=(
-        {"travel": 3e-4}, {"travel": 3e-4, "share": 0.3}, {"lag": 1e-3}, {"lag": 3e-3, "share": 0.3},
-        {"behind": 1e-3}, {"behind": 3e-3, "share": 0.3},
+        {"travel": 3e-4},
+        {"travel": 3e-4, "share": 0.3},
+        {"lag": 1e-3},
+        {"lag": 3e-3, "share": 0.3},
+        {"behind": 1e-3},
+        {"behind": 3e-3, "share": 0.3},
     ),
     suits=_without_state,
-)  # fmt: skip
+)
 class PreyieldHysteresis(NamedTuple):
     """Yield force that builds up over a travel, or with a lag: a loop at low speed.
 

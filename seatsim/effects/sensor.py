@@ -48,9 +48,11 @@ class Gain(NamedTuple):
 
 
 @effect(
-    "sensor.bias", source="zero error and drift", by_channel=True,
+    "sensor.bias",
+    source="zero error and drift",
+    by_channel=True,
     forms=({"share": 0.1}, Form({"share": 0.1, "drift": 0.01}, sizes=2)),
-)  # fmt: skip
+)
 class Bias(NamedTuple):
     """One channel reads with an offset that may drift: `truth + scale (share + drift t)`.
 
@@ -106,12 +108,13 @@ class SensorLag(NamedTuple):
     source="two clocks",
     forms=(
         *({"shift": shift} for shift in (*_LATE[1::2], *_EARLY[1::2])),
-        {"shift": 0.003, "drift": 5e-5}, {"shift": -0.003, "drift": 5e-5},
+        {"shift": 0.003, "drift": 5e-5},
+        {"shift": -0.003, "drift": 5e-5},
         *(Form({"shift": shift}, {"hold": 0.002}) for shift in (*_LATE, *_EARLY)),
         *(Form({"shift": shift, "drift": 1e-5}, {"hold": 0.002}) for shift in (*_LATE[1::2], *_EARLY[1::2])),
         *(Form({"shift": shift, "drift": -shift / 60.0}, {"hold": 0.002}) for shift in (0.003, -0.003)),
     ),
-)  # fmt: skip
+)
 class ClockSkew(NamedTuple):
     """The controller's log is late by `shift + drift t` against the other channels: it says at t what was at t - shift.
 

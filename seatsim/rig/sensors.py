@@ -22,9 +22,8 @@ _STREAM = 1
 """Key of the noise's random stream beside the seed, so that the noise is independent of the floor's random draw."""
 
 # Order of the instruments' state: input and output of each anti-alias filter, then values at the law's last sample.
-_X_TRUE, _X_FILTERED, _FRAME_TRUE, _FRAME_FILTERED, _DRIVER_TRUE, _DRIVER_FILTERED, _FLOOR_TRUE, _FLOOR_FILTERED = (
-    range(8)
-)
+_X_TRUE, _X_FILTERED, _FRAME_TRUE, _FRAME_FILTERED = range(4)
+_DRIVER_TRUE, _DRIVER_FILTERED, _FLOOR_TRUE, _FLOOR_FILTERED = range(4, 8)
 _X_READ, _X_VELOCITY, _FRAME_READ, _FRAME_VELOCITY, _DRIVER_READ, _DRIVER_VELOCITY = range(8, 14)
 _FILTERS, INSTRUMENTS = 8, 14
 """Length of the anti-alias filters' part of the state, and of all of it."""

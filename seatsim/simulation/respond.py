@@ -151,8 +151,12 @@ def _temperature(scenario: Scenario, true: BenchInputs, rows: Array, fine: Array
 
 
 SEAT_OUTPUTS = (
-    "frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force", "coil_current",
-)  # fmt: skip
+    "frame_acceleration",
+    "driver_acceleration",
+    "suspension_displacement",
+    "damper_force",
+    "coil_current",
+)
 """What the sensors of a seat say, in the order in which they are reported; those of a bench say the last two."""
 
 

@@ -53,10 +53,21 @@ _COLUMNS = (
     _RowColumn("asym-\nmetry\n[%]", lambda row: 100.0 * row.asymmetry, ".1f"),
     _RowColumn("of\nshape\n[%]", lambda row: 100.0 * row.asymmetry_of_shape, ".1f"),
 )
-_STEP = (
-    "record", "from\n[A]", "to\n[A]", "steps", "t5\n[ms]", "t90\n[ms]", "t95\n[ms]", "±\n[ms]", "rate\n[1/s]",
-    "behind\ndelay\n[1/s]", "delay\n[ms]", "current\nt95 [ms]", "how",
-)  # fmt: skip
+_STEP = [
+    "record",
+    "from\n[A]",
+    "to\n[A]",
+    "steps",
+    "t5\n[ms]",
+    "t90\n[ms]",
+    "t95\n[ms]",
+    "±\n[ms]",
+    "rate\n[1/s]",
+    "behind\ndelay\n[1/s]",
+    "delay\n[ms]",
+    "current\nt95 [ms]",
+    "how",
+]
 
 
 def make_characterisation_tables(found: Characterisation) -> list[Table]:
@@ -75,10 +86,9 @@ def _make_row_table(found: Characterisation) -> Table:
     title = of if any(row.cycles for row in found.rows) else "records without cycles"
     more = len(found.rows) - _ROWS_LISTED
     first, headings = int(not found.measured), ["record", *(column.heading for column in shown)]
-    table = make_table(
-        f"{found.name}: {title}", headings[first:], [row[first:] for row in rows], left=(0,) if found.measured else (),
-        caption=f"{more} more rows in cycles.csv" if more > 0 else None,
-    )  # fmt: skip
+    shown_rows, left = [row[first:] for row in rows], (0,) if found.measured else ()
+    caption = f"{more} more rows in cycles.csv" if more > 0 else None
+    table = make_table(f"{found.name}: {title}", headings[first:], shown_rows, left, caption)
     if found.measured and len(shown) >= _CROWDED:
         table.padding = 0
     return table
@@ -115,21 +125,14 @@ def make_identification_tables(found: Identification) -> list[Table]:
     figures = [(f"{escape(it.record.name)} ({it.part})", *_format_figures(it.agreement)) for it in each]
     parts = {"train": found.train, "test": found.test, "predicted": found.predicted}
     means = [(f"mean, {part}", *_format_figures(mean)) for part, mean in parts.items() if mean]
-    values = [
-        (
-            escape(one.name), f"{one.value:.5g}", f"{1.96 * one.std:.2g}", escape(one.unit),
-            "" if one.identified else "not identified",
-        )
-        for one in found.information.estimates
-    ]  # fmt: skip
+    values = []
+    for one in found.information.estimates:
+        numbers = (f"{one.value:.5g}", f"{1.96 * one.std:.2g}")
+        values.append((escape(one.name), *numbers, escape(one.unit), "" if one.identified else "not identified"))
     title, headings = f"{found.model}: agreement with the measured force", ("", "R²", "MD", "RMSE [N]", "fit [%]")
-    return [
-        make_table(title, headings, [*figures, (), *means]),
-        make_table(
-            f"{found.model}: parameters, ±1.96 standard deviations", ("", "value", "±", "unit", ""), values,
-            left=(0, 3, 4),
-        ),
-    ]  # fmt: skip
+    table, of_values = make_table(title, headings, [*figures, (), *means]), ("", "value", "±", "unit", "")
+    title = f"{found.model}: parameters, ±1.96 standard deviations"
+    return [table, make_table(title, of_values, values, left=(0, 3, 4))]
 
 
 def _format_figures(figures: Agreement) -> tuple[str, ...]:
