@@ -5,7 +5,7 @@ A class of the user's own is tried on an example, so that what is wrong with it 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -26,7 +26,7 @@ from seatsim.scenario.loading import load
 from seatsim.scenario.numbers import list_doubts
 from seatsim.schema.content import IfAny, Joined
 from seatsim.schema.errors import InputError, SeatsimError
-from seatsim.schema.fields import bounds, field_names
+from seatsim.schema.fields import bounds, default_values, field_names
 from seatsim.schema.modules import UNIT, use
 from seatsim.schema.registry import find, names
 from seatsim.schema.yaml_source import Source
@@ -91,14 +91,14 @@ def _try_effect(name: str, cls: type) -> Iterator[str]:
         _simulate({"effects": [_state(name, {**off(cls)._asdict(), **form.fixed, **form.free})]})
 
 
-def _state(name: str, values: dict[str, Any]) -> dict[str, object]:
+def _state(name: str, values: Mapping[str, object]) -> dict[str, object]:
     return {"effect": name, "parameters": values}
 
 
-def _choose_value(cls: Any, field: str) -> object:
+def _choose_value(cls: type, field: str) -> object:
     """Return the default of a field, or a value between its bounds."""
-    if field in cls._field_defaults:
-        return cls._field_defaults[field]
+    if field in (defaults := default_values(cls)):
+        return defaults[field]
     low, high = bounds(cls, field)
     return 0.5 * (low + high) if np.isfinite(low + high) else 1.0
 

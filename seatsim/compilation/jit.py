@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import linecache
 from collections.abc import Callable
-from typing import TypeVar, cast
+from typing import Any, TypeVar
 
 import numba
 from numba.extending import overload, register_jitable
@@ -53,9 +53,10 @@ def specialise(generic: Callable[..., object]) -> Callable[[_Resolve], _Resolve]
     return enter
 
 
-def define(source: str, name: str, namespace: dict[str, object]) -> Callable[..., object]:
+def define(source: str, name: str, namespace: dict[str, Any]) -> Callable[..., Any]:
     """Return the function `name` that a source defines; its lines can be shown and read, as those of a file can."""
     file = f"<{name} {hashlib.sha256(source.encode()).hexdigest()[:16]}>"
     linecache.cache[file] = (len(source), None, source.splitlines(keepends=True), file)
     exec(compile(source, file, "exec"), namespace)
-    return cast("Callable[..., object]", namespace[name])
+    function: Callable[..., Any] = namespace[name]
+    return function

@@ -10,12 +10,15 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from ctypes import c_double
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from seatsim.cosimulation.damper import FmuDamper
 from seatsim.cosimulation.description import UnitDescription
 from seatsim.cosimulation.running import RunningUnit
 from seatsim.schema.errors import RunError
+
+if TYPE_CHECKING:
+    from fmpy.fmi1 import _FMU
 
 _States = list[float]
 
@@ -34,7 +37,7 @@ class _Update(NamedTuple):
 class _ContinuousModel:
     """A unit for model exchange with its states, in the mode that the standard prescribes for each call."""
 
-    def __init__(self, unit: UnitDescription, instance: Any) -> None:
+    def __init__(self, unit: UnitDescription, instance: _FMU) -> None:
         self._instance = instance
         self._is_second = unit.version == 2
         described = unit.described
@@ -131,13 +134,13 @@ class _Saved(NamedTuple):
     signs: list[bool]
     next_event: float
     current: float
-    own: Any
+    own: object
 
 
 class IntegratedUnit(RunningUnit):
     """A unit for model exchange that runs, with the interface of one for co-simulation."""
 
-    def __init__(self, damper: FmuDamper, unit: UnitDescription, instance: Any, told: list[str]) -> None:
+    def __init__(self, damper: FmuDamper, unit: UnitDescription, instance: _FMU, told: list[str]) -> None:
         super().__init__(damper, unit, instance, told)
         self.takes_acceleration = True
         self._model = _ContinuousModel(unit, instance)

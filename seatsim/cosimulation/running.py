@@ -5,11 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from seatsim.cosimulation.damper import FmuDamper
 from seatsim.cosimulation.description import FORCE, REAL, UnitDescription, find_conversion_of, find_variable
 from seatsim.schema.errors import RunError
+
+if TYPE_CHECKING:
+    from fmpy.fmi1 import _FMU
 
 _T = TypeVar("_T")
 
@@ -17,7 +20,7 @@ _T = TypeVar("_T")
 class RunningUnit:
     """A unit between its start and its end; motion, current and temperature in, force out, all in SI units and degC."""
 
-    def __init__(self, damper: FmuDamper, unit: UnitDescription, instance: Any, told: list[str]) -> None:
+    def __init__(self, damper: FmuDamper, unit: UnitDescription, instance: _FMU, told: list[str]) -> None:
         self.repeats = unit.saves
         self.takes_acceleration = "acceleration" in dict(damper.inputs)
         self._file, self._unit, self._instance, self._told = damper.file, unit, instance, told
@@ -56,7 +59,7 @@ class RunningUnit:
             raise RunError(f"{self._file}: the unit ended at {ended[3]:.6g} s, before the run does")
         return self._read(time + length)
 
-    def save(self) -> Any:
+    def save(self) -> object:
         """Return the unit's state, to which `restore` goes back."""
         return self._call(self._instance.getFMUState, "saving its state")
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache
-from typing import ParamSpec, Protocol, TypeVar, cast
+from typing import Any, ParamSpec, Protocol, TypeVar
 
 from numba import types
 
@@ -23,9 +23,9 @@ _P = ParamSpec("_P")
 _R = TypeVar("_R")
 
 
-def method_of(cls: type, name: str) -> Callable[..., object] | None:
+def method_of(cls: type, name: str) -> Callable[..., Any] | None:
     """Return the method of a record class for the hook `name`, or None where it has none."""
-    method: Callable[..., object] | None = getattr(cls, name, None)
+    method: Callable[..., Any] | None = getattr(cls, name, None)
     return method
 
 
@@ -47,7 +47,7 @@ def hook(default: Callable[_P, _R]) -> Callable[_P, _R]:
 
     def method(cls: type) -> Callable[_P, _R]:
         own = method_of(cls, name)
-        return cast("Callable[_P, _R]", own) if own else default
+        return own or default
 
     def generic(*arguments: _P.args, **named: _P.kwargs) -> _R:
         return method(type(arguments[0]))(*arguments, **named)
@@ -108,7 +108,7 @@ def _implementation(
 ) -> Callable[..., object]:
     """Build `impl(effects, z, a0, ...)` with `count` arguments: numba cannot loop over a tuple of several classes."""
     arguments = [f"a{k}" for k in range(count)]
-    body, namespace = [first], cast("dict[str, object]", {"__name__": __name__})
+    body, namespace = [first], dict[str, object](__name__=__name__)
     for index, method, part in _parts(classes, name):
         namespace[f"m{index}"] = jit(method)
         given = ", ".join([f"effects[{index}]", *arguments, f"z[{part.start}:{part.stop}]"])
@@ -117,7 +117,7 @@ def _implementation(
     return define(source, name, namespace)
 
 
-def _chain(name: str, first: str, line: str, last: str) -> Callable[..., object]:
+def _chain(name: str, first: str, line: str, last: str) -> Callable[..., Any]:
     """Make a generic function `f(effects, z, *arguments)` out of the source of its body.
 
     The body is `first`, then `line` for each record that has the method, then `last`; `{call}` in a line is the
@@ -140,17 +140,17 @@ def _chain(name: str, first: str, line: str, last: str) -> Callable[..., object]
 
 def sum_hook(name: str) -> _SummedHook:
     """Make the function that sums the records' values for the hook `name`."""
-    return cast(_SummedHook, _chain(name, "r = 0.0", "r += {call}", "return r"))
+    return _chain(name, "r = 0.0", "r += {call}", "return r")
 
 
 def fold_hook(name: str) -> _FoldedHook:
     """Make the function that passes its first argument from record to record, each of which may change it."""
-    return cast(_FoldedHook, _chain(name, "", "a0 = {call}", "return a0"))
+    return _chain(name, "", "a0 = {call}", "return a0")
 
 
 def join_hook(name: str) -> _JoinedHook:
     """Make the function that joins the records' tuples, one after another, in the order of the states."""
-    return cast(_JoinedHook, _chain(name, "r = ()", "r = r + {call}", "return r"))
+    return _chain(name, "r = ()", "r = r + {call}", "return r")
 
 
 def leading_state(effects: Effects, z: State) -> State:
@@ -203,7 +203,7 @@ def _unrolled(arguments: str, term: str, length: int) -> Callable[..., State]:
     """Build a function that returns a tuple of `term` for j = 0 .. length - 1: numba has no tuple comprehension."""
     body = "".join(term.format(j=j) + ", " for j in range(length))
     source = f"def unrolled({arguments}): return ({body})"
-    return cast("Callable[..., State]", define(source, "unrolled", {"__name__": __name__}))
+    return define(source, "unrolled", {"__name__": __name__})
 
 
 MOST_WORK = 100

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 from seatsim.metrics.table import METRICS
 from seatsim.schema.errors import nearest
@@ -118,7 +118,9 @@ class Published(NamedTuple):
 
     def figure(self, row: int, metric: str) -> float:
         """Return a metric that a row states."""
-        return float(cast("float", self.rows[row][metric]))
+        stated = self.rows[row][metric]
+        assert isinstance(stated, int | float)  # as `check_published` has found
+        return float(stated)
 
 
 def published_figures(source: Source) -> Published | None:
@@ -126,7 +128,8 @@ def published_figures(source: Source) -> Published | None:
     if "published" not in source.data:
         return None
     stated = mapping(source.data["published"], source, ("published",))
-    rows = cast("list[Mapping[str, object]]", stated["rows"])
+    rows = stated["rows"]
+    assert isinstance(rows, list)  # as `check_published` has found
     return Published(str(stated.get("source", "published figures")), rows)
 
 

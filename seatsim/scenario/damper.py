@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any, cast
+from typing import cast
 
 from seatsim.cosimulation.damper import PREFIX, FmuDamper
 from seatsim.cosimulation.description import (
@@ -55,8 +55,7 @@ def _stated_unit(stated: Mapping[str, object], source: Source, keys: KeyPath) ->
     for name, value in mapping(stated.get("parameters", {}), source, (*keys, "parameters")).items():
         with _placed(source, (*keys, "parameters", name)):
             values[name] = check_parameter(unit, name, value)
-    found: Any = FmuDamper(str(path), tuple(inputs.items()), outputs[FORCE], tuple(values.items()))
-    return cast(Damper, found)
+    return cast("Damper", FmuDamper(str(path), tuple(inputs.items()), outputs[FORCE], tuple(values.items())))
 
 
 def _names(

@@ -166,13 +166,13 @@ def _list_unread(scenario: Scenario) -> list[str]:
     """Return a sentence for each effect on a thermocouple that nothing reads, since the fluid itself is simulated."""
     if not _is_thermal(scenario) or scenario.control is None or specification_of(type(scenario.control.law)).replays:
         return []
-    ramp, own = np.arange(3.0), cast("tuple[Any, ...]", scenario.effects)
+    ramp = np.arange(3.0)
     return [
         f"{_place(scenario, ('effects',))}: {EFFECTS.name_of(type(effect))} states how the fluid differs from its"
         " thermocouple, which changes nothing here, since the temperature of the fluid is simulated; state it as a"
         " number, or replay a recorded damper_temperature"
-        for effect in own
-        if acts_on(type(effect), (TEMPERATURE,)) and not np.array_equal(effect.temperature(1.0, ramp), ramp)
+        for effect in scenario.effects
+        if acts_on(type(effect), (TEMPERATURE,)) and not np.array_equal(getattr(effect, TEMPERATURE)(1.0, ramp), ramp)
     ]
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import accumulate
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,7 +63,7 @@ def open_parquet(content: bytes) -> ParquetFile:
     return file
 
 
-def store_numbers(values: NDArray[Any], kind: pa.DataType, present: NDArray[np.bool_] | None = None) -> pa.Array:
+def store_numbers(values: NDArray[np.generic], kind: pa.DataType, present: NDArray[np.bool_] | None = None) -> pa.Array:
     """Return numbers or truth values, shape (N,), as an array of a kind; those that are not `present` are null."""
     import pyarrow as pa
 

@@ -23,10 +23,10 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Sized
 from functools import cache
 from pathlib import PurePath
-from typing import Annotated, Any, NamedTuple, TypeVar, get_args, get_origin, get_type_hints
+from typing import Annotated, NamedTuple, TypeGuard, TypeVar, get_args, get_origin, get_type_hints
 
 _T = TypeVar("_T")
-F = TypeVar("F", bound=Callable[[Any], object])
+F = TypeVar("F", bound=Callable[..., object])
 
 
 class Form(NamedTuple):
@@ -56,7 +56,7 @@ class _WrittenField(NamedTuple):
     name: str
     key: str
     form: Form
-    hint: Any
+    hint: object
 
 
 def written(key: str = "", *, joined: bool = False, if_any: bool = False) -> Callable[[F], F]:
@@ -69,7 +69,7 @@ def written(key: str = "", *, joined: bool = False, if_any: bool = False) -> Cal
     return mark
 
 
-def is_record(kind: object) -> bool:
+def is_record(kind: object) -> TypeGuard[type]:
     """Whether a class is that of records."""
     return isinstance(kind, type) and (hasattr(kind, "_fields") or dataclasses.is_dataclass(kind))
 
@@ -97,14 +97,14 @@ def _find_form(hint: object) -> Form:
     return next((mark for mark in marks if isinstance(mark, Form)), Form())
 
 
-def _list_properties(record: type) -> Iterator[tuple[str, Any]]:
+def _list_properties(record: type) -> Iterator[tuple[str, Callable[..., object]]]:
     for kind in reversed(record.__mro__):
         for name, value in vars(kind).items():
-            if isinstance(value, property) and "form" in vars(value.fget):
+            if isinstance(value, property) and value.fget and "form" in vars(value.fget):
                 yield name, value.fget
 
 
-def find_record(hint: Any) -> type | None:
+def find_record(hint: object) -> type | None:
     """Return the record class that a type is or may be, None for the types of other values."""
     if get_origin(hint) is Annotated:
         return find_record(get_args(hint)[0])

@@ -101,16 +101,17 @@ def replace_fields(record: N, changes: Mapping[str, float]) -> N:
 
 def bounds(record: type, name: str) -> tuple[float, float]:
     """Return the least and the greatest value of a field; infinite where it has no such bound."""
-    limits = {"low": -math.inf, "high": math.inf}
+    low, high = -math.inf, math.inf
     info = _field_info(_hints(record)[name])
     for mark in info.metadata if info else ():
-        if isinstance(mark, Ge):
-            limits["low"] = float(mark.ge)  # type: ignore[arg-type]  # only comparable by type
-        elif isinstance(mark, Gt):
-            limits["low"] = float(mark.gt) + SLIGHTLY  # type: ignore[arg-type]  # only comparable by type
-        elif isinstance(mark, Le):
-            limits["high"] = float(mark.le)  # type: ignore[arg-type]  # only comparable by type
-    return limits["low"], limits["high"]
+        match mark:
+            case Ge(ge=int() | float() as bound):
+                low = float(bound)
+            case Gt(gt=int() | float() as bound):
+                low = float(bound) + SLIGHTLY
+            case Le(le=int() | float() as bound):
+                high = float(bound)
+    return low, high
 
 
 def choices(record: type, name: str) -> tuple[str, ...]:

@@ -105,7 +105,8 @@ def specification_of(cls: type) -> Any:  # any kind: `Registry.specification_of`
 
 def initial_state(cls: type) -> tuple[float, ...]:
     """Return the state at rest that a damper, law or effect was registered with; empty where it has no state."""
-    return cast("tuple[float, ...]", getattr(_specifications[cls], "initial", ()))
+    initial: tuple[float, ...] = getattr(_specifications[cls], "initial", ())
+    return initial
 
 
 def name_of(kind: str, cls: type) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TypeGuard, TypeVar, cast
+from typing import TypeGuard, TypeVar
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
@@ -75,7 +75,7 @@ def mapping(values: object, source: Source, keys: KeyPath) -> Mapping[str, objec
     """Return the values if they are a mapping, else raise InputError."""
     if not isinstance(values, Mapping):
         raise source.error(keys, f"{_shown(values)} is not a mapping; write its keys indented below it")
-    return cast("Mapping[str, object]", values)
+    return values
 
 
 def check_keys(values: Mapping[str, object], known: Iterable[str], source: Source, keys: KeyPath) -> None:

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 from seatsim.recordings.header import Header, RunEntry
 from seatsim.recordings.recording import ChannelEntry, VoltageGain
 from seatsim.rig.coil import Coil
 from seatsim.scenario.damper import damper_schema, schema_of_models
 from seatsim.scenario.sections import scenario_schema
-from seatsim.schema.json_schema import BY_KEY, TEXT, Schema, head_schema, mapping_schema, record_schema
+from seatsim.schema.json_schema import BY_KEY, TEXT, Schema, head_schema, mapping_schema, properties_of, record_schema
 from seatsim.sweeps.definition import sweep_schema
 
 _WRITTEN = {"properties": {"files": {"type": "array", "items": {"type": "string"}}}, "required": ["files"]}
@@ -122,7 +122,7 @@ def describe_answer(command: str) -> dict[str, object]:
 
 def _recording_schema() -> Schema:
     """Return the schema of `recording.yaml`."""
-    keys = dict(cast("Schema", record_schema(Header)["properties"]))
+    keys = dict(properties_of(record_schema(Header)))
     tolerance = {"anyOf": [{"type": "number", "minimum": 0, "maximum": 1}, {"const": "fitted"}, BY_KEY]}
     keys |= {
         "parameter_tolerance": tolerance,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from rich.markup import escape
 from rich.table import Table
@@ -15,7 +15,7 @@ from seatsim.metrics.table import SHORT
 from seatsim.rig.designs import BoxProof, CheckedLaw, DesignedLoop, SynthesisedDesign
 from seatsim.scenario.checks import Published, published_figures
 from seatsim.scenario.scenario import Scenario, group_by_condition
-from seatsim.simulation.performance_bounds import measure_distance
+from seatsim.simulation.performance_bounds import PerformanceBounds, measure_distance
 from seatsim.simulation.result import Run
 from seatsim.simulation.simulate import DEFAULT_SAMPLE_TIME
 
@@ -104,7 +104,7 @@ def _labels(run: Run, keys: Sequence[str]) -> list[str]:
     return [escape(f"{value:g}" if isinstance(value, int | float) else str(value)) for value in values]
 
 
-def make_bracket_table(runs: Sequence[Run], brackets: Mapping[str, Any]) -> Table:
+def make_bracket_table(runs: Sequence[Run], brackets: Mapping[str, PerformanceBounds]) -> Table:
     """Return the table of how far each run with performance bounds is from both of them, at the run's travel."""
     chosen = [run for run in runs if run.scenario.rig in brackets]
     keys, rows = _label_keys(chosen), []

@@ -18,6 +18,7 @@ from seatsim.schema.yaml_text import dump
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.figure import Figure
 
     from seatsim.characterisation.summary import Characterisation
     from seatsim.diagnosis.result import Diagnosis
@@ -77,7 +78,7 @@ def _cell(value: object) -> object:
     return "" if isinstance(value, float) and math.isnan(value) else disarm(value)
 
 
-def _write_picture(path: Path, figure: Any) -> Path:
+def _write_picture(path: Path, figure: Figure) -> Path:
     from seatsim.plots.saving import save_figure
 
     return write_whole(path, partial(save_figure, figure))
