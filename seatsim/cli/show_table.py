@@ -7,7 +7,7 @@ file or a program has room for all of them.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 
 from rich import box
 from rich.cells import cell_len
@@ -69,18 +69,16 @@ def make_plain(table: Table) -> str:
 
 def _fit(table: Table) -> list[str]:
     """Drop columns of figures until the others have room, and return the headings of those that went."""
-    names = [column for column in table.columns if column.justify != "right"]
     for column in table.columns:
         column.overflow, column.no_wrap = "fold", column.justify == "right"
-        column.min_width = _longest(column, str.split)
+        column.min_width = _longest_word(column)
     left_out: list[str] = []
-    while (spare := out.width - _measure_least(table)) < 0:
+    while _measure_least(table) > out.width:
         last = next((column for column in reversed(table.columns) if column.justify == "right"), None)
         if last is None:
             return left_out
         table.columns.remove(last)
         left_out.insert(0, _plain(last.header))
-    _widen(names, spare)
     return left_out
 
 
@@ -89,23 +87,10 @@ def _measure_least(table: Table) -> int:
     return Measurement.get(out, out.options.update(width=_WIDEST), table).minimum
 
 
-def _widen(names: Sequence[Column], spare: int) -> None:
-    """Give columns of names the room that is left, as far as they need it; what is longer breaks between words."""
-    widths = {id(column): column.min_width or 1 for column in names}
-    full = {id(column): _longest(column, str.splitlines) for column in names}
-    for _ in range(spare):
-        tight = [key for key, width in widths.items() if width < full[key]]
-        if not tight:
-            break
-        widths[min(tight, key=lambda key: widths[key])] += 1
-    for column in names:
-        column.width = widths[id(column)]
-
-
-def _longest(column: Column, divide: Callable[[str], list[str]]) -> int:
-    """Return the letters of the longest part of a column, its heading included; the least is 1."""
+def _longest_word(column: Column) -> int:
+    """Return the letters of the longest word of a column, its heading included; the least is 1."""
     texts = [_unmarked(column.header), *map(_unmarked, column.cells)]
-    return max((cell_len(part) for text in texts for part in divide(text)), default=1)
+    return max((cell_len(word) for text in texts for word in text.split()), default=1)
 
 
 def _pad(column: Column, with_heading: bool) -> list[str]:

@@ -23,76 +23,6 @@ if TYPE_CHECKING:
 _States = list[float]
 
 
-class _Update(NamedTuple):
-    """What a unit answers to an event: whether it is to be asked again, whether it ends, the next event that it knows.
-
-    `next_event` in s is None where it knows none.
-    """
-
-    again: bool
-    ends: bool
-    next_event: float | None
-
-
-class _ContinuousModel:
-    """A unit for model exchange with its states, in the mode that the standard prescribes for each call."""
-
-    def __init__(self, unit: UnitDescription, instance: _FMU) -> None:
-        self._instance = instance
-        self._is_second = unit.version == 2
-        described = unit.described
-        self._states = (c_double * described.numberOfContinuousStates)()
-        self._rates = (c_double * described.numberOfContinuousStates)()
-        self._indicators = (c_double * described.numberOfEventIndicators)()
-        self.needs_completion = bool(described.modelExchange.needsCompletedIntegratorStep)
-        self.has_indicators = described.numberOfEventIndicators > 0
-
-    def states(self) -> _States:
-        """Return the continuous states."""
-        if len(self._states):
-            self._instance.getContinuousStates(self._states, len(self._states))
-        return list(self._states)
-
-    def place(self, time: float, states: _States) -> None:
-        """Give the unit a time in s and its continuous states."""
-        self._instance.setTime(time)
-        if states:
-            self._states[:] = states
-            self._instance.setContinuousStates(self._states, len(states))
-
-    def rates(self) -> _States:
-        """Return the time derivatives of the states, at the time, states and inputs that were given last."""
-        if len(self._rates):
-            ask = self._instance.getDerivatives if self._is_second else self._instance.getContinuousStateDerivatives
-            ask(self._rates, len(self._rates))
-        return list(self._rates)
-
-    def signs(self) -> list[bool]:
-        """Return for each event indicator whether it is positive; an event is where one of these changes."""
-        if len(self._indicators):
-            self._instance.getEventIndicators(self._indicators, len(self._indicators))
-        return [value > 0.0 for value in self._indicators]
-
-    def complete(self, is_final: bool) -> tuple[bool, bool]:
-        """Tell the unit that a step has ended; return whether it wants an event and whether it ends the run."""
-        wants_event, ends = self._instance.completedIntegratorStep(is_final)
-        return bool(wants_event), bool(ends)
-
-    def enter_event(self) -> None:
-        """Enter the mode in which discrete states change."""
-        self._instance.enterEventMode()
-
-    def update(self) -> _Update:
-        """Let the discrete states change once."""
-        ask = self._instance.newDiscreteStates if self._is_second else self._instance.updateDiscreteStates
-        again, ends, _nominals, _values, is_known, next_event = ask()
-        return _Update(bool(again), bool(ends), float(next_event) if is_known else None)
-
-    def leave_event(self) -> None:
-        """Enter the mode in which time goes on."""
-        self._instance.enterContinuousTimeMode()
-
-
 _LOCATED = 1e-9
 """Share of a step of the seat to which an event is located; at 1 ms, a picosecond."""
 _MOST_EVENTS = 100
@@ -143,8 +73,11 @@ class IntegratedUnit(RunningUnit):
     def __init__(self, damper: FmuDamper, unit: UnitDescription, instance: _FMU, told: list[str]) -> None:
         super().__init__(damper, unit, instance, told)
         self.takes_acceleration = True
-        self._model = _ContinuousModel(unit, instance)
-        longest = getattr(unit.described.defaultExperiment, "stepSize", None)
+        described, self._is_second = unit.described, unit.version == 2
+        self._states, self._rates = ((c_double * described.numberOfContinuousStates)() for _ in range(2))
+        self._indicators = (c_double * described.numberOfEventIndicators)()
+        self._needs_completion = bool(described.modelExchange.needsCompletedIntegratorStep)
+        longest = getattr(described.defaultExperiment, "stepSize", None)
         self._longest = float(longest) if longest else math.inf
         self._now = _Saved([], [], math.inf, 0.0, None)
 
@@ -209,8 +142,8 @@ class IntegratedUnit(RunningUnit):
                 high, states, signs = middle, tried, found
         self._signs_at(motion, high, states)
         wants_event = False
-        if self._model.needs_completion:
-            wants_event, ends = self._model.complete(not self.repeats)
+        if self._needs_completion:
+            wants_event, ends = self._instance.completedIntegratorStep(not self.repeats)
             self._check_going_on(ends, high)
         self._now = self._now._replace(states=states, signs=signs)
         return high, has_crossed or wants_event or high >= self._now.next_event
@@ -227,37 +160,54 @@ class IntegratedUnit(RunningUnit):
     def _rates_at(self, motion: _Motion, time: float, states: _States) -> _States:
         if not states:
             return states
-        self._model.place(time, states)
-        self._give(motion.at(time), time)
-        return self._model.rates()
+        self._place(motion, time, states)
+        ask = self._instance.getDerivatives if self._is_second else self._instance.getContinuousStateDerivatives
+        ask(self._rates, len(self._rates))
+        return list(self._rates)
 
     def _signs_at(self, motion: _Motion, time: float, states: _States) -> list[bool]:
-        self._model.place(time, states)
+        """Return for each event indicator whether it is positive; an event is where one of these changes."""
+        self._place(motion, time, states)
+        return self._read_signs()
+
+    def _read_signs(self) -> list[bool]:
+        if len(self._indicators):
+            self._instance.getEventIndicators(self._indicators, len(self._indicators))
+        return [value > 0.0 for value in self._indicators]
+
+    def _place(self, motion: _Motion, time: float, states: _States) -> None:
+        """Give the unit a time in s, its continuous states and its inputs."""
+        self._instance.setTime(time)
+        if states:
+            self._states[:] = states
+            self._instance.setContinuousStates(self._states, len(states))
         self._give(motion.at(time), time)
-        return self._model.signs()
 
     def _update(self, time: float) -> None:
         """Let the unit treat an event at a time, or begin at time zero, where it is in the mode for that."""
         self._now = self._call(lambda: self._updated(time), f"the event at {time:.6g} s")
         # What an event changes within a unit can be taken back only where the unit saves its state.
-        has_events = self._model.has_indicators or self._model.needs_completion or math.isfinite(self._now.next_event)
+        has_events = bool(len(self._indicators)) or self._needs_completion or math.isfinite(self._now.next_event)
         self.repeats = self._unit.saves or not has_events
 
     def _updated(self, time: float) -> _Saved:
-        model = self._model
+        unit = self._instance
+        ask = unit.newDiscreteStates if self._is_second else unit.updateDiscreteStates
         if time > 0.0:
-            model.enter_event()
+            unit.enterEventMode()
         for _ in range(_MOST_EVENTS):
-            answer = model.update()
-            self._check_going_on(answer.ends, time)
-            if not answer.again:
+            again, ends, _nominals, _values, is_known, next_event = ask()
+            self._check_going_on(ends, time)
+            if not again:
                 break
         else:
             raise RunError(f"{self._file}: the unit does not come to an end with its event at {time:.6g} s")
-        model.leave_event()
-        next_event = math.inf if answer.next_event is None else answer.next_event
-        return self._now._replace(states=model.states(), signs=model.signs(), next_event=next_event)
+        unit.enterContinuousTimeMode()
+        if len(self._states):
+            unit.getContinuousStates(self._states, len(self._states))
+        later = float(next_event) if is_known else math.inf
+        return self._now._replace(states=list(self._states), signs=self._read_signs(), next_event=later)
 
-    def _check_going_on(self, ends: bool, time: float) -> None:
+    def _check_going_on(self, ends: object, time: float) -> None:
         if ends:
             raise RunError(f"{self._file}: the unit ended at {time:.6g} s, before the run does")

@@ -74,8 +74,6 @@ class Table(NamedTuple):
                 is over time or distance, the run is longer than the record, or `step` is too coarse for its
                 band.
         """
-        from seatsim.excitations.table import read_record
-
         if (self.time_column is None) == (self.distance_column is None):
             raise InputError(f"table {self.path}: give either time_column or distance_column (with speed)")
         if self.time_column is not None:

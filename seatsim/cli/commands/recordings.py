@@ -12,9 +12,7 @@ from seatsim.cli.terminal import answer, say, show_progress, warn, wrote
 from seatsim.schema.text import make_printable
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
-    from seatsim.importing.inspection import ChannelSummary, Inspection
+    from seatsim.importing.inspection import Inspection
     from seatsim.recordings.quality.issue import Issue
 
 
@@ -89,10 +87,6 @@ def diagnose(
     answer(diagnosis, paths)
 
 
-_COLUMNS = ("unit", "Hz", "least", "greatest", "RMS", "noise", "swing", "mean", "is", "rows")
-"""Columns of the table of channels: `is` names the channel that a column was recognised as."""
-
-
 def import_data(
     files: Annotated[
         list[Path], typer.Argument(help="Data files of one rig, or a folder of them.", show_default=False)
@@ -158,37 +152,22 @@ def _inspected(data: Path, map_file: Path | None) -> Inspection:
 
 
 def _show(found: Inspection) -> None:
-    """Print a table of channels for each group."""
-    from seatsim.cli.show_table import show_table
+    """Print a table of channels for each group; `is` names the channel that a column was recognised as."""
+    from rich.markup import escape
 
+    from seatsim.cli.show_table import make_table, show_table
+
+    headings = ("channel", "unit", "Hz", "least", "greatest", "RMS", "noise", "swing", "mean", "is", "rows")
     for group, channels in found.channels.items():
         title = f"{Path(found.source).name} ({found.format})" + (f", {group}" if group else "")
-        show_table(_table(title, channels))
-
-
-def _table(title: str, channels: list[ChannelSummary]) -> Table:
-    from rich.markup import escape
-    from rich.table import Table
-
-    table = Table(title=escape(make_printable(title)), title_justify="left", box=None, header_style="bold")
-    table.add_column("channel", no_wrap=True)
-    for name in _COLUMNS:
-        table.add_column(name, justify="left" if name in ("unit", "swing", "is") else "right", no_wrap=True)
-    for each in channels:
-        cells = {
-            "unit": escape(each.unit) or "?",
-            "Hz": "" if each.rate is None else f"{each.rate:.6g}",
-            "RMS": f"{each.rms:.4g}",
-            "least": f"{each.low:.4g}",
-            "greatest": f"{each.high:.4g}",
-            "noise": "" if each.noise is None else f"{each.noise:.2g}",
-            "swing": each.spark,
-            "mean": f"{each.mean:.4g}",
-            "is": each.channel or "",
-            "rows": str(each.rows),
-        }
-        table.add_row(escape(each.name), *(cells[name] for name in _COLUMNS))
-    return table
+        rows = []
+        for each in channels:
+            rate = "" if each.rate is None else f"{each.rate:.6g}"
+            noise = "" if each.noise is None else f"{each.noise:.2g}"
+            figures = [f"{value:.4g}" for value in (each.low, each.high, each.rms)]
+            others = (each.spark, f"{each.mean:.4g}", each.channel or "", str(each.rows))
+            rows.append((escape(each.name), escape(each.unit) or "?", rate, *figures, noise, *others))
+        show_table(make_table(make_printable(title), headings, rows, left=(0, 1, 7, 9)))
 
 
 def _doubt(doubts: list[Issue]) -> None:
