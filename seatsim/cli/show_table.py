@@ -49,15 +49,16 @@ def format_number(value: float, form: str) -> str:
     return text.replace("-", "", 1) if text.strip("-0.") == "" and text != "-" else text
 
 
-def show_table(table: Table) -> None:
-    """Print a table, whose columns of figures are those that stand to the right."""
-    if out.is_terminal:
-        left_out = _fit(table)
-        out.print(table)
-        if left_out:
-            say(f"left out, as the terminal is narrow: {', '.join(left_out)}")
-    else:
-        say(make_plain(table))
+def show_table(*tables: Table) -> None:
+    """Print tables, whose columns of figures are those that stand to the right."""
+    for table in tables:
+        if out.is_terminal:
+            left_out = _fit(table)
+            out.print(table)
+            if left_out:
+                say(f"left out, as the terminal is narrow: {', '.join(left_out)}")
+        else:
+            say(make_plain(table))
 
 
 def make_plain(table: Table) -> str:

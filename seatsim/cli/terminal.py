@@ -93,6 +93,12 @@ def wrote_one(path: Path) -> None:
     say(f"written: {path}")
 
 
+def conclude(found: object, folder: Path, paths: Sequence[Path]) -> None:
+    """Print which files were written, or with `--json` what was found as the one object."""
+    wrote(folder, paths)
+    answer(found, paths)
+
+
 def warn(texts: Iterable[str], kind: str = "note") -> None:
     """Print what the user has to know about the result."""
     for text in texts:

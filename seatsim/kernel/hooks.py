@@ -61,7 +61,7 @@ def hook(default: Callable[_P, _R]) -> Callable[_P, _R]:
 
 
 _T = TypeVar("_T")
-Effects = tuple[tuple[object, ...], ...]
+Effects = tuple[Any, ...]
 """Effect records: a `typing.NamedTuple` each, with a method for each hook that it uses."""
 
 

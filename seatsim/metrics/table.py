@@ -138,6 +138,19 @@ def _peak_of(channel: str) -> Callable[[RunRecord], float]:
     return lambda run: peak(run[channel])
 
 
+def _of_weighted(compute: Callable[[Array, float], float]) -> Callable[[RunRecord], float]:
+    """Return what computes a figure of the driver's Wk-weighted acceleration and its sample rate."""
+    return lambda run: compute(run.weighted(_DRIVER), run.rate)
+
+
+def _tracking(share: bool) -> Callable[[RunRecord], float]:
+    return lambda run: force_tracking_error(run["wanted_force"], run["damper_force"])[int(share)]
+
+
+def _seat_factor(run: RunRecord) -> float:
+    return ratio(rms(run.weighted(_DRIVER)), rms(run.weighted("floor_acceleration")))
+
+
 def _jerk(run: RunRecord) -> float:
     acceleration = run["driver_acceleration"]
     if acceleration.size < 2:
@@ -174,46 +187,24 @@ METRICS: Mapping[str, _Figure] = {
     "driver_acceleration_rms": _Figure("m/s^2", "RMS acceleration of the driver", _rms_of(_DRIVER)),
     "driver_acceleration_peak": _Figure("m/s^2", "largest driver acceleration", _peak_of(_DRIVER)),
     "driver_acceleration_weighted": _Figure(
-        "m/s^2", "RMS driver acceleration, Wk-weighted", lambda run: rms(run.weighted(_DRIVER))
+        "m/s^2", "RMS driver acceleration, Wk-weighted", _of_weighted(lambda x, _: rms(x))
     ),
-    "driver_vdv": _Figure(
-        "m/s^1.75",
-        "vibration dose value of the driver, Wk-weighted",
-        lambda run: vdv(run.weighted(_DRIVER), run.rate),
-    ),
-    "driver_mtvv": _Figure(
-        "m/s^2",
-        "largest Wk-weighted RMS of the driver in any second",
-        lambda run: mtvv(run.weighted(_DRIVER), run.rate),
-    ),
+    "driver_vdv": _Figure("m/s^1.75", "vibration dose value of the driver, Wk-weighted", _of_weighted(vdv)),
+    "driver_mtvv": _Figure("m/s^2", "largest Wk-weighted RMS of the driver in any second", _of_weighted(mtvv)),
     "driver_crest_factor": _Figure(
-        "-",
-        "peak over RMS of the driver's Wk-weighted acceleration",
-        lambda run: crest_factor(run.weighted(_DRIVER)),
+        "-", "peak over RMS of the driver's Wk-weighted acceleration", _of_weighted(lambda x, _: crest_factor(x))
     ),
     "driver_jerk_rms": _Figure(
         "m/s^3", "RMS jerk of the driver: differences of successive samples over the step", _jerk
     ),
-    "seat_factor": _Figure(
-        "-",
-        "Wk-weighted RMS of the driver over that of the floor (SEAT)",
-        lambda run: ratio(rms(run.weighted(_DRIVER)), rms(run.weighted("floor_acceleration"))),
-    ),
+    "seat_factor": _Figure("-", "Wk-weighted RMS of the driver over that of the floor (SEAT)", _seat_factor),
     "frame_acceleration_rms": _Figure("m/s^2", "RMS acceleration of the frame", _rms_of("frame_acceleration")),
     "frame_acceleration_peak": _Figure("m/s^2", "largest frame acceleration", _peak_of("frame_acceleration")),
     "suspension_displacement_rms": _Figure("m", "RMS suspension travel", _rms_of("suspension_displacement")),
     "suspension_displacement_peak": _Figure("m", "largest suspension travel", _peak_of("suspension_displacement")),
     "end_stop_hits": _Figure("-", "separate excursions beyond the end stops", _end_stop_hits),
-    "force_tracking_error": _Figure(
-        "N",
-        "RMS of wanted less delivered force",
-        lambda run: force_tracking_error(run["wanted_force"], run["damper_force"]).rms,
-    ),
-    "force_tracking_error_relative": _Figure(
-        "-",
-        "the same over the RMS of the wanted force",
-        lambda run: force_tracking_error(run["wanted_force"], run["damper_force"]).relative,
-    ),
+    "force_tracking_error": _Figure("N", "RMS of wanted less delivered force", _tracking(share=False)),
+    "force_tracking_error_relative": _Figure("-", "the same over the RMS of the wanted force", _tracking(share=True)),
     "force_served_share": _Figure("-", "share of time the wanted force could be delivered", _served_share),
     "current_rms": _Figure("A", "RMS coil current", _rms_of("coil_current")),
     "electrical_energy": _Figure("J", "heat of the coil", _electrical_energy),

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterable, Mapping
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
-from seatsim.dampers.base import Damper
 from seatsim.effects.base import EFFECTS, acts_on
-from seatsim.rig.control import Law
 from seatsim.rig.sensors import Sensors
 from seatsim.rig.temperature import TemperatureFactors, Thermal
 from seatsim.scenario.scenario import Scenario
@@ -50,11 +48,11 @@ def set_number(scenario: Scenario, key: str, value: float) -> Scenario:
     section, _, name = key.rpartition(".")
     if not section:
         return dataclasses.replace(scenario, temperature=value)
-    record = replace_fields(_records(scenario)[section], {name: value})
+    record: Any = replace_fields(_records(scenario)[section], {name: value})
     if section == LAW and scenario.control is not None:
-        return dataclasses.replace(scenario, control=dataclasses.replace(scenario.control, law=cast("Law", record)))
+        return dataclasses.replace(scenario, control=dataclasses.replace(scenario.control, law=record))
     if section == "damper.parameters":
-        return dataclasses.replace(scenario, damper=dataclasses.replace(scenario.damper, record=cast("Damper", record)))
+        return dataclasses.replace(scenario, damper=dataclasses.replace(scenario.damper, record=record))
     changed: dict[str, Any] = {SECTIONS[section].field or section: record}
     return dataclasses.replace(scenario, **changed)
 
@@ -101,7 +99,8 @@ def _list_records(scenario: Scenario) -> dict[str, Record]:
     """
     thermal = scenario.temperature if isinstance(scenario.temperature, Thermal) else Thermal(scenario.temperature)
     control, damper = scenario.control, scenario.damper
-    found: dict[str, object] = {
+    # What is registered as a law, damper or excitation is a record of its keys.
+    found: dict[str, Any] = {
         "plant": scenario.plant,
         "driver": scenario.driver,
         "damper.parameters": damper.record,
@@ -115,8 +114,7 @@ def _list_records(scenario: Scenario) -> dict[str, Record]:
         "start": scenario.start,
     }
     found |= {f"effects.{index}.parameters": effect for index, effect in enumerate(scenario.effects)}
-    # What is registered as a law, damper or excitation is a record of its keys.
-    return {section: cast("Record", record) for section, record in found.items() if record is not None}
+    return {section: record for section, record in found.items() if record is not None}
 
 
 def list_keys(scenario: Scenario) -> dict[str, FieldSpecification]:

@@ -87,7 +87,8 @@ def describe(record: type) -> list[FieldSpecification]:
         info = _field_info(hint)
         extra = info.json_schema_extra if info else None
         known = extra if isinstance(extra, dict) else {}
-        unit, usual = str(known.get("unit", "")), cast("list[float] | None", known.get("usual"))
+        unit, stated = str(known.get("unit", "")), known.get("usual")
+        usual = [each for each in stated if isinstance(each, int | float)] if isinstance(stated, list) else None
         meaning = (info.description or "") if info else ""
         required, default = name not in defaults, defaults.get(name)
         specifications.append(FieldSpecification(name, unit, meaning, default, required, usual))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -155,7 +155,7 @@ def _as_matrix(rows: Array) -> Matrix:
 
 
 def _chosen(effects: Sequence[object], hooks: tuple[str, ...]) -> Effects:
-    return cast(Effects, tuple(effect for effect in effects if acts_on(type(effect), hooks)))
+    return tuple(effect for effect in effects if acts_on(type(effect), hooks))
 
 
 def _carried(chosen: Effects, hooks: tuple[str, ...]) -> Effects:
@@ -163,7 +163,7 @@ def _carried(chosen: Effects, hooks: tuple[str, ...]) -> Effects:
     first = {type(effect): effect for effect in reversed(chosen)}
     carried = [first.get(cls) or off(cls) for cls in registered]
     further = [effect for effect in chosen if not any(effect is kept for kept in carried)]
-    return cast(Effects, (*carried, *further))
+    return (*carried, *further)
 
 
 @cache

@@ -73,8 +73,7 @@ def blind_score(
         _diagnose_all(folder, count)
     with count_progress("scoring") as count:
         found = score(folder, sealed, key, progress=count)
-    for table in tables(found):
-        show_table(table)
+    show_table(*tables(found))
     path = write_json((out_folder or folder) / "score.json", found)
     wrote_one(path)
     answer(found, [path])

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, cast
 import typer
 
 from seatsim.cli.options import Json, Out, OwnCode, complete_kind, pairs
-from seatsim.cli.terminal import answer, complain, show_progress, warn, wrote
+from seatsim.cli.terminal import answer, complain, conclude, show_progress, warn, wrote
 from seatsim.schema.errors import InputError
 
 if TYPE_CHECKING:
@@ -52,13 +52,11 @@ def characterise(
     else:
         tested = load_specimen(model, parameters)
         found = characterise_model(tested, choose_settings(tested, *grid))
-    for table in make_characterisation_tables(found):
-        show_table(table)
+    show_table(*make_characterisation_tables(found))
     warn(found.remarks)
     folder = out_folder or Path("out") / f"characterise-{found.name}"
     paths = write_characterisation(found, folder)
-    wrote(folder, paths)
-    answer(found, paths)
+    conclude(found, folder, paths)
 
 
 def identify(
@@ -123,11 +121,9 @@ def _identify(
     with show_progress() as progress:
         found = predict_records(identify_records(records, model, request, progress), beside)
         paths = write_identification(found, folder, request.seed)
-    for table in make_identification_tables(found):
-        show_table(table)
+    show_table(*make_identification_tables(found))
     warn(found.notes)
-    wrote(folder, paths)
-    answer(found, paths)
+    conclude(found, folder, paths)
 
 
 def _benchmark_models(

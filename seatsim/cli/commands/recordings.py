@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from seatsim.cli.options import Json, NewFolder, OneScenario, Out, OwnCode, RecordingFolder
-from seatsim.cli.terminal import answer, say, show_progress, warn, wrote
+from seatsim.cli.terminal import answer, conclude, say, show_progress, warn, wrote
 from seatsim.schema.text import make_printable
 
 if TYPE_CHECKING:
@@ -39,8 +39,7 @@ def gap(
     warn(found.notes)
     folder = out_folder or Path("out") / f"gap-{Path(recording).name}"
     paths = write_gap(found, scenario, recording, folder)
-    wrote(folder, paths)
-    answer(found, paths)
+    conclude(found, folder, paths)
 
 
 def diagnose(
@@ -77,14 +76,12 @@ def diagnose(
         EFFECTS.find(name)
     with show_progress() as progress:
         diagnosis = find_cause(recording, withheld, progress, budget=budget, damper_forms=damper_forms, after=after)
-    for table in make_tables(diagnosis):
-        show_table(table)
+    show_table(*make_tables(diagnosis))
     warn(diagnosis.notes)
     say(diagnosis.sentence)
     folder = out_folder or Path("out") / f"diagnosis-{Path(recording).resolve().name}"
     paths = write_diagnosis(diagnosis, folder)
-    wrote(folder, paths)
-    answer(diagnosis, paths)
+    conclude(diagnosis, folder, paths)
 
 
 def import_data(

@@ -157,8 +157,7 @@ def _present(
     from seatsim.simulation.performance_bounds import place_runs
     from seatsim.simulation.result import Result
 
-    for table in [make_comparison_table(runs, _title([run.scenario for run in runs])), *make_published_tables(runs)]:
-        show_table(table)
+    show_table(make_comparison_table(runs, _title([run.scenario for run in runs])), *make_published_tables(runs))
     warn(dict.fromkeys(sentence for run in runs for sentence in run.warnings), "warning")
     warn(f"{run.scenario.title}: {sentence}" for run in runs for sentence in run.history.notes)
     result = Result(runs, _performance_bounds(runs) if bracket and not interrupted else {}, failures)
