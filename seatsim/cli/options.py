@@ -66,8 +66,7 @@ def _complete_scenario(incomplete: str) -> list[str]:
 
 
 Out = Annotated[
-    Path | None,
-    typer.Option("--out", help="Folder for the files.", show_default="out/NAME", callback=check_out),
+    Path | None, typer.Option("--out", help="Folder for the files.", show_default="out/NAME", callback=check_out)
 ]
 NewFolder = Annotated[
     Path, typer.Option("--out", help="Folder of the recordings.", show_default=False, callback=check_out)

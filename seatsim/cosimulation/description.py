@@ -126,13 +126,7 @@ def unpack(path: Path, version: int, identifier: str) -> Iterator[tuple[Path, Pa
         yield folder, folder / library
 
 
-QUANTITIES = {
-    "displacement": "m",
-    "velocity": "m/s",
-    "acceleration": "m/s^2",
-    "current": "A",
-    "temperature": "degC",
-}
+QUANTITIES = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s^2", "current": "A", "temperature": "degC"}
 """What an input of a damper may take, in its unit: motion positive in extension, current of the coil."""
 FORCE = "force"
 REAL = ("Real", "Float64")

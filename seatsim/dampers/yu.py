@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple
 
 from seatsim.compilation.jit import jit
 from seatsim.dampers.base import damper
-from seatsim.dampers.pieces import BRANCH_STATE, UTFSM, QuadraticLaw, branch, branch_rate, quadratic
+from seatsim.dampers.pieces import BRANCH_STATE, UTFSM, QuadraticLaw, branch, branch_rate, quadratic, utfsm_damper
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 from seatsim.schema.fields import param
@@ -24,15 +24,13 @@ def envelope_rate(speed: float, envelope: float) -> float:
     return (speed - envelope) / (_RISE_TIME if speed > envelope else _DECAY_TIME)
 
 
-@damper(
+@utfsm_damper(
     "yu2017",
     source=f"Yu, Dong and Zhang 2017, Smart Mater. Struct. 26, as eq 5 of Yu et al. 2019 (conventional model); {UTFSM}",
     initial=(0.0, 0.0),
     state=f"{BRANCH_STATE}; e, envelope of the speed in m/s, for the cycle's peak speed",
     centred=True,
     max_speed=0.126,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="published",
     fixed=("c_i2", "d2"),
 )

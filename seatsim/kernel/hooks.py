@@ -65,25 +65,11 @@ Effects = tuple[Any, ...]
 """Effect records: a `typing.NamedTuple` each, with a method for each hook that it uses."""
 
 
-class _SummedHook(Protocol):
-    """Sum of the values that the records' methods return."""
-
-    def __call__(self, effects: Effects, z: State, /, *arguments: object) -> float:
-        """Return the sum, 0 where no record has the method."""
-
-
 class _FoldedHook(Protocol):
     """A value that is passed from record to record."""
 
     def __call__(self, effects: Effects, z: State, value: _T, /, *arguments: object) -> _T:
         """Return `value` after all records changed it; unchanged where no record has the method."""
-
-
-class _JoinedHook(Protocol):
-    """Tuples of the records, one after another."""
-
-    def __call__(self, effects: Effects, z: State, /, *arguments: object) -> State:
-        """Return the joined tuple, empty where no record has the method."""
 
 
 def state_at_rest(classes: Sequence[type]) -> State:
@@ -138,7 +124,7 @@ def _chain(name: str, first: str, line: str, last: str) -> Callable[..., Any]:
     return generic
 
 
-def sum_hook(name: str) -> _SummedHook:
+def sum_hook(name: str) -> Callable[..., float]:
     """Make the function that sums the records' values for the hook `name`."""
     return _chain(name, "r = 0.0", "r += {call}", "return r")
 
@@ -148,7 +134,7 @@ def fold_hook(name: str) -> _FoldedHook:
     return _chain(name, "", "a0 = {call}", "return a0")
 
 
-def join_hook(name: str) -> _JoinedHook:
+def join_hook(name: str) -> Callable[..., State]:
     """Make the function that joins the records' tuples, one after another, in the order of the states."""
     return _chain(name, "r = ()", "r = r + {call}", "return r")
 

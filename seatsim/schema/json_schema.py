@@ -57,12 +57,7 @@ def record_schema(record: type, required: Iterable[str] | None = None) -> Schema
 
 def mapping_schema(properties: Mapping[str, object], required: Iterable[str] = ()) -> Schema:
     """Return the schema of a mapping that has these keys and no others."""
-    return {
-        "type": "object",
-        "properties": dict(properties),
-        "required": list(required),
-        "additionalProperties": False,
-    }
+    return {"type": "object", "properties": dict(properties), "required": list(required), "additionalProperties": False}
 
 
 def properties_of(schema: Schema) -> Schema:

@@ -150,13 +150,7 @@ def _temperature(scenario: Scenario, true: BenchInputs, rows: Array, fine: Array
     return np.full(len(fine), fixed.start if isinstance(fixed, Thermal) else fixed)
 
 
-SEAT_OUTPUTS = (
-    "frame_acceleration",
-    "driver_acceleration",
-    "suspension_displacement",
-    "damper_force",
-    "coil_current",
-)
+SEAT_OUTPUTS = ("frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force", "coil_current")
 """What the sensors of a seat say, in the order in which they are reported; those of a bench say the last two."""
 
 

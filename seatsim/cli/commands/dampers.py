@@ -127,11 +127,7 @@ def _identify(
 
 
 def _benchmark_models(
-    records: list[BenchRecord],
-    models: list[str],
-    request: IdentificationSettings,
-    beside: PredictionData,
-    folder: Path,
+    records: list[BenchRecord], models: list[str], request: IdentificationSettings, beside: PredictionData, folder: Path
 ) -> None:
     """Identify several models, print and write the table; exit 1 where one failed."""
     from seatsim.cli.outputs.damper_tables import make_league_table

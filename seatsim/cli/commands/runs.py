@@ -67,10 +67,7 @@ def compare(
 
 
 def _execute(
-    files: Sequence[Sequence[str]],
-    folders: Sequence[Path | None],
-    settings: dict[str, object],
-    bracket: bool = False,
+    files: Sequence[Sequence[str]], folders: Sequence[Path | None], settings: dict[str, object], bracket: bool = False
 ) -> None:
     """Run every group of files as one result, then print its table and write its files; exit 1 where a run failed."""
     from seatsim.cli.outputs.simulated import RunAnswer

@@ -24,8 +24,7 @@ _PAGE_EXTRA = 'the page needs an extra; install it with: pip install "seatsim[pa
 def export(
     scenario: OneScenario,
     form: Annotated[
-        str,
-        typer.Option("--to", help="fmu2, fmu3, c or mat.", autocompletion=complete("fmu2", "fmu3", "c", "mat")),
+        str, typer.Option("--to", help="fmu2, fmu3, c or mat.", autocompletion=complete("fmu2", "fmu3", "c", "mat"))
     ],
     what: Annotated[
         str,
