@@ -31,14 +31,6 @@ class _Group(NamedTuple):
     folder: Path
 
 
-class _Simulated(NamedTuple):
-    """The runs that were carried to their end, and why others were not, by the id of their scenario."""
-
-    runs: dict[int, Run]
-    failures: dict[int, str]
-    interrupted: bool
-
-
 def run(
     scenarios: Scenarios,
     out_folder: Out = None,
@@ -74,21 +66,23 @@ def _execute(
 
     groups = _load_groups(files, folders, settings)
     scenarios = [scenario for group in groups for scenario in group.scenarios]
-    simulated = _simulate(scenarios)
-    tables, paths = [], []
+    found, interrupted = _simulate(scenarios)
+    failures = [str(each) for each in found if isinstance(each, SeatsimError)]
+    in_order, tables, paths = iter(found), [], []
     for group in groups:
-        runs = [simulated.runs[id(scenario)] for scenario in group.scenarios if id(scenario) in simulated.runs]
-        failures = [simulated.failures[id(each)] for each in group.scenarios if id(each) in simulated.failures]
+        of_group = list(itertools.islice(in_order, len(group.scenarios)))
+        runs = [each for each in of_group if not isinstance(each, SeatsimError)]
         if runs:
+            failed = [str(each) for each in of_group if isinstance(each, SeatsimError)]
             # What an interrupt left done is kept before the process ends.
-            with uncut() if simulated.interrupted else nullcontext():
-                table, written = _present(runs, failures, group.folder, bracket, simulated.interrupted)
+            with uncut() if interrupted else nullcontext():
+                table, written = _present(runs, failed, group.folder, bracket, interrupted)
             tables.append(table)
             paths += written
-    if simulated.interrupted:
+    if interrupted:
         raise KeyboardInterrupt
-    answer(RunAnswer(tables, list(simulated.failures.values())), paths)
-    if simulated.failures:
+    answer(RunAnswer(tables, failures), paths)
+    if failures:
         raise typer.Exit(1)
 
 
@@ -108,28 +102,25 @@ def _load_groups(
     return groups
 
 
-def _simulate(scenarios: list[Scenario]) -> _Simulated:
-    """Run the scenarios side by side; an interrupt keeps what is done."""
+def _simulate(scenarios: list[Scenario]) -> tuple[list[Run | SeatsimError], bool]:
+    """Run scenarios side by side; return runs and failures in order, up to an interrupt, and whether there was one."""
     from seatsim.simulation.runs import run_many
 
-    done: dict[int, Run] = {}
-    failures: dict[int, str] = {}
+    found: list[Run | SeatsimError] = []
     finished = itertools.count(1)
     # No daemon: Python aborts where it ends while such a thread loads compiled code.
     loading = Thread(target=_load_writers)
     loading.start()
     with count_progress("simulating", len(scenarios)) as count:
         try:
-            for scenario, found in run_many(scenarios, lambda _: count(next(finished), len(scenarios))):
-                if isinstance(found, SeatsimError):
-                    complain(f"failed: {found}")
-                    failures[id(scenario)] = str(found)
-                else:
-                    done[id(scenario)] = found
+            for _, one in run_many(scenarios, lambda _: count(next(finished), len(scenarios))):
+                if isinstance(one, SeatsimError):
+                    complain(f"failed: {one}")
+                found.append(one)
         except KeyboardInterrupt:
-            return _Simulated(done, failures, interrupted=True)
+            return found, True
     loading.join()
-    return _Simulated(done, failures, interrupted=False)
+    return found, False
 
 
 def _load_writers() -> None:
