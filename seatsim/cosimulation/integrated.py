@@ -114,14 +114,16 @@ class IntegratedUnit(RunningUnit):
         """Return the states, and the unit's own state where it can save that."""
         return self._now._replace(own=super().save() if self._unit.saves else None)
 
-    def restore(self, state: _Saved) -> None:
-        """Go back to what was saved."""
+    def restore(self, state: object) -> None:
+        """Go back to what `save` returned."""
+        assert isinstance(state, _Saved)
         if self._unit.saves:
             super().restore(state.own)
         self._now = state._replace(own=None)
 
-    def drop(self, state: _Saved) -> None:
-        """Free what was saved."""
+    def drop(self, state: object) -> None:
+        """Free what `save` returned."""
+        assert isinstance(state, _Saved)
         if self._unit.saves:
             super().drop(state.own)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from seatsim.cosimulation.damper import FmuDamper
 from seatsim.cosimulation.description import FORCE, REAL, UnitDescription, find_conversion_of, find_variable
@@ -63,11 +63,11 @@ class RunningUnit:
         """Return the unit's state, to which `restore` goes back."""
         return self._call(self._instance.getFMUState, "saving its state")
 
-    def restore(self, state: Any) -> None:
+    def restore(self, state: object) -> None:
         """Go back to a saved state."""
         self._call(lambda: self._instance.setFMUState(state), "restoring its state")
 
-    def drop(self, state: Any) -> None:
+    def drop(self, state: object) -> None:
         """Free a saved state."""
         self._call(lambda: self._instance.freeFMUState(state), "freeing its state")
 

@@ -117,10 +117,8 @@ def make_kernel(template: LaneStart) -> Callable[..., None]:
 
 def _define_kernel(form: _Form) -> Callable[..., None]:
     source, classes = form
-    gather: Callable[[Array, int], Any] = jit(
-        define(f"def gather(rows, lane):\n    return {source}\n", "gather", dict(classes))
-    )
-    simulate: Any = jit(run_loop)
+    gather = jit(define(f"def gather(rows, lane):\n    return {source}\n", "gather", dict(classes)))
+    simulate = jit(run_loop)
 
     def run(
         starts: Array,
