@@ -14,7 +14,7 @@ from seatsim.report.sweep_choices import advise_on_keys, choose_choice, tabulate
 from seatsim.report.sweep_names import COMFORT, TRAVEL, describe_column, format_level
 from seatsim.report.sweep_pictures import draw_pareto, tabulate_maps
 from seatsim.report.sweep_sensitivity import choose_metric, show_sensitivity
-from seatsim.scenario.conditions import is_condition
+from seatsim.scenario.scenario import is_condition
 from seatsim.sweeps.outcome import FAILED, UNVERIFIED
 from seatsim.sweeps.rows import NAMES, Exceedance, SweepRows
 from seatsim.sweeps.sensitivity import Sensitivities, choose_key

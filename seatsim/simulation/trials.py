@@ -19,16 +19,17 @@ from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import specification_of
+from seatsim.simulation.result import History
 from seatsim.simulation.runs import measure_run
-from seatsim.simulation.simulate import DEFAULT_SAMPLE_TIME, History, simulate
+from seatsim.simulation.simulate import DEFAULT_SAMPLE_TIME, simulate
 
 STRETCH = 20.0
 """Seconds from the start that are simulated."""
-FACTORS = (0.5, 2.0)
-DAMPING = "plant.suspension_damping"
+_FACTORS = (0.5, 2.0)
+_DAMPING = "plant.suspension_damping"
 
 
-class Trial(NamedTuple):
+class _Trial(NamedTuple):
     """A number that was changed, by its dotted key, its value, and the metrics of the run with it."""
 
     key: str
@@ -36,25 +37,25 @@ class Trial(NamedTuple):
     metrics: dict[str, Metric]
 
 
-def try_changes(scenario: Scenario) -> list[Trial]:
+def try_changes(scenario: Scenario) -> list[_Trial]:
     """Return the first stretch of a run as it is, under no key, then with each change that is permitted and possible.
 
     Raises:
         RunError: the run as it is cannot be carried to its end.
     """
     floor = _begin(scenario.excitation.floor(scenario.solver.step, scenario.seed))
-    found = [Trial("", 0.0, measure_run(scenario, simulate(scenario, floor)))]
+    found = [_Trial("", 0.0, measure_run(scenario, simulate(scenario, floor)))]
     for key, value in _list_changes(scenario):
         with suppress(InputError, RunError):
             changed = set_number(scenario, key, value)
-            found.append(Trial(key, value, measure_run(changed, simulate(changed, floor))))
+            found.append(_Trial(key, value, measure_run(changed, simulate(changed, floor))))
     return found
 
 
 def _list_changes(scenario: Scenario) -> Iterator[tuple[str, float]]:
     for key, value in list_numbers(scenario).items():
-        if value and (key == DAMPING or key.startswith(f"{LAW}.")):
-            yield from ((key, f * value) for f in FACTORS if is_permitted(scenario, key, f * value))
+        if value and (key == _DAMPING or key.startswith(f"{LAW}.")):
+            yield from ((key, f * value) for f in _FACTORS if is_permitted(scenario, key, f * value))
 
 
 def _begin(floor: Floor) -> Floor:
@@ -64,15 +65,15 @@ def _begin(floor: Floor) -> Floor:
     return Floor(floor.step, **{name: part[:count] for name, part in motion.items() if part is not None})
 
 
-HALVED_STRETCH = 5.0
+_HALVED_STRETCH = 5.0
 """Seconds from the start that are simulated again, a small share of most runs."""
-CHANNELS = ("driver_acceleration", "suspension_displacement", "damper_force")
+_CHANNELS = ("driver_acceleration", "suspension_displacement", "damper_force")
 
 
 def measure_step_error(scenario: Scenario, history: History, carry_all_effects: bool | None = False) -> float | None:
     """Return the largest relative change of an output as the step of the integration is halved.
 
-        max over channels of rms(y(h) - y(h/2)) / rms(y(h/2)),  over the first `HALVED_STRETCH` seconds
+        max over channels of rms(y(h) - y(h/2)) / rms(y(h/2)),  over the first `_HALVED_STRETCH` seconds
 
     The floor between two samples, which the simulation takes as linear, and the law's sample time stay as they are.
 
@@ -89,10 +90,10 @@ def measure_step_error(scenario: Scenario, history: History, carry_all_effects: 
     if isinstance(scenario.damper.record, FmuDamper) or any(acts_on(cls, ("frame_force",)) for cls in effects):
         return None
     step = scenario.solver.step
-    floor = _halve_step(scenario.excitation.floor(step, scenario.seed), round(HALVED_STRETCH / step) + 1)
+    floor = _halve_step(scenario.excitation.floor(step, scenario.seed), round(_HALVED_STRETCH / step) + 1)
     finer = simulate(_with_half_step(scenario), floor, carry_all_effects=carry_all_effects)
     count = len(finer["time"][::2])
-    changes = [_compare(history[name][:count], finer[name][::2]) for name in CHANNELS]
+    changes = [_compare(history[name][:count], finer[name][::2]) for name in _CHANNELS]
     return max(changes)
 
 
