@@ -102,6 +102,8 @@ def test_a_plant_that_no_gain_stabilises_is_proven_to_be_one(check, tmp_path):
     plant = GeneralisedPlant([[0.0, 1.0], [0.0, 1.0]], one, one, [[1.0, 0.0]], [[1.0, 0.0]], zero, zero, zero)
     proof = prove_no_better([plant], np.inf, [-1e6], [1e6])
     assert proof.is_proven
+    proof.save(tmp_path / "global.json")
+    assert check(tmp_path / "global.json") == f"proven in {proof.boxes} boxes"
 
 
 def test_what_time_does_not_suffice_for_is_counted():
