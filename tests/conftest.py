@@ -1,5 +1,6 @@
 """Shared fixtures."""
 
+import gc
 import importlib
 import signal
 import sys
@@ -26,6 +27,18 @@ temperature: 20.0
 controller: {law: static_output_feedback, gain: [2.0, 2147.6], sample_time: 0.005}
 excitation: {kind: iso7096, spectral_class: EM5, duration: 6.0}
 """
+
+
+gc.set_threshold(100_000, 50, 100)
+"""Importing and collecting make many objects that stay; looking for garbage among them took a quarter of the time."""
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """Leave the checks of scenarios whose design or compilation takes long to the slow tests."""
+    for item in items:
+        if item.path.match("scenarios/h-infinity-drivers.yaml") or item.path.match("scenarios/yu2019/*.yaml"):
+            item.add_marker(pytest.mark.slow)
 
 
 def pytest_configure():

@@ -1,84 +1,157 @@
-"""Static output feedback whose gain follows the measured temperature."""
+"""Static output feedback whose gain follows the measured temperature, or how far the seat travels."""
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 from typing import Annotated, NamedTuple
 
+import numpy as np
 from pydantic import Field
 
-from controllers.laws.static_output_feedback import Factor, Gain, OutputFeedback, StaticOutputFeedback
-from controllers.seat_plant import ActuatorLag, Weights
+from controllers.laws.static_output_feedback import Factor, Gain, Mass, OutputFeedback, StaticOutputFeedback
+from controllers.seat_plant import TRAVEL_AND_RATE, ActuatorLag, Measure, Weights
+from seatsim.rig.coil import Coil
 from seatsim.rig.control import Measurement, State, law
 from seatsim.rig.plant import Plant
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param
 
 Temperature = Annotated[float, param("degC", "temperature of a gain", low=-60, high=250)]
+Travel = Annotated[float, param("m", "level of the travel of a gain", low=0, high=1)]
+TravelWeight = Annotated[float, param("1/s^2", "weight e1 of the travel at one point", low=0, high=1e6)]
 
 
 class Schedule(NamedTuple):
-    """Compiled form of the law: `Fd = k1(T) x + k2(T) v`, linear between temperatures, held beyond them."""
+    """Compiled form of the law: each gain is linear between the points of the schedule and held beyond them.
 
-    temperatures: tuple[float, ...]
-    k1: tuple[float, ...]
-    k2: tuple[float, ...]
+    Fields named as measurements hold the gain on them, one at each point. The state is the level of the travel: |x|
+    through a filter that follows a rise by the share `rise` a sample and a fall by the share `fall`.
+    """
+
+    points: tuple[float, ...]
+    by_temperature: bool
+    rise: float
+    fall: float
+    displacement: tuple[float, ...]
+    velocity: tuple[float, ...]
+    frame_velocity: tuple[float, ...]
+    driver_velocity: tuple[float, ...]
+    frame_acceleration: tuple[float, ...]
+    driver_acceleration: tuple[float, ...]
 
     def wanted_force(self, y: Measurement, state: State) -> float:
         """Return the wanted damper force in N."""
-        t = min(max(y.temperature, self.temperatures[0]), self.temperatures[-1])
-        k1, k2 = self.k1[0], self.k2[0]
-        for i in range(1, len(self.temperatures)):
-            low, high = self.temperatures[i - 1], self.temperatures[i]
-            if t > low:
-                share = min((t - low) / (high - low), 1.0)
-                k1 = self.k1[i - 1] + share * (self.k1[i] - self.k1[i - 1])
-                k2 = self.k2[i - 1] + share * (self.k2[i] - self.k2[i - 1])
-        return k1 * y.displacement + k2 * y.velocity
+        where = y.temperature if self.by_temperature else state[0]
+        where = min(max(where, self.points[0]), self.points[-1])
+        i = 1
+        while where > self.points[i]:
+            i += 1
+        b = (where - self.points[i - 1]) / (self.points[i] - self.points[i - 1])
+        a = 1.0 - b
+        return (
+            (a * self.displacement[i - 1] + b * self.displacement[i]) * y.displacement
+            + (a * self.velocity[i - 1] + b * self.velocity[i]) * y.velocity
+            + (a * self.frame_velocity[i - 1] + b * self.frame_velocity[i]) * y.frame_velocity
+            + (a * self.driver_velocity[i - 1] + b * self.driver_velocity[i]) * y.driver_velocity
+            + (a * self.frame_acceleration[i - 1] + b * self.frame_acceleration[i]) * y.frame_acceleration
+            + (a * self.driver_acceleration[i - 1] + b * self.driver_acceleration[i]) * y.driver_acceleration
+        )
+
+    def update(self, y: Measurement, state: State) -> State:
+        """Return the level of the travel at the next sample; 0 for ever where the temperature decides."""
+        if self.by_temperature:
+            return (0.0,)
+        change = abs(y.displacement) - state[0]
+        return (state[0] + (self.rise if change > 0 else self.fall) * change,)
 
 
-@law("scheduled_output_feedback", source="static_output_feedback at every temperature; interpolation made up here")
+@law("scheduled_output_feedback", initial=(0.0,), source="static_output_feedback at every point; schedule made up here")
 class ScheduledOutputFeedback(NamedTuple):
-    """Wanted force `Fd = K(T) (x, v)`, T measured; gains are stated or synthesised, one a temperature.
+    """Wanted force `Fd = K . measures`, K interpolated between the points of a measured schedule.
 
-    `temperatures` rise. Either `gains` ([N/m, N s/m] each) or `weights` and `force_factors` (what the damper delivers
-    of the wanted force at that temperature) are given, as many as there are temperatures; `displacement_gain` and
-    `lag` are those of `static_output_feedback`. Stability is proven at each temperature that stays, not between them
-    or while it moves: temperatures move in minutes, the loop in tenths of a second.
+    The points are either `temperatures` of the damper or `travels`, levels of the travel: |x| through a filter that
+    rises within `rise` and falls within `fall` seconds. A soft gain at a small and a firm one at a large level keep the
+    seat off its stops on rough floors and soft on smooth ones. One gain a point is stated under `gains`, or synthesised
+    from `weights`: with one of `force_factors` a temperature, or one of `travel_weights` (in place of `weights.travel`)
+    a level, where every level serves all of `force_factors`. The other keys are those of `static_output_feedback`. Each
+    gain is proven stable where the schedule stays there, not between points or while it moves.
     """
 
-    temperatures: Annotated[tuple[Temperature, ...], Field(min_length=2, description="temperatures, rising")]
+    temperatures: Annotated[tuple[Temperature, ...] | None, Field(description="temperatures, rising")] = None
+    travels: Annotated[tuple[Travel, ...] | None, Field(description="levels of the travel, rising")] = None
     gains: Annotated[
-        tuple[tuple[Gain, Gain], ...] | None, Field(description="gain on (x, v) in N/m and N s/m, one a temperature")
+        tuple[tuple[Gain, ...], ...] | None, Field(description="gain on what is measured, one entry each, one a point")
     ] = None
     weights: Annotated[Weights | None, Field(description="weights of the syntheses at the start of the run")] = None
     force_factors: Annotated[
-        tuple[Factor, ...] | None, Field(description="delivered over wanted force, one a temperature")
+        tuple[Factor, ...] | None,
+        Field(description="delivered over wanted force, one a temperature; all of them at every level"),
     ] = None
+    travel_weights: Annotated[
+        tuple[TravelWeight, ...] | None, Field(description="weight e1 of the travel, one a level of the travel")
+    ] = None
+    rise: Annotated[float, param("s", "time constant of a rising level", low=0, high=100)] = 0.3
+    fall: Annotated[float, param("s", "time constant of a falling level", low=0, high=100)] = 2.0
+    measures: Annotated[tuple[Measure, ...], Field(min_length=1, description="what is measured")] = TRAVEL_AND_RATE
+    masses: Annotated[tuple[Mass, ...] | None, Field(description="drivers to design for in kg")] = None
     displacement_gain: Annotated[bool, Field(description="whether the gain on x is free")] = True
     lag: Annotated[
         ActuatorLag | None, Field(description="lag from wanted to delivered force that the design knows of")
     ] = None
 
-    def prepared(self, plant: Plant) -> Schedule:
-        """Return the compiled form for a plant, after synthesis where weights are given."""
-        if (self.gains is None) == (self.weights is None):
-            raise InputError("give exactly one of 'gains' and 'weights'")
-        if any(high <= low for low, high in pairwise(self.temperatures)):
-            raise InputError(f"temperatures {list(self.temperatures)} must rise")
-        self._require_as_many("gains" if self.weights is None else "force_factors")
-        gains = self.gains if self.gains is not None else self._synthesised(plant)
+    def sampled(self, plant: Plant, coil: Coil, sample_time: float) -> Schedule:
+        """Return the compiled form for a plant, after synthesis where weights are given.
+
+        Raises:
+            InputError: keys that exclude or need each other, points that do not rise, or not one entry a point.
+        """
+        points = self._require_points()
+        compiled = [
+            StaticOutputFeedback(gain=gain, measures=self.measures).prepared(plant) for gain in self.gains or ()
+        ]
+        gains = compiled or [self._synthesise(plant, place) for place in range(len(points))]
         return Schedule(
-            tuple(float(t) for t in self.temperatures),
-            tuple(float(gain[0]) for gain in gains),
-            tuple(float(gain[1]) for gain in gains),
+            tuple(float(point) for point in points),
+            self.temperatures is not None,
+            _find_share(self.rise, sample_time),
+            _find_share(self.fall, sample_time),
+            *(tuple(column) for column in np.array(gains, dtype=np.float64).T.tolist()),
         )
 
-    def _require_as_many(self, name: str) -> None:
+    def _require_points(self) -> tuple[float, ...]:
+        if (self.temperatures is None) == (self.travels is None):
+            raise InputError("give exactly one of 'temperatures' and 'travels'")
+        if (self.gains is None) == (self.weights is None):
+            raise InputError("give exactly one of 'gains' and 'weights'")
+        if self.temperatures and self.travel_weights:
+            raise InputError("travel_weights belong to 'travels'; the weight of the travel is weights.travel")
+        variable, points = ("temperatures", self.temperatures) if self.temperatures else ("travels", self.travels or ())
+        if len(points) < 2 or any(high <= low for low, high in pairwise(points)):
+            raise InputError(f"{variable} {list(points)} must be two or more, and must rise")
+        varied = "force_factors" if self.temperatures else "travel_weights"
+        name = "gains" if self.weights is None else varied
         count = len(getattr(self, name) or ())
-        if count != len(self.temperatures):
-            raise InputError(f"{name} has {count} entries; one for each of the {len(self.temperatures)} temperatures")
+        if count != len(points):
+            raise InputError(f"{name} has {count} entries; one for each of the {len(points)} {variable}")
+        return points
 
-    def _synthesised(self, plant: Plant) -> tuple[OutputFeedback, ...]:
-        one = StaticOutputFeedback(weights=self.weights, displacement_gain=self.displacement_gain, lag=self.lag)
-        return tuple(one._replace(force_factors=(f,)).prepared(plant) for f in self.force_factors or ())
+    def _synthesise(self, plant: Plant, place: int) -> OutputFeedback:
+        weights, factors = self.weights or Weights(), self.force_factors or (1.0,)
+        if self.temperatures:
+            factors = (factors[place],)
+        elif self.travel_weights:
+            weights = weights._replace(travel=self.travel_weights[place])
+        return StaticOutputFeedback(
+            weights=weights,
+            measures=self.measures,
+            masses=self.masses,
+            force_factors=factors,
+            displacement_gain=self.displacement_gain,
+            lag=self.lag,
+        ).prepared(plant)
+
+
+def _find_share(time_constant: float, sample_time: float) -> float:
+    """Return the share of a change that a first-order filter follows within a sample."""
+    return -math.expm1(-sample_time / time_constant) if time_constant else 1.0

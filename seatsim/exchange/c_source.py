@@ -6,7 +6,6 @@ import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from importlib.resources import files
-from pathlib import Path
 from typing import Any, cast
 
 import numba
@@ -16,7 +15,6 @@ from seatsim.exchange.block import RATES, Block, Variable, list_variables
 from seatsim.exchange.printing.functions import print_function
 from seatsim.exchange.printing.program import Program
 from seatsim.exchange.printing.values import BOOLEAN, REAL, Signature, is_empty, is_row, is_tuple, number
-from seatsim.schema.files import write_text
 
 _SAMPLES = 200
 """Samples of the test vector."""
@@ -116,17 +114,12 @@ def _limit(value: float) -> str:
     return repr(value) if math.isfinite(value) else ("HUGE_VAL" if value > 0 else "-HUGE_VAL")
 
 
-def write_c(block: Block, path: Path) -> None:
-    """Write a block as one C file.
+def print_c(block: Block) -> str:
+    """Return a block as the text of one C file.
 
     Raises:
-        InputError: a function has no counterpart in C, or the file cannot be written. OutputError: the disk is full.
+        NotPrintableError: a function has no counterpart in C.
     """
-    write_text(path, print_c(block))
-
-
-def print_c(block: Block) -> str:
-    """Return the text of the file."""
     variables = list_variables(block)
     inputs = [v for v in variables if v.causality == "input"]
     outputs = [v for v in variables if v.causality == "output"]

@@ -65,12 +65,12 @@ def compile_library(source: Path, library: Path) -> None:
     done = subprocess.run(command, capture_output=True, text=True, check=False, env=own)
     if done.returncode:
         raise RunError(f"{command[0]} could not compile {source.name}: {done.stderr.strip()[:500]}")
-    foreign = undefined_symbols(library) - set(_PERMITTED.split())
+    foreign = _undefined_symbols(library) - set(_PERMITTED.split())
     if foreign:
         raise RunError(f"{source.name} needs what C's own library has not: {', '.join(sorted(foreign))}")
 
 
-def undefined_symbols(library: Path) -> set[str]:
+def _undefined_symbols(library: Path) -> set[str]:
     """Return the functions that a library takes from outside; empty where the system has no `nm`."""
     if shutil.which("nm") is None:
         return set()

@@ -12,12 +12,12 @@ from seatsim.exchange.block import Block
 from seatsim.exchange.blocks.controller import controller_block
 from seatsim.exchange.blocks.damper import damper_block
 from seatsim.exchange.blocks.rig import rig_block
-from seatsim.exchange.c_source import write_c
+from seatsim.exchange.c_source import print_c
 from seatsim.exchange.fmu import write_fmu
 from seatsim.rig.plant import Plant, control_system, state_space
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError, nearest
-from seatsim.schema.files import write_whole
+from seatsim.schema.files import write_text, write_whole
 from seatsim.schema.registry import Record
 
 _LONGEST_NAME = 31
@@ -109,10 +109,10 @@ def _is_nothing(item: object) -> bool:
     return isinstance(item, dict | np.ndarray) and len(item) == 0
 
 
-FORMATS: dict[str, Callable[[Block, Scenario, Path], None]] = {
+FORMATS: dict[str, Callable[[Block, Scenario, Path], object]] = {
     "fmu2": lambda block, scenario, path: write_fmu(block, 2, path),
     "fmu3": lambda block, scenario, path: write_fmu(block, 3, path),
-    "c": lambda block, scenario, path: write_c(block, path),
+    "c": lambda block, scenario, path: write_text(path, print_c(block)),
     "mat": write_mat,
 }
 """What a file can be."""

@@ -45,7 +45,7 @@ class Channel(NamedTuple):
     rate: float
 
 
-class Offset(NamedTuple):
+class _Offset(NamedTuple):
     """Seconds to add to the times of the second file, with a standard error; by which channels, and how alike."""
 
     seconds: float
@@ -61,7 +61,7 @@ class Offset(NamedTuple):
         return self.first == self.second or abs(self.seconds) > _UNCLEAR
 
 
-def estimate_offset(first: Mapping[str, Channel], second: Mapping[str, Channel]) -> Offset | None:
+def estimate_offset(first: Mapping[str, Channel], second: Mapping[str, Channel]) -> _Offset | None:
     """Return the offset of the second group's clock, by the pair of channels that are most alike; None without any."""
     pairs = [(name, name, 0.0) for name in first if name in second]
     if not pairs:
@@ -72,7 +72,7 @@ def estimate_offset(first: Mapping[str, Channel], second: Mapping[str, Channel])
     return best if best is not None and abs(best.correlation) >= _LEAST else None
 
 
-def describe_offset(label: str, reference: str, found: Offset | None) -> str:
+def describe_offset(label: str, reference: str, found: _Offset | None) -> str:
     """Return a sentence on the offset of a group against another one."""
     if found is None:
         return f"{label}: shares no channel with {reference} that shows an offset; its times are taken as they are"
@@ -84,7 +84,7 @@ def describe_offset(label: str, reference: str, found: Offset | None) -> str:
     return f"{label}: moved against {reference} by {seen}{drift}"
 
 
-def _of_pair(one: Channel, other: Channel, pair: tuple[str, str, float]) -> Offset | None:
+def _of_pair(one: Channel, other: Channel, pair: tuple[str, str, float]) -> _Offset | None:
     """Return the offset between two channels, on a time base of the slower one that is fine enough."""
     rate = min(one.rate, other.rate)
     a, b = (_even(channel, rate) for channel in (one, other))
@@ -97,7 +97,7 @@ def _of_pair(one: Channel, other: Channel, pair: tuple[str, str, float]) -> Offs
     error = max(float(np.std(parts)) / np.sqrt(len(parts)) if len(parts) > 1 else 0.5 / rate, 0.1 / rate, pair[2])
     drift = float(np.polyfit(np.arange(len(parts)), parts, 1)[0]) * (len(parts) - 1) if len(parts) > 3 else 0.0
     apart = drift if abs(drift) > _DRIFT * max(error, 0.2 / rate) else None
-    return Offset(seconds, error, pair[0], pair[1], correlation, apart)
+    return _Offset(seconds, error, pair[0], pair[1], correlation, apart)
 
 
 def _even(channel: Channel, rate: float) -> Array:

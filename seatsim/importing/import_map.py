@@ -60,7 +60,7 @@ class AxisMap(NamedTuple):
     unit: str = ""
 
 
-class Actuator(NamedTuple):
+class _Actuator(NamedTuple):
     """Commanded current per volt of `command_voltage`."""
 
     gain: Annotated[float, param("A/V", "commanded current per volt")]
@@ -77,7 +77,7 @@ class _Numbers(NamedTuple):
     gaps: Gaps | None = None
 
 
-_RECORDS: dict[str, type[Any]] = {"time": AxisMap, "distance": AxisMap, "csv": TextLayout, "actuator": Actuator}
+_RECORDS: dict[str, type[Any]] = {"time": AxisMap, "distance": AxisMap, "csv": TextLayout, "actuator": _Actuator}
 """Records of a map by their key."""
 
 
@@ -99,7 +99,7 @@ class ImportMap:
     runs: dict[str, list[str]] = field(default_factory=dict)
     gaps: Gaps | None = None
     align: dict[str, float] = field(default_factory=dict)
-    actuator: Actuator | None = None
+    actuator: _Actuator | None = None
     repeats: dict[str, str] = field(default_factory=dict)
     comments: Mapping[str, str] = field(default_factory=dict)
 

@@ -26,8 +26,6 @@ from seatsim.schema.text import name_some
 _OWN_FILES = (".yaml", ".yml", ".json", ".md", ".png", ".pdf", ".html")
 """Endings of files that lie beside data and hold none."""
 
-"""Most columns that are named as left out."""
-
 
 class Import(NamedTuple):
     """What was imported: the map as used, whether it was proposed, the files written, sentences, and doubts.

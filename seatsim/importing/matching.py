@@ -30,14 +30,14 @@ class Column(NamedTuple):
     meaning: Meaning
 
 
-class Proposal(NamedTuple):
+class _Proposal(NamedTuple):
     """A map, and sentences on what is open in it: without any it can be used."""
 
     map: ImportMap
     open: tuple[str, ...]
 
 
-def propose(files: Sequence[DataFile], rig: Rig | None = None) -> Proposal:
+def propose(files: Sequence[DataFile], rig: Rig | None = None) -> _Proposal:
     """Return the map of some files that belong to one rig.
 
     Raises:
@@ -65,7 +65,7 @@ def propose(files: Sequence[DataFile], rig: Rig | None = None) -> Proposal:
     holding = [column.group for held in candidates.values() for column in held]
     time, problem, gaps = _time([c for c in columns if any(c.group is group for group in holding)], len(files) == 1)
     open_ends += [problem] if problem else []
-    return Proposal(ImportMap(channels, chosen, time, gaps=gaps), tuple(open_ends))
+    return _Proposal(ImportMap(channels, chosen, time, gaps=gaps), tuple(open_ends))
 
 
 def read_columns(group: Group) -> list[Column]:
@@ -199,13 +199,13 @@ def _time(columns: Sequence[Column], is_one_file: bool) -> tuple[AxisMap | None,
     return AxisMap(clock.column, clock.unit), problem, gaps
 
 
-def _propose_road(columns: Sequence[Column]) -> Proposal:
+def _propose_road(columns: Sequence[Column]) -> _Proposal:
     along = next((c for c in columns if c.meaning.quantity == "distance"), None)
     tracks = [c for c in columns if c is not along and (c.meaning.quantity == "elevation" or c.group.is_road)]
     channels = {c.signal.name: ChannelMap(c.signal.name, c.meaning.unit or "m") for c in tracks}
     if along is None or not tracks:
-        return Proposal(
+        return _Proposal(
             ImportMap(channels, "road"), ("distance: no column holds it; write distance: {column: ..., unit: m}",)
         )
     axis = AxisMap(along.signal.name, along.meaning.unit or "m")
-    return Proposal(ImportMap(channels, "road", distance=axis), ())
+    return _Proposal(ImportMap(channels, "road", distance=axis), ())

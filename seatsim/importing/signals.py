@@ -1,10 +1,11 @@
-"""What every reader returns: a file's channels, in groups that share a time base, as they stand there."""
+"""What every reader returns: channels in groups that share a time base, and what a file states beside them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,3 +94,118 @@ class Channels:
             for name, (_, held) in zip(names, found, strict=True)
         ]
         return tuple(group._replace(name=name) for name, (group, _) in zip(called, found, strict=True))
+
+
+_SAMPLE = r"(?:sampl\w*|abtast|scan|acquisition)"
+_RATE = rf"{_SAMPLE}(?:rate|freq\w*)|fs|fr[ée]quenced.[ée]chantillonnage"
+_STEP = rf"{_SAMPLE}(?:interval\w*|period\w*|step|zeit)|dt|delta[tx]"
+"""Names, as `bare` returns them, under which the sample rate in Hz, or the interval in s, is stated."""
+_RATES = re.compile(rf"{_RATE}|rate|frequency|sampleratehz|fa")
+_STEPS = re.compile(rf"{_STEP}|ts|sampletime|increment|wfincrement|step|dx|xdelta|xinc|xincrement")
+"""The same where they stand among variables: words that mean something else in a line of text are among them."""
+_ENTRY = re.compile(
+    r"""^[\W_]*(?P<key>[^\W\d][^\d:=;,|\t\[(]*?)["']?\s*(?:[\[(](?P<of_key>[^\])]*)[\])])?\s*[:=;,|\t ]\s*["']?"""
+    r"""(?P<number>\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)["']?[\s;,|\[(]*(?P<unit>[A-Za-zµμ]*)[\W_]*$"""
+)
+"""A key, a number and perhaps a unit in a line of their own, such as `SampleRate, 200, Hz` or `dt = 0.002 s`."""
+_LONGEST = 200
+"""Letters of a line that may be such an entry."""
+_IN_HZ = {"": 1.0, "hz": 1.0, "khz": 1e3, "s": 1.0, "sps": 1.0}
+_IN_S = {"": 1.0, "s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6}
+_NUMBER = re.compile(r"\s*\d+([.,]\d*)?([eE][-+]?\d{1,2})?\s*")
+"""A number as a text."""
+UNITS = ("unitstring", "unit", "units", "einheit", "ylabelunit", "yunit", "unity", "nunit", "niunitdescription")
+"""Names under which a unit is stated."""
+
+
+def bare(name: str) -> str:
+    """Return a name in lower case and without underscores and blanks: `Sample_Rate` is `samplerate`."""
+    return name.lower().replace("_", "").replace(" ", "")
+
+
+def stated_rate(values: Mapping[str, object], seconds: float = 1.0) -> float | None:
+    """Return the sample rate in Hz that stands among named values, None where none does.
+
+    `seconds` is the unit of intervals in s.
+    """
+    for names, is_rate in ((_RATES, True), (_STEPS, False)):
+        for key, value in values.items():
+            number = scalar(value) if names.fullmatch(bare(key)) else None
+            if number is not None and 0.0 < number < np.inf:
+                return number if is_rate else 1.0 / (seconds * number)
+    return None
+
+
+def find_rate(lines: Sequence[str]) -> float | None:
+    """Return the sample rate in Hz that lines of text state, None where none does."""
+    entries = (_ENTRY.match(line) for line in lines if len(line) <= _LONGEST)
+    for entry in filter(None, entries):
+        number, key = float(entry["number"].replace(",", ".")), bare(entry["key"])
+        unit = (entry["unit"] or entry["of_key"] or "").lower()
+        if re.fullmatch(_RATE, key) and number > 0.0 and unit in _IN_HZ:
+            return number * _IN_HZ[unit]
+        if re.fullmatch(_STEP, key) and number > 0.0 and unit in _IN_S:
+            return 1.0 / (number * _IN_S[unit])
+    return None
+
+
+def stated_text(values: Mapping[str, object], names: Sequence[str]) -> str:
+    """Return the text that stands under the first of some bare names, empty where none does."""
+    return next((text for name in names for key in values if bare(key) == name and (text := as_text(values[key]))), "")
+
+
+def stated_unit(values: Mapping[str, object]) -> str:
+    """Return the unit that stands among named values, empty where none does."""
+    return stated_text(values, UNITS)
+
+
+def scalar(value: object) -> float | None:
+    """Return a single number, whatever array or text it stands in, None where there is none."""
+    if isinstance(value, Mapping | list | tuple):
+        return None
+    array = np.asarray(value)
+    if array.size == 1 and array.dtype.kind in "USO" and _NUMBER.fullmatch(as_text(array)):
+        return float(as_text(array).replace(",", "."))
+    return float(array.ravel()[0]) if array.size == 1 and array.dtype.kind in "fiu" else None
+
+
+def as_text(value: object) -> str:
+    """Return a text that may be bytes or stand in an array; it is empty where there is none."""
+    if value is None or isinstance(value, Mapping | list | tuple):
+        return ""
+    array = np.asarray(value)
+    if array.size != 1:
+        return ""
+    single = array.ravel()[0]
+    return single.decode(errors="replace") if isinstance(single, bytes) else str(single)
+
+
+def in_seconds(times: NDArray[np.generic]) -> NDArray[np.generic]:
+    """Return durations in s, or dates in s since the first of them; other values as they are."""
+    if times.dtype.kind not in "mM":
+        return times
+    since = times - times.ravel()[0] if times.dtype.kind == "M" and times.size else times
+    return np.asarray(since.astype("timedelta64[ns]") / np.timedelta64(1, "s"), dtype=np.float64)
+
+
+def note_left_out(what: str, names: Sequence[str]) -> tuple[str, ...]:
+    """Return a sentence on what was not taken, none where that is nothing."""
+    return (f"{what}: {', '.join(dict.fromkeys(names))}",) if names else ()
+
+
+def signals_of(
+    name: str, array: NDArray[np.generic], unit: str = "", columns: Sequence[str] = (), units: Sequence[str] = ()
+) -> list[Signal]:
+    """Return the channels of an array of shape (N,), (N, k) or (k, N), k smaller; a matrix is `name#1`, `name#2`."""
+    values: NDArray[Any] = in_seconds(np.squeeze(np.asarray(array)))
+    if values.dtype.kind not in "fiub" or values.ndim not in (1, 2) or values.size < 2:
+        return []
+    values = values.astype(np.float64)
+    if values.ndim == 1:
+        return [Signal(name, unit, values)]
+    if values.shape[0] < values.shape[1]:
+        values = values.T
+    count = values.shape[1]
+    names = list(columns) if len(columns) == count else [f"{name}#{index + 1}" for index in range(count)]
+    stated = list(units) if len(units) == count else [unit] * count
+    return [Signal(each, of, values[:, index]) for index, (each, of) in enumerate(zip(names, stated, strict=True))]

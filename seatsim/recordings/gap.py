@@ -1,15 +1,17 @@
-"""The gap between a simulation and a recording."""
+"""The gap between a simulation and a recording, and the one to be expected there, where a diagnosis is given."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from seatsim.metrics.motion import rms
+from seatsim.recordings.prediction import Prediction, predict_gap
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.quality.sensors import without_gravity
 from seatsim.recordings.recording import Recording, load_recording
@@ -18,7 +20,7 @@ from seatsim.scenario.loading import single
 from seatsim.scenario.plausibility import list_doubts
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
-from seatsim.schema.content import to_content
+from seatsim.schema.content import IfAny, Unwritten, to_content
 from seatsim.schema.errors import InputError
 from seatsim.schema.notebook import show_record
 
@@ -143,3 +145,50 @@ def loud_channels(recording: Recording, measured: Signals) -> list[str]:
 
 def _overall(values: dict[str, float]) -> float:
     return float(np.sqrt(np.mean([value**2 for value in values.values()])))
+
+
+class MeasuredShrink(NamedTuple):
+    """The gaps that were measured with the nominal and with the augmented scenario, and by how much the gap shrinks."""
+
+    before: float
+    after: float
+    shrink: float
+    channels: Unwritten[dict[str, float]]
+    """Gaps of the channels with the nominal scenario."""
+
+
+@dataclass(frozen=True)
+class Forecast(Gap):
+    """The gap with the augmented scenario, without figures where no outputs are recorded, and what was to be expected.
+
+    It is the content of `gap.json` where a diagnosis is given.
+    """
+
+    predicted: Prediction = field(kw_only=True)
+    measured: IfAny[MeasuredShrink | None] = None
+
+
+def forecast_gap(scenario: str | Path | Scenario, recording: str | Path | Recording, diagnosis: str | Path) -> Forecast:
+    """Return what is to be expected on a recording (`predict_gap`) beside what was measured there, where it was.
+
+    Raises:
+        InputError: as `predict_gap`, or the recording has a fault.
+        RunError: a simulation could not be carried to its end.
+    """
+    scenario, recording = _load(scenario, recording)
+    examination = examine(recording)
+    refuse(examination)
+    predicted = predict_gap(scenario, recording, diagnosis)
+    notes = tuple(dict.fromkeys([*note_unused_log(scenario, recording), *examination.sentences]))
+    if not has_outputs(recording):
+        return Forecast(math.nan, {}, GapFigures(math.nan, {}), notes, predicted=predicted)
+    before, after = measure_gap(recording.nominal, recording), measure_gap(scenario, recording)
+    measured = MeasuredShrink(before.overall, after.overall, 1.0 - after.overall / before.overall, before.channels)
+    return Forecast(after.overall, after.channels, after.floor, notes, measured, predicted=predicted)
+
+
+def has_outputs(recording: Recording) -> bool:
+    """Whether an output is recorded; a coil current is an input where it drives the damper in place of a command."""
+    recorded, commands = set(recording.channels), {"current_command", "command_voltage"}
+    outputs = recorded.intersection(COMPARED[recording.header.rig])
+    return bool(outputs if commands & recorded else outputs - {"coil_current"})

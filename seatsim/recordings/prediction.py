@@ -51,7 +51,7 @@ class SimulatedRigs(NamedTuple):
     shifted: Sequence[Mapping[str, Array]]
 
 
-class StatedCause(NamedTuple):
+class _StatedCause(NamedTuple):
     """An effect of a `diagnosis.json`: its channel, if it acts on one, and its parameters' standard deviations."""
 
     effect: str
@@ -110,7 +110,7 @@ def predict_gap(
 
 
 def _check_augmented(
-    scenario: Scenario, stated: Mapping[str, object], causes: Sequence[StatedCause], diagnosis: Path
+    scenario: Scenario, stated: Mapping[str, object], causes: Sequence[_StatedCause], diagnosis: Path
 ) -> None:
     """Raise InputError where a scenario lacks an effect that the diagnosis found: it is not the augmented one."""
     present = {EFFECTS.name_of(type(effect)) for effect in scenario.effects}
@@ -182,7 +182,7 @@ def _simulate(scenario: Scenario, recording: Recording, runs: Sequence[str]) -> 
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
-def _move_parameters(scenario: Scenario, causes: Sequence[StatedCause]) -> Iterator[Scenario]:
+def _move_parameters(scenario: Scenario, causes: Sequence[_StatedCause]) -> Iterator[Scenario]:
     """Yield the augmented scenario with each parameter of its effects moved by its standard deviation."""
     for index, effect in enumerate(scenario.effects):
         name, channel = EFFECTS.name_of(type(effect)), effect._asdict().get("channel")
@@ -202,13 +202,13 @@ def _move(effect: Record, parameter: str, std: float) -> Record:
     return replace_fields(effect, {parameter: moved})
 
 
-def _read_causes(content: Mapping[str, object]) -> list[StatedCause]:
+def _read_causes(content: Mapping[str, object]) -> list[_StatedCause]:
     """Return the standard deviations of the parameters of every cause that states some."""
     found, causes = [], content.get("causes")
     for cause in causes if isinstance(causes, list) else []:
         stated = cause["parameters"]
         stds = {name: float(value["std"]) for name, value in stated.items() if isinstance(value, dict) and value["std"]}
-        found.append(StatedCause(cause["effect"], stated.get("channel"), stds))
+        found.append(_StatedCause(cause["effect"], stated.get("channel"), stds))
     return found
 
 

@@ -60,6 +60,7 @@ def best_stump(features: np.ndarray, hits: np.ndarray) -> tuple[int, float, floa
     return best[1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kinds", "cases"), [("mixed", 2000), ("varied", 1200)])
 def test_a_classifier_of_all_but_the_signals_stays_at_chance(
     kinds: str, cases: int, monkeypatch: pytest.MonkeyPatch

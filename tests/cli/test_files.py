@@ -32,6 +32,7 @@ def test_a_new_file_works_as_it_stands(kind, tmp_path, seatsim_command, forget_o
         assert f"{REGISTERED[kind]} " in out and "first_try" in out
 
 
+@pytest.mark.slow
 def test_new_classes_run_in_a_scenario(tmp_path, seat_file, forget_own_code):
     for kind in REGISTERED:
         (path,) = write_new(kind, tmp_path / f"own_{kind}")

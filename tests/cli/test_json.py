@@ -16,8 +16,7 @@ from seatsim.blind.score.shrink import ShrinkScore
 from seatsim.blind.score.verdicts import Verdict
 from seatsim.cli.app import app
 from seatsim.cli.outputs.answers import list_answers
-from seatsim.recordings.forecast import Forecast, MeasuredShrink
-from seatsim.recordings.gap import GapFigures
+from seatsim.recordings.gap import Forecast, GapFigures, MeasuredShrink
 from seatsim.recordings.prediction import Expected, Prediction
 from seatsim.schema.content import to_content
 

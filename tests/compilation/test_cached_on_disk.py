@@ -139,6 +139,7 @@ def test_without_a_folder_nothing_is_kept(model):
     assert not list(model.folder.rglob("*.nb[ic]"))
 
 
+@pytest.mark.slow
 def test_a_model_without_a_source_is_not_kept(model):
     inline = (
         "from typing import NamedTuple\n"

@@ -58,6 +58,7 @@ def test_every_measure_is_what_the_seat_moves_by():
     np.testing.assert_allclose(found[:, 2:], np.transpose(expected), rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_more_measures_never_design_worse_and_the_file_names_them(tmp_path):
     few = StaticOutputFeedback(weights=Weights(22.6, weighting="Wk"), lag=ActuatorLag())
     many = few._replace(measures=("displacement", "velocity", "frame_acceleration"))

@@ -195,6 +195,7 @@ def test_steps_converge_at_the_order_of_the_model(model, specification):
     assert errors[-1] < errors[0] / (8.0 if specification.smooth else 2.0) ** HALVINGS
 
 
+@pytest.mark.slow
 def test_temperature_lowers_force_and_energy_as_the_factors_say(model):
     factors = TemperatureFactors(-0.005, -0.005, -0.005, 20.0)
     cold, hot = (sine_test(model, 0.005, 1.5, 0.5, t, factors, samples=400) for t in (20.0, 80.0))
@@ -203,6 +204,7 @@ def test_temperature_lowers_force_and_energy_as_the_factors_say(model):
     assert hot.dissipated_energy == pytest.approx(share * cold.dissipated_energy, rel=1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_models_with_a_hysteretic_state_dissipate_over_closed_cycles(model, specification, seed):
     if specification.centred:
@@ -214,6 +216,7 @@ def test_models_with_a_hysteretic_state_dissipate_over_closed_cycles(model, spec
         assert np.trapezoid(power, dx=step) > 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("amplitude", "frequency"), [(0.002, 0.5), (0.005, 1.5), (0.02, 2.0), (0.002, 5.0)])
 def test_every_model_dissipates_over_centred_sines(model, specification, amplitude, frequency):
     for current, temperature in conditions(specification):
@@ -222,6 +225,7 @@ def test_every_model_dissipates_over_centred_sines(model, specification, amplitu
         assert test.equivalent_damping > 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("amplitude", "frequency"), [(0.004, 1.0), (0.005, 1.5), (0.01, 1.0)])
 def test_peak_force_grows_with_current(model, specification, amplitude, frequency):
     # Published cubic laws turn down just before the end of their range.
@@ -231,6 +235,7 @@ def test_peak_force_grows_with_current(model, specification, amplitude, frequenc
     assert peaks[-1] > 2.0 * peaks[0]
 
 
+@pytest.mark.slow
 def test_branches_follow_the_measured_rule(model, specification):
     # A measured loop has a positive force at v = 0 where x > 0, a negative one where x < 0.
     if not specification.centred:

@@ -29,6 +29,7 @@ def made(tmp_path_factory):
     return folder / "set", {label["kind"]: (name, label) for name, label in labels.items()}
 
 
+@pytest.mark.slow
 def test_a_faultless_rig_has_no_gap(made):
     folder, labels = made
     diagnosis = seatsim.diagnose(folder / labels["none"][0])
@@ -52,6 +53,7 @@ def test_a_hidden_effect_is_named_and_written(made, tmp_path):
     assert format_sentence(diagnosis.sentence) in (tmp_path / "report.html").read_text()
 
 
+@pytest.mark.slow
 def test_what_no_effect_explains_is_unknown(made):
     folder, labels = made
     name, label = labels["outside"]
@@ -67,6 +69,7 @@ def test_what_no_effect_explains_is_unknown(made):
     assert diagnosis.where[0].block in label["blocks"]
 
 
+@pytest.mark.slow
 def test_a_withheld_effect_is_not_named(made):
     folder, labels = made
     name, label = labels["one"]

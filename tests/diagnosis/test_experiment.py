@@ -25,6 +25,7 @@ from seatsim.simulation.simulate import simulate
 from ..faulty_recordings import edit, noisy, rewrite
 from .posed import pose
 
+pytestmark = pytest.mark.slow
 FRICTIONS = ["damper.seal_friction", "suspension.friction"]
 
 

@@ -53,6 +53,7 @@ def test_a_wandering_zero_of_the_floor_is_told_from_a_motion_of_it(posed):
     assert (solution.stochastic, solution.discrepancy.channel) == ("sensor.bias", "floor_acceleration")
 
 
+@pytest.mark.slow
 def test_a_random_force_is_named_unless_it_is_withheld(posed):
     measured = {}
     for seed, run in enumerate(posed.runs):
@@ -65,6 +66,7 @@ def test_a_random_force_is_named_unless_it_is_withheld(posed):
     assert solved(shaken, ("floor.unmeasured_input",)).decision.verdict == "unknown"
 
 
+@pytest.mark.slow
 def test_a_random_force_is_named_beside_an_effect_that_hides_it(posed):
     rubbing, measured = find("effect", "suspension.friction")(force=20.0, presliding=2e-4), {}
     for seed, run in enumerate(posed.runs):

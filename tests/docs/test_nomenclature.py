@@ -36,16 +36,19 @@ def read_members(path):
     return members
 
 
-FILES = [path for package in ("seatsim", "controllers") for path in (ROOT / package).rglob("*.py")]
-CODE = {name for path in FILES for read in (read_names, read_members) for name in read(path)}
+@pytest.fixture(scope="module")
+def code():
+    """All names of the product."""
+    files = [path for package in ("seatsim", "controllers") for path in (ROOT / package).rglob("*.py")]
+    return {name for path in files for read in (read_names, read_members) for name in read(path)}
 
 
 @pytest.mark.parametrize("row", ENTRIES, ids=lambda row: row[1])
-def test_names_occur_in_the_code(row):
+def test_names_occur_in_the_code(row, code):
     names = re.findall(r"`([\w.]+)`", row[1])
     assert names
     for name in names:
-        assert name in CODE, name
+        assert name in code, name
 
 
 def test_every_row_says_what_it_means():

@@ -70,7 +70,7 @@ def test_only_what_is_never_sought_has_no_form():
     assert set(NAMES) - set(WITH_FORMS) == {"floor.unmeasured_input"}
 
 
-@pytest.fixture(scope="module", params=["bingham", "bouc_wen"])
+@pytest.fixture(scope="module", params=["bingham", pytest.param("bouc_wen", marks=pytest.mark.slow)])
 def scenario(request):
     return request.getfixturevalue(request.param)
 

@@ -15,7 +15,7 @@ from seatsim.exchange.blocks.controller import controller_block
 from seatsim.exchange.blocks.damper import damper_block
 from seatsim.exchange.blocks.held import nothing_held
 from seatsim.exchange.blocks.rig import rig_block
-from seatsim.exchange.c_source import print_c, print_model, write_c
+from seatsim.exchange.c_source import print_c, print_model
 from seatsim.exchange.compiler import find_compiler
 from seatsim.exchange.export import write_mat
 from seatsim.exchange.fmu import identifier, make_files
@@ -81,7 +81,7 @@ def test_every_law_is_printed_but_one_that_solves_a_programme():
     ],
 )
 def test_a_controller_passes_its_test_vector_in_double_and_float(name, settings, tmp_path):
-    write_c(controller_block(load(name, settings)[0]), tmp_path / "controller.c")
+    (tmp_path / "controller.c").write_text(print_c(controller_block(load(name, settings)[0])))
     done = run_vector(tmp_path / "controller.c")
     assert done.returncode == 0 and "greatest error is 0 of" in done.stdout
     assert "malloc" not in (tmp_path / "controller.c").read_text()
@@ -109,7 +109,7 @@ def test_a_rig_with_effects_passes_its_test_vector(seat_file, tmp_path):
         {"effect": "driver.biodynamics", "parameters": {"share": 0.2}},
         {"effect": "coil.delay", "parameters": {"time": 0.0043}},
     ]
-    write_c(rig_block(load(seat_file, {"effects": effects})[0]), tmp_path / "rig.c")
+    (tmp_path / "rig.c").write_text(print_c(rig_block(load(seat_file, {"effects": effects})[0])))
     done = run_vector(tmp_path / "rig.c")
     assert done.returncode == 0, done.stdout
 
@@ -132,7 +132,7 @@ def test_what_a_rig_holds_follows_a_parameter_that_is_tuned(seat_file, part, cha
 @pytest.mark.parametrize("name", ["@MODEL@", "a */ int evil; /* @FED@", "2 seats", "ä" * 300, "\\"])
 def test_a_name_stays_out_of_the_code(name, seat_file, tmp_path):
     block = damper_block(dataclasses.replace(load(seat_file)[0], name=name))
-    write_c(block, tmp_path / "damper.c")
+    (tmp_path / "damper.c").write_text(print_c(block))
     assert run_vector(tmp_path / "damper.c").returncode == 0
     text = (tmp_path / "damper.c").read_text()
     assert text.count("} Model;") == 1

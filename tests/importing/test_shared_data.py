@@ -74,6 +74,7 @@ QUIRKS = {
 """What the descriptions of the data say of them, by channel."""
 
 
+@pytest.mark.slow
 def test_every_file_is_imported_with_a_short_map(shared, tmp_path):
     files = sorted((shared / "data").glob("*/*.csv.gz"))
     assert len(files) >= 20

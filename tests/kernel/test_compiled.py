@@ -36,6 +36,7 @@ def run(file, way, folder, **environment):
     return {name: [float.fromhex(value) for value in values] for name, values in json.loads(done.stdout).items()}
 
 
+@pytest.mark.slow
 def test_a_run_is_that_of_plain_python_to_the_last_bit(seat_file, tmp_path):
     plain = run(seat_file, "plain", tmp_path, NUMBA_DISABLE_JIT="1")
     strict = run(seat_file, "strict", tmp_path)

@@ -6,7 +6,6 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from seatsim.kernel import step
 from seatsim.kernel.assumed_model import AssumedModel, TrueModel
 from seatsim.kernel.channels import CHANNELS
 from seatsim.kernel.inverse import CELLS
@@ -20,16 +19,11 @@ from seatsim.rig.temperature import TemperatureFactors, Thermal
 
 from .uncompiled import Commanded, Feedback, Hysteretic, Linear
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
 PLANT = Plant(20.0, 80.0, 4600.0, 150.0, 60000.0, 1500.0, damper_ratio=0.8)
 COIL = Coil(rate=150.0, rate_fall=60.0)
 STEP, NONE = 1e-3, np.zeros(0)
 FACTORS = TemperatureFactors(-0.01, 0.0, -0.02, 20.0)
-
-
-@pytest.fixture(autouse=True)
-def uncompiled(monkeypatch):
-    """The only function of the loop that is compiled apart, as plain Python."""
-    monkeypatch.setattr(step, "_advance_divided", step._advance_divided.py_func)
 
 
 def run(

@@ -16,6 +16,7 @@ from seatsim.rig.temperature import TemperatureScaling
 
 from .uncompiled import Linear
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
 COIL = Coil(rate=150.0, rate_fall=60.0)
 PLANT = Plant(20.0, 80.0, 4600.0, 150.0, 60000.0, 1500.0)
 BLOCK = Plant(20.0, 80.0, 0.0, 0.0, 1e-9, 0.0)
@@ -23,12 +24,6 @@ NONE, REST = TemperatureScaling(), (0.0,) * MECHANICAL
 H = 1e-3
 KEPT = (math.exp(-150.0 * 0.5 * H), math.exp(-60.0 * 0.5 * H))
 STILL = StepInputs(H, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, False, KEPT)
-
-
-@pytest.fixture(autouse=True)
-def uncompiled(monkeypatch):
-    """The only function of the module that is compiled apart, as plain Python."""
-    monkeypatch.setattr(module, "_advance_divided", module._advance_divided.py_func)
 
 
 def relaxation(start, command, rate, time):

@@ -18,6 +18,7 @@ def address():
             started.terminate()
 
 
+@pytest.mark.slow
 def test_a_moved_slider_moves_table_and_pictures(address):
     browser, first = address
     home = first.partition("/?")[0]

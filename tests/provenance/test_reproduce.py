@@ -118,6 +118,7 @@ def test_a_sweep_of_python_or_one_that_is_not_complete_is_not_run_again(project,
         reproduce(project / "out" / "c")
 
 
+@pytest.mark.slow
 def test_a_sweep_is_run_again(tmp_path, monkeypatch):
     (tmp_path / "s.yaml").write_text(
         "scenario: quickstart\nvary: {plant.driver_mass: [60, 70], excitation.duration: [1]}\n"

@@ -8,8 +8,7 @@ import pytest
 
 import seatsim
 from seatsim.recordings import prediction
-from seatsim.recordings.forecast import has_outputs
-from seatsim.recordings.gap import measure_gap, pool_runs
+from seatsim.recordings.gap import has_outputs, measure_gap, pool_runs
 from seatsim.recordings.model_error import measure_model_error
 from seatsim.recordings.prediction import predict_gap
 from seatsim.recordings.recording import load_recording

@@ -69,12 +69,18 @@ class BadPush(NamedTuple):
 """
 
 
-@pytest.fixture
-def bad(tmp_path, forget_own_code):
-    """A file whose classes give what they must not."""
-    file = tmp_path / "bad.py"
+@pytest.fixture(scope="module")
+def bad_file(tmp_path_factory):
+    """A file whose classes give what they must not: one for all tests, so that a loop is compiled once."""
+    file = tmp_path_factory.mktemp("bad") / "bad.py"
     file.write_text(CODE)
-    seatsim.use(file)
+    return file
+
+
+@pytest.fixture
+def bad(bad_file, forget_own_code):
+    """The classes of that file."""
+    seatsim.use(bad_file)
 
 
 def scenario(seat_file, settings):
@@ -93,7 +99,7 @@ def test_a_law_that_gives_no_number_is_named_with_the_time(bad, seat_file, law, 
         simulate(cut)
 
 
-@pytest.mark.parametrize("damper", ["BadDamper", "BadState"])
+@pytest.mark.parametrize("damper", ["BadDamper", pytest.param("BadState", marks=pytest.mark.slow)])
 def test_a_damper_that_gives_no_number_is_named_with_its_motion(bad, seat_file, damper):
     with pytest.raises(RunError, match=rf"bad:{damper} gives no finite number at 0\.\d+ s, where x = .* v = -?0.01"):
         simulate(scenario(seat_file, {"damper": {"model": f"bad:{damper}"}}))

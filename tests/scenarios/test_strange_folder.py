@@ -69,6 +69,7 @@ def started(arguments, folder):
                           text=True, check=False)  # fmt: skip
 
 
+@pytest.mark.slow
 def test_commands_that_are_started_in_the_folder_run_nothing_of_it(strange, marks, tmp_path):
     done = started(
         [sys.executable, "-m", "seatsim", "gap", "nominal.yaml", ".", "--out", str(tmp_path / "out")], strange

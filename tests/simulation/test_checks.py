@@ -113,6 +113,7 @@ def test_pytest_collects_a_test_for_each_check_and_run(pytester, seat_file):
     text = seat_file.read_text()
     sweep = "sweep: {temperature: [20.0, 80.0]}\nexcitation: {kind: rest, duration: 1.0}\n"
     kept = "".join(line + "\n" for line in text.splitlines() if not line.startswith("excitation"))
+    pytester.makeini("[pytest]")  # settings of a folder above do not count
     pytester.makefile(
         ".yaml", seat=kept + sweep + "checks: {suspension_displacement_peak: {max: 1}, current_rms: {min: 5.0}}\n"
     )

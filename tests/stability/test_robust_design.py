@@ -6,6 +6,7 @@ import pytest
 import seatsim
 
 NAME = "h-infinity-drivers"
+pytestmark = pytest.mark.slow
 MASSES = [50.0, 80.0, 120.0]
 TEMPERATURES = [20.0, 80.0]
 

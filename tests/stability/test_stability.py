@@ -84,7 +84,8 @@ INVERSES = {
 
 @pytest.mark.parametrize("inverse", INVERSES)
 @pytest.mark.parametrize(
-    ("damper", "temperature"), [("modified_bouc_wen", 20.0), ("modified_bouc_wen", 80.0), ("yu2019", 80.0)]
+    ("damper", "temperature"),
+    [("modified_bouc_wen", 20.0), ("modified_bouc_wen", 80.0), pytest.param("yu2019", 80.0, marks=pytest.mark.slow)],
 )
 @pytest.mark.parametrize("start", [0.0, 0.02])
 def test_no_limit_cycle_of_the_full_loop(seat_file, damper, temperature, inverse, start):

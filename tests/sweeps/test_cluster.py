@@ -71,6 +71,7 @@ def address(tmp_path):
         yield f"tcp://{host}:{port}"
 
 
+@pytest.mark.slow
 def test_an_embedded_cluster_gives_the_same_bytes(write_sweep, tmp_path, seatsim_command):
     path = write_sweep(runs=203)
     assert seatsim_command("sweep", path, "--out", tmp_path / "local")[0] == 0
@@ -78,6 +79,7 @@ def test_an_embedded_cluster_gives_the_same_bytes(write_sweep, tmp_path, seatsim
     assert bytes_of(tmp_path / "dask") == bytes_of(tmp_path / "local")
 
 
+@pytest.mark.slow
 def test_a_worker_that_dies_costs_its_tasks_once(write_sweep, tmp_path, seatsim_command, address, forget_own_code):
     (tmp_path / "floors.py").write_text(FLOORS)
     vary = {"excitation": [{"kind": "logged"}]}

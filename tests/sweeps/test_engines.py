@@ -74,12 +74,14 @@ def test_the_runs_of_a_process_that_is_killed_are_simulated_by_others(deadly, ca
     assert bytes_of(tmp_path / "out") == bytes_of(tmp_path / "alone")
 
 
+@pytest.mark.slow
 def test_processes_that_are_lost_one_after_the_other_end_the_sweep(deadly, carry_out, tmp_path):
     with pytest.raises(RunError, match=r"processes were lost 4 times.* go on with --resume"):
         carry_out(deadly(10, runs=2000), engine=EAGER)
     assert 0 < len(seatsim.read_sweep(tmp_path / "out")) < 2000
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
 def test_no_process_outlives_the_command(how, write_sweep, tmp_path):
     path = write_sweep(runs=100_000)

@@ -198,6 +198,7 @@ def test_shares_hold_a_folder_together_but_none_twice(tmp_path):
                 pass
 
 
+@pytest.mark.slow
 def test_a_sweep_that_is_killed_goes_on_as_if_nothing_had_happened(write_sweep, carry_out, tmp_path):
     path = write_sweep(runs=800)
     command = [sys.executable, "-m", "seatsim", "sweep", str(path), "--out", str(tmp_path / "killed"), "--jobs", "1"]

@@ -11,6 +11,7 @@ from controllers import synthesise
 from controllers.seat_plant import Weights, build_generalised_plant
 from seatsim.scenario.loading import load
 
+pytestmark = pytest.mark.slow
 ROOT = Path(__file__).resolve().parents[2]
 SCENARIOS, SCRIPTS = ROOT / "scenarios" / "yu2019", ROOT / "docs" / "yu2019"
 TEMPERATURES = (20.0, 40.0, 60.0, 80.0)

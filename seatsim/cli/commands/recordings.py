@@ -33,7 +33,7 @@ def gap(
     from seatsim.cli.outputs.diagnosis_tables import make_gap_table
     from seatsim.cli.outputs.measured import write_gap
     from seatsim.cli.show_table import show_table
-    from seatsim.recordings.forecast import forecast_gap
+    from seatsim.recordings.gap import forecast_gap
     from seatsim.recordings.gap import gap as find_gap
 
     found = find_gap(scenario, recording) if predict is None else forecast_gap(scenario, recording, predict)

@@ -69,8 +69,7 @@ def list_answers() -> Mapping[str, object]:
     from seatsim.importing.importing import Import
     from seatsim.importing.inspection import Inspection
     from seatsim.provenance.reproduce import Reproduction
-    from seatsim.recordings.forecast import Forecast
-    from seatsim.recordings.gap import Gap
+    from seatsim.recordings.gap import Forecast, Gap
     from seatsim.scenario.describe import Pages
     from seatsim.standards.comfort import Comfort
     from seatsim.standards.seat_rows import SeatTest

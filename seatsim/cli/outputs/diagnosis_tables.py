@@ -11,8 +11,7 @@ from seatsim.blind.carrier.power import SIZES, Power
 from seatsim.cli.show_table import make_table
 from seatsim.diagnosis.result import Diagnosis
 from seatsim.effects.base import EFFECTS
-from seatsim.recordings.forecast import Forecast
-from seatsim.recordings.gap import Gap
+from seatsim.recordings.gap import Forecast, Gap
 from seatsim.schema.registry import is_own
 
 LISTED = 6

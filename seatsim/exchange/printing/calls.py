@@ -13,8 +13,7 @@ import numpy as np
 from numba import types
 
 from seatsim.compilation.jit import GENERIC
-from seatsim.exchange.printing.program import source_of
-from seatsim.exchange.printing.scope import Scope, address, build_tuple, element
+from seatsim.exchange.printing.program import Scope, build_tuple, element, source_of
 from seatsim.exchange.printing.values import (
     BOOLEAN,
     INTEGER,
@@ -109,11 +108,20 @@ def _print_own(function: FunctionType, values: list[Value], scope: Scope, evalua
     if is_empty(printed.result):
         return Value("", printed.result)
     listed = ", ".join(
-        address(scope, value) if scope.program.takes_address(function, value.type) else value.code
+        _address(scope, value) if scope.program.takes_address(function, value.type) else value.code
         for value in values
         if not is_empty(value.type)
     )
     return Value(f"{printed.name}({listed})", printed.result, plain=False)
+
+
+def _address(scope: Scope, record: Value) -> str:
+    """Return the address of a record, which is put into memory of its own where it is in none."""
+    if record.code.startswith("*"):
+        return record.code[1:]
+    if record.plain:
+        return f"&{record.code}"
+    return f"(const {scope.program.types.name(record.type)}[1]){{{record.code}}}"
 
 
 def _print_library(  # noqa: PLR0911 - one return per function

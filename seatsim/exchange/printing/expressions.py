@@ -13,7 +13,7 @@ import numpy as np
 from numba import types
 
 from seatsim.exchange.printing.calls import print_call
-from seatsim.exchange.printing.scope import Scope, build_tuple, element, part
+from seatsim.exchange.printing.program import Scope, build_tuple, element, part
 from seatsim.exchange.printing.values import (
     BOOLEAN,
     CHOICE,

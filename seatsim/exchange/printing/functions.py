@@ -11,8 +11,7 @@ from typing import cast
 
 from numba import types
 
-from seatsim.exchange.printing.program import Printed, Program, origin, source_of
-from seatsim.exchange.printing.scope import Scope
+from seatsim.exchange.printing.program import Printed, Program, Scope, origin, source_of
 from seatsim.exchange.printing.statements import print_body
 from seatsim.exchange.printing.values import (
     REAL,

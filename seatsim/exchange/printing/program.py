@@ -1,8 +1,9 @@
-"""A program in C that grows by the functions that are asked for, each printed once for the types it is called with."""
+"""A program in C that grows by the functions that are asked for, and the body of one while it is printed."""
 
 from __future__ import annotations
 
 import ast
+import builtins
 import inspect
 import textwrap
 from collections.abc import Callable
@@ -15,14 +16,20 @@ from numba import types
 from seatsim.compilation.jit import GENERIC
 from seatsim.exchange.printing.values import (
     REAL,
+    UNKNOWN,
     Declarations,
     NotPrintableError,
     Signature,
     Value,
+    field_names,
     free_name,
+    identifier,
     is_empty,
+    is_known,
+    is_row,
     is_tuple,
     number,
+    whole_as_int64,
 )
 from seatsim.schema.arrays import Array
 
@@ -119,3 +126,122 @@ def source_of(function: FunctionType, kind: type[_N]) -> _N:
             f"{function.__module__}.{function.__qualname__}: its source is not at hand, so that it cannot be exported"
         ) from error
     return next(node for node in ast.walk(tree) if isinstance(node, kind))
+
+
+class Scope:
+    """Variables and lines of the function that is being printed."""
+
+    def __init__(self, program: Program, function: Callable[..., object], assigned: dict[str, int]) -> None:
+        self.program = program
+        self.function = function
+        self.assigned = assigned
+        self.variables: dict[str, Value] = {}
+        self.declared: list[str] = []
+        self.lines: list[str] = []
+        self.depth = 1
+        self.results: list[Value] = []
+        self._names: set[str] = set()
+
+    def refuse(self, node: ast.AST, why: str) -> NotPrintableError:
+        """Return the error of what cannot be printed, with the function and the line of it."""
+        place = f"{self.function.__module__}.{self.function.__qualname__}"
+        return NotPrintableError(f"{place}: '{ast.unparse(node)[:80]}' cannot be exported to C: {why}")
+
+    def write(self, line: str) -> None:
+        """Add a line."""
+        self.lines.append("    " * self.depth + line)
+
+    def name(self, wanted: str) -> str:
+        """Return a name for a variable that is free within the function."""
+        name = free_name(identifier(wanted), self._names)
+        self._names.add(name)
+        return name
+
+    def assign(self, name: str, value: Value) -> None:
+        """Assign a value to the variable that Python calls `name`."""
+        before = self.variables.get(name)
+        known = value.known if self.assigned.get(name, 0) <= 1 else UNKNOWN
+        if value.type is None or is_empty(value.type) or known is not UNKNOWN or value.shape:
+            # Nothing to compute: the value itself stands for the variable.
+            self.variables[name] = value
+            return
+        kind = whole_as_int64(value.type)
+        if before is None or before.type != kind or before.known is not UNKNOWN:
+            self._declare(name, kind, value.code)
+        else:
+            self.write(f"{before.code} = {value.code};")
+
+    def _declare(self, name: str, kind: types.Type, code: str) -> None:
+        variable = self.name(name)
+        self.variables[name] = Value(variable, kind)
+        if self.depth == 1:
+            self.write(f"{self.program.types.name(kind)} {variable} = {code};")
+        else:
+            self.declared.append(f"    {self.program.types.name(kind)} {variable};")
+            self.write(f"{variable} = {code};")
+
+    def keep(self, value: Value) -> Value:
+        """Return a value whose expression may be repeated, held in a variable of its own where it costs anything."""
+        if value.plain or is_empty(value.type):
+            return value
+        name = self.name("part")
+        self.write(f"const {self.program.types.name(value.type)} {name} = {value.code};")
+        return value._replace(code=name, plain=True, rank=0)
+
+    def look_up(self, name: str) -> object:
+        """Return the Python object of a name outside the function's own variables."""
+        code = self.function.__code__
+        if name in code.co_freevars:
+            return (self.function.__closure__ or ())[code.co_freevars.index(name)].cell_contents
+        found = self.function.__globals__.get(name, UNKNOWN)
+        return getattr(builtins, name, UNKNOWN) if found is UNKNOWN else found
+
+
+def build_tuple(scope: Scope, items: list[Value], cls: type | None = None) -> Value:
+    """Return a tuple, or a record of a class, of these elements."""
+    kind = types.BaseTuple.from_types(tuple(whole_as_int64(item.type) for item in items), cls)
+    known = tuple(item.known for item in items) if items and is_known(*items) else UNKNOWN
+    if is_empty(kind):
+        return Value("", kind)
+    listed = ", ".join(item.code for item in items if not is_empty(item.type))
+    name = scope.program.types.name(kind)
+    return Value(f"({name}){{{{{listed}}}}}" if is_row(kind) else f"({name}){{{listed}}}", kind, known, False)
+
+
+def element(scope: Scope, owner: Value, index: int | Value, node: ast.AST | None = None) -> Value:
+    """Return one element of a tuple, by its position or, where all have one type, by a number known later."""
+    if isinstance(index, Value):
+        if not is_row(owner.type):
+            raise scope.refuse(node or ast.Pass(), "the position in a tuple of several types must be a constant")
+        return Value(f"{_member(scope.keep(owner))}at[{index.code}]", owner.type.dtype)
+    index %= len(owner.type)
+    if isinstance(owner.known, tuple):
+        return _known_element(scope, owner, index)
+    kind = tuple(owner.type)[index]
+    if is_empty(kind):
+        return Value("", kind)
+    held = scope.keep(owner)
+    if is_row(owner.type):
+        return Value(f"{_member(held)}at[{index}]", kind)
+    return Value(f"{_member(held)}{field_names(owner.type)[index]}", kind)
+
+
+def _member(owner: Value) -> str:
+    """Return what stands before the name of a member of a record or of what a pointer points to."""
+    return f"{owner.code[1:]}->" if owner.code.startswith("*") else f"{owner.code}."
+
+
+def _known_element(scope: Scope, owner: Value, index: int) -> Value:
+    found = owner.known[index]  # type: ignore[index]  # a tuple
+    if not isinstance(found, tuple):
+        return number(found)
+    kinds = tuple(owner.type)[index]
+    return build_tuple(scope, [number(float(v) if k == REAL else v) for v, k in zip(found, kinds, strict=True)])
+
+
+def part(scope: Scope, owner: Value, span: slice) -> Value:
+    """Return a part of a tuple as a tuple."""
+    positions = range(*span.indices(len(owner.type)))
+    if len(positions) == len(owner.type) and not isinstance(owner.type, types.BaseNamedTuple):
+        return owner
+    return build_tuple(scope, [element(scope, held, k) for held in [scope.keep(owner)] for k in positions])

@@ -7,8 +7,7 @@ import ast
 from numba import types
 
 from seatsim.exchange.printing.expressions import arithmetic, print_expression
-from seatsim.exchange.printing.program import origin
-from seatsim.exchange.printing.scope import Scope, element
+from seatsim.exchange.printing.program import Scope, element, origin
 from seatsim.exchange.printing.values import NOTHING, UNKNOWN, NotPrintableError, Value, is_empty, is_known
 
 

@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from seatsim.importing.readers.naming import as_text, signals_of, stated_rate, stated_unit
 from seatsim.importing.readers.reading import TextLayout, need
-from seatsim.importing.signals import Channels, DataFile, Signal
+from seatsim.importing.signals import Channels, DataFile, Signal, as_text, signals_of, stated_rate, stated_unit
 from seatsim.schema.bounds import BYTES_OF_NUMBER, Part, check_made, check_parts
 from seatsim.schema.errors import InputError
 from seatsim.schema.guarded import is_there, read_bytes

@@ -15,10 +15,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from seatsim.importing.readers.naming import scalar, signals_of, stated_unit
 from seatsim.importing.readers.reading import TextLayout, need
 from seatsim.importing.readers.text import as_utf8
-from seatsim.importing.signals import Channels, DataFile, Group, Signal
+from seatsim.importing.signals import Channels, DataFile, Group, Signal, scalar, signals_of, stated_unit
 from seatsim.schema.arrays import Array
 from seatsim.schema.bounds import BYTES_OF_PART, check_made
 from seatsim.schema.errors import InputError

@@ -17,9 +17,8 @@ from numpy.typing import NDArray
 
 from seatsim.importing.readers.hdf5 import open_checked
 from seatsim.importing.readers.mat_elements import AnyArray, Resolve, read_variables
-from seatsim.importing.readers.naming import UNITS, bare, in_seconds
 from seatsim.importing.readers.reading import HDF5, USER_BLOCK, need
-from seatsim.importing.signals import TIME
+from seatsim.importing.signals import TIME, UNITS, bare, in_seconds
 from seatsim.schema.bounds import BYTES_OF_PART, LEAST, check_made
 
 Value: TypeAlias = "AnyArray | str | dict[str, Value] | list[Value] | None"

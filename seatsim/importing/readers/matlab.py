@@ -29,7 +29,12 @@ from seatsim.importing.readers.mat_values import (
     read_values,
     statements,
 )
-from seatsim.importing.readers.naming import (
+from seatsim.importing.readers.reading import TextLayout
+from seatsim.importing.signals import (
+    TIME,
+    Channels,
+    DataFile,
+    Signal,
     as_text,
     bare,
     note_left_out,
@@ -39,8 +44,6 @@ from seatsim.importing.readers.naming import (
     stated_text,
     stated_unit,
 )
-from seatsim.importing.readers.reading import TextLayout
-from seatsim.importing.signals import TIME, Channels, DataFile, Signal
 from seatsim.schema.arrays import Array
 from seatsim.schema.units import DIMENSIONS, find_conversion
 

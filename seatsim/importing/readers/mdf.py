@@ -13,9 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from seatsim.importing.readers.naming import note_left_out
 from seatsim.importing.readers.reading import TextLayout, need
-from seatsim.importing.signals import Channels, DataFile, Signal
+from seatsim.importing.signals import Channels, DataFile, Signal, note_left_out
 from seatsim.schema.bounds import Part, check_made, check_parts
 
 _BEGIN = 64

@@ -46,7 +46,7 @@ class TextLayout(NamedTuple):
     encoding: str | None = None
 
 
-class Format(NamedTuple):
+class _Format(NamedTuple):
     """A format: the function that reads it, with its module, how its files begin, and how they may end."""
 
     name: str
@@ -56,19 +56,19 @@ class Format(NamedTuple):
 
 
 FORMATS = (
-    Format("Parquet", "tables.read_arrow", (b"PAR1",), (".parquet", ".pq")),
-    Format("Feather", "tables.read_arrow", (b"ARROW1", b"FEA1"), (".feather", ".arrow")),
-    Format("XLSX", "tables.read_xlsx", (), (".xlsx", ".xlsm")),
-    Format("MAT v7.3", "matlab.read", (b"MATLAB 7.3 MAT-file",), ()),
-    Format("MAT v5", "matlab.read", (b"MATLAB 5.0 MAT-file",), (".mat",)),
-    Format("HDF5", "hdf5.read", (HDF5,), (".h5", ".hdf5", ".hdf")),
-    Format("MDF", "mdf.read", (b"MDF     ", b"UnFinMF "), (".mf4", ".mdf", ".dat4")),
-    Format("LVM", "labview.read_lvm", (b"LabVIEW Measurement",), ()),
-    Format("TDMS", "labview.read_tdms", (b"TDSm",), (".tdms",)),
-    Format("UFF", "time_histories.read_uff", (b"    -1",), (".uff", ".unv")),
-    Format("RPC III", "time_histories.read_rpc", (b"FORMAT\0", b"FORMAT "), (".rpc", ".rsp", ".tim")),
-    Format("OpenCRG", "opencrg.read", (b"$CT", b"$ROAD_CRG", b"* "), (".crg",)),
-    Format("CSV", "text.read", (), (".csv", ".tsv", ".txt", ".asc", ".dat")),
+    _Format("Parquet", "tables.read_arrow", (b"PAR1",), (".parquet", ".pq")),
+    _Format("Feather", "tables.read_arrow", (b"ARROW1", b"FEA1"), (".feather", ".arrow")),
+    _Format("XLSX", "tables.read_xlsx", (), (".xlsx", ".xlsm")),
+    _Format("MAT v7.3", "matlab.read", (b"MATLAB 7.3 MAT-file",), ()),
+    _Format("MAT v5", "matlab.read", (b"MATLAB 5.0 MAT-file",), (".mat",)),
+    _Format("HDF5", "hdf5.read", (HDF5,), (".h5", ".hdf5", ".hdf")),
+    _Format("MDF", "mdf.read", (b"MDF     ", b"UnFinMF "), (".mf4", ".mdf", ".dat4")),
+    _Format("LVM", "labview.read_lvm", (b"LabVIEW Measurement",), ()),
+    _Format("TDMS", "labview.read_tdms", (b"TDSm",), (".tdms",)),
+    _Format("UFF", "time_histories.read_uff", (b"    -1",), (".uff", ".unv")),
+    _Format("RPC III", "time_histories.read_rpc", (b"FORMAT\0", b"FORMAT "), (".rpc", ".rsp", ".tim")),
+    _Format("OpenCRG", "opencrg.read", (b"$CT", b"$ROAD_CRG", b"* "), (".crg",)),
+    _Format("CSV", "text.read", (), (".csv", ".tsv", ".txt", ".asc", ".dat")),
 )
 """Formats in the order in which they are tried."""
 _KNOWN = ", ".join(each.name for each in FORMATS)
@@ -141,7 +141,7 @@ def _content(path: Path) -> bytes:
     return content
 
 
-def _recognise(path: Path, content: bytes) -> Format:
+def _recognise(path: Path, content: bytes) -> _Format:
     head, names = content[:_SNIFFED], {each.name: each for each in FORMATS}
     for magic, what in _NOT_TABLES.items():
         if head.startswith(magic):

@@ -18,9 +18,8 @@ import numpy as np
 
 from seatsim.importing.readers.columns import read_column
 from seatsim.importing.readers.header import check_header, first_row_of_numbers, split_header
-from seatsim.importing.readers.naming import note_left_out, stated_unit
 from seatsim.importing.readers.reading import TextLayout, need
-from seatsim.importing.signals import TIME, DataFile, Group, Signal
+from seatsim.importing.signals import TIME, DataFile, Group, Signal, note_left_out, stated_unit
 from seatsim.schema.arrays import Array
 from seatsim.schema.bounds import BYTES_OF_NUMBER, TooMuchError, check_made
 from seatsim.schema.errors import InputError

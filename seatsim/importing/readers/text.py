@@ -21,9 +21,8 @@ from seatsim.importing.readers.header import (
     fit_names,
     split_header,
 )
-from seatsim.importing.readers.naming import find_rate, note_left_out
 from seatsim.importing.readers.reading import TextLayout
-from seatsim.importing.signals import DataFile, Signal
+from seatsim.importing.signals import DataFile, Signal, find_rate, note_left_out
 from seatsim.schema.errors import InputError
 
 if TYPE_CHECKING:

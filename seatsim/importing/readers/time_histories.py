@@ -15,9 +15,8 @@ from typing import cast
 
 import numpy as np
 
-from seatsim.importing.readers.naming import note_left_out
 from seatsim.importing.readers.reading import TextLayout, need
-from seatsim.importing.signals import Channels, DataFile, Group, Signal
+from seatsim.importing.signals import Channels, DataFile, Group, Signal, note_left_out
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.units import DIMENSIONS, conversion

@@ -61,7 +61,7 @@ def simulate_nominal(run: RunUnderTest, table: Table) -> Table | None:
         return None
 
 
-class DataFault(NamedTuple):
+class _DataFault(NamedTuple):
     """A fault that channels may have: `correct` takes the table of a run and returns it as it should be.
 
     `may_be_effect` says that an effect of the library can make a channel look like this.
@@ -74,14 +74,14 @@ class DataFault(NamedTuple):
     may_be_effect: bool = False
 
 
-def list_faults(run: RunUnderTest, outputs: Table | None) -> Iterator[DataFault]:
+def _list_faults(run: RunUnderTest, outputs: Table | None) -> Iterator[_DataFault]:
     """Yield every fault that a run may have; delays are relative to simulated outputs."""
     for channel in run.table:
         yield from _scales(run, channel, outputs or {})
     for channels in _TOGETHER:
         swapped = tuple(channel for channel in channels if channel in run.table)
         if len(swapped) > 1:
-            yield DataFault("sign", swapped, "all their signs are swapped", _scaled(swapped, -1.0))
+            yield _DataFault("sign", swapped, "all their signs are swapped", _scaled(swapped, -1.0))
     for first, second in itertools.combinations(MOTION[:3], 2):
         if first in run.table and second in run.table:
             pair = filter_band(run, np.array([run.table[first], run.table[second]]))
@@ -89,16 +89,16 @@ def list_faults(run: RunUnderTest, outputs: Table | None) -> Iterator[DataFault]
     yield from _delays(run, outputs or {})
 
 
-def _scales(run: RunUnderTest, channel: str, outputs: Table) -> Iterator[DataFault]:
+def _scales(run: RunUnderTest, channel: str, outputs: Table) -> Iterator[_DataFault]:
     if channel in MOTION or channel == "coil_current":
         is_biased = channel == "coil_current" and not run.opposes_command
-        yield DataFault("sign", (channel,), "its sign is swapped", _scaled((channel,), -1.0), is_biased)
+        yield _DataFault("sign", (channel,), "its sign is swapped", _scaled((channel,), -1.0), is_biased)
     if channel in MOTION:
         wanted = (SEAT_CHANNELS | BENCH_CHANNELS)[channel]
         for unit in USUAL[wanted][1:]:
             factor = conversion(unit, wanted).factor
             is_near = _is_near(run, outputs) if channel == run.driver else is_within_reach(channel, factor)
-            yield DataFault("unit", (channel,), f"reads as if in {unit}", _scaled((channel,), factor), is_near)
+            yield _DataFault("unit", (channel,), f"reads as if in {unit}", _scaled((channel,), factor), is_near)
 
 
 def _is_near(run: RunUnderTest, outputs: Table) -> bool:
@@ -115,13 +115,13 @@ def _scaled(channels: Sequence[str], factor: float) -> Callable[[Table], Table]:
     return lambda table: {**table, **{channel: factor * table[channel] for channel in channels}}
 
 
-def _exchange_fault(first: str, second: str) -> DataFault:
+def _exchange_fault(first: str, second: str) -> _DataFault:
     """Return the fault of two channels that are exchanged."""
     says = "are exchanged for each other"
-    return DataFault("exchange", (first, second), says, lambda t: {**t, first: t[second], second: t[first]})
+    return _DataFault("exchange", (first, second), says, lambda t: {**t, first: t[second], second: t[first]})
 
 
-def _delays(run: RunUnderTest, outputs: Table) -> Iterator[DataFault]:
+def _delays(run: RunUnderTest, outputs: Table) -> Iterator[_DataFault]:
     """Yield each output's delay relative to the simulation, and the delay of the floor that explains the most."""
     skip = round(LEFT_OUT * run.rate)
     found, driving = [], filter_band(run, run.table.get(run.driver, np.zeros(run.rows)))
@@ -151,9 +151,9 @@ def _turned(recorded: Array, simulated: Array) -> float:
     return float(np.sum((recorded - shares @ parts) ** 2) / np.sum(recorded**2))
 
 
-def _delay(channel: str, rows: int, rate: float, may_be_effect: bool) -> DataFault:
+def _delay(channel: str, rows: int, rate: float, may_be_effect: bool) -> _DataFault:
     says = f"is {abs(rows) / rate:.3g} s {'late' if rows > 0 else 'early'}"
-    return DataFault(
+    return _DataFault(
         "late", (channel,), says, lambda table: {**table, channel: _moved(table[channel], rows)}, may_be_effect
     )
 
@@ -194,17 +194,17 @@ def check_consistency(run: RunUnderTest) -> Iterator[Issue]:
         yield _named(run, named)
 
 
-def _possible(run: RunUnderTest, before: Mapping[str, float], outputs: Table | None) -> Iterator[DataFault]:
+def _possible(run: RunUnderTest, before: Mapping[str, float], outputs: Table | None) -> Iterator[_DataFault]:
     """Yield each fault that could explain such a residual; a fault of an input affects most outputs."""
     if sum(before.values()) < _DELAYED:
         return
     is_driven_wrong = float(np.median([size for name, size in before.items() if name in MOTION])) > 0.5 * _DELAYED
-    for fault in list_faults(run, outputs):
+    for fault in _list_faults(run, outputs):
         if is_driven_wrong or not set(_INPUTS) & set(fault.channels):
             yield fault
 
 
-def _explains(fault: DataFault, before: Mapping[str, float], after: Mapping[str, float]) -> bool:
+def _explains(fault: _DataFault, before: Mapping[str, float], after: Mapping[str, float]) -> bool:
     """Say whether the correction of a fault lowers the residual by much and makes the changed channels fit."""
     changed = [name for name in before if abs(before[name] - after[name]) > _CHANGED]
     fall = sum(before.values()) - sum(after.values())
@@ -212,7 +212,7 @@ def _explains(fault: DataFault, before: Mapping[str, float], after: Mapping[str,
     return is_large and float(np.mean([after[name] for name in changed])) <= _FITS
 
 
-def _named(run: RunUnderTest, explanations: Sequence[DataFault]) -> Issue:
+def _named(run: RunUnderTest, explanations: Sequence[_DataFault]) -> Issue:
     """Return the issue for faults that explain a run equally well, the best first."""
     first, *others = explanations
     said = [f"{' and '.join(first.channels)}: {first.says}"]

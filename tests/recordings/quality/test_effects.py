@@ -52,12 +52,19 @@ CHANNELS = {
     "bench": ("displacement", "damper_force", "coil_current"),
 }  # fmt: skip
 CASES = [
-    (rig, name, values) for rig in CHANNELS for name, several in LARGE.items() for values in several
+    pytest.param(rig, name, values, marks=pytest.mark.slow if k else ())
+    for rig in CHANNELS
+    for name, several in LARGE.items()
+    for k, values in enumerate(several)
     if rig == "seat" or not name.startswith(OF_A_SEAT)
 ] + [
-    (rig, name, {"channel": channel, **values}) for rig, channels in CHANNELS.items() for channel in channels
-    for name, several in ON_A_CHANNEL.items() for values in several
-]  # fmt: skip
+    pytest.param(rig, name, {"channel": channel, **values}, marks=pytest.mark.slow if k else ())
+    for rig, channels in CHANNELS.items()
+    for channel in channels
+    for name, several in ON_A_CHANNEL.items()
+    for k, values in enumerate(several)
+]
+"""Every form and sign; the first of each is in the fast suite."""
 DAMPER = BoucWen(c_a=500.0, c_b=800.0, alpha_a=60.0, alpha_b=500.0, k0=900.0, f0=30.0, A=2000.0, beta=1300.0,
                  gamma=900.0, n=2.0)  # fmt: skip
 RATE = 250.0

@@ -8,25 +8,23 @@ from seatsim.recordings.quality.runs import check_rows, find_repeated_rows
 NOISE = np.random.default_rng(0).standard_normal(2000)
 
 
-def test_single_rows_that_were_written_twice_are_found():
-    rows = np.sort([*range(2000), *range(700, 705)])
-    assert find_repeated_rows(NOISE[rows]).tolist() == [701, 703, 705, 707, 709]
+SLOW_SINE = 10.0 * np.sin(4.0 * np.pi * np.arange(4000) / 200.0) + 0.03 * np.random.default_rng(1).standard_normal(4000)
 
 
-def test_a_buffer_that_was_written_twice_is_found():
-    rows = [*range(708), *range(700, 2000)]
-    assert find_repeated_rows(NOISE[rows]).tolist() == list(range(708, 716))
-
-
-def test_a_slow_sine_of_a_coarse_converter_repeats_itself_by_chance():
-    time = np.arange(4000) / 200.0
-    noise = 0.03 * np.random.default_rng(1).standard_normal(4000)
-    travel = np.round(10.0 * np.sin(4.0 * np.pi * time) + noise, 2)
-    assert len(np.unique(travel)) < 4000 and len(find_repeated_rows(travel)) == 0
-
-
-def test_a_rig_at_rest_repeats_itself_by_chance():
-    assert len(find_repeated_rows(np.round(NOISE, 0))) == 0
+@pytest.mark.parametrize(
+    ("values", "again"),
+    [
+        # single rows, and a whole buffer, that were written twice
+        (NOISE[np.sort([*range(2000), *range(700, 705)])], [701, 703, 705, 707, 709]),
+        (NOISE[[*range(708), *range(700, 2000)]], list(range(708, 716))),
+        # a slow sine of a coarse converter, and a rig at rest, repeat themselves by chance
+        (np.round(SLOW_SINE, 2), []),
+        (np.round(NOISE, 0), []),
+    ],
+)
+def test_rows_that_were_written_twice_are_told_from_equal_ones(values, again):
+    assert len(np.unique(values)) < len(values)
+    assert find_repeated_rows(values).tolist() == again
 
 
 def test_coarse_channels_repeat_each_other_by_chance():
