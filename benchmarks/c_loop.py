@@ -10,8 +10,7 @@ from pathlib import Path
 import numpy as np
 from seat_run import DAMPER, GAIN, PLANT
 
-from seatsim.kernel.channels import CHANNELS
-from seatsim.kernel.loop_inputs import LoopSetup
+from seatsim.kernel.loop_data import CHANNELS, LoopSetup
 
 FLAGS = ("-O3", "-march=native", "-std=c11", "-Wall", "-Wextra", "-shared", "-fPIC")
 LEAN_CHANNELS = (

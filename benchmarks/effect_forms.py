@@ -42,8 +42,7 @@ from seatsim.schema.processes import run_jobs
 from seatsim.schema.registry import Record, names
 from seatsim.simulation.inputs import SeatInputs
 from seatsim.simulation.respond import respond
-from seatsim.simulation.result import Result
-from seatsim.simulation.simulate import History
+from seatsim.simulation.result import History, Result
 
 SEAT = """\
 plant: {frame_mass: 20.0, driver_mass: 60.0, suspension_stiffness: 4600.0, suspension_damping: 100.0,

@@ -12,12 +12,10 @@ from seatsim.compilation.cached import compiled
 from seatsim.dampers.base import DAMPERS
 from seatsim.dampers.bouc_wen import ModifiedBoucWen
 from seatsim.excitations.iso7096 import Iso7096
-from seatsim.kernel.assumed_model import TrueModel
-from seatsim.kernel.channels import CHANNELS
-from seatsim.kernel.generic import DamperModel
+from seatsim.kernel.generic import DamperModel, TrueModel
 from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.loop import run_loop
-from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
+from seatsim.kernel.loop_data import CHANNELS, LoopInputs, LoopSetup, Timing
 from seatsim.kernel.rig import Rig
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import LAWS, Law, prepare_law

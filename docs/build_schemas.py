@@ -6,8 +6,7 @@ import json
 from collections.abc import Mapping
 from pathlib import Path
 
-from seatsim.cli.outputs.answers import describe_answer, list_answers
-from seatsim.cli.outputs.schemas import FILES
+from seatsim.cli.outputs.answers import FILES, describe_answer, list_answers
 
 ROOT = Path(__file__).resolve().parents[1]
 

@@ -9,15 +9,15 @@ from typing import NotRequired, TypedDict, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from ruamel.yaml import YAML
 
 from controllers.synthesis.certify import Certificate
 from controllers.synthesis.global_proof import FACTOR, GlobalProof, prove_no_better
 from controllers.synthesis.plant import MATRICES, GeneralisedPlant
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
-from seatsim.schema.files import write_whole
+from seatsim.schema.files import write_text
 from seatsim.schema.yaml_source import Source
+from seatsim.schema.yaml_text import dump
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +97,7 @@ class Design:
     def save(self, path: str | Path) -> None:
         """Write the design as YAML; the file appears whole or not at all."""
         content = {**_to_plain(self), **({"global": _to_plain_global(self.proof)} if self.proof else {})}
-        write_whole(Path(path), lambda part: _yaml().dump(content, part))
+        write_text(Path(path), dump(content))
 
     @classmethod
     def load(cls, path: str | Path) -> Design:
@@ -113,13 +113,6 @@ class Design:
             raise InputError(f"{path}: the design lacks the key {error}") from error
         except (TypeError, ValueError, IndexError, AttributeError, InputError) as error:
             raise InputError(f"{path}: not a design: {error}") from error
-
-
-def _yaml() -> YAML:
-    yaml = YAML(typ="safe")
-    yaml.default_flow_style, yaml.width = None, 1000
-    yaml.sort_base_mapping_type_on_output = False  # type: ignore[assignment]  # typed as None
-    return yaml
 
 
 class _PlainProof(TypedDict):

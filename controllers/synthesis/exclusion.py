@@ -116,7 +116,8 @@ class BoxView:
             return np.inf, np.where(poles.real > 0, poles, 1j * poles.imag)[poles.imag >= 0]
         peak = hinf_norm(loop, enough=self.level)
         nearest = poles[np.argsort(-poles.real)[:2]]
-        return peak.value, 1j * np.append(np.abs(nearest.imag), peak.frequency)
+        frequencies = np.append(np.abs(nearest.imag), peak.frequency)
+        return peak.value, 1j * frequencies[np.isfinite(frequencies)]  # infinity is a common point
 
     def list_inequalities(self, low: Array, high: Array, points: Complex) -> Inequalities:
         """Return the inequalities of a box at the common points and at its own ones."""

@@ -71,12 +71,13 @@ class GlobalProof:
         return sum(not isinstance(step, Split) for step in self.steps)
 
     def save(self, path: Path) -> None:
-        """Write plants, box, level and steps as JSON; the file appears whole or not at all."""
+        """Write plants, box, level (null: infinite) and steps as JSON; the file appears whole or not at all."""
         plants = [
             {name: getattr(plant, name).tolist() for name in MATRICES} | {"free": plant.free.astype(int).tolist()}
             for plant in self.plants
         ]
-        content = {"low": self.low.tolist(), "high": self.high.tolist(), "level": self.level, "plants": plants}
+        level = self.level if np.isfinite(self.level) else None
+        content = {"low": self.low.tolist(), "high": self.high.tolist(), "level": level, "plants": plants}
         content["steps"] = [_to_plain(step) for step in self.steps]
         write_whole(path, lambda part: part.write_text(json.dumps(content)))
 

@@ -10,8 +10,7 @@ from seatsim.characterisation.response import Response, find_cycles
 from seatsim.characterisation.rows import Row, summarise_aperiodic_record, summarise_record
 from seatsim.characterisation.steps import find_plateaus, measure_responses
 from seatsim.recordings.bench_tables import BenchRecord, load_bench, unused_columns
-from seatsim.schema.content import Form
-from seatsim.schema.notebook import show_record
+from seatsim.schema.content import Form, show_record
 
 _SETTLED = 0.2
 """Seconds after a step of current from which on cycles are counted."""

@@ -24,11 +24,11 @@ from seatsim.cli.commands.runs import compare, run
 from seatsim.cli.commands.scenarios import explore, export, synthesise
 from seatsim.cli.commands.standards import comfort, seat_test
 from seatsim.cli.commands.sweeps import sweep, sweep_report
-from seatsim.cli.terminal import answer_as_json, answer_error, fail, print_any_letter, refuse, warn
-from seatsim.compilation.reasons import explain, is_compilation
+from seatsim.cli.terminal import answer_as_json, answer_error, fail, print_any_letter, refuse, say, warn
+from seatsim.compilation.messages import explain, is_compilation
 from seatsim.schema.errors import InputError, SeatsimError
 
-UsageError: Any = typer.BadParameter.__bases__[0]
+_UsageError: Any = typer.BadParameter.__bases__[0]
 """What is raised for options and arguments that a command does not have, before any of them is read."""
 TRACEBACK = "SEATSIM_TRACEBACK"
 """Set in the environment, it lets Python print what led to an error that was not foreseen."""
@@ -68,7 +68,7 @@ class _Commands(TyperGroup):
         try:
             with _interrupts_said():
                 return super().invoke(ctx)
-        except UsageError as error:
+        except _UsageError as error:
             answer_error(error.format_message())
             raise
 
@@ -86,7 +86,7 @@ def _interrupts_said() -> Iterator[None]:
 app = typer.Typer(
     cls=_Commands,
     help="Simulate semi-active MR-damper seats and compare what is done to them.",
-    no_args_is_help=True,
+    invoke_without_command=True,
     pretty_exceptions_enable=False,
 )
 _GROUPS: tuple[tuple[Callable[..., None], ...], ...] = (
@@ -110,13 +110,24 @@ def _show_version(wanted: bool) -> None:
         raise typer.Exit
 
 
+_START = """\
+Three things to try:
+  seatsim run quickstart        simulate an example: a table, pictures, a report
+  seatsim explore               move the sliders of a seat on a page, and see what follows
+  seatsim new recording my-rig  write a small measured recording; `seatsim diagnose my-rig` says what its gap is due to
+seatsim --help lists all commands, seatsim COMMAND --help the options of one."""
+
+
 @app.callback()
 def _seatsim(
+    context: typer.Context,
     version: Annotated[
         bool, typer.Option("--version", is_eager=True, callback=_show_version, help="Print the version.")
     ] = False,
 ) -> None:
     """Simulate semi-active MR-damper seats and compare what is done to them."""
+    if context.invoked_subcommand is None:
+        say(_START)
 
 
 def main() -> None:

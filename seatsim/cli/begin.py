@@ -1,20 +1,34 @@
 """The start of a command as a process of its own, and its orderly end.
 
-At its first instants, before anything heavy is imported, a signal ends it with a word, not a traceback.
+At its first instants, before anything heavy is imported, a signal ends it with a word, not a traceback. This
+module imports next to nothing itself.
 """
 
 from __future__ import annotations
 
 import os
 import signal
-
-from seatsim.cli.signals import SIGNALS, say_interrupted
+import sys
 
 # For annotations only: the module `typing` takes longer to load than everything that is done here.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from types import FrameType
     from typing import NoReturn
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+
+def say_interrupted() -> None:
+    """Say why the command ends, by system calls alone, as what it prints with may be locked or not be loaded."""
+    try:
+        if os.isatty(2):
+            os.write(2, b"\x1b[?25h")  # a progress bar hides the cursor
+        os.write(2, b"error: interrupted\n")
+        if "--json" in sys.argv:
+            os.write(1, b'{"error": "interrupted"}\n')
+    except OSError:  # whoever read the output may have closed it
+        pass
 
 
 def begin() -> NoReturn:

@@ -5,14 +5,14 @@ A class of the user's own is tried on an example, so that what is wrong with it 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from seatsim.characterisation.model_tests import load_specimen
-from seatsim.compilation.reasons import explain
+from seatsim.compilation.messages import explain
 from seatsim.cosimulation.description import describe_unit
 from seatsim.dampers.base import DAMPERS
 from seatsim.effects.base import EFFECTS, off
@@ -23,10 +23,10 @@ from seatsim.recordings.recording import HEADER, load_recording
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.scenario.describe import KINDS
 from seatsim.scenario.loading import load
-from seatsim.scenario.plausibility import list_doubts
+from seatsim.scenario.numbers import list_doubts
 from seatsim.schema.content import IfAny, Joined
 from seatsim.schema.errors import InputError, SeatsimError
-from seatsim.schema.fields import bounds, field_names
+from seatsim.schema.fields import bounds, default_values, field_names
 from seatsim.schema.modules import UNIT, use
 from seatsim.schema.registry import find, names
 from seatsim.schema.yaml_source import Source
@@ -36,9 +36,9 @@ from seatsim.simulation.runs import run_one
 from seatsim.sweeps.definition import is_sweep
 from seatsim.sweeps.execute import prepare
 
-EXAMPLE = "em5"
-SECONDS = 0.1
-TRIED = (0.01, 0.1, 0.5)
+_EXAMPLE = "em5"
+_SECONDS = 0.1
+_TRIED = (0.01, 0.1, 0.5)
 """Displacement [m], velocity [m/s] and current [A] at which a damper is asked for its force."""
 
 
@@ -49,7 +49,7 @@ def _try_class(kind: str, name: str, cls: type) -> list[str]:
         InputError: it cannot be compiled or simulated, or does not do what it promises.
     """
     try:
-        return list(TRIALS[kind](name, cls)) if kind in TRIALS else []
+        return list(_TRIALS[kind](name, cls)) if kind in _TRIALS else []
     except SeatsimError as error:
         raise InputError(f"{kind} {name}: {error}") from error
     except Exception as error:  # the code of somebody else may raise anything
@@ -61,10 +61,10 @@ def _try_damper(name: str, cls: type) -> Iterator[str]:
     record: Any = cls(**values)
     state = DAMPERS.specification_of(cls).initial
     scaling = TemperatureScaling()
-    if not np.isfinite(float(record.force(*TRIED, scaling, state))):
-        raise InputError(f"force{TRIED} is no finite number")
+    if not np.isfinite(float(record.force(*_TRIED, scaling, state))):
+        raise InputError(f"force{_TRIED} is no finite number")
     if state:
-        rates = record.rates(*TRIED, scaling, state)
+        rates = record.rates(*_TRIED, scaling, state)
         if not isinstance(rates, tuple) or len(rates) != len(state):
             raise InputError(f"rates returns {rates!r}; permitted: a tuple of {len(state)}, such as (0.0,)")
     _simulate({"damper": {"model": name, "parameters": values}})
@@ -91,23 +91,23 @@ def _try_effect(name: str, cls: type) -> Iterator[str]:
         _simulate({"effects": [_state(name, {**off(cls)._asdict(), **form.fixed, **form.free})]})
 
 
-def _state(name: str, values: dict[str, Any]) -> dict[str, object]:
+def _state(name: str, values: Mapping[str, object]) -> dict[str, object]:
     return {"effect": name, "parameters": values}
 
 
-def _choose_value(cls: Any, field: str) -> object:
+def _choose_value(cls: type, field: str) -> object:
     """Return the default of a field, or a value between its bounds."""
-    if field in cls._field_defaults:
-        return cls._field_defaults[field]
+    if field in (defaults := default_values(cls)):
+        return defaults[field]
     low, high = bounds(cls, field)
     return 0.5 * (low + high) if np.isfinite(low + high) else 1.0
 
 
 def _simulate(settings: dict[str, object]) -> Run:
-    return run_one(load(EXAMPLE, {**settings, "variants": {}, "excitation.duration": SECONDS})[0])
+    return run_one(load(_EXAMPLE, {**settings, "variants": {}, "excitation.duration": _SECONDS})[0])
 
 
-TRIALS = {"damper": _try_damper, "law": _try_law, "effect": _try_effect}
+_TRIALS = {"damper": _try_damper, "law": _try_law, "effect": _try_effect}
 
 
 class Checked(NamedTuple):

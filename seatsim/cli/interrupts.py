@@ -17,12 +17,12 @@ from threading import Event, Thread
 from types import FrameType
 from typing import NoReturn
 
-from seatsim.cli.signals import SIGNALS, say_interrupted
-from seatsim.schema.leftovers import remove_leftovers
+from seatsim.cli.begin import SIGNALS, say_interrupted
+from seatsim.schema.guarded import remove_leftovers
 
 GRACE = 1.2
 """Seconds from a signal to the end of a process that does not end by itself."""
-PATIENCE = 10.0
+_PATIENCE = 10.0
 """Seconds for which that end waits for files that are being put in place."""
 _received: list[int] = []
 _answered = Event()
@@ -34,7 +34,7 @@ def end(status: int) -> NoReturn:
         # Whoever read the output may have closed it.
         with suppress(BrokenPipeError):
             stream.flush()
-    remove_leftovers(PATIENCE)
+    remove_leftovers(_PATIENCE)
     # Python would wait for threads: after an interrupt, for as long as the runs take that have begun.
     os._exit(128 + _received[-1] if _received else status)
 
@@ -74,7 +74,7 @@ def _end_in_time(wakeups: socket.socket) -> None:
                 break
             _answered.clear()
     try:
-        remove_leftovers(PATIENCE)
+        remove_leftovers(_PATIENCE)
         say_interrupted()
     finally:
         os._exit(128 + number)

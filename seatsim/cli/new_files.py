@@ -8,17 +8,17 @@ from functools import partial
 from pathlib import Path
 
 from seatsim.cli import templates
-from seatsim.cli.outputs.schemas import FILES
+from seatsim.cli.outputs.answers import FILES
 from seatsim.scenario.loading import EXAMPLES
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.files import write_together
 from seatsim.schema.registry import names
 
-TEMPLATES = Path(templates.__file__).parent
+_TEMPLATES = Path(templates.__file__).parent
 REGISTERED = {"damper": "damper", "controller": "law", "effect": "effect", "excitation": "excitation"}
 """Kinds that are Python files, and what their classes are registered as."""
 KINDS = ("scenario", "recording", *REGISTERED)
-COPIED = ("nominal.yaml", "run-1.csv.gz", "run-2.csv.gz")
+_COPIED = ("nominal.yaml", "run-1.csv.gz", "run-2.csv.gz")
 """Files of the recording that comes with seatsim."""
 
 
@@ -48,7 +48,7 @@ def _write_all(part: Path, contents: Mapping[str, bytes]) -> list[Path]:
 
 
 def _scenario(path: Path) -> Mapping[Path, bytes]:
-    text = (TEMPLATES / "scenario.yaml").read_text(encoding="utf-8").replace("my-seat", path.stem)
+    text = (_TEMPLATES / "scenario.yaml").read_text(encoding="utf-8").replace("my-seat", path.stem)
     files = {path.with_suffix(".yaml"): text.encode()}
     schema = path.with_name("scenario.schema.json")
     return files if schema.exists() else files | {schema: _schema("scenario")}
@@ -56,8 +56,8 @@ def _scenario(path: Path) -> Mapping[Path, bytes]:
 
 def _recording(path: Path) -> Mapping[Path, bytes]:
     example = next(folder for folder in EXAMPLES if folder.is_dir()) / "data" / "recording"
-    files = {path / name: (example / name).read_bytes() for name in COPIED}
-    files[path / "recording.yaml"] = (TEMPLATES / "recording.yaml").read_bytes()
+    files = {path / name: (example / name).read_bytes() for name in _COPIED}
+    files[path / "recording.yaml"] = (_TEMPLATES / "recording.yaml").read_bytes()
     return files | {path / "recording.schema.json": _schema("recording")}
 
 
@@ -70,7 +70,7 @@ def _code(kind: str, path: Path) -> Mapping[Path, bytes]:
     taken = [known.rpartition(".")[2] for known in names(REGISTERED[kind])]
     if name in taken:
         raise InputError(f"{path}: there is a {REGISTERED[kind]} called '{name}' already; give another name")
-    text = (TEMPLATES / f"{kind}.py").read_text(encoding="utf-8")
+    text = (_TEMPLATES / f"{kind}.py").read_text(encoding="utf-8")
     cls = "".join(word[:1].upper() + word[1:] for word in name.split("_"))
     text = text.replace(f"my_{kind}", name).replace(f"My{kind.capitalize()}", cls)
     return {path.with_suffix(".py"): text.encode()}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -41,15 +41,46 @@ def _complete_key(ctx: typer.Context, incomplete: str) -> list[tuple[str, str]]:
     return [(f"{key}=", each.meaning + units[key]) for key, each in keys.items() if key.startswith(incomplete)]
 
 
+def complete(*words: str) -> Callable[[str], list[str]]:
+    """Return what completes one of some words in a shell."""
+    return lambda incomplete: [word for word in words if word.startswith(incomplete)]
+
+
+def complete_kind(*kinds: str) -> Callable[[str], list[str]]:
+    """Return what completes a registered name of some kinds, such as `damper`, in a shell."""
+
+    def found(incomplete: str) -> list[str]:
+        from seatsim.schema.registry import names
+
+        return complete(*(name for kind in kinds for name in names(kind)))(incomplete)
+
+    return found
+
+
+def _complete_scenario(incomplete: str) -> list[str]:
+    """Return the examples, and the folders and YAML files of the typed folder, that begin so."""
+    from seatsim.scenario.loading import list_examples
+
+    near = [path for path in Path(incomplete + "*").parent.glob("*") if path.is_dir() or path.suffix == ".yaml"]
+    return complete(*list_examples(), *(f"{path}/" if path.is_dir() else str(path) for path in near))(incomplete)
+
+
 Out = Annotated[
-    Path | None,
-    typer.Option("--out", help="Folder for the files.", show_default="out/NAME", callback=check_out),
+    Path | None, typer.Option("--out", help="Folder for the files.", show_default="out/NAME", callback=check_out)
 ]
 NewFolder = Annotated[
     Path, typer.Option("--out", help="Folder of the recordings.", show_default=False, callback=check_out)
 ]
-Scenarios = Annotated[list[str], typer.Argument(help="Scenario files, or names of examples.", show_default=False)]
-OneScenario = Annotated[str, typer.Argument(help="A scenario file, or the name of an example.", show_default=False)]
+Scenarios = Annotated[
+    list[str],
+    typer.Argument(help="Scenario files, or names of examples.", show_default=False, autocompletion=_complete_scenario),
+]
+OneScenario = Annotated[
+    str,
+    typer.Argument(
+        help="A scenario file, or the name of an example.", show_default=False, autocompletion=_complete_scenario
+    ),
+]
 RecordingFolder = Annotated[
     Path, typer.Argument(help="The folder of a recording: it holds recording.yaml.", show_default=False)
 ]

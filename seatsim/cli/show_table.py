@@ -6,7 +6,8 @@ file or a program has room for all of them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+import math
+from collections.abc import Collection, Iterable, Sequence
 
 from rich import box
 from rich.cells import cell_len
@@ -17,7 +18,7 @@ from rich.text import Text
 
 from seatsim.cli.terminal import out, say
 
-WIDEST = 10_000
+_WIDEST = 10_000
 """Letters that no table has in a line."""
 
 
@@ -29,10 +30,8 @@ def make_table(
     caption: str | None = None,
 ) -> Table:
     """Return a table for the terminal; `left` are the columns of names, and an empty row is a line."""
-    table = Table(
-        title=escape(title), caption=caption, title_justify="left", caption_justify="left", box=box.SIMPLE_HEAD,
-        padding=(0, 1, 0, 0),
-    )  # fmt: skip
+    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), title_justify="left", caption_justify="left")
+    table.title, table.caption = escape(title), caption
     for k, heading in enumerate(headings):
         table.add_column(escape(heading), justify="left" if k in left else "right", vertical="bottom", no_wrap=True)
     for row in rows:
@@ -43,15 +42,23 @@ def make_table(
     return table
 
 
-def show_table(table: Table) -> None:
-    """Print a table, whose columns of figures are those that stand to the right."""
-    if out.is_terminal:
-        left_out = _fit(table)
-        out.print(table)
-        if left_out:
-            say(f"left out, as the terminal is narrow: {', '.join(left_out)}")
-    else:
-        say(make_plain(table))
+def format_number(value: float, form: str) -> str:
+    """Return a number as a cell, `-` where it has no value."""
+    text = f"{value:{form}}" if math.isfinite(value) else "-"
+    # A value that rounds to zero loses its sign: -0.0 looks like a finding.
+    return text.replace("-", "", 1) if text.strip("-0.") == "" and text != "-" else text
+
+
+def show_table(*tables: Table) -> None:
+    """Print tables, whose columns of figures are those that stand to the right."""
+    for table in tables:
+        if out.is_terminal:
+            left_out = _fit(table)
+            out.print(table)
+            if left_out:
+                say(f"left out, as the terminal is narrow: {', '.join(left_out)}")
+        else:
+            say(make_plain(table))
 
 
 def make_plain(table: Table) -> str:
@@ -63,43 +70,28 @@ def make_plain(table: Table) -> str:
 
 def _fit(table: Table) -> list[str]:
     """Drop columns of figures until the others have room, and return the headings of those that went."""
-    names = [column for column in table.columns if column.justify != "right"]
     for column in table.columns:
         column.overflow, column.no_wrap = "fold", column.justify == "right"
-        column.min_width = _longest(column, str.split)
+        column.min_width = _longest_word(column)
     left_out: list[str] = []
-    while (spare := out.width - _measure_least(table)) < 0:
+    while _measure_least(table) > out.width:
         last = next((column for column in reversed(table.columns) if column.justify == "right"), None)
         if last is None:
             return left_out
         table.columns.remove(last)
         left_out.insert(0, _plain(last.header))
-    _widen(names, spare)
     return left_out
 
 
 def _measure_least(table: Table) -> int:
     # Rich measures a table within the width of its options: these have more than any table needs.
-    return Measurement.get(out, out.options.update(width=WIDEST), table).minimum
+    return Measurement.get(out, out.options.update(width=_WIDEST), table).minimum
 
 
-def _widen(names: Sequence[Column], spare: int) -> None:
-    """Give columns of names the room that is left, as far as they need it; what is longer breaks between words."""
-    widths = {id(column): column.min_width or 1 for column in names}
-    full = {id(column): _longest(column, str.splitlines) for column in names}
-    for _ in range(spare):
-        tight = [key for key, width in widths.items() if width < full[key]]
-        if not tight:
-            break
-        widths[min(tight, key=lambda key: widths[key])] += 1
-    for column in names:
-        column.width = widths[id(column)]
-
-
-def _longest(column: Column, divide: Callable[[str], list[str]]) -> int:
-    """Return the letters of the longest part of a column, its heading included; the least is 1."""
+def _longest_word(column: Column) -> int:
+    """Return the letters of the longest word of a column, its heading included; the least is 1."""
     texts = [_unmarked(column.header), *map(_unmarked, column.cells)]
-    return max((cell_len(part) for text in texts for part in divide(text)), default=1)
+    return max((cell_len(word) for text in texts for word in text.split()), default=1)
 
 
 def _pad(column: Column, with_heading: bool) -> list[str]:

@@ -14,7 +14,7 @@ from typing import TextIO
 
 from rich.console import Console
 
-from seatsim.compilation.watch import watch_compilation
+from seatsim.compilation.messages import watch_compilation
 from seatsim.schema.errors import SeatsimError, list_sentences
 from seatsim.schema.modules import MissingModuleError
 from seatsim.schema.text import cut_words, make_printable
@@ -46,12 +46,12 @@ def print_any_letter() -> None:
 
 
 out = _Terminal(emoji=False)
-err = _Terminal(emoji=False, stderr=True)
+_err = _Terminal(emoji=False, stderr=True)
 
 _COMPILING = "compiling (first time only)"
 Report = Callable[[str], None]
 """Is called with what is being done."""
-Count = Callable[[int, int], None]
+_Count = Callable[[int, int], None]
 """Is called with how many are done, and of how many."""
 
 
@@ -73,10 +73,8 @@ def answer(record: object, paths: Iterable[Path] = ()) -> None:
 
 def announce(address: str) -> None:
     """Print the address of a page at once, since the command goes on until it is interrupted."""
-    from seatsim.cli.outputs.answers import ExploreAnswer
-
     say(address)
-    answer(ExploreAnswer(address))
+    answer({"address": address})
     sys.stdout.flush()
 
 
@@ -95,15 +93,21 @@ def wrote_one(path: Path) -> None:
     say(f"written: {path}")
 
 
+def conclude(found: object, folder: Path, paths: Sequence[Path]) -> None:
+    """Print which files were written, or with `--json` what was found as the one object."""
+    wrote(folder, paths)
+    answer(found, paths)
+
+
 def warn(texts: Iterable[str], kind: str = "note") -> None:
     """Print what the user has to know about the result."""
     for text in texts:
-        err.print(make_printable(f"{kind}: {text}"), style="yellow", markup=False, highlight=False, soft_wrap=True)
+        _err.print(make_printable(f"{kind}: {text}"), style="yellow", markup=False, highlight=False, soft_wrap=True)
 
 
 def complain(text: str) -> None:
     """Print what failed."""
-    err.print(make_printable(text), style="red", markup=False, highlight=False, soft_wrap=True)
+    _err.print(make_printable(text), style="red", markup=False, highlight=False, soft_wrap=True)
 
 
 def fail(*texts: str) -> None:
@@ -144,11 +148,11 @@ def _write_line(text: str) -> None:
 
 
 @contextmanager
-def count_progress(title: str, total: int | None = None) -> Iterator[Count]:
+def count_progress(title: str, total: int | None = None) -> Iterator[_Count]:
     """Show a bar on the terminal; what is compiled before the first is done has one of its own."""
     from rich.progress import Progress
 
-    with Progress(console=err, transient=True, disable=not err.is_terminal) as progress:
+    with Progress(console=_err, transient=True, disable=not _err.is_terminal) as progress:
         compiling = progress.add_task(_COMPILING, total=None, visible=False)
         task = progress.add_task(title, total=total)
 
@@ -164,7 +168,7 @@ def count_progress(title: str, total: int | None = None) -> Iterator[Count]:
 def show_progress() -> Iterator[Report]:
     """Show on the terminal what is being done."""
     doing = ["reading"]
-    with err.status(doing[0]) as status:
+    with _err.status(doing[0]) as status:
 
         def show(text: str) -> None:
             doing[0] = text

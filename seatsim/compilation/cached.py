@@ -31,10 +31,10 @@ from numba.core import event
 
 from seatsim.compilation.checked_cache import CheckedCache, find_foreign
 from seatsim.compilation.jit import ARITHMETIC
-from seatsim.compilation.watch import report
-from seatsim.schema.leftovers import temporary_folder
+from seatsim.compilation.messages import report
+from seatsim.schema.guarded import temporary_folder
 
-F = TypeVar("F", bound=Callable[..., object])
+_F = TypeVar("_F", bound=Callable[..., object])
 
 _OUTSIDE = ("numba", "numpy", "scipy", "llvmlite", "pydantic", "control", "cvxpy")
 """Libraries whose sources change with their version only: they are not part of the key."""
@@ -75,14 +75,14 @@ class _Watch(event.Listener):  # type: ignore[misc]  # numba has no types
 event.register("numba:compile", _Watch())
 
 
-def compiled(function: F, plugged: Iterable[type]) -> F:
+def compiled(function: _F, plugged: Iterable[type]) -> _F:
     """Return the compiled `function`, cached on disk under its sources and those of the `plugged` classes.
 
     `plugged` are the classes of all records that `function` is called with and whose methods it calls: a class left out
     may run from a stale cache. Where the folder cannot be written, or a source is not in a file, nothing is kept.
     """
     with _ONE_AT_A_TIME:
-        return cast("F", _compiled(function, frozenset(plugged)))
+        return cast("_F", _compiled(function, frozenset(plugged)))
 
 
 @cache

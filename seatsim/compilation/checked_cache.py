@@ -14,7 +14,6 @@ import stat
 import warnings
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 
@@ -40,15 +39,15 @@ class CheckedCache(FunctionCache):  # type: ignore[misc]  # numba has no types
 class _CheckedFile(IndexDataCacheFile):  # type: ignore[misc]  # numba has no types
     """The files of one function: an index of signatures, and the compiled code of each."""
 
-    def _load_index(self) -> dict[Any, str]:
+    def _load_index(self) -> dict[object, str]:
         content = _read(Path(self._index_path))
         version, stamp, names = pickle.loads(content) if content else (None, None, {})
         return names if (version, stamp) == (self._version, self._source_stamp) else {}
 
-    def _save_index(self, overloads: dict[Any, str]) -> None:
+    def _save_index(self, overloads: dict[object, str]) -> None:
         self._write(self._index_path, (self._version, self._source_stamp, overloads))
 
-    def _load_data(self, name: str) -> Any:
+    def _load_data(self, name: str) -> object:
         content = _read(Path(self._data_path(name)))
         if content is None:
             raise FileNotFoundError(name)  # which numba takes for an entry that is not there

@@ -17,19 +17,21 @@ from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path, PurePosixPath
 from types import ModuleType
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from seatsim.schema.errors import InputError, nearest
-from seatsim.schema.guarded import in_mib, read_bytes
-from seatsim.schema.leftovers import temporary_folder
+from seatsim.schema.guarded import in_mib, read_bytes, temporary_folder
 from seatsim.schema.modules import LARGEST_UNIT
 from seatsim.schema.units import Conversion, conversion
 from seatsim.schema.validation import is_finite_number
 
-UNPACKED = 4
+if TYPE_CHECKING:
+    from fmpy.model_description import ModelDescription, ScalarVariable
+
+_UNPACKED = 4
 """What an archive holds may be this much larger than the largest archive."""
 _LARGEST_DESCRIPTION = 16 * 2**20
-MOST_FILES = 10_000
+_MOST_FILES = 10_000
 DESCRIPTION = "modelDescription.xml"
 _SYSTEMS = {
     "Linux": ("linux", "linux", ".so"),
@@ -57,11 +59,13 @@ def open_archive(path: Path) -> Iterator[zipfile.ZipFile]:
 
 
 def _check_entries(path: Path, entries: list[zipfile.ZipInfo]) -> None:
-    if len(entries) > MOST_FILES:
-        raise InputError(f"{path}: holds {len(entries)} files; permitted: at most {MOST_FILES}")
+    if len(entries) > _MOST_FILES:
+        raise InputError(f"{path}: holds {len(entries)} files; permitted: at most {_MOST_FILES}")
     size = sum(entry.file_size for entry in entries)
-    if size > UNPACKED * LARGEST_UNIT:
-        raise InputError(f"{path}: holds {in_mib(size)} unpacked; permitted: at most {in_mib(UNPACKED * LARGEST_UNIT)}")
+    if size > _UNPACKED * LARGEST_UNIT:
+        raise InputError(
+            f"{path}: holds {in_mib(size)} unpacked; permitted: at most {in_mib(_UNPACKED * LARGEST_UNIT)}"
+        )
     for entry in entries:
         name = entry.orig_filename
         parts = PurePosixPath(name).parts
@@ -122,13 +126,7 @@ def unpack(path: Path, version: int, identifier: str) -> Iterator[tuple[Path, Pa
         yield folder, folder / library
 
 
-QUANTITIES = {
-    "displacement": "m",
-    "velocity": "m/s",
-    "acceleration": "m/s^2",
-    "current": "A",
-    "temperature": "degC",
-}
+QUANTITIES = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s^2", "current": "A", "temperature": "degC"}
 """What an input of a damper may take, in its unit: motion positive in extension, current of the coil."""
 FORCE = "force"
 REAL = ("Real", "Float64")
@@ -145,8 +143,8 @@ class UnitDescription(NamedTuple):
     version: int
     kind: str
     identifier: str
-    described: Any
-    variables: Mapping[str, Any]
+    described: ModelDescription
+    variables: Mapping[str, ScalarVariable]
     saves: bool
 
 
@@ -180,7 +178,7 @@ def describe_unit(path: Path) -> UnitDescription:
             said = stated[1].decode(errors="replace") if stated else "no version"
             raise InputError(f"{path}: is of FMI {said}; permitted: 2.0 and 3.0")
         try:
-            described: Any = read_model_description(_alone(text), validate=False)
+            described = read_model_description(_alone(text), validate=False)
         except Exception as error:  # lxml's and FMPy's own errors have no common class
             said = str(error).strip().split("\n")[0]
             raise InputError(f"{path}: its description cannot be read: {said}") from error
@@ -204,7 +202,7 @@ def _alone(text: bytes) -> io.BytesIO:
     return content
 
 
-def find_variable(unit: UnitDescription, name: str, causality: str) -> Any:
+def find_variable(unit: UnitDescription, name: str, causality: str) -> ScalarVariable:
     """Return a variable of a unit that must have a causality and, as input or output, be a real number.
 
     Raises:
@@ -232,16 +230,17 @@ def check_parameter(unit: UnitDescription, name: str, value: object) -> float:
     """
     found = find_variable(unit, name, "parameter")
     kind = _SETTABLE[found.type]
-    if not (isinstance(value, bool) if kind is bool else is_finite_number(value) and kind(value) == value):
+    is_right = isinstance(value, bool) if kind is bool else is_finite_number(value) and kind(value) == value
+    if not (is_right and isinstance(value, int | float)):
         word = {float: "a number", int: "a whole number", bool: "true or false"}[kind]
         raise InputError(f"{value!r} is not permitted; '{name}' is {word}")
     for limit, low in ((found.min, True), (found.max, False)):
-        if limit is not None and (value < float(limit) if low else value > float(limit)):  # type: ignore[operator]
+        if limit is not None and (value < float(limit) if low else value > float(limit)):
             raise InputError(f"{value!r} is not permitted; the unit states at {'least' if low else 'most'} {limit}")
-    return value  # type: ignore[return-value]  # a number, or a bool, which is one
+    return value
 
 
-def find_conversion_of(variable: Any, quantity: str) -> Conversion:
+def find_conversion_of(variable: ScalarVariable, quantity: str) -> Conversion:
     """Return how a variable's values become those of a quantity in its unit; a variable without unit has that one.
 
     Raises:

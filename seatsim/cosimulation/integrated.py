@@ -10,84 +10,17 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from ctypes import c_double
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from seatsim.cosimulation.damper import FmuDamper
 from seatsim.cosimulation.description import UnitDescription
 from seatsim.cosimulation.running import RunningUnit
 from seatsim.schema.errors import RunError
 
-States = list[float]
+if TYPE_CHECKING:
+    from fmpy.fmi1 import _FMU
 
-
-class _Update(NamedTuple):
-    """What a unit answers to an event: whether it is to be asked again, whether it ends, the next event that it knows.
-
-    `next_event` in s is None where it knows none.
-    """
-
-    again: bool
-    ends: bool
-    next_event: float | None
-
-
-class _ContinuousModel:
-    """A unit for model exchange with its states, in the mode that the standard prescribes for each call."""
-
-    def __init__(self, unit: UnitDescription, instance: Any) -> None:
-        self._instance = instance
-        self._is_second = unit.version == 2
-        described = unit.described
-        self._states = (c_double * described.numberOfContinuousStates)()
-        self._rates = (c_double * described.numberOfContinuousStates)()
-        self._indicators = (c_double * described.numberOfEventIndicators)()
-        self.needs_completion = bool(described.modelExchange.needsCompletedIntegratorStep)
-        self.has_indicators = described.numberOfEventIndicators > 0
-
-    def states(self) -> States:
-        """Return the continuous states."""
-        if len(self._states):
-            self._instance.getContinuousStates(self._states, len(self._states))
-        return list(self._states)
-
-    def place(self, time: float, states: States) -> None:
-        """Give the unit a time in s and its continuous states."""
-        self._instance.setTime(time)
-        if states:
-            self._states[:] = states
-            self._instance.setContinuousStates(self._states, len(states))
-
-    def rates(self) -> States:
-        """Return the time derivatives of the states, at the time, states and inputs that were given last."""
-        if len(self._rates):
-            ask = self._instance.getDerivatives if self._is_second else self._instance.getContinuousStateDerivatives
-            ask(self._rates, len(self._rates))
-        return list(self._rates)
-
-    def signs(self) -> list[bool]:
-        """Return for each event indicator whether it is positive; an event is where one of these changes."""
-        if len(self._indicators):
-            self._instance.getEventIndicators(self._indicators, len(self._indicators))
-        return [value > 0.0 for value in self._indicators]
-
-    def complete(self, is_final: bool) -> tuple[bool, bool]:
-        """Tell the unit that a step has ended; return whether it wants an event and whether it ends the run."""
-        wants_event, ends = self._instance.completedIntegratorStep(is_final)
-        return bool(wants_event), bool(ends)
-
-    def enter_event(self) -> None:
-        """Enter the mode in which discrete states change."""
-        self._instance.enterEventMode()
-
-    def update(self) -> _Update:
-        """Let the discrete states change once."""
-        ask = self._instance.newDiscreteStates if self._is_second else self._instance.updateDiscreteStates
-        again, ends, _nominals, _values, is_known, next_event = ask()
-        return _Update(bool(again), bool(ends), float(next_event) if is_known else None)
-
-    def leave_event(self) -> None:
-        """Enter the mode in which time goes on."""
-        self._instance.enterContinuousTimeMode()
+_States = list[float]
 
 
 _LOCATED = 1e-9
@@ -96,7 +29,7 @@ _MOST_EVENTS = 100
 """Most events within a step of the seat, and most times that a unit is asked to update at one of them."""
 
 
-class Motion(NamedTuple):
+class _Motion(NamedTuple):
     """What the unit is given over a step of `length` s that begins at `begin` s.
 
     The motion has the constant acceleration of `given`, the current runs linearly from `current` in A to that of
@@ -127,21 +60,24 @@ class _Saved(NamedTuple):
     `next_event` in s, infinite where none is known.
     """
 
-    states: States
+    states: _States
     signs: list[bool]
     next_event: float
     current: float
-    own: Any
+    own: object
 
 
 class IntegratedUnit(RunningUnit):
     """A unit for model exchange that runs, with the interface of one for co-simulation."""
 
-    def __init__(self, damper: FmuDamper, unit: UnitDescription, instance: Any, told: list[str]) -> None:
+    def __init__(self, damper: FmuDamper, unit: UnitDescription, instance: _FMU, told: list[str]) -> None:
         super().__init__(damper, unit, instance, told)
         self.takes_acceleration = True
-        self._model = _ContinuousModel(unit, instance)
-        longest = getattr(unit.described.defaultExperiment, "stepSize", None)
+        described, self._is_second = unit.described, unit.version == 2
+        self._states, self._rates = ((c_double * described.numberOfContinuousStates)() for _ in range(2))
+        self._indicators = (c_double * described.numberOfEventIndicators)()
+        self._needs_completion = bool(described.modelExchange.needsCompletedIntegratorStep)
+        longest = getattr(described.defaultExperiment, "stepSize", None)
         self._longest = float(longest) if longest else math.inf
         self._now = _Saved([], [], math.inf, 0.0, None)
 
@@ -158,7 +94,7 @@ class IntegratedUnit(RunningUnit):
         Raises:
             RunError: the unit refuses a call, ends the run, has too many events, or its force is no finite number.
         """
-        motion = Motion(time, length, given, self._now.current)
+        motion = _Motion(time, length, given, self._now.current)
         part = length / max(1, math.ceil(length / self._longest - _LOCATED))
         end, events = time + length, 0
         while end - time > _LOCATED * length:
@@ -178,18 +114,20 @@ class IntegratedUnit(RunningUnit):
         """Return the states, and the unit's own state where it can save that."""
         return self._now._replace(own=super().save() if self._unit.saves else None)
 
-    def restore(self, state: _Saved) -> None:
-        """Go back to what was saved."""
+    def restore(self, state: object) -> None:
+        """Go back to what `save` returned."""
+        assert isinstance(state, _Saved)
         if self._unit.saves:
             super().restore(state.own)
         self._now = state._replace(own=None)
 
-    def drop(self, state: _Saved) -> None:
-        """Free what was saved."""
+    def drop(self, state: object) -> None:
+        """Free what `save` returned."""
+        assert isinstance(state, _Saved)
         if self._unit.saves:
             super().drop(state.own)
 
-    def _advance(self, motion: Motion, time: float, reach: float) -> tuple[float, bool]:
+    def _advance(self, motion: _Motion, time: float, reach: float) -> tuple[float, bool]:
         """Go on from a time to another, or to the first event before; return the time and whether an event is there."""
         begun = self._now.states
         states = self._runge_kutta(motion, time, reach - time, begun)
@@ -206,13 +144,13 @@ class IntegratedUnit(RunningUnit):
                 high, states, signs = middle, tried, found
         self._signs_at(motion, high, states)
         wants_event = False
-        if self._model.needs_completion:
-            wants_event, ends = self._model.complete(not self.repeats)
+        if self._needs_completion:
+            wants_event, ends = self._instance.completedIntegratorStep(not self.repeats)
             self._check_going_on(ends, high)
         self._now = self._now._replace(states=states, signs=signs)
         return high, has_crossed or wants_event or high >= self._now.next_event
 
-    def _runge_kutta(self, motion: Motion, time: float, h: float, y: States) -> States:
+    def _runge_kutta(self, motion: _Motion, time: float, h: float, y: _States) -> _States:
         """Return the states after `h` seconds, by the classical method of order 4."""
         k1 = self._rates_at(motion, time, y)
         k2 = self._rates_at(motion, time + 0.5 * h, [a + 0.5 * h * k for a, k in zip(y, k1, strict=True)])
@@ -221,40 +159,57 @@ class IntegratedUnit(RunningUnit):
         slopes = zip(y, k1, k2, k3, k4, strict=True)
         return [a + h / 6.0 * (p + 2.0 * (q + r) + s) for a, p, q, r, s in slopes]
 
-    def _rates_at(self, motion: Motion, time: float, states: States) -> States:
+    def _rates_at(self, motion: _Motion, time: float, states: _States) -> _States:
         if not states:
             return states
-        self._model.place(time, states)
-        self._give(motion.at(time), time)
-        return self._model.rates()
+        self._place(motion, time, states)
+        ask = self._instance.getDerivatives if self._is_second else self._instance.getContinuousStateDerivatives
+        ask(self._rates, len(self._rates))
+        return list(self._rates)
 
-    def _signs_at(self, motion: Motion, time: float, states: States) -> list[bool]:
-        self._model.place(time, states)
+    def _signs_at(self, motion: _Motion, time: float, states: _States) -> list[bool]:
+        """Return for each event indicator whether it is positive; an event is where one of these changes."""
+        self._place(motion, time, states)
+        return self._read_signs()
+
+    def _read_signs(self) -> list[bool]:
+        if len(self._indicators):
+            self._instance.getEventIndicators(self._indicators, len(self._indicators))
+        return [value > 0.0 for value in self._indicators]
+
+    def _place(self, motion: _Motion, time: float, states: _States) -> None:
+        """Give the unit a time in s, its continuous states and its inputs."""
+        self._instance.setTime(time)
+        if states:
+            self._states[:] = states
+            self._instance.setContinuousStates(self._states, len(states))
         self._give(motion.at(time), time)
-        return self._model.signs()
 
     def _update(self, time: float) -> None:
         """Let the unit treat an event at a time, or begin at time zero, where it is in the mode for that."""
         self._now = self._call(lambda: self._updated(time), f"the event at {time:.6g} s")
         # What an event changes within a unit can be taken back only where the unit saves its state.
-        has_events = self._model.has_indicators or self._model.needs_completion or math.isfinite(self._now.next_event)
+        has_events = bool(len(self._indicators)) or self._needs_completion or math.isfinite(self._now.next_event)
         self.repeats = self._unit.saves or not has_events
 
     def _updated(self, time: float) -> _Saved:
-        model = self._model
+        unit = self._instance
+        ask = unit.newDiscreteStates if self._is_second else unit.updateDiscreteStates
         if time > 0.0:
-            model.enter_event()
+            unit.enterEventMode()
         for _ in range(_MOST_EVENTS):
-            answer = model.update()
-            self._check_going_on(answer.ends, time)
-            if not answer.again:
+            again, ends, _nominals, _values, is_known, next_event = ask()
+            self._check_going_on(ends, time)
+            if not again:
                 break
         else:
             raise RunError(f"{self._file}: the unit does not come to an end with its event at {time:.6g} s")
-        model.leave_event()
-        next_event = math.inf if answer.next_event is None else answer.next_event
-        return self._now._replace(states=model.states(), signs=model.signs(), next_event=next_event)
+        unit.enterContinuousTimeMode()
+        if len(self._states):
+            unit.getContinuousStates(self._states, len(self._states))
+        later = float(next_event) if is_known else math.inf
+        return self._now._replace(states=list(self._states), signs=self._read_signs(), next_event=later)
 
-    def _check_going_on(self, ends: bool, time: float) -> None:
+    def _check_going_on(self, ends: object, time: float) -> None:
         if ends:
             raise RunError(f"{self._file}: the unit ended at {time:.6g} s, before the run does")

@@ -5,19 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from seatsim.cosimulation.damper import FmuDamper
 from seatsim.cosimulation.description import FORCE, REAL, UnitDescription, find_conversion_of, find_variable
 from seatsim.schema.errors import RunError
 
-T = TypeVar("T")
+if TYPE_CHECKING:
+    from fmpy.fmi1 import _FMU
+
+_T = TypeVar("_T")
 
 
 class RunningUnit:
     """A unit between its start and its end; motion, current and temperature in, force out, all in SI units and degC."""
 
-    def __init__(self, damper: FmuDamper, unit: UnitDescription, instance: Any, told: list[str]) -> None:
+    def __init__(self, damper: FmuDamper, unit: UnitDescription, instance: _FMU, told: list[str]) -> None:
         self.repeats = unit.saves
         self.takes_acceleration = "acceleration" in dict(damper.inputs)
         self._file, self._unit, self._instance, self._told = damper.file, unit, instance, told
@@ -56,15 +59,15 @@ class RunningUnit:
             raise RunError(f"{self._file}: the unit ended at {ended[3]:.6g} s, before the run does")
         return self._read(time + length)
 
-    def save(self) -> Any:
+    def save(self) -> object:
         """Return the unit's state, to which `restore` goes back."""
         return self._call(self._instance.getFMUState, "saving its state")
 
-    def restore(self, state: Any) -> None:
+    def restore(self, state: object) -> None:
         """Go back to a saved state."""
         self._call(lambda: self._instance.setFMUState(state), "restoring its state")
 
-    def drop(self, state: Any) -> None:
+    def drop(self, state: object) -> None:
         """Free a saved state."""
         self._call(lambda: self._instance.freeFMUState(state), "freeing its state")
 
@@ -91,7 +94,7 @@ class RunningUnit:
         word = "Real" if found.type in REAL and self._unit.version == 2 else found.type
         getattr(self._instance, f"set{word}")([found.valueReference], [value])
 
-    def _call(self, what: Callable[[], T], of: str) -> T:
+    def _call(self, what: Callable[[], _T], of: str) -> _T:
         """Call the unit; what it says where it fails stands in the error."""
         try:
             return what()

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from seatsim.cosimulation.damper import FmuDamper
 from seatsim.cosimulation.description import CO_SIMULATION, UnitDescription, describe_unit, need_fmpy, unpack
@@ -16,9 +16,12 @@ from seatsim.cosimulation.running import RunningUnit
 from seatsim.schema.errors import InputError
 from seatsim.schema.modules import check_in_use
 
+if TYPE_CHECKING:
+    from fmpy.fmi1 import _FMU
+
 PATIENCE = 30.0
 """Seconds that a library may take to load and to make an instance; others take milliseconds."""
-TRIAL = """
+_TRIAL = """
 import sys
 from pathlib import Path
 from seatsim.cosimulation.unit import describe_unit, load_unit
@@ -52,7 +55,7 @@ def run_unit(damper: FmuDamper) -> Iterator[RunningUnit]:
             instance.freeLibrary()
 
 
-def load_unit(path: Path, unit: UnitDescription, folder: Path, library: Path, told: list[str]) -> Any:
+def load_unit(path: Path, unit: UnitDescription, folder: Path, library: Path, told: list[str]) -> _FMU:
     """Return the instance of a unit that is unpacked in a folder; what it tells is added to `told`.
 
     Raises:
@@ -76,7 +79,7 @@ def _try_to_load(path: Path, folder: Path, library: Path) -> None:
     content = library.read_bytes()
     if content in _tried:
         return
-    words = [sys.executable, "-P", "-c", TRIAL, *map(str, (path, folder, library))]
+    words = [sys.executable, "-P", "-c", _TRIAL, *map(str, (path, folder, library))]
     try:
         done = subprocess.run(words, capture_output=True, stdin=subprocess.DEVNULL, timeout=PATIENCE, check=False)
     except subprocess.TimeoutExpired:
@@ -91,7 +94,7 @@ def _try_to_load(path: Path, folder: Path, library: Path) -> None:
 def _logger(told: list[str]) -> Callable[..., None]:
     """Return what a unit tells its messages; the message is the last argument in both versions of the standard."""
 
-    def tell(*values: Any) -> None:
+    def tell(*values: object) -> None:
         message = values[-1]
         told.append(message.decode(errors="replace") if isinstance(message, bytes) else str(message))
         del told[:-10]

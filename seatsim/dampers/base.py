@@ -20,7 +20,7 @@ from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import Record, Registry, is_own
 
-T = TypeVar("T", bound=type)
+_T = TypeVar("_T", bound=type)
 
 Confidence = Literal["published", "recalled", "reading", "derived"]
 OWN = "own"
@@ -90,7 +90,7 @@ def damper(
     confidence: Confidence = "published",
     fixed: tuple[str, ...] = (),
     smooth: bool = False,
-) -> Callable[[T], T]:
+) -> Callable[[_T], _T]:
     """Register a record class as the damper `model: name`; see `DamperSpecification` for the facts.
 
     `factors` are the temperature factors that a scenario may leave out, none where they are not given.
@@ -105,7 +105,7 @@ def damper(
     )
     enter = DAMPERS.register(name, specification)
 
-    def check_and_enter(cls: T) -> T:
+    def check_and_enter(cls: _T) -> _T:
         for method in ("force", "rates") if initial else ("force",):
             if not callable(getattr(cls, method, None)):
                 has = "a state at rest (initial=...) and " if method == "rates" else ""

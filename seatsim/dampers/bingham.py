@@ -11,7 +11,7 @@ from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
-SET_VALUED_BELOW = 1e-6
+_SET_VALUED_BELOW = 1e-6
 """m/s; a sharper `v_ref` than this is taken as the set-valued sign itself."""
 
 
@@ -41,13 +41,13 @@ class Bingham(NamedTuple):
     def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N, without the friction where that is set-valued."""
         smooth = (self.c_a + self.c_b * i) * scaling.viscous * v + self.f0
-        if self.v_ref < SET_VALUED_BELOW:
+        if self.v_ref < _SET_VALUED_BELOW:
             return smooth
         return smooth + (self.fc_a + self.fc_b * i) * scaling.yield_force * math.tanh(v / self.v_ref)
 
     def coulomb(self, i: float, scaling: TemperatureScaling) -> float:
         """Return the magnitude of the set-valued friction in N; 0 where the sign is regularised."""
-        if self.v_ref < SET_VALUED_BELOW:
+        if self.v_ref < _SET_VALUED_BELOW:
             return max(0.0, (self.fc_a + self.fc_b * i) * scaling.yield_force)
         return 0.0
 

@@ -22,7 +22,7 @@ from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
-WERELEY = "Wereley, Pang and Kamath 1998, J. Intell. Mater. Syst. Struct. 9:642; form recalled, no parameter set found"
+_WERELEY = "Wereley, Pang and Kamath 1998, J. Intell. Mater. Syst. Struct. 9:642; form recalled, no parameter set found"
 
 
 @jit
@@ -31,7 +31,7 @@ def two_slopes(pre: float, post: float, fy: float, v: float, shift: float) -> fl
     return post * v + limited((pre - post) * v + shift, fy)
 
 
-@utfsm_damper("biviscous", source=f"{WERELEY}; {UTFSM}", confidence="recalled")
+@utfsm_damper("biviscous", source=f"{_WERELEY}; {UTFSM}", confidence="recalled")
 class Biviscous(NamedTuple):
     """Nonlinear bi-viscous damper, without hysteresis.
 
@@ -58,7 +58,7 @@ class Biviscous(NamedTuple):
 
 @utfsm_damper(
     "hysteretic_biviscous",
-    source=f"{WERELEY}; {UTFSM}",
+    source=f"{_WERELEY}; {UTFSM}",
     initial=(0.0,),
     state=BRANCH_STATE,
     centred=True,

@@ -12,12 +12,12 @@ from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
-AMPLITUDE, LEAST_AMPLITUDE, MOST_AMPLITUDE = 0.01, 0.001, 0.025
+AMPLITUDE, LEAST_AMPLITUDE, _MOST_AMPLITUDE = 0.01, 0.001, 0.025
 """Amplitude in m at which the factor of the excitation is 1, and the range beyond which it is held."""
-FREQUENCY, LEAST_FREQUENCY, MOST_FREQUENCY = 2.0 * math.pi, 0.2 * math.pi, 30.0 * math.pi
+_FREQUENCY, _LEAST_FREQUENCY, _MOST_FREQUENCY = 2.0 * math.pi, 0.2 * math.pi, 30.0 * math.pi
 """Angular frequency in rad/s at which that factor is 1, and the range beyond which it is held."""
-AT_REST = 1e-10
-"""Mean square of the displacement in m^2 far below which the motion has no frequency: it counts as `FREQUENCY`."""
+_AT_REST = 1e-10
+"""Mean square of the displacement in m^2 far below which the motion has no frequency: it counts as `_FREQUENCY`."""
 
 
 @jit
@@ -31,10 +31,10 @@ def saturating(first: float, knee: float, rise: float, rate: float, i: float, i_
 @jit
 def excitation_factor(d2: float, d4: float, s: float, r: float) -> float:
     """Return `(W / W0)^d2 (X / X0)^d4` from the mean squares s of displacement [m^2] and r of velocity [m^2/s^2]."""
-    squared = (max(r, 0.0) + AT_REST * FREQUENCY**2) / (max(s, 0.0) + AT_REST)
-    frequency = min(max(math.sqrt(squared), LEAST_FREQUENCY), MOST_FREQUENCY)
-    amplitude = min(max(math.sqrt(2.0 * max(s, 0.0)), LEAST_AMPLITUDE), MOST_AMPLITUDE)
-    of_frequency: float = (frequency / FREQUENCY) ** d2
+    squared = (max(r, 0.0) + _AT_REST * _FREQUENCY**2) / (max(s, 0.0) + _AT_REST)
+    frequency = min(max(math.sqrt(squared), _LEAST_FREQUENCY), _MOST_FREQUENCY)
+    amplitude = min(max(math.sqrt(2.0 * max(s, 0.0)), LEAST_AMPLITUDE), _MOST_AMPLITUDE)
+    of_frequency: float = (frequency / _FREQUENCY) ** d2
     of_amplitude: float = (amplitude / AMPLITUDE) ** d4
     return of_frequency * of_amplitude
 
@@ -94,7 +94,7 @@ class CurrentDependentBoucWen(NamedTuple):
     "frequency_dependent_bouc_wen",
     source="Dominguez, Sedaghati and Stiharu 2006, Smart Mater. Struct. 15:1179, of which only the structure is"
     f" recalled; frequency and amplitude from running mean squares are ours; {UTFSM}",
-    initial=(0.0, 0.5 * AMPLITUDE**2, 0.5 * (FREQUENCY * AMPLITUDE) ** 2, 0.0),
+    initial=(0.0, 0.5 * AMPLITUDE**2, 0.5 * (_FREQUENCY * AMPLITUDE) ** 2, 0.0),
     state="d, displacement about its recent mean in m; s, recent mean square of d in m^2; r, recent mean square of"
     f" the velocity in m^2/s^2; {NORMALISED}",
     confidence="reading",

@@ -11,21 +11,21 @@ from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
-V_REF = 0.1
+_V_REF = 0.1
 """m/s, the speed at which the power law has the force K(I)."""
-LEAST_FORCE = 1.0
+_LEAST_FORCE = 1.0
 """N; the force K(I) of a law that falls below it."""
-LEAST_EXPONENT = 0.03
-CORNER = 0.1
+_LEAST_EXPONENT = 0.03
+_CORNER = 0.1
 """Half width of the rounded corners of the free play, over half of the play."""
-MOST_STEPS = 30
-ACCURACY = 1e-10
+_MOST_STEPS = 30
+_ACCURACY = 1e-10
 
 
 @jit
 def beyond(y: float, half: float) -> float:
     """Return how far y in m lies beyond the play +-half; the corners are rounded by parabolas."""
-    size, soft = abs(y) - half, CORNER * half
+    size, soft = abs(y) - half, _CORNER * half
     if size <= -soft:
         return 0.0
     return math.copysign(size if size >= soft else (size + soft) ** 2 / (4.0 * soft), y)
@@ -41,12 +41,12 @@ def ellis_force(v: float, damping: float, height: float, exponent: float) -> flo
     speed, power_of = abs(v), 1.0 / exponent
     if speed == 0.0 or height == 0.0:
         return 0.0
-    q = min(speed * damping, height * (speed / V_REF) ** exponent)
-    for _ in range(MOST_STEPS):
-        flow = V_REF * (q / height) ** power_of
+    q = min(speed * damping, height * (speed / _V_REF) ** exponent)
+    for _ in range(_MOST_STEPS):
+        flow = _V_REF * (q / height) ** power_of
         step = (q / damping + flow - speed) / (1.0 / damping + power_of * flow / q)
         q -= step
-        if abs(step) < ACCURACY * q:
+        if abs(step) < _ACCURACY * q:
             break
     return math.copysign(q, v)
 
@@ -56,8 +56,8 @@ def series_force(d: Ellis, v: float, i: float, scaling: TemperatureScaling, stop
     """Return the force q in N through fluid and play, where the stops of the play push with `stop` N."""
     play = d.c_y * scaling.viscous
     damping = 1.0 / (1.0 / (d.c_p * scaling.viscous) + 1.0 / play)
-    height = max(cubic(d.K, i), LEAST_FORCE) * scaling.yield_force
-    return ellis_force(v + stop / play, damping, height, max(d.p_a + d.p_b * i, LEAST_EXPONENT))
+    height = max(cubic(d.K, i), _LEAST_FORCE) * scaling.yield_force
+    return ellis_force(v + stop / play, damping, height, max(d.p_a + d.p_b * i, _LEAST_EXPONENT))
 
 
 @utfsm_damper(
@@ -180,7 +180,7 @@ class HydroMechanical(NamedTuple):
         return (self.A * v - flow, driven / (self.L * scaling.viscous + SETTLING * slope))
 
 
-ORDERED_AT = 0.1
+_ORDERED_AT = 0.1
 """Steady velocity in m/s at which the order parameter is 1, chosen by us: the scale of the damper's speeds."""
 
 
@@ -225,4 +225,4 @@ class PhaseTransition(NamedTuple):
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (p',)."""
         gradient = z[0] * (self.a + (1.0 - self.a) * z[0] ** 4)
-        return ((v / ORDERED_AT - gradient) / between(self.tau0, self.tau1, i, self.law_end),)
+        return ((v / _ORDERED_AT - gradient) / between(self.tau0, self.tau1, i, self.law_end),)

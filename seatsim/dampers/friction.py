@@ -89,14 +89,14 @@ class ViscousDahl(NamedTuple):
         return (between(self.rho0, self.rho1, i, self.law_end) * (v - abs(v) * z[0]),)
 
 
-DEFLECTION = "w, deflection of the bristles over its bound, from -1 to 1"
+_DEFLECTION = "w, deflection of the bristles over its bound, from -1 to 1"
 
 
 @utfsm_damper(
     "lugre_jimenez",
     source=f"Jimenez and Alvarez-Icaza 2005, Struct. Control Health Monit. 12:91; form recalled, unsurely; {UTFSM}",
     initial=(0.0,),
-    state=DEFLECTION,
+    state=_DEFLECTION,
     confidence="recalled",
 )
 class LuGreJimenez(NamedTuple):
@@ -138,7 +138,7 @@ class LuGreJimenez(NamedTuple):
     "lugre_sakai",
     source=f"Sakai, Ohmori and Sano 2003; Terasawa et al. 2004 (IEEE CDC); form recalled; {UTFSM}",
     initial=(0.0,),
-    state=DEFLECTION,
+    state=_DEFLECTION,
     current_order=1,
     confidence="recalled",
 )

@@ -42,7 +42,7 @@ utfsm_damper = partial(damper, max_speed=0.13, max_current=1.0, temperatures=(20
 """`damper` for a model with such defaults: the data reach 0.13 m/s and 1 A, at 20 degC."""
 
 BRANCH_STATE = "w, the displacement in m about its recent mean, whose sign is the branch of the loop"
-BRANCH_WIDTH = 5e-4
+_BRANCH_WIDTH = 5e-4
 """Displacement in m over which a branch changes sign, tanh(w / 0.5 mm)."""
 BRANCH_MEMORY = 1.0
 """Time in s over which the branch state forgets the mean of the motion.
@@ -95,7 +95,7 @@ def branch(z: State) -> float:
     loop has a positive force at v = 0 where x > 0. Taking it from the displacement keeps it causal and free
     of chatter.
     """
-    return math.tanh(z[0] / BRANCH_WIDTH)
+    return math.tanh(z[0] / _BRANCH_WIDTH)
 
 
 @jit
@@ -109,7 +109,7 @@ SETTLING = 1e-3
 
 Forces do not depend on it as long as the motion is slow against it: a few hundredths at 10 Hz.
 """
-INERTANCE_TIME = 2e-3
+_INERTANCE_TIME = 2e-3
 """Time in s after which the inner speed of an inertance follows the piston, chosen by us."""
 
 
@@ -141,4 +141,4 @@ def inertance(mass: float, v: float, u: float) -> float:
 @jit
 def inertance_rate(v: float, u: float) -> float:
     """Return the rate in m/s^2 of the inner speed, `u' = (v - u) / tau`."""
-    return (v - u) / INERTANCE_TIME
+    return (v - u) / _INERTANCE_TIME

@@ -24,15 +24,13 @@ from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
 
-@damper(
+@utfsm_damper(
     "weng_arctangent",
     source=f"Weng et al., as eq 12 of Braz-Cesar and Barros 2012; {UTFSM}",
     initial=(0.0,),
     state=BRANCH_STATE,
     centred=True,
     max_speed=0.126,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="published",
     smooth=True,
 )

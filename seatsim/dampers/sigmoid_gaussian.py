@@ -18,28 +18,30 @@ from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.arrays import Array
 from seatsim.schema.fields import param
 
-Row = tuple[float, float, float, float, float]
+_Row = tuple[float, float, float, float, float]
 
 CURRENTS = np.array([0.0, 0.25, 0.5, 0.75, 1.0, 2.0])
 """Test currents in A; the paper prints the third as 0.25 again."""
-TABLES = np.array([
-    [  # table 1, test 1: 1 Hz, 4 mm; columns a [kN], b [kN], c [1/u], sigma [u] (printed as alpha), r [kN u]
-        [-0.24, -0.13, 6.00, 0.60, 0.07],
-        [0.05, -0.59, 6.43, 0.35, 0.15],
-        [0.32, -1.13, 5.60, 0.28, 0.32],
-        [0.52, -1.52, 5.11, 0.28, 0.45],
-        [0.60, -1.70, 5.20, 0.28, 0.51],
-        [0.87, -2.22, 4.83, 0.30, 0.65],
-    ],
-    [  # table 2, test 2: 2 Hz, 8 mm
-        [-0.22, -0.12, 4.75, 0.50, 0.04],
-        [0.03, -0.59, 5.56, 0.29, 0.15],
-        [0.32, -1.18, 4.40, 0.36, 0.30],
-        [0.53, -1.57, 3.85, 0.35, 0.45],
-        [0.74, -1.86, 5.64, 0.22, 0.45],
-        [1.00, -2.49, 3.06, 0.38, 0.72],
-    ],
-])  # fmt: skip
+TABLES = np.array(
+    [
+        [  # table 1, test 1: 1 Hz, 4 mm; columns a [kN], b [kN], c [1/u], sigma [u] (printed as alpha), r [kN u]
+            [-0.24, -0.13, 6.00, 0.60, 0.07],
+            [0.05, -0.59, 6.43, 0.35, 0.15],
+            [0.32, -1.13, 5.60, 0.28, 0.32],
+            [0.52, -1.52, 5.11, 0.28, 0.45],
+            [0.60, -1.70, 5.20, 0.28, 0.51],
+            [0.87, -2.22, 4.83, 0.30, 0.65],
+        ],
+        [  # table 2, test 2: 2 Hz, 8 mm
+            [-0.22, -0.12, 4.75, 0.50, 0.04],
+            [0.03, -0.59, 5.56, 0.29, 0.15],
+            [0.32, -1.18, 4.40, 0.36, 0.30],
+            [0.53, -1.57, 3.85, 0.35, 0.45],
+            [0.74, -1.86, 5.64, 0.22, 0.45],
+            [1.00, -2.49, 3.06, 0.38, 0.72],
+        ],
+    ]
+)
 """Tables 1 and 2 of the paper, shape (test, current, parameter), in kN and the velocity unit u."""
 
 
@@ -52,20 +54,20 @@ def _cubics() -> Array:
     return np.array([np.moveaxis(PchipInterpolator(CURRENTS, table).c, 0, -1) for table in TABLES])
 
 
-def table_row(test: int, current: float) -> Row:
+def table_row(test: int, current: float) -> _Row:
     """Return (a, b, c, sigma, r) of test 1 or 2, monotone between the test currents and held beyond them."""
     return _row(_cubics()[test - 1], current)
 
 
 @specialise(table_row)
-def _compile_table_row(test: types.Type, current: types.Type) -> Callable[[int, float], Row]:
+def _compile_table_row(test: types.Type, current: types.Type) -> Callable[[int, float], _Row]:
     """Return `table_row` for compiled code, of which the cubics are constants."""
     cubics = _cubics()
     return lambda test, current: _row(cubics[test - 1], current)
 
 
 @jit
-def _row(cubics: Array, current: float) -> Row:
+def _row(cubics: Array, current: float) -> _Row:
     held = min(max(current, CURRENTS[0]), CURRENTS[-1])
     cell = 0
     while cell < len(CURRENTS) - 2 and held >= CURRENTS[cell + 1]:

@@ -7,32 +7,30 @@ from typing import Annotated, NamedTuple
 
 from seatsim.compilation.jit import jit
 from seatsim.dampers.base import damper
-from seatsim.dampers.pieces import BRANCH_STATE, UTFSM, QuadraticLaw, branch, branch_rate, quadratic
+from seatsim.dampers.pieces import BRANCH_STATE, UTFSM, QuadraticLaw, branch, branch_rate, quadratic, utfsm_damper
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 from seatsim.schema.fields import param
 
-RISE_TIME = 0.01
+_RISE_TIME = 0.01
 """Time in s in which the envelope of the speed takes up a higher speed."""
-DECAY_TIME = 2.0
+_DECAY_TIME = 2.0
 """Time in s in which it forgets a lower one."""
 
 
 @jit
 def envelope_rate(speed: float, envelope: float) -> float:
     """Return the rate of the envelope of the speed in m/s^2: fast to a higher speed, slow to a lower one."""
-    return (speed - envelope) / (RISE_TIME if speed > envelope else DECAY_TIME)
+    return (speed - envelope) / (_RISE_TIME if speed > envelope else _DECAY_TIME)
 
 
-@damper(
+@utfsm_damper(
     "yu2017",
     source=f"Yu, Dong and Zhang 2017, Smart Mater. Struct. 26, as eq 5 of Yu et al. 2019 (conventional model); {UTFSM}",
     initial=(0.0, 0.0),
     state=f"{BRANCH_STATE}; e, envelope of the speed in m/s, for the cycle's peak speed",
     centred=True,
     max_speed=0.126,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
     confidence="published",
     fixed=("c_i2", "d2"),
 )
@@ -80,29 +78,29 @@ class Yu2017(NamedTuple):
         return (*branch_rate(v, z), envelope_rate(abs(v), z[1]))
 
 
-Coefficient = Annotated[float, param("-", "coefficient of a power of u")]
-Three = tuple[Coefficient, Coefficient, Coefficient]
-Four = tuple[Coefficient, Coefficient, Coefficient, Coefficient]
-Six = tuple[Coefficient, Coefficient, Coefficient, Coefficient, Coefficient, Coefficient]
-Seven = tuple[Coefficient, Coefficient, Coefficient, Coefficient, Coefficient, Coefficient, Coefficient]
-LinearLaw = tuple[Annotated[float, param("", "constant")], Annotated[float, param("1/A", "linear")]]
+_Coefficient = Annotated[float, param("-", "coefficient of a power of u")]
+_Three = tuple[_Coefficient, _Coefficient, _Coefficient]
+_Four = tuple[_Coefficient, _Coefficient, _Coefficient, _Coefficient]
+_Six = tuple[_Coefficient, _Coefficient, _Coefficient, _Coefficient, _Coefficient, _Coefficient]
+_Seven = tuple[_Coefficient, _Coefficient, _Coefficient, _Coefficient, _Coefficient, _Coefficient, _Coefficient]
+_LinearLaw = tuple[Annotated[float, param("", "constant")], Annotated[float, param("1/A", "linear")]]
 
 
 @jit
-def rebound(p: Three, d: Three, s: float) -> float:
+def rebound(p: _Three, d: _Three, s: float) -> float:
     """Return the backbone P of extension at the scaled speed s >= 0: even powers 0-4 over 2-6."""
     w = s * s
     return (p[0] + w * (p[1] + w * p[2])) / (1.0 + w * (d[0] + w * (d[1] + w * d[2])))
 
 
 @jit
-def compression(n: Four, d: Three, s: float) -> float:
+def compression(n: _Four, d: _Three, s: float) -> float:
     """Return the backbone N of compression at the scaled speed s >= 0: powers 0-3 over 1-3."""
     return (n[0] + s * (n[1] + s * (n[2] + s * n[3]))) / (1.0 + s * (d[0] + s * (d[1] + s * d[2])))
 
 
 @jit
-def opening(q: Seven, d: Six, u: float) -> float:
+def opening(q: _Seven, d: _Six, u: float) -> float:
     """Return the branch f_br, half the opening of the loop, at the scaled velocity u: powers 0-6 over 1-6."""
     top = q[0] + u * (q[1] + u * (q[2] + u * (q[3] + u * (q[4] + u * (q[5] + u * q[6])))))
     return top / (1.0 + u * (d[0] + u * (d[1] + u * (d[2] + u * (d[3] + u * (d[4] + u * d[5]))))))
@@ -154,14 +152,14 @@ class Yu2019(NamedTuple):
     """
 
     c: Annotated[QuadraticLaw, param("N s/m", "viscous damping c(I)")] = (120.0, 600.0, -100.0)
-    k: Annotated[LinearLaw, param("N/m", "stiffness k(I)")] = (100.0, 600.0)
+    k: Annotated[_LinearLaw, param("N/m", "stiffness k(I)")] = (100.0, 600.0)
     alpha: Annotated[QuadraticLaw, param("N", "height alpha(I) of the hysteresis")] = (41.0, 435.0, -108.0)
-    p: Annotated[Three, param("-", "numerator of P: u^0, u^2, u^4")] = (0.0, 3586.0, 1.298e6)
-    p_den: Annotated[Three, param("-", "denominator of P: u^2, u^4, u^6")] = (14600.0, 1.18e6, 0.0)
-    n: Annotated[Four, param("-", "numerator of N: s^0 to s^3")] = (0.0, 19.17, 0.0, 4140.0)
-    n_den: Annotated[Three, param("-", "denominator of N: s^1 to s^3")] = (62.2, 2.8, 4600.0)
-    q: Annotated[Seven, param("-", "numerator of f_br: u^0 to u^6")] = (0.612, 0.0, 14.4, 0.0, 0.0, 0.0, 0.0)
-    q_den: Annotated[Six, param("-", "denominator of f_br: u^1 to u^6")] = (0.0, 137.7, 0.0, 0.0, 0.0, 9137.0)
+    p: Annotated[_Three, param("-", "numerator of P: u^0, u^2, u^4")] = (0.0, 3586.0, 1.298e6)
+    p_den: Annotated[_Three, param("-", "denominator of P: u^2, u^4, u^6")] = (14600.0, 1.18e6, 0.0)
+    n: Annotated[_Four, param("-", "numerator of N: s^0 to s^3")] = (0.0, 19.17, 0.0, 4140.0)
+    n_den: Annotated[_Three, param("-", "denominator of N: s^1 to s^3")] = (62.2, 2.8, 4600.0)
+    q: Annotated[_Seven, param("-", "numerator of f_br: u^0 to u^6")] = (0.612, 0.0, 14.4, 0.0, 0.0, 0.0, 0.0)
+    q_den: Annotated[_Six, param("-", "denominator of f_br: u^1 to u^6")] = (0.0, 137.7, 0.0, 0.0, 0.0, 9137.0)
     v_ref: Annotated[float, param("m/s", "velocity at which u = 1", above=0, high=10)] = 0.028
     held_from: Annotated[float, param("m/s", "speed from which the rationals are held", above=0)] = 0.0352
     asymmetry: Annotated[float, param("-", "weight of the asymmetric part", low=0, high=1)] = 1.0

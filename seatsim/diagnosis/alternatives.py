@@ -36,9 +36,8 @@ from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import name_of
 from seatsim.schema.text import join_names
 from seatsim.simulation.augment import undo_reading
-from seatsim.simulation.bench_response import fit_motion
 from seatsim.simulation.inputs import BenchInputs
-from seatsim.simulation.respond import respond
+from seatsim.simulation.respond import fit_motion, respond
 
 _MOTION = {"seat": "suspension_displacement", "damper_bench": "displacement"}
 """Channel from which the motion of the damper is taken, by rig."""

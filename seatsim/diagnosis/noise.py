@@ -9,7 +9,7 @@ is found to all that is there. It is never fitted to the residual under test, wh
 
 What is carried is simulated: a replicate is a run whose inputs have newly drawn noise of their sensors' stated size,
 and its power is that of the difference in the outputs. The motion of a bench follows a spline that is smoothed to
-within its noise (see `seatsim.simulation.bench_response`). A replicate draws its noise about that path and is smoothed
+within its noise (see `seatsim.simulation.respond`). A replicate draws its noise about that path and is smoothed
 as the record was, so that what is carried is the noise of the smoothed path, not that of the sensor.
 """
 
@@ -28,8 +28,8 @@ from scipy.interpolate import LSQUnivariateSpline
 from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
 from seatsim.diagnosis.spectra import randomise_phases, smooth_spectrum
 from seatsim.schema.arrays import Array
-from seatsim.simulation.bench_response import fit_motion
 from seatsim.simulation.inputs import BenchInputs, Forces, RigInputs, SeatInputs
+from seatsim.simulation.respond import fit_motion
 
 
 def carry_input_noise(problem: DiagnosisProblem, run: str) -> Array:

@@ -24,9 +24,8 @@ from seatsim.scenario.scenario import Scenario, Start
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import Record
-from seatsim.simulation.bench_response import FINER
 from seatsim.simulation.inputs import RigInputs
-from seatsim.simulation.respond import respond
+from seatsim.simulation.respond import FINER, respond
 
 
 class OutOfTimeError(Exception):

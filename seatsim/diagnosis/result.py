@@ -9,8 +9,7 @@ from typing import Annotated, Literal, NamedTuple
 from seatsim.recordings.gap import GapFigures
 from seatsim.recordings.model_error import ModelError
 from seatsim.schema.arrays import Array
-from seatsim.schema.content import Form, IfAny, Unwritten
-from seatsim.schema.notebook import show_record
+from seatsim.schema.content import Form, IfAny, Unwritten, show_record
 
 Content = Mapping[str, object]
 """What a YAML file holds: sections by key."""

@@ -42,20 +42,22 @@ On the seat, with the plant, suspension x [m], v [m/s] and cushion xc, vc:
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from types import MappingProxyType
 from typing import NamedTuple, TypeVar
 
+from seatsim.compilation.jit import jit
 from seatsim.kernel.hooks import method_of
 from seatsim.rig.state import State
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.fields import field_names
 from seatsim.schema.registry import Record, Registry
 
-T = TypeVar("T", bound=type)
-R = TypeVar("R", bound=Record)
-Values = Mapping[str, float]
+_T = TypeVar("_T", bound=type)
+_R = TypeVar("_R", bound=Record)
+_Values = Mapping[str, float]
 
 ON_DAMPER = (
     "part_scaling", "transmitted_share", "mount_force", "mount_stiffness", "yield_current", "yield_speed",
@@ -64,9 +66,9 @@ ON_DAMPER = (
 """Hooks of the time loop by which an effect acts on the damper."""
 ON_SEAT = ("suspension_force", "linkage_friction", "cushion_force", "inner_mass", "inner_force")
 """Hooks of the time loop by which an effect acts on suspension, cushion or driver."""
-ONCE_A_RUN = ("plant", "coil", "factors", "temperature", "frame_force", "reading", "truth")
+_ONCE_A_RUN = ("plant", "coil", "factors", "temperature", "frame_force", "reading", "truth")
 """Hooks that are called once a run, in Python."""
-HOOKS = (*ONCE_A_RUN, *ON_DAMPER, *ON_SEAT, "rates")
+_HOOKS = (*_ONCE_A_RUN, *ON_DAMPER, *ON_SEAT, "rates")
 
 
 class Form(NamedTuple):
@@ -77,8 +79,8 @@ class Form(NamedTuple):
     are its shape, which changes nothing without a size.
     """
 
-    free: Values
-    fixed: Values = MappingProxyType({})
+    free: _Values
+    fixed: _Values = MappingProxyType({})
     within: Mapping[str, tuple[float, float]] = MappingProxyType({})
     sizes: int = 1
 
@@ -94,7 +96,7 @@ class EffectSpecification(NamedTuple):
 
     source: str
     initial: State
-    off: Values
+    off: _Values
     forms: tuple[Form, ...]
     suits: Callable[[object], bool]
     by_channel: bool
@@ -109,12 +111,12 @@ def effect(
     name: str,
     source: str = "",
     initial: State = (),
-    off: Values | None = None,
-    forms: tuple[Form | Values, ...] = (),
+    off: _Values | None = None,
+    forms: tuple[Form | _Values, ...] = (),
     suits: Callable[[object], bool] = lambda damper: True,
     by_channel: bool = False,
     shown_by_fall: bool = False,
-) -> Callable[[T], T]:
+) -> Callable[[_T], _T]:
     """Register a record class as `effect: name`, where the part before the dot is the block it lives in.
 
     The rest is that of `EffectSpecification`; a form without fixed parameters may be given by its free ones alone.
@@ -126,10 +128,10 @@ def effect(
     specification = EffectSpecification(source, initial, off or {}, stated, suits, by_channel, shown_by_fall)
     enter = EFFECTS.register(name, specification)
 
-    def check_and_enter(cls: T) -> T:
+    def check_and_enter(cls: _T) -> _T:
         for method, value in vars(cls).items():
-            if callable(value) and not method.startswith("_") and method not in HOOKS:
-                hint = f"{nearest(method, HOOKS)}; hooks: {', '.join(HOOKS)}; a method of your own begins with '_'"
+            if callable(value) and not method.startswith("_") and method not in _HOOKS:
+                hint = f"{nearest(method, _HOOKS)}; hooks: {', '.join(_HOOKS)}; a method of your own begins with '_'"
                 raise InputError(f"effect '{name}': method '{method}' is no hook, so that nothing would call it{hint}")
         return enter(cls)
 
@@ -137,7 +139,7 @@ def effect(
 
 
 @cache
-def off(cls: type[R]) -> R:
+def off(cls: type[_R]) -> _R:
     """Return the record of an effect at the parameters that leave the rig unchanged."""
     values = dict.fromkeys(field_names(cls), 0.0) | dict(EFFECTS.specification_of(cls).off)
     return cls(**values)
@@ -157,3 +159,32 @@ def replace_effects(present: Sequence[Record], others: Sequence[Record]) -> tupl
 def acts_on(cls: type, hooks: tuple[str, ...]) -> bool:
     """Whether an effect has one of these hooks."""
     return any(method_of(cls, hook) for hook in hooks)
+
+
+_REFERENCE_DEPTH = 0.01
+"""m; depth at which the force of a buffer does not depend on its exponent."""
+
+FRICTIONS: tuple[dict[str, float], ...] = (
+    {"force": 20.0, "presliding": 2e-4},
+    {"force": 20.0, "presliding": 1e-3, "lubrication": 20.0},
+    {"force": 120.0, "presliding": 1e-3, "lubrication": 20.0},
+    {"force": 20.0},
+)
+"""Starts of a friction's fit; the last is set-valued, as the record is by itself."""
+
+
+@jit
+def dahl_rate(presliding: float, v: float, z: float) -> float:
+    """Return z' of Dahl's friction, `v (1 - z sgn v) / presliding`; 0 without presliding."""
+    if presliding <= 0.0:
+        return 0.0
+    return v * (1.0 - z * math.copysign(1.0, v)) / presliding
+
+
+@jit
+def buffer(stiffness: float, damping: float, power: float, depth: float, speed: float) -> float:
+    """Return the force in N of a buffer compressed by `depth`, which never pulls."""
+    push = stiffness * depth * (1.0 + damping * speed)
+    if power > 1.0:
+        push *= (depth / _REFERENCE_DEPTH) ** (power - 1.0)
+    return max(0.0, push)

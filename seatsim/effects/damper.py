@@ -6,18 +6,17 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.compilation.jit import jit
-from seatsim.effects.base import Form, effect
-from seatsim.effects.laws import FRICTIONS, dahl_rate
+from seatsim.effects.base import FRICTIONS, Form, dahl_rate, effect
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 from seatsim.schema.registry import specification_of
 
-SHORTEST = 2e-5
+_SHORTEST = 2e-5
 """m; least travel over which a force returns at the end of a gap."""
-FASTEST = 1000.0
+_FASTEST = 1000.0
 """1/s; greatest rate at which a yield force builds up."""
-SWITCH = 0.01
+_SWITCH = 0.01
 """m/s; width of the transition from compression to rebound, unless stated otherwise."""
 
 
@@ -40,14 +39,14 @@ class GasSpring(NamedTuple):
 @effect(
     "damper.asymmetry",
     source="Yu et al. 2019 (Front. Mater. 6:227): rebound and compression differ",
-    off={"speed": SWITCH},
+    off={"speed": _SWITCH},
     forms=(
         Form({"viscous": 0.1, "yielding": 0.1}, sizes=2),
         Form({"viscous": 0.1, "yielding": 0.1, "speed": 0.03}, sizes=2),
         Form({"viscous": 0.1, "yielding": 0.1, "speed": 0.03, "offset": 0.5}, sizes=2),
         Form({"viscous": 0.1, "pulling": 0.1, "speed": 0.03, "offset": 0.5}, sizes=2),
     ),
-)  # fmt: skip
+)
 class Asymmetry(NamedTuple):
     """Rebound stronger and compression weaker: both parts of the force times `1 + a (tanh(v / speed) + offset)`.
 
@@ -58,7 +57,7 @@ class Asymmetry(NamedTuple):
 
     viscous: Annotated[float, param("-", "a of the viscous part", low=-0.9, high=0.9)]
     yielding: Annotated[float, param("-", "a of the yield part", low=-0.9, high=0.9)] = 0.0
-    speed: Annotated[float, param("m/s", "speed over which one turns into the other", above=0, high=1)] = SWITCH
+    speed: Annotated[float, param("m/s", "speed over which one turns into the other", above=0, high=1)] = _SWITCH
     offset: Annotated[float, param("-", "mean of both sides over a", low=-1, high=1)] = 0.0
     pulling: Annotated[float, param("-", "a of the yield part, by its own sign", low=-0.9, high=0.9)] = 0.0
 
@@ -109,11 +108,12 @@ class SealFriction(NamedTuple):
     initial=(0.0,),
     off={"softness": 0.3},
     forms=(
-        *({"gap": gap} for gap in (1e-4, 3e-4, 1e-3, 2e-3)), {"gap": 3e-4, "softness": 0.9},
+        *({"gap": gap} for gap in (1e-4, 3e-4, 1e-3, 2e-3)),
+        {"gap": 3e-4, "softness": 0.9},
         *(Form({"gap": gap, "stiffness": 3e6}, within={"stiffness": (1e6, 1e9)}) for gap in (3e-5, 1e-4, 3e-4, 8e-4)),
         *(Form({"gap": 1e-4 * 1.32**k}, {"softness": 0.05, "turning": 3e-4}) for k in range(12)),
     ),
-)  # fmt: skip
+)
 class FreePlay(NamedTuple):
     """Backlash at the mount or trapped air: after each reversal a travel `gap` without force.
 
@@ -161,7 +161,7 @@ class FreePlay(NamedTuple):
 def _transmitted_share(gap: float, softness: float, demanded: float, g: float) -> float:
     """Return h, the share of speed and force that the gap transmits."""
     missing = 0.5 * gap - g * math.copysign(1.0, demanded)
-    s = min(1.0, max(0.0, 1.0 - missing / max(softness * gap, SHORTEST)))
+    s = min(1.0, max(0.0, 1.0 - missing / max(softness * gap, _SHORTEST)))
     return s * s * (3.0 - 2.0 * s)
 
 
@@ -176,11 +176,15 @@ def _without_state(damper: object) -> bool:
     initial=(0.0, 0.0),
     off={"share": 1.0},
     forms=(
-        {"travel": 3e-4}, {"travel": 3e-4, "share": 0.3}, {"lag": 1e-3}, {"lag": 3e-3, "share": 0.3},
-        {"behind": 1e-3}, {"behind": 3e-3, "share": 0.3},
+        {"travel": 3e-4},
+        {"travel": 3e-4, "share": 0.3},
+        {"lag": 1e-3},
+        {"lag": 3e-3, "share": 0.3},
+        {"behind": 1e-3},
+        {"behind": 3e-3, "share": 0.3},
     ),
     suits=_without_state,
-)  # fmt: skip
+)
 class PreyieldHysteresis(NamedTuple):
     """Yield force that builds up over a travel, or with a lag: a loop at low speed.
 
@@ -210,5 +214,5 @@ class PreyieldHysteresis(NamedTuple):
         rate = abs(v) / self.travel if self.travel > 0.0 else 0.0
         if self.lag > 0.0:
             rate += 1.0 / self.lag
-        following = (v - z[1]) / max(self.behind, 1.0 / FASTEST) if self.behind > 0.0 else 0.0
-        return (rate / (1.0 + rate / FASTEST) * (target - z[0]), following)
+        following = (v - z[1]) / max(self.behind, 1.0 / _FASTEST) if self.behind > 0.0 else 0.0
+        return (rate / (1.0 + rate / _FASTEST) * (target - z[0]), following)

@@ -13,9 +13,9 @@ from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.arrays import Array
 from seatsim.schema.fields import param
 
-FOLLOWING = 500.0
+_FOLLOWING = 500.0
 """1/s; rate at which a play follows the current that drags it along."""
-SMOOTHING = 2.0
+_SMOOTHING = 2.0
 """s; time over which a thermocouple's reading is averaged before its slope is taken."""
 
 
@@ -82,13 +82,13 @@ class Remanence(NamedTuple):
 
     def rates(self, x: float, v: float, u: float, i: float, demanded: float, target: float, z: State) -> State:
         """Return the rates of the two plays and of the current that fell."""
-        fading = (self.decay if z[2] > i else FOLLOWING) * (i - z[2])
+        fading = (self.decay if z[2] > i else _FOLLOWING) * (i - z[2])
         if self.width <= 0.0:
             return (0.0, 0.0, fading)
         wide, narrow = self.width * (1.0 + self.spread), self.width * (1.0 - self.spread)
         return (
-            FOLLOWING * (_play(z[0], i, wide) - z[0]) + self.decay * (i - z[0]),
-            FOLLOWING * (_play(z[1], i, narrow) - z[1]) + self.decay * (i - z[1]),
+            _FOLLOWING * (_play(z[0], i, wide) - z[0]) + self.decay * (i - z[0]),
+            _FOLLOWING * (_play(z[1], i, narrow) - z[1]) + self.decay * (i - z[1]),
             fading,
         )
 
@@ -130,5 +130,5 @@ class ThermalFade(NamedTuple):
         # Takes its time to load, and few rigs have the effect.
         from scipy.ndimage import uniform_filter1d
 
-        smooth = uniform_filter1d(uniform_filter1d(values, round(SMOOTHING / step)), round(SMOOTHING / step))
+        smooth = uniform_filter1d(uniform_filter1d(values, round(_SMOOTHING / step)), round(_SMOOTHING / step))
         return smooth + self.lag * np.gradient(smooth, step) + self.rise

@@ -7,8 +7,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from seatsim.effects.base import Form, effect
-from seatsim.effects.laws import FRICTIONS, buffer, dahl_rate
+from seatsim.effects.base import FRICTIONS, Form, buffer, dahl_rate, effect
 from seatsim.kernel.rig import SeatMotion
 from seatsim.rig.plant import Plant
 from seatsim.rig.state import State
@@ -114,10 +113,12 @@ class EndStop(NamedTuple):
     "cushion.hardening",
     source="series of a foam's compression curve about the seated position",
     forms=(
-        {"rise": 40.0}, Form({"rise": 40.0, "bend": 2e3}, sizes=2), Form({"rise": 40.0, "loss": 40.0}, sizes=2),
+        {"rise": 40.0},
+        Form({"rise": 40.0, "bend": 2e3}, sizes=2),
+        Form({"rise": 40.0, "loss": 40.0}, sizes=2),
         Form({"rise": 20.0, "bend": 500.0}, {"unload": 1.0}, sizes=2),
     ),
-)  # fmt: skip
+)
 class Hardening(NamedTuple):
     """Foam that stiffens under compression: with d = -xc > 0 the force grows by `kc d (rise d + bend d^2)`.
 

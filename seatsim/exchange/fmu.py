@@ -19,7 +19,7 @@ from seatsim.exchange.block import Block, Variable, list_variables
 from seatsim.exchange.c_source import print_model, print_variables, resource
 from seatsim.exchange.compiler import compile_library
 from seatsim.schema.files import write_whole
-from seatsim.schema.leftovers import temporary_folder
+from seatsim.schema.guarded import temporary_folder
 
 _FIRST_DAY = (1980, 1, 1, 0, 0, 0)
 """The date of the files in the archive, so that the same model gives the same archive."""

@@ -15,9 +15,9 @@ from seatsim.schema.errors import RunError
 from seatsim.schema.fields import param
 from seatsim.schema.registry import Record, Registry
 
-FEWEST = 2
+_FEWEST = 2
 """Samples of a floor that make a step."""
-T = TypeVar("T", bound=type)
+_T = TypeVar("_T", bound=type)
 
 
 class Floor(NamedTuple):
@@ -48,21 +48,21 @@ class Excitation(Record, Protocol):
         """Return the floor's motion sampled every `step` seconds; every random draw derives from `seed`."""
 
 
-class ExcitationSpecification(NamedTuple):
+class _ExcitationSpecification(NamedTuple):
     """Specification of an excitation: its source (standard and clause) where there is one."""
 
     source: str
 
 
-EXCITATIONS: Registry[Excitation, ExcitationSpecification] = Registry("excitation")
+EXCITATIONS: Registry[Excitation, _ExcitationSpecification] = Registry("excitation")
 """All excitations by name."""
 
 
-def excitation(name: str, source: str = "") -> Callable[[T], T]:
+def excitation(name: str, source: str = "") -> Callable[[_T], _T]:
     """Register a record class as the excitation `kind: name`; what its method `floor` gives is checked from then on."""
-    enter = EXCITATIONS.register(name, ExcitationSpecification(source))
+    enter = EXCITATIONS.register(name, _ExcitationSpecification(source))
 
-    def check(cls: T) -> T:
+    def check(cls: _T) -> _T:
         cls.floor = _checked(cls.floor)  # type: ignore[attr-defined]
         return enter(cls)
 
@@ -78,9 +78,9 @@ def _checked(make: Callable[[Excitation, float, int], Floor]) -> Callable[[Excit
         if not isinstance(made, Floor):
             raise RunError(f"{giver} gives {type(made).__name__}; its method floor must return a Floor")
         count = np.size(made.acceleration)
-        if made.step != step or count < FEWEST:
+        if made.step != step or count < _FEWEST:
             raise RunError(
-                f"{giver} gives {count} samples every {made.step} s; asked for: {FEWEST} or more every {step} s"
+                f"{giver} gives {count} samples every {made.step} s; asked for: {_FEWEST} or more every {step} s"
             )
         read = {
             name: require_samples(values, f"the {name} of {giver}", count, step)

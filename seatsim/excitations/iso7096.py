@@ -23,10 +23,10 @@ from seatsim.schema.arrays import Array
 SpectralClass = Literal["EM1", "EM2", "EM3", "EM4", "EM5", "EM6", "EM7", "EM8", "EM9"]
 LOWEST = 0.89
 # Shorter runs are cut from ten seconds, which hold nine periods of the lowest tone.
-LEAST_PERIOD = 10.0
+_LEAST_PERIOD = 10.0
 
 
-class EarthMover(NamedTuple):
+class _EarthMover(NamedTuple):
     """Constants of one spectral class: level A, corners (Hz) and poles, upper end (Hz), rms (m/s^2)."""
 
     level: float
@@ -38,16 +38,16 @@ class EarthMover(NamedTuple):
     rms: float
 
 
-CLASSES: dict[SpectralClass, EarthMover] = {
-    "EM1": EarthMover(2.82, 1.5, 4, 2.5, 4, 11.22, 1.71),
-    "EM2": EarthMover(2.72, 1.5, 4, 3.0, 4, 11.22, 2.05),
-    "EM3": EarthMover(1.93, 1.5, 4, 3.0, 4, 11.22, 1.73),
-    "EM4": EarthMover(0.60, 1.5, 4, 3.0, 4, 11.22, 0.96),
-    "EM5": EarthMover(1.11, 1.5, 4, 3.5, 1, 17.78, 1.94),
-    "EM6": EarthMover(0.79, 6.5, 2, 9.0, 2, 17.78, 1.65),
-    "EM7": EarthMover(9.25, 3.0, 8, 3.5, 8, 11.22, 2.26),
-    "EM8": EarthMover(1.45, 3.0, 4, 3.0, 2, 17.78, 1.05),
-    "EM9": EarthMover(2.10, 3.5, 4, 4.0, 2, 17.78, 1.63),
+CLASSES: dict[SpectralClass, _EarthMover] = {
+    "EM1": _EarthMover(2.82, 1.5, 4, 2.5, 4, 11.22, 1.71),
+    "EM2": _EarthMover(2.72, 1.5, 4, 3.0, 4, 11.22, 2.05),
+    "EM3": _EarthMover(1.93, 1.5, 4, 3.0, 4, 11.22, 1.73),
+    "EM4": _EarthMover(0.60, 1.5, 4, 3.0, 4, 11.22, 0.96),
+    "EM5": _EarthMover(1.11, 1.5, 4, 3.5, 1, 17.78, 1.94),
+    "EM6": _EarthMover(0.79, 6.5, 2, 9.0, 2, 17.78, 1.65),
+    "EM7": _EarthMover(9.25, 3.0, 8, 3.5, 8, 11.22, 2.26),
+    "EM8": _EarthMover(1.45, 3.0, 4, 3.0, 2, 17.78, 1.05),
+    "EM9": _EarthMover(2.10, 3.5, 4, 4.0, 2, 17.78, 1.63),
 }
 
 
@@ -72,7 +72,7 @@ class Iso7096(NamedTuple):
         highest = CLASSES[self.spectral_class].highest
         check_step("iso7096", step, highest, per_period=5)
         count = samples(self.duration, step)
-        size = max(count - 1, round(LEAST_PERIOD / step))
+        size = max(count - 1, round(_LEAST_PERIOD / step))
         period = size * step
         acceleration = random_phase(
             lambda f: acceleration_density(f, self.spectral_class), LOWEST, highest, period, seed

@@ -18,7 +18,7 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.bounds import check_steps
 from seatsim.schema.errors import InputError
 
-SOFT_START = 1.0
+_SOFT_START = 1.0
 
 
 class Motion(NamedTuple):
@@ -65,7 +65,7 @@ def soft_start(step: float, motion: Motion) -> Floor:
     Runs shorter than four seconds are faded in over their first quarter.
     """
     time = clock(len(motion.displacement), step)
-    return floor_of(step, product(ease(time, min(SOFT_START, time[-1] / 4)), motion))
+    return floor_of(step, product(ease(time, min(_SOFT_START, time[-1] / 4)), motion))
 
 
 def floor_of(step: float, motion: Motion) -> Floor:

@@ -14,10 +14,10 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param
 
-Frequency = Annotated[float, param("Hz", "frequency of the tone", above=0)]
-Amplitude = Annotated[float, param("m or m/s^2", "amplitude of displacement or acceleration, see quantity", above=0)]
+_Frequency = Annotated[float, param("Hz", "frequency of the tone", above=0)]
+_Amplitude = Annotated[float, param("m or m/s^2", "amplitude of displacement or acceleration, see quantity", above=0)]
 
-TONES: FieldInfo = Field(description="the tones in order", json_schema_extra={"unit": "Hz"}, min_length=1)
+_TONES: FieldInfo = Field(description="the tones in order", json_schema_extra={"unit": "Hz"}, min_length=1)
 
 
 @excitation("sine")
@@ -25,7 +25,7 @@ class Sine(NamedTuple):
     """A tone `z0 = amplitude * sin(2 pi frequency t)`, faded in from rest over the first second."""
 
     amplitude: Annotated[float, param("m", "amplitude of displacement", above=0)]
-    frequency: Frequency
+    frequency: _Frequency
     duration: Duration
 
     def floor(self, step: float, seed: int) -> Floor:
@@ -48,9 +48,9 @@ class SteppedSine(NamedTuple):
     2)/f`. An acceleration amplitude a stands for a displacement amplitude `a/(2 pi f)^2`.
     """
 
-    frequencies: Annotated[tuple[Frequency, ...], TONES]
+    frequencies: Annotated[tuple[_Frequency, ...], _TONES]
     cycles: Annotated[int, param("", "periods at full amplitude in every step", low=1)]
-    amplitude: Amplitude
+    amplitude: _Amplitude
     quantity: Quantity = "displacement"
 
     @property
@@ -91,7 +91,7 @@ class Chirp(NamedTuple):
 
     start_frequency: Annotated[float, param("Hz", "frequency at time zero", above=0)]
     stop_frequency: Annotated[float, param("Hz", "frequency at the end", above=0)]
-    amplitude: Amplitude
+    amplitude: _Amplitude
     duration: Duration
     quantity: Quantity = "displacement"
     sweep: Annotated[Literal["linear", "logarithmic"], choice("how the frequency changes in time")] = "logarithmic"

@@ -14,7 +14,7 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.bounds import check_steps
 from seatsim.schema.errors import InputError
 
-CORNER = 0.05
+_CORNER = 0.05
 """Hz; below it the floor velocity, an integral of a measured acceleration, is attenuated as unreliable."""
 
 
@@ -77,10 +77,10 @@ def _linear(values: Array, parts: int) -> Array:
 
 
 def _leaky_integral(values: Array, step: float) -> Array:
-    """Return the integral with a memory of 1 / (2 pi CORNER) seconds, by the trapezoidal rule."""
+    """Return the integral with a memory of 1 / (2 pi _CORNER) seconds, by the trapezoidal rule."""
     from scipy.signal import lfilter
 
-    leak = math.pi * CORNER * step
+    leak = math.pi * _CORNER * step
     gain = 0.5 * step / (1 + leak)
     result: Array = lfilter([gain, gain], [1.0, -(1 - leak) / (1 + leak)], values)
     return result

@@ -26,7 +26,7 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param
 
-LONGEST_RING_DOWN = 600.0
+_LONGEST_RING_DOWN = 600.0
 
 
 class Vehicle(NamedTuple):
@@ -103,9 +103,9 @@ def ring_down(vehicle: Vehicle) -> float:
         InputError: it takes longer than ten minutes, so some stiffness or damping must be wrong.
     """
     slowest = np.linalg.eigvals(state_space(vehicle)[0]).real.max()
-    if slowest > -np.log(1e6) / LONGEST_RING_DOWN:
+    if slowest > -np.log(1e6) / _LONGEST_RING_DOWN:
         raise InputError(
-            f"vehicle {vehicle}: it still sways after {LONGEST_RING_DOWN:g} s; "
+            f"vehicle {vehicle}: it still sways after {_LONGEST_RING_DOWN:g} s; "
             "check that stiffnesses are in N/m and dampings in N s/m"
         )
     return float(-np.log(1e6) / slowest)
@@ -124,10 +124,10 @@ def _chain(lower: float, upper: float) -> Array:
 
 
 RoadClass = Literal["A", "B", "C", "D", "E", "F", "G", "H"]
-REFERENCE_WAVENUMBER = 0.1
+_REFERENCE_WAVENUMBER = 0.1
 LONGEST, SHORTEST = 0.011, 2.83
 # Five of the longest waves, so that a short or slow run still has spectral lines down to the end of the band.
-LEAST_PERIOD = 5 / LONGEST
+_LEAST_PERIOD = 5 / LONGEST
 
 
 @excitation("road", source="ISO 8608, road classes A to H by their geometric mean")
@@ -154,7 +154,7 @@ class Road(NamedTuple):
         check_step("road", step, SHORTEST * self.speed, per_period=5)
         count = samples(self.duration, step)
         # In whole seconds, so that the period, and thus the road, is the same for every step.
-        size = max(count - 1, round(ceil(LEAST_PERIOD / self.speed) / step))
+        size = max(count - 1, round(ceil(_LEAST_PERIOD / self.speed) / step))
         spectrum = _road(self.road_class, size * step * self.speed, SHORTEST, seed)
         if self.through == "vehicle":
             spectrum = spectrum * floor_response(lines(spectrum, size * step), self.vehicle)
@@ -164,7 +164,7 @@ class Road(NamedTuple):
 def displacement_density(wavenumber: Array, road_class: RoadClass) -> Array:
     """Return Gd(n) of a road class in m^3 at wavenumbers in cycles/m, shape of `wavenumber`."""
     roughness = 16e-6 * 4.0 ** "ABCDEFGH".index(road_class)
-    return roughness * (np.asarray(wavenumber) / REFERENCE_WAVENUMBER) ** -2
+    return roughness * (np.asarray(wavenumber) / _REFERENCE_WAVENUMBER) ** -2
 
 
 def profile(road_class: RoadClass, length: float, spacing: float, seed: int) -> tuple[Array, Array]:
@@ -173,7 +173,7 @@ def profile(road_class: RoadClass, length: float, spacing: float, seed: int) -> 
     Waves shorter than two and a half spacings are left out, since samples hardly tell them from longer ones.
     """
     count = round(length / spacing) + 1
-    size = max(count - 1, round(LEAST_PERIOD / spacing))
+    size = max(count - 1, round(_LEAST_PERIOD / spacing))
     spectrum = _road(road_class, size * spacing, min(SHORTEST, 0.4 / spacing), seed)
     elevation = irfft(spectrum, n=size, norm="forward")
     return clock(count, spacing), np.resize(elevation, count)

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 # Part of a table's Nyquist frequency up to which its content is used.
-USABLE = 0.8
+_USABLE = 0.8
 
 
 @excitation("table")
@@ -74,18 +74,16 @@ class Table(NamedTuple):
                 is over time or distance, the run is longer than the record, or `step` is too coarse for its
                 band.
         """
-        from seatsim.excitations.table import read_record
-
         if (self.time_column is None) == (self.distance_column is None):
             raise InputError(f"table {self.path}: give either time_column or distance_column (with speed)")
         if self.time_column is not None:
             return self._measured(read_record(self.path, self.time_column, self.column, self.start), step)
         return self._driven(read_record(self.path, str(self.distance_column), self.column, self.start), step)
 
-    def _measured(self, record: EvenSeries, step: float) -> Floor:
+    def _measured(self, record: _EvenSeries, step: float) -> Floor:
         if self.speed is not None:
             raise InputError(f"table {self.path}: speed belongs to distance_column; drop it beside time_column")
-        highest = min(self.low_pass, USABLE * 0.5 / record.interval)
+        highest = min(self.low_pass, _USABLE * 0.5 / record.interval)
         if highest <= 2 * self.high_pass:
             raise InputError(
                 f"table {self.path}: no band is left between {self.high_pass:g} and {highest:g} Hz; "
@@ -98,10 +96,10 @@ class Table(NamedTuple):
         acceleration *= band(lines(acceleration, period), self.high_pass, highest)
         return self._play(integrated_twice(acceleration, period), record.length, highest, step)
 
-    def _driven(self, record: EvenSeries, step: float) -> Floor:
+    def _driven(self, record: _EvenSeries, step: float) -> Floor:
         if self.speed is None:
             raise InputError(f"table {self.path}: a table over distance needs speed, in m/s")
-        shortest = min(SHORTEST, USABLE * 0.5 / record.interval)
+        shortest = min(SHORTEST, _USABLE * 0.5 / record.interval)
         period = 2 * record.length
         elevation = limited(record.values, record.interval, LONGEST, shortest)
         road = mirrored(elevation)[: int(shortest * period) + 1]
@@ -122,12 +120,12 @@ class Table(NamedTuple):
         return soft_start(step, motion_of(displacement, step, size, samples(duration, step)))
 
 
-LEAST_ROWS = 16
+_LEAST_ROWS = 16
 # Rounded times of a steady clock deviate by less than this part of an interval; a lost row deviates by more.
-LARGEST_JITTER = 0.25
+_LARGEST_JITTER = 0.25
 
 
-class EvenSeries(NamedTuple):
+class _EvenSeries(NamedTuple):
     """Values at even intervals of time (s) or distance (m)."""
 
     interval: float
@@ -138,12 +136,12 @@ class EvenSeries(NamedTuple):
         """From the first to the last value, in s or m."""
         return self.interval * (len(self.values) - 1)
 
-    def after(self, start: float) -> EvenSeries:
+    def after(self, start: float) -> _EvenSeries:
         """Return the record from `start` on, in s or m after the first value."""
         return self._replace(values=self.values[round(start / self.interval) :])
 
 
-def read_record(path: str, axis: str, column: str, start: float) -> EvenSeries:
+def read_record(path: str, axis: str, column: str, start: float) -> _EvenSeries:
     """Read `column` of a CSV (or CSV.gz) table over its column `axis`, from `start` after its first row.
 
     Raises:
@@ -151,13 +149,13 @@ def read_record(path: str, axis: str, column: str, start: float) -> EvenSeries:
             number, or an `axis` that does not grow in even intervals.
     """
     table = _read(path, axis, column)
-    if len(table) < LEAST_ROWS:
-        raise InputError(f"{path}: {len(table)} rows are too few; permitted: at least {LEAST_ROWS}")
+    if len(table) < _LEAST_ROWS:
+        raise InputError(f"{path}: {len(table)} rows are too few; permitted: at least {_LEAST_ROWS}")
     position = _numbers(path, table, axis)
-    whole = EvenSeries(_interval(path, axis, position), _numbers(path, table, column))
+    whole = _EvenSeries(_interval(path, axis, position), _numbers(path, table, column))
     record = whole.after(start)
-    if len(record.values) < LEAST_ROWS:
-        raise InputError(f"{path}: start {start:g} leaves fewer than {LEAST_ROWS} rows of {whole.length:g} (s or m)")
+    if len(record.values) < _LEAST_ROWS:
+        raise InputError(f"{path}: start {start:g} leaves fewer than {_LEAST_ROWS} rows of {whole.length:g} (s or m)")
     return record
 
 
@@ -197,9 +195,9 @@ def _interval(path: str, axis: str, position: Array) -> float:
     interval = float(position[-1] - position[0]) / (len(position) - 1)
     jitter = np.abs(position - position[0] - interval * np.arange(len(position)))
     worst = int(np.argmax(jitter))
-    if jitter[worst] > LARGEST_JITTER * interval:
+    if jitter[worst] > _LARGEST_JITTER * interval:
         raise InputError(
             f"{path}, line {worst + 2}: column '{axis}' is {jitter[worst]:.3g} off even steps of "
-            f"{interval:g}; permitted: {LARGEST_JITTER:g} of a step; resample the table at a steady rate"
+            f"{interval:g}; permitted: {_LARGEST_JITTER:g} of a step; resample the table at a steady rate"
         )
     return interval

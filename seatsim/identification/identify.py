@@ -32,9 +32,8 @@ from seatsim.identification.search import Progress, ignore_progress, search_para
 from seatsim.identification.settings import IdentificationSettings, split_records
 from seatsim.recordings.bench_tables import BenchRecord, load_bench, unused_columns
 from seatsim.schema.arrays import Array
-from seatsim.schema.content import Joined, Unwritten, plain, written
+from seatsim.schema.content import Joined, Unwritten, plain, show_record, written
 from seatsim.schema.errors import RunError
-from seatsim.schema.notebook import show_record
 
 _DEFAULTS = IdentificationSettings()
 _NO_BETTER_THAN_MEAN = 1.01

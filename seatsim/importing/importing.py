@@ -20,7 +20,7 @@ from seatsim.recordings.quality.issue import Issue
 from seatsim.recordings.recording import CHANNELS, COMMANDS, load_recording
 from seatsim.schema.content import Form, Unwritten, written
 from seatsim.schema.errors import InputError
-from seatsim.schema.leftovers import temporary_folder
+from seatsim.schema.guarded import temporary_folder
 from seatsim.schema.text import name_some
 
 _OWN_FILES = (".yaml", ".yml", ".json", ".md", ".png", ".pdf", ".html")

@@ -19,7 +19,7 @@ from seatsim.kernel.hooks import Effects, effect_state, fold_hook, join_hook, le
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 
-FAST = 10.0
+_FAST = 10.0
 """m/s; speed at which a yield force has its full size: a hundred times any regularisation of the sign."""
 SETTLING = 5000.0
 """1/s; greatest rate at which a mount's force settles to the damper's.
@@ -27,7 +27,7 @@ SETTLING = 5000.0
 It allows an explicit integration: an undamped mount on a massless piston would settle at once. Motion of a seat is
 slower by a factor of about 50 at 16 Hz, so the force lags by a few hundredths.
 """
-FORCE_TOLERANCE, TRIALS = 0.01, 40
+_FORCE_TOLERANCE, _TRIALS = 0.01, 40
 """N; tolerance between the forces of mount and damper, below any load cell's noise; and the most iterations."""
 
 part_scaling = fold_hook("part_scaling")
@@ -138,8 +138,8 @@ def _piston_speed(
     other, e_other = v, demanded - transmitted
     u = v - e_other / slope
     e_u = _demanded_force(damper, effects, x, u, i, scaling, inner, outer) + (u - v) * slope - transmitted
-    for _ in range(TRIALS):
-        if abs(e_u) < FORCE_TOLERANCE or e_u == e_other:
+    for _ in range(_TRIALS):
+        if abs(e_u) < _FORCE_TOLERANCE or e_u == e_other:
             break
         trial = u - e_u * (u - other) / (e_u - e_other)
         e_trial = (
@@ -208,7 +208,7 @@ class YieldPart(NamedTuple):
 def _split(damper: DamperModel, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> YieldPart:
     """Return the yield part of a damper's force, with its set-valued friction."""
     rest = TemperatureScaling(scaling.viscous, scaling.stiffness, 0.0)
-    rebound, compression = _yield(damper, x, FAST, i, scaling, rest, z), _yield(damper, x, -FAST, i, scaling, rest, z)
+    rebound, compression = _yield(damper, x, _FAST, i, scaling, rest, z), _yield(damper, x, -_FAST, i, scaling, rest, z)
     friction = coulomb(damper, i, scaling)
     middle, size = 0.5 * (rebound + compression), 0.5 * (rebound - compression) + friction
     now = _yield(damper, x, v, i, scaling, rest, z) - middle + (0.0 if v == 0.0 else math.copysign(friction, v))

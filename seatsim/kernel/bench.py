@@ -14,7 +14,7 @@ import numpy as np
 from seatsim.compilation.cached import compiled
 from seatsim.compilation.jit import jit
 from seatsim.kernel.generic import DamperModel, force, rates, scaling_at
-from seatsim.kernel.integration import MOST_DEBT, axpy, combine, owe
+from seatsim.kernel.hooks import MOST_DEBT, axpy, combine, owe
 from seatsim.kernel.inverse import total_force
 from seatsim.kernel.step import relaxed
 from seatsim.rig.coil import Coil
@@ -22,7 +22,7 @@ from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 from seatsim.schema.arrays import Array
 
-ROUNDING = 1e-9
+_ROUNDING = 1e-9
 """Share of a step by which a delay may miss a whole number of steps and still count as that many."""
 
 
@@ -39,9 +39,9 @@ def simulate_current(coil: Coil, command: Array, step: float, start: float) -> A
 
 def follow_command(coil: Coil, command: Array, step: float, start: float) -> Array:
     """Return the same as `simulate_current`, uncompiled; the last value of the command has no time to act."""
-    late = math.floor(coil.delay / step + ROUNDING)
+    late = math.floor(coil.delay / step + _ROUNDING)
     split = coil.delay - late * step
-    split = split if split >= ROUNDING * step else 0.0
+    split = split if split >= _ROUNDING * step else 0.0
     out: Array = np.empty_like(command)
     out[0] = start
     for k in range(len(command) - 1):
@@ -52,7 +52,7 @@ def follow_command(coil: Coil, command: Array, step: float, start: float) -> Arr
     return out
 
 
-Samples = Array | tuple[float, float, float]
+_Samples = Array | tuple[float, float, float]
 """What goes on in a step: its value at the beginning, in the middle and at the end."""
 
 TOLERANCE = 1e-4
@@ -61,9 +61,9 @@ FORCE_SCALE = 10.0
 """N added to the force that the tolerance is relative to, so that a force near zero needs no finer steps."""
 MOST_PARTS = 4096
 """Most parts that a step is divided into; at 1 ms a part of 0.24 us, as short as any damper of the library needs."""
-MARGIN = 32.0
+_MARGIN = 32.0
 """Half as many parts are tried once the error is this much below the tolerance; twice the 16 of a method of order 4."""
-DIVERGED = 1e8
+_DIVERGED = 1e8
 """Relative error at which a state has diverged; a NaN fails the same comparison."""
 
 
@@ -85,7 +85,7 @@ def run_bench(
     x [m], v [m/s], current [A] and temperature [degC] have shape (2 n + 1,), sampled every half step;
     temperature is constant over a step. `initial_state` is the damper's at the first sample, `step` in s. The number
     returned is n + 1 on success; otherwise the damper's state has diverged at the last sample reached, or is too stiff
-    (`seatsim.kernel.integration`).
+    (`seatsim.kernel.hooks`).
     Set-valued friction acts as `coulomb sgn(v)`, zero at v = 0. A step is divided into at most `most_parts` parts, so
     that it adds an error of `tolerance` at most, relative to the force plus `FORCE_SCALE`. To be compiled by
     `compiled`.
@@ -117,9 +117,9 @@ def run_bench(
 def advance_state(
     damper: DamperModel,
     scaling: TemperatureScaling,
-    x: Samples,
-    v: Samples,
-    current: Samples,
+    x: _Samples,
+    v: _Samples,
+    current: _Samples,
     z: State,
     step: float,
     parts: int,
@@ -136,18 +136,18 @@ def advance_state(
         if worst <= tolerance or parts >= most_parts:
             break
         parts *= 2
-    if worst < tolerance / MARGIN and parts > 1:
+    if worst < tolerance / _MARGIN and parts > 1:
         parts //= 2
-    return state, parts, worst < DIVERGED
+    return state, parts, worst < _DIVERGED
 
 
 @jit
 def _part(
     damper: DamperModel,
     scaling: TemperatureScaling,
-    x: Samples,
-    v: Samples,
-    current: Samples,
+    x: _Samples,
+    v: _Samples,
+    current: _Samples,
     z: State,
     h: float,
     s: float,
@@ -173,7 +173,7 @@ def _part(
 
 
 @jit
-def _between(samples: Samples, s: float) -> float:
+def _between(samples: _Samples, s: float) -> float:
     """Return the parabola through three samples at the fraction `s` of the step; exact at 0, 1/2 and 1."""
     t = 1.0 - s
     value: float = t * (t - s) * samples[0] + 4.0 * s * t * samples[1] + s * (s - t) * samples[2]

@@ -16,20 +16,19 @@ from numba import cuda, float64, int64, void
 from numpy.typing import NDArray
 
 from seatsim.compilation.jit import define, jit
-from seatsim.compilation.watch import report
-from seatsim.kernel.channels import CHANNELS
+from seatsim.compilation.messages import report
 from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.loop import run_loop
-from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup
+from seatsim.kernel.loop_data import CHANNELS, LoopInputs, LoopSetup
 from seatsim.rig.state import State
 from seatsim.schema.arrays import Array
 
-Form = tuple[str, tuple[tuple[str, type], ...]]
+_Form = tuple[str, tuple[tuple[str, type], ...]]
 """Source that builds a record out of rows, and the classes that it names."""
 
-POINTS = CELLS + 1
+_POINTS = CELLS + 1
 """Points of the grid of `seatsim.kernel.inverse.invert`, as a number that the compiler takes for a constant."""
-THREADS = 64
+_THREADS = 64
 """Threads of a block: a lane takes so many registers that larger blocks leave some of them unused."""
 _ROWS, _PLANES = float64[:, ::1], float64[:, :, ::1]
 SIGNATURE = void(_ROWS, _ROWS, _ROWS, int64[::1], _PLANES, _PLANES, int64[::1])
@@ -95,12 +94,12 @@ def run_on_device(template: LaneStart, inputs: DeviceInputs) -> tuple[Array, lis
         raise KernelError(kernel)
     out = cuda.device_array((len(inputs.floors), len(CHANNELS), lanes), np.float64)
     reached = cuda.device_array(lanes, np.int64)
-    kernel[(lanes + THREADS - 1) // THREADS, THREADS](*map(cuda.to_device, inputs), out, reached)
+    kernel[(lanes + _THREADS - 1) // _THREADS, _THREADS](*map(cuda.to_device, inputs), out, reached)
     return out.copy_to_host(), reached.copy_to_host().tolist()
 
 
 @cache
-def _compile_kernel(form: Form) -> Any:
+def _compile_kernel(form: _Form) -> Any:
     """Return the compiled kernel for lanes of a form, or why it does not compile."""
     report(1)
     try:
@@ -116,12 +115,10 @@ def make_kernel(template: LaneStart) -> Callable[..., None]:
     return _define_kernel(_form_of(template))
 
 
-def _define_kernel(form: Form) -> Callable[..., None]:
+def _define_kernel(form: _Form) -> Callable[..., None]:
     source, classes = form
-    gather: Callable[[Array, int], Any] = jit(
-        define(f"def gather(rows, lane):\n    return {source}\n", "gather", dict(classes))
-    )
-    simulate: Any = jit(run_loop)
+    gather = jit(define(f"def gather(rows, lane):\n    return {source}\n", "gather", dict(classes)))
+    simulate = jit(run_loop)
 
     def run(
         starts: Array,
@@ -134,7 +131,7 @@ def _define_kernel(form: Form) -> Callable[..., None]:
     ) -> None:
         lane = cuda.grid(1)
         if lane < len(floor_of):
-            grid = cuda.local.array(POINTS, float64)
+            grid = cuda.local.array(_POINTS, float64)
             own, start = floor_of[lane], gather(starts, lane)
             none = floors[:0, own]
             inputs = LoopInputs(
@@ -163,7 +160,7 @@ def numbers(record: tuple[object, ...]) -> list[float]:
     return found
 
 
-def _form_of(record: tuple[object, ...]) -> Form:
+def _form_of(record: tuple[object, ...]) -> _Form:
     places, classes = iter(range(10_000)), dict[type, str]()
     source = _expression(record, places, classes)
     return source, tuple((name, cls) for cls, name in classes.items())

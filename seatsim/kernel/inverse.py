@@ -16,18 +16,18 @@ CELLS = 16
 
 A turn towards the force and back within one cell, of which no point of the grid is nearer, is missed.
 """
-INSIDE = 1e-4
+_INSIDE = 1e-4
 """Distance in cells from an end of the grid at which is seen whether the force turns within the last cell."""
-BESIDE = 1e-2
+_BESIDE = 1e-2
 """Distance from a turn, over the width of its interval, of the currents whose forces fix the parabola through it."""
-GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
+_GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 SERVED = 1e-6
 """Difference of given and wanted force, over the wanted force plus 1 N, up to which it counts as reached."""
-STRAIGHT = 1e-10
+_STRAIGHT = 1e-10
 """Curvature of a force-current map, over the size of its forces, below which it is rounding error of a line."""
 CLOSE = 1e-6
 """N; difference from the wanted force up to which an end or a turn meets it."""
-TRIALS = 60
+_TRIALS = 60
 """Most iterations of a search; the Illinois method needs about ten, bisection alone reaches rounding error by 60."""
 
 
@@ -111,7 +111,7 @@ def _closed_form(
     if order > 1:
         a = 2.0 * (rise - 2.0 * (total_force(damper, x, v, 0.5 * top, scaling, z) - f0))
     # A square term of zero leaves a rounding error in a, whose second root would be far away or, by chance, near.
-    if abs(a) <= STRAIGHT * (abs(f0) + abs(f2)):
+    if abs(a) <= _STRAIGHT * (abs(f0) + abs(f2)):
         a = 0.0
     b = rise - a
     # Where no root lies within 0 to 1, the closest force is that of an end or of the turning point.
@@ -199,7 +199,7 @@ def _turns_near(
         return False
     if 0 < j < CELLS:
         return True
-    inside = INSIDE if j == 0 else CELLS - INSIDE
+    inside = _INSIDE if j == 0 else CELLS - _INSIDE
     near = side * (total_force(damper, x, v, top * inside / CELLS, scaling, z) - target)
     turns: bool = near < here if j == 0 else near <= here
     return turns
@@ -221,21 +221,21 @@ def _closest(
 
     By golden section search, which ends as soon as the target is passed: `side` is the sign of the difference before.
     """
-    first, last, beside = left, right, BESIDE * (right - left)
-    low, high = right - GOLDEN * (right - left), left + GOLDEN * (right - left)
+    first, last, beside = left, right, _BESIDE * (right - left)
+    low, high = right - _GOLDEN * (right - left), left + _GOLDEN * (right - left)
     f_low = total_force(damper, x, v, low, scaling, z) - target
     f_high = total_force(damper, x, v, high, scaling, z) - target
-    for _ in range(TRIALS):
+    for _ in range(_TRIALS):
         if side * f_low < 0.0:
             return low, f_low
         # Of two equal forces the lesser current is kept.
         if side * f_low <= side * f_high:
             right, high, f_high = high, low, f_low
-            low = right - GOLDEN * (right - left)
+            low = right - _GOLDEN * (right - left)
             f_low = total_force(damper, x, v, low, scaling, z) - target
         else:
             left, low, f_low = low, high, f_high
-            high = left + GOLDEN * (right - left)
+            high = left + _GOLDEN * (right - left)
             f_high = total_force(damper, x, v, high, scaling, z) - target
     # A corner is not where the parabola has its vertex: the force there is another one.
     turn = _turn(damper, x, v, scaling, z, high, min(beside, high - first, last - high))
@@ -281,7 +281,7 @@ def _bracket(
     """
     side = 0
     middle = right
-    for _ in range(TRIALS):
+    for _ in range(_TRIALS):
         middle = (left * f_right - right * f_left) / (f_right - f_left)
         if not left < middle < right:
             break

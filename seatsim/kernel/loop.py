@@ -5,12 +5,21 @@ from __future__ import annotations
 import math
 
 from seatsim.compilation.jit import jit
-from seatsim.kernel.assumed_model import InverseModel, follow_state, model_scaling, model_state
-from seatsim.kernel.channels import Sample, write_row
-from seatsim.kernel.generic import advance_filters, evaluate_law, read, scaling_at, update, wants_force
+from seatsim.kernel.generic import (
+    InverseModel,
+    advance_filters,
+    evaluate_law,
+    follow_state,
+    model_scaling,
+    model_state,
+    read,
+    scaling_at,
+    update,
+    wants_force,
+)
 from seatsim.kernel.hooks import leading_state
 from seatsim.kernel.inverse import invert
-from seatsim.kernel.loop_inputs import ControlledRig, LoopInputs, LoopSetup, sample_of, step_inputs
+from seatsim.kernel.loop_data import ControlledRig, LoopInputs, LoopSetup, Sample, sample_of, step_inputs, write_row
 from seatsim.kernel.rig import Disturbance
 from seatsim.kernel.step import IntegratorState, advance, relaxed, start
 from seatsim.rig.coil import Coil

@@ -11,33 +11,32 @@ import math
 from typing import NamedTuple
 
 from seatsim.compilation.jit import jit, jit_apart
-from seatsim.kernel.hooks import hook
-from seatsim.kernel.integration import MOST_DEBT, axpy, combine, owe
+from seatsim.kernel.hooks import MOST_DEBT, axpy, combine, hook, owe
 from seatsim.kernel.rig import STICKING, Disturbance, Rig, RigForces, derivative
 from seatsim.rig.coil import Coil, relax
 from seatsim.rig.state import CUSHION_DISPLACEMENT, CUSHION_VELOCITY, VELOCITY, State
 from seatsim.rig.temperature import TemperatureScaling
 
 relaxed = jit(relax)
-SPEED_SCALE = 0.01
+_SPEED_SCALE = 0.01
 """m/s added to the speeds that the tolerance is relative to, so that a rig near rest needs no sub-steps."""
-SHORTEST = 2.0**-18
+_SHORTEST = 2.0**-18
 """Shortest sub-step as a fraction of the step; at 1 ms some 4 ns, in which no rig of a seat moves."""
-EVENT_TOLERANCE = 1e-10
+_EVENT_TOLERANCE = 1e-10
 """m/s and N; tolerances on speed and friction with which the ends of sliding and of sticking are found."""
-MOST_TRIALS = 60
+_MOST_TRIALS = 60
 """Most iterations in finding the end of a phase; bisection alone would be at rounding error by then."""
-SAFETY, LEAST, GREATEST = 0.9, 0.2, 4.0
+_SAFETY, _LEAST, _GREATEST = 0.9, 0.2, 4.0
 """Factors on a next sub-step: safety factor on the one that would meet the tolerance, and limits of the change."""
-REJECTED_LEAST = 0.1
+_REJECTED_LEAST = 0.1
 """Least factor on a sub-step whose error was too great: it may be shortened further than one that succeeded."""
-ERROR_EXPONENT = 0.25
+_ERROR_EXPONENT = 0.25
 """The error of the embedded solution, of order 3, grows with the fourth power of the sub-step."""
-NEGLIGIBLE = 1e-3
-"""Error in units of the tolerance below which a sub-step grows by GREATEST, which saves computing a power."""
-DIVERGED = 1e12
+_NEGLIGIBLE = 1e-3
+"""Error in units of the tolerance below which a sub-step grows by _GREATEST, which saves computing a power."""
+_DIVERGED = 1e12
 """Error in units of the tolerance at which a solution has diverged; a NaN fails the same comparison."""
-REMAINDER = 1e-12
+_REMAINDER = 1e-12
 """Share of the remaining step that the last sub-step may fall short by, as an allowance for rounding of time."""
 
 
@@ -69,7 +68,7 @@ class IntegratorState(NamedTuple):
     """State of the integration: state of the rig, its rates and forces, phase of the friction, next sub-step in s.
 
     `slip` is 0 without set-valued friction, -1 or 1 where the suspension slides, STICKING where it is stuck; `debt` the
-    sub-steps owed (`seatsim.kernel.integration.owe`).
+    sub-steps owed (`seatsim.kernel.hooks.owe`).
     """
 
     state: State
@@ -169,9 +168,9 @@ def advance(
 ) -> tuple[IntegratorState, float, bool]:
     """Return the state of the integration after one step, the current then in A, and whether the step succeeded.
 
-    A step fails where the error stays beyond `DIVERGED` even in the shortest sub-step, or is NaN; the last valid state
-    is then returned. So does one by which the run takes more work than `seatsim.kernel.integration` grants. `tolerance`
-    is the error in the velocities that a sub-step may add, relative to their size plus `SPEED_SCALE`; above about 0.1
+    A step fails where the error stays beyond `_DIVERGED` even in the shortest sub-step, or is NaN; the last valid state
+    is then returned. So does one by which the run takes more work than `seatsim.kernel.hooks` grants. `tolerance`
+    is the error in the velocities that a sub-step may add, relative to their size plus `_SPEED_SCALE`; above about 0.1
     it has no effect.
     """
     h = now.substep
@@ -189,7 +188,7 @@ def estimate_error(state: State, rates: State, k4: State, h: float, tolerance: f
 
     Only the velocities count: displacements are their integrals, and a damper's state shows in them by its force.
     """
-    scale = tolerance * (SPEED_SCALE + abs(state[VELOCITY]) + abs(state[CUSHION_VELOCITY]))
+    scale = tolerance * (_SPEED_SCALE + abs(state[VELOCITY]) + abs(state[CUSHION_VELOCITY]))
     return h / 6.0 * (abs(k4[VELOCITY] - rates[VELOCITY]) + abs(k4[CUSHION_VELOCITY] - rates[CUSHION_VELOCITY])) / scale
 
 
@@ -202,23 +201,23 @@ def _advance_divided(
     remaining, parts = inputs.length, 0.0
     while parts <= MOST_DEBT:
         parts += 1.0
-        last = h >= remaining * (1.0 - REMAINDER)
+        last = h >= remaining * (1.0 - _REMAINDER)
         if last:
             h = remaining
         state, rates, forces, k4, i_end = take_substep(rig, coil, inputs, scaling, now, time, h)
         error = estimate_error(state, rates, k4, h, tolerance)
         # Written so that a NaN error is rejected.
-        if not error <= 1.0 and h > SHORTEST * inputs.length:
-            h *= max(REJECTED_LEAST, SAFETY / error**ERROR_EXPONENT) if error < DIVERGED else REJECTED_LEAST
+        if not error <= 1.0 and h > _SHORTEST * inputs.length:
+            h *= max(_REJECTED_LEAST, _SAFETY / error**_ERROR_EXPONENT) if error < _DIVERGED else _REJECTED_LEAST
             continue
-        if not error < DIVERGED:
+        if not error < _DIVERGED:
             return now, current, False
         # The end of a phase shortens this sub-step, while the next one follows from the length that was tried.
         tried, slip = h, now.slip
         if _margin(slip, state, forces) < 0.0:
             h, state, forces, i_end = _end_of_phase(rig, coil, inputs, scaling, now, time, h, state, forces)
             last = last and h == tried
-            # The event is found to EVENT_TOLERANCE only; the velocity is then set to zero exactly, which marks rest.
+            # The event is found to _EVENT_TOLERANCE only; the velocity is then set to zero exactly, which marks rest.
             state = state[:VELOCITY] + (0.0,) + state[CUSHION_DISPLACEMENT:]
             # A suspension that breaks loose slides in the force's direction; one that came to rest may stick or turn.
             slip = math.copysign(1.0, forces.friction) if slip == STICKING else 0.0
@@ -256,11 +255,11 @@ def _end_of_phase(
     low, high, side = 0.0, h, 0
     m_low, m_high = _margin(now.slip, now.state, now.forces), _margin(now.slip, state, forces)
     i_end = inputs.current
-    for _ in range(MOST_TRIALS):
+    for _ in range(_MOST_TRIALS):
         h = (low * m_high - high * m_low) / (m_high - m_low) if m_low > 0.0 else 0.5 * (low + high)
         state, _, forces, _, i_end = take_substep(rig, coil, inputs, scaling, now, time, h)
         margin = _margin(now.slip, state, forces)
-        if abs(margin) <= EVENT_TOLERANCE or high - low <= SHORTEST * inputs.length:
+        if abs(margin) <= _EVENT_TOLERANCE or high - low <= _SHORTEST * inputs.length:
             break
         if margin > 0.0:
             m_high *= 0.5 if side > 0 else 1.0
@@ -276,5 +275,5 @@ def _longer(h: float, error: float, length: float) -> float:
     """Return the next sub-step after one of `h` with the given error in units of the tolerance."""
     if h >= length:
         return length
-    factor = GREATEST if error < NEGLIGIBLE else min(GREATEST, max(LEAST, SAFETY / error**ERROR_EXPONENT))
-    return min(max(h * factor, SHORTEST * length), length)
+    factor = _GREATEST if error < _NEGLIGIBLE else min(_GREATEST, max(_LEAST, _SAFETY / error**_ERROR_EXPONENT))
+    return min(max(h * factor, _SHORTEST * length), length)

@@ -14,12 +14,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from seatsim.metrics.arrays import as_pair, as_signal, ratio, require_positive
-from seatsim.metrics.motion import peak, rms
+from seatsim.metrics.motion import as_pair, as_signal, peak, ratio, require_positive, rms
 from seatsim.metrics.weighting import weight
 from seatsim.schema.arrays import Array
 
-WINDOW = 1.0
+_WINDOW = 1.0
 """Integration time of the running RMS in s (ISO 2631-1:1997, 6.3)."""
 
 EIGHT_HOURS = 8.0 * 3600.0
@@ -46,7 +45,7 @@ def running_rms(weighted: ArrayLike, sample_rate: float) -> Array:
     rig counts as at rest before the record, so the first second rises from 0.
     """
     x = as_signal(weighted, "weighted")
-    width = max(1, round(WINDOW * require_positive(sample_rate, "sample_rate")))
+    width = max(1, round(_WINDOW * require_positive(sample_rate, "sample_rate")))
     # A difference of running sums costs N operations instead of N times the window, but its rounding error
     # can be negative after a shock of 1e9 m/s^2: hence the maximum with zero before the root.
     energy = np.concatenate((np.zeros(width), np.cumsum(x * x)))
@@ -98,7 +97,7 @@ def seat_factor(driver: ArrayLike, floor: ArrayLike, sample_rate: float) -> floa
     return ratio(weighted_rms(seat, sample_rate), weighted_rms(base, sample_rate))
 
 
-CREST_FACTOR, MTVV_RATIO, VDV_RATIO = 9.0, 1.5, 1.75
+_CREST_FACTOR, _MTVV_RATIO, _VDV_RATIO = 9.0, 1.5, 1.75
 """Thresholds of the additional evaluation (ISO 2631-1:1997, 6.2.2 and 6.3.3)."""
 
 
@@ -172,9 +171,9 @@ def find_shocks(dose: Dose) -> list[str]:
     the judgement where MTVV / a_w exceeds 1.5 or VDV / (a_w T^(1/4)) exceeds 1.75 (6.3.3; both recalled).
     """
     ratios = {
-        "the crest factor": (dose.crest_factor, CREST_FACTOR),
-        "MTVV / a_w": (dose.mtvv_ratio, MTVV_RATIO),
-        "VDV / (a_w T^(1/4))": (dose.vdv_ratio, VDV_RATIO),
+        "the crest factor": (dose.crest_factor, _CREST_FACTOR),
+        "MTVV / a_w": (dose.mtvv_ratio, _MTVV_RATIO),
+        "VDV / (a_w T^(1/4))": (dose.vdv_ratio, _VDV_RATIO),
     }
     return [
         f"{name} of {value:.3g} is above {threshold:g}"
@@ -232,7 +231,7 @@ class SeatTransmission(NamedTuple):
 def seat_transmission(seat: Sequence[Dose], base: Sequence[Dose]) -> SeatTransmission:
     """Return the SEAT factors of runs whose doses on the seat and at its base are given pair by pair, at least one."""
     on_seat, at_base = [dose.rms for dose in seat], [dose.rms for dose in base]
-    spread = max(spread_of(on_seat), spread_of(at_base))
+    spread = max(_spread_of(on_seat), _spread_of(at_base))
     return SeatTransmission(
         rms=ratio(sum(on_seat), sum(at_base)),
         vdv=ratio(sum(dose.vdv for dose in seat), sum(dose.vdv for dose in base)),
@@ -242,7 +241,7 @@ def seat_transmission(seat: Sequence[Dose], base: Sequence[Dose]) -> SeatTransmi
     )
 
 
-def spread_of(values: Sequence[float]) -> float:
+def _spread_of(values: Sequence[float]) -> float:
     """Return the largest deviation from the mean of at least one value, as a share of the mean; 0 where that is 0."""
     mean = sum(values) / len(values)
     return max(abs(value - mean) for value in values) / mean if mean > 0 else 0.0

@@ -13,23 +13,23 @@ from seatsim.metrics.comfort import EIGHT_HOURS, Dose, daily_exposure, daily_vdv
 from seatsim.schema.content import Form, written
 from seatsim.schema.errors import InputError, nearest
 
-HOUR, DAY = 3600.0, 24.0
+_HOUR, DAY = 3600.0, 24.0
 """s; h"""
 
 
-class ExposureValue(NamedTuple):
+class _ExposureValue(NamedTuple):
     """A value of directive 2002/44/EC, Article 3 (2): of A(8) in m/s^2, or of the VDV in m/s^1.75."""
 
     a8: float
     vdv: float
 
 
-ACTION, LIMIT = ExposureValue(0.5, 9.1), ExposureValue(1.15, 21.0)
+ACTION, _LIMIT = _ExposureValue(0.5, 9.1), _ExposureValue(1.15, 21.0)
 
-ZONE_A8 = tuple(level * math.sqrt(600.0 / EIGHT_HOURS) for level in (3.0, 6.0))
+_ZONE_A8 = tuple(level * math.sqrt(600.0 / EIGHT_HOURS) for level in (3.0, 6.0))
 """Bounds of the zone of equation B.1 as A(8), 0.43 and 0.87 m/s^2: recalled as 3 and 6 m/s^2 at 10 min (Figure B.1)."""
 
-ZONE_VDV = (8.5, 17.0)
+_ZONE_VDV = (8.5, 17.0)
 """Bounds of the zone of equation B.2 as estimated VDV in m/s^1.75 (ISO 2631-1:1997, B.3.1; recalled)."""
 
 ZONES = {
@@ -96,7 +96,7 @@ def assess_exposure(doses: dict[str, Dose], hours: float) -> Exposure | None:
     """
     if not 0 < hours <= DAY:
         raise InputError(f"hours: is {hours:g}; a day of vibration must be above 0 and at most {DAY:g}")
-    seconds = HOUR * hours
+    seconds = _HOUR * hours
     factors = {axis: k for axis in doses if (k := direction(axis).health) is not None}
     if not factors:
         return None
@@ -112,13 +112,13 @@ def assess_exposure(doses: dict[str, Dose], hours: float) -> Exposure | None:
         vdv8=day[1],
         vdv8_axis=worst_vdv,
         action_value=_reach(ACTION, *day, hours),
-        limit_value=_reach(LIMIT, *day, hours),
-        zone_a8=_zone(day[0], ZONE_A8),
-        zone_vdv=_zone(evdv, ZONE_VDV),
+        limit_value=_reach(_LIMIT, *day, hours),
+        zone_a8=_zone(day[0], _ZONE_A8),
+        zone_vdv=_zone(evdv, _ZONE_VDV),
     )
 
 
-def _reach(value: ExposureValue, a8: float, vdv8: float, hours: float) -> ValueReached:
+def _reach(value: _ExposureValue, a8: float, vdv8: float, hours: float) -> ValueReached:
     # A(8) grows with the root of the time, a dose of fourth powers with its fourth root.
     until = hours * (value.a8 / a8) ** 2 if a8 > 0 else math.inf
     until_vdv = hours * (value.vdv / vdv8) ** 4 if vdv8 > 0 else math.inf

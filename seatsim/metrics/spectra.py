@@ -9,7 +9,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike
 from scipy import fft
 
-from seatsim.metrics.arrays import as_pair, require_positive
+from seatsim.metrics.motion import as_pair, require_positive
 from seatsim.metrics.weighting import ComplexArray
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
@@ -54,10 +54,10 @@ AVERAGES = 8
 LONGEST = 10.0
 """Longest segment in s: lines 0.1 Hz apart resolve a seat's resonance; longer records buy averages."""
 
-SHORTEST = 1.0
+_SHORTEST = 1.0
 """Shortest segment in s: beyond 1 Hz between lines the resonance of a seat suspension is smeared out."""
 
-Spectrum = TypeVar("Spectrum", Array, ComplexArray)
+_Spectrum = TypeVar("_Spectrum", Array, ComplexArray)
 
 
 class Transmissibility(NamedTuple):
@@ -108,13 +108,13 @@ def _segment(samples: int, sample_rate: float) -> int:
     """Return the even length of a segment such that `AVERAGES` of them, half overlapping, fit into the record."""
     # n segments that overlap by half span (n + 1) half segments.
     longest = 2 * (samples // (AVERAGES + 1))
-    if longest < SHORTEST * sample_rate:
-        needed = SHORTEST * (AVERAGES + 1) / 2
+    if longest < _SHORTEST * sample_rate:
+        needed = _SHORTEST * (AVERAGES + 1) / 2
         raise InputError(f"the record lasts {samples / sample_rate:g} s; a transmissibility needs {needed:g} s or more")
     return min(longest, 2 * round(LONGEST * sample_rate / 2))
 
 
-def _quotient(numerator: Spectrum, power: Array) -> Spectrum:
+def _quotient(numerator: _Spectrum, power: Array) -> _Spectrum:
     """Return the quotient, shape (F,), where there is power, and NaN elsewhere."""
     undefined = np.full_like(numerator, np.nan)
     return np.divide(numerator, power, out=undefined, where=power > 0)

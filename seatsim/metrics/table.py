@@ -9,9 +9,19 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from seatsim.metrics.arrays import as_signal, ratio, require_finite, require_positive
 from seatsim.metrics.comfort import crest_factor, mtvv, vdv
-from seatsim.metrics.motion import electrical_energy, end_stop_hits, energy_residual, force_tracking_error, peak, rms
+from seatsim.metrics.motion import (
+    as_signal,
+    electrical_energy,
+    end_stop_hits,
+    energy_residual,
+    force_tracking_error,
+    peak,
+    ratio,
+    require_finite,
+    require_positive,
+    rms,
+)
 from seatsim.metrics.weighting import can_weight, weight
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
@@ -79,7 +89,7 @@ class RunRecord:
         return self.weighted_channels[name]
 
 
-class Figure(NamedTuple):
+class _Figure(NamedTuple):
     """A metric before there is a run: `compute` returns its value, or raises `MissingInput` where it lacks an input."""
 
     unit: str
@@ -128,6 +138,19 @@ def _peak_of(channel: str) -> Callable[[RunRecord], float]:
     return lambda run: peak(run[channel])
 
 
+def _of_weighted(compute: Callable[[Array, float], float]) -> Callable[[RunRecord], float]:
+    """Return what computes a figure of the driver's Wk-weighted acceleration and its sample rate."""
+    return lambda run: compute(run.weighted(_DRIVER), run.rate)
+
+
+def _tracking(share: bool) -> Callable[[RunRecord], float]:
+    return lambda run: force_tracking_error(run["wanted_force"], run["damper_force"])[int(share)]
+
+
+def _seat_factor(run: RunRecord) -> float:
+    return ratio(rms(run.weighted(_DRIVER)), rms(run.weighted("floor_acceleration")))
+
+
 def _jerk(run: RunRecord) -> float:
     acceleration = run["driver_acceleration"]
     if acceleration.size < 2:
@@ -160,58 +183,36 @@ def _energy_residual(run: RunRecord) -> float:
 
 
 _DRIVER = "driver_acceleration"
-METRICS: Mapping[str, Figure] = {
-    "driver_acceleration_rms": Figure("m/s^2", "RMS acceleration of the driver", _rms_of(_DRIVER)),
-    "driver_acceleration_peak": Figure("m/s^2", "largest driver acceleration", _peak_of(_DRIVER)),
-    "driver_acceleration_weighted": Figure(
-        "m/s^2", "RMS driver acceleration, Wk-weighted", lambda run: rms(run.weighted(_DRIVER))
+METRICS: Mapping[str, _Figure] = {
+    "driver_acceleration_rms": _Figure("m/s^2", "RMS acceleration of the driver", _rms_of(_DRIVER)),
+    "driver_acceleration_peak": _Figure("m/s^2", "largest driver acceleration", _peak_of(_DRIVER)),
+    "driver_acceleration_weighted": _Figure(
+        "m/s^2", "RMS driver acceleration, Wk-weighted", _of_weighted(lambda x, _: rms(x))
     ),
-    "driver_vdv": Figure(
-        "m/s^1.75",
-        "vibration dose value of the driver, Wk-weighted",
-        lambda run: vdv(run.weighted(_DRIVER), run.rate),
+    "driver_vdv": _Figure("m/s^1.75", "vibration dose value of the driver, Wk-weighted", _of_weighted(vdv)),
+    "driver_mtvv": _Figure("m/s^2", "largest Wk-weighted RMS of the driver in any second", _of_weighted(mtvv)),
+    "driver_crest_factor": _Figure(
+        "-", "peak over RMS of the driver's Wk-weighted acceleration", _of_weighted(lambda x, _: crest_factor(x))
     ),
-    "driver_mtvv": Figure(
-        "m/s^2",
-        "largest Wk-weighted RMS of the driver in any second",
-        lambda run: mtvv(run.weighted(_DRIVER), run.rate),
-    ),
-    "driver_crest_factor": Figure(
-        "-",
-        "peak over RMS of the driver's Wk-weighted acceleration",
-        lambda run: crest_factor(run.weighted(_DRIVER)),
-    ),
-    "driver_jerk_rms": Figure(
+    "driver_jerk_rms": _Figure(
         "m/s^3", "RMS jerk of the driver: differences of successive samples over the step", _jerk
     ),
-    "seat_factor": Figure(
-        "-",
-        "Wk-weighted RMS of the driver over that of the floor (SEAT)",
-        lambda run: ratio(rms(run.weighted(_DRIVER)), rms(run.weighted("floor_acceleration"))),
-    ),
-    "frame_acceleration_rms": Figure("m/s^2", "RMS acceleration of the frame", _rms_of("frame_acceleration")),
-    "frame_acceleration_peak": Figure("m/s^2", "largest frame acceleration", _peak_of("frame_acceleration")),
-    "suspension_displacement_rms": Figure("m", "RMS suspension travel", _rms_of("suspension_displacement")),
-    "suspension_displacement_peak": Figure("m", "largest suspension travel", _peak_of("suspension_displacement")),
-    "end_stop_hits": Figure("-", "separate excursions beyond the end stops", _end_stop_hits),
-    "force_tracking_error": Figure(
-        "N",
-        "RMS of wanted less delivered force",
-        lambda run: force_tracking_error(run["wanted_force"], run["damper_force"]).rms,
-    ),
-    "force_tracking_error_relative": Figure(
-        "-",
-        "the same over the RMS of the wanted force",
-        lambda run: force_tracking_error(run["wanted_force"], run["damper_force"]).relative,
-    ),
-    "force_served_share": Figure("-", "share of time the wanted force could be delivered", _served_share),
-    "current_rms": Figure("A", "RMS coil current", _rms_of("coil_current")),
-    "electrical_energy": Figure("J", "heat of the coil", _electrical_energy),
-    "damper_energy": Figure(
+    "seat_factor": _Figure("-", "Wk-weighted RMS of the driver over that of the floor (SEAT)", _seat_factor),
+    "frame_acceleration_rms": _Figure("m/s^2", "RMS acceleration of the frame", _rms_of("frame_acceleration")),
+    "frame_acceleration_peak": _Figure("m/s^2", "largest frame acceleration", _peak_of("frame_acceleration")),
+    "suspension_displacement_rms": _Figure("m", "RMS suspension travel", _rms_of("suspension_displacement")),
+    "suspension_displacement_peak": _Figure("m", "largest suspension travel", _peak_of("suspension_displacement")),
+    "end_stop_hits": _Figure("-", "separate excursions beyond the end stops", _end_stop_hits),
+    "force_tracking_error": _Figure("N", "RMS of wanted less delivered force", _tracking(share=False)),
+    "force_tracking_error_relative": _Figure("-", "the same over the RMS of the wanted force", _tracking(share=True)),
+    "force_served_share": _Figure("-", "share of time the wanted force could be delivered", _served_share),
+    "current_rms": _Figure("A", "RMS coil current", _rms_of("coil_current")),
+    "electrical_energy": _Figure("J", "heat of the coil", _electrical_energy),
+    "damper_energy": _Figure(
         "J", "energy dissipated by the damper", lambda run: float(run["energy_damper"][-1] - run["energy_damper"][0])
     ),
-    "energy_residual": Figure("-", "energy unaccounted for over the largest energy", _energy_residual),
-    "temperature_final": Figure(
+    "energy_residual": _Figure("-", "energy unaccounted for over the largest energy", _energy_residual),
+    "temperature_final": _Figure(
         "degC", "temperature of the damper at the end", lambda run: float(run["damper_temperature"][-1])
     ),
 }

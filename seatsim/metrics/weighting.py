@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import fft
 
-from seatsim.metrics.arrays import as_signal, require_finite, require_positive
+from seatsim.metrics.motion import as_signal, require_finite, require_positive
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest
 
@@ -34,7 +34,7 @@ _DECAY = 4.8
 """Zeros behind a record in periods of the high-pass: its poles, the slowest, have died down to 1e-9 by then."""
 
 
-class UpwardStep(NamedTuple):
+class _UpwardStep(NamedTuple):
     """Upward step: corner frequencies in Hz and their quality factors."""
 
     f5: float
@@ -51,7 +51,7 @@ class Weighting(NamedTuple):
     f3: float
     f4: float
     Q4: float
-    step: UpwardStep | None = None
+    step: _UpwardStep | None = None
     K: float = 1.0
 
     @property
@@ -61,13 +61,13 @@ class Weighting(NamedTuple):
 
 
 WEIGHTINGS: Mapping[str, Weighting] = {
-    "Wk": Weighting(0.4, 100.0, 12.5, 12.5, 0.63, UpwardStep(2.37, 0.91, 3.35, 0.91)),
+    "Wk": Weighting(0.4, 100.0, 12.5, 12.5, 0.63, _UpwardStep(2.37, 0.91, 3.35, 0.91)),
     "Wd": Weighting(0.4, 100.0, 2.0, 2.0, 0.63),
     "Wc": Weighting(0.4, 100.0, 8.0, 8.0, 0.63),
     "We": Weighting(0.4, 100.0, 1.0, 1.0, 0.63),
-    "Wj": Weighting(0.4, 100.0, math.inf, math.inf, 1.0, UpwardStep(3.75, 0.91, 5.32, 0.91)),
-    "Wf": Weighting(0.08, 0.63, math.inf, 0.25, 0.86, UpwardStep(0.0625, 0.80, 0.10, 0.80)),
-    "Wb": Weighting(0.4, 100.0, 16.0, 16.0, 0.55, UpwardStep(2.5, 0.9, 4.0, 0.95), 1.024),
+    "Wj": Weighting(0.4, 100.0, math.inf, math.inf, 1.0, _UpwardStep(3.75, 0.91, 5.32, 0.91)),
+    "Wf": Weighting(0.08, 0.63, math.inf, 0.25, 0.86, _UpwardStep(0.0625, 0.80, 0.10, 0.80)),
+    "Wb": Weighting(0.4, 100.0, 16.0, 16.0, 0.55, _UpwardStep(2.5, 0.9, 4.0, 0.95), 1.024),
     "Wm": Weighting(10**-0.1, 100.0, 1 / (0.056 * math.pi), 1 / (0.056 * math.pi), 0.5),
     "Wh": Weighting(10**0.8, 10**3.1, 50 / math.pi, 50 / math.pi, 0.64),
 }
@@ -76,23 +76,23 @@ of the back), We (rotation), Wj (head of a recumbent person), Wf (motion sicknes
 Wm (buildings). ISO 5349-1: Wh (hand and arm)."""
 
 
-class SecondOrderSection(NamedTuple):
+class _SecondOrderSection(NamedTuple):
     """A factor of a weighting, `(b0 + b1 s + b2 s^2) / (a0 + a1 s + a2 s^2)` with s in rad/s."""
 
     numerator: tuple[float, float, float]
     denominator: tuple[float, float, float]
 
 
-def sections(weighting: str = "Wk") -> tuple[SecondOrderSection, ...]:
+def sections(weighting: str = "Wk") -> tuple[_SecondOrderSection, ...]:
     """Return the factors Hh, Hl, Ht and, where the weighting has one, Hs, for filters with states.
 
     Raises:
         InputError: no weighting has this name.
     """
     c = _constants(weighting)
-    high_pass = SecondOrderSection((0.0, 0.0, (2 * math.pi * c.f1) ** -2), _coefficients(c.f1, math.sqrt(0.5)))
-    low_pass = SecondOrderSection((1.0, 0.0, 0.0), _coefficients(c.f2, math.sqrt(0.5)))
-    transition = SecondOrderSection((c.K, c.K / (2 * math.pi * c.f3), 0.0), _coefficients(c.f4, c.Q4))
+    high_pass = _SecondOrderSection((0.0, 0.0, (2 * math.pi * c.f1) ** -2), _coefficients(c.f1, math.sqrt(0.5)))
+    low_pass = _SecondOrderSection((1.0, 0.0, 0.0), _coefficients(c.f2, math.sqrt(0.5)))
+    transition = _SecondOrderSection((c.K, c.K / (2 * math.pi * c.f3), 0.0), _coefficients(c.f4, c.Q4))
     if c.step is None:
         return high_pass, low_pass, transition
     rise = (c.step.f5 / c.step.f6) ** 2
@@ -101,7 +101,7 @@ def sections(weighting: str = "Wk") -> tuple[SecondOrderSection, ...]:
         high_pass,
         low_pass,
         transition,
-        SecondOrderSection((rise * b0, rise * b1, rise * b2), _coefficients(c.step.f6, c.step.Q6)),
+        _SecondOrderSection((rise * b0, rise * b1, rise * b2), _coefficients(c.step.f6, c.step.Q6)),
     )
 
 
@@ -136,7 +136,7 @@ def _constants(weighting: str) -> Weighting:
     return WEIGHTINGS[weighting]
 
 
-def _upward_step(jf: ComplexArray, step: UpwardStep) -> ComplexArray:
+def _upward_step(jf: ComplexArray, step: _UpwardStep) -> ComplexArray:
     rise: ComplexArray = _quadratic(jf, step.f5, step.Q5) / _quadratic(jf, step.f6, step.Q6)
     return rise * (step.f5 / step.f6) ** 2
 
@@ -173,12 +173,12 @@ def weight(signal: ArrayLike, sample_rate: float, weighting: str = "Wk") -> Arra
             f"sample_rate: is {sample_rate} Hz; weighting {weighting} reaches {constants.f2:.4g} Hz and needs "
             f"{constants.minimum_rate:.4g} Hz or more"
         )
-    response, size = transform_of(x.size, sample_rate, weighting)
+    response, size = _transform_of(x.size, sample_rate, weighting)
     weighted: Array = fft.irfft(fft.rfft(x, size) * response, size)
     return weighted[: x.size]
 
 
-def transform_of(samples: int, sample_rate: float, weighting: str = "Wk") -> tuple[ComplexArray, int]:
+def _transform_of(samples: int, sample_rate: float, weighting: str = "Wk") -> tuple[ComplexArray, int]:
     """Return the response at the bins of the transform that weights a record of so many samples, and its length.
 
     The product of transforms is a circular convolution: zeros behind the record keep its end out of its start.

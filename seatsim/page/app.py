@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from concurrent.futures import Future
-from functools import partial
 from pathlib import Path
 from threading import Lock
 from typing import TYPE_CHECKING, Any
@@ -22,8 +21,9 @@ from seatsim.page.folder import Folder, NotInFolderError, TooLargeError
 from seatsim.page.guard import POLICY, Guard
 from seatsim.report.rendering import digest_of, make_environment, read_asset
 from seatsim.schema.errors import InputError, SeatsimError
-from seatsim.schema.files import write_whole
-from seatsim.schema.leftovers import temporary_folder
+from seatsim.schema.files import write_text
+from seatsim.schema.guarded import temporary_folder
+from seatsim.schema.yaml_text import dump
 
 if TYPE_CHECKING:
     from seatsim.page.recording_view import RecordingView
@@ -121,18 +121,14 @@ class _Page:
 
     def _save(self, values: Mapping[str, Any]) -> Path:
         # Loading these takes longer than everything that the first page needs.
-        from ruamel.yaml import YAML
-
         from seatsim.scenario.loading import single
 
         path = self._folder.name_new(str(values.get("name", "")))
         content = {**self._target.result().encode(values), "name": path.stem}
-        dump = YAML(typ="safe").dump
         with temporary_folder() as drafts:
             # What could not be read again is never saved.
-            dump(content, Path(drafts) / path.name)
-            single(Path(drafts) / path.name)
-        return write_whole(path, partial(dump, content))
+            single(write_text(Path(drafts) / path.name, dump(content)))
+        return write_text(path, dump(content))
 
 
 async def _read_values(request: Request) -> dict[str, Any]:

@@ -29,8 +29,7 @@ from seatsim.provenance.statement import (
 )
 from seatsim.scenario.loading import EXAMPLES
 from seatsim.schema.errors import InputError, RunError, nearest
-from seatsim.schema.guarded import expect, is_there, read_bytes
-from seatsim.schema.leftovers import temporary_folder
+from seatsim.schema.guarded import expect, is_there, read_bytes, temporary_folder
 
 _LARGEST = 2**32
 """Bytes of an input or an output."""

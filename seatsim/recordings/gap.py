@@ -17,12 +17,11 @@ from seatsim.recordings.quality.sensors import without_gravity
 from seatsim.recordings.recording import Recording, load_recording
 from seatsim.recordings.replay import COMPARED, LEFT_OUT, note_unused_log, replay, stands_out
 from seatsim.scenario.loading import single
-from seatsim.scenario.plausibility import list_doubts
+from seatsim.scenario.numbers import list_doubts
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
-from seatsim.schema.content import IfAny, Unwritten, to_content
+from seatsim.schema.content import IfAny, Unwritten, show_record, to_content
 from seatsim.schema.errors import InputError
-from seatsim.schema.notebook import show_record
 
 Signals = Mapping[str, Array]
 

@@ -26,10 +26,10 @@ from seatsim.recordings.replay import COMPARED, NOISE_FACTOR, simulate_table
 from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
+from seatsim.schema.content import show_record
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import bounds, replace_fields
 from seatsim.schema.guarded import expect, read_json
-from seatsim.schema.notebook import show_record
 from seatsim.schema.registry import Record
 
 _EXCITATION_STD = 0.15

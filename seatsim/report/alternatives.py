@@ -8,11 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.metrics.arrays import ratio
+from seatsim.metrics.motion import ratio
 from seatsim.plots.labels import format_percent
 from seatsim.plots.runs.naming import distinguish_runs
 from seatsim.report.formatting import format_quantity
-from seatsim.scenario.conditions import group_by_condition, is_passive
+from seatsim.scenario.scenario import group_by_condition, is_passive
 from seatsim.simulation.result import Run
 
 COMFORT, UNWEIGHTED, TRAVEL = "driver_acceleration_weighted", "driver_acceleration_rms", "suspension_displacement_rms"

@@ -18,7 +18,7 @@ from seatsim.report.alternatives import (
     state_comfort,
 )
 from seatsim.report.formatting import format_quantity
-from seatsim.scenario.conditions import choice_of
+from seatsim.scenario.scenario import choice_of
 from seatsim.schema.text import name_some
 from seatsim.simulation.result import Run
 

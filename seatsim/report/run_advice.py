@@ -11,7 +11,7 @@ from seatsim.plots.runs.naming import label_runs
 from seatsim.report.alternatives import SAME, read_metric
 from seatsim.report.formatting import format_quantity
 from seatsim.report.headline import count_times
-from seatsim.scenario.conditions import condition_of
+from seatsim.scenario.scenario import condition_of
 from seatsim.schema.errors import RunError
 from seatsim.schema.text import join_names, name_some
 from seatsim.simulation.result import Run

@@ -21,7 +21,7 @@ from seatsim.report.credibility.card import say_doubt, show_card
 from seatsim.report.credibility.evidence import collect_sweep
 from seatsim.report.method import describe_method
 from seatsim.report.sweep_choices import advise_on_keys, choose_choice, tabulate_best
-from seatsim.scenario.conditions import is_condition
+from seatsim.scenario.scenario import is_condition
 from seatsim.sweeps.outcome import FAILED, UNVERIFIED
 from seatsim.sweeps.rows import NAMES, Exceedance, SweepRows
 from seatsim.sweeps.sensitivity import Sensitivities, choose_key

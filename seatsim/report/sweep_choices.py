@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from seatsim.plots.labels import format_number, format_percent
 from seatsim.plots.sweeps import COMFORT, describe_column, format_level
 from seatsim.report.blocks import Block, Table
-from seatsim.scenario.conditions import is_condition
+from seatsim.scenario.scenario import is_condition
 from seatsim.sweeps.rows import SweepRows
 from seatsim.sweeps.sensitivity import Sensitivity, choose_key
 

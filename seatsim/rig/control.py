@@ -30,7 +30,7 @@ from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant
 from seatsim.schema.registry import Record, Registry
 
-T = TypeVar("T", bound=type)
+_T = TypeVar("_T", bound=type)
 State = tuple[float, ...]
 """State of a law between two sampling instants; empty where it has no memory."""
 
@@ -139,6 +139,6 @@ LAWS: Registry[Record, LawSpecification] = Registry("law")
 """All control laws by name."""
 
 
-def law(name: str, initial: State = (), replays: bool = False, source: str = "") -> Callable[[T], T]:
+def law(name: str, initial: State = (), replays: bool = False, source: str = "") -> Callable[[_T], _T]:
     """Register a record class as the control law `law: name` with the `initial` value of its state."""
     return LAWS.register(name, LawSpecification(initial, replays, source))

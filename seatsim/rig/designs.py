@@ -16,11 +16,11 @@ from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant
 from seatsim.schema.arrays import Array
 
-Progress = Callable[[str], object]
+_Progress = Callable[[str], object]
 """Callback that gets a line on the progress of a long computation."""
 
 
-class NormProof(Protocol):
+class _NormProof(Protocol):
     """A proof that the H-infinity norm of a stable loop lies below `gamma`."""
 
     @property
@@ -55,7 +55,7 @@ class DesignedLoop(Protocol):
         """H-infinity norm from disturbance to performance output."""
 
     @property
-    def certificate(self) -> NormProof | None:
+    def certificate(self) -> _NormProof | None:
         """Proof of the norm; None where there is none in double precision."""
 
     @property
@@ -91,7 +91,7 @@ class SynthesisedDesign(Protocol):
         """Lower bound of the norm for linear controllers of any order."""
 
     @property
-    def certificate(self) -> NormProof | None:
+    def certificate(self) -> _NormProof | None:
         """Proof of `gamma`."""
 
     @property
@@ -110,7 +110,7 @@ class SynthesisedDesign(Protocol):
     def proof(self) -> BoxProof | None:
         """Whether any permitted gain is better by more than 0.1 %, where `prove` was asked."""
 
-    def prove(self, progress: Progress) -> SynthesisedDesign:
+    def prove(self, progress: _Progress) -> SynthesisedDesign:
         """Return the design with its `proof`."""
 
     def save(self, path: str | Path) -> None:
@@ -121,7 +121,7 @@ class SynthesisedDesign(Protocol):
 class SynthesisedLaw(Protocol):
     """A law whose gain is synthesised from weights and whose design can be reported and saved."""
 
-    def synthesis(self, plant: Plant, progress: Progress) -> SynthesisedDesign:
+    def synthesis(self, plant: Plant, progress: _Progress) -> SynthesisedDesign:
         """Return the design for a seat."""
 
 

@@ -18,9 +18,9 @@ from pydantic import Field
 
 from seatsim.schema.arrays import Array
 
-ModelName = Literal["single_mass", "iso5982", "wan_schimmels", "boileau_rakheja"]
-SINGLE_MASS: ModelName = "single_mass"
-CONTACT = -1
+_ModelName = Literal["single_mass", "iso5982", "wan_schimmels", "boileau_rakheja"]
+SINGLE_MASS: _ModelName = "single_mass"
+_CONTACT = -1
 """Number of the point of contact in a link."""
 
 
@@ -28,12 +28,12 @@ class Driver(NamedTuple):
     """The driver of a seat: which body it is; `plant.driver_mass` is the mass that rests on the seat."""
 
     model: Annotated[
-        ModelName, Field(description="'single_mass', or a body: 'iso5982', 'wan_schimmels', 'boileau_rakheja'")
+        _ModelName, Field(description="'single_mass', or a body: 'iso5982', 'wan_schimmels', 'boileau_rakheja'")
     ] = SINGLE_MASS
 
 
 class Link(NamedTuple):
-    """Spring in N/m and dashpot in N s/m between two masses, by their numbers; CONTACT is the seat's surface."""
+    """Spring in N/m and dashpot in N s/m between two masses, by their numbers; _CONTACT is the seat's surface."""
 
     upper: int
     lower: int
@@ -57,8 +57,8 @@ class Body(NamedTuple):
         return self.contact + sum(self.masses)
 
 
-RECALLED = "recalled: the figures and the links were not read in the source"
-CUSHION_MASS = 1.0
+_RECALLED = "recalled: the figures and the links were not read in the source"
+_CUSHION_MASS = 1.0
 """kg that move with the surface of the cushion, for models without a mass there (ours): without it the contact point
 would have no inertia of its own. It raises the apparent mass by as much."""
 
@@ -66,16 +66,16 @@ BODIES: Mapping[str, Body] = {
     "iso5982": Body(
         contact=2.0,
         masses=(45.0, 6.0, 2.0),
-        links=(Link(0, CONTACT, 36200.0, 1390.0), Link(1, CONTACT, 9990.0, 387.0), Link(2, 1, 34400.0, 234.0)),
+        links=(Link(0, _CONTACT, 36200.0, 1390.0), Link(1, _CONTACT, 9990.0, 387.0), Link(2, 1, 34400.0, 234.0)),
         head=2,
         source="ISO 5982:2001, model of a person of 75 kg, of whom 55 kg rest on the seat",
-        confidence=RECALLED,
+        confidence=_RECALLED,
     ),
     "wan_schimmels": Body(
-        contact=CUSHION_MASS,
+        contact=_CUSHION_MASS,
         masses=(36.0, 5.5, 15.0, 4.17),
         links=(
-            Link(0, CONTACT, 49340.0, 2475.0),
+            Link(0, _CONTACT, 49340.0, 2475.0),
             Link(1, 0, 192000.0, 909.1),
             Link(2, 1, 10000.0, 200.0),
             Link(2, 0, 20000.0, 330.0),
@@ -83,20 +83,20 @@ BODIES: Mapping[str, Body] = {
         ),
         head=3,
         source="Wan and Schimmels 1995: thighs and pelvis, lower torso, upper torso, head",
-        confidence=RECALLED,
+        confidence=_RECALLED,
     ),
     "boileau_rakheja": Body(
-        contact=CUSHION_MASS,
+        contact=_CUSHION_MASS,
         masses=(12.78, 8.62, 28.49, 5.31),
         links=(
-            Link(0, CONTACT, 90000.0, 2064.0),
+            Link(0, _CONTACT, 90000.0, 2064.0),
             Link(1, 0, 162800.0, 4585.0),
             Link(2, 1, 183000.0, 4750.0),
             Link(3, 2, 310000.0, 400.0),
         ),
         head=3,
         source="Boileau and Rakheja 1998: thighs and pelvis, lower torso, chest, head and neck",
-        confidence=RECALLED,
+        confidence=_RECALLED,
     ),
 }
 """Bodies by the name of their model."""
@@ -115,7 +115,7 @@ def body_matrices(body: Body, mass: float | None = None) -> BodyMatrices:
     count, scale = len(body.masses), 1.0 if mass is None else mass / body.mass
     stiffness, damping = np.zeros((count, count)), np.zeros((count, count))
     for link in body.links:
-        ends = [end for end in (link.upper, link.lower) if end != CONTACT]
+        ends = [end for end in (link.upper, link.lower) if end != _CONTACT]
         signs = np.outer([1.0, -1.0][: len(ends)], [1.0, -1.0][: len(ends)])
         stiffness[np.ix_(ends, ends)] += link.stiffness * signs
         damping[np.ix_(ends, ends)] += link.damping * signs

@@ -21,8 +21,8 @@ from seatsim.rig.sensors import READINGS, Sensors, at_rest
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 
-QUIET = np.zeros((1, READINGS))
-SMALL = 1e-9
+_QUIET = np.zeros((1, READINGS))
+_SMALL = 1e-9
 """Size of the motion at which a law is asked, in the units of its measurement."""
 
 
@@ -129,19 +129,19 @@ def build_sampled_loop(
         raise InputError(f"{type(law).__name__} wants a current; only a law that wants a force has a linear loop")
     period = _sample_period(law, len(initial), plant, coil, round(sample_time / step), step, sensors)
     size = 5 + (len(at_rest(0.0)) if sensors else 0) + len(initial)
-    columns = [period(SMALL * unit, 0.0) for unit in np.eye(size)]
-    a, c = np.array([z for z, _ in columns]).T / SMALL, np.array([answer for _, answer in columns]) / SMALL
-    b = period(np.zeros(size), SMALL)[0] / SMALL
+    columns = [period(_SMALL * unit, 0.0) for unit in np.eye(size)]
+    a, c = np.array([z for z, _ in columns]).T / _SMALL, np.array([answer for _, answer in columns]) / _SMALL
+    b = period(np.zeros(size), _SMALL)[0] / _SMALL
     _require_linear(period, a, b, c)
     return SampledLoop(a, b, c, sample_time)
 
 
-Period = Callable[[Array, float], tuple[Array, float]]
+_Period = Callable[[Array, float], tuple[Array, float]]
 
 
 def _sample_period(
     law: ForceLaw, memory: int, plant: Plant, coil: Coil, every: int, step: float, sensors: Sensors | None
-) -> Period:
+) -> _Period:
     """Return the function that carries (z, command) over one sample and says what the law wants at its beginning."""
     A, B = build_seat_with_coil(plant, coil)
     # Imported here: a run does not need it, and it takes long.
@@ -154,7 +154,7 @@ def _sample_period(
         seat, sensor_state, own = z[:5], tuple(z[5 : len(z) - memory]), tuple(z[len(z) - memory :])
         y = _true_measurement(A, seat)
         if instruments:
-            y, sensor_state = instruments.read(y, QUIET, 0, sensor_state)
+            y, sensor_state = instruments.read(y, _QUIET, 0, sensor_state)
         answer = law.wanted_force(y, own)
         own = law.update(y, own) if isinstance(law, LawWithMemory) else own
         # As in a run: the command of this instant holds until the next, while the sensors' filters see every step.
@@ -174,10 +174,10 @@ def _true_measurement(A: Array, seat: Array) -> Measurement:
     return Measurement(0.0, x, v, v, v + vc, 0.0, rates[1], rates[1] + rates[3], force, 0.0, 20.0, math.nan)
 
 
-def _require_linear(period: Period, a: Array, b: Array, c: Array) -> None:
+def _require_linear(period: _Period, a: Array, b: Array, c: Array) -> None:
     """Raise InputError where superposition does not give the answer to a vector of many entries."""
     # Any vector without a zero entry will do; an answer in N over 1e-9 of motion is rounded to about 1e-3.
     some = np.cos(np.arange(len(a)) + 1.0)
-    z, answer = period(SMALL * some, -0.7 * SMALL)
-    if not (np.allclose(z / SMALL, a @ some - 0.7 * b) and np.allclose(answer / SMALL, c @ some, atol=1e-3)):
+    z, answer = period(_SMALL * some, -0.7 * _SMALL)
+    if not (np.allclose(z / _SMALL, a @ some - 0.7 * b) and np.allclose(answer / _SMALL, c @ some, atol=1e-3)):
         raise InputError("the law is not linear at small motion; it has no loop of poles and margins")

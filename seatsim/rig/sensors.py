@@ -18,13 +18,14 @@ from seatsim.schema.fields import param
 
 READINGS = 4
 """Suspension displacement, then the accelerations of frame, driver and floor."""
-STREAM = 1
+_STREAM = 1
 """Key of the noise's random stream beside the seed, so that the noise is independent of the floor's random draw."""
 
 # Order of the instruments' state: input and output of each anti-alias filter, then values at the law's last sample.
-X_TRUE, X_FILTERED, FRAME_TRUE, FRAME_FILTERED, DRIVER_TRUE, DRIVER_FILTERED, FLOOR_TRUE, FLOOR_FILTERED = range(8)
-X_READ, X_VELOCITY, FRAME_READ, FRAME_VELOCITY, DRIVER_READ, DRIVER_VELOCITY = range(8, 14)
-FILTERS, INSTRUMENTS = 8, 14
+_X_TRUE, _X_FILTERED, _FRAME_TRUE, _FRAME_FILTERED = range(4)
+_DRIVER_TRUE, _DRIVER_FILTERED, _FLOOR_TRUE, _FLOOR_FILTERED = range(4, 8)
+_X_READ, _X_VELOCITY, _FRAME_READ, _FRAME_VELOCITY, _DRIVER_READ, _DRIVER_VELOCITY = range(8, 14)
+_FILTERS, INSTRUMENTS = 8, 14
 """Length of the anti-alias filters' part of the state, and of all of it."""
 
 
@@ -74,17 +75,17 @@ class Instruments(NamedTuple):
         a, frame = self.alias, floor + rates[VELOCITY]
         driver = frame + rates[CUSHION_VELOCITY]
         filtered = (
-            x, advance_lag(a, s[X_FILTERED], s[X_TRUE], x),
-            frame, advance_lag(a, s[FRAME_FILTERED], s[FRAME_TRUE], frame),
-            driver, advance_lag(a, s[DRIVER_FILTERED], s[DRIVER_TRUE], driver),
-            floor, advance_lag(a, s[FLOOR_FILTERED], s[FLOOR_TRUE], floor),
+            x, advance_lag(a, s[_X_FILTERED], s[_X_TRUE], x),
+            frame, advance_lag(a, s[_FRAME_FILTERED], s[_FRAME_TRUE], frame),
+            driver, advance_lag(a, s[_DRIVER_FILTERED], s[_DRIVER_TRUE], driver),
+            floor, advance_lag(a, s[_FLOOR_FILTERED], s[_FLOOR_TRUE], floor),
         )  # fmt: skip
-        return filtered + s[FILTERS:]
+        return filtered + s[_FILTERS:]
 
     def read(self, true: Measurement, noise: Array, sample: int, s: State) -> tuple[Measurement, State]:
         """Return what the law sees at one of its samples, with that row of the `noise`, and the state after it."""
-        x, f = s[X_FILTERED] + noise[sample, 0], s[FRAME_FILTERED] + noise[sample, 1]
-        d, z = s[DRIVER_FILTERED] + noise[sample, 2], s[FLOOR_FILTERED] + noise[sample, 3] + self.floor
+        x, f = s[_X_FILTERED] + noise[sample, 0], s[_FRAME_FILTERED] + noise[sample, 1]
+        d, z = s[_DRIVER_FILTERED] + noise[sample, 2], s[_FLOOR_FILTERED] + noise[sample, 3] + self.floor
         return derive_velocities(self.derivative, self.leak, (x, f, d, z), true, s)
 
     def take(self, read: Measurement, s: State) -> tuple[Measurement, State]:
@@ -105,13 +106,13 @@ def derive_velocities(
     x, f, d, z = readings
     # The difference of a reading and its lag, times the rate. The readings' difference is taken first: the lag would be
     # nearly the reading itself, and their difference would magnify its rounding error.
-    v = derivative.keep * s[X_VELOCITY] + derivative.rate * (1.0 - derivative.new) * (x - s[X_READ])
-    frame = leak.keep * s[FRAME_VELOCITY] + (leak.old * s[FRAME_READ] + leak.new * f) / leak.rate
-    driver = leak.keep * s[DRIVER_VELOCITY] + (leak.old * s[DRIVER_READ] + leak.new * d) / leak.rate
+    v = derivative.keep * s[_X_VELOCITY] + derivative.rate * (1.0 - derivative.new) * (x - s[_X_READ])
+    frame = leak.keep * s[_FRAME_VELOCITY] + (leak.old * s[_FRAME_READ] + leak.new * f) / leak.rate
+    driver = leak.keep * s[_DRIVER_VELOCITY] + (leak.old * s[_DRIVER_READ] + leak.new * d) / leak.rate
     y = Measurement(
         true.time, x, v, frame, driver, z, f, d, true.damper_force, true.current, true.temperature, true.replayed
     )
-    return y, s[:FILTERS] + (x, v, f, frame, d, driver)  # noqa: RUF005 - numba has no starred tuples
+    return y, s[:_FILTERS] + (x, v, f, frame, d, driver)  # noqa: RUF005 - numba has no starred tuples
 
 
 Sensing = Direct | Instruments
@@ -150,7 +151,7 @@ class Sensors(NamedTuple):
 
     def noise(self, samples: int, seed: int) -> Array:
         """Draw the noise of the readings at `samples` samples of the law, shape (samples, READINGS)."""
-        rng = np.random.default_rng([seed, STREAM])
+        rng = np.random.default_rng([seed, _STREAM])
         a = self.acceleration_noise
         return rng.standard_normal((samples, READINGS)) * [self.displacement_noise, a, a, a]
 
@@ -158,6 +159,6 @@ class Sensors(NamedTuple):
 def at_rest(displacement: float) -> State:
     """Return the instruments' state of a seat at rest at a suspension displacement in m."""
     state = [0.0] * INSTRUMENTS
-    for index in (X_TRUE, X_FILTERED, X_READ):
+    for index in (_X_TRUE, _X_FILTERED, _X_READ):
         state[index] = displacement
     return tuple(state)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any, cast
+from typing import cast
 
 from seatsim.cosimulation.damper import PREFIX, FmuDamper
 from seatsim.cosimulation.description import (
@@ -27,7 +27,7 @@ from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import KeyPath
 
 
-def stated_unit(stated: Mapping[str, object], source: Source, keys: KeyPath) -> Damper:
+def _stated_unit(stated: Mapping[str, object], source: Source, keys: KeyPath) -> Damper:
     """Return the damper of `{model: fmu:FILE, inputs: {QUANTITY: NAME}, outputs: {force: NAME}, parameters: {...}}`.
 
     FILE is taken from the folder of the source. Only what the unit says of itself is read; nothing of it runs.
@@ -55,8 +55,7 @@ def stated_unit(stated: Mapping[str, object], source: Source, keys: KeyPath) -> 
     for name, value in mapping(stated.get("parameters", {}), source, (*keys, "parameters")).items():
         with _placed(source, (*keys, "parameters", name)):
             values[name] = check_parameter(unit, name, value)
-    found: Any = FmuDamper(str(path), tuple(inputs.items()), outputs[FORCE], tuple(values.items()))
-    return cast(Damper, found)
+    return cast("Damper", FmuDamper(str(path), tuple(inputs.items()), outputs[FORCE], tuple(values.items())))
 
 
 def _names(
@@ -77,7 +76,7 @@ def _placed(source: Source, keys: KeyPath) -> Iterator[None]:
         raise source.error(keys, str(error)) from error
 
 
-MODELS = "parameters_by_model"
+_MODELS = "parameters_by_model"
 """Name of what a JSON Schema states of the parameters of each damper model."""
 
 
@@ -91,7 +90,7 @@ def read_damper(values: object, source: Source, keys: KeyPath, extra: tuple[str,
     """
     stated, errors = mapping(values, source, keys), list[InputError]()
     if str(stated.get("model")).startswith(PREFIX):
-        return DamperChoice(stated_unit(stated, source, keys), TemperatureFactors())
+        return DamperChoice(_stated_unit(stated, source, keys), TemperatureFactors())
     with gathered(errors):
         check_keys(stated, ("model", "parameters", "temperature_factors", *extra), source, keys)
     with gathered(errors):
@@ -125,7 +124,7 @@ def damper_schema(extra: Mapping[str, Schema] | None = None, of_a_unit: bool = F
     if of_a_unit:
         keys["inputs"] = mapping_schema(dict.fromkeys(QUANTITIES, TEXT))
         keys["outputs"] = mapping_schema({FORCE: TEXT}, (FORCE,))
-    return mapping_schema(keys | dict(extra or {}), ("model",)) | {"allOf": [{"$ref": f"#/$defs/{MODELS}"}]}
+    return mapping_schema(keys | dict(extra or {}), ("model",)) | {"allOf": [{"$ref": f"#/$defs/{_MODELS}"}]}
 
 
 def schema_of_models() -> Schema:
@@ -136,4 +135,4 @@ def schema_of_models() -> Schema:
         required = field_names(record) if DAMPERS.specification_of(record).complete else None
         return {"properties": {"parameters": record_schema(record, required)}}
 
-    return {"$defs": {MODELS: cases_schema("damper", "model", own)}}
+    return {"$defs": {_MODELS: cases_schema("damper", "model", own)}}

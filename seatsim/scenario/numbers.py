@@ -1,20 +1,21 @@
-"""Keys and numbers of a scenario by the dotted keys of its file, such as `plant.driver_mass`, on the frozen value."""
+"""Keys and numbers of a scenario by the dotted keys of its file, such as `plant.driver_mass`, and doubts about them."""
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterable, Mapping
-from typing import Any, cast
+from typing import Any
 
-from seatsim.dampers.base import Damper
-from seatsim.rig.control import Law
+import numpy as np
+
+from seatsim.effects.base import EFFECTS, acts_on
 from seatsim.rig.sensors import Sensors
-from seatsim.rig.temperature import Thermal
+from seatsim.rig.temperature import TemperatureFactors, Thermal
 from seatsim.scenario.scenario import Scenario
 from seatsim.scenario.sections import SECTIONS
 from seatsim.schema.errors import nearest
-from seatsim.schema.fields import FieldSpecification, bounds, describe, field_names, replace_fields
-from seatsim.schema.registry import Record
+from seatsim.schema.fields import FieldSpecification, bounds, describe, doubt, field_names, replace_fields
+from seatsim.schema.registry import Record, is_own, specification_of
 from seatsim.schema.validation import check_value
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import KeyPath
@@ -47,11 +48,11 @@ def set_number(scenario: Scenario, key: str, value: float) -> Scenario:
     section, _, name = key.rpartition(".")
     if not section:
         return dataclasses.replace(scenario, temperature=value)
-    record = replace_fields(_records(scenario)[section], {name: value})
+    record: Any = replace_fields(_records(scenario)[section], {name: value})
     if section == LAW and scenario.control is not None:
-        return dataclasses.replace(scenario, control=dataclasses.replace(scenario.control, law=cast("Law", record)))
+        return dataclasses.replace(scenario, control=dataclasses.replace(scenario.control, law=record))
     if section == "damper.parameters":
-        return dataclasses.replace(scenario, damper=dataclasses.replace(scenario.damper, record=cast("Damper", record)))
+        return dataclasses.replace(scenario, damper=dataclasses.replace(scenario.damper, record=record))
     changed: dict[str, Any] = {SECTIONS[section].field or section: record}
     return dataclasses.replace(scenario, **changed)
 
@@ -90,7 +91,7 @@ def check_number(scenario: Scenario, key: str, value: float, source: Source, key
     check_value(record, field, value, source, keys)
 
 
-def list_records(scenario: Scenario) -> dict[str, Record]:
+def _list_records(scenario: Scenario) -> dict[str, Record]:
     """Return the records whose fields are keys of a scenario, by the dotted key that they stand under in its file.
 
     A temperature that is stated as a number is the start of one that changes; sensors that are not stated are those
@@ -98,7 +99,8 @@ def list_records(scenario: Scenario) -> dict[str, Record]:
     """
     thermal = scenario.temperature if isinstance(scenario.temperature, Thermal) else Thermal(scenario.temperature)
     control, damper = scenario.control, scenario.damper
-    found: dict[str, object] = {
+    # What is registered as a law, damper or excitation is a record of its keys.
+    found: dict[str, Any] = {
         "plant": scenario.plant,
         "driver": scenario.driver,
         "damper.parameters": damper.record,
@@ -112,15 +114,14 @@ def list_records(scenario: Scenario) -> dict[str, Record]:
         "start": scenario.start,
     }
     found |= {f"effects.{index}.parameters": effect for index, effect in enumerate(scenario.effects)}
-    # What is registered as a law, damper or excitation is a record of its keys.
-    return {section: cast("Record", record) for section, record in found.items() if record is not None}
+    return {section: record for section, record in found.items() if record is not None}
 
 
 def list_keys(scenario: Scenario) -> dict[str, FieldSpecification]:
     """Return the dotted keys of a scenario that are fields of a record, with unit and meaning of each."""
     fields = {
         f"{section}.{field.name}": field
-        for section, record in list_records(scenario).items()
+        for section, record in _list_records(scenario).items()
         for field in describe(type(record))
     }
     return {**fields, TEMPERATURE: fields[f"{TEMPERATURE}.start"]}
@@ -135,6 +136,63 @@ def find_unit(scenario: Scenario, key: str) -> str:
 
 def _records(scenario: Scenario) -> dict[str, Record]:
     """Return the records of numbers by the section of the file that they stand under."""
-    known = list_records(scenario)
+    known = _list_records(scenario)
     sections = (*PARAMETERS, LAW, *([TEMPERATURE] if isinstance(scenario.temperature, Thermal) else []))
     return {section: known[section] for section in sections if section in known}
+
+
+def list_doubts(scenario: Scenario) -> list[str]:
+    """Return a sentence for each value that is unusual for a seat, and for each that changes nothing."""
+    doubts = []
+    for section, record in _list_records(scenario).items():
+        for field in describe(type(record)):
+            problem = doubt(field, getattr(record, field.name))
+            if problem:
+                keys = (
+                    (*section.split("."), field.name) if section != TEMPERATURE or _is_thermal(scenario) else (section,)
+                )
+                doubts.append(f"{_place(scenario, keys)}: {problem}")
+    if TEMPERATURE in scenario.label and not _depends_on_temperature(scenario):
+        doubts.append(
+            f"{_place(scenario, (TEMPERATURE,))}: nothing depends on the temperature that is varied, so that all runs"
+            " are the same; state damper.temperature_factors, or damper.thermal_fade under effects"
+        )
+    return doubts + _list_unread(scenario)
+
+
+def _list_unread(scenario: Scenario) -> list[str]:
+    """Return a sentence for each effect on a thermocouple that nothing reads, since the fluid itself is simulated."""
+    if not _is_thermal(scenario) or scenario.control is None or specification_of(type(scenario.control.law)).replays:
+        return []
+    ramp = np.arange(3.0)
+    return [
+        f"{_place(scenario, ('effects',))}: {EFFECTS.name_of(type(effect))} states how the fluid differs from its"
+        " thermocouple, which changes nothing here, since the temperature of the fluid is simulated; state it as a"
+        " number, or replay a recorded damper_temperature"
+        for effect in scenario.effects
+        if acts_on(type(effect), (TEMPERATURE,)) and not np.array_equal(getattr(effect, TEMPERATURE)(1.0, ramp), ramp)
+    ]
+
+
+def _is_thermal(scenario: Scenario) -> bool:
+    return isinstance(scenario.temperature, Thermal)
+
+
+def _place(scenario: Scenario, keys: tuple[str, ...]) -> str:
+    return scenario.source.place(keys) if scenario.source else f"{scenario.name}, {'.'.join(keys)}"
+
+
+def _depends_on_temperature(scenario: Scenario) -> bool:
+    """Return whether damper, effects, law or the damper that an inverse assumes change with the temperature."""
+    inverse, law = (scenario.control.inverse, type(scenario.control.law)) if scenario.control else (None, None)
+    # What a law of the user's own reads is not known.
+    if law is not None and (is_own(law) or any(TEMPERATURE in name for name in field_names(law))):
+        return True
+    factors = [scenario.damper.factors, *([inverse.damper.factors] if inverse else [])]
+    return any(map(_act, factors)) or any(
+        acts_on(type(effect), ("factors", TEMPERATURE)) for effect in scenario.effects
+    )
+
+
+def _act(factors: TemperatureFactors) -> bool:
+    return any((factors.viscous, factors.stiffness, factors.yield_force))

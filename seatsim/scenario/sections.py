@@ -47,12 +47,12 @@ _LARGEST_SEED = 2**63 - 1
 _LONGEST_SAMPLE_TIME = 1.0
 """Seconds between two samples of a law."""
 FILES = (("controller", "design"), ("excitation", "path"))
-"""Section and key under which a scenario names a file, from its own folder."""
+"""_Section and key under which a scenario names a file, from its own folder."""
 # An excitation may read a recording, whose nominal is a scenario: their package builds on this one.
-EXCITATIONS: Registry[Excitation, object] = Registry("excitation")
+_EXCITATIONS: Registry[Excitation, object] = Registry("excitation")
 
 
-class Section(NamedTuple):
+class _Section(NamedTuple):
     """A key at the top of a scenario file: what reads its value, and what gives the JSON Schema of it.
 
     `record` is the class whose fields are its keys, where these are always the same; `field` is that of a `Scenario`
@@ -65,9 +65,9 @@ class Section(NamedTuple):
     field: str = ""
 
 
-def _of_record(key: str, record: type, required: tuple[str, ...] = (), field: str = "") -> Section:
+def _of_record(key: str, record: type, required: tuple[str, ...] = (), field: str = "") -> _Section:
     """Return the section whose keys are the fields of a record; `required` ones must be stated despite a default."""
-    return Section(
+    return _Section(
         lambda value, source: build(record, value, source, (key,), required),
         lambda: record_schema(record, required or None),
         record,
@@ -158,7 +158,7 @@ _CONTROL: Mapping[str, Callable[[], Schema]] = {
 def _read_excitation(values: object, source: Source) -> Excitation:
     keys: KeyPath = ("excitation",)
     stated = mapping(values, source, keys)
-    cls = chosen_class(EXCITATIONS, stated, "kind", source, keys)
+    cls = chosen_class(_EXCITATIONS, stated, "kind", source, keys)
     return build(cls, _own_keys(stated, ("kind",), "path", source), source, keys)
 
 
@@ -192,28 +192,28 @@ def _effects_schema() -> Schema:
     return {"type": "array", "items": mapping_schema(keys, ("effect",)) | cases_schema("effect", "effect", own)}
 
 
-SECTIONS: Mapping[str, Section] = {
-    "name": Section(_read_name, lambda: TEXT),
-    "seed": Section(
+SECTIONS: Mapping[str, _Section] = {
+    "name": _Section(_read_name, lambda: TEXT),
+    "seed": _Section(
         _read_seed, lambda: {"type": "integer", "minimum": 0, "description": "every random draw derives from it"}
     ),
     "plant": _of_record("plant", Plant),
     "driver": _of_record("driver", Driver),
-    "damper": Section(
+    "damper": _Section(
         lambda value, source: read_damper(value, source, ("damper",)), lambda: damper_schema(of_a_unit=True)
     ),
     "actuator": _of_record("actuator", Coil, ("rate", "max_current"), "coil"),
-    "temperature": Section(_read_temperature, _temperature_schema, Thermal),
-    "controller": Section(
+    "temperature": _Section(_read_temperature, _temperature_schema, Thermal),
+    "controller": _Section(
         _read_control,
         lambda: named_schema("law", "law", {key: schema() for key, schema in _CONTROL.items()}),
         field="control",
     ),
-    "excitation": Section(_read_excitation, lambda: named_schema("excitation", "kind", {})),
-    "effects": Section(_read_effects, _effects_schema),
+    "excitation": _Section(_read_excitation, lambda: named_schema("excitation", "kind", {})),
+    "effects": _Section(_read_effects, _effects_schema),
     "solver": _of_record("solver", Solver),
     "start": _of_record("start", Start),
-    "checks": Section(read_checks, checks_schema),
+    "checks": _Section(read_checks, checks_schema),
 }
 """What a scenario is made of, by the keys at the top of its file."""
 OF_ALL_RUNS: Mapping[str, Schema] = {

@@ -18,14 +18,15 @@ that are marked by `written`. The annotation of a field says where it is written
 from __future__ import annotations
 
 import dataclasses
+import html
 import math
-from collections.abc import Callable, Iterator, Mapping, Sized
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Sized
 from functools import cache
 from pathlib import PurePath
-from typing import Annotated, Any, NamedTuple, TypeVar, get_args, get_origin, get_type_hints
+from typing import Annotated, NamedTuple, TypeGuard, TypeVar, get_args, get_origin, get_type_hints
 
-T = TypeVar("T")
-F = TypeVar("F", bound=Callable[[Any], object])
+_T = TypeVar("_T")
+F = TypeVar("F", bound=Callable[..., object])
 
 
 class Form(NamedTuple):
@@ -44,18 +45,18 @@ class Form(NamedTuple):
     if_any: bool = False
 
 
-Unwritten = Annotated[T, Form(left_out=True)]
-Joined = Annotated[T, Form(joined=True)]
-IfAny = Annotated[T, Form(if_any=True)]
+Unwritten = Annotated[_T, Form(left_out=True)]
+Joined = Annotated[_T, Form(joined=True)]
+IfAny = Annotated[_T, Form(if_any=True)]
 
 
-class WrittenField(NamedTuple):
+class _WrittenField(NamedTuple):
     """A field or property as it is written: its name in Python and in JSON, its form, and its type."""
 
     name: str
     key: str
     form: Form
-    hint: Any
+    hint: object
 
 
 def written(key: str = "", *, joined: bool = False, if_any: bool = False) -> Callable[[F], F]:
@@ -68,13 +69,13 @@ def written(key: str = "", *, joined: bool = False, if_any: bool = False) -> Cal
     return mark
 
 
-def is_record(kind: object) -> bool:
+def is_record(kind: object) -> TypeGuard[type]:
     """Whether a class is that of records."""
     return isinstance(kind, type) and (hasattr(kind, "_fields") or dataclasses.is_dataclass(kind))
 
 
 @cache
-def list_written(record: type) -> tuple[WrittenField, ...]:
+def list_written(record: type) -> tuple[_WrittenField, ...]:
     """Return what is written of the records of a class: its fields in order, then its marked properties."""
     hints = get_type_hints(record, include_extras=True)
     found = []
@@ -82,11 +83,11 @@ def list_written(record: type) -> tuple[WrittenField, ...]:
         form = _find_form(hints[name])
         if not form.left_out:
             key = form.key or (f"{name}_{form.unit}" if form.unit else name)
-            found.append(WrittenField(name, key, form, str if form.file else hints[name]))
+            found.append(_WrittenField(name, key, form, str if form.file else hints[name]))
     for name, function in _list_properties(record):
         form = vars(function)["form"]
         found.append(
-            WrittenField(name, form.key or name, form, get_type_hints(function, include_extras=True)["return"])
+            _WrittenField(name, form.key or name, form, get_type_hints(function, include_extras=True)["return"])
         )
     return tuple(found)
 
@@ -96,14 +97,14 @@ def _find_form(hint: object) -> Form:
     return next((mark for mark in marks if isinstance(mark, Form)), Form())
 
 
-def _list_properties(record: type) -> Iterator[tuple[str, Any]]:
+def _list_properties(record: type) -> Iterator[tuple[str, Callable[..., object]]]:
     for kind in reversed(record.__mro__):
         for name, value in vars(kind).items():
-            if isinstance(value, property) and "form" in vars(value.fget):
+            if isinstance(value, property) and value.fget and "form" in vars(value.fget):
                 yield name, value.fget
 
 
-def find_record(hint: Any) -> type | None:
+def find_record(hint: object) -> type | None:
     """Return the record class that a type is or may be, None for the types of other values."""
     if get_origin(hint) is Annotated:
         return find_record(get_args(hint)[0])
@@ -139,3 +140,48 @@ def to_content(record: object) -> dict[str, object]:
         elif not (field.form.if_any and (value is None or (isinstance(value, Sized) and not len(value)))):
             content[field.key] = field.form.file if field.form.file and value is not None else plain(value)
     return content
+
+
+_SHOWN = 12
+"""Rows of a list of records that are shown: the first ones are those that matter."""
+
+
+def show_record(record: object, *keys: str) -> str:
+    """Return in HTML what a record is as JSON, or some keys of it: its values, then each list of records as a table.
+
+    Keys of what lies deeper have dots; of the records in a list their single values are shown. Numbers are rounded to
+    four digits.
+    """
+    content = to_content(record)
+    values = dict(_flatten({key: content[key] for key in keys or content}))
+    lists = {key: value for key, value in values.items() if isinstance(value, list)}
+    tables = {key: rows for key, value in lists.items() if (rows := [row for row in value if isinstance(row, dict)])}
+    single = [{"": key, " ": value} for key, value in values.items() if key not in tables]
+    return "".join([_show_table("", single), *(_show_table(key, rows) for key, rows in tables.items())])
+
+
+def _flatten(content: Mapping[str, object], above: str = "") -> Iterator[tuple[str, object]]:
+    for key, value in content.items():
+        if isinstance(value, dict):
+            yield from _flatten(value, f"{above}{key}.")
+        else:
+            yield f"{above}{key}", value
+
+
+def _show_table(name: str, rows: Sequence[Mapping[str, object]]) -> str:
+    shown = [{key: cell for key, cell in row.items() if not isinstance(cell, dict)} for row in rows]
+    columns = list(dict.fromkeys(key for row in shown for key in row))
+    lines = [_row("th", columns)] if name else []
+    lines += [_row("td", (row.get(key) for key in columns)) for row in shown[: _SHOWN if name else None]]
+    heading = f"<p>{html.escape(name)}</p>" if name else ""
+    return f"{heading}<table>{''.join(lines)}</table>"
+
+
+def _row(tag: str, cells: Iterable[object]) -> str:
+    return f"<tr>{''.join(f'<{tag}>{html.escape(_say(cell))}</{tag}>' for cell in cells)}</tr>"
+
+
+def _say(value: object) -> str:
+    if isinstance(value, list):
+        return ", ".join(map(_say, value))
+    return "" if value is None else f"{value:.4g}" if isinstance(value, float) else str(value)

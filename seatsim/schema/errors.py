@@ -13,7 +13,7 @@ import difflib
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 
-LONGEST = 200
+_LONGEST = 200
 """Letters of a name from which on none is sought that is near: that takes ever longer, and it is none."""
 _LONGEST_MESSAGE = 2000
 
@@ -70,7 +70,7 @@ def list_sentences(error: BaseException) -> list[str]:
 
 def find_nearest(name: object, known: Iterable[str]) -> str:
     """Return the known name closest to `name`, an empty string where none is close."""
-    if len(str(name)) > LONGEST:
+    if len(str(name)) > _LONGEST:
         return ""
     matches = difflib.get_close_matches(str(name), [str(k) for k in known], n=1, cutoff=0.5)
     return matches[0] if matches else ""

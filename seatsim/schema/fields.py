@@ -5,7 +5,8 @@ A record is a `typing.NamedTuple` whose annotations carry `param(...)`:
     class Spring(NamedTuple):
         stiffness: Annotated[float, param("N/m", "spring stiffness", low=0)] = 4600.0
 
-Pydantic validates it from a mapping, numba compiles it as a typed record.
+Pydantic validates it from a mapping, numba compiles it as a typed record. A value that is permitted but unusual
+(`param(..., usual=(low, high))`) is doubted, with the unit in which it was probably meant.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from pydantic.fields import FieldInfo
 
 from seatsim.schema.registry import Record
 
-R = TypeVar("R")
+_R = TypeVar("_R")
 N = TypeVar("N", bound=Record)
 SLIGHTLY = 1e-9
 """How far above an open bound a value may come."""
@@ -66,10 +67,10 @@ def default_values(record: type) -> Mapping[str, object]:
     return defaults
 
 
-def validated(record: type[R], values: object) -> R:
+def validated(record: type[_R], values: object) -> _R:
     """Return the record of a class with the given values; raises `pydantic.ValidationError` where they do not fit."""
     known: type = record
-    return cast("R", adapter(known).validate_python(values))
+    return cast("_R", adapter(known).validate_python(values))
 
 
 @cache
@@ -86,7 +87,8 @@ def describe(record: type) -> list[FieldSpecification]:
         info = _field_info(hint)
         extra = info.json_schema_extra if info else None
         known = extra if isinstance(extra, dict) else {}
-        unit, usual = str(known.get("unit", "")), cast("list[float] | None", known.get("usual"))
+        unit, stated = str(known.get("unit", "")), known.get("usual")
+        usual = [each for each in stated if isinstance(each, int | float)] if isinstance(stated, list) else None
         meaning = (info.description or "") if info else ""
         required, default = name not in defaults, defaults.get(name)
         specifications.append(FieldSpecification(name, unit, meaning, default, required, usual))
@@ -100,16 +102,17 @@ def replace_fields(record: N, changes: Mapping[str, float]) -> N:
 
 def bounds(record: type, name: str) -> tuple[float, float]:
     """Return the least and the greatest value of a field; infinite where it has no such bound."""
-    limits = {"low": -math.inf, "high": math.inf}
+    low, high = -math.inf, math.inf
     info = _field_info(_hints(record)[name])
     for mark in info.metadata if info else ():
-        if isinstance(mark, Ge):
-            limits["low"] = float(mark.ge)  # type: ignore[arg-type]  # only comparable by type
-        elif isinstance(mark, Gt):
-            limits["low"] = float(mark.gt) + SLIGHTLY  # type: ignore[arg-type]  # only comparable by type
-        elif isinstance(mark, Le):
-            limits["high"] = float(mark.le)  # type: ignore[arg-type]  # only comparable by type
-    return limits["low"], limits["high"]
+        match mark:
+            case Ge(ge=int() | float() as bound):
+                low = float(bound)
+            case Gt(gt=int() | float() as bound):
+                low = float(bound) + SLIGHTLY
+            case Le(le=int() | float() as bound):
+                high = float(bound)
+    return low, high
 
 
 def choices(record: type, name: str) -> tuple[str, ...]:
@@ -127,3 +130,65 @@ def _field_info(hint: object) -> FieldInfo | None:
     if get_origin(hint) is not Annotated:
         return None
     return next((part for part in get_args(hint) if isinstance(part, FieldInfo)), None)
+
+
+class _MistakenUnit(NamedTuple):
+    """A unit in place of the SI unit: `factor * value + offset` is the value in SI."""
+
+    name: str
+    factor: float
+    offset: float = 0.0
+
+
+_MISTAKEN: Mapping[str, tuple[_MistakenUnit, ...]] = {
+    "m": (_MistakenUnit("mm", 1e-3), _MistakenUnit("cm", 1e-2)),
+    "kg": (_MistakenUnit("g", 1e-3), _MistakenUnit("t", 1e3)),
+    "N/m": (_MistakenUnit("N/mm", 1e3), _MistakenUnit("N/cm", 1e2)),
+    "N s/m": (_MistakenUnit("N s/mm", 1e3), _MistakenUnit("N s/cm", 1e2)),
+    "s": (_MistakenUnit("ms", 1e-3),),
+    "A": (_MistakenUnit("mA", 1e-3),),
+    "m/s": (_MistakenUnit("km/h", 1 / 3.6), _MistakenUnit("mm/s", 1e-3)),
+    "m/s^2": (_MistakenUnit("g", 9.80665), _MistakenUnit("mm/s^2", 1e-3)),
+    "degC": (_MistakenUnit("K", 1.0, -273.15), _MistakenUnit("degF", 5 / 9, -160 / 9)),
+}
+"""Units that stand in place of the SI unit, the likelier first."""
+
+
+UNUSUAL = "is unusual, since seats have"
+"""In every sentence of a doubt, by which such sentences are found among others."""
+
+
+def doubt(field: FieldSpecification, value: object) -> str:
+    """Return why a value of a field is unusual and what was probably meant, empty where it is usual.
+
+    A value of 0 means that the part is not there, and the default that nothing was stated.
+    """
+    if field.usual is None or value == field.default:
+        return ""
+    low, high = field.usual
+    numbers = value if isinstance(value, tuple) else (value,)
+    odd = next((number for number in numbers if isinstance(number, int | float) and not _is_usual(number, field)), None)
+    if odd is None:
+        return ""
+    unit = "" if field.unit == "-" else f" {field.unit}"
+    return f"{odd:g}{unit} {UNUSUAL} {low:g} to {high:g}{unit}{guess(odd, field)}"
+
+
+def guess(value: object, field: FieldSpecification) -> str:
+    """Return the unit in which a value would be usual, as the end of a sentence; empty where there is none."""
+    if not isinstance(value, int | float):
+        return ""
+    for unit in _MISTAKEN.get(field.unit, ()):
+        meant = unit.factor * value + unit.offset
+        if field.usual is not None and _is_usual(meant, field):
+            return f"; {value:g} {unit.name} would be {meant:.4g} {field.unit}"
+    return ""
+
+
+def _is_usual(value: float, field: FieldSpecification) -> bool:
+    if field.usual is None or value == 0.0:
+        return True
+    low, high = field.usual
+    # A range that begins above zero is one of magnitudes: the ends of a travel have both signs.
+    size = abs(value) if low > 0.0 else value
+    return low <= size <= high and math.isfinite(size)

@@ -19,8 +19,7 @@ from pathlib import Path
 
 from seatsim.schema.content import plain
 from seatsim.schema.errors import InputError, OutputError
-from seatsim.schema.guarded import check_links_on, check_no_link
-from seatsim.schema.leftovers import noted, uncut
+from seatsim.schema.guarded import check_links_on, check_no_link, noted, uncut
 
 _HOST = re.sub(r"[^0-9A-Za-z]", "_", socket.gethostname())[:40]
 _PART = re.compile(r"\..+\.(\w+)-(\d+)-[0-9a-f]{8}\.part(\..*)?")

@@ -9,7 +9,7 @@ import types
 from collections.abc import Callable, Iterable, Mapping
 from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, Any, Literal, Union, cast, get_args, get_origin, get_type_hints
+from typing import Annotated, Literal, Union, cast, get_args, get_origin, get_type_hints
 
 import numpy as np
 from pydantic import TypeAdapter
@@ -22,7 +22,7 @@ Schema = dict[str, object]
 ANYTHING: Schema = {}
 TEXT: Schema = {"type": "string"}
 BY_KEY: Schema = {"type": "object"}
-WORDS: Mapping[object, Schema] = {
+_WORDS: Mapping[object, Schema] = {
     # What is no finite number is written as null.
     float: {"type": ["number", "null"]},
     int: {"type": "integer"},
@@ -57,12 +57,14 @@ def record_schema(record: type, required: Iterable[str] | None = None) -> Schema
 
 def mapping_schema(properties: Mapping[str, object], required: Iterable[str] = ()) -> Schema:
     """Return the schema of a mapping that has these keys and no others."""
-    return {
-        "type": "object",
-        "properties": dict(properties),
-        "required": list(required),
-        "additionalProperties": False,
-    }
+    return {"type": "object", "properties": dict(properties), "required": list(required), "additionalProperties": False}
+
+
+def properties_of(schema: Schema) -> Schema:
+    """Return the properties that the schema of a mapping states."""
+    found = schema["properties"]
+    assert isinstance(found, dict)
+    return found
 
 
 def name_schema(kind: str) -> Schema:
@@ -84,7 +86,7 @@ def named_schema(kind: str, key: str, common: Mapping[str, Schema]) -> Schema:
 
     def own(name: str) -> Schema:
         keys = record_schema(find(kind, name))
-        known = dict.fromkeys((key, *common), ANYTHING) | cast("Schema", keys["properties"])
+        known = dict.fromkeys((key, *common), ANYTHING) | properties_of(keys)
         return keys | {"properties": known}
 
     properties = {key: name_schema(kind), **common}
@@ -114,19 +116,19 @@ def _has_record(hint: object) -> bool:
     return nested and any(_has_record(part) for part in get_args(hint))
 
 
-def answer_schema(hint: Any) -> Schema:
+def answer_schema(hint: object) -> Schema:
     """Return the schema of what `seatsim.schema.content.plain` makes of a record, or of one of several kinds."""
     known: Schema = {}
     schema = _written_record_schema(hint, known) if is_record(hint) else _written_schema(hint, known)
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema, "$defs": known}
 
 
-def _written_schema(hint: Any, known: Schema) -> Schema:
+def _written_schema(hint: object, known: Schema) -> Schema:
     """Return the schema of what is written of values of a type; those of records are added to the `known` ones."""
     origin, parts = get_origin(hint), get_args(hint)
     found: Schema = {}
-    if hint in WORDS or origin in WORDS:
-        found = WORDS[hint if hint in WORDS else origin]
+    if hint in _WORDS or origin in _WORDS:
+        found = _WORDS[hint if hint in _WORDS else origin]
     elif is_record(hint):
         if hint.__name__ not in known:
             known[hint.__name__] = found  # a record may hold its like
@@ -150,29 +152,36 @@ def _written_schema(hint: Any, known: Schema) -> Schema:
 
 def _written_record_schema(record: type, known: Schema) -> Schema:
     """Return the schema of a record: what it is by its docstring, and its fields by the texts below them."""
+    properties, required = _written_properties(record, known)
+    about = inspect.getdoc(record)
+    return {"type": "object", "description": about, "properties": properties, "required": required}
+
+
+def _written_properties(record: type, known: Schema) -> tuple[Schema, list[str]]:
+    """Return the schemas of the fields of a record, and the keys that are always written."""
     texts = _field_texts(record)
     properties: Schema = {}
     required: list[str] = []
     for field in list_written(record):
         joined = find_record(field.hint) if field.form.joined else None
         if joined:
-            inner = _written_record_schema(joined, known)
-            properties |= cast("Schema", inner["properties"])
-            required += cast("list[str]", inner["required"])
+            inner, needed = _written_properties(joined, known)
+            properties |= inner
+            required += needed
         elif not field.form.joined:
             # What is joined and no record is given by a plug-in, and known by what it does alone.
             told = {"description": texts[field.name]} if field.name in texts else {}
             properties[field.key] = _written_schema(field.hint, known) | told
             required += [] if field.form.if_any else [field.key]
-    about = inspect.getdoc(record)
-    return {"type": "object", "description": about, "properties": properties, "required": required}
+    return properties, required
 
 
 def _field_texts(record: type) -> Mapping[str, str]:
     """Return what the source of a class says of its fields, below them, and of its properties."""
     texts: dict[str, str] = {}
     for kind in (each for each in reversed(record.__mro__) if is_record(each)):
-        body = cast("ast.ClassDef", ast.parse(textwrap.dedent(inspect.getsource(kind))).body[0]).body
+        definition = ast.parse(textwrap.dedent(inspect.getsource(kind))).body[0]
+        body = definition.body if isinstance(definition, ast.ClassDef) else []
         texts |= {each.name: ast.get_docstring(each) or "" for each in body if isinstance(each, ast.FunctionDef)}
         for field, below in pairwise(body):
             match field, below:

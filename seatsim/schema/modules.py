@@ -50,7 +50,7 @@ UNIT = ".fmu"
 LARGEST_UNIT = 256 * 2**20
 """Bytes that such a file may have."""
 _SAFE_PATH = "PYTHONSAFEPATH"
-HOME = Path(__file__).resolve().parents[2]
+_HOME = Path(__file__).resolve().parents[2]
 """The folder that seatsim lies in."""
 _used: dict[str, _UsedFile] = {}
 """What `use` has loaded, by module name, in the order in which it was named."""
@@ -246,7 +246,7 @@ def _find_installed(name: str) -> ModuleSpec | None:
     """
     script = getattr(sys.modules["__main__"], "__file__", None)
     # The folder that this package itself was imported from is one that was chosen, wherever Python was started.
-    started = ({_folder("")} | ({Path(script).resolve().parent} if script else set())) - {HOME}
+    started = ({_folder("")} | ({Path(script).resolve().parent} if script else set())) - {_HOME}
     first_is_start = bool(sys.path) and not sys.flags.safe_path and _folder(sys.path[0]) in started
     path = [entry for entry in sys.path[1 if first_is_start else 0 :] if entry not in ("", ".")]
     # All finders: packages that are installed to be edited lie on no path, and have one of their own.

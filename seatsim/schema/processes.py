@@ -18,8 +18,8 @@ from typing import TypeVar, TypeVarTuple
 
 from seatsim.schema.modules import started_elsewhere, use_all, used_files
 
-Result = TypeVar("Result")
-Arguments = TypeVarTuple("Arguments")
+_Result = TypeVar("_Result")
+_Arguments = TypeVarTuple("_Arguments")
 Progress = Callable[[int, int], None]
 """Called with jobs done and jobs in all."""
 
@@ -45,11 +45,11 @@ def open_pool(processes: int, prepare: Callable[[], object] = tuple) -> Iterator
 
 
 def run_jobs(
-    function: Callable[[*Arguments], Result],
-    jobs: Sequence[tuple[*Arguments]],
+    function: Callable[[*_Arguments], _Result],
+    jobs: Sequence[tuple[*_Arguments]],
     processes: int,
     progress: Progress | None = None,
-) -> list[Result]:
+) -> list[_Result]:
     """Call a picklable function with each tuple of arguments and return the results in order.
 
     Up to `processes` processes share the jobs; with one process, or one job, none is started. The first error, and

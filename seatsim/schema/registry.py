@@ -18,9 +18,9 @@ from typing import Any, Generic, Protocol, Self, TypeVar, cast
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.modules import import_named, load_plugins, shipped_packages
 
-T = TypeVar("T", bound=type)
-P = TypeVar("P")
-S = TypeVar("S")
+_T = TypeVar("_T", bound=type)
+_P = TypeVar("_P")
+_S = TypeVar("_S")
 
 
 class Record(Protocol):
@@ -44,13 +44,13 @@ _classes: dict[str, dict[str, type[Record]]] = {}
 _specifications: dict[type, object] = {}
 
 
-class Registry(Generic[P, S]):
-    """The parts of one kind: classes `P` by name, and the specification `S` that each was registered with."""
+class Registry(Generic[_P, _S]):
+    """The parts of one kind: classes `_P` by name, and the specification `_S` that each was registered with."""
 
     def __init__(self, kind: str) -> None:
         self.kind = kind
 
-    def register(self, name: str, specification: S) -> Callable[[T], T]:
+    def register(self, name: str, specification: _S) -> Callable[[_T], _T]:
         """Return a class decorator that enters a class under `name`, with its `specification` of facts."""
         return register(self.kind, name, specification)
 
@@ -58,35 +58,35 @@ class Registry(Generic[P, S]):
         """List the registered names, sorted."""
         return names(self.kind)
 
-    def classes(self) -> tuple[type[P], ...]:
+    def classes(self) -> tuple[type[_P], ...]:
         """Return the registered classes, sorted by name."""
-        return tuple(cast("type[P]", _classes[self.kind][name]) for name in self.names())
+        return tuple(cast("type[_P]", _classes[self.kind][name]) for name in self.names())
 
-    def find(self, name: str, beside: Path | None = None) -> type[P]:
+    def find(self, name: str, beside: Path | None = None) -> type[_P]:
         """Return the class called `name`, or the one that `"package.module:Class"` points to; see `find`.
 
         Raises:
             InputError: no such name or class, or the class is not registered as this kind.
         """
-        return cast("type[P]", find(self.kind, name, beside))
+        return cast("type[_P]", find(self.kind, name, beside))
 
     def name_of(self, cls: type) -> str:
         """Return the name under which a class is registered."""
         return name_of(self.kind, cls)
 
-    def specification_of(self, cls: type) -> S:
+    def specification_of(self, cls: type) -> _S:
         """Return the specification that the class was registered with."""
-        return cast("S", _specifications[cls])
+        return cast("_S", _specifications[cls])
 
 
-def register(kind: str, name: str, specification: object) -> Callable[[T], T]:
+def register(kind: str, name: str, specification: object) -> Callable[[_T], _T]:
     """Return a class decorator that enters a class of this `kind` under `name`, with its `specification` of facts.
 
     Raises:
         InputError: another class has the name; which of the two a scenario means would hang on what was imported last.
     """
 
-    def enter(cls: T) -> T:
+    def enter(cls: _T) -> _T:
         known = _classes.get(kind, {}).get(name)
         # A module that is loaded again, as in a notebook, replaces its own classes.
         if known is not None and (known.__module__, known.__qualname__) != (cls.__module__, cls.__qualname__):
@@ -105,7 +105,8 @@ def specification_of(cls: type) -> Any:  # any kind: `Registry.specification_of`
 
 def initial_state(cls: type) -> tuple[float, ...]:
     """Return the state at rest that a damper, law or effect was registered with; empty where it has no state."""
-    return cast("tuple[float, ...]", getattr(_specifications[cls], "initial", ()))
+    initial: tuple[float, ...] = getattr(_specifications[cls], "initial", ())
+    return initial
 
 
 def name_of(kind: str, cls: type) -> str:

@@ -34,10 +34,10 @@ LARGEST_FILE = 2**30
 _LONGEST_LINE = 2**20
 """Bytes of a table in which its first line must end."""
 _MOST_COLUMNS = 4096
-CHUNK = 2**20
+_CHUNK = 2**20
 _NUMBERS_OF_VALUE = 3
 """Numbers in memory for each value of a table, while it is read."""
-SHORT = 2**24
+_SHORT = 2**24
 """Bytes up to which a table is read by one thread, so that an error can name the line."""
 
 
@@ -70,13 +70,13 @@ def read_table(path: Path) -> pd.DataFrame:
         table = _parse(content, names, bad)
     except ArrowInvalid as error:
         raise InputError(f"{path}: cannot be read as a table: {str(error).splitlines()[0]}") from error
-    check_rows(bad, path)
+    _check_rows(bad, path)
     _check_quotes(content, table.num_rows, path)
     frame: pd.DataFrame = table.to_pandas()
     return frame
 
 
-def check_rows(bad: Iterable[InvalidRow], path: Path) -> None:
+def _check_rows(bad: Iterable[InvalidRow], path: Path) -> None:
     """Raise InputError at the first row of another length than the names."""
     found = list(bad)
     if found:
@@ -95,9 +95,9 @@ def unpack(content: bytes, path: Path) -> bytes:
     Raises:
         InputError: they are damaged, or larger than the limit once unpacked; no more than that is unpacked.
     """
-    opened = next((opens for magic, opens in UNPACKED.items() if content.startswith(magic)), None)
+    opened = next((opens for magic, opens in _UNPACKED.items() if content.startswith(magic)), None)
     if opened is None:
-        if content and path.suffix in PACKED:
+        if content and path.suffix in _PACKED:
             raise InputError(
                 f"{path}: cannot be read as a table: its name ends in {path.suffix}, but it is not packed;"
                 " copy it again"
@@ -107,7 +107,7 @@ def unpack(content: bytes, path: Path) -> bytes:
     size = 0
     try:
         with opened(io.BytesIO(content)) as file:
-            while part := file.read(CHUNK):
+            while part := file.read(_CHUNK):
                 size += len(part)
                 check_made(size, len(content), "what it unpacks to")
                 parts.append(part)
@@ -153,14 +153,14 @@ def _only_member(packed: io.BytesIO) -> IO[bytes]:
     return archive.open(names[0])
 
 
-UNPACKED: dict[bytes, Callable[[io.BytesIO], io.BufferedIOBase | IO[bytes]]] = {
+_UNPACKED: dict[bytes, Callable[[io.BytesIO], io.BufferedIOBase | IO[bytes]]] = {
     b"\x1f\x8b": lambda packed: gzip.GzipFile(fileobj=packed),
     b"BZh": bz2.BZ2File,
     b"\xfd7zXZ": lzma.LZMAFile,
     b"PK\x03\x04": _only_member,
 }
 """How a packed file is read, by its first bytes."""
-PACKED = (".gz", ".bz2", ".xz", ".zip")
+_PACKED = (".gz", ".bz2", ".xz", ".zip")
 UNPACKING_ERRORS = (OSError, EOFError, ValueError, zlib.error, lzma.LZMAError, zipfile.BadZipFile, NotImplementedError)
 
 
@@ -196,7 +196,7 @@ def _parse(content: bytes, names: list[str], bad: list[InvalidRow]) -> pa.Table:
         return pa.table({name: pa.array([], pa.float64()) for name in names})
     return arrow_csv.read_csv(
         pa.BufferReader(content),
-        arrow_csv.ReadOptions(skip_rows=1, column_names=names, use_threads=len(content) > SHORT),
+        arrow_csv.ReadOptions(skip_rows=1, column_names=names, use_threads=len(content) > _SHORT),
         arrow_csv.ParseOptions(invalid_row_handler=note),
         arrow_csv.ConvertOptions(strings_can_be_null=True),
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Sequence
 
-LONGEST_NAME = 100
+_LONGEST_NAME = 100
 _LONGEST_WORD = 1000
 _FORMULA = re.compile(r"[=@\t\r]|[+-](?!\d[\d.,]*\s?[^\W\d]*$)")
 """How a text begins that a spreadsheet computes; a size with a sign and a unit, such as `-10 degC`, is none."""
@@ -17,8 +17,8 @@ def explain_bad_name(name: str) -> str:
         problem = "is empty, or begins with a point or a space"
     elif any(sign in "/\\" or not sign.isprintable() for sign in name):
         problem = "holds a slash or a sign that is not printed"
-    elif len(name.encode()) > LONGEST_NAME:
-        problem = f"is longer than {LONGEST_NAME} bytes"
+    elif len(name.encode()) > _LONGEST_NAME:
+        problem = f"is longer than {_LONGEST_NAME} bytes"
     else:
         return ""
     return f"{problem}; it names files: write letters, digits, spaces, - and _, such as rough-track-80C"

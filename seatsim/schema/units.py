@@ -9,6 +9,7 @@ from __future__ import annotations
 import functools
 import math
 import re
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
 from seatsim.schema.errors import InputError, nearest
@@ -32,28 +33,22 @@ class Conversion(NamedTuple):
     zero: float = 0.0
 
 
+_FAHRENHEIT, _KELVIN = Conversion(5.0 / 9.0, -160.0 / 9.0), Conversion(1.0, -273.15)
+_USUAL: Mapping[str, Mapping[str, float | Conversion]] = {
+    "m/s^2": {"m/s^2": 1.0, "g": STANDARD_GRAVITY, "mm/s^2": 1e-3, "cm/s^2": 0.01, "ft/s^2": 0.3048},
+    "m": {"m": 1.0, "cm": 0.01, "mm": 1e-3, "um": 1e-6, "inch": 0.0254},
+    "m/s": {"m/s": 1.0, "cm/s": 0.01, "mm/s": 1e-3, "km/h": 1.0 / 3.6},
+    "N": {"N": 1.0, "kN": 1e3, "daN": 10.0, "lbf": 4.4482216152605, "kgf": STANDARD_GRAVITY},
+    "A": {"A": 1.0, "mA": 1e-3},
+    "V": {"V": 1.0, "mV": 1e-3},
+    "degC": {"degC": 1.0, "degF": _FAHRENHEIT, "K": _KELVIN},
+    "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0},
+    "rad/s^2": {"rad/s^2": 1.0, "deg/s^2": math.pi / 180.0},
+}
 CONVERSIONS = {
-    "m/s^2": {
-        "m/s^2": Conversion(1.0), "g": Conversion(STANDARD_GRAVITY), "mm/s^2": Conversion(1e-3),
-        "cm/s^2": Conversion(0.01), "ft/s^2": Conversion(0.3048),
-    },
-    "m": {
-        "m": Conversion(1.0), "cm": Conversion(0.01), "mm": Conversion(1e-3), "um": Conversion(1e-6),
-        "inch": Conversion(0.0254),
-    },
-    "m/s": {
-        "m/s": Conversion(1.0), "cm/s": Conversion(0.01), "mm/s": Conversion(1e-3), "km/h": Conversion(1.0 / 3.6),
-    },
-    "N": {
-        "N": Conversion(1.0), "kN": Conversion(1e3), "daN": Conversion(10.0), "lbf": Conversion(4.4482216152605),
-        "kgf": Conversion(STANDARD_GRAVITY),
-    },
-    "A": {"A": Conversion(1.0), "mA": Conversion(1e-3)},
-    "V": {"V": Conversion(1.0), "mV": Conversion(1e-3)},
-    "degC": {"degC": Conversion(1.0), "degF": Conversion(5.0 / 9.0, -160.0 / 9.0), "K": Conversion(1.0, -273.15)},
-    "s": {"s": Conversion(1.0), "ms": Conversion(1e-3), "us": Conversion(1e-6), "min": Conversion(60.0)},
-    "rad/s^2": {"rad/s^2": Conversion(1.0), "deg/s^2": Conversion(math.pi / 180.0)},
-}  # fmt: skip
+    si: {unit: how if isinstance(how, Conversion) else Conversion(how) for unit, how in units.items()}
+    for si, units in _USUAL.items()
+}
 """Conversions from the units in which a quantity is usually recorded, by its SI unit: to load pint takes 0.6 s."""
 USUAL = {si: tuple(units) for si, units in CONVERSIONS.items()}
 """Units in which a quantity is usually recorded, by its SI unit; errors list them, doubts compare with them."""
@@ -70,7 +65,7 @@ OWN_SPELLINGS = {
     "m": {'"': "inch", "in": "inch", "zoll": "inch"},
 }  # fmt: skip
 """Spellings that mean something else, or nothing, to pint, by the unit that is wanted: `g` of a mass is a gram."""
-SIGNS = {
+_SIGNS = {
     "⁻²": "^-2", "²": "^2", "³": "^3", "°": "deg", "℃": "degC", "℉": "degF", "µ": "u", "μ": "u", "·": "*", "⋅": "*",
 }  # fmt: skip
 
@@ -94,7 +89,7 @@ def conversion(unit: str, wanted: str) -> Conversion:
     return found
 
 
-LONGEST = 60
+_LONGEST = 60
 """Letters of a unit: pint takes ever longer for more."""
 
 
@@ -108,7 +103,7 @@ def find_conversion(unit: str, wanted: str) -> Conversion | None:
 def is_unit(text: str) -> bool:
     """Say whether a text is a unit, of whatever quantity."""
     plain = text.strip().lower()
-    if len(text) > LONGEST or not plain or plain in _NO_UNITS or plain.isdigit():
+    if len(text) > _LONGEST or not plain or plain in _NO_UNITS or plain.isdigit():
         return False
     if any(text in units for units in USUAL.values()) or any(plain in units for units in OWN_SPELLINGS.values()):
         return True
@@ -121,7 +116,7 @@ def is_unit(text: str) -> bool:
 
 def _look_up(unit: str, wanted: str) -> Conversion | None:
     """Return the conversion that pint knows."""
-    if len(unit) > LONGEST:
+    if len(unit) > _LONGEST:
         return None
     text, target = _spelt(unit, wanted), _spelt(wanted, wanted)
     if text == target:
@@ -145,7 +140,7 @@ def _spelt(unit: str, wanted: str) -> str:
     own = OWN_SPELLINGS.get(wanted, {}).get(plain.lower())
     if own is not None:
         plain = own
-    for sign, ascii_sign in SIGNS.items():
+    for sign, ascii_sign in _SIGNS.items():
         plain = plain.replace(sign, ascii_sign)
     plain = re.sub(r"^([A-Za-z]+)_([A-Za-z]+\d?)$", r"\1/\2", plain) if own is None else plain
     plain = re.sub(r"\bsec\b", "s", plain)

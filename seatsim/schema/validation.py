@@ -4,26 +4,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TypeGuard, TypeVar, cast
+from typing import TypeGuard, TypeVar
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from seatsim.schema.errors import InputError, find_nearest, nearest, raise_all
-from seatsim.schema.fields import describe, field_names, validated
-from seatsim.schema.plausible import guess
+from seatsim.schema.fields import describe, field_names, guess, validated
 from seatsim.schema.registry import Record, Registry
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import KeyPath
 
-R = TypeVar("R")
-P = TypeVar("P")
-S = TypeVar("S")
+_R = TypeVar("_R")
+_P = TypeVar("_P")
+_S = TypeVar("_S")
 
 
 def build(
-    record: type[R], values: object, source: Source, keys: KeyPath, required: Iterable[str] = (), hint: str = ""
-) -> R:
+    record: type[_R], values: object, source: Source, keys: KeyPath, required: Iterable[str] = (), hint: str = ""
+) -> _R:
     """Return the `record` with the given values, which stand under `keys` in the source.
 
     `required` names fields that must be given although the record has defaults; `hint` is added to errors of a
@@ -76,7 +75,7 @@ def mapping(values: object, source: Source, keys: KeyPath) -> Mapping[str, objec
     """Return the values if they are a mapping, else raise InputError."""
     if not isinstance(values, Mapping):
         raise source.error(keys, f"{_shown(values)} is not a mapping; write its keys indented below it")
-    return cast("Mapping[str, object]", values)
+    return values
 
 
 def check_keys(values: Mapping[str, object], known: Iterable[str], source: Source, keys: KeyPath) -> None:
@@ -102,8 +101,8 @@ def choose(values: Mapping[str, object], key: str, source: Source, keys: KeyPath
 
 
 def chosen_class(
-    registry: Registry[P, S], values: Mapping[str, object], key: str, source: Source, keys: KeyPath
-) -> type[P]:
+    registry: Registry[_P, _S], values: Mapping[str, object], key: str, source: Source, keys: KeyPath
+) -> type[_P]:
     """Return the registered class that is named under a key, or raise InputError at that place."""
     name = choose(values, key, source, keys)
     try:

@@ -72,7 +72,7 @@ class Source:
         keys: list[str | int] = []
         *above, last = dotted.split(".")
         for name in above:
-            key: Any = _find_key(node, name, dotted, place)
+            key = _find_key(node, name, dotted, place)
             below = node[key] if isinstance(node, list) else node.get(key, {})
             if not isinstance(below, dict | list):
                 raise InputError(f"{place}: '{dotted}' leads into '{name}', which has no keys{nearest(name, node)}")
@@ -83,7 +83,7 @@ class Source:
             node[key] = copied
             node = copied
             keys.append(key)
-        end: Any = _find_key(node, last, dotted, place)
+        end = _find_key(node, last, dotted, place)
         whole = (*keys, end)
         replaced = node[end] if isinstance(node, list) else node.get(end)
         node[end] = value
@@ -119,7 +119,7 @@ def _as_yaml(value: object) -> object:
     return [_as_yaml(each) for each in whole] if isinstance(whole, list | tuple) else whole
 
 
-def _find_key(node: Any, name: str, dotted: str, place: str) -> str | int:
+def _find_key(node: object, name: str, dotted: str, place: str) -> Any:
     """Return what a part of a dotted key is in a mapping (itself) or in a list (the number of an entry)."""
     if not isinstance(node, list):
         return name

@@ -18,8 +18,8 @@ LARGEST = 8 * 2**20
 """Bytes of a text."""
 DEEPEST = 32
 """Lists and mappings within each other."""
-MOST_VALUES = 300_000
-LONGEST_NUMBER = 40
+_MOST_VALUES = 300_000
+_LONGEST_NUMBER = 40
 """Digits of a whole number: twice what any seed has."""
 _TOO_DEEP = f"lists and mappings nest more than {DEEPEST} deep"
 
@@ -45,7 +45,7 @@ class YamlError(Exception):
         self.line = line
 
 
-class Content(NamedTuple):
+class _Content(NamedTuple):
     """The value of a text, and the line of every key and entry."""
 
     value: object
@@ -64,14 +64,14 @@ class _Node(NamedTuple):
     size: int = 1
 
 
-def parse(text: str) -> Content:
+def parse(text: str) -> _Content:
     """Return the value of a text.
 
     Raises:
         YamlError: it is no YAML, or beyond the limits.
     """
     lines: dict[KeyPath, int] = {}
-    return Content(_plain(_Composer(text).compose(), (), lines), lines)
+    return _Content(_plain(_Composer(text).compose(), (), lines), lines)
 
 
 def parse_value(text: str) -> object:
@@ -127,8 +127,8 @@ class _Composer:
     def _node(self, event: yaml.Event, depth: int) -> _Node:
         line = _line(event)
         self.count += 1
-        if self.count > MOST_VALUES:
-            raise YamlError(f"more than {MOST_VALUES} values", line)
+        if self.count > _MOST_VALUES:
+            raise YamlError(f"more than {_MOST_VALUES} values", line)
         if isinstance(event, yaml.AliasEvent):
             if event.anchor not in self.anchors:
                 raise YamlError(f"*{event.anchor} refers to nothing that ends before it", line)
@@ -174,8 +174,8 @@ class _Composer:
 def _sum_sizes(line: int, nodes: Iterable[_Node]) -> int:
     """Return the size of a node that holds others."""
     size = 1 + sum(node.size for node in nodes)
-    if size > MOST_VALUES:
-        raise YamlError(f"more than {MOST_VALUES} values once its aliases are put in", line)
+    if size > _MOST_VALUES:
+        raise YamlError(f"more than {_MOST_VALUES} values once its aliases are put in", line)
     return size
 
 
@@ -209,8 +209,8 @@ def _read_scalar(text: str, line: int) -> _Scalar:
     if text in _WORDS:
         return _WORDS[text]
     if _WHOLE.fullmatch(text):
-        if len(text) > LONGEST_NUMBER:
-            raise YamlError(f"a whole number of {len(text)} digits; permitted: at most {LONGEST_NUMBER}", line)
+        if len(text) > _LONGEST_NUMBER:
+            raise YamlError(f"a whole number of {len(text)} digits; permitted: at most {_LONGEST_NUMBER}", line)
         return int(text, 0) if text[:2] in ("0x", "0o") else int(text)
     return float(text) if _FLOAT.fullmatch(text) else text
 
@@ -229,18 +229,35 @@ def _line(event: yaml.Event) -> int:
     return int(event.start_mark.line) + 1
 
 
-def dump(content: object) -> str:
-    """Return the YAML of mappings, lists and plain values in their order, innermost ones in one line each."""
-    return str(
-        yaml.dump(content, None, _Dumper, default_flow_style=None, sort_keys=False, allow_unicode=True, width=9999)
-    )
+def dump(content: object, line_each: bool = False) -> str:
+    """Return the YAML of mappings, lists and plain values in their order.
+
+    The innermost ones stand in one line each, or with `line_each` every key and entry in a line of its own.
+    """
+    form = {"default_flow_style": False if line_each else None, "sort_keys": False, "allow_unicode": True}
+    return str(yaml.dump(content, None, _Dumper, width=9999, **form))
 
 
 def _represent_text(dumper: yaml.SafeDumper, text: str) -> yaml.ScalarNode:
-    """Return a text such that `parse` reads it as one: `1e5` stands in quotation marks."""
+    """Return a text such that `parse` reads it as one: `0o7` stands in quotation marks."""
     is_other = text and (text in _WORDS or _WHOLE.fullmatch(text) or _FLOAT.fullmatch(text))
     return dumper.represent_scalar("tag:yaml.org,2002:str", text, style="'" if is_other else None)
 
 
-_Dumper = type("_Dumper", (yaml.SafeDumper,), {})
-yaml.add_representer(str, _represent_text, _Dumper)
+def _represent_number(dumper: yaml.SafeDumper, number: float) -> yaml.ScalarNode:
+    """Return a number as Python writes it: `1e-05`, where YAML 1.1 has `1.0e-05`."""
+    if not math.isfinite(number):
+        return dumper.represent_float(number)
+    return dumper.represent_scalar("tag:yaml.org,2002:float", repr(number))
+
+
+class _Dumper(yaml.SafeDumper):  # type: ignore[misc]  # its types are not known
+    """Writes every value where it stands: no `*name` in place of one that stands elsewhere too."""
+
+    def ignore_aliases(self, data: object) -> bool:
+        return True
+
+
+_Dumper.add_implicit_resolver("tag:yaml.org,2002:float", _FLOAT, list("-+.0123456789"))
+_Dumper.add_representer(str, _represent_text)
+_Dumper.add_representer(float, _represent_number)

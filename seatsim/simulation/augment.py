@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -22,9 +22,9 @@ from seatsim.schema.arrays import Array, require_samples
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import specification_of
 
-T = TypeVar("T")
+_T = TypeVar("_T")
 
-NONE = np.zeros(0)
+_NONE = np.zeros(0)
 
 
 def augment_plant(effects: Sequence[object], plant: Plant) -> Plant:
@@ -73,7 +73,7 @@ def sum_frame_forces(effects: Sequence[object], time: Array, seed: int) -> Array
     forces = [
         _checked(effect, "frame_force", push(time, seed), time, step) for effect, push in _with(effects, "frame_force")
     ]
-    return np.asarray(np.sum(forces, axis=0)) if forces else NONE
+    return np.asarray(np.sum(forces, axis=0)) if forces else _NONE
 
 
 def acts_on_signals(effects: Sequence[object]) -> bool:
@@ -87,7 +87,7 @@ def _with(effects: Sequence[object], hook: str) -> Iterator[tuple[object, Callab
     return ((effect, getattr(effect, hook)) for effect in effects if hasattr(effect, hook))
 
 
-def _change(effects: Sequence[object], hook: str, value: T) -> T:
+def _change(effects: Sequence[object], hook: str, value: _T) -> _T:
     """Return a record as the effects leave it, one after another."""
     for _, change in _with(effects, hook):
         value = change(value)
@@ -155,7 +155,7 @@ def _as_matrix(rows: Array) -> Matrix:
 
 
 def _chosen(effects: Sequence[object], hooks: tuple[str, ...]) -> Effects:
-    return cast(Effects, tuple(effect for effect in effects if acts_on(type(effect), hooks)))
+    return tuple(effect for effect in effects if acts_on(type(effect), hooks))
 
 
 def _carried(chosen: Effects, hooks: tuple[str, ...]) -> Effects:
@@ -163,7 +163,7 @@ def _carried(chosen: Effects, hooks: tuple[str, ...]) -> Effects:
     first = {type(effect): effect for effect in reversed(chosen)}
     carried = [first.get(cls) or off(cls) for cls in registered]
     further = [effect for effect in chosen if not any(effect is kept for kept in carried)]
-    return cast(Effects, (*carried, *further))
+    return (*carried, *further)
 
 
 @cache

@@ -21,15 +21,15 @@ from seatsim.simulation.augment import augment_plant
 from seatsim.simulation.result import Run
 from seatsim.simulation.simulate import sample_period, simulate
 
-RELEASE = Start(displacement=0.02)
+_RELEASE = Start(displacement=0.02)
 """Where the suspension is released to see whether the controlled seat comes to rest."""
-RELEASE_DURATION = 12.0
+_RELEASE_DURATION = 12.0
 """Time in s from the release to the end of the observation, which is its last two seconds."""
-LARGEST_SPEED = 1e-3
+_LARGEST_SPEED = 1e-3
 """Speed of the suspension in m/s below which a released seat has come to rest."""
 
 
-class Figure(NamedTuple):
+class _Figure(NamedTuple):
     """A measured figure with its bounds."""
 
     name: str
@@ -56,7 +56,7 @@ class CheckedRun(NamedTuple):
 
     run: str
     check: str
-    figure: Joined[Figure]
+    figure: Joined[_Figure]
 
     def __str__(self) -> str:
         return f"{self.run}, {self.check}: {self.figure}"
@@ -77,7 +77,7 @@ def applicable_checks(scenario: Scenario) -> list[Check]:
     return [check for check in scenario.checks if check.is_made_of(scenario.label)]
 
 
-def decide_check(run: Run, check: Check) -> Figure:
+def decide_check(run: Run, check: Check) -> _Figure:
     """Return the figure that decides a check of a run.
 
     Raises:
@@ -87,31 +87,31 @@ def decide_check(run: Run, check: Check) -> Figure:
     return next((figure for figure in figures if not figure.is_within), figures[0])
 
 
-def _measure(run: Run, check: Check) -> Iterator[Figure]:
+def _measure(run: Run, check: Check) -> Iterator[_Figure]:
     scenario, bounds = run.scenario, (check.low, check.high)
     with scenario.placed("checks", check.name):
         if check.name == STABLE:
             yield from _measure_stability(scenario)
         elif check.name in LOOP_FIGURES:
-            yield Figure(check.name, _loop_figure(scenario, check.name), LOOP_FIGURES[check.name], *bounds)
+            yield _Figure(check.name, _loop_figure(scenario, check.name), LOOP_FIGURES[check.name], *bounds)
         elif check.name in run.metrics:
             metric = run.metrics[check.name]
-            yield Figure(check.name, metric.value, metric.unit, *bounds)
+            yield _Figure(check.name, metric.value, metric.unit, *bounds)
         else:
             raise InputError(f"the run has no {check.name}: what it is computed from is not stated or not recorded")
 
 
-def _measure_stability(scenario: Scenario) -> Iterator[Figure]:
+def _measure_stability(scenario: Scenario) -> Iterator[_Figure]:
     """Yield the spectral radius of a linear loop, and for every law how fast a released seat still moves at the end."""
     loop = _sampled_loop(scenario)
     if isinstance(loop, SampledLoop):
         # The largest number below 1: a loop with a radius of 1 does not come to rest.
         radius, bound = loop.radius(_delay_samples(scenario, loop)), math.nextafter(1.0, 0.0)
-        yield Figure("spectral radius of the sampled loop", radius, "-", -math.inf, bound)
-    released = simulate(replace(scenario, excitation=Rest(RELEASE_DURATION), start=RELEASE))
+        yield _Figure("spectral radius of the sampled loop", radius, "-", -math.inf, bound)
+    released = simulate(replace(scenario, excitation=Rest(_RELEASE_DURATION), start=_RELEASE))
     speed = np.abs(released["suspension_velocity"][-round(2.0 / released.step) :])
-    yield Figure(
-        "speed of the suspension 10 to 12 s after a release", float(speed.max()), "m/s", -math.inf, LARGEST_SPEED
+    yield _Figure(
+        "speed of the suspension 10 to 12 s after a release", float(speed.max()), "m/s", -math.inf, _LARGEST_SPEED
     )
 
 

@@ -25,7 +25,7 @@ from seatsim.effects.base import ON_DAMPER, acts_on
 from seatsim.kernel.generic import wants_force
 from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.loop import run_loop, warm_up
-from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup
+from seatsim.kernel.loop_data import LoopInputs, LoopSetup
 from seatsim.kernel.rig import Disturbance, Rig
 from seatsim.kernel.step import IntegratorState, StepInputs, advance, disturbance_at, start
 from seatsim.rig.coil import Coil
@@ -36,9 +36,9 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import name_of
 
-AGREED = 1e-7
+_AGREED = 1e-7
 """Difference between the force that the rig felt and that of the unit, over its size plus 1 N, at which a step ends."""
-MOST_TRIALS = 30
+_MOST_TRIALS = 30
 """Most times that a unit is asked to repeat a step; two are enough where its force is linear in the motion."""
 
 
@@ -201,13 +201,13 @@ def _agree(miss: Callable[[float], float], guess: float, again: Callable[[], Non
         RunError: rig and unit do not agree on a force, as where the unit's force jumps.
     """
     low, m_low = guess, miss(guess)
-    if abs(m_low) <= AGREED * (1.0 + abs(low)):
+    if abs(m_low) <= _AGREED * (1.0 + abs(low)):
         return
     high = low + m_low
     again()
     m_high = miss(high)
-    for _ in range(MOST_TRIALS):
-        if abs(m_high) <= AGREED * (1.0 + abs(high)):
+    for _ in range(_MOST_TRIALS):
+        if abs(m_high) <= _AGREED * (1.0 + abs(high)):
             return
         if m_high == m_low:
             break
@@ -220,5 +220,5 @@ def _agree(miss: Callable[[float], float], guess: float, again: Callable[[], Non
             m_low *= 0.5
         high, m_high = trial, m_trial
     raise RunError(
-        f"rig and unit differ by {abs(m_high):.3g} N after up to {MOST_TRIALS} trials of a step; shorten solver.step"
+        f"rig and unit differ by {abs(m_high):.3g} N after up to {_MOST_TRIALS} trials of a step; shorten solver.step"
     )

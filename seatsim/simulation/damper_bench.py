@@ -20,7 +20,7 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import specification_of
 
-DRIFT_LIMIT = 0.2
+_DRIFT_LIMIT = 0.2
 """Mean distance of the middle of a stroke from x = 0, over half the stroke, that counts as uncentred."""
 
 
@@ -149,9 +149,9 @@ def centring(displacement: ArrayLike, velocity: ArrayLike) -> str:
     """
     x, v = np.asarray(displacement, dtype=float), np.asarray(velocity, dtype=float)
     turns = x[1:][np.signbit(v[1:]) != np.signbit(v[:-1])]
-    if np.sum(np.abs(turns[1:] + turns[:-1])) <= DRIFT_LIMIT * np.sum(np.abs(np.diff(turns))):
+    if np.sum(np.abs(turns[1:] + turns[:-1])) <= _DRIFT_LIMIT * np.sum(np.abs(np.diff(turns))):
         return ""
     return (
-        f"the middles of the strokes lie more than {DRIFT_LIMIT:.0%} of half a stroke from x = 0: a model that"
+        f"the middles of the strokes lie more than {_DRIFT_LIMIT:.0%} of half a stroke from x = 0: a model that"
         " branches on the sign of the displacement is not passive here; prefer one with a state of hysteresis"
     )

@@ -11,24 +11,25 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.excitations.base import Floor
-from seatsim.kernel.channels import CHANNELS
 from seatsim.kernel.cuda_lanes import DeviceInputs, KernelError, LaneStart, free_memory, numbers, run_on_device
+from seatsim.kernel.loop_data import CHANNELS
 from seatsim.rig.sensors import READINGS, Direct, at_rest
 from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import SeatsimError
 from seatsim.simulation.augment import acts_on_signals
-from seatsim.simulation.simulate import History, initial_states, is_whole, read_history, set_up
+from seatsim.simulation.result import History
+from seatsim.simulation.simulate import initial_states, is_whole, read_history, set_up
 
-MakeFloor = Callable[[Scenario], Floor | None]
+_MakeFloor = Callable[[Scenario], Floor | None]
 
-MOST_BYTES, MOST_SHARE = 4 << 30, 0.5
+_MOST_BYTES, _MOST_SHARE = 4 << 30, 0.5
 """Bytes of histories, floors and noise on the device at once, at 10 s and 1 kHz those of 3000 lanes on few floors, and
 the share of its free memory that these may take."""
 
 
-class DeviceLane(NamedTuple):
+class _DeviceLane(NamedTuple):
     """A scenario as a lane: its place among the others, what it begins with, and that as `numbers`."""
 
     place: int
@@ -47,19 +48,19 @@ class DeviceLane(NamedTuple):
 class _Driven(NamedTuple):
     """A lane with the floor that drives it, and the noise of its readings."""
 
-    lane: DeviceLane
+    lane: _DeviceLane
     floor: Floor
     noise: Array
 
 
-def simulate_on_device(scenarios: Sequence[Scenario], make_floor: MakeFloor) -> Iterator[tuple[int, History]]:
+def simulate_on_device(scenarios: Sequence[Scenario], make_floor: _MakeFloor) -> Iterator[tuple[int, History]]:
     """Yield place and history of every scenario that a lane on the device can simulate to its end, in any order.
 
     Those that are left out are to be simulated by themselves: what `as_device_lane` has no room for, floors with a
     recorded temperature, current or command, models that do not compile, scenarios that are wrong, and runs that
     diverge. `make_floor` gives the floor of a scenario; the same object for several is held once.
     """
-    groups: dict[object, list[DeviceLane]] = defaultdict(list)
+    groups: dict[object, list[_DeviceLane]] = defaultdict(list)
     for place, scenario in enumerate(scenarios):
         with suppress(SeatsimError):
             if lane := as_device_lane(place, scenario):
@@ -70,7 +71,7 @@ def simulate_on_device(scenarios: Sequence[Scenario], make_floor: MakeFloor) -> 
             yield from _run_lanes(batch)
 
 
-def as_device_lane(place: int, scenario: Scenario) -> DeviceLane | None:
+def as_device_lane(place: int, scenario: Scenario) -> _DeviceLane | None:
     """Return a scenario as a lane, None where a lane has no room for it: what acts on whole signals, or needs arrays.
 
     Raises:
@@ -88,7 +89,7 @@ def as_device_lane(place: int, scenario: Scenario) -> DeviceLane | None:
         *scenario.start,
     )
     try:
-        return DeviceLane(place, scenario, start, numbers(start))
+        return _DeviceLane(place, scenario, start, numbers(start))
     except TypeError:
         return None
 
@@ -98,10 +99,10 @@ def _form_of(part: object) -> object:
     return (type(part), *map(_form_of, part)) if isinstance(part, tuple) else type(part)
 
 
-def _batch_lanes(lanes: Sequence[DeviceLane], make_floor: MakeFloor) -> Iterator[list[_Driven]]:
+def _batch_lanes(lanes: Sequence[_DeviceLane], make_floor: _MakeFloor) -> Iterator[list[_Driven]]:
     """Yield lanes of one duration, as many at once as the memory of the device permits."""
     waiting: dict[int, list[_Driven]] = defaultdict(list)
-    held, most = 0, min(MOST_BYTES, MOST_SHARE * free_memory())
+    held, most = 0, min(_MOST_BYTES, _MOST_SHARE * free_memory())
     for lane in lanes:
         with suppress(SeatsimError):
             floor = make_floor(lane.scenario)

@@ -10,7 +10,7 @@ from typing import NamedTuple, Protocol, cast
 
 from numpy.typing import ArrayLike
 
-from seatsim.metrics.arrays import ratio
+from seatsim.metrics.motion import ratio
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
 from seatsim.schema.content import Joined
@@ -41,14 +41,14 @@ class PerformanceBounds(Protocol):
         """Return the acceleration in m/s^2 that an ideal damper reaches; NaN where the travel is too short."""
 
 
-class BoundsMethod(Protocol):
+class _BoundsMethod(Protocol):
     """A registered way to compute performance bounds."""
 
     def of(self, scenario: Scenario, progress: Callable[[str], None]) -> PerformanceBounds:
         """Return the bounds of a scenario's rig; an InputError says why it has none."""
 
 
-class Distance(NamedTuple):
+class _Distance(NamedTuple):
     """Where a run stands: Wk-weighted RMS acceleration in m/s^2, RMS travel in m; at that travel both bounds.
 
     `bound` and `best` are in m/s^2, `above_bound` and `above_best` the run's acceleration over them, less 1. NaN where
@@ -63,19 +63,19 @@ class Distance(NamedTuple):
     above_best: float
 
 
-def measure_distance(run: Run, bounds: PerformanceBounds) -> Distance:
+def measure_distance(run: Run, bounds: PerformanceBounds) -> _Distance:
     """Return how far a run is from the performance bounds of its rig."""
     acceleration = run.metrics["driver_acceleration_weighted"].value
     travel = run.metrics["suspension_displacement_rms"].value
     bound, best = float(bounds.bound(travel)), float(bounds.best(travel))
-    return Distance(acceleration, travel, bound, best, ratio(acceleration, bound) - 1, ratio(acceleration, best) - 1)
+    return _Distance(acceleration, travel, bound, best, ratio(acceleration, bound) - 1, ratio(acceleration, best) - 1)
 
 
 class RunStanding(NamedTuple):
     """A run, and how far it is from the performance bounds of its rig."""
 
     run: Joined[RunName]
-    distance: Joined[Distance]
+    distance: Joined[_Distance]
 
 
 class RigBounds(NamedTuple):
@@ -116,7 +116,7 @@ def compute_performance_bounds(
     Runs that share seat, damper, temperature, floor and effects share a rig: its bounds are computed once, since laws
     play no part in them.
     """
-    method = cast(BoundsMethod, find("bracket", "clairvoyant"))
+    method = cast(_BoundsMethod, find("bracket", "clairvoyant"))
     for rig, scenario in {run.scenario.rig: run.scenario for run in runs}.items():
         try:
             yield rig, method.of(scenario, progress)

@@ -9,19 +9,45 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.kernel import channels
+from seatsim.kernel.loop_data import UNITS as LOOP_UNITS
 from seatsim.metrics.table import Metric
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.arrays import Array
 from seatsim.schema.content import Unwritten, written
-from seatsim.simulation.simulate import History
 
 if TYPE_CHECKING:
     import pandas as pd
 
-UNITS = {"time": "s", **channels.UNITS, "energy_stored": "J"}
+UNITS = {"time": "s", **LOOP_UNITS, "energy_stored": "J"}
 """Unit of every channel of a history."""
-SHOWN = 10
+_SHOWN = 10
 """Runs that a result in a terminal shows."""
+
+
+@dataclass(frozen=True)
+class History:
+    """The channels of one run by name, shape (N,) each, sampled every `step` seconds; SI units, degrees Celsius.
+
+    `notes` are sentences that the law has for its user after the run.
+    """
+
+    step: float
+    channels: Mapping[str, Array]
+    notes: tuple[str, ...] = ()
+
+    def __getitem__(self, name: str) -> Array:
+        """Return one channel."""
+        return self.channels[name]
+
+    def __repr__(self) -> str:
+        """Say how long the run is, and which channels there are."""
+        return f"<History of {len(self.channels['time'])} rows every {self.step:g} s: {', '.join(self.channels)}>"
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return the channels as columns of a frame, a row for each step."""
+        import pandas as pd
+
+        return pd.DataFrame(dict(self.channels))
 
 
 class Channel(np.ndarray[tuple[int, ...], np.dtype[np.float64]]):
@@ -109,8 +135,8 @@ class Result:
 
     def __repr__(self) -> str:
         """Show the first runs."""
-        left = len(self.runs) - SHOWN
-        lines = [f"<Result of {len(self.runs)} runs>", *map(repr, self.runs[:SHOWN])]
+        left = len(self.runs) - _SHOWN
+        lines = [f"<Result of {len(self.runs)} runs>", *map(repr, self.runs[:_SHOWN])]
         return "\n".join([*lines, f"and {left} more: see .table"] if left > 0 else lines)
 
     def __getitem__(self, name: str) -> Channel:

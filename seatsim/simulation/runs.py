@@ -4,28 +4,24 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Future
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
-from threading import Lock, Thread
-from typing import TypeVar
 
 import numpy as np
 
-from seatsim.compilation.reasons import explain
+from seatsim.compilation.messages import explain
 from seatsim.metrics.table import Metric, summarise
 from seatsim.scenario.loading import load
-from seatsim.scenario.plausibility import list_doubts
+from seatsim.scenario.numbers import list_doubts
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.arrays import store_numbers, store_texts
 from seatsim.schema.errors import InputError, RunError, SynthesisError
 from seatsim.schema.files import write_whole
-from seatsim.schema.parquet import store_numbers, store_texts
 from seatsim.simulation.augment import augment_plant
-from seatsim.simulation.result import UNITS, Result, Run
-from seatsim.simulation.simulate import History, simulate
+from seatsim.simulation.result import UNITS, History, Result, Run
+from seatsim.simulation.simulate import simulate
 from seatsim.simulation.validity import explain_unweighted, list_reasons
-
-R = TypeVar("R")
 
 
 def run(scenario: str | Path | Mapping[str, object] | Scenario, settings: Mapping[str, object] | None = None) -> Result:
@@ -99,37 +95,12 @@ def run_many(
         finally:
             done(scenario)
 
-    yield from zip(scenarios, _map_on_threads(attempt, scenarios), strict=True)
-
-
-def _map_on_threads(function: Callable[[Scenario], R], scenarios: Sequence[Scenario]) -> Iterator[R]:
-    """Call a function with each scenario on as many threads as there are processors, and yield what it returns.
-
-    The threads are daemons: an interrupt does not wait for runs that have begun.
-    """
-    futures: list[Future[R]] = [Future() for _ in scenarios]
-    waiting = iter(zip(scenarios, futures, strict=True))
-    taking = Lock()
-
-    def work() -> None:
-        while True:
-            with taking:
-                scenario, future = next(waiting, (None, None))
-            if scenario is None or future is None or not future.set_running_or_notify_cancel():
-                return
-            try:
-                future.set_result(function(scenario))
-            except BaseException as error:
-                future.set_exception(error)
-
-    for _ in range(min(os.cpu_count() or 1, len(scenarios))):
-        Thread(target=work, daemon=True).start()
+    pool = ThreadPoolExecutor(os.cpu_count())
     try:
-        for future in futures:
-            yield future.result()
+        yield from zip(scenarios, pool.map(attempt, scenarios), strict=True)
     finally:
-        for future in futures:
-            future.cancel()
+        # An interrupt does not wait for runs that have begun.
+        pool.shutdown(wait=False, cancel_futures=True)
 
 
 def write_histories(runs: Iterable[Run], path: Path) -> Path:

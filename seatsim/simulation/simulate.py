@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from seatsim.compilation.cached import compiled
 from seatsim.cosimulation.damper import FmuDamper
 from seatsim.effects.base import ON_DAMPER, acts_on
 from seatsim.excitations.base import Floor
-from seatsim.kernel.assumed_model import AssumedModel, InverseModel, TrueModel
 from seatsim.kernel.augmented import classes_of
-from seatsim.kernel.channels import CHANNELS, CURRENT_COMMAND
+from seatsim.kernel.generic import AssumedModel, InverseModel, TrueModel
 from seatsim.kernel.hooks import state_at_rest
 from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.loop import run_loop
-from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
+from seatsim.kernel.loop_data import CHANNELS, CURRENT_COMMAND, LoopInputs, LoopSetup, Timing
 from seatsim.kernel.rig import Rig
 from seatsim.rig.control import LawWithNotes, prepare_law
 from seatsim.rig.plant import Plant
@@ -42,42 +37,14 @@ from seatsim.simulation.augment import (
     undo_reading,
 )
 from seatsim.simulation.coupled import run_coupled, stand_in
-from seatsim.simulation.divergence import explain_divergence
 from seatsim.simulation.inputs import NONE, Forces
-
-if TYPE_CHECKING:
-    import pandas as pd
+from seatsim.simulation.result import History
+from seatsim.simulation.validity import explain_divergence
 
 DEFAULT_SAMPLE_TIME = 0.001
 """Seconds between two samples of a law that states none, as common for embedded controllers of such seats."""
-SAME_TIME = 1e-9
+_SAME_TIME = 1e-9
 """Seconds by which a sample time may differ from a whole number of steps, for the sake of rounding."""
-
-
-@dataclass(frozen=True)
-class History:
-    """The channels of one run by name, shape (N,) each, sampled every `step` seconds; SI units, degrees Celsius.
-
-    `notes` are sentences that the law has for its user after the run.
-    """
-
-    step: float
-    channels: Mapping[str, Array]
-    notes: tuple[str, ...] = ()
-
-    def __getitem__(self, name: str) -> Array:
-        """Return one channel."""
-        return self.channels[name]
-
-    def __repr__(self) -> str:
-        """Say how long the run is, and which channels there are."""
-        return f"<History of {len(self.channels['time'])} rows every {self.step:g} s: {', '.join(self.channels)}>"
-
-    def to_pandas(self) -> pd.DataFrame:
-        """Return the channels as columns of a frame, a row for each step."""
-        import pandas as pd
-
-        return pd.DataFrame(dict(self.channels))
 
 
 def simulate(
@@ -90,7 +57,7 @@ def simulate(
 
     Raises:
         InputError: the scenario has no plant, or its times do not fit each other.
-        RunError: the solution grew beyond all bounds, or took more work than `seatsim.kernel.integration` grants.
+        RunError: the solution grew beyond all bounds, or took more work than `seatsim.kernel.hooks` grants.
     """
     if scenario.plant is None or scenario.control is None:
         raise InputError(f"{scenario.name}: a damper bench has no seat to simulate; it is replayed with 'seatsim gap'")
@@ -102,7 +69,7 @@ def simulate(
             floor = scenario.excitation.floor(step, scenario.seed)
     is_recorded = floor.temperature is not None
     setup, initial = set_up(scenario, scenario.plant, scenario.control, is_recorded, carry_all_effects)
-    inputs = prepare_inputs(scenario, scenario.control, floor, forces or Forces())
+    inputs = _prepare_inputs(scenario, scenario.control, floor, forces or Forces())
     if scenario.control.sensors:
         noise = scenario.control.sensors.noise(-(-len(floor.acceleration) // setup.timing.sample_every), scenario.seed)
         inputs = inputs._replace(sensed=at_rest(scenario.start.displacement), noise=noise)
@@ -181,7 +148,7 @@ def _count_steps(step: float, control: Control) -> int:
     if control.sample_time is None:
         return 1 if specification_of(type(control.law)).replays else max(1, round(DEFAULT_SAMPLE_TIME / step))
     every = round(control.sample_time / step)
-    if every < 1 or abs(every * step - control.sample_time) > SAME_TIME:
+    if every < 1 or abs(every * step - control.sample_time) > _SAME_TIME:
         raise InputError(
             f"sample_time {control.sample_time:g} s is not a multiple of solver.step"
             f" {step:g} s; choose {max(1, every) * step:g} s"
@@ -189,7 +156,7 @@ def _count_steps(step: float, control: Control) -> int:
     return every
 
 
-def prepare_inputs(scenario: Scenario, control: Control, floor: Floor, forces: Forces) -> LoopInputs:
+def _prepare_inputs(scenario: Scenario, control: Control, floor: Floor, forces: Forces) -> LoopInputs:
     """Return what drives a run of the loop, under a floor and with forces beside those of the effects."""
     step, effects, samples = scenario.solver.step, scenario.effects, len(floor.acceleration)
     acceleration = undo_reading(effects, floor.acceleration, "floor_acceleration", step)

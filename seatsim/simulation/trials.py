@@ -16,11 +16,11 @@ from seatsim.simulation.simulate import simulate
 
 STRETCH = 20.0
 """Seconds from the start that are simulated."""
-FACTORS = (0.5, 2.0)
-DAMPING = "plant.suspension_damping"
+_FACTORS = (0.5, 2.0)
+_DAMPING = "plant.suspension_damping"
 
 
-class Trial(NamedTuple):
+class _Trial(NamedTuple):
     """A number that was changed, by its dotted key, its value, and the metrics of the run with it."""
 
     key: str
@@ -28,25 +28,25 @@ class Trial(NamedTuple):
     metrics: dict[str, Metric]
 
 
-def try_changes(scenario: Scenario) -> list[Trial]:
+def try_changes(scenario: Scenario) -> list[_Trial]:
     """Return the first stretch of a run as it is, under no key, then with each change that is permitted and possible.
 
     Raises:
         RunError: the run as it is cannot be carried to its end.
     """
     floor = _begin(scenario.excitation.floor(scenario.solver.step, scenario.seed))
-    found = [Trial("", 0.0, measure_run(scenario, simulate(scenario, floor)))]
+    found = [_Trial("", 0.0, measure_run(scenario, simulate(scenario, floor)))]
     for key, value in _list_changes(scenario):
         with suppress(InputError, RunError):
             changed = set_number(scenario, key, value)
-            found.append(Trial(key, value, measure_run(changed, simulate(changed, floor))))
+            found.append(_Trial(key, value, measure_run(changed, simulate(changed, floor))))
     return found
 
 
 def _list_changes(scenario: Scenario) -> Iterator[tuple[str, float]]:
     for key, value in list_numbers(scenario).items():
-        if value and (key == DAMPING or key.startswith(f"{LAW}.")):
-            yield from ((key, f * value) for f in FACTORS if is_permitted(scenario, key, f * value))
+        if value and (key == _DAMPING or key.startswith(f"{LAW}.")):
+            yield from ((key, f * value) for f in _FACTORS if is_permitted(scenario, key, f * value))
 
 
 def _begin(floor: Floor) -> Floor:

@@ -23,25 +23,25 @@ from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.units import conversion, is_unit
 from seatsim.schema.yaml_source import Source
 
-ALIASES = {
+_ALIASES = {
     **{axis: (*(f"{a}_{axis}" for a in ("acc", "acceleration", "seat")), axis) for axis in ("x", "y", "z")},
     "floor.z": ("floor_acceleration", "floor_z"),
 }
 """Columns that are taken for an axis, without the unit at their end."""
-CHANNELS = {"z": "driver_acceleration", "floor.z": "floor_acceleration"}
+_CHANNELS = {"z": "driver_acceleration", "floor.z": "floor_acceleration"}
 """Channel of a recording that stands for an axis."""
-PLACES = {"x": "driver", "y": "driver", "z": "driver", "floor.x": "floor", "floor.y": "floor", "floor.z": "floor"}
+_PLACES = {"x": "driver", "y": "driver", "z": "driver", "floor.x": "floor", "floor.y": "floor", "floor.z": "floor"}
 """Where an axis is measured, as `seatsim.importing.names` calls it."""
 
 
-def fit_axes(signals: Iterable[Signal]) -> dict[str, list[str]]:
+def _fit_axes(signals: Iterable[Signal]) -> dict[str, list[str]]:
     """Return by axis the columns that fit it equally well: those of usual names, else those whose words mean it."""
     columns = [each for each in read_columns(Group("", tuple(signals))) if _may_be_acceleration(each)]
     plain = {without_unit(each.signal.name, each.meaning.unit): each.signal.name for each in columns}
     found = {}
-    for axis, place in PLACES.items():
-        usual = [plain[name] for name in ALIASES.get(axis, ()) if name in plain][:1]
-        exact = [each.signal.name for each in columns if each.signal.name == CHANNELS.get(axis)]
+    for axis, place in _PLACES.items():
+        usual = [plain[name] for name in _ALIASES.get(axis, ()) if name in plain][:1]
+        exact = [each.signal.name for each in columns if each.signal.name == _CHANNELS.get(axis)]
         if names := usual or exact or _find_meant(axis[-1], place, columns):
             found[axis] = names
     return found
@@ -53,7 +53,7 @@ def choose_axes(name: str, columns: Mapping[str, Signal], said: Sequence[str] = 
     Raises:
         InputError: no column fits, or several fit an axis of the person; it ends with what was `said` of the file.
     """
-    fitting = fit_axes(columns.values())
+    fitting = _fit_axes(columns.values())
     for axis, names in fitting.items():
         if len(names) > 1 and axis in DIRECTIONS:
             raise InputError(
@@ -85,9 +85,9 @@ def _find_meant(letter: str, place: str, columns: Sequence[Column]) -> list[str]
     return found.get(place) or (found.get(None, []) if place == "driver" else [])
 
 
-QUANTITIES = ("acceleration", "angular_acceleration")
+_QUANTITIES = ("acceleration", "angular_acceleration")
 """What the columns hold whose units are read off the ends of their names."""
-CONTRARY = 0.01
+_CONTRARY = 0.01
 """Fraction by which a stated rate differs from that of the times, from which it is said."""
 
 
@@ -164,7 +164,7 @@ def _choose_group(file: DataFile, wanted: Collection[str]) -> Group:
 
 def _count_axes(group: Group) -> tuple[int, int]:
     """Return how many axes of the person a group holds, and how many of any place."""
-    found = fit_axes(group.signals)
+    found = _fit_axes(group.signals)
     return len({*found} & {*DIRECTIONS}), len(found)
 
 
@@ -174,8 +174,8 @@ def _say_other_groups(file: DataFile, chosen: Group) -> list[str]:
     Raises:
         InputError: they are along an axis of the person that the chosen group lacks: the total would be too small.
     """
-    here = fit_axes(chosen.signals)
-    others = {each.name: fit_axes(each.signals) for each in file.groups if each is not chosen}
+    here = _fit_axes(chosen.signals)
+    others = {each.name: _fit_axes(each.signals) for each in file.groups if each is not chosen}
     for name, found in others.items():
         lacking = [axis for axis in found if axis in DIRECTIONS and axis not in here]
         if lacking:
@@ -189,7 +189,7 @@ def _say_other_groups(file: DataFile, chosen: Group) -> list[str]:
 
 def _unit(signal: Signal) -> str:
     """Return the unit of a column that its file states, or the end of its name."""
-    return signal.unit or next((found for each in QUANTITIES if (found := unit_of_name(signal.name, each))), "")
+    return signal.unit or next((found for each in _QUANTITIES if (found := unit_of_name(signal.name, each))), "")
 
 
 def _is_time(signal: Signal, clock: Clock | None) -> bool:
@@ -208,7 +208,7 @@ def _rate(
     axis = clock.axis if clock else None
     if stated is not None:
         found = axis.rate if axis and clock and clock.unit and axis.is_even else group.rate
-        is_contrary = found is not None and abs(stated / found - 1.0) > CONTRARY
+        is_contrary = found is not None and abs(stated / found - 1.0) > _CONTRARY
         notes = [f"the file states {found:.6g} Hz; the stated {stated:g} Hz is taken"] if is_contrary else []
         lost = list(doubt_time(axis, clock.column)) if axis and clock and len(axis.breaks) else []
         return stated, [*notes, *(issue.sentence for issue in lost)]

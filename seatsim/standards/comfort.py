@@ -21,21 +21,20 @@ from seatsim.metrics.exposure import DIRECTIONS, POINTS, Direction, Exposure, as
 from seatsim.metrics.weighting import weight
 from seatsim.recordings.quality.channels import say_implausible
 from seatsim.schema.arrays import Array
-from seatsim.schema.content import Form, Joined, Unwritten, written
+from seatsim.schema.content import Form, Joined, Unwritten, show_record, written
 from seatsim.schema.errors import InputError, nearest
-from seatsim.schema.notebook import show_record
 from seatsim.schema.units import STANDARD_GRAVITY
 from seatsim.standards.acceleration_records import AccelerationRecord, choose_axes, load_accelerations
 
-FLOOR = {"floor.x": "x", "floor.y": "y", "floor.z": "z"}
+_FLOOR = {"floor.x": "x", "floor.y": "y", "floor.z": "z"}
 """Axes at the base of the seat, and the axis of the seat whose weighting and SEAT factor they belong to."""
-AXES = (*DIRECTIONS, *FLOOR)
-OFFSET = 0.05
+_AXES = (*DIRECTIONS, *_FLOOR)
+_OFFSET = 0.05
 """Smallest mean in m/s^2 that is said to have been taken out."""
-SHORTEST = 108.0
+_SHORTEST = 108.0
 """s; duration that ISO 2631-1:1997, 5.5, asks for random vibration from 1 Hz on (recalled)."""
 
-Blocks = Sequence[tuple[float, float]]
+_Blocks = Sequence[tuple[float, float]]
 
 
 class AxisAssessment(NamedTuple):
@@ -99,7 +98,7 @@ def comfort(
     *,
     hours: float = 8.0,
     runs: Sequence[str] = (),
-    blocks: Blocks = (),
+    blocks: _Blocks = (),
     rate: float | None = None,
     unit: str | None = None,
 ) -> Comfort:
@@ -139,7 +138,7 @@ def comfort(
         exposure=assess_exposure(joined, hours),
         seat={
             axis: seat_transmission(doses[axis], doses[base])
-            for base, axis in FLOOR.items()
+            for base, axis in _FLOOR.items()
             if {base, axis} <= {*named}
         },
         motion_sickness=_motion_sickness(records, named.get("z"), blocks),
@@ -170,17 +169,17 @@ def _chosen(records: list[AccelerationRecord], runs: Sequence[str], source: str 
 
 def _check_axes(named: Mapping[str, str]) -> None:
     for axis in named:
-        if axis not in AXES:
-            raise InputError(f"no axis is called '{axis}'{nearest(axis, AXES)}; permitted: {', '.join(AXES)}")
+        if axis not in _AXES:
+            raise InputError(f"no axis is called '{axis}'{nearest(axis, _AXES)}; permitted: {', '.join(_AXES)}")
 
 
-def _doses(records: Sequence[AccelerationRecord], axis: str, column: str, blocks: Blocks) -> list[Dose]:
+def _doses(records: Sequence[AccelerationRecord], axis: str, column: str, blocks: _Blocks) -> list[Dose]:
     """Return the dose of each block of each record."""
-    along = direction(FLOOR.get(axis, axis))
+    along = direction(_FLOOR.get(axis, axis))
     return [dose(part, record.sample_rate) for record in records for part in _weighted(record, column, along, blocks)]
 
 
-def _weighted(record: AccelerationRecord, column: str, along: Direction, blocks: Blocks) -> list[Array]:
+def _weighted(record: AccelerationRecord, column: str, along: Direction, blocks: _Blocks) -> list[Array]:
     # The high-pass would take seconds to forget a constant, and gravity in a sensor would be the largest "vibration".
     x = record.values(column, along.unit)
     try:
@@ -190,7 +189,7 @@ def _weighted(record: AccelerationRecord, column: str, along: Direction, blocks:
     return [whole[cut] for cut in _cuts(record, len(whole), blocks)]
 
 
-def _cuts(record: AccelerationRecord, samples: int, blocks: Blocks) -> list[slice]:
+def _cuts(record: AccelerationRecord, samples: int, blocks: _Blocks) -> list[slice]:
     for start, end in blocks:
         if not 0 <= start < end or round(end * record.sample_rate) > samples:
             lasts = samples / record.sample_rate
@@ -208,7 +207,7 @@ def _assess(axis: str, column: str, doses: Sequence[Dose], records: Sequence[Acc
 
 
 def _motion_sickness(
-    records: Sequence[AccelerationRecord], column: str | None, blocks: Blocks
+    records: Sequence[AccelerationRecord], column: str | None, blocks: _Blocks
 ) -> MotionSickness | None:
     if column is None:
         return None
@@ -228,7 +227,7 @@ def _notes(
         yield f"{len(records)} runs count as one vibration: {', '.join(record.name for record in records)}"
     for axis, found in axes.items():
         size = abs(found.removed)
-        if size > OFFSET:
+        if size > _OFFSET:
             cause = "gravity" if abs(size - STANDARD_GRAVITY) < 0.05 * STANDARD_GRAVITY else "an offset of the sensor"
             mean = f"{found.removed:.3g} {found.direction.unit}"
             yield f"{axis}: a mean of {mean}, {cause}, was taken out of {found.column}"
@@ -241,8 +240,8 @@ def _notes(
         if found.column in unitless and abs(abs(found.removed) - 1.0) < 0.05:
             yield f"{found.column} has a mean of {found.removed:.3g}, as gravity has in g: then give --unit g"
     duration = next(iter(axes.values())).dose.duration
-    if duration < SHORTEST:
+    if duration < _SHORTEST:
         yield (
-            f"the record lasts {duration:.3g} s; ISO 2631-1:1997, 5.5, takes {SHORTEST:g} s for random vibration from"
+            f"the record lasts {duration:.3g} s; ISO 2631-1:1997, 5.5, takes {_SHORTEST:g} s for random vibration from"
             " 1 Hz on (recalled)"
         )

@@ -12,8 +12,7 @@ from typing import Annotated, NamedTuple
 
 from seatsim.excitations.iso7096 import SpectralClass
 from seatsim.metrics.comfort import SPREAD, Dose, seat_transmission
-from seatsim.schema.content import Form, written
-from seatsim.schema.notebook import show_record
+from seatsim.schema.content import Form, show_record, written
 from seatsim.schema.text import join_names
 
 ACCEPTANCE, DAMPING = "ISO 7096:2000, 5.5.1 and 6 (recalled)", "ISO 7096:2000, 5.5.2 and 6 (recalled)"
@@ -24,7 +23,7 @@ RECALLED = (
 )
 
 
-class ClassLimits(NamedTuple):
+class _ClassLimits(NamedTuple):
     """Acceptance values of one spectral class, and the machines that it stands for."""
 
     seat: float
@@ -34,16 +33,16 @@ class ClassLimits(NamedTuple):
     machines: str
 
 
-LIMITS: dict[SpectralClass, ClassLimits] = {
-    "EM1": ClassLimits(1.1, 1.5, "articulated or rigid frame dumper"),
-    "EM2": ClassLimits(0.9, 1.5, "scraper without axle or frame suspension"),
-    "EM3": ClassLimits(1.0, 1.5, "wheel loader"),
-    "EM4": ClassLimits(1.1, 1.5, "grader"),
-    "EM5": ClassLimits(0.7, 2.0, "wheel dozer, soil compactor, backhoe loader"),
-    "EM6": ClassLimits(0.7, 1.5, "crawler loader, crawler dozer"),
-    "EM7": ClassLimits(0.6, 2.0, "compact dumper"),
-    "EM8": ClassLimits(0.8, 2.0, "compact loader"),
-    "EM9": ClassLimits(0.9, 2.0, "skid-steer loader"),
+LIMITS: dict[SpectralClass, _ClassLimits] = {
+    "EM1": _ClassLimits(1.1, 1.5, "articulated or rigid frame dumper"),
+    "EM2": _ClassLimits(0.9, 1.5, "scraper without axle or frame suspension"),
+    "EM3": _ClassLimits(1.0, 1.5, "wheel loader"),
+    "EM4": _ClassLimits(1.1, 1.5, "grader"),
+    "EM5": _ClassLimits(0.7, 2.0, "wheel dozer, soil compactor, backhoe loader"),
+    "EM6": _ClassLimits(0.7, 1.5, "crawler loader, crawler dozer"),
+    "EM7": _ClassLimits(0.6, 2.0, "compact dumper"),
+    "EM8": _ClassLimits(0.8, 2.0, "compact loader"),
+    "EM9": _ClassLimits(0.9, 2.0, "skid-steer loader"),
 }
 
 PERSONS = {"light": 55.0, "heavy": 98.0}

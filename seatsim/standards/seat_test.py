@@ -51,15 +51,15 @@ def seat_test(
     Raises:
         InputError: the scenario or recording is wrong, or has no seat to test. RunError: a simulation failed.
     """
-    chosen = find_classes(classes) or tuple(LIMITS)
+    chosen = _find_classes(classes) or tuple(LIMITS)
     if (Path(source) / HEADER).exists():
-        found = assess_recorded_seat(load_recording(source), chosen)
+        found = _assess_recorded_seat(load_recording(source), chosen)
     else:
         found = assess_simulated_seats(load(source, settings), chosen, progress)
     return found._replace(source=Path(source).name)
 
 
-def find_classes(names: Sequence[str]) -> tuple[SpectralClass, ...]:
+def _find_classes(names: Sequence[str]) -> tuple[SpectralClass, ...]:
     """Return spectral classes by name, whatever their case.
 
     Raises:
@@ -72,19 +72,19 @@ def find_classes(names: Sequence[str]) -> tuple[SpectralClass, ...]:
     return tuple(known[name.lower()] for name in names)
 
 
-NEEDED = ("floor_acceleration", "driver_acceleration")
-TRAVEL = "suspension_displacement"
-SEGMENT = 8.0
+_NEEDED = ("floor_acceleration", "driver_acceleration")
+_TRAVEL = "suspension_displacement"
+_SEGMENT = 8.0
 """s; segments of the spectrum of the floor."""
-FARTHEST = 0.3
+_FARTHEST = 0.3
 """Largest mean deviation of a run's spectrum from that of its class, as a share of the class's power."""
-INPUT_TOLERANCE = 0.05
+_INPUT_TOLERANCE = 0.05
 """Largest deviation of the floor's weighted acceleration from that of its class (ISO 7096:2000, 5.5.1; recalled)."""
-PERSON_TOLERANCE = 5.0
+_PERSON_TOLERANCE = 5.0
 """kg; a run whose driver is farther from both test persons is of no test."""
 
 
-def assess_recorded_seat(recording: Recording, classes: Sequence[SpectralClass]) -> SeatTest:
+def _assess_recorded_seat(recording: Recording, classes: Sequence[SpectralClass]) -> SeatTest:
     """Put the runs of a recording to the test of ISO 7096; the damping test is left out.
 
     A run is of the class whose spectrum its floor has, and of the person whose mass rests on the seat: the nominal
@@ -99,28 +99,28 @@ def assess_recorded_seat(recording: Recording, classes: Sequence[SpectralClass])
     """
     nominal = recording.nominal
     plant = None if nominal.plant is None else augment_plant(nominal.effects, nominal.plant)
-    if plant is None or any(name not in recording.channels for name in NEEDED):
-        raise InputError(f"{recording.folder / HEADER}: the test of a seat needs the channels {join_names(NEEDED)}")
+    if plant is None or any(name not in recording.channels for name in _NEEDED):
+        raise InputError(f"{recording.folder / HEADER}: the test of a seat needs the channels {join_names(_NEEDED)}")
     groups: dict[tuple[SpectralClass, str], list[Trial]] = {}
     notes = [RECALLED, "the damping test needs tones under an inert mass, and is left out"]
     failures: list[SeatFailure] = []
     for run in recording.runs:
         try:
             table = recording.table(run)
-            found, off = nearest_class(table[NEEDED[0]], recording.header.sample_rate, classes)
+            found, off = _nearest_class(table[_NEEDED[0]], recording.header.sample_rate, classes)
         except InputError as error:
             failures.append(SeatFailure(run, None, None, str(error)))
             continue
         mass = recording.runs[run].set.get("plant.driver_mass", plant.driver_mass) / SEATED_SHARE
         person = min(PERSONS, key=lambda name: abs(PERSONS[name] - mass))
-        if off > FARTHEST or abs(PERSONS[person] - mass) > PERSON_TOLERANCE:
+        if off > _FARTHEST or abs(PERSONS[person] - mass) > _PERSON_TOLERANCE:
             notes.append(
                 f"run {run} is left out: nearest is {found}, off by {1e2 * off:.0f} %; a person of {mass:.0f} kg"
             )
             continue
         trial = _trial(table, recording.header.sample_rate, plant)
         expected = weighted_input(found)
-        if abs(trial.floor.rms / expected - 1) > INPUT_TOLERANCE:
+        if abs(trial.floor.rms / expected - 1) > _INPUT_TOLERANCE:
             notes.append(f"run {run}: its floor has {trial.floor.rms:.3g} m/s^2 weighted, {found} has {expected:.3g}")
         groups.setdefault((found, person), []).append(trial)
     if not groups:
@@ -131,7 +131,7 @@ def assess_recorded_seat(recording: Recording, classes: Sequence[SpectralClass])
     return SeatTest(rows, (), {}, (*notes, *doubt_runs(rows)), tuple(failures))
 
 
-def nearest_class(floor: Array, rate: float, classes: Sequence[SpectralClass]) -> tuple[SpectralClass, float]:
+def _nearest_class(floor: Array, rate: float, classes: Sequence[SpectralClass]) -> tuple[SpectralClass, float]:
     """Return the class whose spectrum is nearest to that of a floor, and how far it is, as a share of its power.
 
     Args:
@@ -139,7 +139,7 @@ def nearest_class(floor: Array, rate: float, classes: Sequence[SpectralClass]) -
         rate: in Hz.
         classes: those to choose from, at least one.
     """
-    frequency, density = power_spectral_density(floor, rate, 2 * round(SEGMENT * rate / 2))
+    frequency, density = power_spectral_density(floor, rate, 2 * round(_SEGMENT * rate / 2))
     distances = {
         each: float(np.sum(np.abs(density - wanted)) / np.sum(wanted))
         for each in classes
@@ -158,6 +158,6 @@ def weighted_input(spectral_class: SpectralClass) -> float:
 
 def _trial(table: Mapping[str, Array], rate: float, plant: Plant) -> Trial:
     settled = round(SETTLE * rate)
-    floor, driver = (dose(weight(table[name] - table[name].mean(), rate)[settled:], rate) for name in NEEDED)
-    stops = plant.end_stops if TRAVEL in table else None
-    return Trial(driver, floor, end_stop_hits(table[TRAVEL], stops) if stops else None)
+    floor, driver = (dose(weight(table[name] - table[name].mean(), rate)[settled:], rate) for name in _NEEDED)
+    stops = plant.end_stops if _TRAVEL in table else None
+    return Trial(driver, floor, end_stop_hits(table[_TRAVEL], stops) if stops else None)

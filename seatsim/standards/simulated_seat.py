@@ -23,7 +23,8 @@ from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import specification_of
 from seatsim.schema.text import join_names
 from seatsim.simulation.augment import augment_plant
-from seatsim.simulation.simulate import History, simulate
+from seatsim.simulation.result import History
+from seatsim.simulation.simulate import simulate
 from seatsim.standards.seat_rows import (
     FREQUENCY_STEP,
     INERT_MASS,
@@ -42,17 +43,17 @@ from seatsim.standards.seat_rows import (
     state_row,
 )
 
-INERT = "inert mass"
+_INERT = "inert mass"
 """What sits on the seat in the damping test, where others have a person."""
-DURATION = 60.0
+_DURATION = 60.0
 """s; length of each run that is evaluated."""
 
-Count = Callable[[int, int], None]
+_Count = Callable[[int, int], None]
 _Result = TypeVar("_Result", Trial, DampingTest)
 
 
 def assess_simulated_seats(
-    scenarios: Sequence[Scenario], classes: Sequence[SpectralClass], progress: Count = lambda done, of: None
+    scenarios: Sequence[Scenario], classes: Sequence[SpectralClass], progress: _Count = lambda done, of: None
 ) -> SeatTest:
     """Put the seats of scenarios to the test of ISO 7096, each in three runs a class and driver.
 
@@ -76,11 +77,11 @@ def assess_simulated_seats(
             for each in classes
             for person in PERSONS
         }
-        damping = {title: pool.submit(run_damping_test, seat.scenario, seat.plant) for title, seat in seats.items()}
+        damping = {title: pool.submit(_run_damping_test, seat.scenario, seat.plant) for title, seat in seats.items()}
         _count([*(future for futures in trials.values() for future in futures), *damping.values()], progress)
     failures: list[SeatFailure] = []
     done = {key: _finished(runs, (*key,), failures) for key, runs in trials.items()}
-    ended = {title: _finished([future], (title, None, INERT), failures) for title, future in damping.items()}
+    ended = {title: _finished([future], (title, None, _INERT), failures) for title, future in damping.items()}
     tested = {title: found[0] for title, found in ended.items() if found}
     rows = tuple(state_row(*key, found, len(found) == RUNS) for key, found in done.items() if found)
     if not rows and not tested:
@@ -131,7 +132,7 @@ def _run_trial(seat: _Seat, spectral_class: SpectralClass, person: str, seed: in
     history = simulate(
         dataclasses.replace(
             seat.scenario,
-            excitation=Iso7096(spectral_class, SETTLE + DURATION),
+            excitation=Iso7096(spectral_class, SETTLE + _DURATION),
             seed=seed,
             effects=(*seat.scenario.effects, Mass(change)),
         )
@@ -144,7 +145,7 @@ def _run_trial(seat: _Seat, spectral_class: SpectralClass, person: str, seed: in
     return Trial(driver, floor, end_stop_hits(history["suspension_displacement"], stops) if stops else None)
 
 
-def _count(futures: Sequence[Future[Trial] | Future[DampingTest]], progress: Count) -> None:
+def _count(futures: Sequence[Future[Trial] | Future[DampingTest]], progress: _Count) -> None:
     for done, _ in enumerate(as_completed(futures), 1):
         progress(done, len(futures))
 
@@ -156,11 +157,11 @@ def _notes(seats: Mapping[str, _Seat]) -> Iterator[str]:
         yield f"no end stops are stated for {join_names(without)}, and none are checked; state plant.travel"
 
 
-FADE, CYCLES, EVALUATED = 1, 12, 6
+_FADE, _CYCLES, _EVALUATED = 1, 12, 6
 """Periods over which a tone fades in and out, at full amplitude, and at its end that are evaluated."""
 
 
-def run_damping_test(scenario: Scenario, plant: Plant) -> DampingTest:
+def _run_damping_test(scenario: Scenario, plant: Plant) -> DampingTest:
     """Drive a seat through tones about its resonance and return the largest transmissibility.
 
     The control law acts as the scenario says.
@@ -174,7 +175,7 @@ def run_damping_test(scenario: Scenario, plant: Plant) -> DampingTest:
     tested = dataclasses.replace(
         scenario,
         driver=Driver(SINGLE_MASS),
-        excitation=SteppedSine(tones, CYCLES, 0.5 * stroke),
+        excitation=SteppedSine(tones, _CYCLES, 0.5 * stroke),
         effects=(*scenario.effects, Mass(INERT_MASS - plant.driver_mass)),
     )
     ratios = _ratios(simulate(tested), tones)
@@ -183,11 +184,11 @@ def run_damping_test(scenario: Scenario, plant: Plant) -> DampingTest:
 
 
 def _ratios(history: History, tones: tuple[float, ...]) -> list[float]:
-    ends = np.cumsum([(CYCLES + 2 * FADE) / tone for tone in tones])
+    ends = np.cumsum([(_CYCLES + 2 * _FADE) / tone for tone in tones])
     ratios = []
     for tone, end in zip(tones, ends, strict=True):
-        last = round((end - FADE / tone) / history.step)
-        steady = slice(last - round(EVALUATED / tone / history.step), last)
+        last = round((end - _FADE / tone) / history.step)
+        steady = slice(last - round(_EVALUATED / tone / history.step), last)
         seat, floor = (history[name][steady] for name in ("driver_acceleration", "floor_acceleration"))
         ratios.append(rms(seat) / rms(floor))
     return ratios

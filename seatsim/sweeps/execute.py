@@ -9,13 +9,23 @@ from contextlib import AbstractContextManager, closing, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
+from seatsim.provenance.statement import Manifest
 from seatsim.scenario.numbers import find_unit
-from seatsim.schema.content import Form, Unwritten
+from seatsim.schema.content import Form, Joined, Unwritten
 from seatsim.schema.errors import InputError, RunError
-from seatsim.schema.leftovers import uncut
+from seatsim.schema.fields import validated
+from seatsim.schema.guarded import uncut
 from seatsim.sweeps.definition import SweepDefinition, read_definition
 from seatsim.sweeps.engines import Engine, LocalEngine, Work
-from seatsim.sweeps.folder import check_resumable, count_states, hold_file, hold_folder, identify_sweep, write_manifest
+from seatsim.sweeps.folder import (
+    check_resumable,
+    count_states,
+    hold_file,
+    hold_folder,
+    identify_sweep,
+    read_manifest,
+    write_manifest,
+)
 from seatsim.sweeps.outcome import FAILED, Outcome
 from seatsim.sweeps.parts import (
     make_schema,
@@ -64,12 +74,18 @@ def read_share(text: str) -> Share:
 
 
 class SweepResult(NamedTuple):
-    """A sweep after a command: its folder, its identity, runs by state, and reasons of the first runs that failed."""
+    """A sweep after a command: the content of its `manifest.json`, and the reasons of the runs that failed.
+
+    `made` is what the manifest says of the command, None where Python alone is at work.
+    """
 
     folder: Unwritten[Path]
     identity: str
     counts: Mapping[str, int]
+    limits: Mapping[str, float]
+    design: str
     failures: Annotated[list[str], Form(key="failed")]
+    made: Joined[Manifest | None]
 
 
 class _PreparedSweep(NamedTuple):
@@ -156,7 +172,10 @@ def execute(
                 counts = count_states((state for _, state, _ in found), plan.runs)
                 write_manifest(folder, identity, definition.limits, counts)
     failures = [f"run {run}: {reason}" for run, state, reason in found if state == FAILED]
-    return SweepResult(folder, identity.digest, counts, failures)
+    stated = read_manifest(folder)
+    known = {key: value for key, value in stated.items() if key in Manifest._fields}
+    made = validated(Manifest, known) if "command" in known else None
+    return SweepResult(folder, identity.digest, counts, definition.limits, identity.design, failures, made)
 
 
 def sweep(file: str | Path, out: str | Path, jobs: int | None = None, resume: bool = False) -> pd.DataFrame:

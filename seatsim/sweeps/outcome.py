@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.compilation.reasons import explain
+from seatsim.compilation.messages import explain
 from seatsim.excitations.base import Excitation, Floor
 from seatsim.metrics.table import METRICS, Metric
 from seatsim.scenario.scenario import Scenario

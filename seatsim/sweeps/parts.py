@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from seatsim.metrics.table import METRICS
+from seatsim.schema.arrays import open_parquet, store_numbers, store_texts
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import remove_left, write_whole
-from seatsim.schema.parquet import open_parquet, store_numbers, store_texts
 from seatsim.sweeps.folder import read_manifest
 from seatsim.sweeps.outcome import Outcome
 from seatsim.sweeps.plan import Plan

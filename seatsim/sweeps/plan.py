@@ -15,9 +15,8 @@ from functools import cached_property
 from typing import NamedTuple
 
 from seatsim.excitations.base import Excitation
-from seatsim.scenario.expansion import expand
-from seatsim.scenario.loading import read_scenario, reread
-from seatsim.scenario.plausibility import list_doubts
+from seatsim.scenario.loading import expand, read_scenario, reread
+from seatsim.scenario.numbers import list_doubts
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError, list_sentences, raise_all
 from seatsim.schema.yaml_source import Source

@@ -13,7 +13,7 @@ STUCK = """
 import _imp
 import time
 from seatsim.cli import interrupts
-from seatsim.schema.leftovers import temporary_folder
+from seatsim.schema.guarded import temporary_folder
 interrupts.GRACE = 0.2
 interrupts.watch_signals()
 with temporary_folder() as folder:

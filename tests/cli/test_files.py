@@ -10,8 +10,8 @@ from ruamel.yaml import YAML
 
 import seatsim
 from seatsim.cli.new_files import KINDS, REGISTERED, write_new
+from seatsim.cli.outputs.answers import FILES
 from seatsim.cli.outputs.diagnosis_tables import make_tables
-from seatsim.cli.outputs.schemas import FILES
 from seatsim.diagnosis.result import Cause, Estimate
 from seatsim.schema.registry import find
 

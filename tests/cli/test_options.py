@@ -78,11 +78,32 @@ def test_a_folder_without_permission_is_refused(seatsim_command, seat_file, monk
     assert status == 2 and f"{seat_file.parent} is not yours to write in; give another --out" in err
 
 
-def test_shells_complete_the_keys_of_a_scenario():
-    typed = "seatsim run h-infinity --set controller."
+def complete(typed):
     asked = os.environ | {"_SEATSIM_COMPLETE": "complete_fish", "_TYPER_COMPLETE_FISH_ACTION": "get-args",
-                          "_TYPER_COMPLETE_ARGS": typed}  # fmt: skip
+                          "_TYPER_COMPLETE_ARGS": f"seatsim {typed}"}  # fmt: skip
     done = subprocess.run([sys.executable, "-m", "seatsim"], env=asked, capture_output=True, text=True, check=False)
-    found = dict(line.split("\t") for line in done.stdout.splitlines())
+    return dict((*line.split("\t"), "")[:2] for line in done.stdout.splitlines())
+
+
+def test_shells_complete_the_keys_of_a_scenario():
+    found = complete("run h-infinity --set controller.")
     assert all(key.startswith("controller.") for key in found)
     assert found["controller.sensors.displacement_noise="] == "RMS noise of a displacement reading (m)"
+
+
+@pytest.mark.parametrize(
+    ("typed", "among"),
+    [
+        ("run quick", "quickstart"), ("export quickstart --to fmu", "fmu3"), ("export quickstart --what ", "rig"),
+        ("identify data --model bouc", "bouc_wen"), ("new eff", "effect"), ("schema diag", "diagnose"),
+        ("describe coil.", "coil.lag"),
+    ],
+)  # fmt: skip
+def test_shells_complete_names(typed, among):
+    found = complete(typed)
+    assert among in found and all(name.startswith(typed.split(" ")[-1]) for name in found)
+
+
+def test_without_a_command_three_things_to_try_are_said(seatsim_command):
+    status, out, _ = seatsim_command()
+    assert status == 0 and "Three things to try" in out and out.count("\n  seatsim ") == 3

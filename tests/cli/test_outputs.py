@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 
 from seatsim.cli.commands.recordings import diagnose as diagnose_command
 from seatsim.cli.outputs import damper_tables
-from seatsim.cli.outputs.measured import write_diagnosis
 from seatsim.cli.outputs.simulated import Brackets
-from seatsim.cli.outputs.writing import write_outputs
+from seatsim.cli.outputs.writing import write_diagnosis, write_outputs
+from seatsim.cli.show_table import format_number
 from seatsim.diagnosis.diagnose import BUDGET
 from seatsim.metrics.table import Metric
 from seatsim.schema.content import to_content
@@ -96,7 +96,7 @@ def test_rows_become_cells_that_no_spreadsheet_computes(tmp_path, rows):
     [(1.25, ".1f", "1.2"), (-0.04, ".1f", "0.0"), (-0.06, ".1f", "-0.1"), (math.nan, ".0f", "-"), (math.inf, "g", "-")],
 )
 def test_numbers_of_a_table(value, form, text):
-    assert damper_tables._format_number(value, form) == text
+    assert format_number(value, form) == text
 
 
 def test_names_of_a_table_are_short():

@@ -9,7 +9,7 @@ import pytest
 from numba import njit
 from numba.core.errors import TypingError
 
-from seatsim.compilation.reasons import explain, is_compilation
+from seatsim.compilation.messages import explain, is_compilation
 from seatsim.schema.modules import use
 
 compiled = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled")

@@ -106,6 +106,22 @@ def test_a_plant_that_no_gain_stabilises_is_proven_to_be_one(check, tmp_path):
     plant = GeneralisedPlant([[0.0, 1.0], [0.0, 1.0]], one, one, [[1.0, 0.0]], [[1.0, 0.0]], zero, zero, zero)
     proof = prove_no_better([plant], np.inf, [-1e6], [1e6])
     assert proof.is_proven
+    proof.save(tmp_path / "global.json")
+    assert check(tmp_path / "global.json") == f"proven in {proof.boxes} boxes"
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_norm_that_stands_at_infinite_frequency(check, tmp_path):
+    # x' = -x + w + u, z = x + 2 w, y = x: T = 2 + 1 / (s + 1 - k), so that the norm is T(0), least 2.5 at k = -1.
+    one = np.ones((1, 1))
+    plant = GeneralisedPlant(-one, one, one, one, one, 2 * one, 0 * one, 0 * one)
+    # With z = 2 w - x the norm is T(inf) = 2 where k < 0.75.
+    turned = GeneralisedPlant(-one, one, one, -one, one, 2 * one, 0 * one, 0 * one)
+    for each, level in ((plant, 2.49), (turned, 1.99)):
+        proof = prove_no_better([each], level, [-1.0], [1.0])
+        assert proof.is_proven
+        proof.save(tmp_path / "global.json")
+        assert check(tmp_path / "global.json").startswith("proven")
 
 
 def test_what_time_does_not_suffice_for_is_counted():

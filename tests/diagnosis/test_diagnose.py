@@ -10,7 +10,7 @@ from seatsim.blind.make import draw_experiment, materiality
 from seatsim.blind.make.make import make
 from seatsim.blind.sealed import unseal
 from seatsim.cli.app import app
-from seatsim.cli.outputs.measured import write_diagnosis
+from seatsim.cli.outputs.writing import write_diagnosis
 from seatsim.report.formatting import format_sentence
 
 KINDS = ["none", "one", "outside"]

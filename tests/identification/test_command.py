@@ -9,7 +9,7 @@ from ruamel.yaml import YAML
 from typer.testing import CliRunner
 
 from seatsim.cli.app import app
-from seatsim.cli.outputs.measured import write_identification
+from seatsim.cli.outputs.writing import write_identification
 from seatsim.identification import model_benchmark as module
 from seatsim.identification.assessment import PredictionData
 from seatsim.identification.identify import identify

@@ -4,12 +4,11 @@ import numpy as np
 
 from controllers.laws.constant import Replay
 from seatsim.compilation.cached import compiled
-from seatsim.kernel.assumed_model import TrueModel
-from seatsim.kernel.channels import CHANNELS
+from seatsim.kernel.generic import TrueModel
 from seatsim.kernel.hooks import state_at_rest
 from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.loop import run_loop
-from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
+from seatsim.kernel.loop_data import CHANNELS, LoopInputs, LoopSetup, Timing
 from seatsim.kernel.rig import Rig
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant

@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from seatsim.dampers.bouc_wen import BoucWen
-from seatsim.kernel.assumed_model import AssumedModel, follow_state, model_scaling, model_state
+from seatsim.kernel.generic import AssumedModel, follow_state, model_scaling, model_state
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 
 from .uncompiled import Linear

@@ -6,7 +6,7 @@ import pytest
 from controllers.laws.static_output_feedback import OutputFeedback
 from seatsim.dampers.bingham import Bingham
 from seatsim.dampers.bouc_wen import BoucWen, ModifiedBoucWen
-from seatsim.kernel.assumed_model import AssumedModel
+from seatsim.kernel.generic import AssumedModel
 from seatsim.kernel.inverse import CELLS, invert, total_force
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 from seatsim.schema.registry import specification_of

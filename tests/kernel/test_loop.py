@@ -6,11 +6,10 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from seatsim.kernel.assumed_model import AssumedModel, TrueModel
-from seatsim.kernel.channels import CHANNELS
+from seatsim.kernel.generic import AssumedModel, TrueModel
 from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.loop import run_loop
-from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
+from seatsim.kernel.loop_data import CHANNELS, LoopInputs, LoopSetup, Timing
 from seatsim.kernel.rig import Rig
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from seatsim.kernel.assumed_model import TrueModel
-from seatsim.kernel.channels import CHANNELS, CURRENT_COMMAND
-from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing, step_inputs
+from seatsim.kernel.generic import TrueModel
+from seatsim.kernel.loop_data import CHANNELS, CURRENT_COMMAND, LoopInputs, LoopSetup, Timing, step_inputs
 from seatsim.kernel.rig import Rig
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant

@@ -7,7 +7,7 @@ import pytest
 
 import seatsim
 from seatsim.dampers.bouc_wen import BoucWen
-from seatsim.kernel.integration import MOST_DEBT, MOST_WORK, owe
+from seatsim.kernel.hooks import MOST_DEBT, MOST_WORK, owe
 from seatsim.schema.errors import RunError
 from seatsim.simulation.damper_bench import bench_force
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.metrics.arrays import as_pair, as_signal, ratio, require_finite, require_positive
+from seatsim.metrics.motion import as_pair, as_signal, ratio, require_finite, require_positive
 from seatsim.metrics.table import MissingInput, RunRecord
 from seatsim.schema.errors import InputError
 

@@ -9,8 +9,7 @@ from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.scenario.scenario import DamperChoice, Scenario
-from seatsim.simulation.result import UNITS, Run
-from seatsim.simulation.simulate import History
+from seatsim.simulation.result import UNITS, History, Run
 
 PLANT = Plant(20.0, 80.0, 4600.0, 150.0, 60000.0, 1500.0, travel=(-0.05, 0.05))
 FADING = TemperatureFactors(viscous=-0.0067, yield_force=-0.0067)

@@ -17,7 +17,7 @@ from seatsim.plots.thinning import BINS, Window, find_loudest, thin_line
 from seatsim.rig.coil import Coil
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.simulation.damper_bench import sine_test
-from seatsim.simulation.simulate import History
+from seatsim.simulation.result import History
 
 
 def texts(figure):

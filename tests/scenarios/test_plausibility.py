@@ -7,7 +7,7 @@ import pytest
 
 import seatsim
 from seatsim.scenario.loading import load
-from seatsim.scenario.plausibility import list_doubts
+from seatsim.scenario.numbers import list_doubts
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "scenarios"
 ROAD = {"kind": "road", "road_class": "B", "speed": 80.0, "duration": 5.0}

@@ -11,9 +11,8 @@ import numpy as np
 import pytest
 
 from seatsim.schema.arrays import Array
-from seatsim.schema.content import Form, IfAny, Joined, Unwritten, to_content, written
+from seatsim.schema.content import Form, IfAny, Joined, Unwritten, show_record, to_content, written
 from seatsim.schema.json_schema import answer_schema
-from seatsim.schema.notebook import show_record
 
 
 class Dose(NamedTuple):

@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from seatsim.cli.tables import comparison
+from seatsim.cli.outputs.run_tables import make_comparison_table
 from seatsim.metrics.table import Metric
 from seatsim.scenario.loading import load, single
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import specification_of
-from seatsim.simulation.result import UNITS, Channel, Result
+from seatsim.simulation.result import UNITS, Channel, History, Result
 from seatsim.simulation.runs import compare, run, run_many, run_one
-from seatsim.simulation.simulate import History, simulate
+from seatsim.simulation.simulate import simulate
 from seatsim.simulation.validity import LARGEST_RESIDUAL, list_ranges_left, list_reasons
 
 
@@ -177,7 +177,7 @@ def test_a_run_says_why_its_figures_are_unverified(kept_seat_file):
         doubtful.warnings
     )
     assert Result([sure, doubtful]).rows[1]["unverified"] == "; ".join(doubtful.unverified)
-    quiet = comparison([sure, doubtful, sure], "both")
+    quiet = make_comparison_table([sure, doubtful, sure], "both")
     assert [next(iter(quiet.columns[0].cells)), list(quiet.columns[0].cells)[1][-1]] == ["seat", "*"]
     best = [cell for column in quiet.columns for cell in column.cells if "bold" in str(cell)]
     assert best and all("bold" not in str(list(column.cells)[1]) for column in quiet.columns)

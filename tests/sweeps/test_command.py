@@ -25,7 +25,9 @@ def test_a_sweep_and_its_report(write_sweep, tmp_path, seatsim_command):
     status, text, _ = seatsim_command("check", path)
     assert status == 0 and "sweep, no errors; 24 runs over plant.driver_mass" in text
     status, text, _ = seatsim_command("sweep", path, "--out", out, "--json")
-    assert status == 0 and check_answer("sweep", text)["counts"]["done"] == 24
+    found = check_answer("sweep", text)
+    assert status == 0 and found["counts"]["done"] == 24 and found["failed"] == []
+    assert json.loads((out / "manifest.json").read_text()).items() <= found.items()
     status, text, _ = seatsim_command("sweep-report", out, "--json")
     content = check_answer("sweep-report", text)
     assert status == 0 and re.search("Of 2 varied keys plant.* matters most to the driver Wk RMS", content["sentence"])

@@ -7,15 +7,15 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-from ruamel.yaml import YAML
 
 from seatsim.blind.carrier.recorded import Carrier, Content, encode_carrier, number, section
+from seatsim.blind.make.folder import encode_yaml
 from seatsim.blind.make.materiality import bounded_least_squares
 from seatsim.recordings.recording import ChannelEntry, load_recording
 from seatsim.recordings.replay import replay_table, select_compared, stands_out
 from seatsim.scenario.loading import single
 from seatsim.schema.arrays import Array
-from seatsim.schema.leftovers import temporary_folder
+from seatsim.schema.guarded import temporary_folder
 
 MATERIAL_SHARE = 0.05
 """Of a channel's standard deviation (contract, section 4)."""
@@ -104,7 +104,7 @@ def _residuals(carrier: Carrier) -> _Residuals:
         folder = Path(temporary)
         for name, data in encode_carrier(carrier, ()).items():
             (folder / name).write_bytes(data)
-        YAML(typ="safe").dump({**carrier.header, "nominal": "nominal.yaml"}, folder / "recording.yaml")
+        (folder / "recording.yaml").write_bytes(encode_yaml({**carrier.header, "nominal": "nominal.yaml"}))
         recording = load_recording(folder)
         scenario = single(folder / "nominal.yaml")
     if "displacement" in recording.channels:

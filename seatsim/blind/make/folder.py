@@ -10,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 from numpy.random import Generator
-from ruamel.yaml import YAML
 
 from seatsim.blind.truth.excitation import colour_noise
 from seatsim.blind.truth.experiment import CHANNELS, Experiment, Readings, RunPlan
 from seatsim.schema.files import write_together
+from seatsim.schema.yaml_text import dump
 
 _EPOCH = 1_600_000_000
 """Time stamp of every file, s: the true time would reveal how long its case took to draw."""
@@ -96,11 +96,7 @@ def encode_table(columns: Readings, formats: Sequence[str]) -> bytes:
 
 def encode_yaml(value: Mapping[str, object]) -> bytes:
     """Return a mapping as YAML."""
-    stream = io.BytesIO()
-    yaml = YAML()
-    yaml.default_flow_style = False
-    yaml.dump(value, stream)
-    return stream.getvalue()
+    return dump(value, line_each=True).encode()
 
 
 def encode_recording(

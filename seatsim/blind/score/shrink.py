@@ -15,7 +15,7 @@ from seatsim.blind.score.cases import Rate, count_true
 from seatsim.blind.score.verdicts import NAMING, Verdict
 from seatsim.blind.sealed import Sealed
 from seatsim.schema.errors import SeatsimError
-from seatsim.schema.leftovers import temporary_folder
+from seatsim.schema.guarded import temporary_folder
 from seatsim.schema.processes import Progress, run_jobs
 
 _FEWEST_FOR_PROCESSES = 8

@@ -12,7 +12,7 @@ from seatsim.cli.options import Json, NewFolder, Out, OwnCode, check_out
 from seatsim.cli.terminal import answer, count_progress, out, say, wrote_one
 from seatsim.schema.errors import InputError, SeatsimError
 
-PROCESSES = 2
+_PROCESSES = 2
 """Recordings of a set that are diagnosed at once."""
 blind = typer.Typer(help="Check diagnoses on recordings whose effects are sealed.", no_args_is_help=True)
 
@@ -70,11 +70,10 @@ def blind_score(
     # A wrong key is an error at once, not after hours of diagnoses.
     unseal(sealed, key, folder)
     with count_progress("diagnosing") as count:
-        diagnose_all(folder, count)
+        _diagnose_all(folder, count)
     with count_progress("scoring") as count:
         found = score(folder, sealed, key, progress=count)
-    for table in tables(found):
-        show_table(table)
+    show_table(*tables(found))
     path = write_json((out_folder or folder) / "score.json", found)
     wrote_one(path)
     answer(found, [path])
@@ -106,7 +105,7 @@ def blind_power(
             size = "not found" if power.smallest is None else f"{power.smallest:g} std"
             say(f"{power.effect}: {size} (of {', '.join(f'{s:g}' for s in SIZES)})")
 
-        found = measure_power(recording, folder, diagnose_one, tuple(effects or ()), draws, seed, progress=tell)
+        found = measure_power(recording, folder, _diagnose_one, tuple(effects or ()), draws, seed, progress=tell)
     show_table(make_power_table(found))
     powers = Powers(draws, found)
     path = write_json(folder / "power.json", powers)
@@ -114,7 +113,7 @@ def blind_power(
     answer(powers, [path])
 
 
-def diagnose_all(folder: Path, count: Callable[[int, int], None]) -> None:
+def _diagnose_all(folder: Path, count: Callable[[int, int], None]) -> None:
     """Diagnose every case of a folder that has no diagnosis yet, into `CASE/diagnosis`; may be taken up again."""
     from seatsim.schema.processes import run_jobs
 
@@ -122,12 +121,12 @@ def diagnose_all(folder: Path, count: Callable[[int, int], None]) -> None:
     open_cases = [case for case in cases if not (case / "diagnosis" / "diagnosis.json").exists()]
     count(len(cases) - len(open_cases), len(cases))
     jobs, kept = [(case,) for case in open_cases], len(cases) - len(open_cases)
-    run_jobs(diagnose_one, jobs, PROCESSES, lambda done, _: count(kept + done, len(cases)))
+    run_jobs(_diagnose_one, jobs, _PROCESSES, lambda done, _: count(kept + done, len(cases)))
 
 
-def diagnose_one(case: Path) -> None:
+def _diagnose_one(case: Path) -> None:
     """Diagnose one case; one that cannot be diagnosed is left without, and counts as wrong."""
-    from seatsim.cli.outputs.measured import write_diagnosis
+    from seatsim.cli.outputs.writing import write_diagnosis
     from seatsim.diagnosis.diagnose import diagnose
     from seatsim.schema.files import write_json
 

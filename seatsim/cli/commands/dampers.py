@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
-from seatsim.cli.options import Json, Out, OwnCode, pairs
-from seatsim.cli.terminal import answer, complain, show_progress, warn, wrote
+from seatsim.cli.options import Json, Out, OwnCode, complete_kind, pairs
+from seatsim.cli.terminal import answer, complain, conclude, show_progress, warn, wrote
 from seatsim.schema.errors import InputError
 
 if TYPE_CHECKING:
@@ -21,7 +21,10 @@ if TYPE_CHECKING:
 def characterise(
     data: Annotated[Path | None, typer.Argument(help="A bench table, or a folder of them.", show_default=False)] = None,
     out_folder: Out = None,
-    model: Annotated[str | None, typer.Option("--model", help="A damper model, in place of data.")] = None,
+    model: Annotated[
+        str | None,
+        typer.Option("--model", help="A damper model, in place of data.", autocompletion=complete_kind("damper")),
+    ] = None,
     parameters: Annotated[
         Path | None, typer.Option("--parameters", help="A file with a damper, in place of data.")
     ] = None,
@@ -36,7 +39,7 @@ def characterise(
     from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
     from seatsim.characterisation.summary import characterise as of_records
     from seatsim.cli.outputs.damper_tables import make_characterisation_tables
-    from seatsim.cli.outputs.measured import write_characterisation
+    from seatsim.cli.outputs.writing import write_characterisation
     from seatsim.cli.show_table import show_table
     from seatsim.recordings.bench_tables import load_bench
 
@@ -49,20 +52,23 @@ def characterise(
     else:
         tested = load_specimen(model, parameters)
         found = characterise_model(tested, choose_settings(tested, *grid))
-    for table in make_characterisation_tables(found):
-        show_table(table)
+    show_table(*make_characterisation_tables(found))
     warn(found.remarks)
     folder = out_folder or Path("out") / f"characterise-{found.name}"
     paths = write_characterisation(found, folder)
-    wrote(folder, paths)
-    answer(found, paths)
+    conclude(found, folder, paths)
 
 
 def identify(
     data: Annotated[Path, typer.Argument(help="A bench table, or a folder of them.", show_default=False)],
     models: Annotated[
         list[str],
-        typer.Option("--model", help="A damper model, several, or all, to compare them.", show_default=False),
+        typer.Option(
+            "--model",
+            help="A damper model, several, or all, to compare them.",
+            show_default=False,
+            autocompletion=complete_kind("damper"),
+        ),
     ],
     test: Annotated[
         list[str] | None, typer.Option("--test", metavar="GLOB", help="Hold out the files whose names match.")
@@ -108,30 +114,24 @@ def _identify(
     records: list[BenchRecord], model: str, request: IdentificationSettings, beside: PredictionData, folder: Path
 ) -> None:
     from seatsim.cli.outputs.damper_tables import make_identification_tables
-    from seatsim.cli.outputs.measured import write_identification
+    from seatsim.cli.outputs.writing import write_identification
     from seatsim.cli.show_table import show_table
     from seatsim.identification.identify import identify_records, predict_records
 
     with show_progress() as progress:
         found = predict_records(identify_records(records, model, request, progress), beside)
         paths = write_identification(found, folder, request.seed)
-    for table in make_identification_tables(found):
-        show_table(table)
+    show_table(*make_identification_tables(found))
     warn(found.notes)
-    wrote(folder, paths)
-    answer(found, paths)
+    conclude(found, folder, paths)
 
 
 def _benchmark_models(
-    records: list[BenchRecord],
-    models: list[str],
-    request: IdentificationSettings,
-    beside: PredictionData,
-    folder: Path,
+    records: list[BenchRecord], models: list[str], request: IdentificationSettings, beside: PredictionData, folder: Path
 ) -> None:
     """Identify several models, print and write the table; exit 1 where one failed."""
     from seatsim.cli.outputs.damper_tables import make_league_table
-    from seatsim.cli.outputs.measured import write_league, write_member
+    from seatsim.cli.outputs.writing import write_league, write_member
     from seatsim.cli.show_table import show_table
     from seatsim.identification.model_benchmark import League, benchmark_models
 

@@ -10,11 +10,11 @@ from typing import Annotated
 
 import typer
 
-from seatsim.cli.options import Json, OwnCode, check_out
+from seatsim.cli.options import Json, OwnCode, check_out, complete, complete_kind
 from seatsim.cli.terminal import answer, complain, refuse, say, show_progress, warn, wrote_one
 from seatsim.schema.errors import InputError, nearest
 
-NEXT = {
+_NEXT = {
     "scenario": "seatsim run {file}",
     "recording": "seatsim check {file}, then seatsim diagnose {file}",
     "damper": "seatsim describe {name} --with {file} --picture loops.png, then model: {name} in a scenario",
@@ -26,7 +26,12 @@ NEXT = {
 
 
 def new(
-    kind: Annotated[str, typer.Argument(help="scenario, recording, damper, controller, effect or excitation.")],
+    kind: Annotated[
+        str,
+        typer.Argument(
+            help="scenario, recording, damper, controller, effect or excitation.", autocompletion=complete(*_NEXT)
+        ),
+    ],
     name: Annotated[str, typer.Argument(help="Its name; a folder may stand before it.")],
     as_json: Json = False,
 ) -> None:
@@ -37,7 +42,7 @@ def new(
     paths = write_new(kind, Path(name))
     say(f"written: {', '.join(map(str, paths))}")
     file = name if kind == "recording" else paths[0]
-    say(f"next: {NEXT[kind].format(name=Path(name).stem, file=file)}")
+    say(f"next: {_NEXT[kind].format(name=Path(name).stem, file=file)}")
     answer(NewAnswer(kind), paths)
 
 
@@ -69,16 +74,25 @@ def check(
         raise typer.Exit(1)
 
 
+def _complete_schema(incomplete: str) -> list[str]:
+    from seatsim.cli.outputs.answers import FILES, list_answers
+
+    return complete(*FILES, *list_answers())(incomplete)
+
+
 def schema(
     kind: Annotated[
-        str, typer.Argument(help="scenario, recording, sweep or parameters; or a command, for what its --json prints.")
+        str,
+        typer.Argument(
+            help="scenario, recording, sweep or parameters; or a command, for what its --json prints.",
+            autocompletion=_complete_schema,
+        ),
     ] = "scenario",
     own_code: OwnCode = None,
     as_json: Json = False,
 ) -> None:
     """Print a JSON Schema, with which an editor completes and checks a file."""
-    from seatsim.cli.outputs.answers import describe_answer, list_answers
-    from seatsim.cli.outputs.schemas import FILES
+    from seatsim.cli.outputs.answers import FILES, describe_answer, list_answers
 
     known = [*FILES, *list_answers()]
     if kind not in known:
@@ -88,11 +102,17 @@ def schema(
     sys.stdout.write(json.dumps(found) + "\n")
 
 
-ENDINGS = (".png", ".svg", ".pdf")
+_ENDINGS = (".png", ".svg", ".pdf")
 
 
 def describe(
-    name: Annotated[str, typer.Argument(help="A name, such as bouc_wen or road.")] = "",
+    name: Annotated[
+        str,
+        typer.Argument(
+            help="A name, such as bouc_wen or road.",
+            autocompletion=complete_kind("damper", "law", "excitation", "effect"),
+        ),
+    ] = "",
     picture: Annotated[
         Path | None,
         typer.Option("--picture", metavar="FILE", help="Draw the loops of a damper, as .png, .svg or .pdf."),
@@ -105,9 +125,9 @@ def describe(
     from seatsim.scenario.describe import describe as describe_name
 
     pages = [find_page(name)] if name else list_pages()
-    if picture is not None and (not name or pages[0].kind != "damper" or picture.suffix not in ENDINGS):
+    if picture is not None and (not name or pages[0].kind != "damper" or picture.suffix not in _ENDINGS):
         raise InputError(
-            f"--picture {picture}: one damper, as {', '.join(ENDINGS)}: seatsim describe bouc_wen --picture loops.svg"
+            f"--picture {picture}: one damper, as {', '.join(_ENDINGS)}: seatsim describe bouc_wen --picture loops.svg"
         )
     say(describe_name(name))
     paths = _draw_loops(name, picture) if picture else []

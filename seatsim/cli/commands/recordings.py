@@ -8,13 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from seatsim.cli.options import Json, NewFolder, OneScenario, Out, OwnCode, RecordingFolder
-from seatsim.cli.terminal import answer, say, show_progress, warn, wrote
+from seatsim.cli.terminal import answer, conclude, say, show_progress, warn, wrote
 from seatsim.schema.text import make_printable
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
-    from seatsim.importing.inspection import ChannelSummary, Inspection
+    from seatsim.importing.inspection import Inspection
     from seatsim.recordings.quality.issue import Issue
 
 
@@ -31,7 +29,7 @@ def gap(
 ) -> None:
     """Replay a scenario against a recording and print the gap with the noise floor."""
     from seatsim.cli.outputs.diagnosis_tables import make_gap_table
-    from seatsim.cli.outputs.measured import write_gap
+    from seatsim.cli.outputs.writing import write_gap
     from seatsim.cli.show_table import show_table
     from seatsim.recordings.gap import forecast_gap
     from seatsim.recordings.gap import gap as find_gap
@@ -41,8 +39,7 @@ def gap(
     warn(found.notes)
     folder = out_folder or Path("out") / f"gap-{Path(recording).name}"
     paths = write_gap(found, scenario, recording, folder)
-    wrote(folder, paths)
-    answer(found, paths)
+    conclude(found, folder, paths)
 
 
 def diagnose(
@@ -68,7 +65,7 @@ def diagnose(
 ) -> None:
     """Say where the gap between a recording and its nominal scenario lies, what causes it and how far it shrinks."""
     from seatsim.cli.outputs.diagnosis_tables import make_tables
-    from seatsim.cli.outputs.measured import write_diagnosis
+    from seatsim.cli.outputs.writing import write_diagnosis
     from seatsim.cli.show_table import show_table
     from seatsim.diagnosis.diagnose import diagnose as find_cause
     from seatsim.effects.base import EFFECTS
@@ -79,18 +76,12 @@ def diagnose(
         EFFECTS.find(name)
     with show_progress() as progress:
         diagnosis = find_cause(recording, withheld, progress, budget=budget, damper_forms=damper_forms, after=after)
-    for table in make_tables(diagnosis):
-        show_table(table)
+    show_table(*make_tables(diagnosis))
     warn(diagnosis.notes)
     say(diagnosis.sentence)
     folder = out_folder or Path("out") / f"diagnosis-{Path(recording).resolve().name}"
     paths = write_diagnosis(diagnosis, folder)
-    wrote(folder, paths)
-    answer(diagnosis, paths)
-
-
-COLUMNS = ("unit", "Hz", "least", "greatest", "RMS", "noise", "swing", "mean", "is", "rows")
-"""Columns of the table of channels: `is` names the channel that a column was recognised as."""
+    conclude(diagnosis, folder, paths)
 
 
 def import_data(
@@ -158,37 +149,22 @@ def _inspected(data: Path, map_file: Path | None) -> Inspection:
 
 
 def _show(found: Inspection) -> None:
-    """Print a table of channels for each group."""
-    from seatsim.cli.show_table import show_table
+    """Print a table of channels for each group; `is` names the channel that a column was recognised as."""
+    from rich.markup import escape
 
+    from seatsim.cli.show_table import make_table, show_table
+
+    headings = ("channel", "unit", "Hz", "least", "greatest", "RMS", "noise", "swing", "mean", "is", "rows")
     for group, channels in found.channels.items():
         title = f"{Path(found.source).name} ({found.format})" + (f", {group}" if group else "")
-        show_table(_table(title, channels))
-
-
-def _table(title: str, channels: list[ChannelSummary]) -> Table:
-    from rich.markup import escape
-    from rich.table import Table
-
-    table = Table(title=escape(make_printable(title)), title_justify="left", box=None, header_style="bold")
-    table.add_column("channel", no_wrap=True)
-    for name in COLUMNS:
-        table.add_column(name, justify="left" if name in ("unit", "swing", "is") else "right", no_wrap=True)
-    for each in channels:
-        cells = {
-            "unit": escape(each.unit) or "?",
-            "Hz": "" if each.rate is None else f"{each.rate:.6g}",
-            "RMS": f"{each.rms:.4g}",
-            "least": f"{each.low:.4g}",
-            "greatest": f"{each.high:.4g}",
-            "noise": "" if each.noise is None else f"{each.noise:.2g}",
-            "swing": each.spark,
-            "mean": f"{each.mean:.4g}",
-            "is": each.channel or "",
-            "rows": str(each.rows),
-        }
-        table.add_row(escape(each.name), *(cells[name] for name in COLUMNS))
-    return table
+        rows = []
+        for each in channels:
+            rate = "" if each.rate is None else f"{each.rate:.6g}"
+            noise = "" if each.noise is None else f"{each.noise:.2g}"
+            figures = [f"{value:.4g}" for value in (each.low, each.high, each.rms)]
+            others = (each.spark, f"{each.mean:.4g}", each.channel or "", str(each.rows))
+            rows.append((escape(each.name), escape(each.unit) or "?", rate, *figures, noise, *others))
+        show_table(make_table(make_printable(title), headings, rows, left=(0, 1, 7, 9)))
 
 
 def _doubt(doubts: list[Issue]) -> None:

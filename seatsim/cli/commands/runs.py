@@ -15,7 +15,7 @@ from seatsim.cli.interrupts import go_on
 from seatsim.cli.options import Json, Out, OwnCode, Scenarios, Settings, scenario_settings
 from seatsim.cli.terminal import answer, complain, count_progress, show_progress, warn, wrote
 from seatsim.schema.errors import InputError, SeatsimError
-from seatsim.schema.leftovers import uncut
+from seatsim.schema.guarded import uncut
 
 if TYPE_CHECKING:
     from seatsim.cli.outputs.simulated import RunTable
@@ -29,14 +29,6 @@ class _Group(NamedTuple):
 
     scenarios: list[Scenario]
     folder: Path
-
-
-class _Simulated(NamedTuple):
-    """The runs that were carried to their end, and why others were not, by the id of their scenario."""
-
-    runs: dict[int, Run]
-    failures: dict[int, str]
-    interrupted: bool
 
 
 def run(
@@ -67,31 +59,30 @@ def compare(
 
 
 def _execute(
-    files: Sequence[Sequence[str]],
-    folders: Sequence[Path | None],
-    settings: dict[str, object],
-    bracket: bool = False,
+    files: Sequence[Sequence[str]], folders: Sequence[Path | None], settings: dict[str, object], bracket: bool = False
 ) -> None:
     """Run every group of files as one result, then print its table and write its files; exit 1 where a run failed."""
     from seatsim.cli.outputs.simulated import RunAnswer
 
     groups = _load_groups(files, folders, settings)
     scenarios = [scenario for group in groups for scenario in group.scenarios]
-    simulated = _simulate(scenarios)
-    tables, paths = [], []
+    found, interrupted = _simulate(scenarios)
+    failures = [str(each) for each in found if isinstance(each, SeatsimError)]
+    in_order, tables, paths = iter(found), [], []
     for group in groups:
-        runs = [simulated.runs[id(scenario)] for scenario in group.scenarios if id(scenario) in simulated.runs]
-        failures = [simulated.failures[id(each)] for each in group.scenarios if id(each) in simulated.failures]
+        of_group = list(itertools.islice(in_order, len(group.scenarios)))
+        runs = [each for each in of_group if not isinstance(each, SeatsimError)]
         if runs:
+            failed = [str(each) for each in of_group if isinstance(each, SeatsimError)]
             # What an interrupt left done is kept before the process ends.
-            with uncut() if simulated.interrupted else nullcontext():
-                table, written = _present(runs, failures, group.folder, bracket, simulated.interrupted)
+            with uncut() if interrupted else nullcontext():
+                table, written = _present(runs, failed, group.folder, bracket, interrupted)
             tables.append(table)
             paths += written
-    if simulated.interrupted:
+    if interrupted:
         raise KeyboardInterrupt
-    answer(RunAnswer(tables, list(simulated.failures.values())), paths)
-    if simulated.failures:
+    answer(RunAnswer(tables, failures), paths)
+    if failures:
         raise typer.Exit(1)
 
 
@@ -111,28 +102,25 @@ def _load_groups(
     return groups
 
 
-def _simulate(scenarios: list[Scenario]) -> _Simulated:
-    """Run the scenarios side by side; an interrupt keeps what is done."""
+def _simulate(scenarios: list[Scenario]) -> tuple[list[Run | SeatsimError], bool]:
+    """Run scenarios side by side; return runs and failures in order, up to an interrupt, and whether there was one."""
     from seatsim.simulation.runs import run_many
 
-    done: dict[int, Run] = {}
-    failures: dict[int, str] = {}
+    found: list[Run | SeatsimError] = []
     finished = itertools.count(1)
     # No daemon: Python aborts where it ends while such a thread loads compiled code.
     loading = Thread(target=_load_writers)
     loading.start()
     with count_progress("simulating", len(scenarios)) as count:
         try:
-            for scenario, found in run_many(scenarios, lambda _: count(next(finished), len(scenarios))):
-                if isinstance(found, SeatsimError):
-                    complain(f"failed: {found}")
-                    failures[id(scenario)] = str(found)
-                else:
-                    done[id(scenario)] = found
+            for _, one in run_many(scenarios, lambda _: count(next(finished), len(scenarios))):
+                if isinstance(one, SeatsimError):
+                    complain(f"failed: {one}")
+                found.append(one)
         except KeyboardInterrupt:
-            return _Simulated(done, failures, interrupted=True)
+            return found, True
     loading.join()
-    return _Simulated(done, failures, interrupted=False)
+    return found, False
 
 
 def _load_writers() -> None:
@@ -151,14 +139,13 @@ def _present(
     runs: list[Run], failures: list[str], folder: Path, bracket: bool, interrupted: bool
 ) -> tuple[RunTable, list[Path]]:
     """Print the table of some runs, their bounds where wanted and the warnings; return them and their files."""
+    from seatsim.cli.outputs.run_tables import make_comparison_table, make_published_tables
     from seatsim.cli.outputs.simulated import Brackets, RunTable, write_interrupted, write_result
     from seatsim.cli.show_table import show_table
-    from seatsim.cli.tables import comparison, published_tables
     from seatsim.simulation.performance_bounds import place_runs
     from seatsim.simulation.result import Result
 
-    for table in [comparison(runs, _title([run.scenario for run in runs])), *published_tables(runs)]:
-        show_table(table)
+    show_table(make_comparison_table(runs, _title([run.scenario for run in runs])), *make_published_tables(runs))
     warn(dict.fromkeys(sentence for run in runs for sentence in run.warnings), "warning")
     warn(f"{run.scenario.title}: {sentence}" for run in runs for sentence in run.history.notes)
     result = Result(runs, _performance_bounds(runs) if bracket and not interrupted else {}, failures)
@@ -169,8 +156,8 @@ def _present(
 
 def _performance_bounds(runs: list[Run]) -> dict[str, PerformanceBounds]:
     """Work out the bounds and print how far from them each run is; an interrupt keeps what there is."""
+    from seatsim.cli.outputs.run_tables import make_bracket_table
     from seatsim.cli.show_table import show_table
-    from seatsim.cli.tables import distances
     from seatsim.simulation.performance_bounds import compute_performance_bounds, explain_runs_below_bound
 
     found: dict[str, PerformanceBounds] = {}
@@ -185,6 +172,6 @@ def _performance_bounds(runs: list[Run]) -> dict[str, PerformanceBounds]:
             go_on()
             warn(["interrupted: the brackets that were not finished are left out"])
     if found:
-        show_table(distances(runs, found))
+        show_table(make_bracket_table(runs, found))
     warn(explain_runs_below_bound(runs, found))
     return found

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seatsim.cli.options import Json, OneScenario, Out, OwnCode, Settings, scenario_settings
+from seatsim.cli.options import Json, OneScenario, Out, OwnCode, Settings, complete, scenario_settings
 from seatsim.cli.terminal import announce, answer, show_progress, warn, wrote, wrote_one
 from seatsim.schema.errors import InputError, nearest
 
 if TYPE_CHECKING:
+    from seatsim.cli.terminal import Report
+    from seatsim.rig.designs import SynthesisedDesign
     from seatsim.scenario.scenario import Scenario
 
 
@@ -21,8 +23,15 @@ _PAGE_EXTRA = 'the page needs an extra; install it with: pip install "seatsim[pa
 
 def export(
     scenario: OneScenario,
-    form: Annotated[str, typer.Option("--to", help="fmu2, fmu3, c or mat.")],
-    what: Annotated[str, typer.Option("--what", help="rig, damper or controller.")],
+    form: Annotated[
+        str, typer.Option("--to", help="fmu2, fmu3, c or mat.", autocompletion=complete("fmu2", "fmu3", "c", "mat"))
+    ],
+    what: Annotated[
+        str,
+        typer.Option(
+            "--what", help="rig, damper or controller.", autocompletion=complete("rig", "damper", "controller")
+        ),
+    ],
     out: Annotated[Path, typer.Option("--out", metavar="FILE", help="The file to be written.")],
     variant: Annotated[
         str | None,
@@ -70,18 +79,17 @@ def synthesise(
     as_json: Json = False,
 ) -> None:
     """Synthesise the H-infinity static output feedback of a scenario's plant and weights."""
-    from seatsim.cli.design_table import design_table
+    from seatsim.cli.outputs.run_tables import make_design_table
     from seatsim.cli.show_table import show_table
     from seatsim.provenance.manifest import write_documented
     from seatsim.scenario.loading import single
-    from seatsim.scenario.synthesis import synthesise_design
     from seatsim.schema.yaml_source import Source
 
     chosen = single(scenario, scenario_settings(settings))
     with show_progress() as progress:
-        design = synthesise_design(chosen, progress)
+        design = _synthesise(chosen, progress)
         design = design.prove(progress) if prove_best else design
-    show_table(design_table(design, chosen))
+    show_table(make_design_table(design, chosen))
     folder = out_folder or Path("out") / chosen.name
 
     def write(part: Path) -> list[Path]:
@@ -94,6 +102,21 @@ def synthesise(
     paths = write_documented(folder, write, chosen.seed)
     wrote(folder, paths)
     answer(Source(folder / "design.yaml").data, paths)
+
+
+def _synthesise(scenario: Scenario, progress: Report) -> SynthesisedDesign:
+    """Return the design of a law that has a synthesis, for the plant of a scenario."""
+    from seatsim.rig.designs import SynthesisedLaw
+    from seatsim.schema.registry import name_of
+
+    with scenario.placed("controller"):
+        if scenario.plant is None or scenario.control is None:
+            raise InputError("a damper bench has no controller to synthesise")
+        law = scenario.control.law
+        if not isinstance(law, SynthesisedLaw):
+            name = name_of("law", type(law))
+            raise InputError(f"law '{name}' is not synthesised; use 'law: static_output_feedback' with 'weights'")
+        return law.synthesis(scenario.plant, progress)
 
 
 def explore(

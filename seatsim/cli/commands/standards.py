@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from seatsim.cli.options import Json, Out, OwnCode, Settings, scenario_settings
-from seatsim.cli.terminal import answer, complain, count_progress, say, warn, wrote
+from seatsim.cli.terminal import complain, conclude, count_progress, say, warn
 from seatsim.schema.errors import InputError
 
 
@@ -40,15 +40,13 @@ def comfort(
     channels = dict(_split(text, "=", "--channel", "z=acc_z") for text in channel or [])
     blocks = [_stretch(text) for text in block or []]
     found = assess(file, channels, hours=hours, runs=run or (), blocks=blocks, rate=rate, unit=unit)
-    for table in make_comfort_tables(found):
-        show_table(table)
+    show_table(*make_comfort_tables(found))
     for sentence in list_comfort_sentences(found):
         say(sentence)
     warn(found.notes)
     folder = out_folder or Path("out") / f"comfort-{file.resolve().name.partition('.')[0]}"
     paths = write_outputs(folder, {"comfort.json": found})
-    wrote(folder, paths)
-    answer(found, paths)
+    conclude(found, folder, paths)
 
 
 def _split(text: str, sign: str, option: str, example: str) -> tuple[str, str]:
@@ -77,22 +75,20 @@ def seat_test(
     as_json: Json = False,
 ) -> None:
     """Put a seat to the test of ISO 7096: SEAT factors of two drivers, damping, end stops."""
-    from seatsim.cli.outputs.measured import write_seat_test
     from seatsim.cli.outputs.seat_tables import list_seat_test_failures, make_seat_test_tables, summarise_seat_test
+    from seatsim.cli.outputs.writing import write_seat_test
     from seatsim.cli.show_table import show_table
     from seatsim.standards.seat_test import seat_test as test
 
     with count_progress("simulating") as count:
         found = test(source, spectral_class or (), scenario_settings(settings), count)
-    for table in make_seat_test_tables(found):
-        show_table(table)
+    show_table(*make_seat_test_tables(found))
     say(summarise_seat_test(found))
     for failure in list_seat_test_failures(found):
         complain(f"failed: {failure}")
     warn(found.notes)
     folder = out_folder or Path("out") / f"seat-test-{Path(source).stem}"
     paths = write_seat_test(found, Path(source), folder)
-    wrote(folder, paths)
-    answer(found, paths)
+    conclude(found, folder, paths)
     if found.failures:
         raise typer.Exit(1)

@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 import typer
 
 from seatsim.cli.options import Json, Out, OwnCode, check_out
-from seatsim.cli.terminal import answer, complain, count_progress, say, show_progress, warn, wrote, wrote_one
+from seatsim.cli.terminal import answer, complain, conclude, count_progress, say, show_progress, warn, wrote_one
 
 _FAILURES_SHOWN = 5
 """Failed runs whose reasons are printed; the others stand in the rows."""
@@ -110,5 +110,4 @@ def sweep_report(
             f"{who}{SHORT.get(row.metric, row.metric)} above {row.limit:g}{unit}: {row.exceeding} of {row.runs} runs,"
             f" {100 * row.share:.3g} % ({100 * row.low:.3g} to {100 * row.high:.3g} %)"
         )
-    wrote(out_folder or folder, report.paths)
-    answer(report, report.paths)
+    conclude(report, out_folder or folder, report.paths)

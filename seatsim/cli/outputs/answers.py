@@ -1,15 +1,23 @@
-"""What each command prints with `--json`: the record that it makes, whose JSON Schema `seatsim schema COMMAND` prints.
+"""JSON Schemas: of the files that seatsim reads, for editors, and of what each command prints with `--json`.
 
 The records of commands that find nothing stand here, all others in the packages that make them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-FILES = {"properties": {"files": {"type": "array", "items": {"type": "string"}}}, "required": ["files"]}
+from seatsim.recordings.header import Header, RunEntry
+from seatsim.recordings.recording import ChannelEntry, VoltageGain
+from seatsim.rig.coil import Coil
+from seatsim.scenario.damper import damper_schema, schema_of_models
+from seatsim.scenario.sections import scenario_schema
+from seatsim.schema.json_schema import BY_KEY, TEXT, Schema, head_schema, mapping_schema, properties_of, record_schema
+from seatsim.sweeps.definition import sweep_schema
+
+_WRITTEN = {"properties": {"files": {"type": "array", "items": {"type": "string"}}}, "required": ["files"]}
 """Schema of what all commands print: the files that were written."""
 
 
@@ -19,7 +27,7 @@ class NewAnswer(NamedTuple):
     kind: str
 
 
-class ExploreAnswer(NamedTuple):
+class _ExploreAnswer(NamedTuple):
     """A page that is served until the command is interrupted."""
 
     address: str
@@ -40,13 +48,13 @@ class SlurmAnswer(NamedTuple):
     runs: int
 
 
-class ErrorAnswer(NamedTuple):
+class _ErrorAnswer(NamedTuple):
     """What any command prints where it ends with an error."""
 
     error: str
 
 
-class SynthesisAnswer(NamedTuple):
+class _SynthesisAnswer(NamedTuple):
     """A design, as in `design.yaml`."""
 
     measures: list[str]
@@ -80,7 +88,7 @@ def list_answers() -> Mapping[str, object]:
         "compare": RunAnswer,
         "sweep": SweepResult | SlurmAnswer,
         "sweep-report": SweepReport,
-        "synthesise": SynthesisAnswer,
+        "synthesise": _SynthesisAnswer,
         "gap": Gap | Forecast,
         "diagnose": Diagnosis,
         "characterise": Characterisation,
@@ -96,9 +104,9 @@ def list_answers() -> Mapping[str, object]:
         "blind-make": BlindMakeAnswer,
         "blind-score": Score,
         "blind-power": Powers,
-        "explore": ExploreAnswer,
+        "explore": _ExploreAnswer,
         "reproduce": Reproduction,
-        "error": ErrorAnswer,
+        "error": _ErrorAnswer,
     }
 
 
@@ -108,4 +116,33 @@ def describe_answer(command: str) -> dict[str, object]:
 
     schema = {"title": f"seatsim {command} --json", **answer_schema(list_answers()[command])}
     # An error comes without files.
-    return schema if command == "error" else {**schema, "allOf": [FILES]}
+    return schema if command == "error" else {**schema, "allOf": [_WRITTEN]}
+
+
+def _recording_schema() -> Schema:
+    """Return the schema of `recording.yaml`."""
+    keys = dict(properties_of(record_schema(Header)))
+    tolerance = {"anyOf": [{"type": "number", "minimum": 0, "maximum": 1}, {"const": "fitted"}, BY_KEY]}
+    keys |= {
+        "parameter_tolerance": tolerance,
+        "runs": {"type": "array", "minItems": 1, "items": record_schema(RunEntry)},
+        "channels": {"type": "object", "additionalProperties": record_schema(ChannelEntry)},
+        "actuator": record_schema(VoltageGain),
+        "note": TEXT,
+    }
+    return head_schema("seatsim recording", mapping_schema(keys, ("rig", "sample_rate", "nominal", "runs", "channels")))
+
+
+def _parameters_schema() -> Schema:
+    """Return the schema of a damper with its coil, as `seatsim identify` writes it."""
+    keys = {"damper": damper_schema(), "actuator": record_schema(Coil, ("rate", "max_current")), "bench": BY_KEY}
+    return head_schema("seatsim damper parameters", mapping_schema(keys, ("damper",)) | schema_of_models())
+
+
+FILES: Mapping[str, Callable[[], Schema]] = {
+    "scenario": scenario_schema,
+    "recording": _recording_schema,
+    "parameters": _parameters_schema,
+    "sweep": sweep_schema,
+}
+"""Schemas of files by kind."""

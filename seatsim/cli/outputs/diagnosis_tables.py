@@ -14,7 +14,7 @@ from seatsim.effects.base import EFFECTS
 from seatsim.recordings.gap import Forecast, Gap
 from seatsim.schema.registry import is_own
 
-LISTED = 6
+_LISTED = 6
 """Causes in the table."""
 
 
@@ -71,7 +71,7 @@ def _make_gap_table(diagnosis: Diagnosis) -> Table:
 
 
 def _make_cause_table(diagnosis: Diagnosis) -> Table:
-    listed = diagnosis.causes[:LISTED]
+    listed = diagnosis.causes[:_LISTED]
     rows = [
         (_label(cause.effect), f"{cause.probability:.2f}", f"{cause.shrink:.2f}", ", ".join(cause.ends))
         for cause in listed
@@ -92,7 +92,7 @@ def _make_forms_table(diagnosis: Diagnosis) -> Table:
     replaced = diagnosis.alternatives[0].replaces
     rows = [
         (form.model, ", ".join(form.beside), f"{form.shrink:.2f}", f"{form.refitted:.2f}")
-        for form in diagnosis.alternatives[:LISTED]
+        for form in diagnosis.alternatives[:_LISTED]
     ]
     headings = ("form", "beside", "shrink", f"{replaced} as free")
     return make_table(f"other forms of the damper than {replaced}", headings, rows, left=(0, 1))

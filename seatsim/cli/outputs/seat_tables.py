@@ -14,32 +14,36 @@ from seatsim.schema.text import join_names
 from seatsim.standards.comfort import Comfort
 from seatsim.standards.seat_rows import ACCEPTANCE, DAMPING, LIMITS, SeatTest
 
-AXIS = (
-    "axis", "weighting", "k comfort", "k health", "a_w\n[m/s²]", "VDV\n[m/s¹·⁷⁵]", "eVDV\n[m/s¹·⁷⁵]", "MTVV\n[m/s²]",
-    "crest\nfactor", "method\n(6.3)",
-)  # fmt: skip
+_AXIS = [
+    "axis",
+    "weighting",
+    "k comfort",
+    "k health",
+    "a_w\n[m/s²]",
+    "VDV\n[m/s¹·⁷⁵]",
+    "eVDV\n[m/s¹·⁷⁵]",
+    "MTVV\n[m/s²]",
+    "crest\nfactor",
+    "method\n(6.3)",
+]
+_SEAT = ["axis", "SEAT\n(RMS)", "SEAT\n(VDV)", "of each run", "spread", "three runs\nwithin 5 %"]
 
 
 def make_comfort_tables(found: Comfort) -> list[Table]:
     """Return the table of the axes, and that of the SEAT factors where there are any."""
-    axes = [
-        (
-            axis, k.weighting, f"{k.comfort:g}", "-" if k.health is None else f"{k.health:g}", f"{dose.rms:.3f}",
-            f"{dose.vdv:.2f}", f"{dose.estimated_vdv:.2f}", f"{dose.mtvv:.3f}", f"{dose.crest_factor:.1f}", each.method,
-        )
-        for axis, each in found.axes.items() for k, dose in [(each.direction, each.dose)]
-    ]  # fmt: skip
-    verdicts = {True: "yes", False: "no", None: "fewer runs"}
-    seats = [
-        (
-            axis, f"{seat.rms:.3f}", f"{seat.vdv:.3f}", ", ".join(f"{value:.3f}" for value in seat.runs),
-            f"{1e2 * seat.spread:.1f} %", verdicts[seat.within_spread],
-        )
-        for axis, seat in found.seat.items()
-    ]  # fmt: skip
-    tables = [make_table(f"ISO 2631-1 figures of {found.source}, {found.duration:g} s", AXIS, axes, left=(0, 1))]
-    headings = ("axis", "SEAT\n(RMS)", "SEAT\n(VDV)", "of each run", "spread", "three runs\nwithin 5 %")
-    return [*tables, *([make_table("SEAT factors (ISO 10326-1)", headings, seats, left=())] if seats else [])]
+    axes = []
+    for axis, each in found.axes.items():
+        k, dose = each.direction, each.dose
+        factors = (f"{k.comfort:g}", "-" if k.health is None else f"{k.health:g}")
+        figures = (f"{dose.rms:.3f}", f"{dose.vdv:.2f}", f"{dose.estimated_vdv:.2f}", f"{dose.mtvv:.3f}")
+        axes.append((axis, k.weighting, *factors, *figures, f"{dose.crest_factor:.1f}", each.method))
+    verdicts, seats = {True: "yes", False: "no", None: "fewer runs"}, []
+    for axis, seat in found.seat.items():
+        runs = ", ".join(f"{value:.3f}" for value in seat.runs)
+        spread = (f"{1e2 * seat.spread:.1f} %", verdicts[seat.within_spread])
+        seats.append((axis, f"{seat.rms:.3f}", f"{seat.vdv:.3f}", runs, *spread))
+    tables = [make_table(f"ISO 2631-1 figures of {found.source}, {found.duration:g} s", _AXIS, axes, left=(0, 1))]
+    return [*tables, *([make_table("SEAT factors (ISO 10326-1)", _SEAT, seats, left=())] if seats else [])]
 
 
 def list_comfort_sentences(found: Comfort) -> Iterator[str]:
@@ -84,14 +88,13 @@ def make_seat_test_tables(found: SeatTest) -> list[Table]:
 
 
 def _make_seat_table(found: SeatTest, run: str) -> Table:
-    rows = [
-        (
-            row.spectral_class, LIMITS[row.spectral_class].machines, f"{row.mass:g}", f"{row.seat:.2f}",
-            f"{row.limit:.1f}", _say_verdict(row.passed), f"{1e2 * row.spread:.1f}",
-            "-" if row.end_stop_hits is None else str(row.end_stop_hits),
-        )
-        for row in found.rows if row.run == run
-    ]  # fmt: skip
+    rows = []
+    for row in found.rows:
+        if row.run == run:
+            who = (row.spectral_class, LIMITS[row.spectral_class].machines, f"{row.mass:g}")
+            hits = "-" if row.end_stop_hits is None else str(row.end_stop_hits)
+            factors = (f"{row.seat:.2f}", f"{row.limit:.1f}", _say_verdict(row.passed), f"{1e2 * row.spread:.1f}")
+            rows.append((*who, *factors, hits))
     headings = ("class", "machine", "driver\n[kg]", "SEAT\n[-]", "limit\n[-]", "pass", "spread\n[%]", "end-stop\nhits")
     return make_table(f"{run}: SEAT factors ({ACCEPTANCE})", headings, rows, left=(0, 1))
 

@@ -19,7 +19,7 @@ from seatsim.simulation.runs import write_histories
 from seatsim.sweeps.rows import Exceedance
 from seatsim.sweeps.sensitivity import Sensitivity
 
-MOST_KEPT = 400_000
+_MOST_KEPT = 400_000
 """Rows of the histories that are written after an interrupt, which takes about half a second."""
 
 
@@ -60,7 +60,7 @@ def write_result(result: Result, folder: Path) -> list[Path]:
 
 def write_interrupted(result: Result, folder: Path) -> list[Path]:
     """Write `summary.csv`, `summary.json` and, where it is short, `history.parquet`: who interrupts does not wait."""
-    is_short = sum(len(run.history["time"]) for run in result.runs) <= MOST_KEPT
+    is_short = sum(len(run.history["time"]) for run in result.runs) <= _MOST_KEPT
 
     def write(part: Path) -> list[Path]:
         histories = [write_histories(result.runs, part / "history.parquet")] if is_short else []

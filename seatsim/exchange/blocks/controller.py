@@ -13,8 +13,7 @@ import numpy as np
 
 from seatsim.compilation.jit import jit
 from seatsim.exchange.block import Block
-from seatsim.kernel.assumed_model import AssumedModel, follow_state, model_scaling
-from seatsim.kernel.generic import take, update, wants_force
+from seatsim.kernel.generic import AssumedModel, follow_state, model_scaling, take, update, wants_force
 from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.loop import command_current
 from seatsim.rig.control import CompiledLaw, Measurement

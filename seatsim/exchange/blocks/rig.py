@@ -9,9 +9,8 @@ from seatsim.exchange.block import Block
 from seatsim.exchange.blocks.floor import GivenFloor
 from seatsim.exchange.blocks.held import nothing_held
 from seatsim.exchange.blocks.rig_motion import RigInputs, RigParameters, RigState, advance, observe, start
-from seatsim.kernel.assumed_model import AssumedModel
 from seatsim.kernel.augmented import classes_of
-from seatsim.kernel.generic import scaling_at, wants_force
+from seatsim.kernel.generic import AssumedModel, scaling_at, wants_force
 from seatsim.kernel.loop import ROUNDING
 from seatsim.kernel.rig import Disturbance
 from seatsim.kernel.step import start as start_rig

@@ -12,8 +12,7 @@ import numpy as np
 from seatsim.compilation.jit import jit
 from seatsim.exchange.blocks.floor import GivenFloor, follow_floor, leave_floor
 from seatsim.exchange.blocks.held import Held, hold
-from seatsim.kernel.assumed_model import InverseModel, follow_state, model_scaling
-from seatsim.kernel.generic import advance_filters, read, update
+from seatsim.kernel.generic import InverseModel, advance_filters, follow_state, model_scaling, read, update
 from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.loop import ROUNDING, decide, measure, warm_up
 from seatsim.kernel.rig import Disturbance, Rig
@@ -32,7 +31,7 @@ _SAME = 1e-9
 
 
 class RigParameters(NamedTuple):
-    """The constant parts of a run, as in `seatsim.kernel.loop_inputs.LoopSetup`."""
+    """The constant parts of a run, as in `seatsim.kernel.loop_data.LoopSetup`."""
 
     rig: Rig
     coil: Coil

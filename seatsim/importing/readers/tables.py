@@ -20,10 +20,9 @@ from seatsim.importing.readers.columns import read_column
 from seatsim.importing.readers.header import check_header, first_row_of_numbers, split_header
 from seatsim.importing.readers.reading import TextLayout, need
 from seatsim.importing.signals import TIME, DataFile, Group, Signal, note_left_out, stated_unit
-from seatsim.schema.arrays import Array
+from seatsim.schema.arrays import Array, open_parquet
 from seatsim.schema.bounds import BYTES_OF_NUMBER, TooMuchError, check_made
 from seatsim.schema.errors import InputError
-from seatsim.schema.parquet import open_parquet
 
 if TYPE_CHECKING:
     import pyarrow as pa

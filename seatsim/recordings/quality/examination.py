@@ -20,7 +20,7 @@ from seatsim.recordings.quality.runs import check_all_runs, check_clock, check_r
 from seatsim.recordings.quality.sensors import check_floor_sensor, without_gravity
 from seatsim.recordings.recording import Recording
 from seatsim.recordings.replay import note_unused_log
-from seatsim.scenario.plausibility import list_doubts
+from seatsim.scenario.numbers import list_doubts
 from seatsim.schema.errors import InputError
 
 _ORDER = ("error", "warning", "note")

@@ -12,7 +12,7 @@ import numpy as np
 from seatsim.dampers.base import DAMPERS, find_confidence
 from seatsim.provenance.statement import current_invocation
 from seatsim.recordings.header import NOT_STATED
-from seatsim.schema.plausible import UNUSUAL
+from seatsim.schema.fields import UNUSUAL
 from seatsim.schema.registry import name_of
 from seatsim.simulation.result import Run
 

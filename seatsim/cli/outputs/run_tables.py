@@ -1,0 +1,210 @@
+"""Runs as tables on the terminal: compared, beside their performance bounds, beside published figures; and a design."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from rich.markup import escape
+from rich.table import Table
+
+from seatsim.cli.show_table import format_number, make_table
+from seatsim.metrics.motion import ratio
+from seatsim.metrics.table import SHORT
+from seatsim.rig.designs import BoxProof, CheckedLaw, DesignedLoop, SynthesisedDesign
+from seatsim.scenario.checks import Published, published_figures
+from seatsim.scenario.scenario import Scenario, group_by_condition
+from seatsim.simulation.performance_bounds import PerformanceBounds, measure_distance
+from seatsim.simulation.result import Run
+from seatsim.simulation.simulate import DEFAULT_SAMPLE_TIME
+
+
+class _Column(NamedTuple):
+    """A metric in the table: the unit shown, the factor to it, its decimals."""
+
+    metric: str
+    unit: str
+    scale: float
+    decimals: int
+
+    @property
+    def heading(self) -> str:
+        """What the metric is called, on two lines, and the unit."""
+        return SHORT[self.metric].replace(" ", "\n", 1) + f"\n[{self.unit}]"
+
+
+_COLUMNS = (
+    _Column("driver_acceleration_rms", "m/s²", 1.0, 3),
+    _Column("driver_acceleration_weighted", "m/s²", 1.0, 3),
+    _Column("driver_vdv", "m/s¹·⁷⁵", 1.0, 2),
+    _Column("seat_factor", "-", 1.0, 2),
+    _Column("suspension_displacement_rms", "mm", 1e3, 2),
+    _Column("suspension_displacement_peak", "mm", 1e3, 1),
+    _Column("end_stop_hits", "-", 1.0, 0),
+    _Column("driver_jerk_rms", "m/s³", 1.0, 1),
+    _Column("current_rms", "A", 1.0, 2),
+)
+_COMPARED = _COLUMNS[:-1]
+"""Columns of which the smallest value is the best."""
+_UNVERIFIED_MARK = " *"
+_UNVERIFIED_NOTE = "* not verified, and never the best: a warning says why"
+
+
+def make_comparison_table(runs: Sequence[Run], title: str) -> Table:
+    """Return the table of runs: what sets them apart, then comfort, travel and effort.
+
+    Of several runs under one condition the best comfort and travel are bold. Runs whose figures are unverified are
+    marked, and never the best. End-stop hits have a column where there are any.
+    """
+    keys, columns = _label_keys(runs), [column for column in _COLUMNS if _is_shown(runs, column)]
+    groups = group_by_condition((run.scenario, run) for run in runs if not run.unverified)
+    rivals = {id(run): group for group in groups for run in group if len(group) > 1}
+    rows = []
+    for run in runs:
+        first, *others = _labels(run, keys)
+        cells = [_cell(run, column, rivals.get(id(run), []) if column in _COMPARED else []) for column in columns]
+        rows.append([first + _UNVERIFIED_MARK * bool(run.unverified), *others, *cells])
+    headings = [*map(_head_label, keys), *(column.heading for column in columns)]
+    caption = _UNVERIFIED_NOTE if any(run.unverified for run in runs) else None
+    return make_table(title, headings, rows, range(len(keys)), caption)
+
+
+def _is_shown(runs: Sequence[Run], column: _Column) -> bool:
+    hits = (run.metrics[column.metric].value for run in runs if column.metric in run.metrics)
+    return column.metric != "end_stop_hits" or any(value > 0 for value in hits)
+
+
+def _cell(run: Run, column: _Column, rivals: Sequence[Run]) -> str:
+    """Return a figure of a run, bold where none of its rivals has a smaller one."""
+    if column.metric not in run.metrics:
+        return "-"
+    value = run.metrics[column.metric].value
+    others = [rival.metrics[column.metric].value for rival in rivals if column.metric in rival.metrics]
+    text = format_number(value * column.scale, f".{column.decimals}f")
+    is_best = math.isfinite(value) and value == min(filter(math.isfinite, others), default=math.nan)
+    return f"[bold green]{text}[/]" if is_best else text
+
+
+def _label_keys(runs: Sequence[Run]) -> list[str]:
+    keys = {"scenario": None} if len({run.scenario.name for run in runs}) > 1 else {}
+    for run in runs:
+        keys |= dict.fromkeys(run.scenario.label)
+    return list(keys) or ["scenario"]
+
+
+def _head_label(key: str) -> str:
+    return "damper\n[°C]" if key == "temperature" else key.rpartition(".")[2].replace("_", "\n")
+
+
+def _labels(run: Run, keys: Sequence[str]) -> list[str]:
+    """Return what sets a run apart, as cells of a table."""
+    label = {"scenario": run.scenario.name, **run.scenario.label}
+    values = (label.get(key, "") for key in keys)
+    return [escape(f"{value:g}" if isinstance(value, int | float) else str(value)) for value in values]
+
+
+def make_bracket_table(runs: Sequence[Run], brackets: Mapping[str, PerformanceBounds]) -> Table:
+    """Return the table of how far each run with performance bounds is from both of them, at the run's travel."""
+    chosen = [run for run in runs if run.scenario.rig in brackets]
+    keys, rows = _label_keys(chosen), []
+    for run in chosen:
+        d = measure_distance(run, brackets[run.scenario.rig])
+        shares = (d.above_bound, d.above_best, ratio(d.best, d.bound) - 1)
+        cells = [format_number(value, ".3f") for value in (d.acceleration, d.bound, d.best)]
+        rows.append([*_labels(run, keys), *cells, *(format_number(1e2 * value, ".1f") for value in shares)])
+    headings = [f"{heading}\n[m/s²]" for heading in ("Wk RMS", "bound", "best")]
+    headings += [f"{heading}\n[%]" for heading in ("above\nbound", "above\nbest", "bracket's\nwidth")]
+    title = "Distance from the clairvoyant bracket, at each run's travel"
+    return make_table(title, [*map(_head_label, keys), *headings], rows, range(len(keys)))
+
+
+def make_published_tables(runs: Sequence[Run]) -> list[Table]:
+    """Return one table for each file with published figures: ours, published, and the difference, metric by metric."""
+    of_files: dict[str, list[Run]] = {}
+    for run in runs:
+        if run.scenario.source:
+            of_files.setdefault(str(run.scenario.source.path), []).append(run)
+    tables = []
+    for of_file in of_files.values():
+        source = of_file[0].scenario.source
+        if source and (found := published_figures(source)):
+            headings = ("run", "metric", "ours", "published", "difference")
+            tables.append(make_table(f"beside {found.source}", headings, _list_published(found, of_file), (0, 1)))
+    return tables
+
+
+def _list_published(published: Published, runs: Sequence[Run]) -> list[list[str]]:
+    rows = []
+    for index, row in enumerate(published.rows):
+        for run in runs:
+            label = run.scenario.label
+            if any(label.get(key) != value for key, value in row.items() if key in label):
+                continue
+            title = ", ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in label.values())
+            for name in [key for key in row if key in run.metrics]:
+                ours, theirs = run.metrics[name].value, published.figure(index, name)
+                difference = f"{100 * (ours / theirs - 1):+.1f} %" if theirs else "-"
+                metric = escape(f"{name} [{run.metrics[name].unit}]")
+                rows.append([escape(title), metric, f"{ours:.4g}", f"{theirs:.4g}", difference])
+    return rows
+
+
+_UNITS = {"displacement": "N/m", "velocity": "N s/m", "acceleration": "kg"}
+"""Unit of the gain on a measured quantity, by the last word of its name."""
+
+
+def make_design_table(design: SynthesisedDesign, scenario: Scenario) -> Table:
+    """Return a design as a table: gain, norm and what no controller can go below, certificate, margins, poles.
+
+    The margins in the same row as the disk's are those of the scenario's own plant, coil and controller.
+    """
+    table = Table(title="H-infinity static output feedback", title_justify="left", show_header=False, box=None)
+    proof = design.certificate
+    rows = {
+        f"gain on {', '.join(design.measures)}": ", ".join(f"{value:.6g}" for value in design.gain.ravel())
+        + f"  [{', '.join(_UNITS[measure.rpartition('_')[2]] for measure in design.measures)}]",
+        "gamma": f"{design.gamma:.6g} (largest gain permitted {design.max_gain:g})",
+        "lower bound": f"{design.lower_bound:.6g}, of any linear controller of any order",
+        "certificate": f"bounded-real lemma at gamma {proof.gamma:.6g}" if proof else "none in double precision",
+        "disk margin": _describe_disk_margin(min(loop.disk_margin for loop in design.loops)),
+        "peak": f"{design.peak_frequency / (2 * math.pi):.3g} Hz",
+        "poles": ", ".join(f"{pole:.3g}" for pole in design.poles) + "  [rad/s]",
+    }
+    if design.proof is not None:
+        rows["best gain"] = _describe_proof(design.proof)
+    if len(design.loops) > 1:
+        rows["plants"] = _describe_loops(design.loops)
+    if not all(loop.norms_agree for loop in design.loops):
+        rows["norms"] = "bisection and frequency grid differ by more than 1e-6: gamma may be too small"
+    for name, value in {**rows, **_check_loop(design, scenario)}.items():
+        table.add_row(name, value)
+    return table
+
+
+def _describe_disk_margin(margin: float) -> str:
+    # A margin of 2 stands for any gain; its factor (2 + a) / (2 - a) would divide by zero.
+    most = "any" if margin > 2 - 1e-6 else f"{(2 + margin) / (2 - margin):.3g}"
+    least, turn = (2 - margin) / (2 + margin), 2 * math.degrees(math.atan(margin / 2))
+    return f"gain times {max(least, 0.0):.2g} to {most}, phase {turn:.3g} degrees"
+
+
+def _describe_proof(proof: BoxProof) -> str:
+    if proof.better is not None:
+        return f"no: {', '.join(f'{value:.6g}' for value in proof.better.ravel())} is better"
+    if proof.is_proven:
+        return f"proven: no permitted gain is better by more than 0.1 % ({proof.boxes} boxes)"
+    return f"not decided in the time permitted ({proof.boxes} boxes)"
+
+
+def _describe_loops(loops: Sequence[DesignedLoop]) -> str:
+    norms, proven = [loop.gamma for loop in loops], sum(loop.certificate is not None for loop in loops)
+    return f"{len(loops)}, of which {proven} certified; gamma {min(norms):.6g} to {max(norms):.6g}, the worst is shown"
+
+
+def _check_loop(design: SynthesisedDesign, scenario: Scenario) -> Mapping[str, str]:
+    """Return what the scenario's own law says of its loop with the design's gain, by heading."""
+    control, plant = scenario.control, scenario.plant
+    if control is None or plant is None or not isinstance(control.law, CheckedLaw):
+        return {}
+    return control.law.checks(plant, scenario.coil, control.sample_time or DEFAULT_SAMPLE_TIME, design.gain)
