@@ -19,7 +19,6 @@ from seatsim.schema.fields import param
 
 Temperature = Annotated[float, param("degC", "temperature of a gain", low=-60, high=250)]
 Travel = Annotated[float, param("m", "level of the travel of a gain", low=0, high=1)]
-TravelWeight = Annotated[float, param("1/s^2", "weight e1 of the travel at one point", low=0, high=1e6)]
 
 
 class Schedule(NamedTuple):
@@ -73,8 +72,8 @@ class ScheduledOutputFeedback(NamedTuple):
     The points are either `temperatures` of the damper or `travels`, levels of the travel: |x| through a filter that
     rises within `rise` and falls within `fall` seconds. A soft gain at a small and a firm one at a large level keep the
     seat off its stops on rough floors and soft on smooth ones. One gain a point is stated under `gains`, or synthesised
-    from `weights`: with one of `force_factors` a temperature, or one of `travel_weights` (in place of `weights.travel`)
-    a level, where every level serves all of `force_factors`. The other keys are those of `static_output_feedback`. Each
+    from `weights` with one of `force_factors` a temperature, or from `weights_at_travels` with all of `force_factors`
+    at every level. The other keys are those of `static_output_feedback`. Each
     gain is proven stable where the schedule stays there, not between points or while it moves.
     """
 
@@ -88,8 +87,8 @@ class ScheduledOutputFeedback(NamedTuple):
         tuple[Factor, ...] | None,
         Field(description="delivered over wanted force, one a temperature; all of them at every level"),
     ] = None
-    travel_weights: Annotated[
-        tuple[TravelWeight, ...] | None, Field(description="weight e1 of the travel, one a level of the travel")
+    weights_at_travels: Annotated[
+        tuple[Weights, ...] | None, Field(description="weights of the synthesis at each level of the travel")
     ] = None
     rise: Annotated[float, param("s", "time constant of a rising level", low=0, high=100)] = 0.3
     fall: Annotated[float, param("s", "time constant of a falling level", low=0, high=100)] = 2.0
@@ -122,26 +121,27 @@ class ScheduledOutputFeedback(NamedTuple):
     def _require_points(self) -> tuple[float, ...]:
         if (self.temperatures is None) == (self.travels is None):
             raise InputError("give exactly one of 'temperatures' and 'travels'")
-        if (self.gains is None) == (self.weights is None):
-            raise InputError("give exactly one of 'gains' and 'weights'")
-        if self.temperatures and self.travel_weights:
-            raise InputError("travel_weights belong to 'travels'; the weight of the travel is weights.travel")
         variable, points = ("temperatures", self.temperatures) if self.temperatures else ("travels", self.travels or ())
+        weights = "weights" if self.temperatures else "weights_at_travels"
+        if (self.gains is None) == (getattr(self, weights) is None):
+            raise InputError(f"give exactly one of 'gains' and '{weights}'")
+        if getattr(self, "weights_at_travels" if self.temperatures else "weights") is not None:
+            raise InputError("weights belong to 'temperatures', and weights_at_travels to 'travels'")
         if len(points) < 2 or any(high <= low for low, high in pairwise(points)):
             raise InputError(f"{variable} {list(points)} must be two or more, and must rise")
-        varied = "force_factors" if self.temperatures else "travel_weights"
-        name = "gains" if self.weights is None else varied
+        varied = "force_factors" if self.temperatures else weights
+        name = varied if self.gains is None else "gains"
         count = len(getattr(self, name) or ())
         if count != len(points):
             raise InputError(f"{name} has {count} entries; one for each of the {len(points)} {variable}")
         return points
 
     def _synthesise(self, plant: Plant, place: int) -> OutputFeedback:
-        weights, factors = self.weights or Weights(), self.force_factors or (1.0,)
+        weights, factors = self.weights, self.force_factors or (1.0,)
         if self.temperatures:
             factors = (factors[place],)
-        elif self.travel_weights:
-            weights = weights._replace(travel=self.travel_weights[place])
+        elif self.weights_at_travels:
+            weights = self.weights_at_travels[place]
         return StaticOutputFeedback(
             weights=weights,
             measures=self.measures,

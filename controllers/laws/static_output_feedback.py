@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
@@ -95,7 +96,7 @@ class StaticOutputFeedback(NamedTuple):
         if self.gain is not None:
             return self._compile(np.array([self.gain]))
         if self.design is None:
-            return self._compile(self.synthesis(plant).gain)
+            return self._compile(_design_gain(self, plant))
         from controllers.synthesis import Design
 
         design = Design.load(Path(self.design))
@@ -142,3 +143,9 @@ class StaticOutputFeedback(NamedTuple):
             "margins": f"gain {rises}, phase {turns}, delay {waits}, with the coil's lag",
             "sampled loop": f"{verdict} at {1000 * sample_time:g} ms: spectral radius {radius:.5f}",
         }
+
+
+@lru_cache(maxsize=64)
+def _design_gain(law: StaticOutputFeedback, plant: Plant) -> Array:
+    """Return the gain of a law for a plant; runs that differ in floor or temperature alone share one design."""
+    return law.synthesis(plant).gain

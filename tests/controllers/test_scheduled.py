@@ -60,7 +60,7 @@ def test_synthesis_makes_up_for_a_weaker_damper():
 
 
 def test_synthesis_at_each_level_is_that_of_its_weight():
-    law = compile_law(travels=(0.01, 0.03), weights=Weights(weighting="none"), travel_weights=(10.0, 50.0))
+    law = compile_law(travels=(0.01, 0.03), weights_at_travels=(Weights(10.0), Weights(50.0)))
     for place, weight in enumerate((10.0, 50.0)):
         single = StaticOutputFeedback(weights=Weights(weight)).prepared(SEAT)
         assert (law.displacement[place], law.velocity[place]) == (single.displacement, single.velocity)
@@ -80,8 +80,8 @@ GAINS = ((1.0, 1.0), (1.0, 1.0))
         ({"temperatures": (20.0, 80.0), "gains": GAINS[:1]}, "gains has 1 entries"),
         ({"travels": (0.0, 0.1), "gains": ((1.0,), (1.0,))}, "one entry each"),
         ({"temperatures": (20.0, 80.0), "weights": Weights()}, "force_factors has 0 entries"),
-        ({"travels": (0.0, 0.1), "weights": Weights()}, "travel_weights has 0 entries"),
-        ({"temperatures": (20.0, 80.0), "weights": Weights(), "travel_weights": (1.0, 2.0)}, "belong to 'travels'"),
+        ({"travels": (0.0, 0.1), "weights_at_travels": (Weights(),)}, "weights_at_travels has 1 entries"),
+        ({"travels": (0.0, 0.1), "gains": GAINS, "weights": Weights()}, "weights_at_travels to 'travels'"),
     ],
 )
 def test_wrong_schedules(keys, words):
