@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 from seatsim.metrics.table import METRICS
 from seatsim.schema.errors import nearest
@@ -118,9 +118,7 @@ class Published(NamedTuple):
 
     def figure(self, row: int, metric: str) -> float:
         """Return a metric that a row states."""
-        stated = self.rows[row][metric]
-        assert isinstance(stated, int | float)  # as `check_published` has found
-        return float(stated)
+        return float(cast("float", self.rows[row][metric]))  # as `check_published` has found
 
 
 def published_figures(source: Source) -> Published | None:
@@ -128,8 +126,7 @@ def published_figures(source: Source) -> Published | None:
     if "published" not in source.data:
         return None
     stated = mapping(source.data["published"], source, ("published",))
-    rows = stated["rows"]
-    assert isinstance(rows, list)  # as `check_published` has found
+    rows = cast("list[Mapping[str, object]]", stated["rows"])  # as `check_published` has found
     return Published(str(stated.get("source", "published figures")), rows)
 
 

@@ -62,9 +62,7 @@ def mapping_schema(properties: Mapping[str, object], required: Iterable[str] = (
 
 def properties_of(schema: Schema) -> Schema:
     """Return the properties that the schema of a mapping states."""
-    found = schema["properties"]
-    assert isinstance(found, dict)
-    return found
+    return cast("Schema", schema["properties"])
 
 
 def name_schema(kind: str) -> Schema:

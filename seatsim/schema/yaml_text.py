@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias, cast
 
 import yaml
 
@@ -97,9 +97,9 @@ def _plain(node: _Node, keys: KeyPath, lines: dict[KeyPath, int]) -> object:
 
 def _all(node: _Node) -> dict[str, tuple[int, _Node]]:
     """Return the keys of a mapping with those merged into it."""
-    assert isinstance(node.value, dict)  # `_Composer` merges mappings alone
+    own = cast("dict[str, tuple[int, _Node]]", node.value)  # `_Composer` merges mappings alone
     merged = {key: entry for each in reversed(node.merged) for key, entry in _all(each).items()}
-    return merged | node.value
+    return merged | own
 
 
 class _Composer:
