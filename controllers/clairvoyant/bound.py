@@ -21,7 +21,7 @@ from seatsim.schema.arrays import Array
 if TYPE_CHECKING:
     import scipy.sparse
 
-SPACING = 0.02
+_SPACING = 0.02
 """s between the nodes of the multipliers."""
 SHARES = (0.3, 0.1, 0.03, 0.01)
 """Sizes of the barrier over the criterion, stage by stage."""
@@ -32,7 +32,7 @@ STEPS = 120
 _MEMORY, _LONGEST, _SETTLED, _RETREAT = 30, 2.0, 1e-8, 0.1
 _NU = 1e-9  # of the criterion a N^2, where the ascent starts
 
-DualFunction = Callable[[Array], tuple[float, Array] | None]
+_DualFunction = Callable[[Array], tuple[float, Array] | None]
 
 
 class LowerBound(NamedTuple):
@@ -71,13 +71,13 @@ def _build_hat_functions(count: int, step: float) -> scipy.sparse.csr_array:
     """Return what the hat functions of unit density sum up to in each of `count` intervals, shape (count, nodes)."""
     import scipy.sparse
 
-    place = step / SPACING * (np.arange(count) + 0.5)
+    place = step / _SPACING * (np.arange(count) + 0.5)
     left = place.astype(int)
     entries = (
         step * np.concatenate([left + 1 - place, place - left]),
         (np.tile(np.arange(count), 2), np.append(left, left + 1)),
     )
-    return scipy.sparse.csr_array(entries, shape=(count, math.ceil(count * step / SPACING - 1e-9) + 1))
+    return scipy.sparse.csr_array(entries, shape=(count, math.ceil(count * step / _SPACING - 1e-9) + 1))
 
 
 def _sum_hats(hats: scipy.sparse.csr_array, y: Array) -> Array:
@@ -86,7 +86,7 @@ def _sum_hats(hats: scipy.sparse.csr_array, y: Array) -> Array:
 
 def _make_dual_function(
     problem: HeldForceProblem, band: ForceBand, hats: scipy.sparse.csr_array, barrier: float
-) -> DualFunction:
+) -> _DualFunction:
     def objective(y: Array) -> tuple[float, Array] | None:
         found = problem.minimise_lagrangian(band, _sum_hats(hats, y), barrier)
         if found is None:
@@ -113,7 +113,7 @@ def _find_constant_multipliers(
     return highest
 
 
-def _ascend(objective: DualFunction, y: Array) -> Array:
+def _ascend(objective: _DualFunction, y: Array) -> Array:
     """Return where L-BFGS with backtracking comes to in `STEPS` steps, or when it settles."""
     here = objective(y)
     if here is None:

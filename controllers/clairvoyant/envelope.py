@@ -15,7 +15,7 @@ from seatsim.simulation.damper_bench import sine_test
 TOP = 1.5
 """m/s; speed up to which the lines hold."""
 SPEEDS = np.array([0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.2, TOP])
-CURRENTS, SLOPES = 9, 201  # grids of the current and of the strip's slope, which is found to half a percent
+CURRENTS, _SLOPES = 9, 201  # grids of the current and of the strip's slope, which is found to half a percent
 _STROKE, _FASTEST = 0.02, 2.0  # m and Hz: friction has its full size, and internal flows settle
 
 
@@ -59,7 +59,7 @@ def fit_envelope(damper: DamperChoice, max_current: float, temperature: float) -
     if inner.a <= inner.f or inner.a + inner.b * TOP <= inner.f + inner.c * TOP:
         raise InputError("the damper's forces at no and at full current do not leave a straight band between them")
     # Of all strips that hold the forces, the narrowest: a wide one would loosen the bound at every speed.
-    a, slope = min((_find_half_width(least, most, slope), slope) for slope in np.linspace(0, b, SLOPES))
+    a, slope = min((_find_half_width(least, most, slope), slope) for slope in np.linspace(0, b, _SLOPES))
     return DamperEnvelope(ForceBand(c, float(weakest.min()), float(slope), a), inner)
 
 

@@ -30,7 +30,7 @@ class ClairvoyantRun(NamedTuple):
     modes: ForceModes
 
 
-class LagrangianMinimum(NamedTuple):
+class _LagrangianMinimum(NamedTuple):
     """The Lagrangian's minimum (a bound of J), the sum of log pivots, their derivatives by the multipliers, the law."""
 
     bound: float
@@ -58,7 +58,7 @@ class HeldForceProblem(NamedTuple):
         """Number of intervals."""
         return len(self.transcription.free_velocity)
 
-    def minimise_lagrangian(self, band: ForceBand, multipliers: Array, barrier: float) -> LagrangianMinimum | None:
+    def minimise_lagrangian(self, band: ForceBand, multipliers: Array, barrier: float) -> _LagrangianMinimum | None:
         """Return the minimum of the Lagrangian with its derivatives; None where it has none."""
         p, count, t = self.stage_matrices, self.intervals, self.transcription
         gain, pivot, by = np.empty((count, len(p.V))), np.empty(count), np.empty((3, count))
@@ -68,7 +68,7 @@ class HeldForceProblem(NamedTuple):
             return None
         compiled(differentiate, ())(p, band, gain, pivot, barrier, by)
         free = t.acceleration.free + self.weight * t.travel.free
-        return LagrangianMinimum(free + least, float(np.sum(np.log(pivot))), by, gain)
+        return _LagrangianMinimum(free + least, float(np.sum(np.log(pivot))), by, gain)
 
     def simulate(self, band: ForceBand, gain: Array) -> ClairvoyantRun:
         """Return the run under what the damper delivers of the force `gain . (s, 1)`, shape (N, n+1)."""

@@ -22,7 +22,7 @@ from seatsim.schema.registry import name_of, register
 
 WEIGHTS = tuple(float(w) ** 2 for w in np.geomspace(12.0, 150.0, 7))
 """Weights of the squared travel in 1/s^4, from a soft seat to short travel."""
-HOLD = 0.005
+_HOLD = 0.005
 """s; the force is held so long, as in a controller that samples every 5 ms."""
 UNKNOWN = (*ON_DAMPER, *ON_SEAT, "factors", "temperature", "frame_force", "plant")
 """Hooks of effects that change seat, damper or floor: the bounds are of the rig without them."""
@@ -41,7 +41,7 @@ class ClairvoyantMethod:
 def clairvoyant(
     scenario: Scenario,
     weights: ArrayLike = WEIGHTS,
-    hold: float = HOLD,
+    hold: float = _HOLD,
     progress: Callable[[str], None] = lambda text: None,
 ) -> ClairvoyantBounds:
     """Return the performance bounds of a scenario's seat, damper and floor; docs/bracket.md has method and validity.

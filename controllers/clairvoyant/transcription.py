@@ -28,7 +28,7 @@ from seatsim.rig.plant import Plant, state_space
 from seatsim.schema.arrays import Array
 
 
-class Criterion(NamedTuple):
+class _Criterion(NamedTuple):
     """A mean square as a quadratic form of the state and force: `free` without force, `Q` (n+1, n+1), `q` (N, n+1)."""
 
     free: float
@@ -44,8 +44,8 @@ class Transcription(NamedTuple):
     B: Array
     velocity: Array
     free_velocity: Array
-    acceleration: Criterion
-    travel: Criterion
+    acceleration: _Criterion
+    travel: _Criterion
 
 
 def transcribe(plant: Plant, floor: Array, sample: float, every: int, start: tuple[float, float]) -> Transcription:
@@ -79,7 +79,7 @@ def transcribe(plant: Plant, floor: Array, sample: float, every: int, start: tup
     )  # fmt: skip
 
 
-def _criterion(free: Array, rows: Array, total: int) -> Criterion:
+def _criterion(free: Array, rows: Array, total: int) -> _Criterion:
     """Return the mean square of `free[1 + k every + j] + rows[j] . (s[k], F[k])`, all samples weighing 1 / total."""
     inside = free[1:].reshape(-1, len(rows))
-    return Criterion(float(np.sum(free**2)) / total, rows.T @ rows / total, inside @ rows / total)
+    return _Criterion(float(np.sum(free**2)) / total, rows.T @ rows / total, inside @ rows / total)

@@ -54,21 +54,21 @@ class AtPoint(NamedTuple):
     q: Complex
 
 
-class OfCoefficient(NamedTuple):
+class _OfCoefficient(NamedTuple):
     """The inequality of the coefficient of s^power, for a plant by number."""
 
     plant: int
     power: int
 
 
-Inequality = AtPoint | OfCoefficient
+_Inequality = AtPoint | _OfCoefficient
 
 
 class WeightedSum(NamedTuple):
     """Inequalities of which a sum with weights > 0 holds in a box."""
 
     weights: tuple[float, ...]
-    inequalities: tuple[Inequality, ...]
+    inequalities: tuple[_Inequality, ...]
 
 
 class Unstable(NamedTuple):
@@ -84,7 +84,7 @@ class Inequalities(NamedTuple):
 
     values: Array
     sizes: Array
-    rows: list[Inequality]
+    rows: list[_Inequality]
 
 
 class BoxView:
@@ -123,7 +123,7 @@ class BoxView:
         """Return the inequalities of a box at the common points and at its own ones."""
         K = self._middle_and_corners(low, high)
         coefficients, terms = self._coefficients(K[1:])
-        of_coefficients = [OfCoefficient(self.number, power) for power in range(self.plant.order)]
+        of_coefficients = [_OfCoefficient(self.number, power) for power in range(self.plant.order)]
         if np.isinf(self.level):  # only instability counts, which no transfer matrix shows
             sizes = terms.max(axis=1)
             return Inequalities((-coefficients - _ROUNDING * terms) / sizes[:, None], sizes, [*of_coefficients])
@@ -138,7 +138,7 @@ class BoxView:
         size = bound + np.linalg.norm(N[:, 1:], axis=(2, 3)) * across
         values = np.vstack([along - bound - _ROUNDING * size, -coefficients - _ROUNDING * terms])
         sizes = np.concatenate([size.max(axis=1), terms.max(axis=1)])
-        rows: list[Inequality] = [AtPoint(self.number, *row) for row in zip(s.tolist(), p, q, strict=True)]
+        rows: list[_Inequality] = [AtPoint(self.number, *row) for row in zip(s.tolist(), p, q, strict=True)]
         return Inequalities(values / sizes[:, None], sizes, [*rows, *of_coefficients])
 
     def _coefficients(self, K: Array) -> tuple[Array, Array]:

@@ -23,7 +23,7 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import write_whole
 
-MOST_GAINS = 4
+_MOST_GAINS = 4
 """Free gains up to which boxes are searched."""
 FACTOR = 1 - 1e-3
 """Level that is proven, over the norm of the design."""
@@ -40,7 +40,7 @@ class Split(NamedTuple):
     at: float
 
 
-Reason = WeightedSum | Unstable
+_Reason = WeightedSum | Unstable
 
 
 @dataclass(eq=False)
@@ -56,7 +56,7 @@ class GlobalProof:
     low: Array
     high: Array
     level: float
-    steps: list[Split | Reason] = field(default_factory=list)
+    steps: list[Split | _Reason] = field(default_factory=list)
     better: Array | None = None
     open_boxes: int = 0
 
@@ -82,7 +82,7 @@ class GlobalProof:
         write_whole(path, lambda part: part.write_text(json.dumps(content)))
 
 
-def _to_plain(step: Split | Reason) -> dict[str, object]:
+def _to_plain(step: Split | _Reason) -> dict[str, object]:
     if isinstance(step, Split):
         return step._asdict()
     if isinstance(step, Unstable):
@@ -119,12 +119,12 @@ def prove_no_better(
         progress: is told, now and then, how much of the box is excluded.
 
     Raises:
-        InputError: more free gains than `MOST_GAINS`, or a box of another shape.
+        InputError: more free gains than `_MOST_GAINS`, or a box of another shape.
     """
     low, high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
     count = int(plants[0].free.sum())
-    if count > MOST_GAINS:
-        raise InputError(f"{count} free gains; at most {MOST_GAINS} are searched over their whole box")
+    if count > _MOST_GAINS:
+        raise InputError(f"{count} free gains; at most {_MOST_GAINS} are searched over their whole box")
     if not low.shape == high.shape == (count,) or not np.all(low < high):
         raise InputError(f"the box needs bounds low < high of {count} gains each")
     proof = GlobalProof(plants, low, high, level)
@@ -159,7 +159,7 @@ class _Box(NamedTuple):
     low: Array
     high: Array
     share: float
-    reason: Reason | None
+    reason: _Reason | None
 
 
 class _Division(NamedTuple):
@@ -171,7 +171,7 @@ class _Division(NamedTuple):
     better: Array | None = None
 
 
-def _exclude_or_divide(views: Sequence[BoxView], box: _Box) -> Reason | _Division:
+def _exclude_or_divide(views: Sequence[BoxView], box: _Box) -> _Reason | _Division:
     """Return why no gain in a box is good enough, or its two parts."""
     middle = (box.low + box.high) / 2
     norms = [view.norm_at(middle) for view in views]
@@ -229,7 +229,7 @@ def _largest_slab(values: Array) -> _Slab:
     return best
 
 
-def _divide(box: _Box, slab: _Slab, reason: Reason | None) -> _Division:
+def _divide(box: _Box, slab: _Slab, reason: _Reason | None) -> _Division:
     """Cut a slab off a box, for which there is a reason or none."""
     gain, part = slab.gain, 1 - slab.share if slab.at_the_top else slab.share
     at = float(box.low[gain] + part * (box.high[gain] - box.low[gain]))

@@ -18,13 +18,13 @@ _AGREEMENT = 1e-6  # what the documentation states of the norm
 def verify(plant: GeneralisedPlant, gain: Array) -> ClosedLoop:
     """Return what is known of a plant under a stabilising gain (nu, ny)."""
     loop = plant.close(gain)
-    peak, agree = compute_verified_norm(loop)
+    peak, agree = _compute_verified_norm(loop)
     return ClosedLoop(
         plant, peak.value, peak.frequency, agree, certify(plant, gain, peak.value), disk_margin(plant, gain), loop.poles
     )
 
 
-def compute_verified_norm(loop: Loop) -> tuple[Peak, bool]:
+def _compute_verified_norm(loop: Loop) -> tuple[Peak, bool]:
     """Return the larger H-infinity norm of bisection and frequency grid, and whether the two agree to 1e-6."""
     norm, grid = hinf_norm(loop), grid_norm(loop)
     if norm.value < grid.value * (1 - _ROUNDING):

@@ -32,9 +32,9 @@ if TYPE_CHECKING:
 SCRIPTS = ("uPlot.iife.min.js", "charts.js", "page.js")
 STYLES = ("uPlot.min.css", "report.css", "page.css")
 HEADERS = {"X-Content-Type-Options": "nosniff", "Referrer-Policy": "no-referrer", "Cache-Control": "no-store"}
-READABLE = (".yaml", ".yml")
+_READABLE = (".yaml", ".yml")
 """Endings of files that are shown as they are."""
-WAITING = "wait"
+_WAITING = "wait"
 """In the address of the request that is answered when everything is loaded."""
 
 
@@ -74,8 +74,8 @@ class _Page:
 
     async def show(self, request: Request) -> Response:
         """Return the page with what it shows at first, or one that asks for it and is replaced by it."""
-        if not self._target.done() and WAITING not in request.query_params:
-            return HTMLResponse(self._loading, headers=self._headers | {"Refresh": f"0; url=/?{WAITING}"})
+        if not self._target.done() and _WAITING not in request.query_params:
+            return HTMLResponse(self._loading, headers=self._headers | {"Refresh": f"0; url=/?{_WAITING}"})
         try:
             view = await run_in_threadpool(self._compute, {})
         except SeatsimError as error:
@@ -111,7 +111,7 @@ class _Page:
             return PlainTextResponse(f"{error}\n", status_code=404, headers=self._headers)
         except TooLargeError as error:
             return PlainTextResponse(f"{error}\n", status_code=413, headers=self._headers)
-        if path.suffix not in READABLE or not path.is_file():
+        if path.suffix not in _READABLE or not path.is_file():
             return PlainTextResponse("Only scenarios and recordings are shown.\n", status_code=404)
         return PlainTextResponse(path.read_text(encoding="utf-8", errors="replace"), headers=self._headers)
 

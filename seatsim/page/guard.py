@@ -14,7 +14,7 @@ POLICY = (
     "default-src 'none'; img-src data:; script-src {script}; style-src {style}; connect-src 'self'; form-action 'none';"
     " frame-ancestors 'none'; base-uri 'none'"
 )
-LARGEST_BODY = 100_000
+_LARGEST_BODY = 100_000
 """Bytes of a request that are read."""
 
 
@@ -58,7 +58,7 @@ class Guard:
         origin = headers.get("origin")
         if origin is not None and origin not in {f"http://{host}" for host in self._hosts}:
             return PlainTextResponse("Requests of other pages are refused.\n", status_code=403)
-        if int(headers.get("content-length") or 0) > LARGEST_BODY or "transfer-encoding" in headers:
+        if int(headers.get("content-length") or 0) > _LARGEST_BODY or "transfer-encoding" in headers:
             return PlainTextResponse("The request is too large.\n", status_code=413)
         return None
 

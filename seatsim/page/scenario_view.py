@@ -29,7 +29,7 @@ LAWS = (
     "power_driven",
 )  # fmt: skip
 """Laws that need no design before they run, so that a change is seen at once."""
-ROADS = "ABCDEF"
+_ROADS = "ABCDEF"
 SPEED, DURATION = 10.0, 20.0
 """m/s and s of a road that is chosen on the page."""
 
@@ -58,7 +58,7 @@ class ScenarioView:
             raise InputError(f"{path}: is a damper bench; seatsim characterise shows it")
         self.name = first.name
         titles = [str(scenario.title) for scenario in scenarios]
-        roads = [(OWN, "as in the file"), *((road, f"ISO 8608 class {road}, {SPEED:g} m/s") for road in ROADS)]
+        roads = [(OWN, "as in the file"), *((road, f"ISO 8608 class {road}, {SPEED:g} m/s") for road in _ROADS)]
         laws = [(OWN, "as in the file"), ("off", "no current"), *((law, law.replace("_", " ")) for law in LAWS)]
         temperature = first.temperature if isinstance(first.temperature, int | float) else 20.0
         mass = first.plant.driver_mass

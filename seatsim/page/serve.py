@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from seatsim.page.recording_view import RecordingView
     from seatsim.page.scenario_view import ScenarioView
 
-HOST = "127.0.0.1"
+_HOST = "127.0.0.1"
 
 
 class Impatient(H11Protocol):
@@ -93,12 +93,12 @@ def serve(path: Path, folder: Path, port: int, browser: bool, say: Callable[[str
     listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
-        listener.bind((HOST, port))
+        listener.bind((_HOST, port))
     except OSError as error:
         raise InputError(f"--port {port}: {error.strerror}; give another port, or 0 for a free one") from error
     listener.listen()  # who asks before the server runs is kept waiting, and not refused
     taken, token = listener.getsockname()[1], secrets.token_urlsafe(24)
-    address = f"http://{HOST}:{taken}/?token={token}"
+    address = f"http://{_HOST}:{taken}/?token={token}"
     target = ThreadPoolExecutor(1).submit(open_target, path)
     app = make_app(target, Folder(folder), token, taken)
     server = uvicorn.Server(

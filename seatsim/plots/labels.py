@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 LONGEST = 44
 """Letters of a label; longer ones are cut in the middle, so that its ends stay legible."""
-PRETTY = {"degC": "°C", "^1.75": "¹·⁷⁵", "^2": "²", "^3": "³", "ohm": "Ω", " s/m": "·s/m"}
+_PRETTY = {"degC": "°C", "^1.75": "¹·⁷⁵", "^2": "²", "^3": "³", "ohm": "Ω", " s/m": "·s/m"}
 """What stands in files and in print, in the order in which it is replaced."""
 FACTORS = {"m": (1e3, "mm")}
 """Factor and unit of quantities whose values are small in SI units."""
@@ -43,7 +43,7 @@ def describe_channel(name: str, unit: str) -> Quantity:
 
 def format_unit(text: str) -> str:
     """Return a unit as it is printed: `N s/m` as `N·s/m`, `m/s^2` as `m/s²`."""
-    for written, printed in PRETTY.items():
+    for written, printed in _PRETTY.items():
         text = text.replace(written, printed)
     return text
 

@@ -16,19 +16,19 @@ from seatsim.plots.style import WIDTH, measure_head
 
 DPI = 180
 """Dots per inch of a PNG: 1044 over the width of a page."""
-COMPRESSION = 3
+_COMPRESSION = 3
 """Level of zlib in a PNG, 0 to 9: fast rather than small."""
-NO_DATE: dict[str, Any] = {"Creator": "seatsim", "Date": None}
+_NO_DATE: dict[str, Any] = {"Creator": "seatsim", "Date": None}
 OPTIONS: dict[str, dict[str, Any]] = {
     # The stated software takes the place of matplotlib's own entry, which holds its version.
-    ".png": {"dpi": DPI, "metadata": {"Software": "seatsim"}, "pil_kwargs": {"compress_level": COMPRESSION}},
-    ".svg": {"metadata": NO_DATE},
+    ".png": {"dpi": DPI, "metadata": {"Software": "seatsim"}, "pil_kwargs": {"compress_level": _COMPRESSION}},
+    ".svg": {"metadata": _NO_DATE},
     ".pdf": {"metadata": {"Creator": "seatsim", "Producer": "seatsim", "CreationDate": None}},
 }
 """What each ending of a file needs so that the same figure gives the same bytes."""
-INLINE: dict[Any, Any] = {"svg.hashsalt": "seatsim", "svg.fonttype": "none", "path.simplify_threshold": 0.3}
-NAMESPACE = re.compile(r"\{.*?\}")
-DROPPED = {"font-family", "stroke-linejoin", "stroke-miterlimit", "image-rendering"}
+_INLINE: dict[Any, Any] = {"svg.hashsalt": "seatsim", "svg.fonttype": "none", "path.simplify_threshold": 0.3}
+_NAMESPACE = re.compile(r"\{.*?\}")
+_DROPPED = {"font-family", "stroke-linejoin", "stroke-miterlimit", "image-rendering"}
 """Properties that a page sets for all pictures, or that hardly show."""
 POINTS = 72
 """Units of an SVG in an inch."""
@@ -62,10 +62,10 @@ def render_inline(figure: Figure, name: str) -> Inline:
     texts = figure.texts
     title, note = (text.get_text() for text in texts)
     file = io.StringIO()
-    with rc_context(INLINE):
+    with rc_context(_INLINE):
         for text in texts:
             text.set_visible(False)
-        figure.savefig(file, format="svg", metadata=NO_DATE, transparent=True, dpi=110)
+        figure.savefig(file, format="svg", metadata=_NO_DATE, transparent=True, dpi=110)
         for text in texts:
             text.set_visible(True)
     head = measure_head(*(len(text.splitlines()) for text in (title, note))) - 0.04
@@ -84,12 +84,12 @@ def _restyle(root: ElementTree.Element, name: str) -> None:
     """Write an SVG of matplotlib anew: short names, attributes instead of styles, the page's colours, few digits."""
     used = set(re.findall(r"#([\w-]+)", " ".join(value for each in root.iter() for value in each.attrib.values())))
     for each in root.iter():
-        each.tag = NAMESPACE.sub("", each.tag)
+        each.tag = _NAMESPACE.sub("", each.tag)
         for child in [child for child in each if child.tag.endswith(("metadata", "style"))]:
             each.remove(child)
-        given = {NAMESPACE.sub("", key): value for key, value in each.attrib.items()}
+        given = {_NAMESPACE.sub("", key): value for key, value in each.attrib.items()}
         style = (part.split(":", 1) for part in given.pop("style", "").split(";") if part.strip())
-        given |= {key.strip(): value.strip() for key, value in style if key.strip() not in DROPPED}
+        given |= {key.strip(): value.strip() for key, value in style if key.strip() not in _DROPPED}
         if given.get("id") not in used:
             given.pop("id", None)
         each.attrib = {key: _adapt(key, value, name) for key, value in given.items()}

@@ -25,8 +25,8 @@ from seatsim.plots.labels import RAISED, clean_text
 
 WIDTH = 5.8
 """Width of a page in inches."""
-MARGIN = 0.12
-LETTER, BOLD = 0.078, 0.104
+_MARGIN = 0.12
+LETTER, _BOLD = 0.078, 0.104
 """Width of a letter of 9.5 points, and of one of a title, in inches, on average."""
 SAMPLE = 0.62
 """Width of a legend's sample of a line, with the gaps around it, in inches."""
@@ -41,7 +41,7 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#8
 """Okabe and Ito's palette for all kinds of colour vision; wine replaces its yellow, which fades on white."""
 DASHES: tuple[LineStyleType, ...] = ("-", (0.0, (5.0, 1.5)))
 """Every second line is dashed: two that coincide are both seen, and colour is not the only difference."""
-FREQUENCIES = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000)
+_FREQUENCIES = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000)
 """Hz that an axis names."""
 
 
@@ -111,19 +111,19 @@ def make_page(title: str, note: str, grid: Grid, legend: Sequence[Entry] = ()) -
     The height follows from what stands on the page, so that no panel shrinks where a legend grows. The two texts of the
     figure are title and note: a report takes them out, and prints them beside the picture.
     """
-    lines = [wrap(clean_text(text, 400), int(WIDTH / wide)) for text, wide in ((title, BOLD), (note, LETTER))]
+    lines = [wrap(clean_text(text, 400), int(WIDTH / wide)) for text, wide in ((title, _BOLD), (note, LETTER))]
     rows = -(-len(legend) // _count_columns(legend))
     head = measure_head(*map(len, lines))
     top = head + LINE * rows + grid.top
     height = top + sum(grid.heights) + grid.gap[1] * (len(grid.heights) - 1) + grid.bottom
     figure = Figure(figsize=(WIDTH, height))
-    left = MARGIN / WIDTH
-    figure.text(left, 1 - MARGIN / height, "\n".join(lines[0]), fontsize=11.5, fontweight="bold", va="top")
-    below = MARGIN + LINE * (len(lines[0]) + 0.15)
+    left = _MARGIN / WIDTH
+    figure.text(left, 1 - _MARGIN / height, "\n".join(lines[0]), fontsize=11.5, fontweight="bold", va="top")
+    below = _MARGIN + LINE * (len(lines[0]) + 0.15)
     figure.text(left, 1 - below / height, "\n".join(lines[1]), fontsize=FONT, color=DARK, va="top")
     if legend:
         figure.legend(
-            handles=[make_handle(entry) for entry in legend], ncols=_count_columns(legend), loc="upper left",
+            handles=[_make_handle(entry) for entry in legend], ncols=_count_columns(legend), loc="upper left",
             frameon=False, fontsize=FONT, bbox_to_anchor=(left, 1 - head / height), borderaxespad=0, borderpad=0,
             columnspacing=1.2, handlelength=2.0, labelspacing=0.35,
         )  # fmt: skip
@@ -132,7 +132,7 @@ def make_page(title: str, note: str, grid: Grid, legend: Sequence[Entry] = ()) -
 
 def measure_head(title: int, note: int) -> float:
     """Return the height in inches of a title and a note of that many lines, which stand above everything else."""
-    return MARGIN + LINE * (title + note) + 0.12
+    return _MARGIN + LINE * (title + note) + 0.12
 
 
 def draw_line(axes: Axes, x: ArrayLike, y: ArrayLike, look: Entry) -> None:
@@ -172,7 +172,7 @@ def scale_frequency_axis(axes: Axes, low: float, high: float) -> None:
     """Make the lower axis of a panel one of frequency in Hz, logarithmic, with both ends named."""
     axes.set_xscale("log")
     axes.set_xlim(low, high)
-    axes.xaxis.set_major_locator(FixedLocator([tick for tick in FREQUENCIES if low <= tick <= high]))
+    axes.xaxis.set_major_locator(FixedLocator([tick for tick in _FREQUENCIES if low <= tick <= high]))
     axes.xaxis.set_major_formatter("{x:g}")
     axes.xaxis.set_minor_locator(NullLocator())
     axes.set_xlabel("frequency [Hz]")
@@ -212,7 +212,7 @@ def explain_empty(axes: Axes, text: str) -> None:
     axes.text(0.5, 0.5, "\n".join(lines), transform=axes.transAxes, ha="center", va="center", color=DARK)
 
 
-def make_handle(look: Entry) -> Line2D:
+def _make_handle(look: Entry) -> Line2D:
     """Return the sample of a line for a legend, a little wider than the line, so that its colour is seen."""
     return Line2D([], [], label=clean_text(look.label, 64), **_style(look._replace(width=look.width + 0.5)))
 
@@ -236,7 +236,7 @@ def _count_columns(legend: Sequence[Entry]) -> int:
     letters = [min(64, len(entry.label)) for entry in legend]
     for count in range(len(letters), 1, -1):
         widths = [LETTER * max(column) + SAMPLE for column in np.array_split(letters, count)]
-        if sum(widths) <= WIDTH - 2 * MARGIN:
+        if sum(widths) <= WIDTH - 2 * _MARGIN:
             return count
     return 1
 

@@ -25,15 +25,15 @@ if TYPE_CHECKING:
 COMFORT, TRAVEL = "driver_acceleration_weighted", "suspension_displacement_rms"
 ROAD = "excitation."
 """How the keys of the excitation begin; the first of them with few values gives each value a panel of its own."""
-MOST_KEYS = 14
+_MOST_KEYS = 14
 MOST_PANELS = 6
-MOST_POINTS = 4000
+_MOST_POINTS = 4000
 """Runs that are drawn in all panels; more of them hide each other."""
-MOST_GROUPS = 7
-MOST_LEVELS = 8
+_MOST_GROUPS = 7
+_MOST_LEVELS = 8
 """Values of a key that have rows or columns of their own; numbers with more are taken in `BINS` of as many runs."""
 BINS = 5
-FRONT = Entry("Pareto front", "black", width=1.6)
+_FRONT = Entry("Pareto front", "black", width=1.6)
 
 
 def describe_column(name: str, units: Mapping[str, str]) -> Quantity:
@@ -49,8 +49,8 @@ def format_level(value: object) -> str:
 
 def plot_shares(found: Sequence[Sensitivity], words: str) -> Figure:
     """Return the shares of the variance of a metric that its keys explain, alone and with others."""
-    rows = found[:MOST_KEYS]
-    cut = f" The {MOST_KEYS} strongest of {len(found)} keys." if len(found) > MOST_KEYS else ""
+    rows = found[:_MOST_KEYS]
+    cut = f" The {_MOST_KEYS} strongest of {len(found)} keys." if len(found) > _MOST_KEYS else ""
     note = f"Bar: the key alone. Line: 95 % interval of its share together with its interactions.{cut}"
     names = [row.key for row in rows]
     grid = Grid((ROW * len(rows) + 0.1,), left=measure_names(names), right=1.1)
@@ -72,7 +72,7 @@ def plot_shares(found: Sequence[Sensitivity], words: str) -> Figure:
 
 def plot_tornado(found: Sequence[Sensitivity], rows: SweepRows) -> Figure:
     """Return from where to where the mean of a metric goes between a low and a high value of each key."""
-    shown, strongest = describe_column(found[0].metric, rows.units), found[:MOST_KEYS]
+    shown, strongest = describe_column(found[0].metric, rows.units), found[:_MOST_KEYS]
     note = "Mean at the key's 5 % (open) and 95 % quantile (full), or at the texts with the smallest and largest mean."
     names = []
     for row in strongest:
@@ -105,26 +105,26 @@ def plot_comfort(rows: SweepRows, order: Sequence[str]) -> Figure | None:
     shown = rows.usable.dropna(subset=[COMFORT, TRAVEL])
     few = {key: shown[key].nunique() for key in order}
     road = next((key for key in order if key.startswith(ROAD) and 1 < few[key] <= MOST_PANELS), None)
-    colour = next((key for key in order if key != road and few[key] <= MOST_GROUPS), None)
+    colour = next((key for key in order if key != road and few[key] <= _MOST_GROUPS), None)
     parts = [("", shown)] if road is None else [
         (f"{road} {format_level(value)}", part) for value, part in shown.groupby(road)
     ]  # fmt: skip
     values = [] if colour is None else sorted(shown[colour].unique())
     looks = [Entry(format_level(value), COLOURS[k], "none", mark="o") for k, value in enumerate(values)]
-    most = MOST_POINTS // len(parts)
+    most = _MOST_POINTS // len(parts)
     drawn = sum(min(most, len(part)) for _, part in parts)
     some = f" {drawn} of {len(shown)} runs are drawn." if drawn < len(shown) else ""
     said = "" if colour in (None, "variant") else f" The colours are values of {colour}."
     columns = min(2, len(parts))
     grid = Grid((3.2 if columns == 1 else 2.0,) * -(-len(parts) // columns), columns, top=0.3, gap=(0.7, 0.85))
     note = f"A point for each run; lower left is better.{said}{some}"
-    page = make_page("Comfort against travel", note, grid, [*looks, FRONT])
+    page = make_page("Comfort against travel", note, grid, [*looks, _FRONT])
     panels = [axes for row in page.rows for axes in row]
     for axes, (title, part) in zip(panels, parts, strict=False):
         _draw_runs(axes, part.sample(most, random_state=0) if len(part) > most else part, colour, values)
         travel, comfort = (part[name].to_numpy(float) for name in (TRAVEL, COMFORT))
         front = find_front(travel, comfort)
-        style.draw_line(axes, 1e3 * travel[front], comfort[front], FRONT)
+        style.draw_line(axes, 1e3 * travel[front], comfort[front], _FRONT)
         style.set_title(axes, title)
         axes.set_xlabel(f"{SHORT[TRAVEL]} [mm]")
         axes.set_ylabel(f"{SHORT[COMFORT]} [m/s²]")
@@ -191,7 +191,7 @@ def _group(values: pd.Series) -> pd.Series | None:
     """Return the values as ordered names of cells."""
     import pandas as pd
 
-    if values.nunique() <= MOST_LEVELS:
+    if values.nunique() <= _MOST_LEVELS:
         names = pd.Categorical(values.map(format_level), [format_level(x) for x in sorted(values.unique())], True)
         return pd.Series(names, index=values.index)
     if not is_number(values):

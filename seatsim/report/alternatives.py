@@ -15,7 +15,7 @@ from seatsim.report.formatting import format_quantity
 from seatsim.scenario.scenario import group_by_condition, is_passive
 from seatsim.simulation.result import Run
 
-COMFORT, UNWEIGHTED, TRAVEL = "driver_acceleration_weighted", "driver_acceleration_rms", "suspension_displacement_rms"
+COMFORT, _UNWEIGHTED, TRAVEL = "driver_acceleration_weighted", "driver_acceleration_rms", "suspension_displacement_rms"
 SAME = 0.01
 """Difference, as a share, up to which figures count as equal: other phases of the same floor change them by more."""
 
@@ -65,7 +65,7 @@ def read_metric(run: Run, name: str) -> float:
 
 def measure_comfort(run: Run) -> float:
     """Return the weighted RMS acceleration of the driver in m/s^2; unweighted where the step is too long to weight."""
-    return read_metric(run, COMFORT if COMFORT in run.metrics else UNWEIGHTED)
+    return read_metric(run, COMFORT if COMFORT in run.metrics else _UNWEIGHTED)
 
 
 def state_comfort(run: Run) -> str:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 LIKELY = 0.05
 """Probability from which on the parameters of a cause are printed."""
-ALIKE, MOST_PAIRS = 0.5, 12
+_ALIKE, _MOST_PAIRS = 0.5, 12
 """Collinearity from which on two effects are named as similar, and the most pairs that are."""
 
 
@@ -52,7 +52,7 @@ def show_confusions(diagnosis: Diagnosis) -> list[Block]:
     pairs = sorted(
         ((float(matrix[i][j]), names[i], names[j]) for i in range(len(names)) for j in range(i)), reverse=True
     )
-    rows = [[one, other, format_number(value, 2)] for value, one, other in pairs[:MOST_PAIRS] if value >= ALIKE]
+    rows = [[one, other, format_number(value, 2)] for value, one, other in pairs[:_MOST_PAIRS] if value >= _ALIKE]
     caption = "Effects whose signs in these channels are alike: 1 cannot be told apart, 0 has nothing in common"
     return [*blocks, *([Table(caption, ["effect", "and", "likeness"], rows, 2)] if rows else [])]
 

@@ -48,10 +48,10 @@ def report_characterisation(
         describe_method(METHOD, command, [Text("What was tested:"), Code(found.source, "What was tested")]),
     ]
     about, doubt = f"Characterisation: {found.name}", say_doubt(evidence)
-    return Report(about, say_character(found), [], _advise(found), sections, doubt)
+    return Report(about, _say_character(found), [], _advise(found), sections, doubt)
 
 
-def say_character(found: Characterisation) -> str:
+def _say_character(found: Characterisation) -> str:
     """Return in a sentence what the damper does: how its force grows with current, and how fast it follows."""
     group = max(group_by_setting(found.rows), key=lambda rows: len({row.current for row in rows}), default=[])
     said = f"{len(found.rows)} records were characterised"

@@ -20,13 +20,13 @@ from seatsim.report.method import describe_method
 from seatsim.report.rendering import write_html
 from seatsim.schema.text import join_names
 
-BADGES = {
+_BADGES = {
     "none": ("No material gap", "Nothing to explain beyond noise and the tolerance of the parameters."),
     "known": ("Cause known", "Effects of the library explain the gap on a run that took no part in the fit."),
     "ambiguous": ("Ambiguous", "Two or more effects explain the gap equally well on this recording."),
     "unknown": ("Cause unknown", "A gap remains that no effect of the library explains."),
 }
-NEARLY_ALL = 0.98
+_NEARLY_ALL = 0.98
 METHOD = (
     "Every candidate effect is fitted together with the parameters that are known only within their tolerance, on all"
     " runs but one; figures are of that run, which took no part in the fit.",
@@ -70,7 +70,7 @@ def report_diagnosis(diagnosis: Diagnosis) -> Report:
         sections = [
             section for section in sections if section.anchor not in ("causes", "missing", "confusions", "maps")
         ]
-    words, explanation = BADGES.get(diagnosis.verdict, (diagnosis.verdict, ""))
+    words, explanation = _BADGES.get(diagnosis.verdict, (diagnosis.verdict, ""))
     badge = (diagnosis.verdict, words, explanation)
     lead = [format_sentence(diagnosis.sentence)]
     about, answer = f"Diagnosis: {diagnosis.name}", say_diagnosis(diagnosis)
@@ -152,5 +152,7 @@ def _say_share(diagnosis: Diagnosis) -> str:
     subject = "That explains" if len(diagnosis.selected) == 1 else "Together that explains"
     if diagnosis.verdict == "unknown":
         return f"{subject} {format_percent(share)} of the gap; no known effect explains the rest."
-    rest = "" if share > NEARLY_ALL else f"; what is left is {format_percent(gap.after.overall)} of the signals' spread"
+    rest = (
+        "" if share > _NEARLY_ALL else f"; what is left is {format_percent(gap.after.overall)} of the signals' spread"
+    )
     return f"{subject} {format_percent(share)} of the gap beyond noise{rest}."

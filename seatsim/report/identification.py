@@ -47,10 +47,10 @@ def report_identification(found: Identification, figures: Mapping[str, Figure], 
         describe_method(METHOD, command),
     ]
     about, doubt = f"Identification: {found.model}", say_doubt(evidence)
-    return Report(about, say_fit(found), [], _advise(found), sections, doubt)
+    return Report(about, _say_fit(found), [], _advise(found), sections, doubt)
 
 
-def say_fit(found: Identification) -> str:
+def _say_fit(found: Identification) -> str:
     """Return in a sentence how well a model predicts the force, on held-out records where there are some."""
     test, train = found.mean("test"), found.mean("train")
     mean = test or train

@@ -8,7 +8,7 @@ from importlib.metadata import version
 from seatsim.provenance.statement import state_command
 from seatsim.report.blocks import Block, Code, Items, Section, Table, Text
 
-PACKAGES = ("seatsim", "numpy", "scipy", "numba")
+_PACKAGES = ("seatsim", "numpy", "scipy", "numba")
 
 
 def describe_method(method: Sequence[str], command: str, settings: Sequence[Block] = ()) -> Section:
@@ -20,5 +20,5 @@ def describe_method(method: Sequence[str], command: str, settings: Sequence[Bloc
         settings: tables of them.
     """
     again: list[Block] = [Text("This command makes the report again:"), Code(state_command(command))]
-    versions = Table("Versions", ["package", "version"], [[name, version(name)] for name in PACKAGES], 2)
+    versions = Table("Versions", ["package", "version"], [[name, version(name)] for name in _PACKAGES], 2)
     return Section("method", "How this was made", [Items(list(method)), *settings, versions, *again])

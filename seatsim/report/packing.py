@@ -17,7 +17,7 @@ BUDGET = 200_000
 """Bytes that the lines of one group of pictures take on the page together."""
 BYTES = 8 / 3
 """Bytes of a value on the page: 16 bits in base 64."""
-MOST_BINS = 1200
+_MOST_BINS = 1200
 """Most intervals of a line, finer than the pixels of a picture."""
 LEVELS = 32767
 GAP = -32768
@@ -50,7 +50,7 @@ def pack_signals(
         panels: the pictures.
     """
     count = sum(line is not None for panel in panels for each in panel.values.values() for line in each)
-    bins = min(MOST_BINS, max(100, int(BUDGET / BYTES / max(1, count)) // 2))
+    bins = min(_MOST_BINS, max(100, int(BUDGET / BYTES / max(1, count)) // 2))
     longest = max(time.values(), key=len)
     if len(longest) > 2 * bins:
         interval = 1000.0 * float(longest[-1] - longest[0]) / bins

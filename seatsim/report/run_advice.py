@@ -17,7 +17,7 @@ from seatsim.schema.text import join_names, name_some
 from seatsim.simulation.result import Run
 from seatsim.simulation.trials import STRETCH, try_changes
 
-SEAT, HITS, PEAK = "seat_factor", "end_stop_hits", "suspension_displacement_peak"
+SEAT, HITS, _PEAK = "seat_factor", "end_stop_hits", "suspension_displacement_peak"
 
 
 def advise_on_runs(runs: Sequence[Run]) -> list[str]:
@@ -62,7 +62,7 @@ def _say_trials(name: str, run: Run) -> str:
     before, after = own.metrics[SEAT].value, best.metrics[SEAT].value
     if after > (1 - SAME) * before:
         return f"{tried}: none lowers its SEAT factor of {format_number(before)}."
-    peaks = (format_quantity(each.metrics[PEAK].value, "m") for each in (best, own))
+    peaks = (format_quantity(each.metrics[_PEAK].value, "m") for each in (best, own))
     return (
         f"{tried}: {best.key} {best.value:g} lowers its SEAT factor the most, to {format_number(after)} from"
         f" {format_number(before)}, with travel up to {' in place of '.join(peaks)}."

@@ -43,10 +43,10 @@ def report_seat_test(found: SeatTest, name: str, is_measured: bool, command: str
         describe_method(METHOD, command),
     ]
     about, doubt = f"Seat test: {name}", say_doubt(evidence)
-    return Report(about, say_seat_test(found), [], _advise(found), sections, doubt)
+    return Report(about, _say_seat_test(found), [], _advise(found), sections, doubt)
 
 
-def say_seat_test(found: SeatTest) -> str:
+def _say_seat_test(found: SeatTest) -> str:
     """Return in a sentence which lines of the test are passed."""
     rows: list[SeatRow | DampingRow] = [*found.rows, *found.damping_rows]
     failed = list(dict.fromkeys(f"{row.run} on {row.spectral_class}" for row in rows if not row.passed))

@@ -34,8 +34,8 @@ SHOWN = (COMFORT, "driver_vdv", "seat_factor", TRAVEL, "suspension_displacement_
 """Metrics of the tables of the page; `table.csv` has all of them."""
 MOST_LINES = 60
 """Lines of a table on the page."""
-MOST_REASONS = 8
-ENOUGH = 0.8
+_MOST_REASONS = 8
+_ENOUGH = 0.8
 """Share of the variance that an expansion must predict before nothing is said about it."""
 METHOD = (
     "Failed and unverified runs take no part in any figure.",
@@ -158,7 +158,7 @@ def _show_sensitivity(found: Sensitivities, rows: SweepRows, figures: Mapping[st
     for metric in _list_metrics(found, rows):
         blocks += show_pictures(figures, f"shares_{metric}", f"tornado_{metric}")
         explained, words = found.of(metric)[0].explained, describe_column(metric, rows.units).words
-        if explained < ENOUGH:
+        if explained < _ENOUGH:
             known = format_percent(max(0.0, explained))
             blocks.append(Text(f"The shares rest on a polynomial that predicts {known} of the variance of the {words}"
                                " in runs left out of its fit. The rest is the random road, sensor noise, or"
@@ -211,6 +211,6 @@ def _show_states(rows: SweepRows) -> list[Block]:
     reasons = doubtful.groupby(["state", "reason"]).run.agg(["size", "first"]).sort_values("size", ascending=False)
     lines = [
         [state, str(count), str(first), reason] for (state, reason), (count, first) in
-        zip(reasons.index[:MOST_REASONS], reasons.to_numpy()[:MOST_REASONS], strict=True)
+        zip(reasons.index[:_MOST_REASONS], reasons.to_numpy()[:_MOST_REASONS], strict=True)
     ]  # fmt: skip
     return [Table("Reasons, the most frequent first", ["state", "runs", "first run", "reason"], lines, 4)] * bool(lines)

@@ -13,7 +13,7 @@ from seatsim.sweeps.sensitivity import Sensitivity, choose_key
 
 MOST_LINES = 60
 """Conditions in the table."""
-MATTERS = 0.1
+_MATTERS = 0.1
 """Share of the variance from which on a key is worth a step."""
 
 
@@ -30,7 +30,7 @@ def advise_on_keys(found: Sequence[Sensitivity], rows: SweepRows) -> list[str]:
         share = f"explains the most of the variance, {format_percent(choice.total)}"
         what = "tolerance" if choice.key in rows.drawn else "key"
         verb = "Tighten the tolerance of" if what == "tolerance" else "Settle"
-        if choice.total < MATTERS:
+        if choice.total < _MATTERS:
             texts.append(f"No {what} that a designer chooses matters much: of them {choice.key} {share}.")
         else:
             texts.append(f"{verb} {choice.key} first: of all choices it {share}.")

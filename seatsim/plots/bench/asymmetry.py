@@ -14,8 +14,8 @@ from seatsim.plots.bench.families import Family, measure_legend, order_by_curren
 from seatsim.plots.bench.trends import BY_TEMPERATURE, RowFigure, choose_abscissas, choose_looks, draw_trend
 from seatsim.plots.style import Entry, Grid
 
-WHOLE = RowFigure("asymmetric part /\nRMS force [%]", lambda r: 100.0 * r.asymmetry)
-SHAPE = RowFigure("the same, less\nthe offset [%]", lambda r: 100.0 * r.asymmetry_of_shape)
+_WHOLE = RowFigure("asymmetric part /\nRMS force [%]", lambda r: 100.0 * r.asymmetry)
+_SHAPE = RowFigure("the same, less\nthe offset [%]", lambda r: 100.0 * r.asymmetry_of_shape)
 
 
 def plot_asymmetry(found: Characterisation) -> Figure:
@@ -32,7 +32,7 @@ def plot_asymmetry(found: Characterisation) -> Figure:
     grid = Grid(heights, columns=2, right=measure_legend(families), top=0.2, gap=(0.8, 0.8))
     page = style.make_page(f"Asymmetry: {found.name}", note, grid, list(looks.values()))
     for panels, (across, groups) in zip(page.rows, blocks, strict=False):
-        for axes, figure in zip(panels, (WHOLE, SHAPE), strict=True):
+        for axes, figure in zip(panels, (_WHOLE, _SHAPE), strict=True):
             draw_trend(axes, across, figure, groups, looks)
             axes.set_ylim(0.0, max(1.0, axes.get_ylim()[1]))
     for panels, family in zip(page.rows[len(blocks) :], families, strict=True):

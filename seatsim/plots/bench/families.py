@@ -14,17 +14,17 @@ from seatsim.plots.thinning import spread_evenly
 
 MOST = 6
 """Most settings whose loops are drawn."""
-MOST_WARM = 2
+_MOST_WARM = 2
 """Most settings whose loops are drawn by temperature."""
-MOST_CLOUDS = 3
+_MOST_CLOUDS = 3
 """Most groups of records without cycles that are drawn."""
 MOST_LINES = 8
 """Most loops that the colours of one panel can tell apart."""
 LONGEST = 24
 """Letters of a record's name in a legend."""
-SAME_CURRENT = 0.02
+_SAME_CURRENT = 0.02
 """A; difference of currents that are the same but for their noise."""
-SAME_MOTION = 0.1
+_SAME_MOTION = 0.1
 """Relative difference of strokes and speeds of records whose clouds share their panels."""
 
 
@@ -44,8 +44,8 @@ def find_families(rows: Sequence[Row]) -> tuple[list[Family], int]:
     chosen = spread_evenly(groups, MOST)
     families = [order_by_current(group) for group in chosen]
     warm = [group for group in chosen if _varies([row.temperature for row in select_largest_current(group)], WARMER)]
-    warm = [group for group in warm if _varies([row.current for row in group], SAME_CURRENT)]
-    families += [order_by_temperature(group) for group in spread_evenly(warm, MOST_WARM)]
+    warm = [group for group in warm if _varies([row.current for row in group], _SAME_CURRENT)]
+    families += [order_by_temperature(group) for group in spread_evenly(warm, _MOST_WARM)]
     return families, len(groups) - len(chosen)
 
 
@@ -55,7 +55,7 @@ def order_by_current(group: Sequence[Row]) -> Family:
     Where the current is always the same they are in the order of the temperatures; where neither tells them apart, of
     the records.
     """
-    rows = select_lowest_temperature(group) if _varies([row.current for row in group], SAME_CURRENT) else list(group)
+    rows = select_lowest_temperature(group) if _varies([row.current for row in group], _SAME_CURRENT) else list(group)
     rows = spread_evenly(sorted(rows, key=lambda row: (row.current, row.temperature)), MOST_LINES)
     names = [f"{row.current:.3g} A" for row in rows]
     legend = "current"
@@ -78,7 +78,7 @@ def order_by_temperature(group: Sequence[Row]) -> Family:
 def select_largest_current(group: Sequence[Row]) -> list[Row]:
     """Return the rows at the largest current, within the noise of a measured one."""
     largest = max(row.current for row in group)
-    return [row for row in group if row.current >= largest - SAME_CURRENT]
+    return [row for row in group if row.current >= largest - _SAME_CURRENT]
 
 
 def select_lowest_temperature(group: Sequence[Row]) -> list[Row]:
@@ -105,9 +105,9 @@ def _varies(values: Sequence[float], by: float) -> bool:
 
 def group_clouds(rows: Sequence[Row]) -> list[list[Row]]:
     """Return the records without cycles in groups of the same motion."""
-    return group_rows([row for row in rows if row.cloud is not None], _moves_alike)[:MOST_CLOUDS]
+    return group_rows([row for row in rows if row.cloud is not None], _moves_alike)[:_MOST_CLOUDS]
 
 
 def _moves_alike(a: Row, b: Row) -> bool:
     pairs = ((a.amplitude, b.amplitude), (a.peak_speed, b.peak_speed))
-    return all(abs(p - q) <= SAME_MOTION * p for p, q in pairs) and a.current != b.current
+    return all(abs(p - q) <= _SAME_MOTION * p for p, q in pairs) and a.current != b.current

@@ -20,7 +20,7 @@ SHOWN = 1200
 """Most rows of a record that are drawn, from the stretch with the highest speed."""
 START = 0.3
 """s at the start of a record that are left out: there the state of the damper is not known."""
-MEASURED, PREDICTED = Entry("measured", GREY, width=3.2), Entry("predicted", style.COLOURS[1], width=1.2)
+MEASURED, _PREDICTED = Entry("measured", GREY, width=3.2), Entry("predicted", style.COLOURS[1], width=1.2)
 PARTS = {"train": "fitted", "test": "held out", "predicted": "predicted only"}
 
 
@@ -39,7 +39,7 @@ def plot_predictions(found: Identification) -> Figure:
     mean = found.mean("test") or found.mean("train")
     note = f"{len(chosen)} of {len(found.assessments)} records; mean fit {mean.fit_percent:.1f} %" if mean else ""
     note += " of held-out records" if found.mean("test") else ""
-    page = style.make_page(f"{found.model}: measured and predicted force", note, grid, (MEASURED, PREDICTED))
+    page = style.make_page(f"{found.model}: measured and predicted force", note, grid, (MEASURED, _PREDICTED))
     for panels, judged in zip(page.rows, chosen, strict=True):
         title = f"{judged.record.name} ({PARTS[judged.part]}), fit {judged.agreement.fit_percent:.1f} %"
         panels[0].set_title(labels.clean_text(title, 64), loc="left", fontsize=style.FONT)
@@ -57,7 +57,7 @@ def _draw_record(panels: Sequence[Axes], judged: Assessment) -> None:
         (panels[2], record.time, "time [s]"),
     ):
         style.draw_line(axes, across[part], record.force[part], MEASURED)
-        style.draw_line(axes, across[part], judged.predicted[part], PREDICTED)
+        style.draw_line(axes, across[part], judged.predicted[part], _PREDICTED)
         axes.set_xlabel(name)
         axes.set_ylim(panels[0].get_ylim())
         axes.tick_params(labelleft=axes is panels[0])

@@ -46,7 +46,7 @@ PEAKS = (
         lambda r: [-value for value in (r.cycle_values or {}).get("peak_compression", ())],
     ),
 )  # fmt: skip
-ENERGY = RowFigure(
+_ENERGY = RowFigure(
     "energy per cycle [J]", lambda r: r.energy, lambda r: r.energy_sd,
     lambda r: (r.cycle_values or {}).get("energy", ()),
 )  # fmt: skip
@@ -64,7 +64,7 @@ def plot_energy(found: Characterisation) -> Figure:
     rows = [row for row in found.rows if row.loop is not None]
     blocks = choose_abscissas(rows)
     looks, note = choose_looks(blocks)
-    figures = [[PEAKS[0], PEAKS[1]], [ENERGY, DAMPING]]
+    figures = [[PEAKS[0], PEAKS[1]], [_ENERGY, DAMPING]]
     grid = Grid(heights=(1.9,) * (2 * len(blocks)), columns=2, left=0.9, gap=(0.9, 0.65))
     title = f"Peak force, energy and damping: {found.name}"
     page = style.make_page(title, note, grid, list(looks.values()))

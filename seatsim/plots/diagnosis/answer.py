@@ -18,7 +18,7 @@ MOST = 10
 """Causes that are shown."""
 LIKELY = 0.01
 """Probability from which on an effect has a row of its own."""
-CHOSEN, EQUIVALENT, OTHER, REST = COLOURS[0], COLOURS[4], "0.72", "0.45"
+_CHOSEN, _EQUIVALENT, OTHER, REST = COLOURS[0], COLOURS[4], "0.72", "0.45"
 """Colours of selected effects, of effects that explain the gap equally well, of others, of no or an unknown cause."""
 SMALLEST = 1e-4
 """Gap below which none is drawn: a logarithmic scale has no zero."""
@@ -116,7 +116,7 @@ def plot_location(diagnosis: Diagnosis) -> Figure | None:
     axes = page.rows[0][0]
     name_rows(axes, names)
     values = [100 * share.share for share in shares]
-    colours = [CHOSEN if k == 0 else EQUIVALENT if share.block in alike else OTHER for k, share in enumerate(shares)]
+    colours = [_CHOSEN if k == 0 else _EQUIVALENT if share.block in alike else OTHER for k, share in enumerate(shares)]
     draw_bars(axes, values, colours, [_format_percent(value) for value in values])
     _scale_percent(axes, "share of the gap [%]")
     return page.figure
@@ -135,7 +135,7 @@ def plot_ranking(diagnosis: Diagnosis) -> Figure | None:
     if not diagnosis.causes:
         return None
     rows = _list_rows(diagnosis)
-    equivalent = " Light blue: explain the gap as well." if any(row.colour == EQUIVALENT for row in rows) else ""
+    equivalent = " Light blue: explain the gap as well." if any(row.colour == _EQUIVALENT for row in rows) else ""
     note = (
         f"Bold and blue: named by the diagnosis.{equivalent} Each figure is the probability of being at work: two can"
         " both be near 100 %."
@@ -144,7 +144,7 @@ def plot_ranking(diagnosis: Diagnosis) -> Figure | None:
     grid = Grid((ROW * len(rows) + 0.1,), 2, left=measure_names(names), right=0.45, bottom=0.65, gap=(0.5, 0.0))
     page = make_page("Which effects are at work", note, grid)
     left, right = page.rows[0]
-    strong = [k for k, row in enumerate(rows) if row.colour == CHOSEN]
+    strong = [k for k, row in enumerate(rows) if row.colour == _CHOSEN]
     for axes, shown in ((left, names), (right, [""] * len(rows))):
         name_rows(axes, shown, strong)
         axes.axhline(len(rows) - 2.5, color="0.8", linewidth=0.8)
@@ -164,7 +164,7 @@ def _list_rows(diagnosis: Diagnosis) -> list[_Row]:
     ranked = [each for each in diagnosis.causes if each.effect in diagnosis.selected or each.probability >= LIKELY]
     rows = [
         _Row(each.effect, each.probability, each.shrink,
-             CHOSEN if each.effect in diagnosis.selected else EQUIVALENT if each.effect in alike else OTHER,
+             _CHOSEN if each.effect in diagnosis.selected else _EQUIVALENT if each.effect in alike else OTHER,
              _format_percent(100 * each.probability))
         for each in ranked[:MOST]
     ]  # fmt: skip

@@ -29,11 +29,11 @@ BAND = 2.0
 """Standard deviations of the noise that are shaded."""
 DECADES = 1.5
 """Decades below the noise that a spectrum shows at most."""
-EXCESS = 1.1
+_EXCESS = 1.1
 """RMS of a residual over its noise up to which it is called noise."""
 MEASURED = Entry("measured", "black", width=2.0)
 NOMINAL = Entry("nominal", COLOURS[1], DASHES[1], width=1.3)
-AFTER = Entry("with effects", COLOURS[0], width=1.1)
+_AFTER = Entry("with effects", COLOURS[0], width=1.1)
 NOISE = Entry("sensor noise", "0.55", ":", width=1.8)
 GRID = Grid((1.5, 1.0, 1.7), left=0.85, gap=(0.0, 0.16), bottom=0.5)
 OWN_AXIS = 0.42
@@ -54,7 +54,7 @@ def name_last(diagnosis: Diagnosis) -> str:
 
 def plot_signals(diagnosis: Diagnosis) -> dict[str, Figure]:
     """Return a picture of each held-out channel, the channel with the largest nominal gap first."""
-    look = AFTER._replace(label=name_last(diagnosis), colour=COLOURS[0 if diagnosis.selected else 2])
+    look = _AFTER._replace(label=name_last(diagnosis), colour=COLOURS[0 if diagnosis.selected else 2])
     lines = [Simulated(NOMINAL, lambda trace: trace.nominal), Simulated(look, lambda trace: trace.after)]
     return _plot_channels(diagnosis.evidence.traces, lines)
 
@@ -152,7 +152,7 @@ def _draw_density(
 def _make_title(trace: Trace, shown: Quantity, lines: Sequence[Simulated]) -> str:
     sizes = [rms(trace.measured - line.read(trace)) for line in lines]
     words = shown.words[:1].upper() + shown.words[1:]
-    if sizes[0] <= EXCESS * trace.noise_rms:
+    if sizes[0] <= _EXCESS * trace.noise_rms:
         return f"{words}: the {lines[0].look.label} one is already within noise"
     figures = [
         f"{shown.factor * size:.3g} {shown.unit} {line.look.label}" for size, line in zip(sizes, lines, strict=True)

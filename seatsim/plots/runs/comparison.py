@@ -16,7 +16,7 @@ from seatsim.schema.arrays import Array
 from seatsim.simulation.result import Run
 
 
-class Compared(NamedTuple):
+class _Compared(NamedTuple):
     """A metric that is compared: name, label of its axis, factor to the unit shown, decimals."""
 
     metric: str
@@ -26,10 +26,10 @@ class Compared(NamedTuple):
 
 
 COMPARED = (
-    Compared("driver_acceleration_rms", "driver RMS\nacceleration [m/s²]"),
-    Compared("driver_acceleration_weighted", "driver Wk-weighted\nacceleration [m/s²]"),
-    Compared("suspension_displacement_rms", "suspension RMS\ndisplacement [mm]", 1e3, 1),
-    Compared("seat_factor", "SEAT factor\n[-]"),
+    _Compared("driver_acceleration_rms", "driver RMS\nacceleration [m/s²]"),
+    _Compared("driver_acceleration_weighted", "driver Wk-weighted\nacceleration [m/s²]"),
+    _Compared("suspension_displacement_rms", "suspension RMS\ndisplacement [mm]", 1e3, 1),
+    _Compared("seat_factor", "SEAT factor\n[-]"),
 )
 NOTE = "Over the whole run; the smaller the better."
 
@@ -90,14 +90,14 @@ def _plot_lines(title: str, key: str, series: dict[str, list[Run]]) -> Figure:
     return page.figure
 
 
-def _draw_curve(axes: Axes, runs: Sequence[Run], key: str, compared: Compared, look: Entry) -> None:
+def _draw_curve(axes: Axes, runs: Sequence[Run], key: str, compared: _Compared, look: Entry) -> None:
     ordered = sorted(runs, key=lambda run: float(run.scenario.label[key]))
     swept, values = [float(run.scenario.label[key]) for run in ordered], _read_metric(ordered, compared)
     style.draw_line(axes, swept, values, look._replace(width=1.6))
     axes.plot(swept, values, "o", color=look.colour, markersize=4.5)
 
 
-def _read_metric(runs: Sequence[Run], compared: Compared) -> Array:
+def _read_metric(runs: Sequence[Run], compared: _Compared) -> Array:
     """Return the metric of every run; NaN where it has none."""
     found = [run.metrics[compared.metric].value if compared.metric in run.metrics else np.nan for run in runs]
     return compared.factor * np.array(found)

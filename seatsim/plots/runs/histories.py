@@ -24,7 +24,7 @@ NEAR = 0.2
 """Share of an end stop's distance that the motion must reach for the stop to be drawn; else it would look flat."""
 
 
-class ChannelPanel(NamedTuple):
+class _ChannelPanel(NamedTuple):
     """A panel: channel, label of its axis, factor from SI to the unit shown, and the channel that it should follow.
 
     `words` name the two in the legend: what was delivered, what was asked for.
@@ -38,12 +38,12 @@ class ChannelPanel(NamedTuple):
 
 
 CHANNELS = (
-    ChannelPanel("driver_acceleration", "driver\nacceleration\n[m/s²]"),
-    ChannelPanel("suspension_displacement", "suspension\ndisplacement\n[mm]", 1e3),
-    ChannelPanel("damper_force", "damper force\n[N]", 1.0, "wanted_force", ("delivered", "wanted")),
-    ChannelPanel("coil_current", "coil current\n[A]", 1.0, "current_command", ("flowing", "commanded")),
+    _ChannelPanel("driver_acceleration", "driver\nacceleration\n[m/s²]"),
+    _ChannelPanel("suspension_displacement", "suspension\ndisplacement\n[mm]", 1e3),
+    _ChannelPanel("damper_force", "damper force\n[N]", 1.0, "wanted_force", ("delivered", "wanted")),
+    _ChannelPanel("coil_current", "coil current\n[A]", 1.0, "current_command", ("flowing", "commanded")),
 )
-TEMPERATURE = ChannelPanel("damper_temperature", "damper\ntemperature\n[°C]")
+TEMPERATURE = _ChannelPanel("damper_temperature", "damper\ntemperature\n[°C]")
 LIMIT = Entry("travel limit", DARK, ":")
 GRID = Grid(heights=(), left=1.06, gap=(0.3, 0.34))
 HEIGHT = 1.2
@@ -88,7 +88,7 @@ def _make_page(shown: Shown, note: str, rows: int, columns: int = 1, legend: Seq
     return style.make_page(f"Time histories: {shown.title}", note, grid, legend)
 
 
-def _draw_view(axes: Axes, run: Run, channel: ChannelPanel, view: Window) -> None:
+def _draw_view(axes: Axes, run: Run, channel: _ChannelPanel, view: Window) -> None:
     """Draw a channel within a window, over the one that it should follow."""
     part = view.part(run.history.step)
     name = ""
@@ -142,7 +142,7 @@ def _plot_several(shown: Shown, window: Window) -> Figure:
     return page.figure
 
 
-def _draw_channel(axes: Axes, run: Run, channel: ChannelPanel, name: str, part: slice, look: Entry) -> None:
+def _draw_channel(axes: Axes, run: Run, channel: _ChannelPanel, name: str, part: slice, look: Entry) -> None:
     time, values = run.history["time"][part], run.history[name][part]
     style.draw_line(axes, *thin_line(time, channel.factor * values, round(BINS * axes.get_position().width)), look)
 
@@ -161,7 +161,7 @@ def _draw_limits(axes: Axes, limits: Sequence[float]) -> None:
         axes.axhline(1e3 * limit, label=label, color=LIMIT.colour, linestyle=":", linewidth=LIMIT.width)
 
 
-def _label_panel(axes: Axes, channel: ChannelPanel) -> None:
+def _label_panel(axes: Axes, channel: _ChannelPanel) -> None:
     axes.set_ylabel(channel.axis)
     axes.yaxis.set_label_coords(-0.5 / (axes.get_position().width * WIDTH), 0.5)
 

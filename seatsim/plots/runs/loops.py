@@ -31,13 +31,13 @@ SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
 """Currents of the loops over the actuator's largest."""
 MOST = 4
 """Most dampers in one picture."""
-MOST_SAMPLES = 3000
+_MOST_SAMPLES = 3000
 """Samples of a run that are drawn; more hide each other."""
-SLOWEST = 0.01
+_SLOWEST = 0.01
 """m/s; least peak velocity of the curves beside a run."""
 
 
-class InstalledDamper(NamedTuple):
+class _InstalledDamper(NamedTuple):
     """A damper with its temperature factors, the actuator's largest current in A, and the runs that use it."""
 
     record: DamperModel
@@ -83,12 +83,12 @@ def plot_damper_loops(runs: Sequence[Run]) -> Figure:
     return page.figure
 
 
-def find_dampers(runs: Iterable[Run]) -> list[InstalledDamper]:
+def find_dampers(runs: Iterable[Run]) -> list[_InstalledDamper]:
     """Return the distinct dampers of some runs in their order; equal parameters make one damper of them."""
-    found: dict[str, InstalledDamper] = {}
+    found: dict[str, _InstalledDamper] = {}
     for run in runs:
         choice, current = run.scenario.damper, run.scenario.coil.max_current
-        damper = InstalledDamper(choice.record, choice.factors, current, [])
+        damper = _InstalledDamper(choice.record, choice.factors, current, [])
         # By text: equal values of two classes of dampers are equal tuples.
         found.setdefault(repr(damper), damper).runs.append(run)
     return list(found.values())
@@ -115,7 +115,7 @@ def plot_force_velocity(run: Run) -> Figure:
     """
     [damper], temperature = find_dampers([run]), _start_temperature(run)
     velocity = _stroke_ratio(run) * run.history["suspension_velocity"]
-    amplitude = max(SLOWEST, float(np.max(np.abs(velocity)))) / (2 * math.pi * FREQUENCY)
+    amplitude = max(_SLOWEST, float(np.max(np.abs(velocity)))) / (2 * math.pi * FREQUENCY)
     currents = (0.0, damper.max_current)
     tests = _drop_equal((f"damper at {i:g} A", damper.loop(amplitude, i, temperature)) for i in currents)
     looks = [Entry(name, colour, width=1.8) for (name, _), colour in zip(tests, ("0.45", "black"), strict=False)]
@@ -151,7 +151,7 @@ def _start_temperature(run: Run) -> float:
     return stated.start if isinstance(stated, Thermal) else stated
 
 
-def _make_rows(damper: InstalledDamper, several: bool, amplitude: float) -> Iterator[_LoopRow]:
+def _make_rows(damper: _InstalledDamper, several: bool, amplitude: float) -> Iterator[_LoopRow]:
     start = _start_temperature(damper.runs[0])
     called = f"{damper.name} ({naming.label_runs(damper.runs)[0]})" if several else damper.name
 
@@ -169,7 +169,7 @@ def _make_rows(damper: InstalledDamper, several: bool, amplitude: float) -> Iter
         yield _LoopRow(f"{called} at {most:g} A" if len(by_current) > 1 else called, "temperature", by_temperature)
 
 
-def _choose_temperatures(damper: InstalledDamper) -> list[float]:
+def _choose_temperatures(damper: _InstalledDamper) -> list[float]:
     """Return the temperatures of the runs where these differ, else those between which the model holds."""
     used = sorted({_start_temperature(run) for run in damper.runs})
     if len(used) > 1:
@@ -184,12 +184,12 @@ def _draw_row(panels: Sequence[Axes], row: _LoopRow) -> None:
         look = Entry(name, colour, width=1.6)
         style.draw_line(panels[0], test.velocity, test.force, look)
         style.draw_line(panels[1], 1e3 * test.displacement, test.force, look)
-    label_loops(panels, row.title, "displacement [mm]")
+    _label_loops(panels, row.title, "displacement [mm]")
     if len(row.loops) > 1:
         style.draw_legend_beside(panels[1], row.legend)
 
 
-def label_loops(panels: Sequence[Axes], title: str, displacement: str) -> None:
+def _label_loops(panels: Sequence[Axes], title: str, displacement: str) -> None:
     """Label two panels of one damper force, over velocity and over displacement, on one scale."""
     panels[0].set_title(labels.clean_text(title, 60), loc="left", fontsize=style.FONT)
     panels[0].set_xlabel("velocity [m/s]")
@@ -200,7 +200,7 @@ def label_loops(panels: Sequence[Axes], title: str, displacement: str) -> None:
 
 
 def _draw_samples(axes: Axes, velocity: np.ndarray, run: Run) -> None:
-    every = -(-len(velocity) // MOST_SAMPLES)
+    every = -(-len(velocity) // _MOST_SAMPLES)
     force, current = run.history["damper_force"][::every], run.history["coil_current"][::every]
     changes = float(np.ptp(current)) > 0
     dots = axes.scatter(

@@ -25,11 +25,11 @@ BAND = "0.88"
 NEAR = 1.6
 """How far above the greatest acceleration the floor's is still drawn, as a ratio."""
 MOST_PANELS = 12
-SIDES = (3.3, 2.1)
+_SIDES = (3.3, 2.1)
 """Height in inches of a panel that is alone, and of one among others."""
 
 
-class RunPoint(NamedTuple):
+class _RunPoint(NamedTuple):
     """A run: RMS travel in mm, weighted RMS acceleration in m/s^2, SEAT factor, and its name."""
 
     travel: float
@@ -42,7 +42,7 @@ class Panel(NamedTuple):
     """Points that share a seat and a floor, what sets these apart from the others', and their bounds or None."""
 
     title: str
-    points: list[RunPoint]
+    points: list[_RunPoint]
     bracket: PerformanceBounds | None
 
     @property
@@ -69,7 +69,7 @@ def plot_pareto(runs: Sequence[Run], brackets: Mapping[str, PerformanceBounds]) 
     legend += [BOUND, BEST] if any(panel.bracket for panel in shown) else []
     legend += [FLOOR] if any(panel.points and np.isfinite(panel.floor) for panel in shown) else []
     note = NOTE + (f" {len(shown)} of {len(found)} rigs are shown." if len(shown) < len(found) else "")
-    grid = Grid((SIDES[columns - 1],) * -(-len(shown) // columns), columns, top=0.3, gap=(0.75, 0.85))
+    grid = Grid((_SIDES[columns - 1],) * -(-len(shown) // columns), columns, top=0.3, gap=(0.75, 0.85))
     page = style.make_page(f"Comfort and travel: {naming.make_title(runs)}", note, grid, legend)
     panels = [axes for row in page.rows for axes in row]
     for axes, panel in zip(panels, shown, strict=False):
@@ -79,7 +79,7 @@ def plot_pareto(runs: Sequence[Run], brackets: Mapping[str, PerformanceBounds]) 
     return page.figure
 
 
-def _order(panels: Sequence[Panel]) -> list[RunPoint]:
+def _order(panels: Sequence[Panel]) -> list[_RunPoint]:
     """Return one point of each name, in the order of the runs, in which other pictures colour them."""
     return list({point.name: point for panel in panels for point in panel.points}.values())
 
@@ -99,10 +99,10 @@ def _make_panels(runs: Sequence[Run], brackets: Mapping[str, PerformanceBounds])
     return found
 
 
-def _make_points(runs: Sequence[Run], names: Sequence[str]) -> list[RunPoint]:
+def _make_points(runs: Sequence[Run], names: Sequence[str]) -> list[_RunPoint]:
     seats = [run.metrics[SEAT].value if SEAT in run.metrics else np.nan for run in runs]
     return [
-        RunPoint(1e3 * run.metrics[TRAVEL].value, run.metrics[COMFORT].value, seat, name)
+        _RunPoint(1e3 * run.metrics[TRAVEL].value, run.metrics[COMFORT].value, seat, name)
         for run, seat, name in zip(runs, seats, names, strict=True)
     ]
 

@@ -19,13 +19,13 @@ BAND = (LOWEST, 50.0)
 """Hz; what the seat can change, and more than the driver feels."""
 DECADES = 5.0
 """Decades below the highest density that are shown."""
-TRUSTED = 0.5
+_TRUSTED = 0.5
 """Least coherence of a transmissibility: below it most of the driver's motion is not the floor's."""
 POWER = 1e-3
 """Least density of the floor over its highest at which it has power enough for a transmissibility."""
 NOTE = (
     f"Drawn where the floor has power ({POWER:g} of its highest density or more) and explains most of the driver's"
-    f" motion (coherence {TRUSTED:g} or more)."
+    f" motion (coherence {_TRUSTED:g} or more)."
 )
 
 
@@ -96,4 +96,4 @@ def _estimate_gain(run: Run) -> tuple[Array, Array]:
     frequency = found.frequency[inside]
     power = np.interp(frequency, centres, density) if len(centres) else np.zeros(len(frequency))
     strong = power >= POWER * np.max(power, initial=1e-300)
-    return frequency, np.where(strong & (found.coherence[inside] >= TRUSTED), found.gain[inside], np.nan)
+    return frequency, np.where(strong & (found.coherence[inside] >= _TRUSTED), found.gain[inside], np.nan)

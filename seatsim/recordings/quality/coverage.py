@@ -31,7 +31,7 @@ _TRUNK = (3.0, 8.0)
 """Hz; a seated driver's inner resonance lies between."""
 
 
-class VisitedRange(NamedTuple):
+class _VisitedRange(NamedTuple):
     """The range of a quantity over all runs, and the values at its `_PERCENTILES`."""
 
     quantity: str
@@ -41,7 +41,7 @@ class VisitedRange(NamedTuple):
     percentiles: tuple[float, ...]
 
 
-_Visited = dict[str, VisitedRange]
+_Visited = dict[str, _VisitedRange]
 """Ranges by quantity."""
 
 
@@ -134,9 +134,9 @@ def _slope(values: Array, noise: float, rate: float) -> Array:
     return np.asarray(np.gradient(smooth, 1.0 / rate))
 
 
-def _visited(name: str, unit: str, values: Array) -> VisitedRange:
+def _visited(name: str, unit: str, values: Array) -> _VisitedRange:
     percentiles = tuple(float(p) for p in np.percentile(values, _PERCENTILES))
-    return VisitedRange(name, unit, float(np.min(values)), float(np.max(values)), percentiles)
+    return _VisitedRange(name, unit, float(np.min(values)), float(np.max(values)), percentiles)
 
 
 def _largest_drop(currents: Sequence[Array], rate: float) -> float:
@@ -215,7 +215,7 @@ def _missing_current(nominal: Scenario, visited: _Visited, drop: float) -> list[
     return sentences
 
 
-def _missing_temperature(nominal: Scenario, temperature: VisitedRange | None) -> str:
+def _missing_temperature(nominal: Scenario, temperature: _VisitedRange | None) -> str:
     stated = nominal.temperature.start if isinstance(nominal.temperature, Thermal) else nominal.temperature
     if temperature is None:
         return "no temperature is recorded: thermal fade can only be seen as a weaker damper, not be told by its warmth"

@@ -10,7 +10,7 @@ from seatsim.report.credibility.evidence import Evidence
 from seatsim.report.credibility.rules import FACTORS, REACH, Factor, find_level
 from seatsim.report.formatting import format_sentence
 
-LEAD = (
+_LEAD = (
     "Levels of the factors of NASA-STD-7009B, as far as such a result can reach them. Each follows by a rule from what"
     " this very result shows, and says nothing of what was checked elsewhere."
 )
@@ -29,7 +29,7 @@ def show_card(evidence: Evidence) -> Section:
         for factor, level, highest in _list_levels(evidence)
     ]
     table = Table("Credibility of the figures of this report", head, rows, words=4)
-    return Section("credibility", "How far to trust this", [Text(LEAD), table])
+    return Section("credibility", "How far to trust this", [Text(_LEAD), table])
 
 
 def say_doubt(evidence: Evidence) -> str:

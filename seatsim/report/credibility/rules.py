@@ -14,7 +14,7 @@ from seatsim.plots.labels import format_number, format_percent
 from seatsim.report.credibility.evidence import Evidence
 from seatsim.schema.text import join_names
 
-SMALL, NEGLIGIBLE = 0.01, 0.001
+_SMALL, NEGLIGIBLE = 0.01, 0.001
 """Shares of the energy, and of an output, from which on a numerical error is so."""
 FAIR, GOOD = 0.25, 0.10
 """Shares of the signals' spread up to which an error on held-out data is so."""
@@ -22,10 +22,10 @@ NEAR_NOISE = 1.2
 """Error over the noise of the sensors up to which nothing is left to explain."""
 EXPLAINED = 0.8
 """Share of the variance that the varied keys must explain."""
-ENOUGH_RUNS = 100
+_ENOUGH_RUNS = 100
 
 
-class Condition(NamedTuple):
+class _Condition(NamedTuple):
     """What a level asks for beyond the one below, in words and as a test."""
 
     words: str
@@ -36,7 +36,7 @@ class Factor(NamedTuple):
     """A factor of credibility: its name, the conditions of levels 1, 2, ... in order, and its evidence in words."""
 
     name: str
-    conditions: Sequence[Condition]
+    conditions: Sequence[_Condition]
     describe: Callable[[Evidence], str]
 
 
@@ -121,59 +121,59 @@ def _format_share(value: float) -> str:
     return format_percent(value) if value >= NEGLIGIBLE or value == 0 else format_number(value, 2)
 
 
-VERIFICATION = (
-    Condition("an energy balance or a run with half the step is known", lambda e: bool(_list_numerical_errors(e))),
-    Condition(f"its error is at most {SMALL:.0%}", lambda e: max(_list_numerical_errors(e)) <= SMALL),
-    Condition(f"its error is at most {NEGLIGIBLE:.1%}", lambda e: max(_list_numerical_errors(e)) <= NEGLIGIBLE),
+_VERIFICATION = (
+    _Condition("an energy balance or a run with half the step is known", lambda e: bool(_list_numerical_errors(e))),
+    _Condition(f"its error is at most {_SMALL:.0%}", lambda e: max(_list_numerical_errors(e)) <= _SMALL),
+    _Condition(f"its error is at most {NEGLIGIBLE:.1%}", lambda e: max(_list_numerical_errors(e)) <= NEGLIGIBLE),
 )
-VALIDATION = (
-    Condition("a recording is compared", lambda e: e.compared > 0 and e.error is not None),
-    Condition("a recorded run took no part in a fit", lambda e: e.held_out > 0),
-    Condition(
+_VALIDATION = (
+    _Condition("a recording is compared", lambda e: e.compared > 0 and e.error is not None),
+    _Condition("a recorded run took no part in a fit", lambda e: e.held_out > 0),
+    _Condition(
         f"the recording has sensor noise, and the error is at most {FAIR:.0%} of the signals' spread",
         lambda e: _is_measured(e) and _error(e) <= FAIR,
     ),
-    Condition(
+    _Condition(
         f"the error is at most {GOOD:.0%}, or {NEAR_NOISE} times the noise, on two held-out runs or more", _is_good
     ),
 )
-PEDIGREE = (
-    Condition("the manifest keeps the hashes of the inputs", lambda e: e.inputs is not None),
-    Condition("no model leaves its range, and no value is doubtful", lambda e: not e.doubts),
-    Condition("the equation of every damper was seen at its source", _is_published),
-    Condition(
+_PEDIGREE = (
+    _Condition("the manifest keeps the hashes of the inputs", lambda e: e.inputs is not None),
+    _Condition("no model leaves its range, and no value is doubtful", lambda e: not e.doubts),
+    _Condition("the equation of every damper was seen at its source", _is_published),
+    _Condition(
         "parameters are known within a stated tolerance or fitted to records, and the data determine all that were"
         " fitted",
         lambda e: e.parameters_known and not e.loose,
     ),
 )
-UNCERTAINTY = (
-    Condition("some figure has an interval, a standard deviation or a noise floor", lambda e: bool(e.intervals)),
-    Condition(
+_UNCERTAINTY = (
+    _Condition("some figure has an interval, a standard deviation or a noise floor", lambda e: bool(e.intervals)),
+    _Condition(
         "parameters or inputs have a standard deviation or a distribution",
         lambda e: bool(e.drawn) or e.parameter_intervals,
     ),
-    Condition("the answer has an interval", lambda e: e.answer_interval),
-    Condition("the error is divided into step, inputs, data and model form", lambda e: e.budget),
+    _Condition("the answer has an interval", lambda e: e.answer_interval),
+    _Condition("the error is divided into step, inputs, data and model form", lambda e: e.budget),
 )
-ROBUSTNESS = (
-    Condition("there is more than one run", lambda e: e.runs > 1),
-    Condition("keys are varied, or refitted within their tolerance", lambda e: bool(e.varied)),
-    Condition(
+_ROBUSTNESS = (
+    _Condition("there is more than one run", lambda e: e.runs > 1),
+    _Condition("keys are varied, or refitted within their tolerance", lambda e: bool(e.varied)),
+    _Condition(
         f"the varied keys explain {EXPLAINED:.0%} or more of the variance of comfort",
         lambda e: e.explained is not None and e.explained >= EXPLAINED,
     ),
-    Condition(
-        f"keys are drawn from distributions, over {ENOUGH_RUNS} runs or more, and runs beyond limits are counted",
-        lambda e: bool(e.drawn) and e.runs >= ENOUGH_RUNS and e.limits,
+    _Condition(
+        f"keys are drawn from distributions, over {_ENOUGH_RUNS} runs or more, and runs beyond limits are counted",
+        lambda e: bool(e.drawn) and e.runs >= _ENOUGH_RUNS and e.limits,
     ),
 )
 FACTORS = (
-    Factor("verification", VERIFICATION, _say_verification),
-    Factor("validation", VALIDATION, _say_validation),
-    Factor("input pedigree", PEDIGREE, _say_pedigree),
-    Factor("uncertainty", UNCERTAINTY, _say_uncertainty),
-    Factor("robustness", ROBUSTNESS, _say_robustness),
+    Factor("verification", _VERIFICATION, _say_verification),
+    Factor("validation", _VALIDATION, _say_validation),
+    Factor("input pedigree", _PEDIGREE, _say_pedigree),
+    Factor("uncertainty", _UNCERTAINTY, _say_uncertainty),
+    Factor("robustness", _ROBUSTNESS, _say_robustness),
 )
 _ANY = Evidence("any", inputs=1, dampers={"any": "published"}, intervals=["any"], runs=2)
 _COMPARED = _ANY._replace(compared=2, held_out=2, error=0.05, parameters_known=True, parameter_intervals=True)
@@ -183,7 +183,7 @@ REACH = {
         energy=0.0,
         drawn=["any"],
         answer_interval=True,
-        runs=ENOUGH_RUNS,
+        runs=_ENOUGH_RUNS,
         varied=["any"],
         explained=1.0,
         limits=True,
