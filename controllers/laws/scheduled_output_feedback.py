@@ -9,7 +9,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from pydantic import Field
 
-from controllers.laws.static_output_feedback import Factor, Gain, Mass, OutputFeedback, StaticOutputFeedback
+from controllers.laws.static_output_feedback import Factor, Gain, Mass, StaticOutputFeedback
 from controllers.seat_plant import TRAVEL_AND_RATE, ActuatorLag, Measure, Weights
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import Measurement, State, law
@@ -73,8 +73,8 @@ class ScheduledOutputFeedback(NamedTuple):
     rises within `rise` and falls within `fall` seconds. A soft gain at a small and a firm one at a large level keep the
     seat off its stops on rough floors and soft on smooth ones. One gain a point is stated under `gains`, or synthesised
     from `weights` with one of `force_factors` a temperature, or from `weights_at_travels` with all of `force_factors`
-    at every level. The other keys are those of `static_output_feedback`. Each
-    gain is proven stable where the schedule stays there, not between points or while it moves.
+    at every level. The other keys are those of `static_output_feedback`. Each gain is proven stable where the schedule
+    stays there, not between points or while it moves.
     """
 
     temperatures: Annotated[tuple[Temperature, ...] | None, Field(description="temperatures, rising")] = None
@@ -106,10 +106,7 @@ class ScheduledOutputFeedback(NamedTuple):
             InputError: keys that exclude or need each other, points that do not rise, or not one entry a point.
         """
         points = self._require_points()
-        compiled = [
-            StaticOutputFeedback(gain=gain, measures=self.measures).prepared(plant) for gain in self.gains or ()
-        ]
-        gains = compiled or [self._synthesise(plant, place) for place in range(len(points))]
+        gains = [self._law_at(place).prepared(plant) for place in range(len(points))]
         return Schedule(
             tuple(float(point) for point in points),
             self.temperatures is not None,
@@ -121,35 +118,39 @@ class ScheduledOutputFeedback(NamedTuple):
     def _require_points(self) -> tuple[float, ...]:
         if (self.temperatures is None) == (self.travels is None):
             raise InputError("give exactly one of 'temperatures' and 'travels'")
-        variable, points = ("temperatures", self.temperatures) if self.temperatures else ("travels", self.travels or ())
-        weights = "weights" if self.temperatures else "weights_at_travels"
-        if (self.gains is None) == (getattr(self, weights) is None):
+        if self.temperatures is not None:
+            variable, weights, varied, foreign = "temperatures", "weights", "force_factors", "weights_at_travels"
+        else:
+            variable, weights, foreign = "travels", "weights_at_travels", "weights"
+            varied = weights
+        stated = self._asdict()
+        if (self.gains is None) == (stated[weights] is None):
             raise InputError(f"give exactly one of 'gains' and '{weights}'")
-        if getattr(self, "weights_at_travels" if self.temperatures else "weights") is not None:
+        if stated[foreign] is not None:
             raise InputError("weights belong to 'temperatures', and weights_at_travels to 'travels'")
+        points: tuple[float, ...] = stated[variable]
         if len(points) < 2 or any(high <= low for low, high in pairwise(points)):
             raise InputError(f"{variable} {list(points)} must be two or more, and must rise")
-        varied = "force_factors" if self.temperatures else weights
         name = varied if self.gains is None else "gains"
-        count = len(getattr(self, name) or ())
+        count = len(stated[name] or ())
         if count != len(points):
             raise InputError(f"{name} has {count} entries; one for each of the {len(points)} {variable}")
         return points
 
-    def _synthesise(self, plant: Plant, place: int) -> OutputFeedback:
-        weights, factors = self.weights, self.force_factors or (1.0,)
-        if self.temperatures:
-            factors = (factors[place],)
-        elif self.weights_at_travels:
-            weights = self.weights_at_travels[place]
+    def _law_at(self, place: int) -> StaticOutputFeedback:
+        """Return the law with one gain that is at work where the schedule stays at a point."""
+        if self.gains is not None:
+            return StaticOutputFeedback(gain=self.gains[place], measures=self.measures)
+        factors = self.force_factors or (1.0,)
+        at_level = self.weights_at_travels
         return StaticOutputFeedback(
-            weights=weights,
+            weights=self.weights if at_level is None else at_level[place],
             measures=self.measures,
             masses=self.masses,
-            force_factors=factors,
+            force_factors=(factors[place],) if at_level is None else factors,
             displacement_gain=self.displacement_gain,
             lag=self.lag,
-        ).prepared(plant)
+        )
 
 
 def _find_share(time_constant: float, sample_time: float) -> float:

@@ -96,7 +96,11 @@ class StaticOutputFeedback(NamedTuple):
         if self.gain is not None:
             return self._compile(np.array([self.gain]))
         if self.design is None:
-            return self._compile(_design_gain(self, plant))
+            # Lists, which Python users may give, have no hash.
+            masses = None if self.masses is None else tuple(self.masses)
+            factors, measures = tuple(self.force_factors), tuple(self.measures)
+            hashable = self._replace(masses=masses, force_factors=factors, measures=measures)
+            return self._compile(_design_gain(hashable, plant))
         from controllers.synthesis import Design
 
         design = Design.load(Path(self.design))

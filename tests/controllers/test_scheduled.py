@@ -66,6 +66,12 @@ def test_synthesis_at_each_level_is_that_of_its_weight():
         assert (law.displacement[place], law.velocity[place]) == (single.displacement, single.velocity)
 
 
+def test_lists_serve_as_tuples():
+    given = StaticOutputFeedback(weights=Weights(), masses=[50.0, 80.0], force_factors=[1.0])
+    stated = StaticOutputFeedback(weights=Weights(), masses=(50.0, 80.0), force_factors=(1.0,))
+    assert given.prepared(SEAT) == stated.prepared(SEAT)
+
+
 GAINS = ((1.0, 1.0), (1.0, 1.0))
 
 
