@@ -23,7 +23,6 @@ from seatsim.sweeps.folder import (
     hold_file,
     hold_folder,
     identify_sweep,
-    read_manifest,
     write_manifest,
 )
 from seatsim.sweeps.outcome import FAILED, Outcome
@@ -170,9 +169,8 @@ def execute(
                 rows.flush()
                 found = list(read_states(folder, plan.runs))
                 counts = count_states((state for _, state, _ in found), plan.runs)
-                write_manifest(folder, identity, definition.limits, counts)
+                stated = write_manifest(folder, identity, definition.limits, counts)
     failures = [f"run {run}: {reason}" for run, state, reason in found if state == FAILED]
-    stated = read_manifest(folder)
     known = {key: value for key, value in stated.items() if key in Manifest._fields}
     made = validated(Manifest, known) if "command" in known else None
     return SweepResult(folder, identity.digest, counts, definition.limits, identity.design, failures, made)

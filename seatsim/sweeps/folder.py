@@ -165,8 +165,10 @@ _FIELDS = {"identity": str, "versions": dict, "seed": int, "counts": dict, "limi
 """What a manifest states, and of which kind each is."""
 
 
-def write_manifest(folder: Path, identity: _Identity, limits: Mapping[str, float], counts: Mapping[str, int]) -> Path:
-    """Write the manifest of a sweep, with what `seatsim reproduce` needs where a command is at work."""
+def write_manifest(
+    folder: Path, identity: _Identity, limits: Mapping[str, float], counts: Mapping[str, int]
+) -> dict[str, Any]:
+    """Write the manifest of a sweep, with what `seatsim reproduce` needs where a command is at work; return it."""
     invocation = current_invocation()
     parts = {path.relative_to(folder).as_posix(): path for path in sorted(folder.glob("runs/part-*.parquet"))}
     outputs = {} if counts["pending"] else parts
@@ -181,7 +183,8 @@ def write_manifest(folder: Path, identity: _Identity, limits: Mapping[str, float
         "configuration": identity.configuration,
         "design": identity.design,
     }
-    return write_json(folder / _NAME, content, lasting=True)
+    write_json(folder / _NAME, content, lasting=True)
+    return content
 
 
 def read_manifest(folder: Path) -> dict[str, Any]:
