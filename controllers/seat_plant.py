@@ -17,6 +17,7 @@ from controllers.linear_systems import (
     pass_through,
     second_order_section,
 )
+from controllers.shaping_filter import ShapingFilter
 from seatsim.rig.plant import Plant, state_space
 from seatsim.rig.sensors import Sensors
 from seatsim.schema.errors import InputError
@@ -36,14 +37,24 @@ TRAVEL_AND_RATE: tuple[Measure, ...] = ("displacement", "velocity")
 class Weights(NamedTuple):
     """Weights of the performance output `z = (travel x, acceleration H zc'')` (Yu et al. 2019, eq 17).
 
-    H is 1 or the frequency weighting of ISO 2631-1.
+    H is 1 or the frequency weighting of ISO 2631-1. The disturbance w is the floor's acceleration, white, or coloured:
+    `z0'' = G w`, with G fitted to the spectrum of every floor of the scenario (`controllers.shaping_filter`). The
+    travel weight `limit` is the least whose clipped, inverted and lagging seat stays within its stops in simulation.
     """
 
-    travel: Annotated[float, param("1/s^2", "weight e1 of the suspension displacement", low=0, high=1e6)] = 22.6
+    travel: Annotated[
+        Annotated[float, param("1/s^2", "weight e1 of the suspension displacement", low=0, high=1e6)]
+        | Literal["limit"],
+        Field(description="weight e1 of the suspension displacement, or 'limit': what the travel of the seat permits"),
+    ] = 22.6
     acceleration: Annotated[float, param("-", "weight e2 of the driver's acceleration", low=0, high=1e6)] = 1.0
-    weighting: Annotated[
-        Literal["none", "Wk"], Field(description="frequency weighting of the driver's acceleration")
-    ] = "none"
+    comfort: Annotated[Literal["none", "Wk"], Field(description="frequency weighting of the driver's acceleration")] = (
+        "none"
+    )
+    floor: Annotated[
+        Literal["white", "excitation"],
+        Field(description="spectrum of the floor's acceleration: white, or that of the scenario's floors"),
+    ] = "white"
 
 
 class ActuatorLag(NamedTuple):
@@ -63,26 +74,32 @@ def build_generalised_plant(
     displacement_gain: bool = True,
     force_factor: float = 1.0,
     measures: Sequence[Measure] = TRAVEL_AND_RATE,
+    floor: ShapingFilter | None = None,
 ) -> GeneralisedPlant:
     """Return the exact seat plant for synthesis: disturbance z0'', control Fd, y as in `measures`, z as in `Weights`.
 
-    With `lag` the control is the wanted force, and the delay is a Pade approximation of order 2, whose phase is right
-    to 0.1 degrees up to `delay omega = 1`. The damper delivers `force_factor` of what is wanted, at every temperature.
-    An absolute velocity is the leaky integral of an acceleration, `1 / (s + wc)`, with the default corner of
-    `seatsim.rig.sensors.Sensors`.
+    With `floor` the disturbance is the white noise w of its shaping filter, `z0'' = G w`. With `lag` the control is the
+    wanted force, and the delay is a Pade approximation of order 2, whose phase is right to 0.1 degrees up to
+    `delay omega = 1`. The damper delivers `force_factor` of what is wanted, at every temperature. An absolute velocity
+    is the leaky integral of an acceleration, `1 / (s + wc)`, with the default corner of `seatsim.rig.sensors.Sensors`.
 
     Raises:
-        InputError: the frame's acceleration is measured without a `lag`: the force would act on it at once.
+        InputError: the frame's acceleration is measured without a `lag`: the force would act on it at once; or the
+            travel weight is still `limit`.
     """
     from controllers.synthesis import GeneralisedPlant
 
+    if weights.travel == "limit":
+        raise InputError("travel: limit is found by simulation of a scenario; state a number here")
     if "frame_acceleration" in measures and lag is None:
         raise InputError("frame_acceleration: the wanted force acts on it at once; state the coil's lag under lag")
     seat = _seat(plant, measures)
     if lag is not None:
         seat = connect_in_series(connect_in_parallel(pass_through(1), build_actuator(lag)), seat)
-    if weights.weighting != "none":
-        weighting = frequency_weighting(weights.weighting)
+    if floor is not None:
+        seat = connect_in_series(connect_in_parallel(floor.as_system(), pass_through(1)), seat)
+    if weights.comfort != "none":
+        weighting = frequency_weighting(weights.comfort)
         seat = connect_in_series(seat, connect_in_parallel(pass_through(1), weighting, pass_through(len(measures))))
     scale = np.diag([weights.travel, weights.acceleration, *[1.0] * len(measures)])
     A, B, C = seat.A, seat.B * [1.0, force_factor], scale @ seat.C

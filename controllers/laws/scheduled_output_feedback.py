@@ -12,7 +12,7 @@ from pydantic import Field
 from controllers.laws.static_output_feedback import Factor, Gain, Mass, StaticOutputFeedback
 from controllers.seat_plant import TRAVEL_AND_RATE, ActuatorLag, Measure, Weights
 from seatsim.rig.coil import Coil
-from seatsim.rig.control import Measurement, State, law
+from seatsim.rig.control import Floors, Measurement, State, law
 from seatsim.rig.plant import Plant
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param
@@ -99,14 +99,15 @@ class ScheduledOutputFeedback(NamedTuple):
         ActuatorLag | None, Field(description="lag from wanted to delivered force that the design knows of")
     ] = None
 
-    def sampled(self, plant: Plant, coil: Coil, sample_time: float) -> Schedule:
-        """Return the compiled form for a plant, after synthesis where weights are given.
+    def on_floors(self, plant: Plant, coil: Coil, sample_time: float, floors: Floors) -> Schedule:
+        """Return the compiled form for a seat and its floors, after synthesis where weights are given.
 
         Raises:
             InputError: keys that exclude or need each other, points that do not rise, or not one entry a point.
         """
         points = self._require_points()
-        gains = [self._law_at(place).prepared(plant) for place in range(len(points))]
+        laws = [self._law_at(place) for place in range(len(points))]
+        gains = [law.on_floors(plant, coil, sample_time, floors) for law in laws]
         return Schedule(
             tuple(float(point) for point in points),
             self.temperatures is not None,

@@ -10,12 +10,15 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import numpy as np
 from pydantic import Field
+from scipy.signal import lsim
 
 from controllers.analysis.margins import compute_margins
 from controllers.linear_systems import LinearSystem
 from controllers.seat_plant import TRAVEL_AND_RATE, ActuatorLag, Measure, Weights, build_generalised_plant
+from controllers.shaping_filter import ShapingFilter, fit_shaping_filter
 from seatsim.rig.coil import Coil
-from seatsim.rig.control import Measurement, State, law
+from seatsim.rig.control import FloorRecord, Floors, Measurement, State, law, no_floors
+from seatsim.rig.designs import unit_of_gain
 from seatsim.rig.plant import Plant
 from seatsim.rig.sampled_loop import build_sampled_loop
 from seatsim.schema.arrays import Array
@@ -23,7 +26,7 @@ from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from controllers.synthesis import Design, GeneralisedPlant
 
@@ -64,7 +67,7 @@ class StaticOutputFeedback(NamedTuple):
 
     Exactly one of `gain` (one entry a measure; N/m, N s/m, or kg for an acceleration), `design` (a file that `seatsim
     synthesise` wrote) and `weights` is given; the keys behind `measures` belong to `weights`. One gain serves every
-    driver of `masses` with every one of `force_factors`: the worst case is minimised.
+    driver of `masses` with every one of `force_factors` on every floor: the worst case is minimised.
     """
 
     gain: Annotated[tuple[Gain, ...] | None, Field(description="gain on what is measured, one entry each")] = None
@@ -87,8 +90,8 @@ class StaticOutputFeedback(NamedTuple):
         ActuatorLag | None, Field(description="lag from wanted to delivered force that the design knows of")
     ] = None
 
-    def prepared(self, plant: Plant) -> OutputFeedback:
-        """Return the compiled form for a plant, after synthesis where weights are given."""
+    def on_floors(self, plant: Plant, coil: Coil, sample_time: float, floors: Floors) -> OutputFeedback:
+        """Return the compiled form for a seat and its floors, after synthesis where weights are given."""
         if [self.gain, self.design, self.weights].count(None) != 2:
             raise InputError("give exactly one of 'gain', 'design' and 'weights'")
         if len(set(self.measures)) < len(self.measures):
@@ -100,7 +103,7 @@ class StaticOutputFeedback(NamedTuple):
             masses = None if self.masses is None else tuple(self.masses)
             factors, measures = tuple(self.force_factors), tuple(self.measures)
             hashable = self._replace(masses=masses, force_factors=factors, measures=measures)
-            return self._compile(_design_gain(hashable, plant))
+            return self._compile(_design_gain(hashable, plant, self._shape_floors(floors)))
         from controllers.synthesis import Design
 
         design = Design.load(Path(self.design))
@@ -117,21 +120,70 @@ class StaticOutputFeedback(NamedTuple):
             **{"displacement": 0.0, "velocity": 0.0} | dict(zip(self.measures, gain[0].tolist(), strict=True))
         )
 
-    def synthesis(self, plant: Plant, progress: Callable[[str], object] = lambda text: None) -> Design:
+    def synthesis(
+        self, plant: Plant, floors: Floors = no_floors, progress: Callable[[str], object] = lambda text: None
+    ) -> Design:
         """Return the H-infinity design for a plant with this law's weights (the default ones where none are given)."""
         from controllers.synthesis import synthesise
 
-        return replace(synthesise(self.plants(plant), progress=progress), measures=self.measures)
+        plants = self.plants(plant, self._shape_floors(floors))
+        return replace(synthesise(plants, progress=progress), measures=self.measures)
 
-    def plants(self, plant: Plant) -> list[GeneralisedPlant]:
-        """Return the generalised plant of every driver with every force factor."""
+    def plants(self, plant: Plant, floors: Sequence[ShapingFilter | None] = (None,)) -> list[GeneralisedPlant]:
+        """Return the generalised plant of every driver with every force factor on every floor (None: a white one)."""
         drivers = [plant._replace(driver_mass=mass) for mass in self.masses or [plant.driver_mass]]
         weights = self.weights or Weights()
         return [
-            build_generalised_plant(driver, weights, self.lag, self.displacement_gain, factor, self.measures)
+            build_generalised_plant(driver, weights, self.lag, self.displacement_gain, factor, self.measures, floor)
             for driver in drivers
             for factor in self.force_factors
+            for floor in floors
         ]
+
+    def _shape_floors(self, floors: Floors) -> tuple[ShapingFilter | None, ...]:
+        """Return the shaping filter of every floor; a white one where the weights ask for no other."""
+        if self.weights is None or self.weights.floor == "white":
+            return (None,)
+        return tuple(map(fit_shaping_filter, floors()))
+
+    @property
+    def is_limited_by_travel(self) -> bool:
+        """Whether the travel weight is still to be found."""
+        return self.weights is not None and self.weights.travel == "limit"
+
+    def with_travel_weight(self, weight: float) -> StaticOutputFeedback:
+        """Return the law with another weight of the travel, in 1/s^2."""
+        return self._replace(weights=(self.weights or Weights())._replace(travel=weight))
+
+    def describe(self, plant: Plant, coil: Coil, sample_time: float, floors: Floors) -> str:
+        """Return in a line the synthesised gain, its norm, and its loop; nothing where the gain is stated."""
+        from controllers.synthesis import verify
+
+        if self.weights is None:
+            return ""
+        filters = self._shape_floors(floors)
+        gain = _design_gain(self, plant, filters)
+        loops = [verify(each, gain) for each in self.plants(plant, filters)]
+        proven = "certified" if all(loop.certificate for loop in loops) else "not certified"
+        entries = zip(gain[0], self.measures, strict=True)
+        named = ", ".join(
+            f"{value:.4g} {unit_of_gain(measure)} on {measure.replace('_', ' ')}" for value, measure in entries
+        )
+        checks = self.checks(plant, coil, sample_time, gain)
+        norm = f"gamma {max(loop.gamma for loop in loops):.4g}, {proven} for {len(loops)} plants"
+        return f"gain {named}; {norm}; sampled loop {checks['sampled loop']}; margins: {checks['margins']}"
+
+    def promise(self, plant: Plant, coil: Coil, gain: Array, floor: FloorRecord) -> Array:
+        """Return zc'' in m/s^2, shape (N,), on a floor if the damper delivered all that is wanted, behind the coil."""
+        lag = ActuatorLag(coil.rate, coil.delay)
+        seat = build_generalised_plant(plant, Weights(1.0, 1.0), lag, measures=self.measures).close(gain)
+        time = floor.step * np.arange(len(floor.acceleration))
+        _, z, _ = lsim((seat.A, seat.B, seat.C, seat.D), floor.acceleration, time)
+        return np.asarray(z[:, 1], dtype=np.float64)
+
+    def with_gain(self, gain: Array) -> StaticOutputFeedback:
+        """Return the law with this gain in place of weights or a saved design."""
+        return StaticOutputFeedback(gain=tuple(gain[0].tolist()), measures=self.measures)
 
     def checks(self, plant: Plant, coil: Coil, sample_time: float, gain: Array) -> dict[str, str]:
         """Return, in words, the margins of the scenario's own loop with coil and delay, and of its sampled loop."""
@@ -150,6 +202,8 @@ class StaticOutputFeedback(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def _design_gain(law: StaticOutputFeedback, plant: Plant) -> Array:
-    """Return the gain of a law for a plant; runs that differ in floor or temperature alone share one design."""
-    return law.synthesis(plant).gain
+def _design_gain(law: StaticOutputFeedback, plant: Plant, floors: tuple[ShapingFilter | None, ...]) -> Array:
+    """Return the gain of a law for a plant; runs that differ in temperature alone share one design."""
+    from controllers.synthesis import find_gain
+
+    return find_gain(law.plants(plant, floors))

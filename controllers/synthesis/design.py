@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from controllers.synthesis.certify import Certificate
 from controllers.synthesis.global_proof import FACTOR, GlobalProof, prove_no_better
 from controllers.synthesis.plant import MATRICES, GeneralisedPlant
+from seatsim.rig.designs import Clipping
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import write_text
@@ -49,7 +50,7 @@ class Design:
     `gain` (nu, ny) is in the user's units, every entry at most `max_gain` in magnitude. `lower_bound` is what no linear
     controller of any order can go below. `gamma`, `certificate`, `peak_frequency`, `poles` and `plant` are those of
     the worst loop. `measures` names what is measured, where its user has names for it; `proof`, where it was asked for,
-    says whether any gain within `max_gain` is better (`prove_no_better`).
+    says whether any gain within `max_gain` is better (`prove_no_better`), and `clipping` what a damper's limits cost.
     """
 
     gain: Array
@@ -58,6 +59,7 @@ class Design:
     loops: tuple[ClosedLoop, ...]
     measures: tuple[str, ...] = ()
     proof: GlobalProof | None = None
+    clipping: Clipping | None = None
 
     @property
     def worst(self) -> ClosedLoop:
@@ -94,10 +96,15 @@ class Design:
         plants = [loop.plant for loop in self.loops]
         return replace(self, proof=prove_no_better(plants, self.gamma * FACTOR, -bounds, bounds, progress=progress))
 
+    def with_clipping(self, clipping: Clipping | None) -> Design:
+        """Return the design with what the limits of a damper cost on a run."""
+        return replace(self, clipping=clipping)
+
     def save(self, path: str | Path) -> None:
         """Write the design as YAML; the file appears whole or not at all."""
-        content = {**_to_plain(self), **({"global": _to_plain_global(self.proof)} if self.proof else {})}
-        write_text(Path(path), dump(content))
+        proof = {"global": _to_plain_global(self.proof)} if self.proof else {}
+        clipping = {"clipping": self.clipping._asdict()} if self.clipping else {}
+        write_text(Path(path), dump({**_to_plain(self), **proof, **clipping}))
 
     @classmethod
     def load(cls, path: str | Path) -> Design:

@@ -18,6 +18,11 @@ from controllers.synthesis.verify import verify
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 
+_MAX_GAIN = 1e6
+"""Largest magnitude of an entry of the gain where none is stated."""
+_TIME_BUDGET = 60.0
+"""Seconds of a search where none are stated."""
+
 
 @overload
 def synthesise(
@@ -72,9 +77,9 @@ def synthesise(
     D21: ArrayLike | None = None,
     *,
     split: tuple[int, int] | None = None,
-    max_gain: float = 1e6,
+    max_gain: float = _MAX_GAIN,
     bounds: tuple[ArrayLike, ArrayLike] | None = None,
-    time_budget: float = 60.0,
+    time_budget: float = _TIME_BUDGET,
     seed: int = 0,
     progress: Progress = lambda text: None,
 ) -> Design:
@@ -102,6 +107,12 @@ def synthesise(
     design = Design(gain, float(max_gain), 0.0, loops)
     progress("the bound of any controller")
     return replace(design, lower_bound=min(_find_largest_bound(design, begin + time_budget), design.gamma))
+
+
+def find_gain(plants: Sequence[GeneralisedPlant]) -> Array:
+    """Return the gain that `synthesise` finds for plants with its default options, without certificate and bound."""
+    begin = time.monotonic()
+    return search(plants, _limits(plants[0], _MAX_GAIN, None), 0, TimeBudget(begin, _TIME_BUDGET), lambda text: None)
 
 
 def _find_largest_bound(design: Design, deadline: float) -> float:

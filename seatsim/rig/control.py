@@ -14,6 +14,7 @@ A law that is designed for its seat returns its compiled form, another such reco
     def prepared(self, plant)                                                                           `PreparedLaw`
     def sampled(self, plant, coil, sample_time)     where the design needs the coil, or the time        `SampledLaw`
                                                     in s between samples
+    def on_floors(self, plant, coil, sample_time, floors)     where it needs the motion of the floor    `FloorLaw`
 
 and a compiled form with `def notes(self)` (`LawWithNotes`) returns sentences for the user after a run. A law whose
 design can be reported and saved fulfils `seatsim.rig.designs.SynthesisedLaw` too.
@@ -23,11 +24,12 @@ design can be reported and saved fulfils `seatsim.rig.designs.SynthesisedLaw` to
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple, Protocol, TypeVar, runtime_checkable
 
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant
+from seatsim.schema.arrays import Array
 from seatsim.schema.registry import Record, Registry
 
 _T = TypeVar("_T", bound=type)
@@ -108,11 +110,35 @@ class SampledLaw(Protocol):
         """Return the compiled form for a nominal seat and coil, evaluated every `sample_time` seconds."""
 
 
-Law = CompiledLaw | PreparedLaw | SampledLaw
+class FloorRecord(NamedTuple):
+    """Acceleration of a floor in m/s^2, shape (N,), sampled every `step` seconds."""
+
+    step: float
+    acceleration: Array
+
+
+Floors = Callable[[], Sequence[FloorRecord]]
+"""Function that gives a record of every floor that a law is designed for; called only where the design needs them."""
+
+
+def no_floors() -> Sequence[FloorRecord]:
+    """Return no floor: for laws whose design needs none."""
+    return ()
+
+
+@runtime_checkable
+class FloorLaw(Protocol):
+    """A law that is designed for the seat and the floors under it."""
+
+    def on_floors(self, plant: Plant, coil: Coil, sample_time: float, floors: Floors) -> CompiledLaw:
+        """Return the compiled form for a nominal seat and coil on these floors."""
+
+
+Law = CompiledLaw | PreparedLaw | SampledLaw | FloorLaw
 """What a scenario may name as its `law`."""
 
 
-def prepare_law(law: Law, plant: Plant, coil: Coil, sample_time: float) -> CompiledLaw:
+def prepare_law(law: Law, plant: Plant, coil: Coil, sample_time: float, floors: Floors = no_floors) -> CompiledLaw:
     """Return the compiled form of a law, designed for the nominal rig where the law has a design.
 
     Args:
@@ -120,8 +146,11 @@ def prepare_law(law: Law, plant: Plant, coil: Coil, sample_time: float) -> Compi
         plant: the nominal seat without effects, since a designer does not know them.
         coil: the nominal coil.
         sample_time: in s between two evaluations.
+        floors: gives a record of every floor that the law is designed for.
     """
-    # `sampled` is preferred over `prepared`, since it designs with more information.
+    # Of several methods the one is preferred that designs with more information.
+    if isinstance(law, FloorLaw):
+        return law.on_floors(plant, coil, sample_time, floors)
     if isinstance(law, SampledLaw):
         return law.sampled(plant, coil, sample_time)
     return law.prepared(plant) if isinstance(law, PreparedLaw) else law

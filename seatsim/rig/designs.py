@@ -7,17 +7,35 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Protocol, runtime_checkable
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.rig.coil import Coil
+from seatsim.rig.control import FloorRecord, Floors, Law
 from seatsim.rig.plant import Plant
 from seatsim.schema.arrays import Array
 
 _Progress = Callable[[str], object]
 """Callback that gets a line on the progress of a long computation."""
+
+
+def unit_of_gain(measure: str) -> str:
+    """Return the unit of the gain in N on what is measured, by the last word of its name."""
+    return {"displacement": "N/m", "velocity": "N s/m", "acceleration": "kg"}[measure.rpartition("_")[2]]
+
+
+class Clipping(NamedTuple):
+    """What the limits of the damper cost a design on one run: it can only resist, within its currents.
+
+    `promised` is the driver's Wk-weighted RMS acceleration in m/s^2 if the damper delivered all that is wanted,
+    `delivered` that of the run; `force_error` is the RMS of wanted less delivered force, over that of the wanted one.
+    """
+
+    promised: float
+    delivered: float
+    force_error: float
 
 
 class _NormProof(Protocol):
@@ -107,11 +125,18 @@ class SynthesisedDesign(Protocol):
         """Every plant under the gain."""
 
     @property
+    def clipping(self) -> Clipping | None:
+        """What the limits of the damper cost on a run, where one was simulated."""
+
+    @property
     def proof(self) -> BoxProof | None:
         """Whether any permitted gain is better by more than 0.1 %, where `prove` was asked."""
 
     def prove(self, progress: _Progress) -> SynthesisedDesign:
         """Return the design with its `proof`."""
+
+    def with_clipping(self, clipping: Clipping | None) -> SynthesisedDesign:
+        """Return the design with what the limits of the damper cost."""
 
     def save(self, path: str | Path) -> None:
         """Write the design to a file; the file is complete or absent."""
@@ -121,8 +146,39 @@ class SynthesisedDesign(Protocol):
 class SynthesisedLaw(Protocol):
     """A law whose gain is synthesised from weights and whose design can be reported and saved."""
 
-    def synthesis(self, plant: Plant, progress: _Progress) -> SynthesisedDesign:
-        """Return the design for a seat."""
+    def synthesis(self, plant: Plant, floors: Floors, progress: _Progress) -> SynthesisedDesign:
+        """Return the design for a seat on some floors."""
+
+
+@runtime_checkable
+class TravelLimitedLaw(Protocol):
+    """A law whose weight of the travel may be left to what the seat's end stops permit."""
+
+    @property
+    def is_limited_by_travel(self) -> bool:
+        """Whether the weight is still to be found."""
+
+    def with_travel_weight(self, weight: float) -> Law:
+        """Return the law with a weight in 1/s^2."""
+
+
+@runtime_checkable
+class DescribedLaw(Protocol):
+    """A law that says what its synthesis found, and what its linear loop promises."""
+
+    def describe(self, plant: Plant, coil: Coil, sample_time: float, floors: Floors) -> str:
+        """Return a line on gain, norm and margins of the design; empty where nothing was synthesised."""
+
+
+@runtime_checkable
+class PromisingLaw(Protocol):
+    """A law whose linear loop can be simulated without the limits of a damper."""
+
+    def promise(self, plant: Plant, coil: Coil, gain: Array, floor: FloorRecord) -> Array:
+        """Return the driver's acceleration in m/s^2 on a floor, shape (N,), with all of the wanted force."""
+
+    def with_gain(self, gain: Array) -> Law:
+        """Return the law with this gain in place of what it was to be found from."""
 
 
 @runtime_checkable

@@ -59,13 +59,15 @@ class Inverse:
 class Control:
     """A control law, its sample time in s (None: 1 ms, or every step for a law that replays), inverse and sensors.
 
-    Without sensors the law sees the true states.
+    Without sensors the law sees the true states. `floors` are the excitations that the law is designed for, where its
+    design asks for any; none: the scenario's own.
     """
 
     law: Law
     sample_time: float | None
     inverse: Inverse | None
     sensors: Sensors | None = None
+    floors: tuple[Any, ...] = ()  # of `Excitation`, as `Scenario.excitation`
 
 
 @dataclass(frozen=True)
@@ -88,8 +90,8 @@ class Scenario:
     start: Start = field(default_factory=Start)
     seed: int = 0
     checks: tuple[Check, ...] = ()
-    label: Mapping[str, Any] = field(default_factory=dict)
-    source: Source | None = None
+    label: Mapping[str, Any] = field(default_factory=dict, hash=False)
+    source: Source | None = field(default=None, hash=False)
 
     def __repr__(self) -> str:
         """Name the scenario and its file."""

@@ -107,6 +107,7 @@ def _read_control(values: object, source: Source) -> Control:
     keys: KeyPath = ("controller",)
     stated, errors = mapping(values, source, keys), list[InputError]()
     inverse = sensors = sample_time = law = None
+    floors: tuple[Excitation, ...] = ()
     with gathered(errors):
         cls = chosen_class(LAWS, stated, "law", source, keys)
         # What is registered as a law has one of the methods of `Law`: its decorator is applied to nothing else.
@@ -117,8 +118,17 @@ def _read_control(values: object, source: Source) -> Control:
         sensors = build(Sensors, stated["sensors"], source, (*keys, "sensors")) if "sensors" in stated else None
     with gathered(errors):
         sample_time = _read_sample_time(stated.get("sample_time"), source)
+    with gathered(errors):
+        floors = _read_floors(stated.get("floors", []), source)
     raise_all(errors)
-    return Control(law, sample_time, inverse, sensors)
+    return Control(law, sample_time, inverse, sensors, floors)
+
+
+def _read_floors(values: object, source: Source) -> tuple[Excitation, ...]:
+    keys: KeyPath = ("controller", "floors")
+    if not isinstance(values, list):
+        raise source.error(keys, f"{values!r} is not a list; write '- kind: NAME' below it, once for every floor")
+    return tuple(_read_excitation(value, source, (*keys, index)) for index, value in enumerate(values))
 
 
 def _read_sample_time(value: object, source: Source) -> float | None:
@@ -151,12 +161,12 @@ _CONTROL: Mapping[str, Callable[[], Schema]] = {
     },
     "inverse": lambda: damper_schema({"temperature": ANYTHING}),
     "sensors": lambda: record_schema(Sensors),
+    "floors": lambda: {"type": "array", "items": named_schema("excitation", "kind", {})},
 }
 """Keys of a controller that stand beside those of its law."""
 
 
-def _read_excitation(values: object, source: Source) -> Excitation:
-    keys: KeyPath = ("excitation",)
+def _read_excitation(values: object, source: Source, keys: KeyPath = ("excitation",)) -> Excitation:
     stated = mapping(values, source, keys)
     cls = chosen_class(_EXCITATIONS, stated, "kind", source, keys)
     return build(cls, _own_keys(stated, ("kind",), "path", source), source, keys)

@@ -15,7 +15,7 @@ from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.loop import run_loop
 from seatsim.kernel.loop_data import CHANNELS, CURRENT_COMMAND, LoopInputs, LoopSetup, Timing
 from seatsim.kernel.rig import Rig
-from seatsim.rig.control import LawWithNotes, prepare_law
+from seatsim.rig.control import LawWithNotes
 from seatsim.rig.plant import Plant
 from seatsim.rig.sensors import Direct, at_rest
 from seatsim.rig.state import State
@@ -37,6 +37,7 @@ from seatsim.simulation.augment import (
     undo_reading,
 )
 from seatsim.simulation.coupled import run_coupled, stand_in
+from seatsim.simulation.design import design_law
 from seatsim.simulation.inputs import NONE, Forces
 from seatsim.simulation.result import History
 from seatsim.simulation.validity import explain_divergence
@@ -109,8 +110,7 @@ def set_up(
     with scenario.placed("controller"):
         sample_every = _count_steps(scenario.solver.step, control)
         period = sample_every * scenario.solver.step
-        # The law is designed for the nominal plant and coil: its designer knows no effects.
-        law = prepare_law(control.law, plant, scenario.coil, period)
+        law = design_law(scenario, plant, control, period, measure_peak_travel)
     heated = isinstance(scenario.temperature, Thermal) and not is_recorded
     thermal = scenario.temperature if isinstance(scenario.temperature, Thermal) else Thermal()
     timing = Timing(scenario.solver.step, sample_every, scenario.solver.tolerance, heated)
@@ -120,6 +120,11 @@ def set_up(
     model = _assume_damper(scenario, control, carry_all_effects)
     setup = LoopSetup(rig, coil, factors, thermal, law, model, timing, scenario.coil.max_current, sensors)
     return setup, initial + state_at_rest([type(record) for record in carried])
+
+
+def measure_peak_travel(scenario: Scenario) -> float:
+    """Return the largest displacement of the suspension in m of a run, whichever its direction."""
+    return float(np.abs(simulate(scenario)["suspension_displacement"]).max())
 
 
 def _assume_damper(scenario: Scenario, control: Control, carry_all_effects: bool | None) -> InverseModel:

@@ -13,7 +13,7 @@ import typer
 
 from seatsim.cli.interrupts import go_on
 from seatsim.cli.options import Json, Out, OwnCode, Scenarios, Settings, scenario_settings
-from seatsim.cli.terminal import answer, complain, count_progress, show_progress, warn, wrote
+from seatsim.cli.terminal import answer, complain, count_progress, say, show_progress, warn, wrote
 from seatsim.schema.errors import InputError, SeatsimError
 from seatsim.schema.guarded import uncut
 
@@ -139,13 +139,17 @@ def _present(
     runs: list[Run], failures: list[str], folder: Path, bracket: bool, interrupted: bool
 ) -> tuple[RunTable, list[Path]]:
     """Print the table of some runs, their bounds where wanted and the warnings; return them and their files."""
-    from seatsim.cli.outputs.run_tables import make_comparison_table, make_published_tables
+    from seatsim.cli.outputs.run_tables import make_comparison_table, make_overall_table, make_published_tables
     from seatsim.cli.outputs.simulated import Brackets, RunTable, write_interrupted, write_result
     from seatsim.cli.show_table import show_table
+    from seatsim.simulation.design_outcome import describe_designs
     from seatsim.simulation.performance_bounds import place_runs
     from seatsim.simulation.result import Result
 
-    show_table(make_comparison_table(runs, _title([run.scenario for run in runs])), *make_published_tables(runs))
+    scenarios = [run.scenario for run in runs]
+    show_table(make_comparison_table(runs, _title(scenarios)), *make_overall_table(runs), *make_published_tables(runs))
+    for sentence in describe_designs(scenarios):
+        say(sentence)
     warn(dict.fromkeys(sentence for run in runs for sentence in run.warnings), "warning")
     warn(f"{run.scenario.title}: {sentence}" for run in runs for sentence in run.history.notes)
     result = Result(runs, _performance_bounds(runs) if bracket and not interrupted else {}, failures)

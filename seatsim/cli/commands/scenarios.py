@@ -84,11 +84,13 @@ def synthesise(
     from seatsim.provenance.manifest import write_documented
     from seatsim.scenario.loading import single
     from seatsim.schema.yaml_source import Source
+    from seatsim.simulation.design_outcome import measure_clipping
 
     chosen = single(scenario, scenario_settings(settings))
     with show_progress() as progress:
         design = _synthesise(chosen, progress)
         design = design.prove(progress) if prove_best else design
+        design = design.with_clipping(measure_clipping(chosen, design.gain))
     show_table(make_design_table(design, chosen))
     folder = out_folder or Path("out") / chosen.name
 
@@ -108,15 +110,18 @@ def _synthesise(scenario: Scenario, progress: Report) -> SynthesisedDesign:
     """Return the design of a law that has a synthesis, for the plant of a scenario."""
     from seatsim.rig.designs import SynthesisedLaw
     from seatsim.schema.registry import name_of
+    from seatsim.simulation.design import record_floors, settle_travel
+    from seatsim.simulation.simulate import measure_peak_travel
 
     with scenario.placed("controller"):
         if scenario.plant is None or scenario.control is None:
             raise InputError("a damper bench has no controller to synthesise")
-        law = scenario.control.law
+        law = settle_travel(scenario, scenario.control, measure_peak_travel)
         if not isinstance(law, SynthesisedLaw):
             name = name_of("law", type(law))
             raise InputError(f"law '{name}' is not synthesised; use 'law: static_output_feedback' with 'weights'")
-        return law.synthesis(scenario.plant, progress)
+        control = scenario.control
+        return law.synthesis(scenario.plant, lambda: record_floors(scenario, control), progress)
 
 
 def explore(

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from statistics import fmean
 from typing import NamedTuple
 
 from rich.markup import escape
@@ -12,21 +13,27 @@ from rich.table import Table
 from seatsim.cli.show_table import format_number, make_table
 from seatsim.metrics.motion import ratio
 from seatsim.metrics.table import SHORT
-from seatsim.rig.designs import BoxProof, CheckedLaw, DesignedLoop, SynthesisedDesign
+from seatsim.rig.designs import BoxProof, CheckedLaw, Clipping, DesignedLoop, SynthesisedDesign, unit_of_gain
 from seatsim.scenario.checks import Published, published_figures
-from seatsim.scenario.scenario import Scenario, group_by_condition
+from seatsim.scenario.scenario import Scenario, condition_of, group_by_condition, is_condition
 from seatsim.simulation.performance_bounds import PerformanceBounds, measure_distance
 from seatsim.simulation.result import Run
 from seatsim.simulation.simulate import DEFAULT_SAMPLE_TIME
 
 
+def _average(values: Sequence[float]) -> float:
+    """Return the geometric mean, in which the same saving counts alike on a rough and on a smooth floor."""
+    return math.exp(fmean(map(math.log, values))) if min(values) > 0 else fmean(values)
+
+
 class _Column(NamedTuple):
-    """A metric in the table: the unit shown, the factor to it, its decimals."""
+    """A metric in the table: the unit shown, the factor to it, its decimals, and what sums it up over conditions."""
 
     metric: str
     unit: str
     scale: float
     decimals: int
+    summarise: Callable[[Sequence[float]], float] = _average
 
     @property
     def heading(self) -> str:
@@ -40,8 +47,8 @@ _COLUMNS = (
     _Column("driver_vdv", "m/s¹·⁷⁵", 1.0, 2),
     _Column("seat_factor", "-", 1.0, 2),
     _Column("suspension_displacement_rms", "mm", 1e3, 2),
-    _Column("suspension_displacement_peak", "mm", 1e3, 1),
-    _Column("end_stop_hits", "-", 1.0, 0),
+    _Column("suspension_displacement_peak", "mm", 1e3, 1, max),
+    _Column("end_stop_hits", "-", 1.0, 0, sum),
     _Column("driver_jerk_rms", "m/s³", 1.0, 1),
     _Column("current_rms", "A", 1.0, 2),
 )
@@ -70,6 +77,45 @@ def make_comparison_table(runs: Sequence[Run], title: str) -> Table:
     return make_table(title, headings, rows, range(len(keys)), caption)
 
 
+def make_overall_table(runs: Sequence[Run]) -> list[Table]:
+    """Return the table of choices over all conditions; none unless each of several was run under each of several.
+
+    A choice is what is labelled and no condition, such as a variant. The smallest mean, peak and sum are bold.
+    """
+    conditions = {condition_of(run.scenario) for run in runs}
+    choices: dict[tuple[str, ...], list[Run]] = {}
+    keys = [key for key in _label_keys(runs) if not is_condition(key)]
+    for run in runs:
+        choices.setdefault(tuple(_labels(run, keys)), []).append(run)
+    complete = all(
+        len({condition_of(run.scenario) for run in of}) == len(of) == len(conditions) for of in choices.values()
+    )
+    if len(conditions) < 2 or len(choices) < 2 or not complete or any(run.unverified for run in runs):
+        return []
+    columns = [column for column in _COLUMNS if _is_shown(runs, column)]
+    totals = {
+        labels: [
+            _summarise([run.metrics[each.metric].value for run in of if each.metric in run.metrics], each)
+            for each in columns
+        ]
+        for labels, of in choices.items()
+    }
+    least = [min(filter(math.isfinite, column), default=math.nan) for column in zip(*totals.values(), strict=True)]
+    rows = []
+    for labels, values in totals.items():
+        marked = zip(columns, values, least, strict=True)
+        rows.append(
+            [*labels, *(_write(value, each, each in _COMPARED and value == low) for each, value, low in marked)]
+        )
+    title = f"Over all {len(conditions)} conditions: geometric means, the largest peak, all hits"
+    headings = [*map(_head_label, keys), *(each.heading for each in columns)]
+    return [make_table(title, headings, rows, range(len(keys)))]
+
+
+def _summarise(values: Sequence[float], column: _Column) -> float:
+    return column.summarise(values) if values else math.nan
+
+
 def _is_shown(runs: Sequence[Run], column: _Column) -> bool:
     hits = (run.metrics[column.metric].value for run in runs if column.metric in run.metrics)
     return column.metric != "end_stop_hits" or any(value > 0 for value in hits)
@@ -81,8 +127,11 @@ def _cell(run: Run, column: _Column, rivals: Sequence[Run]) -> str:
         return "-"
     value = run.metrics[column.metric].value
     others = [rival.metrics[column.metric].value for rival in rivals if column.metric in rival.metrics]
+    return _write(value, column, value == min(filter(math.isfinite, others), default=math.nan))
+
+
+def _write(value: float, column: _Column, is_best: bool) -> str:
     text = format_number(value * column.scale, f".{column.decimals}f")
-    is_best = math.isfinite(value) and value == min(filter(math.isfinite, others), default=math.nan)
     return f"[bold green]{text}[/]" if is_best else text
 
 
@@ -150,10 +199,6 @@ def _list_published(published: Published, runs: Sequence[Run]) -> list[list[str]
     return rows
 
 
-_UNITS = {"displacement": "N/m", "velocity": "N s/m", "acceleration": "kg"}
-"""Unit of the gain on a measured quantity, by the last word of its name."""
-
-
 def make_design_table(design: SynthesisedDesign, scenario: Scenario) -> Table:
     """Return a design as a table: gain, norm and what no controller can go below, certificate, margins, poles.
 
@@ -163,7 +208,7 @@ def make_design_table(design: SynthesisedDesign, scenario: Scenario) -> Table:
     proof = design.certificate
     rows = {
         f"gain on {', '.join(design.measures)}": ", ".join(f"{value:.6g}" for value in design.gain.ravel())
-        + f"  [{', '.join(_UNITS[measure.rpartition('_')[2]] for measure in design.measures)}]",
+        + f"  [{', '.join(unit_of_gain(measure) for measure in design.measures)}]",
         "gamma": f"{design.gamma:.6g} (largest gain permitted {design.max_gain:g})",
         "lower bound": f"{design.lower_bound:.6g}, of any linear controller of any order",
         "certificate": f"bounded-real lemma at gamma {proof.gamma:.6g}" if proof else "none in double precision",
@@ -171,6 +216,8 @@ def make_design_table(design: SynthesisedDesign, scenario: Scenario) -> Table:
         "peak": f"{design.peak_frequency / (2 * math.pi):.3g} Hz",
         "poles": ", ".join(f"{pole:.3g}" for pole in design.poles) + "  [rad/s]",
     }
+    if design.clipping is not None:
+        rows["clipping"] = _describe_clipping(design.clipping)
     if design.proof is not None:
         rows["best gain"] = _describe_proof(design.proof)
     if len(design.loops) > 1:
@@ -195,6 +242,13 @@ def _describe_proof(proof: BoxProof) -> str:
     if proof.is_proven:
         return f"proven: no permitted gain is better by more than 0.1 % ({proof.boxes} boxes)"
     return f"not decided in the time permitted ({proof.boxes} boxes)"
+
+
+def _describe_clipping(clipping: Clipping) -> str:
+    return (
+        f"driver Wk RMS {clipping.delivered:.3g} m/s², {clipping.promised:.3g} if the damper gave all that is wanted;"
+        f" its force misses that by {100 * clipping.force_error:.0f} % RMS"
+    )
 
 
 def _describe_loops(loops: Sequence[DesignedLoop]) -> str:
