@@ -8,7 +8,7 @@ from controllers.laws.scheduled_output_feedback import ScheduledOutputFeedback
 from controllers.laws.static_output_feedback import StaticOutputFeedback
 from controllers.seat_plant import Weights
 from seatsim.rig.coil import Coil
-from seatsim.rig.control import Measurement
+from seatsim.rig.control import Measurement, prepare_law
 from seatsim.rig.plant import Plant
 from seatsim.schema.errors import InputError
 
@@ -20,7 +20,7 @@ REST = Measurement(*[0.0] * len(Measurement._fields))
 
 
 def compile_law(**keys):
-    return ScheduledOutputFeedback(**keys).sampled(SEAT, COIL, 0.005)
+    return prepare_law(ScheduledOutputFeedback(**keys), SEAT, COIL, 0.005)
 
 
 @pytest.mark.parametrize(
@@ -62,14 +62,14 @@ def test_synthesis_makes_up_for_a_weaker_damper():
 def test_synthesis_at_each_level_is_that_of_its_weight():
     law = compile_law(travels=(0.01, 0.03), weights_at_travels=(Weights(10.0), Weights(50.0)))
     for place, weight in enumerate((10.0, 50.0)):
-        single = StaticOutputFeedback(weights=Weights(weight)).prepared(SEAT)
+        single = prepare_law(StaticOutputFeedback(weights=Weights(weight)), SEAT, COIL, 0.005)
         assert (law.displacement[place], law.velocity[place]) == (single.displacement, single.velocity)
 
 
 def test_lists_serve_as_tuples():
     given = StaticOutputFeedback(weights=Weights(), masses=[50.0, 80.0], force_factors=[1.0])
     stated = StaticOutputFeedback(weights=Weights(), masses=(50.0, 80.0), force_factors=(1.0,))
-    assert given.prepared(SEAT) == stated.prepared(SEAT)
+    assert prepare_law(given, SEAT, COIL, 0.005) == prepare_law(stated, SEAT, COIL, 0.005)
 
 
 GAINS = ((1.0, 1.0), (1.0, 1.0))

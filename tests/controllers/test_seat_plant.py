@@ -11,6 +11,7 @@ from controllers.synthesis.norm import frequency_response, hinf_norm
 from controllers.synthesis.plant import Loop
 from seatsim.metrics import weighting
 from seatsim.rig.coil import Coil
+from seatsim.rig.control import prepare_law
 from seatsim.rig.plant import Plant
 from seatsim.rig.sensors import Sensors
 from seatsim.schema.errors import InputError
@@ -60,16 +61,16 @@ def test_every_measure_is_what_the_seat_moves_by():
 
 @pytest.mark.slow
 def test_more_measures_never_design_worse_and_the_file_names_them(tmp_path):
-    few = StaticOutputFeedback(weights=Weights(22.6, weighting="Wk"), lag=ActuatorLag())
+    few = StaticOutputFeedback(weights=Weights(22.6, comfort="Wk"), lag=ActuatorLag())
     many = few._replace(measures=("displacement", "velocity", "frame_acceleration"))
     design = many.synthesis(SEAT)
     assert design.gamma < 0.97 * few.synthesis(SEAT).gamma and design.certificate
     design.save(tmp_path / "design.yaml")
     read = many._replace(weights=None, design=str(tmp_path / "design.yaml"))
     assert Design.load(tmp_path / "design.yaml").measures == many.measures
-    assert read.prepared(SEAT).frame_acceleration == design.gain[0, 2]
+    assert prepare_law(read, SEAT, Coil(), 0.005).frame_acceleration == design.gain[0, 2]
     with pytest.raises(InputError, match=r"designed for measures: \[displacement, velocity, frame_acceleration\]"):
-        read._replace(measures=few.measures).prepared(SEAT)
+        prepare_law(read._replace(measures=few.measures), SEAT, Coil(), 0.005)
 
 
 @pytest.mark.parametrize(
@@ -79,11 +80,12 @@ def test_more_measures_never_design_worse_and_the_file_names_them(tmp_path):
         (StaticOutputFeedback(gain=(1.0, 2.0), measures=("velocity", "velocity")), "names one signal twice"),
         (StaticOutputFeedback(weights=Weights(), measures=("frame_acceleration",)), "state the coil's lag under lag"),
         (StaticOutputFeedback(), "exactly one"),
+        (StaticOutputFeedback(weights=Weights("limit")), "found by simulation of a scenario"),
     ],
 )
 def test_a_law_that_contradicts_itself_says_so(law, words):
     with pytest.raises(InputError, match=words):
-        law.prepared(SEAT)
+        prepare_law(law, SEAT, Coil(), 0.005)
 
 
 def test_law_designs_for_the_worst_of_drivers_and_factors():

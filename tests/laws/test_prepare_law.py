@@ -23,6 +23,14 @@ class ForSampling(NamedTuple):
         return ("sampled", plant, coil, sample_time)
 
 
+class ForFloors(NamedTuple):
+    def sampled(self, plant, coil, sample_time):
+        raise AssertionError("the form for floors comes first")
+
+    def on_floors(self, plant, coil, sample_time, floors):
+        return ("on floors", floors())
+
+
 class Plain(NamedTuple):
     gain: float = 1.0
 
@@ -35,6 +43,7 @@ class Talking(NamedTuple):
 def test_a_law_is_prepared_by_the_richest_method_it_has():
     assert prepare_law(ForPlant(), PLANT, COIL, 0.005) == ("prepared", PLANT)
     assert prepare_law(ForSampling(), PLANT, COIL, 0.005) == ("sampled", PLANT, COIL, 0.005)
+    assert prepare_law(ForFloors(), PLANT, COIL, 0.005, lambda: ["rough"]) == ("on floors", ["rough"])
     law = Plain()
     assert prepare_law(law, PLANT, COIL, 0.005) is law
 

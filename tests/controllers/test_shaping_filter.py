@@ -1,0 +1,30 @@
+"""The shaping filter of a floor against the spectrum that its record has."""
+
+import numpy as np
+import pytest
+
+from controllers.shaping_filter import fit_shaping_filter
+from controllers.synthesis.norm import frequency_response
+from controllers.synthesis.plant import Loop
+from seatsim.excitations.iso7096 import Iso7096, acceleration_density
+from seatsim.rig.control import FloorRecord
+from seatsim.schema.errors import InputError
+
+
+def test_white_noise_through_the_filter_has_unit_power_and_the_spectrum_of_the_floor():
+    acceleration = Iso7096("EM2", 600.0).floor(0.001, 1).acceleration
+    filtered = fit_shaping_filter(FloorRecord(0.001, acceleration)).as_system()
+    assert np.linalg.eigvals(filtered.A).real.max() < 0
+    frequency = np.arange(0.02, 20.0, 0.02)
+    density = np.abs(frequency_response(Loop(*filtered), 2 * np.pi * frequency)[:, 0, 0]) ** 2
+    # The density is two-sided: what lies above zero is half of the power.
+    assert 2 * np.trapezoid(density, frequency) == pytest.approx(1.0, rel=0.1)
+    inside = (frequency > 1.4) & (frequency < 3.4)
+    wanted = acceleration_density(frequency, "EM2") / np.mean(acceleration**2) / 2
+    np.testing.assert_allclose(density[inside], wanted[inside], rtol=0.5)
+    assert 2 * np.trapezoid(density[inside], frequency[inside]) > 0.75
+
+
+def test_a_floor_at_rest_has_no_spectrum():
+    with pytest.raises(InputError, match="the floor rests, or its record is too short"):
+        fit_shaping_filter(FloorRecord(0.001, np.zeros(60_000)))
