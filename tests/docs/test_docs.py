@@ -103,7 +103,7 @@ use("fast_strokes.py")
 AirDrag = use("bellows.py").AirDrag
 
 effects = [{"effect": "bellows:AirDrag", "parameters": {"drag": 350.0}}]
-scenario, = load("quickstart", {"effects": effects, "variants": {}})
+scenario, = load("quickstart", {"effects": effects, "variants": {}, "sweep": {}})
 assert scenario.effects == (AirDrag(350.0),)
 
 
