@@ -54,7 +54,9 @@ class Gap:
     """The same two for the stated noise alone."""
     notes: tuple[str, ...] = ()
     """A sentence for each warning about the recording."""
-    replayed: Unwritten[Mapping[str, ReplayedPair]] = field(default_factory=dict, repr=False, compare=False)
+    replayed: Unwritten[Mapping[str, ReplayedPair]] = field(
+        default_factory=dict, repr=False, compare=False, kw_only=True
+    )
     """The runs that were compared."""
 
     def _repr_html_(self) -> str:
