@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.random import Generator
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from seatsim.blind.truth.faults import FrameForce
 from seatsim.blind.truth.rig import EXCITATION_RATE, SAMPLE_RATE
@@ -34,7 +34,7 @@ _NO_FORCE = np.zeros(1)
 
 
 def coloured_noise(rng: Generator, samples: int, low: float, high: float, slope: float, rate: float) -> Array:
-    """Return noise of unit variance, shape (samples,), whose amplitude goes as `f^slope` between two soft edges (Hz)."""
+    """Return noise of unit variance, shape (samples,), whose amplitude goes as `f^slope` between two soft edges, Hz."""
     spectrum = np.fft.rfft(rng.standard_normal(samples))
     f = np.fft.rfftfreq(samples, 1.0 / rate)
     f[0] = f[1]  # a falling slope has no value at 0 Hz
@@ -42,11 +42,12 @@ def coloured_noise(rng: Generator, samples: int, low: float, high: float, slope:
     return np.asarray(value / np.std(value))
 
 
-def _soft_edges(f: Array, low: float, high: float) -> Array:
+def _soft_edges(frequencies: ArrayLike, low: float, high: float) -> Array:
     """Return the gains of third-order high-pass and fourth-order low-pass Butterworth filters, without their phase.
 
     `(f / low)^3 / sqrt(1 + (f / low)^6) / sqrt(1 + (f / high)^8)`
     """
+    f = np.asarray(frequencies, dtype=np.float64)
     return np.asarray((f / low) ** 3 / np.sqrt(1.0 + (f / low) ** 6) / np.sqrt(1.0 + (f / high) ** 8))
 
 
