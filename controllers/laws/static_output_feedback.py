@@ -17,7 +17,6 @@ from controllers.seat_plant import TRAVEL_AND_RATE, ActuatorLag, Measure, Weight
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import Measurement, State, law
 from seatsim.rig.plant import Plant
-from seatsim.rig.sampled_loop import build_sampled_loop
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param
@@ -133,20 +132,18 @@ class StaticOutputFeedback(NamedTuple):
             for factor in self.force_factors
         ]
 
-    def checks(self, plant: Plant, coil: Coil, sample_time: float, gain: Array) -> dict[str, str]:
-        """Return, in words, the margins of the scenario's own loop with coil and delay, and of its sampled loop."""
+    def with_gain(self, gain: Array) -> StaticOutputFeedback:
+        """Return the law with a stated gain."""
+        return self._replace(gain=tuple(gain.ravel().tolist()), design=None, weights=None)
+
+    def margins(self, plant: Plant, coil: Coil, gain: Array) -> str:
+        """Return in words the margins of the loop that a gain closes with a seat and its coil."""
         seat = build_generalised_plant(plant, Weights(), ActuatorLag(coil.rate), measures=self.measures)
         found = compute_margins(LinearSystem(seat.A, seat.B2, seat.C2, np.zeros((len(seat.C2), 1))), gain)
-        loop = build_sampled_loop(self._compile(gain), (), plant, coil, sample_time, step=sample_time)
-        radius = loop.radius(round(coil.delay / sample_time))
         rises = "any" if found.gain > _UNBOUNDED else f"{found.gain:.3g}"
         turns = "any" if math.isinf(found.phase) else f"{found.phase:.3g} degrees"
         waits = "any" if math.isinf(found.delay) else f"{1000 * found.delay:.3g} ms"
-        verdict = "stable" if radius < 1 else "UNSTABLE"
-        return {
-            "margins": f"gain {rises}, phase {turns}, delay {waits}, with the coil's lag",
-            "sampled loop": f"{verdict} at {1000 * sample_time:g} ms: spectral radius {radius:.5f}",
-        }
+        return f"gain {rises}, phase {turns}, delay {waits}, with the coil's lag"
 
 
 @lru_cache(maxsize=64)

@@ -5,7 +5,7 @@ The classes that implement them stand with the synthesis, which `seatsim` never 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Protocol, runtime_checkable
 
@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.rig.coil import Coil
+from seatsim.rig.control import Law
 from seatsim.rig.plant import Plant
 from seatsim.schema.arrays import Array
 
@@ -127,7 +128,10 @@ class SynthesisedLaw(Protocol):
 
 @runtime_checkable
 class CheckedLaw(Protocol):
-    """A law that can assess its loop with a gain: margins, stability of the sampled loop."""
+    """A law whose loop can be judged with the gain of a design."""
 
-    def checks(self, plant: Plant, coil: Coil, sample_time: float, gain: Array) -> Mapping[str, str]:
-        """Return, by heading, sentences on the loop that a gain closes with seat, coil and sampling."""
+    def margins(self, plant: Plant, coil: Coil, gain: Array) -> str:
+        """Return in words the margins of the loop that a gain closes with seat and coil."""
+
+    def with_gain(self, gain: Array) -> Law:
+        """Return the law with a stated gain."""

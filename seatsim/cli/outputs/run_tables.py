@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 from rich.markup import escape
@@ -15,9 +16,9 @@ from seatsim.metrics.table import SHORT
 from seatsim.rig.designs import BoxProof, CheckedLaw, DesignedLoop, SynthesisedDesign
 from seatsim.scenario.checks import Published, published_figures
 from seatsim.scenario.scenario import Scenario, group_by_condition
+from seatsim.simulation.checks import describe_sampled_loop
 from seatsim.simulation.performance_bounds import PerformanceBounds, measure_distance
 from seatsim.simulation.result import Run
-from seatsim.simulation.simulate import DEFAULT_SAMPLE_TIME
 
 
 class _Column(NamedTuple):
@@ -207,4 +208,6 @@ def _check_loop(design: SynthesisedDesign, scenario: Scenario) -> Mapping[str, s
     control, plant = scenario.control, scenario.plant
     if control is None or plant is None or not isinstance(control.law, CheckedLaw):
         return {}
-    return control.law.checks(plant, scenario.coil, control.sample_time or DEFAULT_SAMPLE_TIME, design.gain)
+    designed = replace(scenario, control=replace(control, law=control.law.with_gain(design.gain)))
+    margins = control.law.margins(plant, scenario.coil, design.gain)
+    return {"margins": margins, "sampled loop": describe_sampled_loop(designed)}
