@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -77,10 +78,16 @@ def check(
         raise typer.Exit(1)
 
 
-def _complete_schema(incomplete: str) -> list[str]:
-    from seatsim.cli.outputs.answers import FILES, list_answers
+def _list_schemas() -> dict[str, Callable[[], Mapping[str, object]]]:
+    """Return what makes each schema, by kind of file or command; `sweep` is both, and the command's bears `--json`."""
+    from seatsim.cli.outputs.answers import FILES, describe_answer, list_answers
 
-    return complete(*FILES, *list_answers())(incomplete)
+    answers = {f"{name} --json" if name in FILES else name: partial(describe_answer, name) for name in list_answers()}
+    return {**FILES, **answers}
+
+
+def _complete_schema(incomplete: str) -> list[str]:
+    return complete(*_list_schemas())(incomplete)
 
 
 def schema(
@@ -93,14 +100,11 @@ def schema(
     Options:
         kind: scenario, recording, sweep or parameters; or a command, for what its --json prints.
     """
-    from seatsim.cli.outputs.answers import FILES, describe_answer, list_answers
-
-    known = [*FILES, *list_answers()]
+    known = _list_schemas()
     if kind not in known:
         raise InputError(f"schema {kind}: no such kind{nearest(kind, known)}; permitted: {', '.join(known)}")
-    found = FILES[kind]() if kind in FILES else describe_answer(kind)
     # A schema is JSON with or without --json.
-    sys.stdout.write(json.dumps(found) + "\n")
+    sys.stdout.write(json.dumps(known[kind]()) + "\n")
 
 
 _ENDINGS = (".png", ".svg", ".pdf")
