@@ -17,8 +17,6 @@ from seatsim.scenario.loading import single
 from seatsim.schema.arrays import Array
 from seatsim.schema.guarded import temporary_folder
 
-MATERIAL_SHARE = 0.05
-"""Of a channel's standard deviation (contract, section 4)."""
 _UNKNOWN_TOLERANCE = 0.05
 """Stands for a `parameter_tolerance` that is no single number."""
 _ZERO_SCALES = {"f0": 100.0, "fc_a": 100.0, "alpha_a": 100.0}
