@@ -2,27 +2,20 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from seatsim.blind.score.cases import Rate
-from seatsim.blind.score.score import score_verdicts
-from seatsim.blind.score.verdicts import read_verdict
-from seatsim.blind.sealed import KINDS, Label, unseal
 from seatsim.diagnosis.design.isolability import find_isolable_groups
 from seatsim.diagnosis.noise import NoiseWeights, weigh_uniformly
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.recordings.recording import Recording
 from seatsim.schema.errors import SeatsimError
 from seatsim.schema.files import write_json
-from seatsim.schema.processes import run_jobs
 
 Array = NDArray[np.float64]
 EncodedDiagnosis = Mapping[str, object]
@@ -60,27 +53,6 @@ def rank_by_figure(pairs: Sequence[tuple[str, float]]) -> Ranked:
     return sorted(best.items(), key=lambda item: -item[1])
 
 
-def make_parser(description: str) -> argparse.ArgumentParser:
-    """Return a parser of what names a blind set."""
-    parser = argparse.ArgumentParser(description=description)
-    parser.add_argument("folder", type=Path, metavar="DIR", help="folder of `seatsim blind make`")
-    parser.add_argument("--sealed", type=Path, required=True, help="its sealed file")
-    parser.add_argument("--key", required=True, help="the key that `blind make` printed")
-    return parser
-
-
-def open_labels(options: argparse.Namespace) -> dict[str, Label]:
-    """Return the labels of the set asked for."""
-    return unseal(options.sealed, options.key, options.folder).labels
-
-
-def diagnose_cases(base: Path, cases: Sequence[str], methods: Mapping[str, Diagnoser]) -> None:
-    """Write `CASE/METHOD/diagnosis.json` of every case and method that has none yet."""
-    wanted = [(base / case / name, method) for case in cases for name, method in methods.items()]
-    jobs = [(out, method) for out, method in wanted if not (out / "diagnosis.json").exists()]
-    run_jobs(write_verdict, jobs, PROCESSES, show_progress)
-
-
 def show_progress(done: int, total: int) -> None:
     """Tell how many jobs are done."""
     print(f"{done}/{total}", file=sys.stderr, flush=True)
@@ -94,20 +66,6 @@ def write_verdict(out: Path, method: Diagnoser) -> None:
             write_json(out / "diagnosis.json", method(out.parent))
         except SeatsimError as error:
             write_json(out / "error.json", {"error": str(error)})
-
-
-def show_scores(title: str, base: Path, labels: Mapping[str, Label], methods: Sequence[str]) -> None:
-    """Print how many verdicts of each method are right; a case without a verdict counts as wrong."""
-    rows = {}
-    for method in methods:
-        verdicts = {case: read_verdict(base / case / method / "diagnosis.json") for case in labels}
-        if any(verdict.verdict != "missing" for verdict in verdicts.values()):
-            score = score_verdicts(labels, verdicts)
-            rates: dict[str, Rate] = {"right": score.right, "block first": score.block}
-            rates |= {kind: score.kinds.get(kind, Rate(0, 0)) for kind in KINDS}
-            rates["false alarms"] = score.false_alarms
-            rows[method] = {name: f"{rate.right}/{rate.total}" for name, rate in rates.items()}
-    print(f"{title}, {len(labels)} cases\n{pd.DataFrame.from_dict(rows, orient='index').to_string()}")
 
 
 def weigh_stated_noise(problem: DiagnosisProblem) -> NoiseWeights:

@@ -18,7 +18,7 @@ import numpy as np
 import pandas as pd
 from threadpoolctl import threadpool_limits
 
-from controllers import Design, GeneralisedPlant, synthesise
+from controllers import GeneralisedPlant, synthesise
 from controllers.synthesis.norm import grid_norm
 from seatsim.schema.errors import SynthesisError
 
@@ -31,15 +31,10 @@ ProblemResult = dict[str, str | float | None]
 FIGURES = ["order", "gains", "gamma", "lower_bound", "delta", "grid", "wall", "processor"]
 
 
-def load_problem(path: Path) -> GeneralisedPlant:
-    """Return a problem of the collection."""
-    p = json.loads(path.read_text())
-    return GeneralisedPlant(*(p[key] for key in ("A", "B1", "B", "C1", "C", "D11", "D12", "D21")))
-
-
 def solve(path: Path, budget: float, designs: Path) -> ProblemResult:
     """Return what a synthesis found, with its time on the wall and on the processor."""
-    plant = load_problem(path)
+    problem = json.loads(path.read_text())
+    plant = GeneralisedPlant(*(problem[key] for key in ("A", "B1", "B", "C1", "C", "D11", "D12", "D21")))
     wall, processor = time.monotonic(), time.process_time()
     found: ProblemResult = {"name": path.stem, "order": plant.order, "gains": int(plant.free.sum())}
     try:
@@ -48,19 +43,11 @@ def solve(path: Path, budget: float, designs: Path) -> ProblemResult:
         found["error"] = str(error)
     else:
         design.save(designs / f"{path.stem}.yaml")
-        found |= describe(plant, design)
+        found |= {"gamma": design.gamma, "lower_bound": design.lower_bound}
+        found["largest_gain"] = float(np.abs(design.gain).max())
+        found["grid"] = grid_norm(plant.close(design.gain)).value  # the norm from frequencies alone
+        found["delta"] = design.certificate.delta if design.certificate else None
     return found | {"wall": time.monotonic() - wall, "processor": time.process_time() - processor}
-
-
-def describe(plant: GeneralisedPlant, design: Design) -> ProblemResult:
-    """Return the figures of a design; `grid` is its norm from frequencies alone."""
-    return {
-        "gamma": design.gamma,
-        "grid": grid_norm(plant.close(design.gain)).value,
-        "largest_gain": float(np.abs(design.gain).max()),
-        "lower_bound": design.lower_bound,
-        "delta": design.certificate.delta if design.certificate else None,
-    }
 
 
 def tabulate(found: list[ProblemResult], best: dict[str, float]) -> pd.DataFrame:

@@ -21,26 +21,31 @@ sparse  Sequentially thresholded least squares (the optimiser of SINDy, Brunton 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import argparse
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 from cases import (
     LEAST_NOISE,
+    PROCESSES,
     Array,
     Diagnoser,
     EncodedDiagnosis,
     Ranked,
-    diagnose_cases,
     encode_verdict,
-    make_parser,
-    open_labels,
     rank_by_figure,
-    show_scores,
+    show_progress,
     weigh_stated_noise,
+    write_verdict,
 )
 
+from seatsim.blind.score.cases import Rate
+from seatsim.blind.score.score import score_verdicts
+from seatsim.blind.score.verdicts import read_verdict
+from seatsim.blind.sealed import KINDS, Label, unseal
 from seatsim.diagnosis.candidates import list_candidates
 from seatsim.diagnosis.fit import fit
 from seatsim.diagnosis.movement import measure_movements
@@ -49,6 +54,7 @@ from seatsim.diagnosis.problem import DiagnosisProblem, pose_problem
 from seatsim.diagnosis.select import select_effects
 from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.recordings.recording import load_recording
+from seatsim.schema.processes import run_jobs
 
 NAMED, NAMED_NEXT, LARGE = 0.85, 0.8, 0.02
 MISFIT = 8.0
@@ -185,12 +191,32 @@ BASELINES: dict[str, Diagnoser] = {
 }
 
 
+def show_scores(base: Path, labels: Mapping[str, Label]) -> None:
+    """Print how many verdicts of each method are right; a case without a verdict counts as wrong."""
+    rows = {}
+    for method in (*BASELINES, "diagnosis"):
+        verdicts = {case: read_verdict(base / case / method / "diagnosis.json") for case in labels}
+        if any(verdict.verdict != "missing" for verdict in verdicts.values()):
+            score = score_verdicts(labels, verdicts)
+            rates: dict[str, Rate] = {"right": score.right, "block first": score.block}
+            rates |= {kind: score.kinds.get(kind, Rate(0, 0)) for kind in KINDS}
+            rates["false alarms"] = score.false_alarms
+            rows[method] = {name: f"{rate.right}/{rate.total}" for name, rate in rates.items()}
+    print(f"baselines, {len(labels)} cases\n{pd.DataFrame.from_dict(rows, orient='index').to_string()}")
+
+
 def main() -> None:
     """Diagnose what is not diagnosed yet, and print the table."""
-    options = make_parser("baselines of the diagnosis on a blind set").parse_args()
-    labels = open_labels(options)
-    diagnose_cases(options.folder, list(labels), BASELINES)
-    show_scores("baselines", options.folder, labels, [*BASELINES, "diagnosis"])
+    parser = argparse.ArgumentParser(description="baselines of the diagnosis on a blind set")
+    parser.add_argument("folder", type=Path, metavar="DIR", help="folder of `seatsim blind make`")
+    parser.add_argument("--sealed", type=Path, required=True, help="its sealed file")
+    parser.add_argument("--key", required=True, help="the key that `blind make` printed")
+    options = parser.parse_args()
+    labels = unseal(options.sealed, options.key, options.folder).labels
+    wanted = [(options.folder / case / name, method) for case in labels for name, method in BASELINES.items()]
+    todo = [(out, method) for out, method in wanted if not (out / "diagnosis.json").exists()]
+    run_jobs(write_verdict, todo, PROCESSES, show_progress)
+    show_scores(options.folder, labels)
 
 
 if __name__ == "__main__":

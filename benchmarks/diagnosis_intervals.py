@@ -28,7 +28,7 @@ from seatsim.diagnosis.candidates import Candidate, list_candidates
 from seatsim.diagnosis.estimates import estimate_standard_deviations
 from seatsim.diagnosis.noise import weigh_noise
 from seatsim.diagnosis.nuisance import vary
-from seatsim.diagnosis.objective import Evaluation, Objective, Parameters
+from seatsim.diagnosis.objective import Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, pose_problem
 from seatsim.diagnosis.validate import refit_closely
 from seatsim.recordings.header import Header, RunEntry
@@ -42,15 +42,7 @@ from seatsim.simulation.respond import respond
 
 Array = NDArray[np.float64]
 RATE, SECONDS, RUNS, TOLERANCE = 500.0, 12.0, 3, 0.02
-NOMINAL = """\
-plant: {frame_mass: 20.0, driver_mass: 80.0, suspension_stiffness: 4600.0, suspension_damping: 150.0,
-        cushion_stiffness: 60000.0, cushion_damping: 1500.0}
-damper: {model: bingham, parameters: {c_a: 250.0, c_b: 350.0, fc_a: 45.0, fc_b: 620.0, f0: 0.0, v_ref: 0.01}}
-actuator: {rate: 130.0, max_current: 1.0}
-temperature: 20.0
-controller: {law: replay}
-excitation: {kind: recording}
-"""
+NOMINAL = Path(__file__).with_name("diagnosis_intervals_nominal.yaml")
 SIZES = {
     ("sensor.gain", "error"): (0.03, 0.12), ("sensor.bias", "share"): (0.05, 0.3),
     ("sensor.lag", "time"): (0.003, 0.012),
@@ -106,7 +98,7 @@ def make_recording(folder: Path, rng: np.random.Generator, effect: str) -> tuple
     """Return a recording of a rig with an effect, the candidate that has its form, and the true size."""
     parameter = next(name for known, name in SIZES if known == effect)
     size = rng.uniform(*SIZES[effect, parameter])
-    write_text(folder / "nominal.yaml", NOMINAL)
+    write_text(folder / "nominal.yaml", NOMINAL.read_text(encoding="utf-8"))
     header = Header("seat", RATE, "nominal.yaml", TOLERANCE)
     channels = {name: ChannelEntry(SEAT_CHANNELS[name], noise) for name, noise in CHANNELS.items()}
     channels["current_command"] = ChannelEntry("A", 0.0)
@@ -158,20 +150,15 @@ def is_form(candidate: Candidate, effect: str, parameter: str) -> bool:
     return candidate.effect == effect and parameter in candidate.free and channel in (None, CHANNEL.get(effect))
 
 
-def fit_case(folder: Path, seed: int, pool: Executor) -> tuple[Objective, Evaluation, float, str]:
-    """Return the objective and the fit of a case, its true size and its effect."""
+def run_case(folder: Path, seed: int, pool: Executor) -> IntervalCase:
+    """Return what was estimated of one case."""
     rng = np.random.default_rng([seed, 19])
     effect = list(SIZES)[seed % len(SIZES)][0]
     recording, candidate, size = make_recording(folder, rng, effect)
     problem = pose_problem(recording, pool)
     objective = Objective(problem, weigh_noise(problem))
     start = Parameters(problem.nominal).add(candidate, np.asarray(candidate.start))
-    return objective, refit_closely(objective, start), size, effect
-
-
-def run_case(folder: Path, seed: int, pool: Executor) -> IntervalCase:
-    """Return what was estimated of one case."""
-    objective, fitted, size, effect = fit_case(folder, seed, pool)
+    fitted = refit_closely(objective, start)
     (term,), (values,) = fitted.parameters.terms, fitted.parameters.values
     index = term.free.index(next(name for known, name in SIZES if known == effect))
     deviations = estimate_standard_deviations(objective, fitted, objective.linearise_nuisances(fitted))

@@ -44,21 +44,7 @@ from seatsim.simulation.inputs import SeatInputs
 from seatsim.simulation.respond import respond
 from seatsim.simulation.result import History, Result
 
-SEAT = """\
-plant: {frame_mass: 20.0, driver_mass: 60.0, suspension_stiffness: 4600.0, suspension_damping: 100.0,
-        cushion_stiffness: 60000.0, cushion_damping: 1500.0}
-damper: {model: bingham, parameters: {c_a: 250.0, c_b: 350.0, fc_a: 25.0, fc_b: 620.0, f0: 0.0, v_ref: 0.01},
-         temperature_factors: {viscous: -0.004, yield_force: -0.004}}
-actuator: {rate: 130.0, max_current: 1.0}
-temperature: {start: 25.0, heat_capacity: 20.0}
-controller: {law: on_off_skyhook, on: 0.6, sample_time: 0.01}
-excitation: {kind: iso7096, spectral_class: EM3, duration: 10.0}
-solver: {step: 0.002}
-variants:
-  random: {}
-  rough: {controller.on: 0.25, excitation: {kind: iso7096, spectral_class: EM6, duration: 10.0}}
-  sweep: {excitation: {kind: chirp, amplitude: 0.025, start_frequency: 0.7, stop_frequency: 6.0, duration: 10.0}}
-"""
+SEAT = Path(__file__).with_name("effect_forms_seat.yaml")
 MATERIAL = DecisionSettings().material
 FACTORS = (1.0, 0.5, 2.0)
 """Multiples of the typical size, in the order in which they are worked on."""
@@ -177,18 +163,10 @@ def list_cases(effects: Sequence[str], factors: Sequence[float]) -> list[FormCas
 
 def show_table(found: Sequence[FoundForm]) -> None:
     """Print what was said of each case, and how many verdicts are right."""
-    rows = [
-        (
-            str(each.case.record),
-            each.moved,
-            each.left,
-            each.verdict.verdict,
-            each.refused or each.verdict.selected,
-            each.verdict.groups,
-            each.right,
-        )
-        for each in sorted(found, key=lambda each: each.case)
-    ]
+    rows = []
+    for each in sorted(found, key=lambda each: each.case):
+        said = each.verdict.verdict, each.refused or each.verdict.selected, each.verdict.groups
+        rows.append((str(each.case.record), each.moved, each.left, *said, each.right))
     headings = ["effect", "moves", "left", "verdict", "selected, or why refused", "groups", "right"]
     print(pd.DataFrame(rows, columns=headings).to_string(index=False, float_format="%.3f"))
     print(f"{sum(each.right for each in found)} of {len(found)} right")
@@ -203,7 +181,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True, help="folder of the cases; what is there is kept")
     options = parser.parse_args()
     cases = list_cases(options.effects, options.factors)
-    write_text(options.out / "seat.yaml", SEAT)
+    write_text(options.out / "seat.yaml", SEAT.read_text(encoding="utf-8"))
     missing = [(case, options.out) for case in cases if not find_answer(case, options.out).exists()]
     try:
         run_jobs(work, missing, options.processes, show_progress)

@@ -11,7 +11,7 @@ import argparse
 import time
 from fractions import Fraction
 from pathlib import Path
-from typing import TypedDict
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,19 +23,8 @@ Exact = NDArray[np.object_]
 """Array of fractions."""
 
 
-class ExactCertificate(TypedDict):
-    """The factor T of P = T'T, the level of gamma that it proves, and how far that is above the design's gamma."""
-
-    factor: Rows
-    gamma: float
-    delta: float
-
-
-class ExactLoop(TypedDict):
-    """The plant's matrices by name, and the certificate of the loop that the design's gain closes around it."""
-
-    plant: dict[str, Rows]
-    certificate: ExactCertificate | None
+Plain = dict[str, Any]
+"""What a file states: of a loop its `plant`, matrices by name, and its `certificate`: `factor`, `gamma`, `delta`."""
 
 
 def to_fractions(rows: Rows) -> Exact:
@@ -53,7 +42,7 @@ def is_positive_definite(M: Exact) -> bool:
     return True
 
 
-def is_proven(gain: Rows, loop: ExactLoop) -> bool:
+def is_proven(gain: Rows, loop: Plain) -> bool:
     """Whether the certificate of a loop proves its gamma; no certificate proves nothing."""
     proof, K = loop["certificate"], to_fractions(gain)
     if proof is None:
@@ -79,7 +68,7 @@ def main() -> None:
             print(f"{path} loop {i}: {verdict} in {time.process_time() - begin:.1f} s", flush=True)
 
 
-def check(gain: Rows, loop: ExactLoop) -> str:
+def check(gain: Rows, loop: Plain) -> str:
     """Return what a loop's certificate is worth, in words."""
     proof = loop["certificate"]
     if proof is None:

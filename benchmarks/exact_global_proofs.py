@@ -15,13 +15,10 @@ import time
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from exact_certificates import Exact, is_positive_definite, to_fractions
+from exact_certificates import NAMES, Exact, Plain, is_positive_definite, to_fractions
 
-Plain = dict[str, Any]  # what json.load returns
-NAMES = ("A", "B1", "B2", "C1", "C2", "D11", "D12", "D21")
 Number = tuple[Fraction, Fraction]
 """Real and imaginary part; of arrays, the two arrays."""
 

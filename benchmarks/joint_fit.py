@@ -17,6 +17,7 @@ from cases import Array, EncodedDiagnosis, Ranked, encode_verdict, rank_by_figur
 from ruamel.yaml import YAML
 from scipy.optimize import least_squares
 
+from seatsim.blind.carrier.recorded import shifted
 from seatsim.recordings.recording import Recording, load_recording
 from seatsim.recordings.replay import replay_table, select_compared
 from seatsim.scenario.loading import single
@@ -104,20 +105,14 @@ def _misfit_of_run(
     table = dict(recording.table(run))
     for (kind, channel), value in by_channel.items():
         if kind == "command":
-            table[channel] = _late(table[channel], value, step)
+            table[channel] = shifted(table[channel], value, step)
         elif kind == "gain" and channel in MOTIONS:
             table[channel] = table[channel] * (1.0 + value)
     measured = select_compared(recording.table(run), recording.header.rig, recording.header.sample_rate)
     parts = []
     for name, values in replay_table(scenario, recording, table).items():
         spread = float(np.std(measured[name]))
-        late = _late(values, by_channel[("delay", name)], step)
+        late = shifted(values, by_channel[("delay", name)], step)
         said = late * (1.0 + by_channel[("gain", name)]) + spread * by_channel[("offset", name)]
         parts.append((said - measured[name]) / max(spread, 1e-12))
     return np.concatenate(parts)
-
-
-def _late(values: Array, time: float, step: float) -> Array:
-    rows = np.arange(len(values)) * step
-    moved: Array = np.interp(rows - time, rows, values)
-    return moved

@@ -4,7 +4,7 @@ The variants of SCENARIO (its plant, damper and laws, without its effects) on ro
 ISO 7096, with the damper at 20 and 80 degC. A damper without temperature factors gets those that cost it a third of its
 force at 80 degC. Brackets stand in DIR as JSON by road, temperature and settings and are not made again, so that a run
 may be stopped and resumed; the laws are simulated anew. Written are `laws.csv`, a row for each law, road and
-temperature, `brackets.csv`, and both as Markdown in `laws.md`.
+temperature, and `brackets.csv`.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ import seatsim
 from controllers.clairvoyant import ClairvoyantBounds, clairvoyant
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.scenario.scenario import Scenario
-from seatsim.schema.files import write_json, write_text
+from seatsim.schema.files import write_json
 from seatsim.simulation.performance_bounds import measure_distance
 from seatsim.simulation.result import Run
 from seatsim.simulation.runs import run_many
@@ -58,37 +58,19 @@ def load_bracket(scenario: Scenario, name: str, hold: float, folder: Path) -> Cl
     if not path.exists():
         write_json(path, clairvoyant(scenario, WEIGHTS, hold))
     kept = json.loads(path.read_text(encoding="utf-8"))
-    weights, lower, acceleration, travel = (
-        np.array(kept[key]) for key in ("weights", "lower", "acceleration", "travel")
-    )
-    return ClairvoyantBounds(weights, lower, acceleration, travel, np.zeros((len(WEIGHTS), 0)), hold)
+    curves = {key: np.array(kept[key]) for key in ("weights", "lower", "acceleration", "travel")}
+    return ClairvoyantBounds(**curves, force=np.zeros((len(WEIGHTS), 0)), step=hold)
 
 
-def compare_laws(found: ClairvoyantBounds, runs: list[Run], floor: str, temperature: float) -> list[dict[str, object]]:
-    """Return a row for each law: where it stands, and how far from the bracket at its own travel."""
-    place: dict[str, object] = {"floor": floor, "temperature": temperature}
-    return [
-        place | {"law": run.scenario.label.get("variant", "")} | measure_distance(run, found)._asdict() for run in runs
-    ]
-
-
-def render_markdown(laws: pd.DataFrame, brackets: pd.DataFrame) -> str:
-    """Return the tables: excess over the bound by law and floor, and the brackets."""
-    parts = []
+def show_tables(laws: pd.DataFrame, brackets: pd.DataFrame) -> None:
+    """Print the excess over the bound by law and floor, and the brackets."""
     for temperature, part in laws.groupby("temperature"):
         table = 100 * part.pivot(index="law", columns="floor", values="above_bound")[list(part.floor.unique())]
         table.insert(0, "median", table.median(axis=1))
-        parts.append(f"Excess over the bound at the law's own travel, %, damper at {temperature:g} degC\n")
-        parts.append(_grid(table.sort_values("median").reset_index(), 0))
-    parts += ["The brackets: RMS of least weight and of most, width in %\n", _grid(brackets, 2)]
-    return "\n".join(parts)
-
-
-def _grid(table: pd.DataFrame, decimals: int) -> str:
-    lines = [list(map(str, table.columns)), ["---"] * len(table.columns)]
-    for row in table.itertuples(index=False):
-        lines.append([f"{cell:.{decimals}f}" if isinstance(cell, float) else str(cell) for cell in row])
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines) + "\n"
+        print(f"excess over the bound at the law's own travel, %, damper at {temperature:g} degC")
+        print(table.sort_values("median").to_string(float_format="%.0f"))
+    print("the brackets: RMS of least weight and of most, width in %")
+    print(brackets.to_string(index=False, float_format="%.2f"))
 
 
 def main() -> None:
@@ -105,22 +87,22 @@ def main() -> None:
         for temperature in TEMPERATURES if not asked.only or floor in asked.only else ():
             variants = load_variants(asked.scenario, excitation, temperature)
             found = load_bracket(variants[0], f"{floor} {temperature:g}", asked.hold, asked.out)
-            runs = []
+            place = {"floor": floor, "temperature": temperature}
             for scenario, answer in run_many(variants, lambda _: None):
                 if isinstance(answer, Run):
-                    runs.append(answer)
+                    law = {"law": scenario.label.get("variant", "")}
+                    laws.append(place | law | measure_distance(answer, found)._asdict())
                 else:
                     print(f"{scenario.title}: {answer}")
-            laws += compare_laws(found, runs, floor, temperature)
             ends = {"aw": found.acceleration, "travel_mm": 1e3 * found.travel, "width_percent": 100 * found.width}
             spans = {f"{end}_{kind}": float(pick(of)) for end, of in ends.items() for kind, pick in _SPAN.items()}
-            brackets.append({"floor": floor, "temperature": temperature, **spans})
+            brackets.append(place | spans)
             print(f"{floor}, {temperature:g} degC: width {spans['width_percent_most']:.1f} % at most", flush=True)
     asked.out.mkdir(parents=True, exist_ok=True)
-    tables = pd.DataFrame(laws), pd.DataFrame(brackets)
-    for name, table in zip(("laws", "brackets"), tables, strict=True):
+    tables = {"laws": pd.DataFrame(laws), "brackets": pd.DataFrame(brackets)}
+    for name, table in tables.items():
         table.to_csv(asked.out / f"{name}.csv", index=False)
-    print(write_text(asked.out / "laws.md", render_markdown(*tables)))
+    show_tables(**tables)
 
 
 _SPAN = {"least": np.min, "most": np.max}

@@ -14,9 +14,8 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 from carrier_nominals import DATA, fit, quick, write_part
-from rich.console import Console
-from rich.table import Table
 from rig_records import RigRecords, list_rigs
 from ruamel.yaml import YAML
 
@@ -52,9 +51,7 @@ def main() -> None:
     options = parser.parse_args()
     if not options.data.is_dir():
         raise SystemExit(f"{options.data}: the measured data are not there; state their folder with --data")
-    table = Table(title="real rigs", title_justify="left")
-    for heading in ("rig", "gap", "verdict", "selected", "where", "shrink", "s", "known to show"):
-        table.add_column(heading)
+    rows = []
     with tempfile.TemporaryDirectory() as temporary:
         for rig in list_rigs(options.data):
             if options.only and rig.name not in options.only:
@@ -63,8 +60,9 @@ def main() -> None:
             gap, found = seatsim.gap(folder / "nominal.yaml", folder), seatsim.diagnose(folder)
             where = ", ".join(f"{share.block} {share.share:.2f}" for share in found.where)
             cells = f"{gap.overall:.3f}", found.verdict, ", ".join(found.selected), where, f"{found.gap.shrink:.2f}"
-            table.add_row(rig.name, *cells, f"{time.perf_counter() - start:.0f}", rig.known)
-    Console(width=180).print(table)
+            rows.append((rig.name, *cells, f"{time.perf_counter() - start:.0f}", rig.known))
+    headings = ["rig", "gap", "verdict", "selected", "where", "shrink", "s", "known to show"]
+    print(pd.DataFrame(rows, columns=headings).to_string(index=False))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """What a sweep costs beside the runs in it, and how that grows.
 
-    python benchmarks/sweep_speed.py [RUNS] [--growth FILE]
+    python benchmarks/sweep_speed.py [RUNS] [--growth]
 
 Runs of 10 s at 1 kHz of the H-infinity seat of `road-d` and its two passive variants, with drawn masses and
 stiffnesses. Measured are the compiled loop alone; in one process, three times, runs without an engine, from their drawn
@@ -9,7 +9,7 @@ Given are the time of processors and on the clock for each run, and the largest 
 sweep adds is the median of the three, since a machine that others use is now faster, now slower.
 
 With `--growth` are measured instead sweeps of 100, 300, 1000, ... up to RUNS runs, two at once, and their reports. The
-times of the sweeps are fitted by `start + runs * each`, and all is drawn over the runs in FILE.
+times of the sweeps are fitted by `start + runs * each`.
 """
 
 from __future__ import annotations
@@ -22,14 +22,13 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from statistics import median
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.cli.outputs.simulated import write_sweep_report
 from seatsim.scenario.scenario import Scenario
@@ -67,9 +66,7 @@ def main() -> None:
     """Measure each in a process of its own, and compare."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("runs", nargs="?", type=int, default=10_000)
-    parser.add_argument(
-        "--growth", type=Path, help="measure how time and memory grow instead, and draw it in this file"
-    )
+    parser.add_argument("--growth", action="store_true", help="measure how time and memory grow instead")
     parser.add_argument("--measure", help=argparse.SUPPRESS)
     parser.add_argument("--folder", type=Path, help=argparse.SUPPRESS)
     options = parser.parse_args()
@@ -79,7 +76,7 @@ def main() -> None:
         return
     print(f"{'':28}{'processors':>12}{'clock':>12}{'memory':>12}")
     if options.growth:
-        draw_growth(options.runs, options.growth)
+        show_growth(options.runs)
     else:
         compare_parts(options.runs)
 
@@ -97,19 +94,17 @@ def compare_parts(runs: int) -> None:
           f" two at once do {one.clock / two.clock:.2f} times as many as one")  # fmt: skip
 
 
-def draw_growth(runs: int, file: Path) -> None:
-    """Print and draw what sweeps of more and more runs cost."""
-    sweeps, reports = [], []
+def show_growth(runs: int) -> None:
+    """Print what sweeps of more and more runs cost, and a line through their times."""
+    sweeps = []
     for size in [size for size in SIZES if size < runs] + [runs]:
         with tempfile.TemporaryDirectory() as folder:
             sweeps += show("sweep-2", size, folder)
-            reports += show("report", size, folder)
+            show("report", size, folder)
     sizes, clocks = np.array([cost.runs for cost in sweeps]), np.array([cost.clock for cost in sweeps])
     each, start = np.polyfit(sizes, clocks, 1, w=1 / clocks)
     worst = np.max(np.abs(start + each * sizes - clocks) / clocks)
-    line = f"{start:.2f} s + {1e3 * each:.3f} ms a run"
-    print(f"clock: {line}, within {100 * worst:.0f} % of each sweep")
-    plot(sweeps, reports, start + each * sizes, line, file)
+    print(f"clock: {start:.2f} s + {1e3 * each:.3f} ms a run, within {100 * worst:.0f} % of each sweep")
 
 
 def show(what: str, runs: int, folder: str | None = None) -> list[Cost]:
@@ -152,23 +147,6 @@ def cost_of(runs: int, work: Callable[[], object]) -> Cost:
     clock, processors = time.perf_counter() - clock, sum(os.times()[:4]) - processors
     usages = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
     return Cost(runs, processors, clock, sum(usage.ru_maxrss for usage in usages) / 1024)
-
-
-def plot(sweeps: Sequence[Cost], reports: Sequence[Cost], fitted: NDArray[np.float64], line: str, file: Path) -> None:
-    """Draw time on the clock and memory over runs, with the fitted line."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(7, 6), layout="constrained", dpi=100)
-    time_axes, memory_axes = figure.subplots(2, 1, sharex=True)
-    runs = [cost.runs for cost in sweeps]
-    time_axes.loglog(runs, fitted, color="C0", label=line)
-    for name, costs, colour in (("sweep, two at once", sweeps, "C0"), ("report", reports, "C1")):
-        time_axes.loglog(runs, [cost.clock for cost in costs], "o", color=colour, label=name)
-        memory_axes.semilogx(runs, [cost.memory for cost in costs], "o-", color=colour, label=name)
-    time_axes.set(ylabel="time on the clock [s]")
-    memory_axes.set(xlabel="runs of 10 s at 1 kHz", ylabel="memory of all processes [MiB]")
-    time_axes.legend()
-    figure.savefig(file)
 
 
 def loop_of(scenario: Scenario, carry_all_effects: bool | None = None) -> Callable[[], object]:

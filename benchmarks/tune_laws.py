@@ -11,6 +11,9 @@ from __future__ import annotations
 import argparse
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+
+from ruamel.yaml import YAML
 
 import seatsim
 
@@ -19,30 +22,9 @@ BUFFER = 0.045
 """m of travel at which the buffers begin."""
 Keys = dict[str, object]
 """Keys of a controller in a scenario."""
-CURRENTS = [0.2, 0.4, 0.7, 1.0]
-QUADRATIC = {"travel": [20.0, 40.0, 80.0, 160.0], "force": [0.007, 0.01, 0.015]}
-GRIDS: Mapping[str, Mapping[str, Sequence[object]]] = {
-    "constant": {"current": [0.0, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0]},
-    "on_off_skyhook": {"on": CURRENTS},
-    "skyhook": {"damping": [500.0, 1000.0, 2000.0, 3000.0, 5000.0, 8000.0]},
-    "no_jerk_skyhook": {"gain": [2e3, 5e3, 1e4, 2e4, 4e4, 8e4]},
-    "groundhook": {"damping": [250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0]},
-    "hybrid": {"damping": [1000.0, 2000.0, 4000.0, 8000.0], "share": [0.5, 0.55, 0.6, 0.7, 0.8]},
-    "acceleration_driven": {"on": [0.1, *CURRENTS]},
-    "skyhook_add": {"crossover": [1.0, 1.5, 2.0, 3.0, 4.0], "on": CURRENTS},
-    "power_driven": {"share": [0.1, 0.3, 0.5, 0.7, 1.0]},
-    "pid": {
-        "proportional": [1000.0, 2000.0, 4000.0],
-        "integral": [0.0, 1000.0, 3000.0, 6000.0],
-        "derivative": [0.0, 5.0, 20.0],
-    },
-    "sliding_mode": {"damping": [1000.0, 2000.0, 4000.0], "reaching": [0.5, 2.0, 5.0], "boundary": [0.05, 0.1, 0.2]},
-    "lqr": QUADRATIC,
-    "lqg": QUADRATIC,
-    "clipped_optimal": QUADRATIC | {"on": [0.4, 0.7, 1.0]},
-    "static_output_feedback": {"gain": [[k1, k2] for k1 in (-3000.0, -2000.0, 0.0) for k2 in (600.0, 1000.0, 1500.0)]},
-    "mpc": {"travel": [40.0, 60.0, 80.0, 120.0], "force": [0.0005, 0.002]},
-}
+WEIGHTS = ("travel", "force")
+"""Keys that are weights of a law's criterion."""
+GRIDS: Mapping[str, Mapping[str, Sequence[object]]] = YAML(typ="safe").load(Path(__file__).with_suffix(".yaml"))
 
 
 def main() -> None:
@@ -66,7 +48,7 @@ def grid_points(law: str) -> Iterator[Keys]:
     grid = GRIDS[law]
     for values in itertools.product(*grid.values()):
         keys = dict(zip(grid, values, strict=True))
-        weights = {name: keys.pop(name) for name in QUADRATIC if name in keys}
+        weights = {name: keys.pop(name) for name in WEIGHTS if name in keys}
         yield keys | ({"weights": weights} if weights else {})
 
 

@@ -65,7 +65,9 @@ def main() -> None:
     ((_, bounds),) = compute_performance_bounds([ours], print)
     legend = [PASSIVE, SKYHOOK, SYNTHESISED, PUBLISHED, REACHED, BOUND, FLOOR]
     title = "An H-infinity gain that measures travel alone comes near the skyhook"
-    note = "Scraper (ISO 7096 EM2), damper at 20 °C, no end stops; lower left is better. Grey: the travel of the quickstart."
+    note = (
+        "Scraper (ISO 7096 EM2), damper at 20 °C, no end stops; lower left is better. Grey: travel of the quickstart."
+    )
     page = style.make_page(title, note, Grid((3.4,)), legend)
     axes = page.rows[0][0]
     for curve, runs in zip(CURVES, curves, strict=True):

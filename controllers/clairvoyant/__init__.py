@@ -4,7 +4,6 @@ What belongs here is what needs the floor in advance, so that no law could run i
 Method and validity: docs/bracket.md, whose bracket is the interval between the two.
 """
 
-from controllers.clairvoyant.performance_bounds import ClairvoyantBounds
-from controllers.clairvoyant.solve import WEIGHTS, clairvoyant
+from controllers.clairvoyant.solve import WEIGHTS, ClairvoyantBounds, clairvoyant
 
 __all__ = ["WEIGHTS", "ClairvoyantBounds", "clairvoyant"]

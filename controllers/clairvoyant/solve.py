@@ -1,8 +1,9 @@
-"""From a scenario to the performance bounds of its seat, damper and floor."""
+"""From a scenario to the performance bounds of its seat, damper and floor, as curves over travel."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,13 +11,13 @@ from numpy.typing import ArrayLike
 from controllers.clairvoyant.bound import LowerBound, find_lower_bound
 from controllers.clairvoyant.envelope import TOP, DamperEnvelope, fit_envelope
 from controllers.clairvoyant.feasible import find_best_run
-from controllers.clairvoyant.performance_bounds import ClairvoyantBounds
 from controllers.clairvoyant.problem import ClairvoyantRun, HeldForceProblem
 from controllers.clairvoyant.transcription import Transcription, transcribe
 from seatsim.effects.base import ON_DAMPER, ON_SEAT, acts_on
 from seatsim.rig.drivers import SINGLE_MASS
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
+from seatsim.schema.content import Unwritten, written
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import name_of, register
 
@@ -26,6 +27,49 @@ _HOLD = 0.005
 """s; the force is held so long, as in a controller that samples every 5 ms."""
 UNKNOWN = (*ON_DAMPER, *ON_SEAT, "factors", "temperature", "frame_force", "plant")
 """Hooks of effects that change seat, damper or floor: the bounds are of the rig without them."""
+
+
+@dataclass(frozen=True)
+class ClairvoyantBounds:
+    """Bounds and runs of an ideal semi-active damper on one seat and floor, one for each weight; shape (K,) each.
+
+    The criterion is J = aw^2 + weight x^2 with the RMS Wk-weighted acceleration of the driver aw in m/s^2 and the RMS
+    travel x in m. No force within the damper's envelope has a J below `lower`; that of `force` (K, N), in N, held over
+    `step` seconds each, has the `acceleration` and the `travel`.
+    """
+
+    weights: Array
+    lower: Array
+    acceleration: Array
+    travel: Array
+    force: Unwritten[Array]
+    step: Unwritten[float]
+
+    @property
+    def reached(self) -> Array:
+        """J of the runs, shape (K,)."""
+        squares: Array = self.acceleration**2 + self.weights * self.travel**2
+        return squares
+
+    @property
+    @written()
+    def width(self) -> Array:
+        """sqrt(J reached / J bound) - 1, shape (K,): what is not known of the best damper."""
+        ratio: Array = np.sqrt(self.reached / self.lower) - 1
+        return ratio
+
+    def bound(self, travel: ArrayLike) -> Array:
+        """Return the aw in m/s^2 below which no damper comes at an RMS travel in m; the shape of `travel`."""
+        x = np.asarray(travel, dtype=np.float64)[..., None]
+        found: Array = np.sqrt(np.maximum(0.0, np.max(self.lower - self.weights * x**2, axis=-1)))
+        return found
+
+    def best(self, travel: ArrayLike) -> Array:
+        """Return the aw in m/s^2 of the runs at an RMS travel in m, linear between them; NaN short of the shortest."""
+        order = np.argsort(self.travel)
+        lowest = np.minimum.accumulate(self.acceleration[order])
+        found: Array = np.interp(np.asarray(travel), self.travel[order], lowest, left=np.nan)
+        return found
 
 
 @register("bracket", "clairvoyant", None)

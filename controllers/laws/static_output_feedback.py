@@ -20,7 +20,6 @@ from seatsim.rig.coil import Coil
 from seatsim.rig.control import FloorRecord, Floors, Measurement, State, law, no_floors
 from seatsim.rig.designs import unit_of_gain
 from seatsim.rig.plant import Plant
-from seatsim.rig.sampled_loop import build_sampled_loop
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param
@@ -155,8 +154,8 @@ class StaticOutputFeedback(NamedTuple):
         """Return the law with another weight of the travel, in 1/s^2."""
         return self._replace(weights=(self.weights or Weights())._replace(travel=weight))
 
-    def describe(self, plant: Plant, coil: Coil, sample_time: float, floors: Floors) -> str:
-        """Return in a line the synthesised gain, its norm, and its loop; nothing where the gain is stated."""
+    def describe(self, plant: Plant, coil: Coil, floors: Floors) -> str:
+        """Return in a line the synthesised gain, its norm and its margins; nothing where the gain is stated."""
         from controllers.synthesis import verify
 
         if self.weights is None:
@@ -169,9 +168,8 @@ class StaticOutputFeedback(NamedTuple):
         named = ", ".join(
             f"{value:.4g} {unit_of_gain(measure)} on {measure.replace('_', ' ')}" for value, measure in entries
         )
-        checks = self.checks(plant, coil, sample_time, gain)
         norm = f"gamma {max(loop.gamma for loop in loops):.4g}, {proven} for {len(loops)} plants"
-        return f"gain {named}; {norm}; sampled loop {checks['sampled loop']}; margins: {checks['margins']}"
+        return f"gain {named}; {norm}; margins: {self.margins(plant, coil, gain)}"
 
     def promise(self, plant: Plant, coil: Coil, gain: Array, floor: FloorRecord) -> Array:
         """Return zc'' in m/s^2, shape (N,), on a floor if the damper delivered all that is wanted, behind the coil."""
@@ -182,23 +180,17 @@ class StaticOutputFeedback(NamedTuple):
         return np.asarray(z[:, 1], dtype=np.float64)
 
     def with_gain(self, gain: Array) -> StaticOutputFeedback:
-        """Return the law with this gain in place of weights or a saved design."""
-        return StaticOutputFeedback(gain=tuple(gain[0].tolist()), measures=self.measures)
+        """Return the law with a stated gain."""
+        return self._replace(gain=tuple(gain.ravel().tolist()), design=None, weights=None)
 
-    def checks(self, plant: Plant, coil: Coil, sample_time: float, gain: Array) -> dict[str, str]:
-        """Return, in words, the margins of the scenario's own loop with coil and delay, and of its sampled loop."""
+    def margins(self, plant: Plant, coil: Coil, gain: Array) -> str:
+        """Return in words the margins of the loop that a gain closes with a seat and its coil."""
         seat = build_generalised_plant(plant, Weights(), ActuatorLag(coil.rate), measures=self.measures)
         found = compute_margins(LinearSystem(seat.A, seat.B2, seat.C2, np.zeros((len(seat.C2), 1))), gain)
-        loop = build_sampled_loop(self._compile(gain), (), plant, coil, sample_time, step=sample_time)
-        radius = loop.radius(round(coil.delay / sample_time))
         rises = "any" if found.gain > _UNBOUNDED else f"{found.gain:.3g}"
         turns = "any" if math.isinf(found.phase) else f"{found.phase:.3g} degrees"
         waits = "any" if math.isinf(found.delay) else f"{1000 * found.delay:.3g} ms"
-        verdict = "stable" if radius < 1 else "UNSTABLE"
-        return {
-            "margins": f"gain {rises}, phase {turns}, delay {waits}, with the coil's lag",
-            "sampled loop": f"{verdict} at {1000 * sample_time:g} ms: spectral radius {radius:.5f}",
-        }
+        return f"gain {rises}, phase {turns}, delay {waits}, with the coil's lag"
 
 
 @lru_cache(maxsize=64)

@@ -24,6 +24,7 @@ from seatsim.cli.commands.runs import compare, run
 from seatsim.cli.commands.scenarios import explore, export, synthesise
 from seatsim.cli.commands.standards import comfort, seat_test
 from seatsim.cli.commands.sweeps import sweep, sweep_report
+from seatsim.cli.options import with_help
 from seatsim.cli.terminal import answer_as_json, answer_error, fail, print_any_letter, refuse, say, warn
 from seatsim.compilation.messages import explain, is_compilation
 from seatsim.schema.errors import InputError, SeatsimError
@@ -96,9 +97,9 @@ _GROUPS: tuple[tuple[Callable[..., None], ...], ...] = (
     (new, check, schema, explore, reproduce),
 )
 for command in chain.from_iterable(_GROUPS):
-    app.command(cls=_Command)(command)
-app.command("import", cls=_Command)(import_data)
-app.command("inspect")(inspect_data)
+    app.command(cls=_Command)(with_help(command))
+app.command("import", cls=_Command)(with_help(import_data))
+app.command("inspect")(with_help(inspect_data))
 app.add_typer(blind, name="blind")
 
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import inspect
+import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, get_type_hints
 
 import typer
 
@@ -12,6 +14,17 @@ from seatsim.cli.terminal import answer_as_json
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import check_folder
 from seatsim.schema.modules import use_all
+
+
+def with_help(command: Callable[..., None]) -> Callable[..., None]:
+    """Give the options and arguments of a command the help that its docstring has below `Options:`."""
+    text, _, listed = inspect.cleandoc(command.__doc__ or "").partition("\n\nOptions:\n")
+    helps = dict(re.findall(r"^    (\w+): (.+(?:\n        .+)*)", listed, re.MULTILINE))
+    hints = get_type_hints(command, include_extras=True)
+    for name, words in helps.items():
+        hints[name].__metadata__[0].help = " ".join(words.split())
+    command.__doc__, command.__annotations__ = text, hints
+    return command
 
 
 def _use_files(files: list[Path] | None) -> list[Path]:

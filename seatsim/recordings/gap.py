@@ -33,6 +33,15 @@ class GapFigures(NamedTuple):
     channels: dict[str, float]
 
 
+class ReplayedPair(NamedTuple):
+    """A run, measured and replayed: time in s, channels in SI units, shape (N,) each, and the channels' units."""
+
+    time: Array
+    measured: dict[str, Array]
+    simulated: dict[str, Array]
+    units: dict[str, str]
+
+
 @dataclass(frozen=True)
 class Gap:
     """The gap of a simulation, in standard deviations of the measured signals: the content of `gap.json`."""
@@ -45,39 +54,15 @@ class Gap:
     """The same two for the stated noise alone."""
     notes: tuple[str, ...] = ()
     """A sentence for each warning about the recording."""
+    replayed: Unwritten[Mapping[str, ReplayedPair]] = field(
+        default_factory=dict, repr=False, compare=False, kw_only=True
+    )
+    """The runs that were compared."""
 
     def _repr_html_(self) -> str:
         floor = {name: value or "not stated" for name, value in self.floor.channels.items()}
         stated = {"overall": self.floor.overall or "not stated", "channels": floor}
         return show_record(to_content(self) | {"floor": stated})
-
-
-class ReplayedPair(NamedTuple):
-    """A run, measured and replayed: time in s, channels in SI units, shape (N,) each, and the channels' units."""
-
-    time: Array
-    measured: dict[str, Array]
-    simulated: dict[str, Array]
-    units: dict[str, str]
-
-
-def replay_every_run(scenario: str | Path | Scenario, recording: str | Path | Recording) -> dict[str, ReplayedPair]:
-    """Return every run of a recording, measured and replayed, as `gap` compares them.
-
-    Raises:
-        InputError: the scenario does not fit the rig.
-        RunError: a replay could not be carried to its end.
-    """
-    scenario, recording = _load(scenario, recording)
-    recording = without_gravity(recording)
-    units = {name: channel.unit for name, channel in recording.channels.items()}
-    found = {}
-    for run in recording.runs:
-        measured, simulated = replay(scenario, recording, run)
-        rows = len(next(iter(simulated.values())))
-        time = LEFT_OUT + np.arange(rows) / recording.header.sample_rate
-        found[run] = ReplayedPair(time, measured, simulated, units)
-    return found
 
 
 def gap(scenario: str | Path | Scenario, recording: str | Path | Recording, runs: Sequence[str] = ()) -> Gap:
@@ -106,7 +91,8 @@ def measure_gap(scenario: str | Path | Scenario, recording: str | Path | Recordi
         RunError: a replay could not be carried to its end.
     """
     scenario, recording = _load(scenario, recording)
-    return compare_signals(recording, *pool_runs(scenario, recording, list(runs) or list(recording.runs)))
+    replayed = {run: _replay(scenario, recording, run) for run in runs or recording.runs}
+    return replace(compare_signals(recording, *_pool(recording, replayed)), replayed=replayed)
 
 
 def compare_signals(recording: Recording, measured: Signals, simulated: Signals) -> Gap:
@@ -127,10 +113,19 @@ def pool_runs(
     scenario: Scenario, recording: Recording, runs: Sequence[str]
 ) -> tuple[dict[str, Array], dict[str, Array]]:
     """Return measured and simulated channels that are compared, over all samples of the runs, shape (N,) each."""
-    pairs = [replay(scenario, recording, run) for run in runs]
+    return _pool(recording, {run: _replay(scenario, recording, run) for run in runs})
+
+
+def _replay(scenario: Scenario, recording: Recording, run: str) -> ReplayedPair:
+    measured, simulated = replay(scenario, recording, run)
+    time = LEFT_OUT + np.arange(len(next(iter(simulated.values())))) / recording.header.sample_rate
+    return ReplayedPair(time, measured, simulated, {name: each.unit for name, each in recording.channels.items()})
+
+
+def _pool(recording: Recording, replayed: Mapping[str, ReplayedPair]) -> tuple[dict[str, Array], dict[str, Array]]:
     names = [name for name in COMPARED[recording.header.rig] if name in recording.channels]
-    measured = {name: np.concatenate([m[name] for m, _ in pairs]) for name in names}
-    simulated = {name: np.concatenate([s[name] for _, s in pairs]) for name in names}
+    measured = {name: np.concatenate([pair.measured[name] for pair in replayed.values()]) for name in names}
+    simulated = {name: np.concatenate([pair.simulated[name] for pair in replayed.values()]) for name in names}
     loud = loud_channels(recording, measured)
     if not loud:
         raise InputError(f"{recording.folder}: no recorded output stands above its noise; there is nothing to compare")
@@ -183,7 +178,7 @@ def forecast_gap(scenario: str | Path | Scenario, recording: str | Path | Record
         return Forecast(math.nan, {}, GapFigures(math.nan, {}), notes, predicted=predicted)
     before, after = measure_gap(recording.nominal, recording), measure_gap(scenario, recording)
     measured = MeasuredShrink(before.overall, after.overall, 1.0 - after.overall / before.overall, before.channels)
-    return Forecast(after.overall, after.channels, after.floor, notes, measured, predicted=predicted)
+    return Forecast(**{**vars(after), "notes": notes}, measured=measured, predicted=predicted)
 
 
 def has_outputs(recording: Recording) -> bool:

@@ -5,7 +5,7 @@ The classes that implement them stand with the synthesis, which `seatsim` never 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple, Protocol, runtime_checkable
 
@@ -164,26 +164,21 @@ class TravelLimitedLaw(Protocol):
 
 @runtime_checkable
 class DescribedLaw(Protocol):
-    """A law that says what its synthesis found, and what its linear loop promises."""
+    """A law that says what its synthesis found."""
 
-    def describe(self, plant: Plant, coil: Coil, sample_time: float, floors: Floors) -> str:
+    def describe(self, plant: Plant, coil: Coil, floors: Floors) -> str:
         """Return a line on gain, norm and margins of the design; empty where nothing was synthesised."""
 
 
 @runtime_checkable
-class PromisingLaw(Protocol):
-    """A law whose linear loop can be simulated without the limits of a damper."""
+class CheckedLaw(Protocol):
+    """A law whose loop can be judged with the gain of a design."""
+
+    def margins(self, plant: Plant, coil: Coil, gain: Array) -> str:
+        """Return in words the margins of the loop that a gain closes with seat and coil."""
+
+    def with_gain(self, gain: Array) -> Law:
+        """Return the law with a stated gain."""
 
     def promise(self, plant: Plant, coil: Coil, gain: Array, floor: FloorRecord) -> Array:
         """Return the driver's acceleration in m/s^2 on a floor, shape (N,), with all of the wanted force."""
-
-    def with_gain(self, gain: Array) -> Law:
-        """Return the law with this gain in place of what it was to be found from."""
-
-
-@runtime_checkable
-class CheckedLaw(Protocol):
-    """A law that can assess its loop with a gain: margins, stability of the sampled loop."""
-
-    def checks(self, plant: Plant, coil: Coil, sample_time: float, gain: Array) -> Mapping[str, str]:
-        """Return, by heading, sentences on the loop that a gain closes with seat, coil and sampling."""

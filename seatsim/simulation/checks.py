@@ -125,6 +125,16 @@ def _silence_sensors(scenario: Scenario) -> Scenario:
     return replace(scenario, control=replace(control, sensors=sensors))
 
 
+def describe_sampled_loop(scenario: Scenario) -> str:
+    """Return in words whether the sampled loop of a scenario is stable, or why its law has none."""
+    loop = _sampled_loop(scenario)
+    if not isinstance(loop, SampledLoop):
+        return loop
+    radius = loop.radius(_delay_samples(scenario, loop))
+    verdict = "stable" if radius < 1 else "UNSTABLE"
+    return f"{verdict} at {1000 * loop.sample_time:g} ms: spectral radius {radius:.5f}"
+
+
 def _loop_figure(scenario: Scenario, name: str) -> float:
     loop = _sampled_loop(scenario)
     if not isinstance(loop, SampledLoop):

@@ -8,12 +8,13 @@ from functools import partial
 
 from seatsim.metrics.comfort import weighted_rms
 from seatsim.rig.control import FloorRecord
-from seatsim.rig.designs import Clipping, DescribedLaw, PromisingLaw
+from seatsim.rig.designs import CheckedLaw, Clipping, DescribedLaw
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
+from seatsim.simulation.checks import describe_sampled_loop
 from seatsim.simulation.design import record_floors, settle_travel
 from seatsim.simulation.runs import run_one
-from seatsim.simulation.simulate import measure_peak_travel, sample_period
+from seatsim.simulation.simulate import measure_peak_travel
 
 
 def describe_designs(scenarios: Iterable[Scenario]) -> list[str]:
@@ -25,16 +26,16 @@ def describe_designs(scenarios: Iterable[Scenario]) -> list[str]:
             continue
         law = settle_travel(scenario, control, measure_peak_travel)
         if isinstance(law, DescribedLaw):
-            floors, period = partial(record_floors, scenario, control), sample_period(scenario.solver.step, control)
-            text = law.describe(plant, scenario.coil, period, floors)
-            found.setdefault(text, str(scenario.label.get("variant", scenario.title)))
+            text = law.describe(plant, scenario.coil, partial(record_floors, scenario, control))
+            loop = f"{text}; sampled loop {describe_sampled_loop(scenario)}" if text else ""
+            found.setdefault(loop, str(scenario.label.get("variant", scenario.title)))
     return [f"{name}: {text}" for text, name in found.items() if text]
 
 
 def measure_clipping(scenario: Scenario, gain: Array) -> Clipping | None:
     """Return what the limits of the damper cost a gain in a run of a scenario; None where its law promises nothing."""
     control, plant = scenario.control, scenario.plant
-    if control is None or plant is None or not isinstance(control.law, PromisingLaw):
+    if control is None or plant is None or not isinstance(control.law, CheckedLaw):
         return None
     run = run_one(replace(scenario, control=replace(control, law=control.law.with_gain(gain))))
     floor = FloorRecord(run.history.step, run.history["floor_acceleration"])

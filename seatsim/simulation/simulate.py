@@ -42,7 +42,7 @@ from seatsim.simulation.inputs import NONE, Forces
 from seatsim.simulation.result import History
 from seatsim.simulation.validity import explain_divergence
 
-DEFAULT_SAMPLE_TIME = 0.001
+_DEFAULT_SAMPLE_TIME = 0.001
 """Seconds between two samples of a law that states none, as common for embedded controllers of such seats."""
 _SAME_TIME = 1e-9
 """Seconds by which a sample time may differ from a whole number of steps, for the sake of rounding."""
@@ -151,7 +151,7 @@ def sample_period(step: float, control: Control) -> float:
 def _count_steps(step: float, control: Control) -> int:
     """Return how many steps of the simulation lie between two samples of the law."""
     if control.sample_time is None:
-        return 1 if specification_of(type(control.law)).replays else max(1, round(DEFAULT_SAMPLE_TIME / step))
+        return 1 if specification_of(type(control.law)).replays else max(1, round(_DEFAULT_SAMPLE_TIME / step))
     every = round(control.sample_time / step)
     if every < 1 or abs(every * step - control.sample_time) > _SAME_TIME:
         raise InputError(

@@ -177,16 +177,8 @@ def _simulate(task: _Task) -> list[Outcome]:
 
 _MOST_TASKS = 256
 """Tasks of an array, well below the 1001 that Slurm permits unless it is configured otherwise."""
-_SCRIPT = """\
-#!/bin/bash
-# {runs} runs of {file}, in {tasks} shares. Submit with: sbatch {script}
-# A task that ends early goes on where it was when it is submitted again: sbatch --array=NUMBER {script}
-#SBATCH --job-name={name}
-#SBATCH --array=1-{tasks}
-#SBATCH --cpus-per-task=1
-#SBATCH --output={logs}
-exec {command} --part "$SLURM_ARRAY_TASK_ID/{tasks}" --jobs "${{SLURM_CPUS_PER_TASK:-1}}" --resume
-"""
+_SCRIPT = Path(__file__).with_name("slurm.sh")
+"""Array script, with the names of what is put in."""
 
 
 def write_slurm(
@@ -208,7 +200,7 @@ def write_slurm(
     words += [word for path in own_code for word in ("--with", str(path.resolve()))]
     logs = str(folder.resolve()).replace("%", "%%") + "/slurm-%a.log"  # a single % begins a pattern of Slurm
     names = {"file": file.name, "name": f"seatsim-{file.stem}", "script": str(script), "logs": logs}
-    text = _SCRIPT.format(
+    text = _SCRIPT.read_text(encoding="utf-8").format(
         runs=plan.runs,
         command=shlex.join(words),
         tasks=min(part_of(plan.runs - 1) + 1, _MOST_TASKS),

@@ -14,10 +14,9 @@ from seatsim.blind.carrier.make import UNTOUCHED, make_on_carrier, take_turns
 from seatsim.blind.carrier.power import SIZES, Power, Trial, measure_power
 from seatsim.blind.carrier.recorded import read_carrier
 from seatsim.blind.score.score import score_verdicts
-from seatsim.blind.score.tables import tables
 from seatsim.blind.score.verdicts import Verdict, is_right, is_wrong_name
 from seatsim.blind.sealed import EFFECTS, unseal
-from seatsim.cli.outputs.diagnosis_tables import make_power_table
+from seatsim.cli.outputs.blind_tables import make_power_table, make_score_tables
 from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
 
@@ -154,4 +153,4 @@ def test_a_score_counts_wrong_names_and_sizes_and_leaves_the_untouched_out() -> 
     assert found.untouched == {"driver.mass": 1}
     assert [(s.parameter, s.true, s.found) for s in found.found_sizes] == [("time", 0.01, 0.012)]
     assert json.dumps(to_content(found))
-    assert "sizes of effects that were found" in [str(table.title) for table in tables(found)]
+    assert "sizes of effects that were found" in [str(table.title) for table in make_score_tables(found)]

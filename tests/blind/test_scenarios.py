@@ -11,8 +11,7 @@ import pytest
 from seatsim.blind.make.compose import find_severity
 from seatsim.blind.sealed import BLOCKS, EFFECTS
 from seatsim.blind.truth.experiment import Readings, read_channels, simulate_run
-from seatsim.blind.truth.faults import Changes
-from seatsim.blind.truth.outside_faults import SCENARIOS, scenarios_of
+from seatsim.blind.truth.faults import SCENARIOS, Changes, scenarios_of
 
 from .experiments import small_experiment
 

@@ -20,9 +20,9 @@ from seatsim.blind.score.cases import (
 )
 from seatsim.blind.score.score import score, score_verdicts
 from seatsim.blind.score.shrink import score_shrink
-from seatsim.blind.score.tables import tables
 from seatsim.blind.score.verdicts import Verdict, is_right, read_verdict
 from seatsim.blind.sealed import Sealed, new_key, seal
+from seatsim.cli.outputs.blind_tables import make_score_tables
 from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
 
@@ -75,7 +75,7 @@ def test_figures_of_a_small_set() -> None:
     assert found.brier == pytest.approx((0.9**2 + 1.0) / (5 * 24))
     json.dumps(to_content(found))
     console = Console(record=True, width=200, file=io.StringIO())
-    for table in tables(found):
+    for table in make_score_tables(found):
         console.print(table)
     assert "right block first" in console.export_text()
 

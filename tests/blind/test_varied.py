@@ -18,7 +18,7 @@ from seatsim.blind.make.folder import encode_recording, recording_header, write_
 from seatsim.blind.make.make import make
 from seatsim.blind.make.materiality import CommandedRuns
 from seatsim.blind.sealed import KINDS, unseal
-from seatsim.blind.truth import vehicle_floor
+from seatsim.blind.truth import excitation
 from seatsim.blind.truth.excitation import NoiseColour, colour_noise
 from seatsim.blind.truth.experiment import CHANNELS, Experiment, read_channels, simulate_run
 from seatsim.blind.truth.faults import Changes
@@ -125,7 +125,7 @@ def test_the_colour_of_a_noise() -> None:
 def test_floors_of_vehicles_are_broad_and_not_stationary() -> None:
     rng = np.random.default_rng(4)
     for _ in range(6):
-        floor = vehicle_floor.draw_vehicle_floor(rng, vehicle_floor.draw_vehicle(rng), 24.0, 0.3)
+        floor = excitation.draw_vehicle_floor(rng, excitation.draw_vehicle(rng), 24.0, 0.3)
         seconds = np.std(floor[: 24 * 2000].reshape(24, -1), axis=1)
         assert 0.39 < np.std(floor) < 2.3 and np.max(seconds) > 1.8 * np.min(seconds)
         f, power = welch(floor, EXCITATION_RATE, nperseg=8000)

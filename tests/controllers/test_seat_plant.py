@@ -1,8 +1,11 @@
 """The seat's generalised plant with weights, lag and variations, and the law that uses it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+import seatsim
 from controllers.laws.static_output_feedback import StaticOutputFeedback
 from controllers.linear_systems import LinearSystem
 from controllers.seat_plant import ActuatorLag, Weights, build_actuator, build_generalised_plant
@@ -14,7 +17,9 @@ from seatsim.rig.coil import Coil
 from seatsim.rig.control import prepare_law
 from seatsim.rig.plant import Plant
 from seatsim.rig.sensors import Sensors
+from seatsim.scenario.scenario import Control
 from seatsim.schema.errors import InputError
+from seatsim.simulation.checks import describe_sampled_loop
 
 SEAT = Plant(20.0, 80.0, 4600.0, 200.0, 60000.0, 1500.0)
 OMEGA = np.geomspace(0.5, 300.0, 40)
@@ -101,9 +106,10 @@ def test_law_designs_for_the_worst_of_drivers_and_factors():
     assert all(loop.gamma <= design.gamma and loop.poles.real.max() < 0 for loop in design.loops)
 
 
-def test_checks_tell_of_margins_and_the_sampled_loop():
-    law = StaticOutputFeedback(gain=(0.0, 2000.0))
-    fine = law.checks(SEAT, Coil(), 0.005, np.array([[0.0, 2000.0]]))
-    assert "gain any" in fine["margins"] and fine["sampled loop"].startswith("stable at 5 ms")
-    wild = law.checks(SEAT, Coil(delay=0.01), 0.005, np.array([[0.0, 2e5]]))
-    assert wild["sampled loop"].startswith("UNSTABLE")
+@pytest.mark.parametrize(("gain", "delay", "said"), [(2000.0, 0.0, "stable at 5 ms"), (2e5, 0.01, "UNSTABLE")])
+def test_a_design_is_judged_by_its_margins_and_its_sampled_loop(gain, delay, said):
+    law, stated = StaticOutputFeedback(weights=Weights()), np.array([[0.0, gain]])
+    assert "gain any" in law.margins(SEAT, Coil(), stated)
+    control = Control(law.with_gain(stated), 0.005, None)
+    scenario = replace(seatsim.load("quickstart")[0], control=control, coil=Coil(delay=delay), effects=())
+    assert describe_sampled_loop(scenario).startswith(said)

@@ -14,9 +14,10 @@ from numpy.random import Generator
 from seatsim.blind.carrier.damper import draw_damper_changes
 from seatsim.blind.carrier.readings import draw_delays, draw_limits, draw_sensor_changes, draw_skewed_logs
 from seatsim.blind.carrier.recorded import Altered, Carrier, Change, encode_carrier, read_carrier
-from seatsim.blind.carrier.replays import MATERIAL_SHARE, Ruler
+from seatsim.blind.carrier.replays import Ruler
 from seatsim.blind.carrier.seat import draw_seat_changes
 from seatsim.blind.make.make import CaseFiles, make_set
+from seatsim.blind.make.materiality import MATERIAL_SHARE
 from seatsim.blind.sealed import Label
 from seatsim.schema.errors import InputError
 from seatsim.schema.processes import Progress

@@ -13,13 +13,12 @@ import numpy as np
 from scipy.signal import lfilter, savgol_filter
 
 from seatsim.blind.make.folder import encode_table, encode_yaml
+from seatsim.blind.make.materiality import LEFT_OUT
 from seatsim.recordings.recording import HEADER, load_recording
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.yaml_source import Source
 
-_LEFT_OUT = 1.0
-"""s; start of each run that no gap counts (contract, section 4)."""
 _LEAST_ROWS = 200
 """Of a run beyond that."""
 Table = Mapping[str, Array]
@@ -63,7 +62,7 @@ class Carrier:
 
     def pooled(self, channel: str) -> Array:
         """Return a channel over all runs, without the seconds that no gap counts."""
-        skip = round(_LEFT_OUT / self.step)
+        skip = round(LEFT_OUT / self.step)
         return np.concatenate([table[channel][skip:] for table in self.tables.values()])
 
 
@@ -86,7 +85,7 @@ def read_carrier(folder: Path) -> Carrier:
     """
     recording = load_recording(folder)
     tables = {run: recording.table(run) for run in recording.runs}
-    least = round(_LEFT_OUT * recording.header.sample_rate) + _LEAST_ROWS
+    least = round(LEFT_OUT * recording.header.sample_rate) + _LEAST_ROWS
     for run, table in tables.items():
         if len(next(iter(table.values()))) < least:
             raise InputError(f"{folder}, run {run}: shorter than {least} rows; its first second is left out; drop it")

@@ -8,17 +8,15 @@ from pathlib import Path
 
 import numpy as np
 
-from seatsim.blind.carrier.recorded import Carrier, Content, encode_carrier, number, section
+from seatsim.blind.carrier.recorded import Carrier, Content, number, section
 from seatsim.blind.make.folder import encode_yaml
 from seatsim.blind.make.materiality import bounded_least_squares
-from seatsim.recordings.recording import ChannelEntry, load_recording
+from seatsim.recordings.recording import HEADER, Recording, load_recording
 from seatsim.recordings.replay import replay_table, select_compared, stands_out
 from seatsim.scenario.loading import single
 from seatsim.schema.arrays import Array
 from seatsim.schema.guarded import temporary_folder
 
-MATERIAL_SHARE = 0.05
-"""Of a channel's standard deviation (contract, section 4)."""
 _UNKNOWN_TOLERANCE = 0.05
 """Stands for a `parameter_tolerance` that is no single number."""
 _ZERO_SCALES = {"f0": 100.0, "fc_a": 100.0, "alpha_a": 100.0}
@@ -36,7 +34,8 @@ class Ruler:
 
     def __init__(self, carrier: Carrier) -> None:
         self.carrier = carrier
-        self.before = _residuals(carrier)
+        self.recording = _load(carrier)
+        self.before = self._residuals(carrier)
         self.spread = {name: float(np.std(carrier.pooled(name))) for name in self.before}
         self.columns = self._sensitivities()
 
@@ -44,7 +43,7 @@ class Ruler:
         """Return how the residuals change where each parameter is up by its tolerance, in std, end to end."""
         found = []
         for nominal in _varied_nominals(self.carrier):
-            moved = _residuals(dataclasses.replace(self.carrier, nominal=nominal))
+            moved = self._residuals(dataclasses.replace(self.carrier, nominal=nominal))
             column = self._stack({name: moved[name] - self.before[name] for name in self.before})
             if np.all(np.isfinite(column)):
                 found.append(column)
@@ -78,7 +77,7 @@ class Ruler:
 
     def _change(self, changed: Carrier) -> Array:
         """Return what a change does to measured minus simulated, in std, end to end; NaN where channels are lost."""
-        after = _residuals(changed)
+        after = self._residuals(changed)
         if set(after) != set(self.before):
             return np.full(sum(map(len, self.before.values())), np.nan)
         return self._stack({name: after[name] - self.before[name] for name in self.before})
@@ -89,35 +88,37 @@ class Ruler:
         J = np.column_stack(self.columns)
         return np.asarray(J @ bounded_least_squares(J, g))
 
+    def _residuals(self, carrier: Carrier) -> _Residuals:
+        """Return measured minus simulated of the channels that stand above their noise."""
+        scenario, rate = single(carrier.nominal), self.recording.header.sample_rate
+        parts: dict[str, list[Array]] = {}
+        for table in carrier.tables.values():
+            measured = select_compared(table, carrier.rig, rate)
+            for name, values in replay_table(scenario, self.recording, table).items():
+                parts.setdefault(name, []).append(measured[name] - values)
+        pooled = {name: np.concatenate(values) for name, values in parts.items()}
+        return {n: values for n, values in pooled.items() if stands_out(carrier.pooled(n), carrier.noise(n))}
+
     def gap(self, changed: Carrier) -> float:
         """Return the overall gap of a changed carrier, in std."""
-        after = _residuals(changed)
+        after = self._residuals(changed)
         return float(np.sqrt(np.mean([np.mean((after[n] / self.spread[n]) ** 2) for n in self.before])))
 
 
-def _residuals(carrier: Carrier) -> _Residuals:
-    """Return measured minus simulated of the channels that stand above their noise.
+def _load(carrier: Carrier) -> Recording:
+    """Return the header of a carrier, whose displacement is interpolated in the replay of a bench.
 
-    The displacement of a bench is interpolated, not smoothed, which is much faster and enough for a size.
+    Smoothing it would take much longer, and a size needs none.
     """
-    with temporary_folder() as temporary:
-        folder = Path(temporary)
-        for name, data in encode_carrier(carrier, ()).items():
-            (folder / name).write_bytes(data)
-        (folder / "recording.yaml").write_bytes(encode_yaml({**carrier.header, "nominal": "nominal.yaml"}))
+    with temporary_folder() as folder:
+        header = {**carrier.header, "nominal": "nominal.yaml"}
+        (Path(folder) / HEADER).write_bytes(encode_yaml(header))
+        (Path(folder) / "nominal.yaml").write_bytes(encode_yaml(carrier.nominal))
         recording = load_recording(folder)
-        scenario = single(folder / "nominal.yaml")
-    if "displacement" in recording.channels:
-        channels = recording.channels | {"displacement": ChannelEntry("m", 0.0)}
-        recording = dataclasses.replace(recording, channels=channels)
-    rate = recording.header.sample_rate
-    parts: dict[str, list[Array]] = {}
-    for table in carrier.tables.values():
-        measured = select_compared(table, carrier.rig, rate)
-        for name, values in replay_table(scenario, recording, table).items():
-            parts.setdefault(name, []).append(measured[name] - values)
-    pooled = {name: np.concatenate(values) for name, values in parts.items()}
-    return {n: values for n, values in pooled.items() if stands_out(carrier.pooled(n), carrier.noise(n))}
+    smooth = {
+        name: entry._replace(noise_rms=0.0) for name, entry in recording.channels.items() if name == "displacement"
+    }
+    return dataclasses.replace(recording, channels=recording.channels | smooth)
 
 
 def _tolerance(carrier: Carrier) -> float:

@@ -22,7 +22,8 @@ _SUBSTEPS = 4
 """Of the integration in each row: friction is stiff."""
 _Force = Callable[[float, float, float, float, float], tuple[float, float]]
 """Force on frame and driver from suspension x, v, cushion xc, vc and the driver's acceleration."""
-_Parameters = Mapping[str, float]
+_Putting = tuple[Mapping[str, float], Callable[[], _Force]]
+"""True parameters, and what begins the force in a run: it remembers what went before."""
 
 
 class _SeatMotion(NamedTuple):
@@ -49,28 +50,32 @@ def draw_seat_changes(carrier: Carrier, rng: Generator) -> list[Change]:
     stop = float(rng.uniform(0.4, 0.7)) * peak
     seed, step = int(rng.integers(2**31)), carrier.step
 
-    def change(effect: str, form: str, largest: float, at: Callable[[float], tuple[_Parameters, _Force]]) -> Change:
+    def change(effect: str, form: str, largest: float, at: Callable[[float], _Putting]) -> Change:
         def alter(amount: float) -> Altered:
-            # a force remembers what went before, so that each run begins with one of its own
+            parameters, begin = at(amount)
             tables = {
-                run: {**table, **_respond(carrier, plant, table, motions[run], at(amount)[1])}
+                run: {**table, **_respond(carrier, plant, table, motions[run], begin())}
                 for run, table in carrier.tables.items()
             }
-            return Altered(dataclasses.replace(carrier, tables=tables), at(amount)[0])
+            return Altered(dataclasses.replace(carrier, tables=tables), parameters)
 
         return Change(effect, form, "", (0.0, largest), alter)
 
-    def stiffen(a: float) -> tuple[_Parameters, _Force]:
-        return {"rise": a / travel**2}, _cubic(a * stiffness / travel**2)
+    def rub(a: float) -> _Putting:
+        return {"force": a * force}, lambda: _friction(a * force, width)
 
-    def push(a: float) -> tuple[_Parameters, _Force]:
-        return {}, _random(a * force, seed, step)
+    def stiffen(a: float) -> _Putting:
+        return {"rise": a / travel**2}, lambda: _cubic(a * stiffness / travel**2)
+
+    def push(a: float) -> _Putting:
+        drawn = np.random.default_rng(seed)
+        return {}, lambda: _random(a * force, drawn, step)
 
     return [
-        change("suspension.friction", "F sgn v", 1.0, lambda a: ({"force": a * force}, _friction(a * force, width))),
+        change("suspension.friction", "F sgn v", 1.0, rub),
         change("suspension.progressive_spring", "cubic", 3.0, stiffen),
-        change("suspension.end_stop", "linear buffer", 5.0, lambda a: ({}, _buffer(a * stiffness, stop))),
-        change("driver.mass", "heavier", 0.6, lambda a: ({"change": a * mass}, _mass(a * mass))),
+        change("suspension.end_stop", "linear buffer", 5.0, lambda a: ({}, lambda: _buffer(a * stiffness, stop))),
+        change("driver.mass", "heavier", 0.6, lambda a: ({"change": a * mass}, lambda: _mass(a * mass))),
         change("floor.unmeasured_input", "random force on the frame", 3.0, push),
     ]
 
@@ -160,9 +165,9 @@ def _mass(change: float) -> _Force:
     return lambda x, v, xc, vc, driver: (0.0, -change * driver)
 
 
-def _random(size: float, seed: int, step: float) -> _Force:
-    """Return a force with a spectrum between 1 and 8 Hz, of two minutes."""
-    white = np.random.default_rng(seed).standard_normal(round(120.0 / step))
+def _random(size: float, rng: Generator, step: float) -> _Force:
+    """Return a force with a spectrum between 1 and 8 Hz, of two minutes, another one in every run."""
+    white = rng.standard_normal(round(120.0 / step))
     shaped = sosfiltfilt(butter(2, (1.0, 8.0), "bandpass", fs=1.0 / step, output="sos"), white)
     values = iter(np.repeat(size * shaped / np.std(shaped), _SUBSTEPS))
     return lambda x, v, xc, vc, driver: (float(next(values)), 0.0)

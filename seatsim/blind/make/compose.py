@@ -14,7 +14,7 @@ from seatsim.blind.make.draw_experiment import SCATTER, draw_experiment
 from seatsim.blind.make.draw_varied import draw_varied_experiment
 from seatsim.blind.sealed import EFFECTS, KINDS, Kind
 from seatsim.blind.truth.experiment import CHANNELS, COMPARED, Experiment
-from seatsim.blind.truth.outside_faults import scenarios_of
+from seatsim.blind.truth.faults import scenarios_of
 from seatsim.schema.errors import InputError, nearest
 
 _PRESETS = ("mixed", "varied", "null", "background")

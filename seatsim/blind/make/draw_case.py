@@ -13,8 +13,7 @@ from seatsim.blind.make.compose import CaseSpecification, find_severity
 from seatsim.blind.make.materiality import CommandedRuns, FaultlessRig, collinearity
 from seatsim.blind.sealed import EFFECTS, Label
 from seatsim.blind.truth.experiment import CHANNELS, Experiment, Readings, read_channels, simulate_run
-from seatsim.blind.truth.faults import Changes, Context, FaultScenario, Shape
-from seatsim.blind.truth.outside_faults import SCENARIOS, scenarios_of
+from seatsim.blind.truth.faults import SCENARIOS, Changes, Context, FaultScenario, Shape, scenarios_of
 from seatsim.schema.errors import RunError
 
 _ATTEMPTS = 8

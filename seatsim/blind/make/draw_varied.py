@@ -12,10 +12,9 @@ from numpy.random import Generator
 from seatsim.blind.make import draw_experiment as standard
 from seatsim.blind.make.materiality import COARSE_STEP, CommandedRuns
 from seatsim.blind.truth import coil
-from seatsim.blind.truth.excitation import NoiseColour, draw_current_steps
+from seatsim.blind.truth.excitation import NoiseColour, draw_current_steps, draw_vehicle, draw_vehicle_floor
 from seatsim.blind.truth.experiment import Experiment, RunPlan, simulate_run
 from seatsim.blind.truth.faults import Changes, FrameForce
-from seatsim.blind.truth.vehicle_floor import draw_vehicle, draw_vehicle_floor
 from seatsim.schema.arrays import Array
 
 SAMPLE_RATES = (256.0, 400.0, 500.0, 512.0, 800.0, 1000.0)

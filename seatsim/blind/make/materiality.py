@@ -24,11 +24,11 @@ from seatsim.blind.truth.faults import Changes, Context
 from seatsim.blind.truth.rig import RigMotion
 from seatsim.schema.arrays import Array
 
-_MATERIAL_SHARE = 0.05
+MATERIAL_SHARE = 0.05
 """Of a channel's spread (contract, section 4)."""
 _NOISE_FACTOR = 3.0
 """A channel is compared where its spread is at least so many times its noise (contract, section 4)."""
-_LEFT_OUT = 1.0
+LEFT_OUT = 1.0
 """Seconds at the start of each run that no gap counts (contract, section 4)."""
 COARSE_STEP = 2.5e-4
 """Step of the simulations that only measure sizes, s: two and a half times as fast as those that are recorded."""
@@ -61,7 +61,7 @@ class CommandedRuns:
     @property
     def left_out(self) -> int:
         """Rows at the start of each run that no gap counts."""
-        return round(_LEFT_OUT * self.experiment.sample_rate)
+        return round(LEFT_OUT * self.experiment.sample_rate)
 
     def simulate(self, changes: Changes) -> list[RigMotion]:
         """Return the motion of each run; sensor faults do not change it, so one simulation serves all of those."""
@@ -106,7 +106,7 @@ class CommandedRuns:
             response[name] = with_it - self._pooled(rest, name)
             if replayed is not None:
                 response[name] -= replayed[name]
-            limits[name] = max(_MATERIAL_SHARE * spread, noise)
+            limits[name] = max(MATERIAL_SHARE * spread, noise)
         return response, limits
 
     def _response_of_replay(self, fault: Changes, others: Changes, shown: list[Readings]) -> dict[str, Array]:

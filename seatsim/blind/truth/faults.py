@@ -1,18 +1,22 @@
-"""What a fault scenario is: the effect and block it stands for, how its shape is drawn, how strong it can be.
+"""What a fault scenario is: the effect it stands for, how its shape is drawn, how strong it can be, what it changes.
 
-`damper_faults` and `seat_faults` hold the forms of the contract's effects, `outside_faults` what a real rig may do
-besides. None holds an equation of motion: those are in `damper`, `coil`, `seat` and `sensors`.
+The scenarios themselves stand in `faults.yaml`: forms of the contract's effects, and what a real rig may do besides.
+None holds an equation of motion: those are in `damper`, `coil`, `seat` and `experiment`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from pathlib import Path
+from typing import Literal, NamedTuple
 
 from numpy.random import Generator
+from pydantic import TypeAdapter
 
-from seatsim.blind.sealed import BLOCKS, EFFECTS, Block
+from seatsim.blind.sealed import EFFECTS
+from seatsim.schema.yaml_text import parse_value
 
 Shape = dict[str, float]
 """The drawn choices of a scenario (lengths, time constants, signs, seeds), without its severity."""
@@ -21,7 +25,7 @@ _Value = float | tuple[float, ...]
 _ForceKind = Literal["coloured", "hum", "knock"]
 _Misreading = Literal["gain", "gain_bent", "bias", "wander", "lag_second", "lag_average"]
 """Of the contract's effects, beside a log that is skewed; others are outside the library."""
-_SensorFaultKind = _Misreading | Literal["skew", "quantise", "clip", "backlash", "crosstalk"]
+_SensorFaultKind = Literal[_Misreading, "skew", "quantise", "clip", "backlash", "crosstalk"]
 _FAULTY_CHANNELS = (
     "frame_acceleration",
     "driver_acceleration",
@@ -106,92 +110,102 @@ class Context:
     is_bingham: bool
 
 
-_Draw = Callable[[Generator, Context], Shape]
-_Build = Callable[[float, Shape, Context], Changes]
+class _Force(NamedTuple):
+    """A force on the frame: formulas of its rms and detail."""
+
+    kind: _ForceKind
+    rms: str
+    detail: str | float = 0.0
+
+
+class _Sensor(NamedTuple):
+    """A fault of the drawn channel, or of the controller's log: formulas of its size and detail."""
+
+    kind: _SensorFaultKind
+    size: str
+    detail: str | float = "detail"
 
 
 @dataclass(frozen=True)
 class FaultScenario:
-    """One way in which an effect, or something outside the library, may be at work.
+    """One way in which an effect, or something outside the library (`BLOCK.outside`), may be at work.
 
-    `draw` chooses the shape; `build` turns a severity above zero and a shape into changes; `span` holds the severities
-    that are plausible on a real rig, 1 being a common one. `bingham`: it needs the Bingham damper.
+    `span` holds the severities that are plausible on a real rig; `bingham`: it needs the Bingham damper. The rest are
+    formulas, as `faults.yaml` explains them.
     """
 
     name: str
     effect: str
-    block: Block
     span: tuple[float, float]
-    draw: _Draw
-    build: _Build
+    drawn: Mapping[str, str] = field(default_factory=dict)
+    parameters: Mapping[str, str | float | list[str]] = field(default_factory=dict)
+    force: _Force | None = None
+    sensor: _Sensor | None = None
     bingham: bool = False
+
+    @property
+    def block(self) -> str:
+        """The block that it lives in."""
+        return self.effect.partition(".")[0]
 
     @property
     def outside(self) -> bool:
         """Whether the library has no such effect."""
         return self.effect not in EFFECTS
 
-
-def drawn(**ranges: tuple[float, float] | list[float]) -> _Draw:
-    """Return what draws a shape: by name and in order, a number between two ends or one of a list."""
-
-    def draw(rng: Generator, _: Context) -> Shape:
-        return {
-            name: float(rng.choice(ends)) if isinstance(ends, list) else rng.uniform(*ends)
-            for name, ends in ranges.items()
+    def draw(self, rng: Generator, context: Context) -> Shape:
+        """Draw the shape."""
+        there = [k for k, name in enumerate(_FAULTY_CHANNELS) if name in context.channels]
+        known: dict[str, object] = {
+            "uniform": rng.uniform,
+            "sign": lambda: rng.choice([-1.0, 1.0]),
+            "seed": lambda: rng.integers(1, 1_000_000),
+            "channel": lambda: rng.choice(there),
+            **_list_peaks(context),
         }
+        return {name: _evaluate(formula, known) for name, formula in self.drawn.items()}
 
-    return draw
-
-
-def enter(
-    scenarios: dict[str, FaultScenario],
-    name: str,
-    effect: str,
-    span: tuple[float, float],
-    draw: _Draw = drawn(),  # noqa: B008 - it returns a function without state
-    *,
-    bingham: bool = False,
-) -> Callable[[_Build], _Build]:
-    """Return what enters a function as the `build` of a scenario; their order is part of what a seed means.
-
-    `effect` is one of the library, or `BLOCK.outside`.
-    """
-
-    def enter_build(build: _Build) -> _Build:
-        block, _, kind = effect.partition(".")
-        known = next(each for each in BLOCKS if each == block)
-        named = kind if kind == "outside" else effect
-        scenarios[name] = FaultScenario(name, named, known, span, draw, build, bingham)
-        return build
-
-    return enter_build
+    def build(self, severity: float, shape: Shape, context: Context) -> Changes:
+        """Return the changes at a severity above zero."""
+        known: dict[str, object] = {**_list_peaks(context), **shape, "s": severity}
+        channel = _FAULTY_CHANNELS[int(shape.get("channel", 0.0))]
+        spread = context.spread[channel]
+        known |= {"spread": spread, "neighbour_spread": context.spread[NEIGHBOUR[channel]]}
+        changes = Changes({name: _evaluate_runs(formula, known) for name, formula in self.parameters.items()})
+        seed = int(shape.get("seed", 0.0))
+        if self.force:
+            rms, detail = _evaluate(self.force.rms, known), _evaluate(self.force.detail, known)
+            changes += Changes(frame_forces=(FrameForce(self.force.kind, rms, seed, detail),))
+        if self.sensor:
+            size, detail = _evaluate(self.sensor.size, known), _evaluate(self.sensor.detail, known)
+            where = ("log", 1.0) if self.sensor.kind == "skew" else (channel, spread)
+            changes += Changes(sensor_faults=(SensorFault(self.sensor.kind, where[0], size, detail, seed, where[1]),))
+        return changes
 
 
-def set_parameters(**values: _Value) -> Changes:
-    """Return changes of parameters only."""
-    return Changes(dict(values))
+def _list_peaks(context: Context) -> dict[str, object]:
+    return {"x_peak": context.x_peak, "y_peak": context.y_peak, "tension_peak": context.tension_peak}
 
 
-def draw_seed(rng: Generator) -> float:
-    """Draw a seed that fits a float, as all numbers of a shape are."""
-    return float(rng.integers(1, 1_000_000))
+def _evaluate(formula: str | float, known: Mapping[str, object]) -> float:
+    """Return the value of a formula of `faults.yaml`."""
+    return float(eval(str(formula), {"__builtins__": {}}, {**_FUNCTIONS, **known}))
 
 
-def draw_channel(rng: Generator, context: Context) -> Shape:
-    """Draw the channel (as its place in `_FAULTY_CHANNELS`), a sign, a detail and a seed."""
-    there = [k for k, name in enumerate(_FAULTY_CHANNELS) if name in context.channels]
-    channel, sign = float(rng.choice(there)), float(rng.choice([-1.0, 1.0]))
-    return {"channel": channel, "sign": sign, "detail": rng.uniform(0.0, 1.0), "seed": draw_seed(rng)}
+def _evaluate_runs(formula: str | float | list[str], known: Mapping[str, object]) -> _Value:
+    if isinstance(formula, list):
+        return tuple(_evaluate(each, known) for each in formula)
+    return _evaluate(formula, known)
 
 
-def fault_channel(kind: _SensorFaultKind, size: float, shape: Shape, context: Context) -> Changes:
-    """Return one fault on the drawn channel."""
-    name = drawn_channel(shape)
-    fault = SensorFault(kind, name, size, shape["detail"], int(shape["seed"]), context.spread[name])
-    return Changes(sensor_faults=(fault,))
+_FUNCTIONS = {"min": min, "max": max, "sqrt": math.sqrt, "exp": math.exp, "log": math.log, "pi": math.pi}
+_TABLE = TypeAdapter(list[FaultScenario]).validate_python(
+    parse_value(Path(__file__).with_name("faults.yaml").read_text(encoding="utf-8"))
+)
+SCENARIOS = {scenario.name: scenario for scenario in _TABLE}
+"""All scenarios by name, those outside the library last."""
 
 
-def drawn_channel(shape: Shape) -> str:
-    """Return the channel that `draw_channel` drew."""
-    return _FAULTY_CHANNELS[int(shape["channel"])]
+def scenarios_of(effect: str) -> list[FaultScenario]:
+    """Return the scenarios of an effect of the contract, or of `outside`."""
+    return [each for each in _TABLE if effect == ("outside" if each.outside else each.effect)]

@@ -62,8 +62,8 @@ def blind_score(
 ) -> None:
     """Diagnose every recording of a sealed set and score the verdicts against the labels."""
     from seatsim.blind.score.score import score
-    from seatsim.blind.score.tables import tables
     from seatsim.blind.sealed import unseal
+    from seatsim.cli.outputs.blind_tables import make_score_tables
     from seatsim.cli.show_table import show_table
     from seatsim.schema.files import write_json
 
@@ -73,7 +73,7 @@ def blind_score(
         _diagnose_all(folder, count)
     with count_progress("scoring") as count:
         found = score(folder, sealed, key, progress=count)
-    show_table(*tables(found))
+    show_table(*make_score_tables(found))
     path = write_json((out_folder or folder) / "score.json", found)
     wrote_one(path)
     answer(found, [path])
@@ -93,7 +93,7 @@ def blind_power(
 ) -> None:
     """Put effects of ever smaller size into a recording, and print the smallest found in nine of ten draws."""
     from seatsim.blind.carrier.power import SIZES, Power, Powers, measure_power
-    from seatsim.cli.outputs.diagnosis_tables import make_power_table
+    from seatsim.cli.outputs.blind_tables import make_power_table
     from seatsim.cli.show_table import show_table
     from seatsim.schema.files import write_json
 

@@ -19,23 +19,28 @@ if TYPE_CHECKING:
 
 
 def characterise(
-    data: Annotated[Path | None, typer.Argument(help="A bench table, or a folder of them.", show_default=False)] = None,
+    data: Annotated[Path | None, typer.Argument(show_default=False)] = None,
     out_folder: Out = None,
-    model: Annotated[
-        str | None,
-        typer.Option("--model", help="A damper model, in place of data.", autocompletion=complete_kind("damper")),
-    ] = None,
-    parameters: Annotated[
-        Path | None, typer.Option("--parameters", help="A file with a damper, in place of data.")
-    ] = None,
-    currents: Annotated[str, typer.Option("--currents", metavar="A,A", help="Currents of a model's tests.")] = "",
-    temperatures: Annotated[str, typer.Option("--temperatures", metavar="C,C", help="Temperatures in degC.")] = "",
-    amplitudes: Annotated[str, typer.Option("--amplitudes", metavar="M,M", help="Amplitudes in m.")] = "",
-    frequencies: Annotated[str, typer.Option("--frequencies", metavar="HZ,HZ", help="Frequencies.")] = "",
+    model: Annotated[str | None, typer.Option("--model", autocompletion=complete_kind("damper"))] = None,
+    parameters: Annotated[Path | None, typer.Option("--parameters")] = None,
+    currents: Annotated[str, typer.Option("--currents", metavar="A,A")] = "",
+    temperatures: Annotated[str, typer.Option("--temperatures", metavar="C,C")] = "",
+    amplitudes: Annotated[str, typer.Option("--amplitudes", metavar="M,M")] = "",
+    frequencies: Annotated[str, typer.Option("--frequencies", metavar="HZ,HZ")] = "",
     own_code: OwnCode = None,
     as_json: Json = False,
 ) -> None:
-    """Show what a bench shows of a damper: loops, energy, asymmetry, offset and response times."""
+    """Show what a bench shows of a damper: loops, energy, asymmetry, offset and response times.
+
+    Options:
+        data: A bench table, or a folder of them.
+        model: A damper model, in place of data.
+        parameters: A file with a damper, in place of data.
+        currents: Currents of a model's tests.
+        temperatures: Temperatures in degC.
+        amplitudes: Amplitudes in m.
+        frequencies: Frequencies.
+    """
     from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
     from seatsim.characterisation.summary import characterise as of_records
     from seatsim.cli.outputs.damper_tables import make_characterisation_tables
@@ -60,39 +65,34 @@ def characterise(
 
 
 def identify(
-    data: Annotated[Path, typer.Argument(help="A bench table, or a folder of them.", show_default=False)],
-    models: Annotated[
-        list[str],
-        typer.Option(
-            "--model",
-            help="A damper model, several, or all, to compare them.",
-            show_default=False,
-            autocompletion=complete_kind("damper"),
-        ),
-    ],
-    test: Annotated[
-        list[str] | None, typer.Option("--test", metavar="GLOB", help="Hold out the files whose names match.")
-    ] = None,
-    test_fraction: Annotated[
-        float, typer.Option("--test-fraction", help="Hold out this share of each record, its last part.")
-    ] = 0.0,
-    fix: Annotated[
-        list[str] | None, typer.Option("--fix", metavar="NAME=VALUE", help="Keep a parameter at a value.")
-    ] = None,
-    ignore_temperature: Annotated[bool, typer.Option("--ignore-temperature", help="Do not fit its influence.")] = False,
-    more: Annotated[
-        list[Path] | None, typer.Option("--predict", metavar="DATA", help="Predict further records, not fitted.")
-    ] = None,
-    moving_average: Annotated[
-        float, typer.Option("--moving-average", metavar="S", help="Average that the predicted records went through.")
-    ] = 0.0,
-    centred: Annotated[bool, typer.Option("--centred", help="The predicted records' mean force was removed.")] = False,
-    seed: Annotated[int, typer.Option("--seed", min=0, help="Seed of the global search.")] = 0,
+    data: Annotated[Path, typer.Argument(show_default=False)],
+    models: Annotated[list[str], typer.Option("--model", show_default=False, autocompletion=complete_kind("damper"))],
+    test: Annotated[list[str] | None, typer.Option("--test", metavar="GLOB")] = None,
+    test_fraction: Annotated[float, typer.Option("--test-fraction")] = 0.0,
+    fix: Annotated[list[str] | None, typer.Option("--fix", metavar="NAME=VALUE")] = None,
+    ignore_temperature: Annotated[bool, typer.Option("--ignore-temperature")] = False,
+    more: Annotated[list[Path] | None, typer.Option("--predict", metavar="DATA")] = None,
+    moving_average: Annotated[float, typer.Option("--moving-average", metavar="S")] = 0.0,
+    centred: Annotated[bool, typer.Option("--centred")] = False,
+    seed: Annotated[int, typer.Option("--seed", min=0)] = 0,
     out_folder: Out = None,
     own_code: OwnCode = None,
     as_json: Json = False,
 ) -> None:
-    """Fit a damper model, or every model, to bench records and assess it on records held out."""
+    """Fit a damper model, or every model, to bench records and assess it on records held out.
+
+    Options:
+        data: A bench table, or a folder of them.
+        models: A damper model, several, or all, to compare them.
+        test: Hold out the files whose names match.
+        test_fraction: Hold out this share of each record, its last part.
+        fix: Keep a parameter at a value.
+        ignore_temperature: Do not fit its influence.
+        more: Predict further records, not fitted.
+        moving_average: Average that the predicted records went through.
+        centred: The predicted records' mean force was removed.
+        seed: Seed of the global search.
+    """
     from seatsim.identification.assessment import load_prediction_data
     from seatsim.identification.settings import IdentificationSettings
     from seatsim.recordings.bench_tables import load_bench

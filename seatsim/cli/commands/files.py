@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -26,16 +27,16 @@ _NEXT = {
 
 
 def new(
-    kind: Annotated[
-        str,
-        typer.Argument(
-            help="scenario, recording, damper, controller, effect or excitation.", autocompletion=complete(*_NEXT)
-        ),
-    ],
-    name: Annotated[str, typer.Argument(help="Its name; a folder may stand before it.")],
+    kind: Annotated[str, typer.Argument(autocompletion=complete(*_NEXT))],
+    name: Annotated[str, typer.Argument()],
     as_json: Json = False,
 ) -> None:
-    """Write a commented file that works as it stands, to be changed."""
+    """Write a commented file that works as it stands, to be changed.
+
+    Options:
+        kind: scenario, recording, damper, controller, effect or excitation.
+        name: Its name; a folder may stand before it.
+    """
     from seatsim.cli.new_files import write_new
     from seatsim.cli.outputs.answers import NewAnswer
 
@@ -47,14 +48,17 @@ def new(
 
 
 def check(
-    file: Annotated[Path, typer.Argument(help="A scenario, recording, sweep, damper, map of import, or Python file.")],
-    run: Annotated[
-        bool, typer.Option("--run", help="Run the scenario, and see whether it meets what it states under 'checks'.")
-    ] = False,
+    file: Annotated[Path, typer.Argument()],
+    run: Annotated[bool, typer.Option("--run")] = False,
     own_code: OwnCode = None,
     as_json: Json = False,
 ) -> None:
-    """Read a file as the other commands would, and say what is wrong or doubtful; it is run by --run alone."""
+    """Read a file as the other commands would, and say what is wrong or doubtful; it is run by --run alone.
+
+    Options:
+        file: A scenario, recording, sweep, damper, map of import, or Python file.
+        run: Run the scenario, and see whether it meets what it states under 'checks'.
+    """
     from seatsim.cli.check_files import CheckedFile, check_file, run_checks
 
     try:
@@ -74,53 +78,50 @@ def check(
         raise typer.Exit(1)
 
 
-def _complete_schema(incomplete: str) -> list[str]:
-    from seatsim.cli.outputs.answers import FILES, list_answers
+def _list_schemas() -> dict[str, Callable[[], Mapping[str, object]]]:
+    """Return what makes each schema, by kind of file or command; `sweep` is both, and the command's bears `--json`."""
+    from seatsim.cli.outputs.answers import FILES, describe_answer, list_answers
 
-    return complete(*FILES, *list_answers())(incomplete)
+    answers = {f"{name} --json" if name in FILES else name: partial(describe_answer, name) for name in list_answers()}
+    return {**FILES, **answers}
+
+
+def _complete_schema(incomplete: str) -> list[str]:
+    return complete(*_list_schemas())(incomplete)
 
 
 def schema(
-    kind: Annotated[
-        str,
-        typer.Argument(
-            help="scenario, recording, sweep or parameters; or a command, for what its --json prints.",
-            autocompletion=_complete_schema,
-        ),
-    ] = "scenario",
+    kind: Annotated[str, typer.Argument(autocompletion=_complete_schema)] = "scenario",
     own_code: OwnCode = None,
     as_json: Json = False,
 ) -> None:
-    """Print a JSON Schema, with which an editor completes and checks a file."""
-    from seatsim.cli.outputs.answers import FILES, describe_answer, list_answers
+    """Print a JSON Schema, with which an editor completes and checks a file.
 
-    known = [*FILES, *list_answers()]
+    Options:
+        kind: scenario, recording, sweep or parameters; or a command, for what its --json prints.
+    """
+    known = _list_schemas()
     if kind not in known:
         raise InputError(f"schema {kind}: no such kind{nearest(kind, known)}; permitted: {', '.join(known)}")
-    found = FILES[kind]() if kind in FILES else describe_answer(kind)
     # A schema is JSON with or without --json.
-    sys.stdout.write(json.dumps(found) + "\n")
+    sys.stdout.write(json.dumps(known[kind]()) + "\n")
 
 
 _ENDINGS = (".png", ".svg", ".pdf")
 
 
 def describe(
-    name: Annotated[
-        str,
-        typer.Argument(
-            help="A name, such as bouc_wen or road.",
-            autocompletion=complete_kind("damper", "law", "excitation", "effect"),
-        ),
-    ] = "",
-    picture: Annotated[
-        Path | None,
-        typer.Option("--picture", metavar="FILE", help="Draw the loops of a damper, as .png, .svg or .pdf."),
-    ] = None,
+    name: Annotated[str, typer.Argument(autocompletion=complete_kind("damper", "law", "excitation", "effect"))] = "",
+    picture: Annotated[Path | None, typer.Option("--picture", metavar="FILE")] = None,
     own_code: OwnCode = None,
     as_json: Json = False,
 ) -> None:
-    """List dampers, laws, excitations and effects, or the keys of one of them with units and bounds."""
+    """List dampers, laws, excitations and effects, or the keys of one of them with units and bounds.
+
+    Options:
+        name: A name, such as bouc_wen or road.
+        picture: Draw the loops of a damper, as .png, .svg or .pdf.
+    """
     from seatsim.scenario.describe import Pages, find_page, list_pages
     from seatsim.scenario.describe import describe as describe_name
 
@@ -149,17 +150,18 @@ def _draw_loops(model: str, picture: Path) -> list[Path]:
 
 
 def reproduce(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder with a manifest.json.", show_default=False)],
-    out_folder: Annotated[
-        Path | None, typer.Option("--out", help="Folder for reproduce.json, DIR by default.", callback=check_out)
-    ] = None,
-    own_code: Annotated[
-        list[Path] | None,
-        typer.Option("--with", metavar="FILE.py", help="Own code that took part and may run again; repeatable."),
-    ] = None,
+    folder: Annotated[Path, typer.Argument(metavar="DIR", show_default=False)],
+    out_folder: Annotated[Path | None, typer.Option("--out", callback=check_out)] = None,
+    own_code: Annotated[list[Path] | None, typer.Option("--with", metavar="FILE.py")] = None,
     as_json: Json = False,
 ) -> None:
-    """Run again what made a folder, and compare the bytes: exit 0 identical, 1 different."""
+    """Run again what made a folder, and compare the bytes: exit 0 identical, 1 different.
+
+    Options:
+        folder: Folder with a manifest.json.
+        out_folder: Folder for reproduce.json, DIR by default.
+        own_code: Own code that took part and may run again; repeatable.
+    """
     from seatsim.provenance.reproduce import ANSWER
     from seatsim.provenance.reproduce import reproduce as run_again
     from seatsim.schema.files import write_json

@@ -20,14 +20,15 @@ def gap(
     scenario: OneScenario,
     recording: RecordingFolder,
     out_folder: Out = None,
-    predict: Annotated[
-        Path | None,
-        typer.Option("--predict", metavar="DIAGNOSIS.json", help="Predict the gap from the recording's inputs alone."),
-    ] = None,
+    predict: Annotated[Path | None, typer.Option("--predict", metavar="DIAGNOSIS.json")] = None,
     own_code: OwnCode = None,
     as_json: Json = False,
 ) -> None:
-    """Replay a scenario against a recording and print the gap with the noise floor."""
+    """Replay a scenario against a recording and print the gap with the noise floor.
+
+    Options:
+        predict: Predict the gap from the recording's inputs alone.
+    """
     from seatsim.cli.outputs.diagnosis_tables import make_gap_table
     from seatsim.cli.outputs.writing import write_gap
     from seatsim.cli.show_table import show_table
@@ -45,25 +46,21 @@ def gap(
 def diagnose(
     recording: RecordingFolder,
     out_folder: Out = None,
-    without: Annotated[
-        list[str] | None, typer.Option("--without", metavar="EFFECT", help="Withhold an effect from the library.")
-    ] = None,
-    budget: Annotated[
-        float, typer.Option(metavar="SECONDS", help="Time that it may take; then the best answer so far is given.")
-    ] = 120.0,
-    damper_forms: Annotated[
-        bool, typer.Option("--damper-forms", help="Try other forms of the damper whatever the verdict.")
-    ] = False,
-    after: Annotated[
-        Path | None,
-        typer.Option(
-            "--after", metavar="RECORDING", help="Diagnose this further recording of the rig together with it."
-        ),
-    ] = None,
+    without: Annotated[list[str] | None, typer.Option("--without", metavar="EFFECT")] = None,
+    budget: Annotated[float, typer.Option(metavar="SECONDS")] = 120.0,
+    damper_forms: Annotated[bool, typer.Option("--damper-forms")] = False,
+    after: Annotated[Path | None, typer.Option("--after", metavar="RECORDING")] = None,
     own_code: OwnCode = None,
     as_json: Json = False,
 ) -> None:
-    """Say where the gap between a recording and its nominal scenario lies, what causes it and how far it shrinks."""
+    """Say where the gap between a recording and its nominal scenario lies, what causes it and how far it shrinks.
+
+    Options:
+        without: Withhold an effect from the library.
+        budget: Time that it may take; then the best answer so far is given.
+        damper_forms: Try other forms of the damper whatever the verdict.
+        after: Diagnose this further recording of the rig together with it.
+    """
     from seatsim.cli.outputs.diagnosis_tables import make_tables
     from seatsim.cli.outputs.writing import write_diagnosis
     from seatsim.cli.show_table import show_table
@@ -85,22 +82,20 @@ def diagnose(
 
 
 def import_data(
-    files: Annotated[
-        list[Path], typer.Argument(help="Data files of one rig, or a folder of them.", show_default=False)
-    ],
+    files: Annotated[list[Path], typer.Argument(show_default=False)],
     folder: NewFolder,
-    map_file: Annotated[
-        Path | None,
-        typer.Option("--map", metavar="MAP.yaml", help="Which column is which channel; proposed where absent."),
-    ] = None,
-    nominal: Annotated[
-        str | None,
-        typer.Option("--nominal", metavar="SCENARIO", help="Scenario with the rig's plant, damper and coil."),
-    ] = None,
+    map_file: Annotated[Path | None, typer.Option("--map", metavar="MAP.yaml")] = None,
+    nominal: Annotated[str | None, typer.Option("--nominal", metavar="SCENARIO")] = None,
     own_code: OwnCode = None,
     as_json: Json = False,
 ) -> None:
-    """Make a recording of CSV, Parquet, Feather, XLSX, HDF5, MAT, MDF, TDMS, UFF58, RPC III or OpenCRG files."""
+    """Make a recording of CSV, Parquet, Feather, XLSX, HDF5, MAT, MDF, TDMS, UFF58, RPC III or OpenCRG files.
+
+    Options:
+        files: Data files of one rig, or a folder of them.
+        map_file: Which column is which channel; proposed where absent.
+        nominal: Scenario with the rig's plant, damper and coil.
+    """
     from seatsim.importing.import_map import FILE, render_map
     from seatsim.importing.importing import import_files
 
@@ -119,14 +114,17 @@ def import_data(
 
 
 def inspect_data(
-    data: Annotated[Path, typer.Argument(help="A data file, or the folder of a recording.", show_default=False)],
-    map_file: Annotated[
-        Path | None, typer.Option("--map", metavar="MAP.yaml", help="Show the channels that this map makes of a file.")
-    ] = None,
+    data: Annotated[Path, typer.Argument(show_default=False)],
+    map_file: Annotated[Path | None, typer.Option("--map", metavar="MAP.yaml")] = None,
     own_code: OwnCode = None,
     as_json: Json = False,
 ) -> None:
-    """Show the channels of a file or a recording, with unit, rate, range, RMS, noise and every doubt."""
+    """Show the channels of a file or a recording, with unit, rate, range, RMS, noise and every doubt.
+
+    Options:
+        data: A data file, or the folder of a recording.
+        map_file: Show the channels that this map makes of a file.
+    """
     found = _inspected(data, map_file)
     _show(found)
     _doubt(found.doubts)

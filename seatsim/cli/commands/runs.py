@@ -49,12 +49,14 @@ def compare(
     out_folder: Out = None,
     settings: Settings = None,
     own_code: OwnCode = None,
-    bracket: Annotated[
-        bool, typer.Option("--bracket", help="Add what the best damper could have done; takes minutes for each floor.")
-    ] = False,
+    bracket: Annotated[bool, typer.Option("--bracket")] = False,
     as_json: Json = False,
 ) -> None:
-    """Simulate scenarios and print one table over all of them."""
+    """Simulate scenarios and print one table over all of them.
+
+    Options:
+        bracket: Add what the best damper could have done; takes minutes for each floor.
+    """
     _execute([scenarios], [out_folder], scenario_settings(settings), bracket)
 
 

@@ -23,25 +23,22 @@ _PAGE_EXTRA = 'the page needs an extra; install it with: pip install "seatsim[pa
 
 def export(
     scenario: OneScenario,
-    form: Annotated[
-        str, typer.Option("--to", help="fmu2, fmu3, c or mat.", autocompletion=complete("fmu2", "fmu3", "c", "mat"))
-    ],
-    what: Annotated[
-        str,
-        typer.Option(
-            "--what", help="rig, damper or controller.", autocompletion=complete("rig", "damper", "controller")
-        ),
-    ],
-    out: Annotated[Path, typer.Option("--out", metavar="FILE", help="The file to be written.")],
-    variant: Annotated[
-        str | None,
-        typer.Option("--variant", metavar="NAME", help="The variant of the scenario.", show_default="the first"),
-    ] = None,
+    form: Annotated[str, typer.Option("--to", autocompletion=complete("fmu2", "fmu3", "c", "mat"))],
+    what: Annotated[str, typer.Option("--what", autocompletion=complete("rig", "damper", "controller"))],
+    out: Annotated[Path, typer.Option("--out", metavar="FILE")],
+    variant: Annotated[str | None, typer.Option("--variant", metavar="NAME", show_default="the first")] = None,
     settings: Settings = None,
     own_code: OwnCode = None,
     as_json: Json = False,
 ) -> None:
-    """Write a scenario's rig, damper or controller for other programs: as an FMU, as C, or as a MAT file."""
+    """Write a scenario's rig, damper or controller for other programs: as an FMU, as C, or as a MAT file.
+
+    Options:
+        form: fmu2, fmu3, c or mat.
+        what: rig, damper or controller.
+        out: The file to be written.
+        variant: The variant of the scenario.
+    """
     from seatsim.exchange.block import ExportedBlock, list_variables
     from seatsim.exchange.export import export as write
     from seatsim.scenario.loading import load
@@ -71,14 +68,16 @@ def _choose(name: str, runs: Sequence[Scenario], variant: str | None) -> Scenari
 def synthesise(
     scenario: OneScenario,
     out_folder: Out = None,
-    prove_best: Annotated[
-        bool, typer.Option("--global", help="Prove that no permitted gain is better by 0.1 % (up to four gains).")
-    ] = False,
+    prove_best: Annotated[bool, typer.Option("--global")] = False,
     settings: Settings = None,
     own_code: OwnCode = None,
     as_json: Json = False,
 ) -> None:
-    """Synthesise the H-infinity static output feedback of a scenario's plant and weights."""
+    """Synthesise the H-infinity static output feedback of a scenario's plant and weights.
+
+    Options:
+        prove_best: Prove that no permitted gain is better by 0.1 % (up to four gains).
+    """
     from seatsim.cli.outputs.run_tables import make_design_table
     from seatsim.cli.show_table import show_table
     from seatsim.provenance.manifest import write_documented
@@ -125,17 +124,19 @@ def _synthesise(scenario: Scenario, progress: Report) -> SynthesisedDesign:
 
 
 def explore(
-    target: Annotated[
-        str, typer.Argument(metavar="[SCENARIO|RECORDING]", help="A scenario, an example, or a recording's folder.")
-    ] = "quickstart",
-    port: Annotated[
-        int, typer.Option("--port", min=0, max=65535, help="Port of loopback.", show_default="a free one")
-    ] = 0,
-    no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address and open no browser.")] = False,
+    target: Annotated[str, typer.Argument(metavar="[SCENARIO|RECORDING]")] = "quickstart",
+    port: Annotated[int, typer.Option("--port", min=0, max=65535, show_default="a free one")] = 0,
+    no_browser: Annotated[bool, typer.Option("--no-browser")] = False,
     own_code: OwnCode = None,
     as_json: Json = False,
 ) -> None:
-    """Open a page on this machine: move driver, temperature, road and controller, or effects, and see what follows."""
+    """Open a page on this machine: move driver, temperature, road and controller, or effects, and see what follows.
+
+    Options:
+        target: A scenario, an example, or a recording's folder.
+        port: Port of loopback.
+        no_browser: Print the address and open no browser.
+    """
     try:
         from seatsim.page.serve import find_target, serve
     except ModuleNotFoundError as error:

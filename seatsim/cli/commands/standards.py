@@ -13,25 +13,27 @@ from seatsim.schema.errors import InputError
 
 
 def comfort(
-    file: Annotated[Path, typer.Argument(help="A CSV table of accelerations, or a recording.", show_default=False)],
-    channel: Annotated[
-        list[str] | None,
-        typer.Option("--channel", metavar="AXIS=COLUMN", help="x, y, z, rx .. on the seat, back.x .. feet.z, floor.z."),
-    ] = None,
-    hours: Annotated[float, typer.Option("--hours", help="Hours of such vibration in a day.")] = 8.0,
-    run: Annotated[
-        list[str] | None, typer.Option("--run", help="A run of a recording; all together where none is named.")
-    ] = None,
-    block: Annotated[
-        list[str] | None,
-        typer.Option("--block", metavar="FROM:TO", help="Only this stretch, in s; several count as one."),
-    ] = None,
-    rate: Annotated[float | None, typer.Option("--rate", help="Sample rate in Hz of a table without times.")] = None,
-    unit: Annotated[str | None, typer.Option("--unit", help="Of columns whose names state none, such as g.")] = None,
+    file: Annotated[Path, typer.Argument(show_default=False)],
+    channel: Annotated[list[str] | None, typer.Option("--channel", metavar="AXIS=COLUMN")] = None,
+    hours: Annotated[float, typer.Option("--hours")] = 8.0,
+    run: Annotated[list[str] | None, typer.Option("--run")] = None,
+    block: Annotated[list[str] | None, typer.Option("--block", metavar="FROM:TO")] = None,
+    rate: Annotated[float | None, typer.Option("--rate")] = None,
+    unit: Annotated[str | None, typer.Option("--unit")] = None,
     out_folder: Out = None,
     as_json: Json = False,
 ) -> None:
-    """Work out the ISO 2631-1 figures of measured accelerations, a day's exposure and SEAT factors."""
+    """Work out the ISO 2631-1 figures of measured accelerations, a day's exposure and SEAT factors.
+
+    Options:
+        file: A CSV table of accelerations, or a recording.
+        channel: x, y, z, rx .. on the seat, back.x .. feet.z, floor.z.
+        hours: Hours of such vibration in a day.
+        run: A run of a recording; all together where none is named.
+        block: Only this stretch, in s; several count as one.
+        rate: Sample rate in Hz of a table without times.
+        unit: Of columns whose names state none, such as g.
+    """
     from seatsim.cli.outputs.seat_tables import list_comfort_sentences, make_comfort_tables
     from seatsim.cli.outputs.writing import write_outputs
     from seatsim.cli.show_table import show_table
@@ -65,16 +67,19 @@ def _stretch(text: str) -> tuple[float, float]:
 
 
 def seat_test(
-    source: Annotated[str, typer.Argument(help="The scenario of a seat, or a recording of one.", show_default=False)],
-    spectral_class: Annotated[
-        list[str] | None, typer.Option("--class", metavar="EM1", help="Only this class; may be given several times.")
-    ] = None,
+    source: Annotated[str, typer.Argument(show_default=False)],
+    spectral_class: Annotated[list[str] | None, typer.Option("--class", metavar="EM1")] = None,
     out_folder: Out = None,
     settings: Settings = None,
     own_code: OwnCode = None,
     as_json: Json = False,
 ) -> None:
-    """Put a seat to the test of ISO 7096: SEAT factors of two drivers, damping, end stops."""
+    """Put a seat to the test of ISO 7096: SEAT factors of two drivers, damping, end stops.
+
+    Options:
+        source: The scenario of a seat, or a recording of one.
+        spectral_class: Only this class; may be given several times.
+    """
     from seatsim.cli.outputs.seat_tables import list_seat_test_failures, make_seat_test_tables, summarise_seat_test
     from seatsim.cli.outputs.writing import write_seat_test
     from seatsim.cli.show_table import show_table

@@ -24,29 +24,27 @@ _SweepFile = Annotated[Path, typer.Argument(help="A sweep file: a scenario, and 
 def sweep(
     file: _SweepFile,
     out_folder: Out = None,
-    engine: Annotated[
-        Literal["local", "dask", "cuda"], typer.Option("--engine", help="This machine, a cluster, or a CUDA device.")
-    ] = "local",
-    address: Annotated[
-        str | None, typer.Option("--address", metavar="URL", help="Running dask scheduler, such as tcp://host:8786.")
-    ] = None,
-    jobs: Annotated[
-        int | None, typer.Option("--jobs", min=1, help="Runs at once.", show_default="all processors")
-    ] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with the sweep in the folder.")] = False,
-    keep: Annotated[
-        Literal["none", "histories"], typer.Option("--keep", help="What is kept of a run besides its metrics.")
-    ] = "none",
-    share: Annotated[
-        str | None, typer.Option("--part", metavar="K/N", help="Only part K of N, beside commands for the others.")
-    ] = None,
-    slurm: Annotated[
-        Path | None, typer.Option("--slurm", metavar="FILE", help="Write an array script for Slurm; nothing runs.")
-    ] = None,
+    engine: Annotated[Literal["local", "dask", "cuda"], typer.Option("--engine")] = "local",
+    address: Annotated[str | None, typer.Option("--address", metavar="URL")] = None,
+    jobs: Annotated[int | None, typer.Option("--jobs", min=1, show_default="all processors")] = None,
+    resume: Annotated[bool, typer.Option("--resume")] = False,
+    keep: Annotated[Literal["none", "histories"], typer.Option("--keep")] = "none",
+    share: Annotated[str | None, typer.Option("--part", metavar="K/N")] = None,
+    slurm: Annotated[Path | None, typer.Option("--slurm", metavar="FILE")] = None,
     own_code: OwnCode = None,
     as_json: Json = False,
 ) -> None:
-    """Simulate a scenario with many values of its keys, and keep the metrics of every run."""
+    """Simulate a scenario with many values of its keys, and keep the metrics of every run.
+
+    Options:
+        engine: This machine, a cluster, or a CUDA device.
+        address: Running dask scheduler, such as tcp://host:8786.
+        jobs: Runs at once.
+        resume: Go on with the sweep in the folder.
+        keep: What is kept of a run besides its metrics.
+        share: Only part K of N, beside commands for the others.
+        slurm: Write an array script for Slurm; nothing runs.
+    """
     from seatsim.cli.outputs.answers import SlurmAnswer
     from seatsim.sweeps.cluster import write_slurm
     from seatsim.sweeps.execute import execute, open_engine, prepare, read_share
@@ -89,14 +87,18 @@ def _foresee(runs: int) -> None:
 
 
 def sweep_report(
-    folder: Annotated[Path, typer.Argument(help="Folder of a sweep.", show_default=False)],
+    folder: Annotated[Path, typer.Argument(show_default=False)],
     out_folder: Annotated[
-        Path | None,
-        typer.Option("--out", help="Folder for the files.", show_default="that of the sweep", callback=check_out),
+        Path | None, typer.Option("--out", show_default="that of the sweep", callback=check_out)
     ] = None,
     as_json: Json = False,
 ) -> None:
-    """Say what the runs of a sweep have in common: quantiles, sensitivities, probabilities, pictures."""
+    """Say what the runs of a sweep have in common: quantiles, sensitivities, probabilities, pictures.
+
+    Options:
+        folder: Folder of a sweep.
+        out_folder: Folder for the files.
+    """
     from seatsim.cli.outputs.simulated import write_sweep_report
     from seatsim.metrics.table import SHORT
 

@@ -1,13 +1,11 @@
-"""Gaps, diagnoses, and what diagnoses find at all, as tables on the terminal."""
+"""Gaps and diagnoses as tables on the terminal."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 from rich.table import Table
 
-from seatsim.blind.carrier.power import SIZES, Power
 from seatsim.cli.show_table import make_table
 from seatsim.diagnosis.result import Diagnosis
 from seatsim.effects.base import EFFECTS
@@ -96,25 +94,3 @@ def _make_forms_table(diagnosis: Diagnosis) -> Table:
     ]
     headings = ("form", "beside", "shrink", f"{replaced} as free")
     return make_table(f"other forms of the damper than {replaced}", headings, rows, left=(0, 1))
-
-
-def make_power_table(powers: Sequence[Power]) -> Table:
-    """Return for each effect the smallest size that is found, what that is, and how many draws were found by size."""
-    rows = [
-        (
-            power.effect,
-            "-" if power.smallest is None else f"{power.smallest:g}",
-            ", ".join(f"{name} {value:.3g}" for name, value in power.parameters.items()),
-            *(_count(power, f"{size:g}") for size in SIZES),
-        )
-        for power in powers
-    ]
-    headings = ("effect", "smallest", "which is", *(f"{size:g}" for size in SIZES))
-    return make_table(
-        "smallest size found in nine of ten draws, in std of a compared channel", headings, rows, left=(0, 2)
-    )
-
-
-def _count(power: Power, size: str) -> str:
-    found = power.found.get(size)
-    return "" if found is None else f"{sum(found)}/{len(found)}" if found else "too large"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from statistics import fmean
 from typing import NamedTuple
 
@@ -16,9 +17,9 @@ from seatsim.metrics.table import SHORT
 from seatsim.rig.designs import BoxProof, CheckedLaw, Clipping, DesignedLoop, SynthesisedDesign, unit_of_gain
 from seatsim.scenario.checks import Published, published_figures
 from seatsim.scenario.scenario import Scenario, condition_of, group_by_condition, is_condition
+from seatsim.simulation.checks import describe_sampled_loop
 from seatsim.simulation.performance_bounds import PerformanceBounds, measure_distance
 from seatsim.simulation.result import Run
-from seatsim.simulation.simulate import DEFAULT_SAMPLE_TIME
 
 
 def _average(values: Sequence[float]) -> float:
@@ -261,4 +262,6 @@ def _check_loop(design: SynthesisedDesign, scenario: Scenario) -> Mapping[str, s
     control, plant = scenario.control, scenario.plant
     if control is None or plant is None or not isinstance(control.law, CheckedLaw):
         return {}
-    return control.law.checks(plant, scenario.coil, control.sample_time or DEFAULT_SAMPLE_TIME, design.gain)
+    designed = replace(scenario, control=replace(control, law=control.law.with_gain(design.gain)))
+    margins = control.law.margins(plant, scenario.coil, design.gain)
+    return {"margins": margins, "sampled loop": describe_sampled_loop(designed)}

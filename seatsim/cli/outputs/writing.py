@@ -112,7 +112,6 @@ def write_gap(found: Gap, scenario: str, recording: Path, folder: Path) -> list[
         recording: folder of the recording.
         folder: where the files go.
     """
-    from seatsim.recordings.gap import replay_every_run
     from seatsim.report.credibility.evidence import collect_gap
     from seatsim.report.gap import report_gap
 
@@ -120,8 +119,9 @@ def write_gap(found: Gap, scenario: str, recording: Path, folder: Path) -> list[
     if found.channels:
         name = f"{Path(scenario).stem} against {recording.resolve().name}"
         command = f"seatsim gap {Path(scenario).name} {recording.name}"
-        pairs, evidence = replay_every_run(scenario, recording), collect_gap(scenario, recording, found)
-        contents["report.html"] = report_gap(name, found, pairs, evidence, command)
+        contents["report.html"] = report_gap(
+            name, found, found.replayed, collect_gap(scenario, recording, found), command
+        )
     return write_outputs(folder, contents)
 
 
