@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from seatsim.diagnosis.result import Cause, Diagnosis
 from seatsim.plots.labels import UNKNOWN, format_number, format_percent
-from seatsim.report.blocks import Block, Table, Text, show_pictures
+from seatsim.report.blocks import Block, Text, show_pictures, tabulate
 from seatsim.report.formatting import describe_effect, format_estimate, format_sentence
 from seatsim.schema.text import join_names
 
@@ -29,9 +29,9 @@ def show_causes(diagnosis: Diagnosis, figures: Mapping[str, Figure]) -> list[Blo
         for cause in shown
     ]  # fmt: skip
     strong = [row for row, cause in enumerate(shown) if cause.effect in diagnosis.selected]
-    head = ["effect", "what it is", "parameters", "probability", "alone takes off the refitted gap"]
-    table = Table("The likely effects, their parameters ± one standard deviation", head, rows, 3, strong)
-    return [*show_pictures(figures, "location", "ranking"), *([table] if rows else [])]
+    head = "effect, what it is, parameters, probability, alone takes off the refitted gap"
+    table = tabulate("The likely effects, their parameters ± one standard deviation", head, rows, 3, strong)
+    return [*show_pictures(figures, "location", "ranking"), *table]
 
 
 def show_confusions(diagnosis: Diagnosis) -> list[Block]:
@@ -43,18 +43,17 @@ def show_confusions(diagnosis: Diagnosis) -> list[Block]:
     ]
     found = diagnosis.experiment
     if found is not None:
-        rows = [[found.name.replace("_", " "), found.kind, format_number(found.likeness_now),
-                 format_number(found.likeness_then)]]  # fmt: skip
-        head = ["what would decide", "kind", "likeness now", "likeness then"]
-        table = Table("Likeness: 1 is alike, 0 has nothing in common", head, rows, 2)
-        blocks += [table, Text(format_sentence(found.reason))]
+        row = (found.name.replace("_", " "), found.kind, found.likeness_now, found.likeness_then)
+        head = "what would decide, kind, likeness now, likeness then"
+        blocks += tabulate("Likeness: 1 is alike, 0 has nothing in common", head, [row], 2)
+        blocks.append(Text(format_sentence(found.reason)))
     names, matrix = diagnosis.evidence.collinearity
     pairs = sorted(
         ((float(matrix[i][j]), names[i], names[j]) for i in range(len(names)) for j in range(i)), reverse=True
     )
-    rows = [[one, other, format_number(value, 2)] for value, one, other in pairs[:_MOST_PAIRS] if value >= _ALIKE]
+    rows = [(one, other, format_number(value, 2)) for value, one, other in pairs[:_MOST_PAIRS] if value >= _ALIKE]
     caption = "Effects whose signs in these channels are alike: 1 cannot be told apart, 0 has nothing in common"
-    return [*blocks, *([Table(caption, ["effect", "and", "likeness"], rows, 2)] if rows else [])]
+    return [*blocks, *tabulate(caption, "effect, and, likeness", rows, 2)]
 
 
 def show_forms(diagnosis: Diagnosis) -> list[Block]:
@@ -72,8 +71,7 @@ def show_forms(diagnosis: Diagnosis) -> list[Block]:
          format_percent(form.refitted)]
         for form in forms
     ]  # fmt: skip
-    head = ["model", "together with", "shrinks the gap by", f"{own}, fitted as freely"]
-    return [Table(lead, head, rows, 2, [0])]
+    return tabulate(lead, f"model, together with, shrinks the gap by, {own} fitted as freely", rows, 2, [0])
 
 
 def _list_parameters(cause: Cause) -> str:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from seatsim.diagnosis.result import Diagnosis, Trace
 from seatsim.plots.diagnosis.bins import drop_start
 from seatsim.plots.diagnosis.signals import name_last
-from seatsim.plots.labels import UNKNOWN, describe_channel, format_number, format_percent
-from seatsim.report.blocks import Block, Items, Table, Text, list_notes, show_pictures
+from seatsim.plots.labels import UNKNOWN, describe_channel, format_percent
+from seatsim.report.blocks import Block, Items, Text, show_pictures, tabulate
 from seatsim.report.formatting import format_quantity, format_sentence
 from seatsim.report.packing import MEASURED, Panel, pack_signals
 from seatsim.schema.arrays import Array
@@ -54,22 +54,19 @@ def show_discrepancy(diagnosis: Diagnosis, figures: Mapping[str, Figure]) -> lis
 
 def show_comfort(diagnosis: Diagnosis) -> list[Block]:
     """Return comfort and travel on the held-out run, the figures by which seats are assessed."""
-    if not diagnosis.evidence.comfort:
-        return []
-    last = name_last(diagnosis)
     rows = [
-        [each.quantity.replace("_", " "), format_quantity(each.measured, each.unit),
+        (each.quantity.replace("_", " "), format_quantity(each.measured, each.unit),
          format_quantity(each.nominal, each.unit), _format_error(each.nominal, each.measured),
-         format_quantity(each.after, each.unit), _format_error(each.after, each.measured)]
+         format_quantity(each.after, each.unit), _format_error(each.after, each.measured))
         for each in diagnosis.evidence.comfort
     ]  # fmt: skip
-    return [Table("On the held-out run", ["figure", "measured", "nominal", "error", last, "error of that"], rows)]
+    return tabulate(
+        "On the held-out run", f"figure, measured, nominal, error, {name_last(diagnosis)}, error of that", rows
+    )
 
 
 def show_budget(diagnosis: Diagnosis) -> list[Block]:
     """Return what the error of the stated scenario is made of on the held-out run, by channel."""
-    if not diagnosis.error_budget:
-        return []
     lead = (
         "The error E is the RMS of measured less simulated, of the scenario with the effects found. Its parts are those"
         " of ASME V&V 20: what halving the step of the integration changes (u_num), what the noise of the recorded"
@@ -79,20 +76,20 @@ def show_budget(diagnosis: Diagnosis) -> list[Block]:
     rows = []
     for channel, unit, *parts in diagnosis.error_budget:
         shown = describe_channel(channel, unit)
-        rows.append([shown.words, shown.unit, *(format_number(shown.factor * part) for part in parts)])
-    head = ["channel", "unit", "error E", "step u_num", "inputs u_input", "sensor u_D", "model form"]
-    return [Text(lead), Table("Parts of the error", head, rows, 2)]
+        rows.append([shown.words, shown.unit, *(shown.factor * part for part in parts)])
+    head = "channel, unit, error E, step u_num, inputs u_input, sensor u_D, model form"
+    return [Text(lead), *tabulate("Parts of the error", head, rows, 2)] if rows else []
 
 
-def show_notes(diagnosis: Diagnosis) -> list[Block]:
+def list_notes(diagnosis: Diagnosis) -> list[str]:
     """Return notes on the data, and the groups of blocks that the recorded channels can tell apart."""
-    sentences = [format_sentence(note) for note in diagnosis.notes]
+    sentences = list(diagnosis.notes)
     if diagnosis.held_out:
         sentences.append(f"Held out, no part of any fit: {join_names(diagnosis.held_out)}.")
     groups = [join_names(group, "or") for group in diagnosis.isolable if group]
     if groups:
         sentences.append(f"These channels can distinguish these groups of blocks: {'; '.join(groups)}.")
-    return list_notes(sentences)
+    return sentences
 
 
 def _read_lines(group: Sequence[Trace], channel: str) -> list[Array | None]:

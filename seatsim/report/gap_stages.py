@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from seatsim.diagnosis.result import CalibratedParameter, Diagnosis
 from seatsim.plots.diagnosis.answer import STAGES, Key, read_gap, select_stages
 from seatsim.plots.labels import format_number, format_percent, format_unit
-from seatsim.report.blocks import Block, Table, Text, show_pictures
+from seatsim.report.blocks import Block, Text, show_pictures, tabulate
 from seatsim.report.formatting import format_noise, format_setting, say_noise
 
 if TYPE_CHECKING:
@@ -25,15 +25,15 @@ def show_gaps(diagnosis: Diagnosis, figures: Mapping[str, Figure]) -> list[Block
     rows = [_make_row(diagnosis, name, keys) for name in ("overall", *gap.before.channels)]
     head = ["channel", *(STAGES[key].label for key in keys), "shrinks by"]
     blocks = [Text(f"{_describe_shrink(diagnosis)} {EXPLAINED}"), *show_pictures(figures, "gaps")]
-    blocks.append(Table(f"Gaps on {held}", head, rows, 1, [0]))
+    blocks += tabulate(f"Gaps on {held}", head, rows, 1, [0])
     if len(gap.by_run) > 1:
         lines = [
             [each.run, *(_format_gap(key, getattr(each, key).overall) for key in keys), format_percent(each.shrink)]
             for each in gap.by_run
         ]
         strong = [k for k, each in enumerate(gap.by_run) if each.run in diagnosis.held_out]
-        blocks.append(Table("Gaps of every run, overall; held out in bold", ["run", *head[1:]], lines, 1, strong))
-    return [*blocks, *([_list_parameters(diagnosis.parameters)] if diagnosis.parameters else [])]
+        blocks += tabulate("Gaps of every run, overall; held out in bold", ["run", *head[1:]], lines, 1, strong)
+    return [*blocks, *_list_parameters(diagnosis.parameters)]
 
 
 def _make_row(diagnosis: Diagnosis, name: str, keys: Sequence[Key]) -> list[str]:
@@ -62,7 +62,7 @@ def _describe_shrink(diagnosis: Diagnosis) -> str:
     return f"The gap shrinks by {format_percent(gap.shrink)}{between} with the {effects} found."
 
 
-def _list_parameters(parameters: Sequence[CalibratedParameter]) -> Table:
+def _list_parameters(parameters: Sequence[CalibratedParameter]) -> list[Block]:
     ranked = sorted(parameters, key=lambda each: not each.at_bound)
     rows = [
         [f"{each.name} (at its bound)" if each.at_bound else each.name, format_unit(each.unit),
@@ -72,4 +72,4 @@ def _list_parameters(parameters: Sequence[CalibratedParameter]) -> Table:
     ]  # fmt: skip
     strong = [k for k, each in enumerate(ranked) if each.at_bound]
     caption = "Parameters refitted within their tolerance"
-    return Table(caption, ["parameter", "unit", "nominal", "refitted", "bounds"], rows, 2, strong)
+    return tabulate(caption, "parameter, unit, nominal, refitted, bounds", rows, 2, strong)

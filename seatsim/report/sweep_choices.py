@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from seatsim.plots.labels import format_number, format_percent
 from seatsim.plots.sweeps import COMFORT, describe_column, format_level
-from seatsim.report.blocks import Block, Table
+from seatsim.report.blocks import Block, tabulate
 from seatsim.scenario.scenario import is_condition
 from seatsim.sweeps.rows import SweepRows
 from seatsim.sweeps.sensitivity import Sensitivity, choose_key
@@ -69,4 +69,4 @@ def tabulate_best(rows: SweepRows) -> list[Block]:
     others = f"; and {left} other conditions" if left else ""
     shown = describe_column(COMFORT, rows.units)
     caption = f"Most comfortable choice under each condition, the worst condition first{others}"
-    return [Table(caption, [*conditions, *choices, shown.axis], lines, words=len(conditions) + len(choices))]
+    return tabulate(caption, [*conditions, *choices, shown.axis], lines, len(conditions) + len(choices))

@@ -19,7 +19,7 @@ from seatsim.plots.runs.draw import plot_result
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.recordings.gap import Gap, GapFigures, ReplayedPair
 from seatsim.report.characterisation import report_characterisation
-from seatsim.report.credibility.evidence import Evidence
+from seatsim.report.credibility import count_variations
 from seatsim.report.gap import report_gap, say_gap
 from seatsim.report.identification import report_identification
 from seatsim.report.rendering import render_report
@@ -101,7 +101,7 @@ def gap(size, floor=0.02):
 
 def test_a_gap_says_where_it_is_largest_and_what_to_do():
     report = report_gap(
-        "nominal against rig", gap(0.3), {"run-a": pair(20.0), "run-b": pair(5.0)}, Evidence("gap"), "seatsim gap a b"
+        "nominal against rig", gap(0.3), {"run-a": pair(20.0), "run-b": pair(5.0)}, [count_variations(1)], "seatsim gap a b"
     )
     outline = Outline(render_report(report))
     assert "furthest off in the damper force, by 30 %" in outline.headings[0]
@@ -113,7 +113,7 @@ def test_a_gap_says_where_it_is_largest_and_what_to_do():
 
 def test_noise_that_is_not_stated_is_not_printed_as_none():
     found = gap(0.3, floor=0.0)
-    outline = Outline(render_report(report_gap("x", found, {"run-a": pair(20.0)}, Evidence("gap"), "seatsim gap a b")))
+    outline = Outline(render_report(report_gap("x", found, {"run-a": pair(20.0)}, [count_variations(1)], "seatsim gap a b")))
     assert "no sensor noise is stated" in outline.headings[0]
     shown = make_plain(make_gap_table(found)), found._repr_html_()
     assert outline.rows("Gap over all runs")["damper force"][:2] == ["30 %", "not stated"]
@@ -126,7 +126,7 @@ def test_a_short_recording_has_no_spectrum():
         time=short.time[:40], measured={"damper_force": short.measured["damper_force"][:40]},
         simulated={"damper_force": short.simulated["damper_force"][:40]},
     )  # fmt: skip
-    outline = Outline(render_report(report_gap("x", gap(0.3), {"run-a": short}, Evidence("gap"), "seatsim gap a b")))
+    outline = Outline(render_report(report_gap("x", gap(0.3), {"run-a": short}, [count_variations(1)], "seatsim gap a b")))
     assert "frequency [Hz]" not in outline.words and "time [s]" in outline.words
 
 
@@ -183,7 +183,7 @@ def test_text_of_files_stays_text_in_every_kind(text):
     hostile.assessments[0] = hostile.assessments[0]._replace(record=hostile.assessments[0].record._replace(name=text))
     pages = [
         render_report(report_identification(hostile, {"loops": plot_predictions(hostile)}, text)),
-        render_report(report_gap(text, gap(0.3), {text: pair(3.0)}, Evidence("gap"), text)),
+        render_report(report_gap(text, gap(0.3), {text: pair(3.0)}, [count_variations(1)], text)),
         render_report(report_characterisation(Characterisation(text, text, True, [], [], [text]), {}, [text], text)),
     ]
     for page in pages:

@@ -113,15 +113,14 @@ def write_gap(found: Gap, scenario: str, recording: Path, folder: Path) -> list[
         folder: where the files go.
     """
     from seatsim.recordings.gap import replay_every_run
-    from seatsim.report.credibility.evidence import collect_gap
-    from seatsim.report.gap import report_gap
+    from seatsim.report.gap import judge_gap, report_gap
 
     contents: dict[str, object] = {"gap.json": found}
     if found.channels:
         name = f"{Path(scenario).stem} against {recording.resolve().name}"
         command = f"seatsim gap {Path(scenario).name} {recording.name}"
-        pairs, evidence = replay_every_run(scenario, recording), collect_gap(scenario, recording, found)
-        contents["report.html"] = report_gap(name, found, pairs, evidence, command)
+        pairs, factors = replay_every_run(scenario, recording), judge_gap(scenario, recording, found)
+        contents["report.html"] = report_gap(name, found, pairs, factors, command)
     return write_outputs(folder, contents)
 
 
