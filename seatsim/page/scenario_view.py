@@ -15,7 +15,7 @@ from seatsim.plots.style import make_entries
 from seatsim.report.blocks import Block, Table, show_pictures
 from seatsim.report.formatting import format_quantity
 from seatsim.report.headline import describe_run
-from seatsim.report.run_pictures import show_signals
+from seatsim.report.runs import show_signals
 from seatsim.scenario.loading import load, read_scenario
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.content import plain

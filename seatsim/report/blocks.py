@@ -100,7 +100,7 @@ class Report(NamedTuple):
 def show_pictures(figures: Mapping[str, Figure], *starts: str) -> list[Block]:
     """Return the figures whose names begin with one of some words, in the order of these words."""
     chosen = {name: figure for start in starts for name, figure in figures.items() if name.startswith(start)}
-    return [Pictures([render_inline(figure, name) for name, figure in chosen.items()])] if chosen else []
+    return [Pictures(list(map(render_inline, chosen.values())))] if chosen else []
 
 
 def tabulate(

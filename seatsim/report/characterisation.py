@@ -24,13 +24,6 @@ if TYPE_CHECKING:
 MOST_ROWS = 60
 ROUNDING = 1e-9
 """Share of the peak force below which an offset is no finding."""
-METHOD = (
-    "A loop is the mean of a record's steady cycles; energy is its area, damping that of a dashpot that dissipates as"
-    " much, E / (π ω X²).",
-    "Asymmetry: RMS of the difference from the centrosymmetric loop over that of the force.",
-    "t95 is the time from a step of the current to 95 % of the change of force; its ± is one standard deviation by"
-    " resampling the steps.",
-)
 
 
 def report_characterisation(
@@ -47,7 +40,7 @@ def report_characterisation(
             "Response to steps of the current",
             [*show_pictures(figures, "steps"), *_tabulate_steps(found.responses)],
         ),
-        *close_report(remarks, factors, METHOD, command, tested),
+        *close_report("characterisation", remarks, factors, command, tested),
     ]
     about, doubt = f"Characterisation: {found.name}", say_doubt(factors)
     return Report(about, _say_character(found), [], _advise(found), sections, doubt)

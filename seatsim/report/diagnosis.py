@@ -10,12 +10,10 @@ import numpy as np
 
 from seatsim.dampers.base import DAMPERS
 from seatsim.diagnosis.result import Cause, Diagnosis
-from seatsim.plots.densities import METHOD as DENSITY
 from seatsim.plots.diagnosis.draw import plot_diagnosis
 from seatsim.plots.labels import format_percent
 from seatsim.recordings.header import NOT_STATED
 from seatsim.report.blocks import Report, Section, show_pictures
-from seatsim.report.causes import show_causes, show_confusions, show_forms
 from seatsim.report.closing import close_report
 from seatsim.report.credibility import (
     Factor,
@@ -26,11 +24,20 @@ from seatsim.report.credibility import (
     validate,
     verify,
 )
-from seatsim.report.effect_words import say_action, say_cause
-from seatsim.report.evidence import list_notes, show_budget, show_comfort, show_discrepancy, show_signals
+from seatsim.report.diagnosis_sections import (
+    list_notes,
+    show_budget,
+    show_causes,
+    show_comfort,
+    show_confusions,
+    show_discrepancy,
+    show_forms,
+    show_gaps,
+    show_signals,
+)
 from seatsim.report.formatting import format_sentence, say_noise
-from seatsim.report.gap_stages import show_gaps
 from seatsim.report.rendering import write_html
+from seatsim.report.words import say_action, say_cause
 from seatsim.schema.fields import UNUSUAL
 from seatsim.schema.text import join_names
 
@@ -41,15 +48,6 @@ _BADGES = {
     "unknown": ("Cause unknown", "A gap remains that no effect of the library explains."),
 }
 _NEARLY_ALL = 0.98
-METHOD = (
-    "Every candidate effect is fitted together with the parameters that are known only within their tolerance, on all"
-    " runs but one; figures are of that run, which took no part in the fit.",
-    "The gap of a channel is the RMS of measured less simulated over the standard deviation of the measured signal; the"
-    " first second of each run is left out.",
-    "A parameter's ± is one standard deviation; 1.645 of them on either side are meant to hold the truth on nine of ten"
-    " rigs. The documentation of the diagnosis says how often they and the interval of the shrink did in trials.",
-    f"Spectra: {DENSITY}",
-)
 
 
 def write_report(diagnosis: Diagnosis, path: Path) -> Path:
@@ -76,7 +74,7 @@ def report_diagnosis(diagnosis: Diagnosis) -> Report:
         Section("maps", "Where in the operating range the error is large", show_pictures(figures, "maps")),
         Section("budget", "What the remaining error is made of", show_budget(diagnosis)),
         Section("comfort", "Comfort and travel", show_comfort(diagnosis)),
-        *close_report(list_notes(diagnosis), factors, METHOD, f"seatsim diagnose {diagnosis.name}"),
+        *close_report("diagnosis", list_notes(diagnosis), factors, f"seatsim diagnose {diagnosis.name}"),
     ]
     if diagnosis.verdict == "none":
         sections = [

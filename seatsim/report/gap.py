@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 
 from seatsim.metrics.motion import rms
-from seatsim.plots.densities import METHOD as DENSITY
 from seatsim.plots.diagnosis.answer import plot_gap
 from seatsim.plots.diagnosis.signals import plot_pairs
 from seatsim.plots.labels import UNKNOWN, describe_channel, format_number, format_percent
@@ -30,16 +29,6 @@ from seatsim.report.packing import MEASURED, Panel, pack_signals
 from seatsim.scenario.loading import single
 from seatsim.schema.arrays import Array
 
-METHOD = (
-    "Every run is replayed with its recorded inputs; row k of every channel is the same instant; the first second of"
-    " each run is left out.",
-    "The gap of a channel is the RMS of measured less simulated over the standard deviation of the measured signal,"
-    " over all samples of all runs; overall is the root of the mean square over the channels. The bias is the mean of"
-    " measured less simulated.",
-    "The noise floor is the gap that the stated noise of the sensor alone would make.",
-    f"Spectra: {DENSITY}",
-)
-
 
 def report_gap(
     name: str, found: Gap, pairs: Mapping[str, ReplayedPair], factors: Sequence[Factor], command: str
@@ -58,7 +47,7 @@ def report_gap(
     sections = [
         Section("gaps", "How far: gap of each channel", [*show_pictures(figures, "gaps"), *tables]),
         Section("signals", "Measured and simulated", [*show_pictures(figures, "signal_"), _show_pairs(found, pairs)]),
-        *close_report(found.notes, factors, METHOD, command),
+        *close_report("gap", found.notes, factors, command),
     ]
     return Report(f"Gap: {name}", say_gap(found), [], _advise(found), sections, say_doubt(factors))
 

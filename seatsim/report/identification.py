@@ -23,14 +23,6 @@ ROWS = 3000
 """Most rows of a record that are drawn over time, from the stretch with the highest speed."""
 GOOD, FAIR = 90.0, 75.0
 """Fits in per cent from which on a model is called good, or usable."""
-METHOD = (
-    "Minimised is the mean over records of the squared error of the force over the variance of the measured one: a"
-    " global search on short stretches, then least squares on all records that are fitted.",
-    "Fit: 100 (1 - |measured - predicted| / |measured - its mean|), in the norm over the samples; R² is of the same"
-    " error; the mean deviation is |measured - predicted| over |measured|, where that is above 5 % of its peak.",
-    "A parameter's ± is 1.96 standard deviations, which respect that neighbouring residuals are alike; not"
-    " determined: its standard deviation is above a tenth of its size.",
-)
 
 
 def report_identification(found: Identification, figures: Mapping[str, Figure], command: str) -> Report:
@@ -42,7 +34,7 @@ def report_identification(found: Identification, figures: Mapping[str, Figure], 
         ),
         Section("signals", "Measured and predicted over time", [signals]),
         Section("parameters", "Parameters", _show_parameters(found)),
-        *close_report(found.notes, factors, METHOD, command),
+        *close_report("identification", found.notes, factors, command),
     ]
     about, doubt = f"Identification: {found.model}", say_doubt(factors)
     return Report(about, _say_fit(found), [], _advise(found), sections, doubt)

@@ -1,4 +1,4 @@
-"""The reports of one simulated run and of a comparison of several."""
+"""The reports of one simulated run and of a comparison of several: figures, signals over time, what to do next."""
 
 from __future__ import annotations
 
@@ -8,33 +8,117 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from seatsim.metrics.table import SHORT
-from seatsim.plots.densities import METHOD as DENSITY
 from seatsim.plots.labels import describe_channel, format_number, format_unit
-from seatsim.plots.runs.naming import label_runs, show_runs
-from seatsim.report.alternatives import SAME, find_best, read_metric
-from seatsim.report.blocks import Block, Report, Section, show_pictures, tabulate
+from seatsim.plots.runs.naming import Shown, label_runs, show_runs
+from seatsim.report.blocks import Block, Report, Section, Signals, show_pictures, tabulate
 from seatsim.report.closing import close_report
 from seatsim.report.credibility import Factor, count_variations, say_doubt, trace_inputs, verify
 from seatsim.report.formatting import format_quantity, format_sentence, format_setting
-from seatsim.report.headline import compare_runs, describe_run
-from seatsim.report.run_advice import advise_on_runs
-from seatsim.report.run_pictures import show_signals
+from seatsim.report.headline import SAME, compare_runs, count_times, describe_run, find_best, read_metric
+from seatsim.report.packing import Panel, pack_signals
 from seatsim.scenario.numbers import find_unit, list_numbers
-from seatsim.scenario.scenario import Scenario
-from seatsim.schema.text import name_some
-from seatsim.simulation.result import Run
+from seatsim.scenario.scenario import Scenario, condition_of
+from seatsim.schema.arrays import Array
+from seatsim.schema.errors import RunError
+from seatsim.schema.text import join_names, name_some
+from seatsim.simulation.result import UNITS, Run
+from seatsim.simulation.trials import STRETCH, try_changes
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+SEAT, HITS, _PEAK = "seat_factor", "end_stop_hits", "suspension_displacement_peak"
+
+
+def advise_on_runs(runs: Sequence[Run]) -> list[str]:
+    """Return what to do next, each in a sentence or two; the worst run comes first, and others are counted."""
+    named = [(f"“{name}”", run) for name, run in zip(label_runs(runs), runs, strict=True) if not run.unverified]
+    found = []
+    hitting = _rank_above(named, HITS, 0.0)
+    if hitting:
+        counts = [f"{name} ({count_times(read_metric(run, HITS))})" for name, run in hitting]
+        found.append(f"Look at the travel of {name_some(counts)}: the suspension meets its end stops.")
+    amplifying = _rank_above(named, SEAT, 1.0 + SAME)
+    if amplifying:
+        listed = [f"{name} (SEAT factor {format_number(read_metric(run, SEAT))})" for name, run in amplifying]
+        feels = f"The driver feels more than the floor moves in {name_some(listed)}."
+        found.append(f"{feels}{_say_trials(*amplifying[0])}")
+    if len(runs) == 1:
+        found.append("Compare it with other laws or settings: seatsim compare takes several scenarios or a sweep.")
+    elif len({condition_of(run.scenario) for run in runs}) == 1:
+        found.append("Check that the order holds on other roads and with other drivers: seatsim sweep varies both.")
+    return found
+
+
+def _rank_above(named: Sequence[tuple[str, Run]], metric: str, limit: float) -> list[tuple[str, Run]]:
+    """Return the runs with a metric above a limit, the largest first."""
+    above = [(name, run) for name, run in named if read_metric(run, metric) > limit]
+    return sorted(above, key=lambda pair: -read_metric(pair[1], metric))
+
+
+def _say_trials(name: str, run: Run) -> str:
+    """Return what halving and doubling the numbers of the worst run did to its SEAT factor."""
+    try:
+        own, *trials = try_changes(run.scenario)
+    except RunError:
+        return ""
+    known = [each for each in trials if np.isfinite(each.metrics[SEAT].value)] if SEAT in own.metrics else []
+    if not known:
+        return ""
+    best = min(known, key=lambda each: each.metrics[SEAT].value)
+    keys = join_names(list(dict.fromkeys(each.key for each in known)))
+    part = f"the first {STRETCH:g} s of " if run.history["time"][-1] > STRETCH else ""
+    tried = f" Half and twice of {keys} were tried on {part}{name}"
+    before, after = own.metrics[SEAT].value, best.metrics[SEAT].value
+    if after > (1 - SAME) * before:
+        return f"{tried}: none lowers its SEAT factor of {format_number(before)}."
+    peaks = (format_quantity(each.metrics[_PEAK].value, "m") for each in (best, own))
+    return (
+        f"{tried}: {best.key} {best.value:g} lowers its SEAT factor the most, to {format_number(after)} from"
+        f" {format_number(before)}, with travel up to {' in place of '.join(peaks)}."
+    )
+
+
+CHANNELS = (
+    "driver_acceleration", "suspension_displacement", "damper_force", "coil_current", "frame_acceleration",
+    "floor_acceleration", "damper_temperature",
+)  # fmt: skip
+
+
+def show_signals(groups: Sequence[Shown]) -> Signals:
+    """Return linked pictures of the channels that some run has; of several scenarios the reader chooses one."""
+    names = list(dict.fromkeys(look.label for shown in groups for look in shown.looks))
+    time = {shown.scenario: max((np.asarray(run["time"]) for run in shown.runs), key=len) for shown in groups}
+    panels = []
+    for channel in CHANNELS:
+        values = {shown.scenario: _read(shown, channel, names, len(time[shown.scenario])) for shown in groups}
+        known = [[each for each in part if each is not None] for part in values.values()]
+        if any(known):
+            panels.append(Panel(channel, UNITS[channel], _note_equal(known), values))
+    caption = "The list above the pictures has every scenario." if len(groups) > 1 else "All runs over time."
+    omitted = next((shown.omission for shown in groups if shown.omission), "")
+    return pack_signals(f"{caption}{omitted}", [(name, k % 8) for k, name in enumerate(names)], time, panels)
+
+
+def _note_equal(groups: Sequence[Sequence[Array]]) -> str:
+    """Return a sentence where the lines of several runs lie on each other, which a picture does not show."""
+    several = [group for group in groups if len(group) > 1]
+    same = all(np.array_equal(group[0], each, equal_nan=True) for group in several for each in group[1:])
+    return "The same in all runs." if several and same else ""
+
+
+def _read(shown: Shown, channel: str, names: Sequence[str], length: int) -> list[Array | None]:
+    """Return a channel of each named run, filled up with NaN to a length; None where there is none."""
+    runs = {look.label: run for look, run in zip(shown.looks, shown.runs, strict=True)}
+    found: list[Array | None] = []
+    for run in map(runs.get, names):
+        values = np.asarray(run[channel]) if run is not None and channel in run.history.channels else np.full(1, np.nan)
+        known = np.isfinite(values).any()
+        found.append(np.pad(values, (0, length - len(values)), constant_values=np.nan) if known else None)
+    return found
+
+
 UNVERIFIED = "* unverified, and never the best: the notes say why."
-METHOD = (
-    "All figures are of the whole run. The driver's weighted RMS acceleration is weighted by Wk of ISO 2631-1; the SEAT"
-    " factor is that over the floor's.",
-    "Floor, seed, temperature, driver and start are conditions, under which a seat has to do well; all else is a"
-    f" choice. Only runs under one condition are compared. Figures within {100 * SAME:g} % count as equal.",
-    f"Spectra: {DENSITY}",
-)
 
 
 def report_runs(
@@ -56,7 +140,9 @@ def report_runs(
         Section("signals", "Signals over time", [*signals, show_signals(show_runs(runs))]),
         Section("spectra", "Driver and floor over frequency", show_pictures(figures, "transmissibility", "psd")),
         Section("loops", "Loops of the damper", show_pictures(figures, "damper_loops", "force_velocity")),
-        *close_report(_state_notes(runs), factors, METHOD, command, _list_settings(runs[0].scenario)),
+        *close_report(
+            "runs", _state_notes(runs), factors, command, _list_settings(runs[0].scenario), same=f"{100 * SAME:g} %"
+        ),
     ]
     single = len(runs) == 1
     about = f"Simulated run: {title}" if single else f"Comparison of {len(runs)} simulated runs: {title}"

@@ -16,12 +16,6 @@ from seatsim.standards.seat_rows import LIMITS, RECALLED, DampingRow, SeatRow, S
 PASSED = ("no", "yes")
 NAMED = 3
 """Failures that the answer names."""
-METHOD = (
-    "The SEAT factor is the weighted acceleration at the driver over that at the floor, each a mean over the runs of a"
-    " class and driver; the spread is the largest deviation of a run from that mean.",
-    "The damping test gives the transmissibility at resonance, with an inert mass on the seat.",
-    format_sentence(RECALLED),
-)
 
 
 def report_seat_test(found: SeatTest, name: str, is_measured: bool, command: str) -> Report:
@@ -38,7 +32,7 @@ def report_seat_test(found: SeatTest, name: str, is_measured: bool, command: str
     sections = [
         Section("classes", "SEAT factors", _tabulate_classes(found.rows)),
         Section("damping", "Damping at resonance", [*_tabulate_damping(found.damping_rows), *curves]),
-        *close_report(notes, factors, METHOD, command),
+        *close_report("seat_test", notes, factors, command, recalled=format_sentence(RECALLED)),
     ]
     about, doubt = f"Seat test: {name}", say_doubt(factors)
     return Report(about, _say_seat_test(found), [], _advise(found), sections, doubt)

@@ -1,4 +1,4 @@
-"""The report of a sweep: what matters most, how often limits are exceeded, comfort against travel, quantiles."""
+"""The report of a sweep: what matters most, how often limits are exceeded, the best choices, quantiles."""
 
 from __future__ import annotations
 
@@ -29,27 +29,79 @@ from seatsim.report.credibility import (
     trace_inputs,
     verify,
 )
-from seatsim.report.sweep_choices import advise_on_keys, choose_choice, tabulate_best
 from seatsim.scenario.scenario import is_condition
 from seatsim.sweeps.outcome import FAILED, UNVERIFIED
 from seatsim.sweeps.rows import NAMES, Exceedance, SweepRows
-from seatsim.sweeps.sensitivity import Sensitivities, choose_key
+from seatsim.sweeps.sensitivity import Sensitivities, Sensitivity, choose_key
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
+
+_MATTERS = 0.1
+"""Share of the variance from which on a key is worth a step."""
+
+
+def choose_choice(found: Sequence[Sensitivity], rows: SweepRows) -> Sensitivity | None:
+    """Return which of the keys that a designer chooses matters most to a metric."""
+    return choose_key([row for row in found if not is_condition(row.key)], rows)
+
+
+def advise_on_keys(found: Sequence[Sensitivity], rows: SweepRows) -> list[str]:
+    """Return what to do about the strongest choice, and where the strongest condition is the worst."""
+    texts = []
+    choice = choose_choice(found, rows)
+    if choice is not None:
+        share = f"explains the most of the variance, {format_percent(choice.total)}"
+        what = "tolerance" if choice.key in rows.drawn else "key"
+        verb = "Tighten the tolerance of" if what == "tolerance" else "Settle"
+        if choice.total < _MATTERS:
+            texts.append(f"No {what} that a designer chooses matters much: of them {choice.key} {share}.")
+        else:
+            texts.append(f"{verb} {choice.key} first: of all choices it {share}.")
+    condition = choose_key([row for row in found if is_condition(row.key)], rows)
+    if condition is not None:
+        shown = describe_column(condition.metric, rows.units)
+        worst, level = max(
+            (condition.at_low, condition.low), (condition.at_high, condition.high), key=lambda end: end[0]
+        )
+        unit = describe_column(condition.key, rows.units).unit
+        at = f"{format_level(level)} {unit}".removesuffix(" -")
+        mean = f"{format_number(shown.factor * worst)} {shown.unit}".removesuffix(" -")
+        texts.append(f"Judge every choice at {condition.key} {at}: there the mean {shown.words} is largest, {mean}.")
+    return texts
+
+
+def tabulate_best(rows: SweepRows) -> list[Block]:
+    """Return the most comfortable choice under each condition, the worst condition first; nothing of random points.
+
+    Figures are means over seeds. Only a design with every choice under every condition can be compared so.
+    """
+    conditions = [key for key in rows.keys if is_condition(key)]
+    choices = [key for key in rows.keys if key not in conditions]
+    if not conditions or not choices or rows.is_random or COMFORT not in rows.metrics:
+        return []
+    means = rows.usable.groupby([*conditions, *choices], as_index=False)[COMFORT].mean()
+    counts = means.groupby(conditions)[COMFORT].size()
+    if counts.min() < 2:
+        return []
+    best = means.loc[means.groupby(conditions)[COMFORT].idxmin()].sort_values(COMFORT, ascending=False)
+    lines = [
+        [*(format_level(value) for value in line[:-1]), format_number(float(line[-1]))]
+        for line in best.head(MOST_LINES).itertuples(index=False, name=None)
+    ]
+    left = len(best) - len(lines)
+    others = f"; and {left} other conditions" if left else ""
+    shown = describe_column(COMFORT, rows.units)
+    caption = f"Most comfortable choice under each condition, the worst condition first{others}"
+    return tabulate(caption, [*conditions, *choices, shown.axis], lines, len(conditions) + len(choices))
+
 
 SHOWN = (COMFORT, "driver_vdv", "seat_factor", TRAVEL, "suspension_displacement_peak", "end_stop_hits", "current_rms")
 """Metrics of the tables of the page; `table.csv` has all of them."""
 MOST_LINES = 60
 """Lines of a table on the page."""
 _MOST_REASONS = 8
-METHOD = (
-    "Failed and unverified runs take no part in any figure.",
-    "Shares of variance are Sobol indices of a polynomial chaos expansion, with 95 % intervals by resampling the runs;"
-    " they assume that keys vary independently, as this design has them.",
-    "Shares of runs above a limit have Wilson's interval of 95 %.",
-)
 
 
 def report_sweep(
@@ -67,7 +119,7 @@ def report_sweep(
         Section("maps", "Means over two keys", show_pictures(figures, "means")),
         Section("quantiles", "Quantiles", _show_quantiles(quantiles, rows)),
         Section("states", "Failed and unverified runs", _show_states(rows)),
-        *close_report([], factors, METHOD, command, settings),
+        *close_report("sweep", [], factors, command, settings),
     ]
     about, answer, doubt = f"Sweep: {rows.folder.name}", state_importance(found, rows), say_doubt(factors)
     return Report(about, answer, [_count_runs(rows)], _advise(found, exceeded, rows), sections, doubt)

@@ -79,7 +79,9 @@ def test_evidence_of_a_run_is_measured_on_it_and_on_what_was_read():
 def test_evidence_of_a_diagnosis_is_of_its_held_out_run():
     diagnosis = with_every_run()
     validation = next(factor for factor in judge_diagnosis(diagnosis) if factor.name == "validation")
-    assert "1 of 3 took no part" in validation.evidence and f"{diagnosis.gap.after.overall:.1%}"[:3] in validation.evidence
+    assert (
+        "1 of 3 took no part" in validation.evidence and f"{diagnosis.gap.after.overall:.1%}"[:3] in validation.evidence
+    )
     assert level_of("uncertainty", judge_diagnosis(diagnosis)) >= 3
 
 
