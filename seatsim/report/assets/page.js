@@ -2,19 +2,21 @@
 // The page of `seatsim explore`: sends what is set, and shows what comes back.
 (() => {
   const form = document.getElementById("controls"), main = document.querySelector("main");
+  const gains = document.getElementById("gains"), fit = document.getElementById("fit");
   const problem = document.getElementById("problem"), saved = document.getElementById("saved");
-  let asked = 0, running = null;
+  let asked = 0, running = null, extra = {};
 
   const read = input => input.type === "range" ? Number(input.value) : input.value;
 
   function values() {
-    const found = {}, effects = {};
-    for (const input of form.querySelectorAll(":scope > label [name]")) found[input.name] = read(input);
+    const collect = inputs => Object.fromEntries([...inputs].map(input => [input.name, read(input)]));
+    const found = collect(form.querySelectorAll(":scope > label [name]")), effects = {};
+    if (gains.children.length) found.gains = collect(gains.querySelectorAll("input"));
     for (const effect of form.querySelectorAll(".effect")) {
       const box = effect.querySelector("input[type=checkbox]");
-      if (box.checked) effects[box.name] = Object.fromEntries([...effect.querySelectorAll("input[type=range]")].map(input => [input.name, read(input)]));
+      if (box.checked) effects[box.name] = collect(effect.querySelectorAll("input[type=range]"));
     }
-    return form.querySelector("fieldset") ? { ...found, effects } : found;
+    return fit ? { ...found, effects } : found;
   }
 
   async function send(address, content) {
@@ -22,6 +24,17 @@
     const found = await answer.json();
     if (!answer.ok) throw new Error(found.error);
     return found;
+  }
+
+  function say(input) {
+    input.parentElement.querySelector("output").textContent = Number(Number(input.value).toPrecision(4));
+  }
+
+  function move(fitted) {
+    for (const [name, values] of Object.entries(fitted)) {
+      const effect = form.querySelector(`.effect input[name="${name}"]`).closest(".effect");
+      for (const input of effect.querySelectorAll("input[type=range]")) { input.value = values[input.name]; say(input); }
+    }
   }
 
   // One request at a time: what was moved meanwhile is sent when the answer is there.
@@ -32,9 +45,13 @@
     while (running !== asked) {
       running = asked;
       try {
-        const found = await send("/view", values());
+        const content = { ...values(), ...extra };
+        extra = {};
+        const found = await send("/view", content);
         document.getElementById("answer").textContent = found.answer;
         document.getElementById("tables").innerHTML = found.tables;
+        if (!gains.children.length) gains.innerHTML = found.gains;
+        move(found.fitted);
         seatsimCharts[0].load(found.signals);
         problem.textContent = "";
       } catch (error) { problem.textContent = error.message; }
@@ -46,10 +63,12 @@
 
   form.addEventListener("input", event => {
     const { target } = event;
-    if (target.type === "range") target.parentElement.querySelector("output").textContent = Number(Number(target.value).toPrecision(4));
+    if (target.type === "range") say(target);
+    if (target.name === "law" || target.name === "run") gains.replaceChildren();
     if (target.type === "checkbox") target.closest(".effect").querySelector(".parameters").hidden = !target.checked;
     if (target.id !== "name") update();
   });
+  if (fit) fit.addEventListener("click", () => { extra = { fit: true }; update(); });
   form.addEventListener("submit", event => event.preventDefault());
   document.getElementById("save").addEventListener("click", async () => {
     try {
