@@ -27,7 +27,7 @@ from seatsim.report.formatting import (
     format_sentence,
     say_noise,
 )
-from seatsim.report.packing import MEASURED, Panel, pack_signals
+from seatsim.report.packing import MEASURED, QUICK, Panel, pack_signals
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import describe
@@ -172,7 +172,7 @@ class RecordingView:
         ]  # fmt: skip
         time = {run: (problem.skip + np.arange(problem.measured[run].shape[1])) / problem.rate for run in problem.runs}
         lines = [("measured", MEASURED), ("nominal", 1), ("with effects", 0)]
-        return pack_signals("Every run.", lines, time, panels)
+        return pack_signals("Every run.", lines, time, panels, QUICK)
 
 
 def _name(candidate: Candidate) -> str:

@@ -16,6 +16,7 @@ from seatsim.plots.style import make_entries
 from seatsim.report.blocks import Block, Table, show_pictures
 from seatsim.report.formatting import format_quantity
 from seatsim.report.headline import describe_run
+from seatsim.report.packing import QUICK
 from seatsim.report.runs import show_signals
 from seatsim.scenario.loading import load, read_scenario
 from seatsim.scenario.scenario import Scenario
@@ -91,7 +92,7 @@ class ScenarioView:
         shown = Shown("", run.scenario.name, [own, run], make_entries(["as in the file", "as set"]), "")
         figures = {"transmissibility": plot_transmissibility(shown), "psd": plot_psd(shown)}
         blocks = [_compare(own, run), *show_pictures(figures, "transmissibility", "psd")]
-        return View(describe_run(run), blocks, show_signals([shown]), gains)
+        return View(describe_run(run), blocks, show_signals([shown], QUICK), gains)
 
     def choose(self, request: Mapping[str, Any]) -> Scenario:
         """Return the scenario that a request describes."""

@@ -15,7 +15,7 @@ from seatsim.report.closing import close_report
 from seatsim.report.credibility import Factor, count_variations, say_doubt, trace_inputs, verify
 from seatsim.report.formatting import format_quantity, format_sentence, format_setting
 from seatsim.report.headline import SAME, compare_runs, count_times, describe_run, find_best, read_metric
-from seatsim.report.packing import Panel, pack_signals
+from seatsim.report.packing import FINEST, Panel, pack_signals
 from seatsim.scenario.numbers import find_unit, list_numbers
 from seatsim.scenario.scenario import Scenario, condition_of
 from seatsim.schema.arrays import Array
@@ -85,7 +85,7 @@ CHANNELS = (
 )  # fmt: skip
 
 
-def show_signals(groups: Sequence[Shown]) -> Signals:
+def show_signals(groups: Sequence[Shown], finest: int = FINEST) -> Signals:
     """Return linked pictures of the channels that some run has; of several scenarios the reader chooses one."""
     names = list(dict.fromkeys(look.label for shown in groups for look in shown.looks))
     time = {shown.scenario: max((np.asarray(run["time"]) for run in shown.runs), key=len) for shown in groups}
@@ -97,7 +97,7 @@ def show_signals(groups: Sequence[Shown]) -> Signals:
             panels.append(Panel(channel, UNITS[channel], _note_equal(known), values))
     caption = "The list above the pictures has every scenario." if len(groups) > 1 else "All runs over time."
     omitted = next((shown.omission for shown in groups if shown.omission), "")
-    return pack_signals(f"{caption}{omitted}", [(name, k % 8) for k, name in enumerate(names)], time, panels)
+    return pack_signals(f"{caption}{omitted}", [(name, k % 8) for k, name in enumerate(names)], time, panels, finest)
 
 
 def _note_equal(groups: Sequence[Sequence[Array]]) -> str:

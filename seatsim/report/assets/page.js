@@ -1,9 +1,8 @@
 "use strict";
 // The page of `seatsim explore`: sends what is set, and shows what comes back.
 (() => {
-  const form = document.getElementById("controls"), main = document.querySelector("main");
-  const gains = document.getElementById("gains"), fit = document.getElementById("fit");
-  const problem = document.getElementById("problem"), saved = document.getElementById("saved");
+  const main = document.querySelector("main"), find = name => document.getElementById(name);
+  const [form, gains, fit, problem, saved] = ["controls", "gains", "fit", "problem", "saved"].map(find);
   let asked = 0, running = null, extra = {};
 
   const read = input => input.type === "range" ? Number(input.value) : input.value;
@@ -26,14 +25,12 @@
     return found;
   }
 
-  function say(input) {
-    input.parentElement.querySelector("output").textContent = Number(Number(input.value).toPrecision(4));
-  }
+  const say = input => { input.parentElement.querySelector("output").textContent = Number(Number(input.value).toPrecision(4)); };
 
   function move(fitted) {
     for (const [name, values] of Object.entries(fitted)) {
-      const effect = form.querySelector(`.effect input[name="${name}"]`).closest(".effect");
-      for (const input of effect.querySelectorAll("input[type=range]")) { input.value = values[input.name]; say(input); }
+      const { parentElement } = form.querySelector(`.effect input[name="${name}"]`).parentElement;
+      for (const input of parentElement.querySelectorAll("input[type=range]")) { input.value = values[input.name]; say(input); }
     }
   }
 
@@ -48,11 +45,11 @@
         const content = { ...values(), ...extra };
         extra = {};
         const found = await send("/view", content);
-        document.getElementById("answer").textContent = found.answer;
-        document.getElementById("tables").innerHTML = found.tables;
+        find("answer").textContent = found.answer;
+        find("tables").innerHTML = found.tables;
         if (!gains.children.length) gains.innerHTML = found.gains;
         move(found.fitted);
-        seatsimCharts[0].load(found.signals);
+        await seatsimCharts[0].load(found.signals);
         problem.textContent = "";
       } catch (error) { problem.textContent = error.message; }
     }
@@ -70,9 +67,9 @@
   });
   if (fit) fit.addEventListener("click", () => { extra = { fit: true }; update(); });
   form.addEventListener("submit", event => event.preventDefault());
-  document.getElementById("save").addEventListener("click", async () => {
+  find("save").addEventListener("click", async () => {
     try {
-      const found = await send("/save", { ...values(), name: document.getElementById("name").value });
+      const found = await send("/save", { ...values(), name: find("name").value });
       saved.textContent = `saved as ${found.saved}`;
     } catch (error) { saved.textContent = error.message; }
   });
