@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
-from seatsim.cli.options import Json, Out, OwnCode, complete_kind, pairs
+from seatsim.cli.options import Json, Out, OwnCode, Pdf, complete_kind, pairs
 from seatsim.cli.terminal import answer, complain, conclude, show_progress, warn, wrote
 from seatsim.schema.errors import InputError
 
@@ -33,6 +33,7 @@ def characterise(
     amplitudes: Annotated[str, typer.Option("--amplitudes", metavar="M,M", help="Amplitudes in m.")] = "",
     frequencies: Annotated[str, typer.Option("--frequencies", metavar="HZ,HZ", help="Frequencies.")] = "",
     own_code: OwnCode = None,
+    pdf: Pdf = False,
     as_json: Json = False,
 ) -> None:
     """Show what a bench shows of a damper: loops, energy, asymmetry, offset and response times."""
@@ -90,6 +91,7 @@ def identify(
     seed: Annotated[int, typer.Option("--seed", min=0, help="Seed of the global search.")] = 0,
     out_folder: Out = None,
     own_code: OwnCode = None,
+    pdf: Pdf = False,
     as_json: Json = False,
 ) -> None:
     """Fit a damper model, or every model, to bench records and assess it on records held out."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seatsim.cli.options import Json, NewFolder, OneScenario, Out, OwnCode, RecordingFolder
+from seatsim.cli.options import Json, NewFolder, OneScenario, Out, OwnCode, Pdf, RecordingFolder
 from seatsim.cli.terminal import answer, conclude, say, show_progress, warn, wrote
 from seatsim.schema.text import make_printable
 
@@ -25,6 +25,7 @@ def gap(
         typer.Option("--predict", metavar="DIAGNOSIS.json", help="Predict the gap from the recording's inputs alone."),
     ] = None,
     own_code: OwnCode = None,
+    pdf: Pdf = False,
     as_json: Json = False,
 ) -> None:
     """Replay a scenario against a recording and print the gap with the noise floor."""
@@ -61,6 +62,7 @@ def diagnose(
         ),
     ] = None,
     own_code: OwnCode = None,
+    pdf: Pdf = False,
     as_json: Json = False,
 ) -> None:
     """Say where the gap between a recording and its nominal scenario lies, what causes it and how far it shrinks."""

@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from seatsim.cli.outputs.printing import print_reports
 from seatsim.provenance.manifest import Measured, write_documented
 from seatsim.report.rendering import write_html
 from seatsim.schema.files import write_json, write_text, write_together, write_whole
@@ -43,7 +44,7 @@ def write_outputs(
         seed: as for `write_documented`.
         measured: the same.
     """
-    return write_documented(folder, partial(write_each, contents), seed, measured)
+    return print_reports(write_documented(folder, partial(write_each, contents), seed, measured))
 
 
 def write_each(contents: Mapping[str, object], folder: Path) -> list[Path]:
