@@ -14,7 +14,7 @@ from seatsim.plots.thinning import thin_line
 from seatsim.report.blocks import Signals
 from seatsim.schema.arrays import Array
 
-BUDGET = 250_000
+BUDGET = 200_000
 """Bytes that the lines of one group of pictures take on the page together."""
 FINEST, QUICK = 50_000, 3_000
 """Most intervals of a line, of two values each, in a report and on a page that is made in an instant."""

@@ -30,9 +30,11 @@ from seatsim.plots.saving import render_inline
 from seatsim.plots.style import WIDTH
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.recordings.gap import Gap, GapFigures, ReplayedPair
+from seatsim.report.sweep import draw_figures
 from seatsim.simulation.result import Result
+from seatsim.sweeps.sensitivity import analyse_sensitivity
 
-from ..report import diagnoses
+from ..report import diagnoses, kinds
 
 LONG = "a variant whose name goes on and on, beyond all use"
 RUNS = {
@@ -84,9 +86,13 @@ def draw_seat_test():
     return plot_damping(SimpleNamespace(damping={"em1": test, "em5": test}))
 
 
+def draw_sweep():
+    return draw_figures(analyse_sensitivity(kinds.sweep()), kinds.sweep())
+
+
 OTHERS = {
     **{f"diagnosis, {name}": lambda make=make: plot_diagnosis(make()) for name, make in diagnoses.CASES.items()},
-    "gap": draw_gap, "identification": draw_identification, "bench": draw_bench, "seat test": draw_seat_test,
+    "gap": draw_gap, "identification": draw_identification, "bench": draw_bench, "seat test": draw_seat_test, "sweep": draw_sweep,
 }  # fmt: skip
 DRAWN: dict[str, dict] = {}
 
