@@ -29,8 +29,11 @@ OPTIONS: dict[str, dict[str, Any]] = {
 _INLINE: dict[Any, Any] = {"svg.hashsalt": "seatsim", "svg.fonttype": "none", "path.simplify_threshold": 0.3}
 _SHORTER = (
     (r"(?s)^.*?(?=<svg)|<metadata>.*?</metadata>|\s*\n\s*", " "),
-    (r' id="[\w.]+_\d+"| transform="rotate\(-0 [^"]*"', ""), (r"(\.\d)\d{2,}", r"\1"), (r"(px|font-family:)[^;:\"]*sans-serif", r"\1 sans-serif"), (r"([:;]) ", r"\1"),
-)  # fmt: skip
+    (r' id="[\w.]+_\d+"| transform="rotate\(-0 [^"]*"', ""),
+    (r"(\.\d)\d{2,}", r"\1"),
+    (r"(px|font-family:)[^;:\"]*sans-serif", r"\1 sans-serif"),
+    (r"([:;]) ", r"\1"),
+)
 """What is left out of an SVG of matplotlib: all beside the drawing, names, digits that nobody sees, certain fonts."""
 
 

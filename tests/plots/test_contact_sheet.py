@@ -92,7 +92,8 @@ def draw_sweep():
 
 OTHERS = {
     **{f"diagnosis, {name}": lambda make=make: plot_diagnosis(make()) for name, make in diagnoses.CASES.items()},
-    "gap": draw_gap, "identification": draw_identification, "bench": draw_bench, "seat test": draw_seat_test, "sweep": draw_sweep,
+    "gap": draw_gap, "identification": draw_identification, "bench": draw_bench, "seat test": draw_seat_test,
+    "sweep": draw_sweep,
 }  # fmt: skip
 DRAWN: dict[str, dict] = {}
 

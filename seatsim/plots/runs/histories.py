@@ -56,7 +56,8 @@ def plot_time_histories(shown: Shown) -> Figure:
     first, single = shown.runs[0].history, len(shown.runs) == 1
     common = min(run.history["time"][-1] for run in shown.runs)
     window = find_loudest(first["driver_acceleration"][first["time"] <= common], first.step, CLOSE_UP, RASTER)
-    views, note = [window], f"{window}, where the driver's RMS acceleration is largest in the first run."
+    note = f"{window}, where the driver's RMS acceleration is largest{' in the first run' * (not single)}."
+    views = [window]
     if single and window.end - window.start < common:
         views, note = [Window(0.0, float(common)), window], f"Left: whole run. Right: {note}"
     limits, warms = _find_limits(shown.runs), any(np.ptp(run.history[TEMPERATURE.name]) > 0 for run in shown.runs)
@@ -103,8 +104,8 @@ def _join_views(row: Sequence[Axes], window: Window, single: bool) -> None:
         row[0].axvspan(*window, color="0.93", zorder=0)
         close.set_ylim(row[0].get_ylim())
         close.tick_params(labelleft=False)
-    # matplotlib gives a line without a label one that begins with an underscore.
-    named = [line for line in row[-1].lines if not str(line.get_label()).startswith("_")]
+    # matplotlib gives lines of its own a label that begins with an underscore.
+    named = [line for line in row[-1].lines if str(line.get_label()).strip("_") and str(line.get_label())[0] != "_"]
     if single and named:
         row[-1].legend(
             handles=named, ncols=2, loc="lower right", bbox_to_anchor=(1.0, 1.0), frameon=False, borderpad=0,
