@@ -99,7 +99,8 @@ def sweep():
     comfort = 0.5 + (110 - mass) / 100 + (machine == "EM1") * 0.3 + 1e-4 * (stiffness - 4000) + rng.normal(0, 0.01, 200)
     frame = pd.DataFrame({
         "plant.driver_mass": mass, "plant.suspension_stiffness": stiffness, "excitation.spectral_class": machine,
-        COMFORT: comfort, TRAVEL: 0.02 - 0.005 * comfort + rng.normal(0, 4e-4, 200), "run": range(200), "state": "done", "reason": "", "seed": 0,
+        COMFORT: comfort, TRAVEL: 0.02 - 0.005 * comfort + rng.normal(0, 4e-4, 200),
+        "run": range(200), "state": "done", "reason": "", "seed": 0,
     })  # fmt: skip
     keys = ["plant.driver_mass", "plant.suspension_stiffness", "excitation.spectral_class"]
     limits = {COMFORT: 0.9, TRAVEL: 0.017}
