@@ -14,8 +14,8 @@ from seatsim.characterisation.summary import Characterisation, group_by_setting
 from seatsim.dampers.base import DAMPERS
 from seatsim.plots.labels import format_number, format_percent
 from seatsim.report.blocks import Block, Code, Report, Section, Text, show_pictures, tabulate
-from seatsim.report.closing import close_report
-from seatsim.report.credibility import Factor, count_variations, say_doubt, state_intervals, trace_inputs
+from seatsim.report.composing import Closing, compose
+from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs
 from seatsim.report.formatting import format_quantity
 
 if TYPE_CHECKING:
@@ -30,7 +30,6 @@ def report_characterisation(
     found: Characterisation, figures: Mapping[str, Figure], remarks: Sequence[str], command: str
 ) -> Report:
     """Return the report of a characterisation; `remarks` are sentences on it, `command` makes it again."""
-    factors = _judge(found)
     tested: list[Block] = [Text("What was tested:"), Code(found.source, "What was tested")]
     sections = [
         Section("loops", "Force, energy and damping", show_pictures(figures, "loops", "energy", "asymmetry")),
@@ -40,10 +39,9 @@ def report_characterisation(
             "Response to steps of the current",
             [*show_pictures(figures, "steps"), *_tabulate_steps(found.responses)],
         ),
-        *close_report("characterisation", remarks, factors, command, tested),
     ]
-    about, doubt = f"Characterisation: {found.name}", say_doubt(factors)
-    return Report(about, _say_character(found), [], _advise(found), sections, doubt)
+    about, closing = f"Characterisation: {found.name}", Closing(remarks, _judge(found), command, tested)
+    return compose("characterisation", about, [_say_character(found)], _advise(found), sections, closing)
 
 
 def _judge(found: Characterisation) -> list[Factor]:

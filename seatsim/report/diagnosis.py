@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -14,11 +14,10 @@ from seatsim.plots.diagnosis.draw import plot_diagnosis
 from seatsim.plots.labels import format_percent
 from seatsim.recordings.header import NOT_STATED
 from seatsim.report.blocks import Report, Section, show_pictures
-from seatsim.report.closing import close_report
+from seatsim.report.composing import Closing, compose
 from seatsim.report.credibility import (
     Factor,
     count_variations,
-    say_doubt,
     state_intervals,
     trace_inputs,
     validate,
@@ -63,7 +62,7 @@ def write_report(diagnosis: Diagnosis, path: Path) -> Path:
 
 def report_diagnosis(diagnosis: Diagnosis) -> Report:
     """Return the report of a diagnosis; without a gap it has no evidence for causes."""
-    figures, factors = plot_diagnosis(diagnosis), judge_diagnosis(diagnosis)
+    figures = plot_diagnosis(diagnosis)
     sections = [
         Section("causes", "Where it lies and what causes it", show_causes(diagnosis, figures)),
         Section("gaps", "How far: gaps before and after", show_gaps(diagnosis, figures)),
@@ -74,17 +73,14 @@ def report_diagnosis(diagnosis: Diagnosis) -> Report:
         Section("maps", "Where in the operating range the error is large", show_pictures(figures, "maps")),
         Section("budget", "What the remaining error is made of", show_budget(diagnosis)),
         Section("comfort", "Comfort and travel", show_comfort(diagnosis)),
-        *close_report("diagnosis", list_notes(diagnosis), factors, f"seatsim diagnose {diagnosis.name}"),
     ]
     if diagnosis.verdict == "none":
-        sections = [
-            section for section in sections if section.anchor not in ("causes", "missing", "confusions", "maps")
-        ]
-    words, explanation = _BADGES.get(diagnosis.verdict, (diagnosis.verdict, ""))
-    badge = (diagnosis.verdict, words, explanation)
-    lead = [format_sentence(diagnosis.sentence)]
-    about, answer = f"Diagnosis: {diagnosis.name}", say_diagnosis(diagnosis)
-    return Report(about, answer, lead, advise(diagnosis), sections, _say_doubt(diagnosis, factors), badge)
+        sections = [each for each in sections if each.anchor not in ("causes", "missing", "confusions", "maps")]
+    answer = [say_diagnosis(diagnosis), format_sentence(diagnosis.sentence)]
+    closing = Closing(list_notes(diagnosis), judge_diagnosis(diagnosis), f"seatsim diagnose {diagnosis.name}")
+    report = compose("diagnosis", f"Diagnosis: {diagnosis.name}", answer, advise(diagnosis), sections, closing)
+    badge = (diagnosis.verdict, *_BADGES[diagnosis.verdict])
+    return report._replace(badge=badge, doubt=f"{_say_probabilities(diagnosis)} {report.doubt}".strip())
 
 
 def judge_diagnosis(diagnosis: Diagnosis) -> list[Factor]:
@@ -161,14 +157,13 @@ def advise(diagnosis: Diagnosis) -> list[str]:
     return found
 
 
-def _say_doubt(diagnosis: Diagnosis, factors: Sequence[Factor]) -> str:
-    """Return how sure the diagnosis is of its causes, and what its figures rest on the least."""
+def _say_probabilities(diagnosis: Diagnosis) -> str:
+    """Return how sure the diagnosis is of its causes."""
     rest = [cause for cause in diagnosis.causes if cause.effect not in diagnosis.selected]
     named = [f"{cause.effect} {format_percent(cause.probability)}" for cause in _select(diagnosis) if cause.probability]
     following = [f"next {cause.effect} {format_percent(cause.probability)}" for cause in rest[:1]]
     another = [f"another cause {format_percent(diagnosis.probability_unknown)}"]
-    probabilities = f"Probability of being at work: {', '.join([*named, *following, *another])}."
-    return f"{probabilities} {say_doubt(factors)}".strip()
+    return f"Probability of being at work: {', '.join([*named, *following, *another])}."
 
 
 def _select(diagnosis: Diagnosis) -> list[Cause]:

@@ -14,12 +14,11 @@ from seatsim.plots.labels import UNKNOWN, describe_channel, format_number, forma
 from seatsim.recordings.gap import Gap, ReplayedPair
 from seatsim.recordings.recording import load_recording
 from seatsim.report.blocks import Report, Section, Signals, Table, show_pictures
-from seatsim.report.closing import close_report
+from seatsim.report.composing import Closing, compose
 from seatsim.report.credibility import (
     NEAR_NOISE,
     Factor,
     count_variations,
-    say_doubt,
     state_intervals,
     trace_inputs,
     validate,
@@ -47,9 +46,9 @@ def report_gap(
     sections = [
         Section("gaps", "How far: gap of each channel", [*show_pictures(figures, "gaps"), *tables]),
         Section("signals", "Measured and simulated", [*show_pictures(figures, "signal_"), _show_pairs(found, pairs)]),
-        *close_report("gap", found.notes, factors, command),
     ]
-    return Report(f"Gap: {name}", say_gap(found), [], _advise(found), sections, say_doubt(factors))
+    closing = Closing(found.notes, factors, command)
+    return compose("gap", f"Gap: {name}", [say_gap(found)], _advise(found), sections, closing)
 
 
 def judge_gap(scenario: str, folder: Path, found: Gap) -> list[Factor]:

@@ -10,8 +10,8 @@ from seatsim.identification.identify import Identification
 from seatsim.plots.bench.identification import PARTS, select_records
 from seatsim.plots.labels import format_number, format_unit
 from seatsim.report.blocks import Block, Report, Section, show_pictures, tabulate
-from seatsim.report.closing import close_report
-from seatsim.report.credibility import Factor, count_variations, say_doubt, state_intervals, trace_inputs, validate
+from seatsim.report.composing import Closing, compose
+from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs, validate
 from seatsim.report.formatting import format_quantity
 from seatsim.report.packing import MEASURED, Panel, pack_signals
 from seatsim.schema.text import join_names
@@ -27,17 +27,14 @@ GOOD, FAIR = 90.0, 75.0
 
 def report_identification(found: Identification, figures: Mapping[str, Figure], command: str) -> Report:
     """Return the report of an identified damper; `command` makes it again."""
-    factors, signals = _judge(found), _show_time(select_records(found.assessments))
+    fit, chosen = [*show_pictures(figures, "loops"), *_tabulate_fit(found)], select_records(found.assessments)
     sections = [
-        Section(
-            "figures", "How well the force is predicted", [*show_pictures(figures, "loops"), *_tabulate_fit(found)]
-        ),
-        Section("signals", "Measured and predicted over time", [signals]),
+        Section("figures", "How well the force is predicted", fit),
+        Section("signals", "Measured and predicted over time", [_show_time(chosen)]),
         Section("parameters", "Parameters", _show_parameters(found)),
-        *close_report("identification", found.notes, factors, command),
     ]
-    about, doubt = f"Identification: {found.model}", say_doubt(factors)
-    return Report(about, _say_fit(found), [], _advise(found), sections, doubt)
+    about, closing = f"Identification: {found.model}", Closing(found.notes, _judge(found), command)
+    return compose("identification", about, [_say_fit(found)], _advise(found), sections, closing)
 
 
 def _judge(found: Identification) -> list[Factor]:

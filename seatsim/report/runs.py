@@ -11,8 +11,8 @@ from seatsim.metrics.table import SHORT
 from seatsim.plots.labels import describe_channel, format_number, format_unit
 from seatsim.plots.runs.naming import Shown, label_runs, show_runs
 from seatsim.report.blocks import Block, Report, Section, Signals, show_pictures, tabulate
-from seatsim.report.closing import close_report
-from seatsim.report.credibility import Factor, count_variations, say_doubt, trace_inputs, verify
+from seatsim.report.composing import Closing, compose
+from seatsim.report.credibility import Factor, count_variations, trace_inputs, verify
 from seatsim.report.formatting import format_quantity, format_sentence, format_setting
 from seatsim.report.headline import SAME, compare_runs, count_times, describe_run, find_best, read_metric
 from seatsim.report.packing import FINEST, Panel, pack_signals
@@ -133,22 +133,18 @@ def report_runs(
         title: what they are on.
         failures: why others were not carried to their end.
     """
-    factors = judge_runs(runs)
     bars, signals = show_pictures(figures, "pareto", "comparison"), show_pictures(figures, "time_histories")
     sections = [
         Section("figures", "Comfort, travel and effort", [*bars, *_tabulate_figures(runs)]),
         Section("signals", "Signals over time", [*signals, show_signals(show_runs(runs))]),
         Section("spectra", "Driver and floor over frequency", show_pictures(figures, "transmissibility", "psd")),
         Section("loops", "Loops of the damper", show_pictures(figures, "damper_loops", "force_velocity")),
-        *close_report(
-            "runs", _state_notes(runs), factors, command, _list_settings(runs[0].scenario), same=f"{100 * SAME:g} %"
-        ),
     ]
     single = len(runs) == 1
     about = f"Simulated run: {title}" if single else f"Comparison of {len(runs)} simulated runs: {title}"
-    answer, *others = [describe_run(runs[0])] if single else compare_runs(runs)
-    lead = [*others, *_list_gaps(runs, failures)]
-    return Report(about, answer, lead, advise_on_runs(runs), sections, say_doubt(factors))
+    answer = [*([describe_run(runs[0])] if single else compare_runs(runs)), *_list_gaps(runs, failures)]
+    closing = Closing(_state_notes(runs), judge_runs(runs), command, _list_settings(runs[0].scenario))
+    return compose("runs", about, answer, advise_on_runs(runs), sections, closing, same=f"{100 * SAME:g} %")
 
 
 def judge_runs(runs: Sequence[Run]) -> list[Factor]:

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from seatsim.plots.bench.resonance import plot_damping
 from seatsim.plots.labels import format_percent
 from seatsim.report.blocks import Block, Report, Section, show_pictures, tabulate
-from seatsim.report.closing import close_report
-from seatsim.report.credibility import Factor, count_variations, say_doubt, state_intervals, trace_inputs
+from seatsim.report.composing import Closing, compose
+from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs
 from seatsim.report.formatting import format_sentence
 from seatsim.schema.text import join_names
 from seatsim.standards.seat_rows import LIMITS, RECALLED, DampingRow, SeatRow, SeatTest
@@ -28,14 +28,14 @@ def report_seat_test(found: SeatTest, name: str, is_measured: bool, command: str
         command: what makes the report again.
     """
     notes = [*found.notes, *(f"{each.run} failed: {each.reason}" for each in found.failures)]
-    factors, curves = _judge(found, is_measured), show_pictures(plot_damping(found), "damping")
+    curves = show_pictures(plot_damping(found), "damping")
     sections = [
         Section("classes", "SEAT factors", _tabulate_classes(found.rows)),
         Section("damping", "Damping at resonance", [*_tabulate_damping(found.damping_rows), *curves]),
-        *close_report("seat_test", notes, factors, command, recalled=format_sentence(RECALLED)),
     ]
-    about, doubt = f"Seat test: {name}", say_doubt(factors)
-    return Report(about, _say_seat_test(found), [], _advise(found), sections, doubt)
+    answer, closing = [_say_seat_test(found)], Closing(notes, _judge(found, is_measured), command)
+    recalled = format_sentence(RECALLED)
+    return compose("seat_test", f"Seat test: {name}", answer, _advise(found), sections, closing, recalled=recalled)
 
 
 def _judge(found: SeatTest, is_measured: bool) -> list[Factor]:

@@ -18,17 +18,17 @@ from seatsim.plots.sweeps import (
     plot_tornado,
 )
 from seatsim.report.blocks import Block, Report, Section, Text, show_pictures, tabulate
-from seatsim.report.closing import close_report
+from seatsim.report.composing import Closing, compose
 from seatsim.report.credibility import (
     ENOUGH_RUNS,
     EXPLAINED,
     Factor,
     count_variations,
-    say_doubt,
     state_intervals,
     trace_inputs,
     verify,
 )
+from seatsim.report.formatting import format_quantity
 from seatsim.scenario.scenario import is_condition
 from seatsim.sweeps.outcome import FAILED, UNVERIFIED
 from seatsim.sweeps.rows import NAMES, Exceedance, SweepRows
@@ -67,7 +67,7 @@ def advise_on_keys(found: Sequence[Sensitivity], rows: SweepRows) -> list[str]:
         )
         unit = describe_column(condition.key, rows.units).unit
         at = f"{format_level(level)} {unit}".removesuffix(" -")
-        mean = f"{format_number(shown.factor * worst)} {shown.unit}".removesuffix(" -")
+        mean = format_quantity(worst, rows.units[condition.metric])
         texts.append(f"Judge every choice at {condition.key} {at}: there the mean {shown.words} is largest, {mean}.")
     return texts
 
@@ -109,7 +109,6 @@ def report_sweep(
 ) -> Report:
     """Return the report of a sweep from its rows and the statistics on them."""
     settings = [Text(_say_seeds(rows)), Text(f"Identity of the sweep: {rows.manifest['identity']}")]
-    command, factors = f"seatsim sweep-report {rows.folder.name}", _judge(rows, found, exceeded)
     figures = draw_figures(found, rows)
     sections = [
         Section("limits", "How often limits are exceeded", _show_limits(exceeded, rows)),
@@ -119,10 +118,10 @@ def report_sweep(
         Section("maps", "Means over two keys", show_pictures(figures, "means")),
         Section("quantiles", "Quantiles", _show_quantiles(quantiles, rows)),
         Section("states", "Failed and unverified runs", _show_states(rows)),
-        *close_report("sweep", [], factors, command, settings),
     ]
-    about, answer, doubt = f"Sweep: {rows.folder.name}", state_importance(found, rows), say_doubt(factors)
-    return Report(about, answer, [_count_runs(rows)], _advise(found, exceeded, rows), sections, doubt)
+    answer, factors = [state_importance(found, rows), _count_runs(rows)], _judge(rows, found, exceeded)
+    closing = Closing([], factors, f"seatsim sweep-report {rows.folder.name}", settings)
+    return compose("sweep", f"Sweep: {rows.folder.name}", answer, _advise(found, exceeded, rows), sections, closing)
 
 
 def _judge(rows: SweepRows, found: Sensitivities, exceeded: Sequence[Exceedance]) -> list[Factor]:
@@ -195,7 +194,7 @@ def _advise(found: Sensitivities, exceeded: Sequence[Exceedance], rows: SweepRow
         where = ", ".join(str(value) for value in worst.group.values())
         words = describe_column(worst.metric, rows.units).words
         texts.append(f"Begin with the {words}{f' of {where}' * bool(where)}: {worst.exceeding} of {worst.runs} runs are"
-                     f" above the limit of {_say_limit(worst, rows)}.")  # fmt: skip
+                     f" above the limit of {format_quantity(worst.limit, rows.units[worst.metric])}.")  # fmt: skip
     if found.rows:
         texts += advise_on_keys(found.of(_choose_metric(found)), rows)
     if len(rows.every) < rows.manifest["counts"]["runs"]:
@@ -252,19 +251,14 @@ def _show_limits(exceeded: Sequence[Exceedance], rows: SweepRows) -> list[Block]
         what = "share of the runs"
         lead = "No key is drawn from a distribution: these are shares of the runs of the design, no probabilities."
     lines = [
-        (*map(format_level, row.group.values()), describe_column(row.metric, rows.units).words, _say_limit(row, rows),
-         f"{row.exceeding} of {row.runs}", format_percent(row.share),
-         f"{format_percent(row.low)} to {format_percent(row.high)}")
+        (*map(format_level, row.group.values()), describe_column(row.metric, rows.units).words,
+         format_quantity(row.limit, rows.units[row.metric]), f"{row.exceeding} of {row.runs}",
+         format_percent(row.share), f"{format_percent(row.low)} to {format_percent(row.high)}")
         for row in exceeded[:MOST_LINES]
     ]  # fmt: skip
     groups = list(exceeded[0].group)
     head = [*groups, "metric", "limit", "runs above", what, "95 % interval"]
     return [Text(lead), *tabulate("Runs above each limit", head, lines, len(groups) + 1)]
-
-
-def _say_limit(row: Exceedance, rows: SweepRows) -> str:
-    shown = describe_column(row.metric, rows.units)
-    return f"{format_number(shown.factor * row.limit)} {shown.unit}".removesuffix(" -")
 
 
 def _show_quantiles(quantiles: pd.DataFrame, rows: SweepRows) -> list[Block]:
