@@ -10,6 +10,7 @@ from typing import Annotated, get_type_hints
 
 import typer
 
+from seatsim.cli.outputs.printing import choose_printer
 from seatsim.cli.terminal import answer_as_json
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import check_folder
@@ -114,6 +115,14 @@ OwnCode = Annotated[
         callback=_use_files,
         help="Run a file of your own, whose classes are then known by the names in their decorators, or a damper's"
         " FMU; may be given several times.",
+    ),
+]
+Pdf = Annotated[
+    bool,
+    typer.Option(
+        "--pdf",
+        callback=choose_printer,
+        help="Print report.html to report.pdf, too, by a browser of this machine or WeasyPrint.",
     ),
 ]
 Json = Annotated[

@@ -1,8 +1,9 @@
-"""The addresses of the page: itself, what it shows of a request, files of its folder, and saving a scenario."""
+"""The addresses of the page: itself, what it shows of a request, and saving a scenario."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from pathlib import Path
 from threading import Lock
@@ -17,7 +18,6 @@ from starlette.responses import HTMLResponse, JSONResponse, PlainTextResponse, R
 from starlette.routing import Route
 from starlette.types import ASGIApp
 
-from seatsim.page.folder import Folder, NotInFolderError, TooLargeError
 from seatsim.page.guard import POLICY, Guard
 from seatsim.report.rendering import digest_of, make_environment, read_asset
 from seatsim.schema.errors import InputError, SeatsimError
@@ -32,14 +32,13 @@ if TYPE_CHECKING:
 SCRIPTS = ("uPlot.iife.min.js", "charts.js", "page.js")
 STYLES = ("uPlot.min.css", "report.css", "page.css")
 HEADERS = {"X-Content-Type-Options": "nosniff", "Referrer-Policy": "no-referrer", "Cache-Control": "no-store"}
-_READABLE = (".yaml", ".yml")
-"""Endings of files that are shown as they are."""
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._ -]{0,80}")
 _WAITING = "wait"
 """In the address of the request that is answered when everything is loaded."""
 
 
-def make_app(target: Future[ScenarioView | RecordingView], folder: Folder, token: str, port: int) -> ASGIApp:
-    """Return the page of a scenario or recording, which reads and writes files of one folder alone.
+def make_app(target: Future[ScenarioView | RecordingView], folder: Path, token: str, port: int) -> ASGIApp:
+    """Return the page of a scenario or recording, which writes files of one folder alone.
 
     Until its target is loaded, the page says so; every other request waits.
     """
@@ -49,7 +48,6 @@ def make_app(target: Future[ScenarioView | RecordingView], folder: Folder, token
             Route("/", page.show, methods=["GET"]),
             Route("/view", page.compute, methods=["POST"]),
             Route("/save", page.save, methods=["POST"]),
-            Route("/files/{path:path}", page.read, methods=["GET"]),
         ]
     )
     return Guard(app, token, port)
@@ -58,7 +56,7 @@ def make_app(target: Future[ScenarioView | RecordingView], folder: Folder, token
 class _Page:
     """Answers the requests of one target, one at a time."""
 
-    def __init__(self, target: Future[ScenarioView | RecordingView], folder: Folder) -> None:
+    def __init__(self, target: Future[ScenarioView | RecordingView], folder: Path) -> None:
         self._target, self._folder, self._lock = target, folder, Lock()
         script, style = read_asset(SCRIPTS), read_asset(STYLES)
         self._headers = HEADERS | {
@@ -67,8 +65,7 @@ class _Page:
         environment = make_environment().overlay(
             loader=jinja2.ChoiceLoader([jinja2.PackageLoader("seatsim.report"), jinja2.PackageLoader("seatsim.page")])
         )
-        self._tables = environment.get_template("tables.html")
-        self._page = environment.get_template("page.html")
+        self._page, self._parts = map(environment.get_template, ("page.html", "parts.html"))
         self._given = {"script": Markup(script), "style": Markup(style)}
         self._loading = environment.get_template("loading.html").render(style=Markup(style))
 
@@ -85,50 +82,54 @@ class _Page:
 
     async def compute(self, request: Request) -> Response:
         """Return what is shown of some values."""
-        try:
-            values = await _read_values(request)
-            view = await run_in_threadpool(self._compute, values)
-        except SeatsimError as error:
-            return JSONResponse({"error": str(error)}, status_code=422, headers=self._headers)
-        tables = self._tables.render(tables=view.tables)
-        content = {"answer": view.answer, "tables": tables, "signals": view.signals.data}
-        return JSONResponse(content, headers=self._headers)
+        return await self._answer(request, self._show)
 
     async def save(self, request: Request) -> Response:
         """Write a scenario of some values into the folder."""
+        return await self._answer(request, self._save)
+
+    async def _answer(self, request: Request, compute: Callable[[Mapping[str, Any]], object]) -> Response:
+        """Return what follows from the values of a request, or what is wrong with them."""
         try:
-            values = await _read_values(request)
-            path = await run_in_threadpool(self._save, values)
+            found = await run_in_threadpool(compute, await _read_values(request))
         except SeatsimError as error:
             return JSONResponse({"error": str(error)}, status_code=422, headers=self._headers)
-        return JSONResponse({"saved": path.name}, headers=self._headers)
+        return JSONResponse(found, headers=self._headers)
 
-    async def read(self, request: Request) -> Response:
-        """Return a scenario or the head of a recording as text."""
-        try:
-            path = self._folder.find(request.path_params["path"])
-        except NotInFolderError as error:
-            return PlainTextResponse(f"{error}\n", status_code=404, headers=self._headers)
-        except TooLargeError as error:
-            return PlainTextResponse(f"{error}\n", status_code=413, headers=self._headers)
-        if path.suffix not in _READABLE or not path.is_file():
-            return PlainTextResponse("Only scenarios and recordings are shown.\n", status_code=404)
-        return PlainTextResponse(path.read_text(encoding="utf-8", errors="replace"), headers=self._headers)
+    def _show(self, values: Mapping[str, Any]) -> object:
+        view = self._compute(values)
+        parts = {name: str(getattr(self._parts.module, name)(view)) for name in ("tables", "gains")}
+        return {"answer": view.answer, "signals": view.signals.data, "fitted": view.fitted, **parts}
 
     def _compute(self, values: Mapping[str, Any]) -> Any:
         with self._lock:
             return self._target.result().show(values)
 
-    def _save(self, values: Mapping[str, Any]) -> Path:
+    def _save(self, values: Mapping[str, Any]) -> object:
         # Loading these takes longer than everything that the first page needs.
         from seatsim.scenario.loading import single
 
-        path = self._folder.name_new(str(values.get("name", "")))
+        path = name_new(self._folder, str(values.get("name", "")))
         content = {**self._target.result().encode(values), "name": path.stem}
         with temporary_folder() as drafts:
             # What could not be read again is never saved.
             single(write_text(Path(drafts) / path.name, dump(content)))
-        return write_text(path, dump(content))
+        return {"saved": write_text(path, dump(content)).name}
+
+
+def name_new(folder: Path, name: str) -> Path:
+    """Return the path of a new scenario in a folder.
+
+    Raises:
+        InputError: the name cannot be used, or is taken.
+    """
+    stem = name.strip().removesuffix(".yaml")
+    if not _NAME.fullmatch(stem):
+        raise InputError(f"{name!r}: a name of letters, digits, spaces, '.', '-' and '_', beginning with a letter")
+    path = folder / f"{stem}.yaml"
+    if path.exists():
+        raise InputError(f"{path.name}: is there already, and is not replaced; give another name")
+    return path
 
 
 async def _read_values(request: Request) -> dict[str, Any]:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import hmac
-from http.cookies import CookieError, SimpleCookie
-from urllib.parse import parse_qs
 
-from starlette.datastructures import Headers
+from starlette.datastructures import Headers, QueryParams
+from starlette.requests import HTTPConnection
 from starlette.responses import PlainTextResponse, RedirectResponse
 from starlette.types import ASGIApp, Receive, Scope, Send
 
@@ -37,16 +36,15 @@ class Guard:
         if scope["type"] == "lifespan":
             await self._app(scope, receive, send)
             return
-        headers = Headers(scope=scope)
-        refused = self._refuse(scope, headers)
+        refused = self._refuse(scope, Headers(scope=scope))
         if refused is not None:
             await refused(scope, receive, send)
-        elif self._has_token(_first(parse_qs(scope["query_string"].decode("latin-1")).get("token"))):
+        elif self._has_token(QueryParams(scope["query_string"]).get("token")):
             # The token leaves the address, which stays in the browser's history.
             answer = RedirectResponse("/", status_code=303)
             answer.set_cookie(self._cookie, self._token, httponly=True, samesite="strict")
             await answer(scope, receive, send)
-        elif self._has_token(_read_cookie(headers.get("cookie", ""), self._cookie)):
+        elif self._has_token(HTTPConnection(scope).cookies.get(self._cookie)):
             await self._app(scope, receive, send)
         else:
             text = "Open the address that seatsim explore printed: it holds the token of this page.\n"
@@ -62,17 +60,5 @@ class Guard:
             return PlainTextResponse("The request is too large.\n", status_code=413)
         return None
 
-    def _has_token(self, given: str) -> bool:
-        return hmac.compare_digest(given.encode(), self._token.encode())
-
-
-def _first(values: list[str] | None) -> str:
-    return values[0] if values else ""
-
-
-def _read_cookie(text: str, name: str) -> str:
-    try:
-        found = SimpleCookie(text).get(name)
-    except CookieError:
-        return ""
-    return found.value if found is not None else ""
+    def _has_token(self, given: str | None) -> bool:
+        return hmac.compare_digest((given or "").encode(), self._token.encode())

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.optimize import least_squares
 
 from seatsim.diagnosis.answer import write_augmented
 from seatsim.diagnosis.candidates import Candidate, list_candidates
@@ -26,7 +27,7 @@ from seatsim.report.formatting import (
     format_sentence,
     say_noise,
 )
-from seatsim.report.packing import MEASURED, Panel, pack_signals
+from seatsim.report.packing import MEASURED, QUICK, Panel, pack_signals
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import describe
@@ -34,6 +35,8 @@ from seatsim.schema.fields import describe
 REACH = 4.0
 """How far a slider reaches, in sizes of the effect as a fit would start with it."""
 PROCESSES = 2
+_DIFFERENCE = 1e-2
+"""Step of a difference in a fit, relative."""
 
 
 class RecordingView:
@@ -61,15 +64,18 @@ class RecordingView:
         self.nominal = self._simulate(Parameters(self.problem.nominal))
 
     def show(self, request: Mapping[str, Any]) -> View:
-        """Return the gap with the effects of a request.
+        """Return the gap with the effects of a request, at its values or, where it says so, fitted to the recording.
 
         Raises:
             InputError: there is no such effect, or a value is not permitted.
             RunError: a replay cannot be carried to its end.
         """
-        parameters = self.choose(request)
+        parameters, fitted = self.choose(request), {}
+        if request.get("fit") and parameters.terms:
+            parameters = self._fit(parameters)
+            fitted = self._read_sliders(request["effects"], parameters)
         after = self._simulate(parameters) if parameters.terms else self.nominal
-        return View(self._say(parameters, after), [self._tabulate(after)], self._pack(after))
+        return View(self._say(parameters, after), [self._tabulate(after)], self._pack(after), fitted=fitted)
 
     def choose(self, request: Mapping[str, Any]) -> Parameters:
         """Return the effects of a request with their values."""
@@ -95,6 +101,33 @@ class RecordingView:
         jobs = [problem.pool.submit(problem.simulated, run, parameters.deviations, parameters.effects)
                 for run in problem.runs]  # fmt: skip
         return {run: job.result() for run, job in zip(problem.runs, jobs, strict=True)}
+
+    def _fit(self, start: Parameters) -> Parameters:
+        """Return the parameters of the effects with which the squared gap is least, found by least squares."""
+        low, high = start.limits
+        own = slice(len(start.deviations), None)
+
+        def move_to(vector: Array) -> Parameters:
+            return start.move_to(np.concatenate([start.deviations, vector]))
+
+        def subtract(vector: Array) -> Array:
+            simulated, problem = self._simulate(move_to(vector)), self.problem
+            left = [(problem.measured[run] - simulated[run]) / problem.spread[:, None] for run in problem.runs]
+            return np.concatenate(left, axis=None)
+
+        bounds = (low[own], high[own])
+        return move_to(least_squares(subtract, start.vector[own], bounds=bounds, diff_step=[_DIFFERENCE]).x)
+
+    def _read_sliders(self, effects: Mapping[str, object], parameters: Parameters) -> dict[str, dict[str, float]]:
+        """Return where the sliders of some effects stand at these parameters."""
+        switches = {switch.name: switch.sliders for switch in self.switches}
+        return {
+            name: {
+                slider.name: float(np.clip(slider.factor * value, slider.low, slider.high))
+                for slider, value in zip(switches[name], values, strict=True)
+            }
+            for name, values in zip(effects, parameters.values, strict=True)
+        }
 
     def _measure(self, simulated: Mapping[str, Array]) -> Array:
         """Return the gap of each channel over all runs, shape (channels,)."""
@@ -139,7 +172,7 @@ class RecordingView:
         ]  # fmt: skip
         time = {run: (problem.skip + np.arange(problem.measured[run].shape[1])) / problem.rate for run in problem.runs}
         lines = [("measured", MEASURED), ("nominal", 1), ("with effects", 0)]
-        return pack_signals("Every run.", lines, time, panels)
+        return pack_signals("Every run.", lines, time, panels, QUICK)
 
 
 def _name(candidate: Candidate) -> str:

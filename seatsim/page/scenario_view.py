@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from seatsim.metrics.table import SHORT
 from seatsim.page.controls import Choice, Slider, read_choice, read_number
+from seatsim.plots.labels import describe_channel
 from seatsim.plots.runs.naming import Shown
 from seatsim.plots.runs.spectra import plot_psd, plot_transmissibility
 from seatsim.plots.style import make_entries
 from seatsim.report.blocks import Block, Table, show_pictures
 from seatsim.report.formatting import format_quantity
 from seatsim.report.headline import describe_run
-from seatsim.report.run_pictures import show_signals
+from seatsim.report.packing import QUICK
+from seatsim.report.runs import show_signals
 from seatsim.scenario.loading import load, read_scenario
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.content import plain
 from seatsim.schema.errors import InputError
+from seatsim.schema.fields import bounds, describe
+from seatsim.schema.validation import is_finite_number
 from seatsim.simulation.result import Run
 from seatsim.simulation.runs import run_one
 
@@ -30,16 +34,20 @@ LAWS = (
 )  # fmt: skip
 """Laws that need no design before they run, so that a change is seen at once."""
 _ROADS = "ABCDEF"
+REACH = 3.0
+"""How far a number of a law can be moved, over its value."""
 SPEED, DURATION = 10.0, 20.0
 """m/s and s of a road that is chosen on the page."""
 
 
 class View(NamedTuple):
-    """What the page shows: a sentence, tables, and the pictures."""
+    """What the page shows: a sentence, tables, the pictures, the numbers of the law at work, and what was fitted."""
 
     answer: str
     tables: list[Block]
     signals: Any
+    gains: Sequence[Slider] = ()
+    fitted: Mapping[str, Mapping[str, float]] = {}
 
 
 class ScenarioView:
@@ -62,10 +70,9 @@ class ScenarioView:
         laws = [(OWN, "as in the file"), ("off", "no current"), *((law, law.replace("_", " ")) for law in LAWS)]
         temperature = first.temperature if isinstance(first.temperature, int | float) else 20.0
         mass = first.plant.driver_mass
-        self.sliders = [
-            Slider("mass", "Driver mass", "kg", min(30.0, mass), max(150.0, mass), mass),
-            Slider("temperature", "Damper temperature", "°C", -20.0, 100.0, float(temperature)),
-        ]
+        self.sliders = [Slider("mass", "Driver mass", "kg", min(30.0, mass), max(150.0, mass), mass)]
+        if any(any(scenario.damper.factors[:3]) for scenario in scenarios):
+            self.sliders.append(Slider("temperature", "Damper temperature", "°C", -20.0, 100.0, float(temperature)))
         self.choices = [Choice("road", "Road", roads), Choice("law", "Controller", laws)]
         if len(titles) > 1:
             self.choices.insert(
@@ -79,11 +86,13 @@ class ScenarioView:
             InputError: a value is not permitted.
             RunError: the run cannot be carried to its end.
         """
-        run, own = run_one(self.choose(request)), self._own
+        base = self.choose({**request, "gains": {}})
+        gains = list_gains(base)
+        run, own = run_one(self.choose(request) if request.get("gains") else base), self._own
         shown = Shown("", run.scenario.name, [own, run], make_entries(["as in the file", "as set"]), "")
         figures = {"transmissibility": plot_transmissibility(shown), "psd": plot_psd(shown)}
         blocks = [_compare(own, run), *show_pictures(figures, "transmissibility", "psd")]
-        return View(describe_run(run), blocks, show_signals([shown]))
+        return View(describe_run(run), blocks, show_signals([shown], QUICK), gains)
 
     def choose(self, request: Mapping[str, Any]) -> Scenario:
         """Return the scenario that a request describes."""
@@ -92,19 +101,22 @@ class ScenarioView:
         index = int(chosen.get("run", "0"))
         base = load(self.path)[index]
         settings: dict[str, object] = {}
-        if numbers["mass"] != self.sliders[0].value:
-            settings["plant.driver_mass"] = numbers["mass"]
-        if numbers["temperature"] != self.sliders[1].value:
-            settings["temperature"] = numbers["temperature"]
+        for slider, key in zip(self.sliders, ("plant.driver_mass", "temperature"), strict=False):
+            if numbers[slider.name] != slider.value:
+                settings[key] = numbers[slider.name]
         if chosen["road"] != OWN:
             road = {"kind": "road", "road_class": chosen["road"], "speed": SPEED, "duration": DURATION}
             settings["excitation"] = road
         if chosen["law"] != OWN:
             settings["controller"] = self._state_law(base, chosen["law"])
-        if not settings:
-            return base
         label = dict(base.label) | ({"variant": chosen["law"].replace("_", " ")} if chosen["law"] != OWN else {})
-        return self._reload(base, settings, label)
+        found = self._reload(base, settings, label) if settings else base
+        if not (gains := request.get("gains")):
+            return found
+        if not isinstance(gains, dict):
+            raise InputError("gains: a mapping of numbers of the law to their values")
+        moved = {f"controller.{slider.name}": read_number(gains, slider) for slider in list_gains(found)}
+        return self._reload(base, settings | moved, label)
 
     def encode(self, request: Mapping[str, Any]) -> dict[str, object]:
         """Return the scenario of a request as the content of a file."""
@@ -133,6 +145,23 @@ class ScenarioView:
     def _own(self) -> Run:
         """The first run as the file has it."""
         return run_one(load(self.path)[0])
+
+
+def list_gains(scenario: Scenario) -> list[Slider]:
+    """Return the numbers of the law of a scenario, each to be moved from its least to three times its value."""
+    if scenario.control is None:
+        return []
+    record, found = scenario.control.law, []
+    for field in describe(type(record)):
+        value = getattr(record, field.name)
+        if is_finite_number(value) and field.name != "sample_time":
+            low, high = bounds(type(record), field.name)
+            reach = REACH * abs(value) or 1.0
+            own = describe_channel(field.meaning, field.unit)
+            ends = (max(low, -reach if value < 0 else 0.0), min(high, reach))
+            low, high, start = (own.factor * x for x in (*ends, value))
+            found.append(Slider(field.name, own.words, own.unit, low, high, start, own.factor))
+    return found
 
 
 def _compare(own: Run, run: Run) -> Table:

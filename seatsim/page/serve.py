@@ -16,7 +16,6 @@ import uvicorn
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from seatsim.page.app import make_app
-from seatsim.page.folder import LARGEST, Folder
 from seatsim.scenario.loading import find_file
 from seatsim.schema.errors import InputError
 
@@ -25,6 +24,8 @@ if TYPE_CHECKING:
     from seatsim.page.scenario_view import ScenarioView
 
 _HOST = "127.0.0.1"
+_LARGEST = 50_000_000
+"""Bytes of the largest file that is read."""
 
 
 class Impatient(H11Protocol):
@@ -57,8 +58,8 @@ def find_target(path: Path) -> Path:
     if not path.is_dir():
         return find_file(path)
     for file in path.iterdir():
-        if file.is_file() and file.stat().st_size > LARGEST:
-            raise InputError(f"{file}: larger than {LARGEST / 1e6:.0f} MB, which is the most that the page reads")
+        if file.is_file() and file.stat().st_size > _LARGEST:
+            raise InputError(f"{file}: larger than {_LARGEST / 1e6:.0f} MB, which is the most that the page reads")
     return path
 
 
@@ -100,7 +101,7 @@ def serve(path: Path, folder: Path, port: int, browser: bool, say: Callable[[str
     taken, token = listener.getsockname()[1], secrets.token_urlsafe(24)
     address = f"http://{_HOST}:{taken}/?token={token}"
     target = ThreadPoolExecutor(1).submit(open_target, path)
-    app = make_app(target, Folder(folder), token, taken)
+    app = make_app(target, folder.resolve(), token, taken)
     server = uvicorn.Server(
         uvicorn.Config(app, http=Impatient, log_level="warning", access_log=False, server_header=False)
     )

@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import html
 import io
-from functools import singledispatch
 
 from matplotlib.figure import Figure
 
@@ -49,26 +48,14 @@ def _embed(figure: Figure) -> str:
     return "data:image/png;base64," + base64.b64encode(image.getvalue()).decode("ascii")
 
 
-@singledispatch
 def _list_figures(value: object) -> dict[str, Figure]:
+    match value:
+        case Result():
+            return plot_result(value)
+        case Gap():
+            return {"gap": plot_gap(value)}
+        case Identification():
+            return {"loops": plot_predictions(value)}
+        case Diagnosis():
+            return plot_diagnosis(value)
     raise InputError(f"nothing is drawn of a {type(value).__name__}; give a result, gap, diagnosis or identification")
-
-
-@_list_figures.register
-def _(value: Result) -> dict[str, Figure]:
-    return plot_result(value)
-
-
-@_list_figures.register
-def _(value: Gap) -> dict[str, Figure]:
-    return {"gap": plot_gap(value)}
-
-
-@_list_figures.register
-def _(value: Identification) -> dict[str, Figure]:
-    return {"loops": plot_predictions(value)}
-
-
-@_list_figures.register
-def _(value: Diagnosis) -> dict[str, Figure]:
-    return plot_diagnosis(value)

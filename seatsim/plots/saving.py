@@ -6,11 +6,11 @@ import io
 import re
 from pathlib import Path
 from typing import Any, NamedTuple
-from xml.etree import ElementTree
+from urllib.parse import quote
 
 from matplotlib import rc_context
-from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
 
 from seatsim.plots.style import WIDTH, measure_head
 
@@ -27,19 +27,22 @@ OPTIONS: dict[str, dict[str, Any]] = {
 }
 """What each ending of a file needs so that the same figure gives the same bytes."""
 _INLINE: dict[Any, Any] = {"svg.hashsalt": "seatsim", "svg.fonttype": "none", "path.simplify_threshold": 0.3}
-_NAMESPACE = re.compile(r"\{.*?\}")
-_DROPPED = {"font-family", "stroke-linejoin", "stroke-miterlimit", "image-rendering"}
-"""Properties that a page sets for all pictures, or that hardly show."""
-POINTS = 72
-"""Units of an SVG in an inch."""
+_SHORTER = (
+    (r"(?s)^.*?(?=<svg)|<metadata>.*?</metadata>|\s*\n\s*", " "),
+    (r' id="[\w.]+_\d+"| transform="rotate\(-0 [^"]*"', ""),
+    (r"(\.\d)\d{2,}", r"\1"),
+    (r"(px|font-family:)[^;:\"]*sans-serif", r"\1 sans-serif"),
+    (r"([:;]) ", r"\1"),
+)
+"""What is left out of an SVG of matplotlib: all beside the drawing, names, digits that nobody sees, certain fonts."""
 
 
 class Inline(NamedTuple):
-    """A picture for a page of HTML: the texts that stand beside it, and its drawing as an element `svg`."""
+    """A picture for a page of HTML: the texts that stand beside it, and its address, which holds the drawing."""
 
     title: str
     note: str
-    svg: str
+    source: str
 
 
 def save_figure(figure: Figure, path: Path) -> None:
@@ -48,64 +51,24 @@ def save_figure(figure: Figure, path: Path) -> None:
         figure.savefig(path, **OPTIONS[path.suffix])
 
 
-def render_inline(figure: Figure, name: str) -> Inline:
-    """Return a figure for a page of HTML, as wide as its place there, in the colours of the page.
+def render_inline(figure: Figure) -> Inline:
+    """Return a figure for a page of HTML, without title and note, which the page prints; the figure stays as it is.
 
-    Greys are mixed of the page's `--ink` and `--paper`, other colours with white as far as `--keep` says: so the
-    picture is right on light and dark paper. Title and note of the figure are taken out of the drawing. Styles are
-    attributes, since a content policy forbids those of elements.
-
-    Args:
-        figure: of `make_page`; it stays as it is.
-        name: of the picture, which sets its identifiers apart from those of others on the page.
+    It is an SVG on no paper, for a light page; a dark one turns its light and dark around.
     """
     texts = figure.texts
-    title, note = (text.get_text() for text in texts)
+    head = measure_head(*(len(text.get_text().splitlines()) for text in texts)) - 0.04
     file = io.StringIO()
+    for text in texts:
+        text.set_visible(False)
     with rc_context(_INLINE):
-        for text in texts:
-            text.set_visible(False)
-        figure.savefig(file, format="svg", metadata=_NO_DATE, transparent=True, dpi=110)
-        for text in texts:
-            text.set_visible(True)
-    head = measure_head(*(len(text.splitlines()) for text in (title, note))) - 0.04
-    title, note = (" ".join(text.splitlines()).replace(r"\$", "$") for text in (title, note))
-    root = ElementTree.fromstring(file.getvalue())  # noqa: S314  # matplotlib wrote it a moment ago
-    width, height = POINTS * WIDTH, POINTS * float(figure.get_figheight())
-    root.attrib = {
-        "viewBox": f"0 {POINTS * head:.1f} {width:.1f} {height - POINTS * head:.1f}", "role": "img",
-        "aria-label": f"{title}. {note}".removesuffix(" "),
-    }  # fmt: skip
-    _restyle(root, name)
-    return Inline(title, note, ElementTree.tostring(root, encoding="unicode"))
-
-
-def _restyle(root: ElementTree.Element, name: str) -> None:
-    """Write an SVG of matplotlib anew: short names, attributes instead of styles, the page's colours, few digits."""
-    used = set(re.findall(r"#([\w-]+)", " ".join(value for each in root.iter() for value in each.attrib.values())))
-    for each in root.iter():
-        each.tag = _NAMESPACE.sub("", each.tag)
-        for child in [child for child in each if child.tag.endswith(("metadata", "style"))]:
-            each.remove(child)
-        given = {_NAMESPACE.sub("", key): value for key, value in each.attrib.items()}
-        style = (part.split(":", 1) for part in given.pop("style", "").split(";") if part.strip())
-        given |= {key.strip(): value.strip() for key, value in style if key.strip() not in _DROPPED}
-        if given.get("id") not in used:
-            given.pop("id", None)
-        each.attrib = {key: _adapt(key, value, name) for key, value in given.items()}
-        each.tail = None
-
-
-def _adapt(key: str, value: str, name: str) -> str:
-    if key in ("d", "points", "x", "y", "width", "height"):
-        return re.sub(r"-?\d+\.\d{2,}", lambda number: f"{float(number[0]):.1f}".replace(".0", ""), value).strip()
-    if key in ("fill", "stroke") and value.startswith("#"):
-        red, green, blue = to_rgb(value)
-        if red == green == blue:
-            return f"color-mix(in srgb, var(--ink) {100 * (1 - red):.0f}%, var(--paper))"
-        return f"color-mix(in oklab, {value} var(--keep), #fff)"
-    if key == "id":
-        return f"{name}-{value}"
-    return value.replace("url(#", f"url(#{name}-") if value.startswith("url(#") else (
-        f"#{name}-{value[1:]}" if key == "href" and value.startswith("#") else value
-    )  # fmt: skip
+        part = Bbox.from_extents(0.0, 0.0, WIDTH, float(figure.get_figheight()) - head)
+        figure.savefig(file, format="svg", metadata=_NO_DATE, transparent=True, dpi=110, bbox_inches=part)
+    for text in texts:
+        text.set_visible(True)
+    drawing = file.getvalue()
+    for pattern, shorter in _SHORTER:
+        drawing = re.sub(pattern, shorter, drawing)
+    source = f"data:image/svg+xml,{quote(drawing.strip(), safe=' /:=;,()-')}"
+    words = [" ".join(text.get_text().split()).replace(r"\$", "$") for text in texts]
+    return Inline(words[0], words[1], source)

@@ -8,12 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from textwrap import wrap
-from typing import Literal, NamedTuple, TypedDict
+from typing import Literal, NamedTuple
 
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
-from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
@@ -21,7 +20,7 @@ from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator, NullLocator
 from matplotlib.typing import LineStyleType
 from numpy.typing import ArrayLike
 
-from seatsim.plots.labels import RAISED, clean_text
+from seatsim.plots.labels import LONGEST, RAISED, clean_text
 
 WIDTH = 5.8
 """Width of a page in inches."""
@@ -62,6 +61,13 @@ class Page(NamedTuple):
     figure: Figure
     rows: list[list[Axes]]
 
+    def list_panels(self, count: int | None = None) -> list[Axes]:
+        """Return the panels, row by row; where some are counted, the others are taken out of the page."""
+        panels = [axes for row in self.rows for axes in row]
+        for axes in [] if count is None else panels[count:]:
+            axes.remove()
+        return panels[:count]
+
 
 class Grid(NamedTuple):
     """Sizes in inches: height of each row of panels, margins, gaps between columns and between rows."""
@@ -78,17 +84,6 @@ class Grid(NamedTuple):
     def width(self) -> float:
         """Width of a panel in inches."""
         return (WIDTH - self.left - self.right - self.gap[0] * (self.columns - 1)) / self.columns
-
-
-class _LineProperties(TypedDict):
-    """How a line looks, as matplotlib names it."""
-
-    color: str
-    linestyle: LineStyleType
-    linewidth: float
-    alpha: float
-    solid_capstyle: Literal["butt"]
-    marker: str
 
 
 def make_entries(labels: Sequence[str]) -> list[Entry]:
@@ -112,20 +107,20 @@ def make_page(title: str, note: str, grid: Grid, legend: Sequence[Entry] = ()) -
     figure are title and note: a report takes them out, and prints them beside the picture.
     """
     lines = [wrap(clean_text(text, 400), int(WIDTH / wide)) for text, wide in ((title, _BOLD), (note, LETTER))]
-    rows = -(-len(legend) // _count_columns(legend))
-    head = measure_head(*map(len, lines))
-    top = head + LINE * rows + grid.top
+    head, columns = measure_head(*map(len, lines)), _count_columns(legend)
+    top = head + LINE * -(-len(legend) // columns) + grid.top
     height = top + sum(grid.heights) + grid.gap[1] * (len(grid.heights) - 1) + grid.bottom
     figure = Figure(figsize=(WIDTH, height))
     left = _MARGIN / WIDTH
     figure.text(left, 1 - _MARGIN / height, "\n".join(lines[0]), fontsize=11.5, fontweight="bold", va="top")
     below = _MARGIN + LINE * (len(lines[0]) + 0.15)
     figure.text(left, 1 - below / height, "\n".join(lines[1]), fontsize=FONT, color=DARK, va="top")
+    # Samples are a little wider than the lines, so that their colours are seen.
+    handles = [_dress(Line2D([], []), entry._replace(width=entry.width + 0.5), 64) for entry in legend]
     if legend:
         figure.legend(
-            handles=[_make_handle(entry) for entry in legend], ncols=_count_columns(legend), loc="upper left",
-            frameon=False, fontsize=FONT, bbox_to_anchor=(left, 1 - head / height), borderaxespad=0, borderpad=0,
-            columnspacing=1.2, handlelength=2.0, labelspacing=0.35,
+            handles=handles, ncols=columns, loc="upper left", bbox_to_anchor=(left, 1 - head / height), frameon=False,
+            fontsize=FONT, borderaxespad=0, borderpad=0, columnspacing=1.2, handlelength=2.0, labelspacing=0.35,
         )  # fmt: skip
     return Page(figure, _add_panels(figure, grid, height - top))
 
@@ -137,7 +132,8 @@ def measure_head(title: int, note: int) -> float:
 
 def draw_line(axes: Axes, x: ArrayLike, y: ArrayLike, look: Entry) -> None:
     """Draw the line through (x, y), shape (N,) each, with the look of its entry."""
-    axes.plot(np.asarray(x), np.asarray(y), label=clean_text(look.label), **_style(look))
+    [line] = axes.plot(np.asarray(x), np.asarray(y))
+    _dress(line, look, LONGEST)
 
 
 def draw_legend_beside(axes: Axes, title: str) -> Legend:
@@ -160,21 +156,19 @@ def set_title(axes: Axes, text: str) -> None:
     axes.set_title(clean_text(text, int(width / LETTER)), loc="left", fontsize=FONT)
 
 
-def set_plain_log_ticks(axis: Axis, low: float, high: float) -> None:
-    """Label a logarithmic axis from `low` to `high` by plain numbers: 1, 2, 5 of each decade, or decades of many."""
-    subs = (1, 2, 5) if high / low < 300 else (1,)
-    axis.set_major_locator(LogLocator(subs=subs, numticks=8))
+def scale_log(axes: Axes, which: Literal["x", "y"], low: float, high: float) -> None:
+    """Make an axis logarithmic from `low` to `high`, in plain numbers: 1, 2, 5 of each decade, or decades of many."""
+    axes.set(**{f"{which}scale": "log", f"{which}lim": (low, high)})
+    axis = axes.xaxis if which == "x" else axes.yaxis
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high / low < 300 else (1,), numticks=8))
     axis.set_major_formatter(lambda value, _: _write_plainly(value))
     axis.set_minor_locator(NullLocator())
 
 
 def scale_frequency_axis(axes: Axes, low: float, high: float) -> None:
     """Make the lower axis of a panel one of frequency in Hz, logarithmic, with both ends named."""
-    axes.set_xscale("log")
-    axes.set_xlim(low, high)
+    scale_log(axes, "x", low, high)
     axes.xaxis.set_major_locator(FixedLocator([tick for tick in _FREQUENCIES if low <= tick <= high]))
-    axes.xaxis.set_major_formatter("{x:g}")
-    axes.xaxis.set_minor_locator(NullLocator())
     axes.set_xlabel("frequency [Hz]")
 
 
@@ -196,13 +190,8 @@ def measure_names(names: Sequence[str]) -> float:
 
 def draw_bars(axes: Axes, values: Sequence[float], colours: Sequence[str], texts: Sequence[str]) -> None:
     """Draw a horizontal bar in each row, with a text at its end; a value that is not known has no bar."""
-    lengths = np.nan_to_num(np.asarray(values, dtype=float))
-    for row, (value, colour, text) in enumerate(zip(lengths, colours, texts, strict=True)):
-        axes.barh(row, value, height=0.66, color=colour, zorder=2)
-        axes.annotate(
-            text, (max(float(value), 0.0), row), xytext=(4, 0), textcoords="offset points", va="center",
-            fontsize=FONT, zorder=3,
-        )  # fmt: skip
+    bars = axes.barh(range(len(values)), np.nan_to_num(values), height=0.66, color=colours, zorder=2)
+    axes.bar_label(bars, texts, padding=4, fontsize=FONT, zorder=3)
 
 
 def explain_empty(axes: Axes, text: str) -> None:
@@ -212,9 +201,13 @@ def explain_empty(axes: Axes, text: str) -> None:
     axes.text(0.5, 0.5, "\n".join(lines), transform=axes.transAxes, ha="center", va="center", color=DARK)
 
 
-def _make_handle(look: Entry) -> Line2D:
-    """Return the sample of a line for a legend, a little wider than the line, so that its colour is seen."""
-    return Line2D([], [], label=clean_text(look.label, 64), **_style(look._replace(width=look.width + 0.5)))
+def _dress(line: Line2D, look: Entry, longest: int) -> Line2D:
+    """Return a line with the look of an entry, and its label in at most `longest` letters."""
+    line.set(
+        label=clean_text(look.label, longest), color=look.colour, linestyle=look.dashes, linewidth=look.width,
+        alpha=look.alpha, solid_capstyle="butt", marker=look.mark,
+    )  # fmt: skip
+    return line
 
 
 def _write_plainly(value: float) -> str:
@@ -222,13 +215,6 @@ def _write_plainly(value: float) -> str:
     if -4 < exponent < 4:
         return f"{value:g}"
     return f"{value / 10.0**exponent:g}×10".removeprefix("1×") + str(exponent).translate(RAISED)
-
-
-def _style(look: Entry) -> _LineProperties:
-    return {
-        "color": look.colour, "linestyle": look.dashes, "linewidth": look.width, "alpha": look.alpha,
-        "solid_capstyle": "butt", "marker": look.mark,
-    }  # fmt: skip
 
 
 def _count_columns(legend: Sequence[Entry]) -> int:

@@ -54,8 +54,7 @@ def plot_shares(found: Sequence[Sensitivity], words: str) -> Figure:
     note = f"Bar: the key alone. Line: 95 % interval of its share together with its interactions.{cut}"
     names = [row.key for row in rows]
     grid = Grid((ROW * len(rows) + 0.1,), left=measure_names(names), right=1.1)
-    page = make_page(f"What determines the {words}", note, grid)
-    axes = page.rows[0][0]
+    figure, [[axes]] = make_page(f"What determines the {words}", note, grid)
     name_rows(axes, names, [0])
     colours = [COLOURS[0], *[style.GREY] * (len(rows) - 1)]
     draw_bars(axes, [100 * _clip(row.first) for row in rows], colours, [""] * len(rows))
@@ -65,9 +64,8 @@ def plot_shares(found: Sequence[Sensitivity], words: str) -> Figure:
         texts = f"{format_percent(row.first)} / {format_percent(row.total)}"
         axes.annotate(texts, (1.02, k), xycoords=("axes fraction", "data"), va="center", fontsize=style.FONT)
     axes.annotate("alone / with", (1.02, 1.0), xycoords="axes fraction", va="bottom", fontsize=style.FONT, color=DARK)
-    axes.set_xlim(0, 100)
-    axes.set_xlabel("share of the variance [%]")
-    return page.figure
+    axes.set(xlim=(0, 100), xlabel="share of the variance [%]")
+    return figure
 
 
 def plot_tornado(found: Sequence[Sensitivity], rows: SweepRows) -> Figure:
@@ -79,8 +77,7 @@ def plot_tornado(found: Sequence[Sensitivity], rows: SweepRows) -> Figure:
         unit = format_unit(rows.units.get(row.key, "")).removesuffix("-")
         names.append(f"{row.key}: {format_level(row.low)} to {format_level(row.high)} {unit}".strip())
     grid = Grid((2 * ROW * len(strongest) + 0.1,), left=0.3, right=0.3)
-    page = make_page(f"How far each key moves the mean {shown.words}", note, grid)
-    axes = page.rows[0][0]
+    figure, [[axes]] = make_page(f"How far each key moves the mean {shown.words}", note, grid)
     name_rows(axes, [""] * len(strongest))
     for k, (row, name) in enumerate(zip(strongest, names, strict=True)):
         ends = [shown.factor * row.at_low, shown.factor * row.at_high]
@@ -90,7 +87,7 @@ def plot_tornado(found: Sequence[Sensitivity], rows: SweepRows) -> Figure:
         axes.annotate(clean_text(name, 64), (0.0, k - 0.33), xycoords=("axes fraction", "data"), fontsize=style.FONT)
     axes.margins(x=0.08)
     axes.set_xlabel(f"mean {shown.axis}")
-    return page.figure
+    return figure
 
 
 def plot_comfort(rows: SweepRows, order: Sequence[str]) -> Figure | None:
@@ -106,9 +103,9 @@ def plot_comfort(rows: SweepRows, order: Sequence[str]) -> Figure | None:
     few = {key: shown[key].nunique() for key in order}
     road = next((key for key in order if key.startswith(ROAD) and 1 < few[key] <= MOST_PANELS), None)
     colour = next((key for key in order if key != road and few[key] <= _MOST_GROUPS), None)
-    parts = [("", shown)] if road is None else [
-        (f"{road} {format_level(value)}", part) for value, part in shown.groupby(road)
-    ]  # fmt: skip
+    parts = [("", shown)]
+    if road is not None:
+        parts = [(f"{road} {format_level(value)}", part) for value, part in shown.groupby(road)]
     values = [] if colour is None else sorted(shown[colour].unique())
     looks = [Entry(format_level(value), COLOURS[k], "none", mark="o") for k, value in enumerate(values)]
     most = _MOST_POINTS // len(parts)
@@ -119,17 +116,13 @@ def plot_comfort(rows: SweepRows, order: Sequence[str]) -> Figure | None:
     grid = Grid((3.2 if columns == 1 else 2.0,) * -(-len(parts) // columns), columns, top=0.3, gap=(0.7, 0.85))
     note = f"A point for each run; lower left is better.{said}{some}"
     page = make_page("Comfort against travel", note, grid, [*looks, _FRONT])
-    panels = [axes for row in page.rows for axes in row]
-    for axes, (title, part) in zip(panels, parts, strict=False):
+    for axes, (title, part) in zip(page.list_panels(len(parts)), parts, strict=True):
         _draw_runs(axes, part.sample(most, random_state=0) if len(part) > most else part, colour, values)
         travel, comfort = (part[name].to_numpy(float) for name in (TRAVEL, COMFORT))
         front = find_front(travel, comfort)
         style.draw_line(axes, 1e3 * travel[front], comfort[front], _FRONT)
         style.set_title(axes, title)
-        axes.set_xlabel(f"{SHORT[TRAVEL]} [mm]")
-        axes.set_ylabel(f"{SHORT[COMFORT]} [m/s²]")
-    for axes in panels[len(parts) :]:
-        axes.remove()
+        axes.set(xlabel=f"{SHORT[TRAVEL]} [mm]", ylabel=f"{SHORT[COMFORT]} [m/s²]")
     return page.figure
 
 
@@ -168,11 +161,8 @@ def plot_means(rows: SweepRows, order: Sequence[str], metric: str) -> Figure | N
     values = table.to_numpy()
     names = [str(name) for name in table.index]
     grid = Grid((0.32 * len(names),), left=measure_names(names), right=0.15, bottom=0.55)
-    title = f"Mean {shown.words} over {keys[0]} and {keys[1]}"
-    page = make_page(
-        title, f"Rows: {keys[1]}. Mean over the runs of each cell, in {shown.unit}; the darker, the larger.", grid
-    )
-    axes = page.rows[0][0]
+    note = f"Rows: {keys[1]}. Mean over the runs of each cell, in {shown.unit}; the darker, the larger."
+    figure, [[axes]] = make_page(f"Mean {shown.words} over {keys[0]} and {keys[1]}", note, grid)
     axes.grid(False)
     axes.pcolormesh(values, cmap=colormaps["Blues"], rasterized=True)
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
@@ -184,7 +174,7 @@ def plot_means(rows: SweepRows, order: Sequence[str], metric: str) -> Figure | N
     axes.set_xticks(np.arange(values.shape[1]) + 0.5, [clean_text(str(name), 12) for name in table.columns], fontsize=9)
     axes.set_yticks(np.arange(len(names)) + 0.5, [clean_text(name, 32) for name in names], fontsize=9)
     axes.set_xlabel(clean_text(describe_column(keys[0], rows.units).axis))
-    return page.figure
+    return figure
 
 
 def _group(values: pd.Series) -> pd.Series | None:

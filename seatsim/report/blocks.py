@@ -5,9 +5,10 @@ The template turns them into HTML. Every text is plain text, which it escapes, w
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from seatsim.plots.labels import format_number
 from seatsim.plots.saving import Inline, render_inline
 
 if TYPE_CHECKING:
@@ -99,7 +100,30 @@ class Report(NamedTuple):
 def show_pictures(figures: Mapping[str, Figure], *starts: str) -> list[Block]:
     """Return the figures whose names begin with one of some words, in the order of these words."""
     chosen = {name: figure for start in starts for name, figure in figures.items() if name.startswith(start)}
-    return [Pictures([render_inline(figure, name) for name, figure in chosen.items()])] if chosen else []
+    return [Pictures(list(map(render_inline, chosen.values())))] if chosen else []
+
+
+def tabulate(
+    caption: str,
+    head: str | Sequence[str],
+    rows: Iterable[Iterable[object]],
+    words: int = 1,
+    strong: Sequence[int] = (),
+    folded: bool = False,
+) -> list[Block]:
+    """Return a table; nothing where there is no row.
+
+    Args:
+        caption: what it shows.
+        head: of the columns; as one text they are separated by commas.
+        rows: texts, which are printed as they stand, and numbers.
+        words: as for `Table`.
+        strong: the same.
+        folded: the same.
+    """
+    printed = [[format_number(cell) if isinstance(cell, float | None) else str(cell) for cell in row] for row in rows]
+    names = head.split(", ") if isinstance(head, str) else head
+    return [Table(caption, names, printed, words, strong, folded)] if printed else []
 
 
 def list_notes(texts: Sequence[str]) -> list[Block]:

@@ -11,12 +11,12 @@ import numpy as np
 from seatsim.characterisation.response import Response
 from seatsim.characterisation.rows import Row
 from seatsim.characterisation.summary import Characterisation, group_by_setting
+from seatsim.dampers.base import DAMPERS
 from seatsim.plots.labels import format_number, format_percent
-from seatsim.report.blocks import Block, Code, Report, Section, Table, Text, list_notes, show_pictures
-from seatsim.report.credibility.card import say_doubt, show_card
-from seatsim.report.credibility.evidence import collect_characterisation
-from seatsim.report.formatting import format_quantity, format_sentence
-from seatsim.report.method import describe_method
+from seatsim.report.blocks import Block, Code, Report, Section, Text, show_pictures, tabulate
+from seatsim.report.composing import Closing, compose
+from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs
+from seatsim.report.formatting import format_quantity
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,31 +24,35 @@ if TYPE_CHECKING:
 MOST_ROWS = 60
 ROUNDING = 1e-9
 """Share of the peak force below which an offset is no finding."""
-METHOD = (
-    "A loop is the mean of a record's steady cycles; energy is its area, damping that of a dashpot that dissipates as"
-    " much, E / (π ω X²).",
-    "Asymmetry: RMS of the difference from the centrosymmetric loop over that of the force.",
-    "t95 is the time from a step of the current to 95 % of the change of force; its ± is one standard deviation by"
-    " resampling the steps.",
-)
 
 
 def report_characterisation(
     found: Characterisation, figures: Mapping[str, Figure], remarks: Sequence[str], command: str
 ) -> Report:
     """Return the report of a characterisation; `remarks` are sentences on it, `command` makes it again."""
-    evidence = collect_characterisation(found)
-    steps = [*show_pictures(figures, "steps"), *_show_steps(found.responses)]
+    tested: list[Block] = [Text("What was tested:"), Code(found.source, "What was tested")]
     sections = [
         Section("loops", "Force, energy and damping", show_pictures(figures, "loops", "energy", "asymmetry")),
-        Section("figures", "Figures of each record", [_make_table(found)]),
-        Section("steps", "Response to steps of the current", steps),
-        Section("notes", "Notes", list_notes([format_sentence(text) for text in remarks])),
-        show_card(evidence),
-        describe_method(METHOD, command, [Text("What was tested:"), Code(found.source, "What was tested")]),
+        Section("figures", "Figures of each record", _tabulate_rows(found)),
+        Section(
+            "steps",
+            "Response to steps of the current",
+            [*show_pictures(figures, "steps"), *_tabulate_steps(found.responses)],
+        ),
     ]
-    about, doubt = f"Characterisation: {found.name}", say_doubt(evidence)
-    return Report(about, _say_character(found), [], _advise(found), sections, doubt)
+    about, closing = f"Characterisation: {found.name}", Closing(remarks, _judge(found), command, tested)
+    return compose("characterisation", about, [_say_character(found)], _advise(found), sections, closing)
+
+
+def _judge(found: Characterisation) -> list[Factor]:
+    """Return how far the figures of a bench's records, or of a model's tests, may be trusted."""
+    models = [] if found.measured or found.name not in DAMPERS.names() else [DAMPERS.find(found.name)]
+    doubts = dict.fromkeys([*found.notes, *(note for row in found.rows for note in row.notes)])
+    return [
+        trace_inputs(list(doubts), models, is_measured=found.measured),
+        state_intervals(["the response times"] * any(math.isfinite(each.t95_sd) for each in found.responses)),
+        count_variations(len(found.rows)),
+    ]
 
 
 def _say_character(found: Characterisation) -> str:
@@ -84,22 +88,22 @@ def _name_motion(row: Row) -> str:
     return f"±{1e3 * row.amplitude:.3g} mm at {row.frequency:.3g} Hz"
 
 
-def _make_table(found: Characterisation) -> Table:
-    rows, named = found.rows, int(found.measured)
-    head = [
-        *["record"] * named, "motion", "current [A]", "temperature [°C]", "speed [m/s]", "rebound [N]",
-        "compression [N]", "energy [J]", "damping [N·s/m]", "offset [N]", "asymmetry",
-    ]  # fmt: skip
-    lines = [
-        [*[row.record] * named, _name_motion(row) if math.isfinite(row.amplitude) else "no steady cycles",
-         *map(format_number, (row.current, row.temperature, row.peak_speed, row.peak_rebound, row.peak_compression,
-                              row.energy, row.damping, _clean(row))),
-         format_percent(row.asymmetry)]
-        for row in rows[:MOST_ROWS]
-    ]  # fmt: skip
-    more = f"; {len(rows) - MOST_ROWS} more in cycles.csv" if len(rows) > MOST_ROWS else ""
+def _tabulate_rows(found: Characterisation) -> list[Block]:
+    left, named = len(found.rows) - MOST_ROWS, int(found.measured)
+    more = f"; {left} more in cycles.csv" if left > 0 else ""
+
+    def list_cells(row: Row) -> list[str | float]:
+        motion = _name_motion(row) if math.isfinite(row.amplitude) else "no steady cycles"
+        forces = (row.peak_rebound, row.peak_compression, row.energy, row.damping, _clean(row))
+        where = (motion, row.current, row.temperature, row.peak_speed)
+        return [*[row.record] * named, *where, *forces, format_percent(row.asymmetry)]
+
     caption = f"Largest forces of rebound and compression, energy and damping of the mean cycle{more}"
-    return Table(caption, head, lines, named + 1)
+    head = (
+        "record, " * named + "motion, current [A], temperature [°C], speed [m/s], rebound [N], compression [N],"
+        " energy [J], damping [N·s/m], offset [N], asymmetry"
+    )
+    return tabulate(caption, head, map(list_cells, found.rows[:MOST_ROWS]), named + 1)
 
 
 def _clean(row: Row) -> float:
@@ -107,17 +111,12 @@ def _clean(row: Row) -> float:
     return 0.0 if abs(row.offset) < ROUNDING * abs(row.peak_rebound) else row.offset
 
 
-def _show_steps(answers: Sequence[Response]) -> list[Block]:
-    if not answers:
-        return []
+def _tabulate_steps(answers: Sequence[Response]) -> list[Block]:
     rows = [
-        [each.record or "model", format_number(each.before), format_number(each.after), str(each.steps),
-         *(format_number(1e3 * value) for value in (each.t90, each.t95, each.t95_sd, each.delay)),
-         format_number(each.rate_95), each.method or each.note or "not determined"]
+        (each.record or "model", each.before, each.after, each.steps, 1e3 * each.t90, 1e3 * each.t95, 1e3 * each.t95_sd,
+         1e3 * each.delay, each.rate_95, each.method or each.note or "not determined")
         for each in answers
     ]  # fmt: skip
-    head = [
-        "record", "from [A]", "to [A]", "steps", "t90 [ms]", "t95 [ms]", "± [ms]", "delay [ms]", "rate [1/s]", "how",
-    ]  # fmt: skip
     caption = "Time from the step of the current to 90 % and 95 % of the change of force"
-    return [Table(caption, head, rows)]
+    head = "record, from [A], to [A], steps, t90 [ms], t95 [ms], ± [ms], delay [ms], rate [1/s], how"
+    return tabulate(caption, head, rows)

@@ -2,22 +2,42 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from pathlib import Path
 
+import numpy as np
+
+from seatsim.dampers.base import DAMPERS
 from seatsim.diagnosis.result import Cause, Diagnosis
-from seatsim.plots.densities import METHOD as DENSITY
 from seatsim.plots.diagnosis.draw import plot_diagnosis
 from seatsim.plots.labels import format_percent
+from seatsim.recordings.header import NOT_STATED
 from seatsim.report.blocks import Report, Section, show_pictures
-from seatsim.report.causes import show_causes, show_confusions, show_forms
-from seatsim.report.credibility.card import say_doubt, show_card
-from seatsim.report.credibility.evidence import Evidence, collect_diagnosis
-from seatsim.report.effect_words import say_action, say_cause
-from seatsim.report.evidence import show_budget, show_comfort, show_discrepancy, show_notes, show_signals
+from seatsim.report.composing import Closing, compose
+from seatsim.report.credibility import (
+    Factor,
+    count_variations,
+    state_intervals,
+    trace_inputs,
+    validate,
+    verify,
+)
+from seatsim.report.diagnosis_sections import (
+    list_notes,
+    show_budget,
+    show_causes,
+    show_comfort,
+    show_confusions,
+    show_discrepancy,
+    show_forms,
+    show_gaps,
+    show_signals,
+)
 from seatsim.report.formatting import format_sentence, say_noise
-from seatsim.report.gap_stages import show_gaps
-from seatsim.report.method import describe_method
 from seatsim.report.rendering import write_html
+from seatsim.report.words import say_action, say_cause
+from seatsim.schema.fields import UNUSUAL
 from seatsim.schema.text import join_names
 
 _BADGES = {
@@ -27,15 +47,6 @@ _BADGES = {
     "unknown": ("Cause unknown", "A gap remains that no effect of the library explains."),
 }
 _NEARLY_ALL = 0.98
-METHOD = (
-    "Every candidate effect is fitted together with the parameters that are known only within their tolerance, on all"
-    " runs but one; figures are of that run, which took no part in the fit.",
-    "The gap of a channel is the RMS of measured less simulated over the standard deviation of the measured signal; the"
-    " first second of each run is left out.",
-    "A parameter's ± is one standard deviation; 1.645 of them on either side are meant to hold the truth on nine of ten"
-    " rigs. The documentation of the diagnosis says how often they and the interval of the shrink did in trials.",
-    f"Spectra: {DENSITY}",
-)
 
 
 def write_report(diagnosis: Diagnosis, path: Path) -> Path:
@@ -51,7 +62,7 @@ def write_report(diagnosis: Diagnosis, path: Path) -> Path:
 
 def report_diagnosis(diagnosis: Diagnosis) -> Report:
     """Return the report of a diagnosis; without a gap it has no evidence for causes."""
-    figures, evidence = plot_diagnosis(diagnosis), collect_diagnosis(diagnosis)
+    figures = plot_diagnosis(diagnosis)
     sections = [
         Section("causes", "Where it lies and what causes it", show_causes(diagnosis, figures)),
         Section("gaps", "How far: gaps before and after", show_gaps(diagnosis, figures)),
@@ -62,19 +73,38 @@ def report_diagnosis(diagnosis: Diagnosis) -> Report:
         Section("maps", "Where in the operating range the error is large", show_pictures(figures, "maps")),
         Section("budget", "What the remaining error is made of", show_budget(diagnosis)),
         Section("comfort", "Comfort and travel", show_comfort(diagnosis)),
-        Section("notes", "Notes on the data", show_notes(diagnosis)),
-        show_card(evidence),
-        describe_method(METHOD, f"seatsim diagnose {diagnosis.name}"),
     ]
     if diagnosis.verdict == "none":
-        sections = [
-            section for section in sections if section.anchor not in ("causes", "missing", "confusions", "maps")
-        ]
-    words, explanation = _BADGES.get(diagnosis.verdict, (diagnosis.verdict, ""))
-    badge = (diagnosis.verdict, words, explanation)
-    lead = [format_sentence(diagnosis.sentence)]
-    about, answer = f"Diagnosis: {diagnosis.name}", say_diagnosis(diagnosis)
-    return Report(about, answer, lead, advise(diagnosis), sections, _say_doubt(diagnosis, evidence), badge)
+        sections = [each for each in sections if each.anchor not in ("causes", "missing", "confusions", "maps")]
+    answer = [say_diagnosis(diagnosis), format_sentence(diagnosis.sentence)]
+    closing = Closing(list_notes(diagnosis), judge_diagnosis(diagnosis), f"seatsim diagnose {diagnosis.name}")
+    report = compose("diagnosis", f"Diagnosis: {diagnosis.name}", answer, advise(diagnosis), sections, closing)
+    badge = (diagnosis.verdict, *_BADGES[diagnosis.verdict])
+    return report._replace(badge=badge, doubt=f"{_say_probabilities(diagnosis)} {report.doubt}".strip())
+
+
+def judge_diagnosis(diagnosis: Diagnosis) -> list[Factor]:
+    """Return how far a diagnosis may be trusted, on the runs that it held out."""
+    gap, runs, held_out = diagnosis.gap, len(diagnosis.gap.by_run), len(diagnosis.held_out)
+    spreads = {trace.channel: float(np.std(trace.measured)) for trace in diagnosis.evidence.traces}
+    steps = [each.u_num / spreads[each.channel] for each in diagnosis.error_budget if spreads.get(each.channel, 0) > 0]
+    model = diagnosis.augmented.get("damper", {})
+    name = model.get("model") if isinstance(model, Mapping) else None
+    fitted = any(cause.effect in diagnosis.selected and cause.parameters for cause in diagnosis.causes)
+    has_interval = all(map(math.isfinite, gap.shrink_interval))
+    intervals = [*["the parameters of the effects"] * fitted, *["the shrink of the gap"] * has_interval]
+    return [
+        verify("half the step changes an output by up to {}", steps),
+        validate(max(runs, held_out), held_out, gap.after.overall, gap.floor.overall),
+        trace_inputs(
+            [note for note in diagnosis.notes if UNUSUAL in note],
+            [DAMPERS.find(name)] if name in DAMPERS.names() else [],
+            bool(diagnosis.parameters) and not any(NOT_STATED in note for note in diagnosis.notes),
+            [each.name for each in diagnosis.parameters if each.at_bound],
+        ),
+        state_intervals(intervals, fitted, has_interval, bool(diagnosis.error_budget)),
+        count_variations(runs, [each.name for each in diagnosis.parameters]),
+    ]
 
 
 def say_diagnosis(diagnosis: Diagnosis) -> str:
@@ -127,14 +157,13 @@ def advise(diagnosis: Diagnosis) -> list[str]:
     return found
 
 
-def _say_doubt(diagnosis: Diagnosis, evidence: Evidence) -> str:
-    """Return how sure the diagnosis is of its causes, and what its figures rest on the least."""
+def _say_probabilities(diagnosis: Diagnosis) -> str:
+    """Return how sure the diagnosis is of its causes."""
     rest = [cause for cause in diagnosis.causes if cause.effect not in diagnosis.selected]
     named = [f"{cause.effect} {format_percent(cause.probability)}" for cause in _select(diagnosis) if cause.probability]
     following = [f"next {cause.effect} {format_percent(cause.probability)}" for cause in rest[:1]]
     another = [f"another cause {format_percent(diagnosis.probability_unknown)}"]
-    probabilities = f"Probability of being at work: {', '.join([*named, *following, *another])}."
-    return f"{probabilities} {say_doubt(evidence)}".strip()
+    return f"Probability of being at work: {', '.join([*named, *following, *another])}."
 
 
 def _select(diagnosis: Diagnosis) -> list[Cause]:

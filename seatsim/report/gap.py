@@ -2,45 +2,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
 
 from seatsim.metrics.motion import rms
-from seatsim.plots.densities import METHOD as DENSITY
 from seatsim.plots.diagnosis.answer import plot_gap
 from seatsim.plots.diagnosis.signals import plot_pairs
 from seatsim.plots.labels import UNKNOWN, describe_channel, format_number, format_percent
 from seatsim.recordings.gap import Gap, ReplayedPair
-from seatsim.report.blocks import Report, Section, Signals, Table, list_notes, show_pictures
-from seatsim.report.credibility.card import say_doubt, show_card
-from seatsim.report.credibility.evidence import Evidence
-from seatsim.report.formatting import format_noise, format_sentence, say_noise
-from seatsim.report.method import describe_method
+from seatsim.recordings.recording import load_recording
+from seatsim.report.blocks import Report, Section, Signals, Table, show_pictures
+from seatsim.report.composing import Closing, compose
+from seatsim.report.credibility import (
+    NEAR_NOISE,
+    Factor,
+    count_variations,
+    state_intervals,
+    trace_inputs,
+    validate,
+)
+from seatsim.report.formatting import format_noise, say_noise
 from seatsim.report.packing import MEASURED, Panel, pack_signals
+from seatsim.scenario.loading import single
 from seatsim.schema.arrays import Array
 
-NEAR_NOISE = 1.2
-"""Gap over its noise up to which nothing is left to explain."""
-METHOD = (
-    "Every run is replayed with its recorded inputs; row k of every channel is the same instant; the first second of"
-    " each run is left out.",
-    "The gap of a channel is the RMS of measured less simulated over the standard deviation of the measured signal,"
-    " over all samples of all runs; overall is the root of the mean square over the channels. The bias is the mean of"
-    " measured less simulated.",
-    "The noise floor is the gap that the stated noise of the sensor alone would make.",
-    f"Spectra: {DENSITY}",
-)
 
-
-def report_gap(name: str, found: Gap, pairs: Mapping[str, ReplayedPair], evidence: Evidence, command: str) -> Report:
+def report_gap(
+    name: str, found: Gap, pairs: Mapping[str, ReplayedPair], factors: Sequence[Factor], command: str
+) -> Report:
     """Return the report of a gap.
 
     Args:
         name: of scenario and recording, for the head.
         found: the gap.
         pairs: measured and simulated channels of every run.
-        evidence: for the credibility of the figures.
+        factors: of the credibility of the figures.
         command: what makes the report again.
     """
     figures = {"gaps": plot_gap(found), **plot_pairs(found, pairs)}
@@ -48,11 +46,23 @@ def report_gap(name: str, found: Gap, pairs: Mapping[str, ReplayedPair], evidenc
     sections = [
         Section("gaps", "How far: gap of each channel", [*show_pictures(figures, "gaps"), *tables]),
         Section("signals", "Measured and simulated", [*show_pictures(figures, "signal_"), _show_pairs(found, pairs)]),
-        Section("notes", "Notes on the data", list_notes([format_sentence(note) for note in found.notes])),
-        show_card(evidence),
-        describe_method(METHOD, command),
     ]
-    return Report(f"Gap: {name}", say_gap(found), [], _advise(found), sections, say_doubt(evidence))
+    closing = Closing(found.notes, factors, command)
+    return compose("gap", f"Gap: {name}", [say_gap(found)], _advise(found), sections, closing)
+
+
+def judge_gap(scenario: str, folder: Path, found: Gap) -> list[Factor]:
+    """Return how far a gap may be trusted; runs count as held out where the scenario is the nominal one, not fitted."""
+    chosen, recording = single(scenario), load_recording(folder)
+    tolerance, runs = recording.header.parameter_tolerance, len(recording.runs)
+    is_fitted = "fitted" in (tolerance.values() if isinstance(tolerance, Mapping) else [tolerance])
+    is_nominal = Path(scenario).is_file() and Path(scenario).samefile(folder / recording.header.nominal)
+    return [
+        validate(runs, runs * (is_nominal and not is_fitted), found.overall, found.floor.overall),
+        trace_inputs(found.notes, [type(chosen.damper.record)], tolerance is not None and not is_fitted),
+        state_intervals(["the gap, as the noise of the sensors"] if found.floor.overall else []),
+        count_variations(runs),
+    ]
 
 
 def say_gap(found: Gap) -> str:

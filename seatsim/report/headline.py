@@ -2,25 +2,121 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.report.alternatives import (
-    EQUAL,
-    SAME,
-    Alternatives,
-    compare_figures,
-    list_alternatives,
-    measure_comfort,
-    read_metric,
-    state_best,
-    state_comfort,
-)
+from seatsim.metrics.motion import ratio
+from seatsim.plots.labels import format_percent
+from seatsim.plots.runs.naming import distinguish_runs
 from seatsim.report.formatting import format_quantity
-from seatsim.scenario.scenario import choice_of
+from seatsim.scenario.scenario import choice_of, group_by_condition, is_passive
 from seatsim.schema.text import name_some
 from seatsim.simulation.result import Run
+
+COMFORT, _UNWEIGHTED, TRAVEL = "driver_acceleration_weighted", "driver_acceleration_rms", "suspension_displacement_rms"
+SAME = 0.01
+"""Difference, as a share, up to which figures count as equal: other phases of the same floor change them by more."""
+
+EQUAL = "as much"
+
+
+class Alternatives(NamedTuple):
+    """Runs under one condition that can be relied on, the most comfortable first, each with its name."""
+
+    condition: str
+    runs: Sequence[Run]
+    names: Sequence[str]
+
+    @property
+    def leaders(self) -> int:
+        """How many of them are the most comfortable: the first, and those that are equal to it."""
+        least = measure_comfort(self.runs[0])
+        return sum(measure_comfort(run) <= (1 + SAME) * least for run in self.runs)
+
+
+def list_alternatives(runs: Sequence[Run]) -> list[Alternatives]:
+    """Return the runs that can be relied on in groups of one condition each, the worst condition first.
+
+    Where some have weighted figures, those without are left out: the two cannot be compared.
+    """
+    found, is_weighted = [], any(COMFORT in run.metrics for run in runs)
+    for group in group_by_condition((run.scenario, run) for run in runs):
+        condition, names = distinguish_runs(group, runs)
+        named = [pair for pair in zip(group, names, strict=True) if _is_reliable(pair[0])]
+        known = [pair for pair in named if COMFORT in pair[0].metrics or not is_weighted]
+        if known:
+            ordered = sorted(known, key=lambda pair: measure_comfort(pair[0]))
+            found.append(Alternatives(condition, *zip(*ordered, strict=True)))
+    return sorted(found, key=lambda group: -measure_comfort(group.runs[0]))
+
+
+def find_best(runs: Sequence[Run]) -> list[int]:
+    """Return the places of the most comfortable run of each condition under which several can be relied on."""
+    best = [group.runs[0] for group in list_alternatives(runs) if len(group.runs) > 1]
+    return [k for k, run in enumerate(runs) if any(run is each for each in best)]
+
+
+def read_metric(run: Run, name: str) -> float:
+    """Return a metric of a run in SI units, NaN where it has none."""
+    return run.metrics[name].value if name in run.metrics else float("nan")
+
+
+def measure_comfort(run: Run) -> float:
+    """Return the weighted RMS acceleration of the driver in m/s^2; unweighted where the step is too long to weight."""
+    return read_metric(run, COMFORT if COMFORT in run.metrics else _UNWEIGHTED)
+
+
+def state_comfort(run: Run) -> str:
+    """Return the comfort of a run with its unit."""
+    words = "weighted RMS" if COMFORT in run.metrics else "RMS, not weighted"
+    return f"{format_quantity(measure_comfort(run), 'm/s^2')} ({words})"
+
+
+def compare_figures(ratio: float) -> str:
+    """Return how much less or more a figure is than another, from their ratio."""
+    return EQUAL if abs(ratio - 1) <= SAME else f"{format_percent(abs(1 - ratio))} {'less' if ratio < 1 else 'more'}"
+
+
+def state_best(group: Alternatives) -> str:
+    """Return the comfort of the best run of a condition, and its distance from the best passive one in words.
+
+    Where the best run is passive, the best controlled one stands beside it, and where all or none are passive the next
+    run. Every difference in comfort stands with that in travel, for which it could be bought.
+    """
+    leaders, said = group.leaders, state_comfort(group.runs[0])
+    passive = [is_passive(run.scenario) for run in group.runs]
+    first, is_mixed = passive[:leaders], len(set(passive)) > 1
+    if is_mixed and all(first):
+        k = passive.index(False)
+        comfort, travel = _compare_runs(group.runs[k], group.runs[0])
+        return f"{said}; control does not make it less: with “{group.names[k]}” it is {comfort}, at {travel}"
+    if is_mixed and any(first):
+        return f"{said}, and “{group.names[first.index(True)]}” of them is passive"
+    if leaders == len(group.runs):
+        return said
+    k = passive.index(True) if is_mixed else leaders
+    comfort, travel = _compare_runs(group.runs[0], group.runs[k])
+    base = f"the {'best passive' if is_mixed else 'next'} run, “{group.names[k]}”"
+    note = "" if any(passive) else "; no passive run is there to compare with"
+    return f"{said}, {comfort} {'as' if comfort == EQUAL else 'than'} with {base}, at {travel}{note}"
+
+
+def _compare_runs(run: Run, base: Run) -> tuple[str, str]:
+    """Return how the comfort of a run, and how the travel that it takes, compares with those of another."""
+    comfort = compare_figures(measure_comfort(run) / measure_comfort(base))
+    change = ratio(read_metric(run, TRAVEL), read_metric(base, TRAVEL))
+    if math.isnan(change):
+        return comfort, "more travel than none"
+    travel = compare_figures(change)
+    return comfort, "equal travel" if travel == EQUAL else f"{travel} travel (RMS)"
+
+
+def _is_reliable(run: Run) -> bool:
+    return bool(np.isfinite(measure_comfort(run))) and not run.unverified
+
 
 LISTED = 3
 """Conditions beside the worst of which a sentence names the best choice."""

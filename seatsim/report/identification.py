@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from seatsim.identification.assessment import Agreement, Assessment
+from seatsim.identification.assessment import Assessment
 from seatsim.identification.identify import Identification
 from seatsim.plots.bench.identification import PARTS, select_records
 from seatsim.plots.labels import format_number, format_unit
-from seatsim.report.blocks import Block, Report, Section, Table, list_notes, show_pictures
-from seatsim.report.credibility.card import say_doubt, show_card
-from seatsim.report.credibility.evidence import collect_identification
-from seatsim.report.formatting import format_quantity, format_sentence
-from seatsim.report.method import describe_method
+from seatsim.report.blocks import Block, Report, Section, show_pictures, tabulate
+from seatsim.report.composing import Closing, compose
+from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs, validate
+from seatsim.report.formatting import format_quantity
 from seatsim.report.packing import MEASURED, Panel, pack_signals
 from seatsim.schema.text import join_names
 
@@ -24,30 +23,31 @@ ROWS = 3000
 """Most rows of a record that are drawn over time, from the stretch with the highest speed."""
 GOOD, FAIR = 90.0, 75.0
 """Fits in per cent from which on a model is called good, or usable."""
-METHOD = (
-    "Minimised is the mean over records of the squared error of the force over the variance of the measured one: a"
-    " global search on short stretches, then least squares on all records that are fitted.",
-    "Fit: 100 (1 - |measured - predicted| / |measured - its mean|), in the norm over the samples; R² is of the same"
-    " error; the mean deviation is |measured - predicted| over |measured|, where that is above 5 % of its peak.",
-    "A parameter's ± is 1.96 standard deviations, which respect that neighbouring residuals are alike; not"
-    " determined: its standard deviation is above a tenth of its size.",
-)
 
 
 def report_identification(found: Identification, figures: Mapping[str, Figure], command: str) -> Report:
     """Return the report of an identified damper; `command` makes it again."""
-    evidence = collect_identification(found)
-    chosen = select_records(found.assessments)
+    fit, chosen = [*show_pictures(figures, "loops"), *_tabulate_fit(found)], select_records(found.assessments)
     sections = [
-        Section("figures", "How well the force is predicted", [*show_pictures(figures, "loops"), _make_table(found)]),
+        Section("figures", "How well the force is predicted", fit),
         Section("signals", "Measured and predicted over time", [_show_time(chosen)]),
         Section("parameters", "Parameters", _show_parameters(found)),
-        Section("notes", "Notes", list_notes([format_sentence(note) for note in found.notes])),
-        show_card(evidence),
-        describe_method(METHOD, command),
     ]
-    about, doubt = f"Identification: {found.model}", say_doubt(evidence)
-    return Report(about, _say_fit(found), [], _advise(found), sections, doubt)
+    about, closing = f"Identification: {found.model}", Closing(found.notes, _judge(found), command)
+    return compose("identification", about, [_say_fit(found)], _advise(found), sections, closing)
+
+
+def _judge(found: Identification) -> list[Factor]:
+    """Return how far an identified damper may be trusted, on held-out records where there are some."""
+    mean, parts = found.mean("test") or found.mean("train"), [each.part for each in found.assessments]
+    error = None if mean is None else 1.0 - mean.fit_percent / 100.0
+    loose = [each.name for each in found.information.estimates if not each.identified]
+    return [
+        validate(len(parts), parts.count("test"), error),
+        trace_inputs([], [type(found.bench.damper)], True, loose),
+        state_intervals(["the parameters"], True),
+        count_variations(len(parts)),
+    ]
 
 
 def _say_fit(found: Identification) -> str:
@@ -78,60 +78,42 @@ def _advise(found: Identification) -> list[str]:
     return texts
 
 
-def _make_table(found: Identification) -> Table:
+def _tabulate_fit(found: Identification) -> list[Block]:
+    judged = [(each.record.name, PARTS[each.part], each.record.mean_current, each.agreement)
+              for each in found.assessments]  # fmt: skip
+    means = [(f"mean, {words}", words, "", mean) for part, words in PARTS.items() if (mean := found.mean(part))]
     rows = [
-        [
-            each.record.name,
-            PARTS[each.part],
-            format_number(each.record.mean_current),
-            *_format_agreement(each.agreement),
-        ]
-        for each in found.assessments
+        (*name, agreement.fit_percent, format_number(agreement.r2, 5), agreement.rmse, agreement.md)
+        for *name, agreement in [*judged, *means]
     ]
-    strong = []
-    for part, words in PARTS.items():
-        mean = found.mean(part)
-        if mean is not None:
-            strong.append(len(rows))
-            rows.append([f"mean, {words}", words, "", *_format_agreement(mean)])
-    head = ["record", "part", "current [A]", "fit [%]", "R²", "RMS error [N]", "mean deviation"]
-    return Table("Agreement of the predicted force with the measured one", head, rows, 2, strong)
-
-
-def _format_agreement(found: Agreement) -> list[str]:
-    figures = (found.fit_percent, found.rmse, found.md)
-    fit, error, deviation = map(format_number, figures)
-    return [fit, format_number(found.r2, 5), error, deviation]
+    caption = "Agreement of the predicted force with the measured one"
+    head = "record, part, current [A], fit [%], R², RMS error [N], mean deviation"
+    return tabulate(caption, head, rows, 2, range(len(judged), len(rows)))
 
 
 def _show_time(chosen: Sequence[Assessment]) -> Block:
-    names = [f"{k + 1}: {each.record.name}" for k, each in enumerate(chosen)]
-    parts = [slice(*each.record.liveliest(ROWS)) for each in chosen]
-    times = {name: each.record.time[part] for name, each, part in zip(names, chosen, parts, strict=True)}
-    force = {
-        name: [each.record.force[part], each.predicted[part]]
-        for name, each, part in zip(names, chosen, parts, strict=True)
-    }
-    current = {name: [each.record.current[part], None] for name, each, part in zip(names, chosen, parts, strict=True)}
+    times, force, current = {}, {}, {}
+    for k, each in enumerate(chosen):
+        name, part = f"{k + 1}: {each.record.name}", slice(*each.record.liveliest(ROWS))
+        times[name] = each.record.time[part]
+        force[name] = [each.record.force[part], each.predicted[part]]
+        current[name] = [each.record.current[part], None]
     panels = [Panel("damper force", "N", "", force), Panel("current", "A", "", current)]
     lines = [("measured", MEASURED), ("predicted", 1)]
-    caption = "The part of each record with the highest speed."
-    return pack_signals(caption, lines, times, panels)
+    return pack_signals("The part of each record with the highest speed.", lines, times, panels)
 
 
 def _show_parameters(found: Identification) -> list[Block]:
     known = found.information
     rows = [
-        [each.name if each.identified else f"{each.name} (not determined)", format_unit(each.unit),
-         format_number(each.value, 5), format_number(1.96 * each.std, 2)]
+        (each.name + " (not determined)" * (not each.identified), format_unit(each.unit), format_number(each.value, 5),
+         format_number(1.96 * each.std, 2))
         for each in known.estimates
     ]  # fmt: skip
     strong = [k for k, each in enumerate(known.estimates) if not each.identified]
-    head = ["parameter", "unit", "value", "±"]
     caption = "Fitted values, ± 1.96 standard deviations; in bold those that the data do not determine"
-    blocks: list[Block] = [Table(caption, head, rows, 2, strong)]
-    if known.correlated:
-        pairs = [[first, second, format_number(value)] for first, second, value in known.correlated]
-        caption = "Pairs of parameters that can replace each other"
-        blocks.append(Table(caption, ["one", "other", "correlation"], pairs, 2))
-    return blocks
+    pairs = "Pairs of parameters that can replace each other"
+    return [
+        *tabulate(caption, "parameter, unit, value, ±", rows, 2, strong),
+        *tabulate(pairs, "one, other, correlation", known.correlated, 2),
+    ]

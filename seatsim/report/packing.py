@@ -1,8 +1,9 @@
-"""Long signals made small enough for a page: the least and largest value of every interval, in 16 bits each."""
+"""Long signals made small enough for a page: every value where there is room, in 16 bits, as differences, deflated."""
 
 from __future__ import annotations
 
 import base64
+import zlib
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -15,10 +16,11 @@ from seatsim.schema.arrays import Array
 
 BUDGET = 200_000
 """Bytes that the lines of one group of pictures take on the page together."""
-BYTES = 8 / 3
-"""Bytes of a value on the page: 16 bits in base 64."""
-_MOST_BINS = 1200
-"""Most intervals of a line, finer than the pixels of a picture."""
+FINEST, QUICK = 50_000, 3_000
+"""Most intervals of a line, of two values each, in a report and on a page that is made in an instant."""
+_COARSEST = 100
+_LEVEL = 6
+"""Level of zlib."""
 LEVELS = 32767
 GAP = -32768
 """Stands for a value that is not known."""
@@ -36,11 +38,15 @@ class Panel(NamedTuple):
 
 
 def pack_signals(
-    caption: str, lines: Sequence[tuple[str, int]], time: Mapping[str, Array], panels: Sequence[Panel]
+    caption: str,
+    lines: Sequence[tuple[str, int]],
+    time: Mapping[str, Array],
+    panels: Sequence[Panel],
+    finest: int = FINEST,
 ) -> Signals:
     """Return linked pictures of signals over time.
 
-    A line of more values than fit keeps the least and the largest value of every interval, in their order, so that no
+    Lines of more values than fit keep the least and the largest value of every interval, in their order, so that no
     peak is lost; the caption says how long an interval is. Every value is rounded to 1/65534 of the range of its line.
 
     Args:
@@ -48,17 +54,22 @@ def pack_signals(
         lines: name and look of each.
         time: in s, equally spaced, shape (N,), of each run.
         panels: the pictures.
+        finest: most intervals of a line.
     """
-    count = sum(line is not None for panel in panels for each in panel.values.values() for line in each)
-    bins = min(_MOST_BINS, max(100, int(BUDGET / BYTES / max(1, count)) // 2))
     longest = max(time.values(), key=len)
+    bins = min(finest, -(-len(longest) // 2))
+    packed = [_pack_panel(panel, list(time), bins) for panel in panels]
+    while bins > _COARSEST and _measure(packed) > BUDGET:
+        # What noise there is takes the same bits in each value, whatever their number.
+        bins = max(_COARSEST, int(0.95 * bins * BUDGET / _measure(packed)))
+        packed = [_pack_panel(panel, list(time), bins) for panel in panels]
     if len(longest) > 2 * bins:
         interval = 1000.0 * float(longest[-1] - longest[0]) / bins
-        caption += f" Drawn are the least and the largest value in every {interval:.0f} ms; figures use all samples."
+        caption += f" Drawn are the least and the largest value in every {interval:.3g} ms; figures use all samples."
     data: dict[str, Any] = {
         "lines": [{"name": name, "look": look} for name, look in lines],
         "runs": [_pack_time(values, bins) for values in time.values()],
-        "panels": [_pack_panel(panel, list(time), bins) for panel in panels],
+        "panels": packed,
     }
     shown = [describe_channel(panel.quantity, panel.unit).axis for panel in panels]
     titles = [(f"{text[:1].upper()}{text[1:]}", panel.sentence) for text, panel in zip(shown, panels, strict=True)]
@@ -66,13 +77,22 @@ def pack_signals(
 
 
 def pack_line(values: Array) -> dict[str, Any]:
-    """Return values as 16-bit integers in base 64, with the offset and the step that make numbers of them again."""
+    """Return values as integers of 16 bits, with the offset and the step that make numbers of them again.
+
+    The integers are differences modulo 2^16, their low bytes before their high ones, deflated, in base 64.
+    """
     known = values[np.isfinite(values)]
     low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 0.0)
     middle, step = 0.5 * (low + high), (high - low) / (2 * LEVELS) or 1.0
     whole = np.where(np.isfinite(values), np.round((np.nan_to_num(values) - middle) / step), GAP)
-    bits = np.clip(whole, GAP, LEVELS).astype("<i2").tobytes()
+    steps = np.diff(np.clip(whole, GAP, LEVELS).astype("<i2"), prepend=np.int16(0))
+    bits = zlib.compress(steps.view(np.uint8).reshape(-1, 2).T.tobytes(), _LEVEL)
     return {"at": middle, "step": step, "bits": base64.b64encode(bits).decode("ascii")}
+
+
+def _measure(packed: Sequence[dict[str, Any]]) -> int:
+    """Return the bytes of the lines of packed panels."""
+    return sum(len(line["bits"]) for panel in packed for run in panel["runs"] for line in run if line)
 
 
 def _pack_time(values: Array, bins: int) -> dict[str, Any]:

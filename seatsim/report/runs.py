@@ -1,4 +1,4 @@
-"""The reports of one simulated run and of a comparison of several."""
+"""The reports of one simulated run and of a comparison of several: figures, signals over time, what to do next."""
 
 from __future__ import annotations
 
@@ -8,33 +8,117 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from seatsim.metrics.table import SHORT
-from seatsim.plots.densities import METHOD as DENSITY
 from seatsim.plots.labels import describe_channel, format_number, format_unit
-from seatsim.plots.runs.naming import label_runs, show_runs
-from seatsim.report.alternatives import SAME, find_best, read_metric
-from seatsim.report.blocks import Report, Section, Table, list_notes, show_pictures
-from seatsim.report.credibility.card import say_doubt, show_card
-from seatsim.report.credibility.evidence import collect_runs
+from seatsim.plots.runs.naming import Shown, label_runs, show_runs
+from seatsim.report.blocks import Block, Report, Section, Signals, show_pictures, tabulate
+from seatsim.report.composing import Closing, compose
+from seatsim.report.credibility import Factor, count_variations, trace_inputs, verify
 from seatsim.report.formatting import format_quantity, format_sentence, format_setting
-from seatsim.report.headline import compare_runs, describe_run
-from seatsim.report.method import describe_method
-from seatsim.report.run_advice import advise_on_runs
-from seatsim.report.run_pictures import show_signals
+from seatsim.report.headline import SAME, compare_runs, count_times, describe_run, find_best, read_metric
+from seatsim.report.packing import FINEST, Panel, pack_signals
 from seatsim.scenario.numbers import find_unit, list_numbers
-from seatsim.schema.text import name_some
-from seatsim.simulation.result import Run
+from seatsim.scenario.scenario import Scenario, condition_of
+from seatsim.schema.arrays import Array
+from seatsim.schema.errors import RunError
+from seatsim.schema.text import join_names, name_some
+from seatsim.simulation.result import UNITS, Run
+from seatsim.simulation.trials import STRETCH, try_changes
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+SEAT, HITS, _PEAK = "seat_factor", "end_stop_hits", "suspension_displacement_peak"
+
+
+def advise_on_runs(runs: Sequence[Run]) -> list[str]:
+    """Return what to do next, each in a sentence or two; the worst run comes first, and others are counted."""
+    named = [(f"“{name}”", run) for name, run in zip(label_runs(runs), runs, strict=True) if not run.unverified]
+    found = []
+    hitting = _rank_above(named, HITS, 0.0)
+    if hitting:
+        counts = [f"{name} ({count_times(read_metric(run, HITS))})" for name, run in hitting]
+        found.append(f"Look at the travel of {name_some(counts)}: the suspension meets its end stops.")
+    amplifying = _rank_above(named, SEAT, 1.0 + SAME)
+    if amplifying:
+        listed = [f"{name} (SEAT factor {format_number(read_metric(run, SEAT))})" for name, run in amplifying]
+        feels = f"The driver feels more than the floor moves in {name_some(listed)}."
+        found.append(f"{feels}{_say_trials(*amplifying[0])}")
+    if len(runs) == 1:
+        found.append("Compare it with other laws or settings: seatsim compare takes several scenarios or a sweep.")
+    elif len({condition_of(run.scenario) for run in runs}) == 1:
+        found.append("Check that the order holds on other roads and with other drivers: seatsim sweep varies both.")
+    return found
+
+
+def _rank_above(named: Sequence[tuple[str, Run]], metric: str, limit: float) -> list[tuple[str, Run]]:
+    """Return the runs with a metric above a limit, the largest first."""
+    above = [(name, run) for name, run in named if read_metric(run, metric) > limit]
+    return sorted(above, key=lambda pair: -read_metric(pair[1], metric))
+
+
+def _say_trials(name: str, run: Run) -> str:
+    """Return what halving and doubling the numbers of the worst run did to its SEAT factor."""
+    try:
+        own, *trials = try_changes(run.scenario)
+    except RunError:
+        return ""
+    known = [each for each in trials if np.isfinite(each.metrics[SEAT].value)] if SEAT in own.metrics else []
+    if not known:
+        return ""
+    best = min(known, key=lambda each: each.metrics[SEAT].value)
+    keys = join_names(list(dict.fromkeys(each.key for each in known)))
+    part = f"the first {STRETCH:g} s of " if run.history["time"][-1] > STRETCH else ""
+    tried = f" Half and twice of {keys} were tried on {part}{name}"
+    before, after = own.metrics[SEAT].value, best.metrics[SEAT].value
+    if after > (1 - SAME) * before:
+        return f"{tried}: none lowers its SEAT factor of {format_number(before)}."
+    peaks = (format_quantity(each.metrics[_PEAK].value, "m") for each in (best, own))
+    return (
+        f"{tried}: {best.key} {best.value:g} lowers its SEAT factor the most, to {format_number(after)} from"
+        f" {format_number(before)}, with travel up to {' in place of '.join(peaks)}."
+    )
+
+
+CHANNELS = (
+    "driver_acceleration", "suspension_displacement", "damper_force", "coil_current", "frame_acceleration",
+    "floor_acceleration", "damper_temperature",
+)  # fmt: skip
+
+
+def show_signals(groups: Sequence[Shown], finest: int = FINEST) -> Signals:
+    """Return linked pictures of the channels that some run has; of several scenarios the reader chooses one."""
+    names = list(dict.fromkeys(look.label for shown in groups for look in shown.looks))
+    time = {shown.scenario: max((np.asarray(run["time"]) for run in shown.runs), key=len) for shown in groups}
+    panels = []
+    for channel in CHANNELS:
+        values = {shown.scenario: _read(shown, channel, names, len(time[shown.scenario])) for shown in groups}
+        known = [[each for each in part if each is not None] for part in values.values()]
+        if any(known):
+            panels.append(Panel(channel, UNITS[channel], _note_equal(known), values))
+    caption = "The list above the pictures has every scenario." if len(groups) > 1 else "All runs over time."
+    omitted = next((shown.omission for shown in groups if shown.omission), "")
+    return pack_signals(f"{caption}{omitted}", [(name, k % 8) for k, name in enumerate(names)], time, panels, finest)
+
+
+def _note_equal(groups: Sequence[Sequence[Array]]) -> str:
+    """Return a sentence where the lines of several runs lie on each other, which a picture does not show."""
+    several = [group for group in groups if len(group) > 1]
+    same = all(np.array_equal(group[0], each, equal_nan=True) for group in several for each in group[1:])
+    return "The same in all runs." if several and same else ""
+
+
+def _read(shown: Shown, channel: str, names: Sequence[str], length: int) -> list[Array | None]:
+    """Return a channel of each named run, filled up with NaN to a length; None where there is none."""
+    runs = {look.label: run for look, run in zip(shown.looks, shown.runs, strict=True)}
+    found: list[Array | None] = []
+    for run in map(runs.get, names):
+        values = np.asarray(run[channel]) if run is not None and channel in run.history.channels else np.full(1, np.nan)
+        known = np.isfinite(values).any()
+        found.append(np.pad(values, (0, length - len(values)), constant_values=np.nan) if known else None)
+    return found
+
+
 UNVERIFIED = "* unverified, and never the best: the notes say why."
-METHOD = (
-    "All figures are of the whole run. The driver's weighted RMS acceleration is weighted by Wk of ISO 2631-1; the SEAT"
-    " factor is that over the floor's.",
-    "Floor, seed, temperature, driver and start are conditions, under which a seat has to do well; all else is a"
-    f" choice. Only runs under one condition are compared. Figures within {100 * SAME:g} % count as equal.",
-    f"Spectra: {DENSITY}",
-)
 
 
 def report_runs(
@@ -49,26 +133,29 @@ def report_runs(
         title: what they are on.
         failures: why others were not carried to their end.
     """
-    evidence = collect_runs(runs)
-    signals = [*show_pictures(figures, "time_histories"), show_signals(show_runs(runs))]
+    bars, signals = show_pictures(figures, "pareto", "comparison"), show_pictures(figures, "time_histories")
     sections = [
-        Section(
-            "figures",
-            "Comfort, travel and effort",
-            [*show_pictures(figures, "pareto", "comparison"), _make_table(runs)],
-        ),
-        Section("signals", "Signals over time", signals),
+        Section("figures", "Comfort, travel and effort", [*bars, *_tabulate_figures(runs)]),
+        Section("signals", "Signals over time", [*signals, show_signals(show_runs(runs))]),
         Section("spectra", "Driver and floor over frequency", show_pictures(figures, "transmissibility", "psd")),
         Section("loops", "Loops of the damper", show_pictures(figures, "damper_loops", "force_velocity")),
-        Section("notes", "Notes", list_notes(_state_notes(runs))),
-        show_card(evidence),
-        describe_method(METHOD, command, [_list_settings(runs)]),
     ]
     single = len(runs) == 1
     about = f"Simulated run: {title}" if single else f"Comparison of {len(runs)} simulated runs: {title}"
-    answer, *others = [describe_run(runs[0])] if single else compare_runs(runs)
-    lead = [*others, *_list_gaps(runs, failures)]
-    return Report(about, answer, lead, advise_on_runs(runs), sections, say_doubt(evidence))
+    answer = [*([describe_run(runs[0])] if single else compare_runs(runs)), *_list_gaps(runs, failures)]
+    closing = Closing(_state_notes(runs), judge_runs(runs), command, _list_settings(runs[0].scenario))
+    return compose("runs", about, answer, advise_on_runs(runs), sections, closing, same=f"{100 * SAME:g} %")
+
+
+def judge_runs(runs: Sequence[Run]) -> list[Factor]:
+    """Return how far simulated runs may be trusted."""
+    energies = [run.metrics["energy_residual"].value for run in runs if "energy_residual" in run.metrics]
+    doubts = dict.fromkeys(text for run in runs for text in run.warnings)
+    return [
+        verify("up to {} of the energy is unaccounted for", energies),
+        trace_inputs(list(doubts), {type(run.scenario.damper.record) for run in runs}),
+        count_variations(len(runs)),
+    ]
 
 
 def _list_gaps(runs: Sequence[Run], failures: Sequence[str]) -> list[str]:
@@ -81,54 +168,40 @@ def _list_gaps(runs: Sequence[Run], failures: Sequence[str]) -> list[str]:
     return [format_sentence(text) for text in texts]
 
 
-def _make_table(runs: Sequence[Run]) -> Table:
+def _tabulate_figures(runs: Sequence[Run]) -> list[Block]:
+    """Return every figure of one run, or the figures of several side by side."""
     if len(runs) == 1:
-        return _list_metrics(runs[0])
-    chosen = [name for name in SHORT if any(name in run.metrics for run in runs)]
-    shown = {name: describe_channel(SHORT[name], _unit_of(runs, name)) for name in chosen}
-    head = ["run", *(each.words if each.unit == "-" else each.axis for each in shown.values())]
+        every = [(format_sentence(each.meaning).rstrip("."), format_quantity(each.value, each.unit))
+                 for each in runs[0].metrics.values()]  # fmt: skip
+        return tabulate("Every figure of the run", "figure, value", every)
+    units = {name: each.unit for run in reversed(runs) for name, each in run.metrics.items()}
+    shown = {name: describe_channel(words, units[name]) for name, words in SHORT.items() if name in units}
     rows = [
-        [
-            f"{name} *" if run.unverified else name,
-            *(_format_metric(metric, shown[metric].factor * read_metric(run, metric)) for metric in chosen),
-        ]
+        (f"{name} *" if run.unverified else name,
+         *(_format_metric(metric, shown[metric].factor * read_metric(run, metric)) for metric in shown))
         for name, run in zip(label_runs(runs), runs, strict=True)
-    ]
+    ]  # fmt: skip
     best = find_best(runs)
     bold = f" The most comfortable run{' of each condition' * (len(best) > 1)} is in bold." if best else ""
     mark = f" {UNVERIFIED}" if any(run.unverified for run in runs) else ""
-    return Table(f"Figures of each run; summary.csv has more.{bold}{mark}", head, rows, 1, best)
+    head = ["run", *(each.words if each.unit == "-" else each.axis for each in shown.values())]
+    return tabulate(f"Figures of each run; summary.csv has more.{bold}{mark}", head, rows, 1, best)
 
 
 def _format_metric(name: str, value: float) -> str:
     return f"{value:.0f}" if name == "end_stop_hits" and np.isfinite(value) else format_number(value)
 
 
-def _list_metrics(run: Run) -> Table:
-    """Return every figure of a run as a table."""
-    rows = [
-        [format_sentence(metric.meaning).rstrip("."), format_quantity(metric.value, metric.unit)]
-        for metric in run.metrics.values()
-    ]
-    return Table("Every figure of the run", ["figure", "value"], rows)
-
-
-def _unit_of(runs: Sequence[Run], name: str) -> str:
-    return next(run.metrics[name].unit for run in runs if name in run.metrics)
-
-
 def _state_notes(runs: Sequence[Run]) -> list[str]:
     texts = [f"{run.scenario.title} is unverified: {reason}" for run in runs for reason in run.unverified]
     texts += [sentence for run in runs for sentence in run.warnings]
-    texts += [f"{run.scenario.title}: {sentence}" for run in runs for sentence in run.history.notes]
-    return [format_sentence(text) for text in texts]
+    return texts + [f"{run.scenario.title}: {sentence}" for run in runs for sentence in run.history.notes]
 
 
-def _list_settings(runs: Sequence[Run]) -> Table:
+def _list_settings(scenario: Scenario) -> list[Block]:
     """Return the numbers of the first scenario by dotted key, with their units."""
-    scenario = runs[0].scenario
     rows = [
-        [key, format_unit(find_unit(scenario, key)) or "-", format_setting(value)]
+        (key, format_unit(find_unit(scenario, key)) or "-", format_setting(value))
         for key, value in list_numbers(scenario).items()
     ]
-    return Table(f"Settings of {scenario.title}", ["key", "unit", "value"], rows, 2, folded=True)
+    return tabulate(f"Settings of {scenario.title}", "key, unit, value", rows, 2, folded=True)

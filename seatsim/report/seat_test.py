@@ -5,23 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from seatsim.plots.bench.resonance import plot_damping
-from seatsim.plots.labels import UNKNOWN, format_number, format_percent
-from seatsim.report.blocks import Block, Report, Section, Table, list_notes, show_pictures
-from seatsim.report.credibility.card import say_doubt, show_card
-from seatsim.report.credibility.evidence import collect_seat_test
+from seatsim.plots.labels import format_percent
+from seatsim.report.blocks import Block, Report, Section, show_pictures, tabulate
+from seatsim.report.composing import Closing, compose
+from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs
 from seatsim.report.formatting import format_sentence
-from seatsim.report.method import describe_method
 from seatsim.schema.text import join_names
 from seatsim.standards.seat_rows import LIMITS, RECALLED, DampingRow, SeatRow, SeatTest
 
+PASSED = ("no", "yes")
 NAMED = 3
 """Failures that the answer names."""
-METHOD = (
-    "The SEAT factor is the weighted acceleration at the driver over that at the floor, each a mean over the runs of a"
-    " class and driver; the spread is the largest deviation of a run from that mean.",
-    "The damping test gives the transmissibility at resonance, with an inert mass on the seat.",
-    format_sentence(RECALLED),
-)
 
 
 def report_seat_test(found: SeatTest, name: str, is_measured: bool, command: str) -> Report:
@@ -33,17 +27,26 @@ def report_seat_test(found: SeatTest, name: str, is_measured: bool, command: str
         is_measured: whether the lines are of a recording.
         command: what makes the report again.
     """
-    texts = [*found.notes, *(f"{each.run} failed: {each.reason}" for each in found.failures)]
-    evidence, curves = collect_seat_test(found, is_measured), show_pictures(plot_damping(found), "damping")
+    notes = [*found.notes, *(f"{each.run} failed: {each.reason}" for each in found.failures)]
+    curves = show_pictures(plot_damping(found), "damping")
     sections = [
         Section("classes", "SEAT factors", _tabulate_classes(found.rows)),
         Section("damping", "Damping at resonance", [*_tabulate_damping(found.damping_rows), *curves]),
-        Section("notes", "Notes", list_notes([format_sentence(text) for text in texts])),
-        show_card(evidence),
-        describe_method(METHOD, command),
     ]
-    about, doubt = f"Seat test: {name}", say_doubt(evidence)
-    return Report(about, _say_seat_test(found), [], _advise(found), sections, doubt)
+    answer, closing = [_say_seat_test(found)], Closing(notes, _judge(found, is_measured), command)
+    recalled = format_sentence(RECALLED)
+    return compose("seat_test", f"Seat test: {name}", answer, _advise(found), sections, closing, recalled=recalled)
+
+
+def _judge(found: SeatTest, is_measured: bool) -> list[Factor]:
+    """Return how far a seat test may be trusted."""
+    has_spread = any(row.within_spread is not None for row in found.rows)
+    several = len({row.person for row in found.rows}) > 1
+    return [
+        trace_inputs([*found.notes, *(failure.reason for failure in found.failures)], is_measured=is_measured),
+        state_intervals(["the SEAT factors, by the spread of their runs"] * has_spread),
+        count_variations(len(found.rows), ["spectral class", "mass of the test person"] * several),
+    ]
 
 
 def _say_seat_test(found: SeatTest) -> str:
@@ -68,26 +71,20 @@ def _advise(found: SeatTest) -> list[str]:
 
 def _tabulate_classes(rows: Sequence[SeatRow]) -> list[Block]:
     lines = [
-        [row.run, row.spectral_class, LIMITS[row.spectral_class].machines, "yes" if row.passed else "no",
-         f"{row.mass:g}", format_number(row.seat), format_number(row.limit), format_percent(row.spread),
-         UNKNOWN if row.end_stop_hits is None else str(row.end_stop_hits)]
+        (row.run, row.spectral_class, LIMITS[row.spectral_class].machines, PASSED[row.passed], f"{row.mass:g}",
+         row.seat, row.limit, format_percent(row.spread), row.end_stop_hits)
         for row in rows
     ]  # fmt: skip
-    head = [
-        "run", "class", "machine", "passed", "driver [kg]", "SEAT factor", "limit", "spread of runs", "end-stop hits",
-    ]  # fmt: skip
-    strong = [k for k, row in enumerate(rows) if not row.passed]
     caption = "Each class with a light and a heavy driver; in bold what is above its limit"
-    return [Table(caption, head, lines, 4, strong)] * bool(lines)
+    head = "run, class, machine, passed, driver [kg], SEAT factor, limit, spread of runs, end-stop hits"
+    return tabulate(caption, head, lines, 4, [k for k, row in enumerate(rows) if not row.passed])
 
 
 def _tabulate_damping(rows: Sequence[DampingRow]) -> list[Block]:
     lines = [
-        [row.run, row.spectral_class, "yes" if row.passed else "no", format_number(row.resonance),
-         format_number(row.transmissibility), format_number(row.limit)]
+        (row.run, row.spectral_class, PASSED[row.passed], row.resonance, row.transmissibility, row.limit)
         for row in rows
-    ]  # fmt: skip
-    head = ["run", "class", "passed", "resonance [Hz]", "transmissibility", "limit"]
-    strong = [k for k, row in enumerate(rows) if not row.passed]
+    ]
     caption = "Transmissibility at the resonance; in bold what is above its limit"
-    return [Table(caption, head, lines, 3, strong)] * bool(lines)
+    head = "run, class, passed, resonance [Hz], transmissibility, limit"
+    return tabulate(caption, head, lines, 3, [k for k, row in enumerate(rows) if not row.passed])

@@ -1,10 +1,11 @@
-"""The report of a sweep: what matters most, how often limits are exceeded, comfort against travel, quantiles."""
+"""The report of a sweep: what matters most, how often limits are exceeded, the best choices, quantiles."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from seatsim.dampers.base import DAMPERS
 from seatsim.plots.labels import format_number, format_percent
 from seatsim.plots.sweeps import (
     COMFORT,
@@ -16,33 +17,91 @@ from seatsim.plots.sweeps import (
     plot_shares,
     plot_tornado,
 )
-from seatsim.report.blocks import Block, Report, Section, Table, Text, show_pictures
-from seatsim.report.credibility.card import say_doubt, show_card
-from seatsim.report.credibility.evidence import collect_sweep
-from seatsim.report.method import describe_method
-from seatsim.report.sweep_choices import advise_on_keys, choose_choice, tabulate_best
+from seatsim.report.blocks import Block, Report, Section, Text, show_pictures, tabulate
+from seatsim.report.composing import Closing, compose
+from seatsim.report.credibility import (
+    ENOUGH_RUNS,
+    EXPLAINED,
+    Factor,
+    count_variations,
+    state_intervals,
+    trace_inputs,
+    verify,
+)
+from seatsim.report.formatting import format_quantity
 from seatsim.scenario.scenario import is_condition
 from seatsim.sweeps.outcome import FAILED, UNVERIFIED
 from seatsim.sweeps.rows import NAMES, Exceedance, SweepRows
-from seatsim.sweeps.sensitivity import Sensitivities, choose_key
+from seatsim.sweeps.sensitivity import Sensitivities, Sensitivity, choose_key
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
+
+_MATTERS = 0.1
+"""Share of the variance from which on a key is worth a step."""
+
+
+def choose_choice(found: Sequence[Sensitivity], rows: SweepRows) -> Sensitivity | None:
+    """Return which of the keys that a designer chooses matters most to a metric."""
+    return choose_key([row for row in found if not is_condition(row.key)], rows)
+
+
+def advise_on_keys(found: Sequence[Sensitivity], rows: SweepRows) -> list[str]:
+    """Return what to do about the strongest choice, and where the strongest condition is the worst."""
+    texts = []
+    choice = choose_choice(found, rows)
+    if choice is not None:
+        share = f"explains the most of the variance, {format_percent(choice.total)}"
+        what = "tolerance" if choice.key in rows.drawn else "key"
+        verb = "Tighten the tolerance of" if what == "tolerance" else "Settle"
+        if choice.total < _MATTERS:
+            texts.append(f"No {what} that a designer chooses matters much: of them {choice.key} {share}.")
+        else:
+            texts.append(f"{verb} {choice.key} first: of all choices it {share}.")
+    condition = choose_key([row for row in found if is_condition(row.key)], rows)
+    if condition is not None:
+        shown = describe_column(condition.metric, rows.units)
+        worst, level = max(
+            (condition.at_low, condition.low), (condition.at_high, condition.high), key=lambda end: end[0]
+        )
+        unit = describe_column(condition.key, rows.units).unit
+        at = f"{format_level(level)} {unit}".removesuffix(" -")
+        mean = format_quantity(worst, rows.units[condition.metric])
+        texts.append(f"Judge every choice at {condition.key} {at}: there the mean {shown.words} is largest, {mean}.")
+    return texts
+
+
+def tabulate_best(rows: SweepRows) -> list[Block]:
+    """Return the most comfortable choice under each condition, the worst condition first; nothing of random points.
+
+    Figures are means over seeds. Only a design with every choice under every condition can be compared so.
+    """
+    conditions = [key for key in rows.keys if is_condition(key)]
+    choices = [key for key in rows.keys if key not in conditions]
+    if not conditions or not choices or rows.is_random or COMFORT not in rows.metrics:
+        return []
+    means = rows.usable.groupby([*conditions, *choices], as_index=False)[COMFORT].mean()
+    counts = means.groupby(conditions)[COMFORT].size()
+    if counts.min() < 2:
+        return []
+    best = means.loc[means.groupby(conditions)[COMFORT].idxmin()].sort_values(COMFORT, ascending=False)
+    lines = [
+        [*(format_level(value) for value in line[:-1]), format_number(float(line[-1]))]
+        for line in best.head(MOST_LINES).itertuples(index=False, name=None)
+    ]
+    left = len(best) - len(lines)
+    others = f"; and {left} other conditions" if left else ""
+    shown = describe_column(COMFORT, rows.units)
+    caption = f"Most comfortable choice under each condition, the worst condition first{others}"
+    return tabulate(caption, [*conditions, *choices, shown.axis], lines, len(conditions) + len(choices))
+
 
 SHOWN = (COMFORT, "driver_vdv", "seat_factor", TRAVEL, "suspension_displacement_peak", "end_stop_hits", "current_rms")
 """Metrics of the tables of the page; `table.csv` has all of them."""
 MOST_LINES = 60
 """Lines of a table on the page."""
 _MOST_REASONS = 8
-_ENOUGH = 0.8
-"""Share of the variance that an expansion must predict before nothing is said about it."""
-METHOD = (
-    "Failed and unverified runs take no part in any figure.",
-    "Shares of variance are Sobol indices of a polynomial chaos expansion, with 95 % intervals by resampling the runs;"
-    " they assume that keys vary independently, as this design has them.",
-    "Shares of runs above a limit have Wilson's interval of 95 %.",
-)
 
 
 def report_sweep(
@@ -50,8 +109,7 @@ def report_sweep(
 ) -> Report:
     """Return the report of a sweep from its rows and the statistics on them."""
     settings = [Text(_say_seeds(rows)), Text(f"Identity of the sweep: {rows.manifest['identity']}")]
-    order, evidence = _order(found, rows), collect_sweep(rows, found, exceeded)
-    figures = _draw_figures(found, rows, order)
+    figures = draw_figures(found, rows)
     sections = [
         Section("limits", "How often limits are exceeded", _show_limits(exceeded, rows)),
         Section("choices", "Best choice under each condition", tabulate_best(rows)),
@@ -60,11 +118,31 @@ def report_sweep(
         Section("maps", "Means over two keys", show_pictures(figures, "means")),
         Section("quantiles", "Quantiles", _show_quantiles(quantiles, rows)),
         Section("states", "Failed and unverified runs", _show_states(rows)),
-        show_card(evidence),
-        describe_method(METHOD, f"seatsim sweep-report {rows.folder.name}", settings),
     ]
-    about, answer, doubt = f"Sweep: {rows.folder.name}", state_importance(found, rows), say_doubt(evidence)
-    return Report(about, answer, [_count_runs(rows)], _advise(found, exceeded, rows), sections, doubt)
+    answer, factors = [state_importance(found, rows), _count_runs(rows)], _judge(rows, found, exceeded)
+    closing = Closing([], factors, f"seatsim sweep-report {rows.folder.name}", settings)
+    return compose("sweep", f"Sweep: {rows.folder.name}", answer, _advise(found, exceeded, rows), sections, closing)
+
+
+def _judge(rows: SweepRows, found: Sensitivities, exceeded: Sequence[Exceedance]) -> list[Factor]:
+    """Return how far a sweep may be trusted, whose identity keeps the hashes of its inputs."""
+    stated = rows.manifest["configuration"]
+    damper = stated["scenario"].get("damper", {}) if isinstance(stated.get("scenario"), dict) else {}
+    model = damper.get("model") if isinstance(damper, dict) else None
+    models = [DAMPERS.find(model)] if model in DAMPERS.names() else []
+    explained = next((row.explained for row in found.of(COMFORT) or found.rows), None)
+    said = f", {len(rows.drawn)} of them drawn from distributions" if rows.drawn else ""
+    said += "" if explained is None else f"; they explain {format_percent(max(0.0, explained))} of comfort"
+    many, intervals = len(rows.usable) >= ENOUGH_RUNS, ["shares of the variance"] * bool(found.rows)
+    return [
+        verify("up to {} of the energy is unaccounted for",
+               rows.usable["energy_residual"].dropna() if "energy_residual" in rows.metrics else []),
+        trace_inputs(sorted({str(text) for text in rows.every.reason.dropna() if text}), models,
+                     inputs=1 + len(stated.get("files", {}))),
+        state_intervals([*intervals, *["shares above limits"] * bool(exceeded)], bool(rows.drawn), bool(found.rows)),
+        count_variations(len(rows.usable), rows.keys, said, (explained or 0.0) >= EXPLAINED,
+                         many and bool(rows.drawn and exceeded)),
+    ]  # fmt: skip
 
 
 def state_importance(found: Sensitivities, rows: SweepRows) -> str:
@@ -114,10 +192,9 @@ def _advise(found: Sensitivities, exceeded: Sequence[Exceedance], rows: SweepRow
     worst = max(exceeded, key=lambda row: row.share, default=None)
     if worst is not None and worst.share > 0:
         where = ", ".join(str(value) for value in worst.group.values())
-        shown = describe_column(worst.metric, rows.units)
-        limit = f"{format_number(shown.factor * worst.limit)} {shown.unit}".removesuffix(" -")
-        texts.append(f"Begin with the {shown.words}{f' of {where}' * bool(where)}: {worst.exceeding} of {worst.runs}"
-                     f" runs are above the limit of {limit}.")  # fmt: skip
+        words = describe_column(worst.metric, rows.units).words
+        texts.append(f"Begin with the {words}{f' of {where}' * bool(where)}: {worst.exceeding} of {worst.runs} runs are"
+                     f" above the limit of {format_quantity(worst.limit, rows.units[worst.metric])}.")  # fmt: skip
     if found.rows:
         texts += advise_on_keys(found.of(_choose_metric(found)), rows)
     if len(rows.every) < rows.manifest["counts"]["runs"]:
@@ -137,14 +214,14 @@ def _list_metrics(found: Sensitivities, rows: SweepRows) -> list[str]:
     return list(known) or ([_choose_metric(found)] if found.rows else [])
 
 
-def _draw_figures(found: Sensitivities, rows: SweepRows, order: Sequence[str]) -> dict[str, Figure]:
+def draw_figures(found: Sensitivities, rows: SweepRows) -> dict[str, Figure]:
+    """Return the figures of a sweep by name."""
+    ranked = [row.key for row in found.of(_choose_metric(found))] if found.rows else []
+    order = [*ranked, *(key for key in rows.keys if key not in ranked)]
     figures: dict[str, Figure | None] = {}
     for metric in _list_metrics(found, rows):
-        words = describe_column(metric, rows.units).words
-        figures |= {
-            f"shares_{metric}": plot_shares(found.of(metric), words),
-            f"tornado_{metric}": plot_tornado(found.of(metric), rows),
-        }
+        shares, words = found.of(metric), describe_column(metric, rows.units).words
+        figures |= {f"shares_{metric}": plot_shares(shares, words), f"tornado_{metric}": plot_tornado(shares, rows)}
     figures |= {"comfort": plot_comfort(rows, order)}
     figures |= {f"means_{metric}": plot_means(rows, order, metric) for metric in (COMFORT, TRAVEL)}
     return {name: figure for name, figure in figures.items() if figure is not None}
@@ -158,7 +235,7 @@ def _show_sensitivity(found: Sensitivities, rows: SweepRows, figures: Mapping[st
     for metric in _list_metrics(found, rows):
         blocks += show_pictures(figures, f"shares_{metric}", f"tornado_{metric}")
         explained, words = found.of(metric)[0].explained, describe_column(metric, rows.units).words
-        if explained < _ENOUGH:
+        if explained < EXPLAINED:
             known = format_percent(max(0.0, explained))
             blocks.append(Text(f"The shares rest on a polynomial that predicts {known} of the variance of the {words}"
                                " in runs left out of its fit. The rest is the random road, sensor noise, or"
@@ -166,51 +243,39 @@ def _show_sensitivity(found: Sensitivities, rows: SweepRows, figures: Mapping[st
     return blocks
 
 
-def _order(found: Sensitivities, rows: SweepRows) -> list[str]:
-    """Return the varied keys, what matters most to comfort first."""
-    ranked = [row.key for row in found.of(_choose_metric(found))] if found.rows else []
-    return [*ranked, *(key for key in rows.keys if key not in ranked)]
-
-
 def _show_limits(exceeded: Sequence[Exceedance], rows: SweepRows) -> list[Block]:
     if not exceeded:
         return []
-    what = "probability" if rows.is_random else "share of the runs"
-    lead = (
-        "The interval holds for runs that were drawn independently of each other."
-        if rows.is_random
-        else "No key is drawn from a distribution: these are shares of the runs of the design, no probabilities."
-    )
-    head = [*exceeded[0].group, "metric", "limit", "runs above", what, "95 % interval"]
-    lines = []
-    for row in exceeded[:MOST_LINES]:
-        shown = describe_column(row.metric, rows.units)
-        limit = f"{format_number(shown.factor * row.limit)} {shown.unit}".removesuffix(" -")
-        interval = f"{format_percent(row.low)} to {format_percent(row.high)}"
-        lines.append([*map(format_level, row.group.values()), shown.words, limit, f"{row.exceeding} of {row.runs}",
-                      format_percent(row.share), interval])  # fmt: skip
-    return [Text(lead), Table("Runs above each limit", head, lines, words=len(exceeded[0].group) + 1)]
+    what, lead = ("probability", "The interval holds for runs that were drawn independently of each other.")
+    if not rows.is_random:
+        what = "share of the runs"
+        lead = "No key is drawn from a distribution: these are shares of the runs of the design, no probabilities."
+    lines = [
+        (*map(format_level, row.group.values()), describe_column(row.metric, rows.units).words,
+         format_quantity(row.limit, rows.units[row.metric]), f"{row.exceeding} of {row.runs}",
+         format_percent(row.share), f"{format_percent(row.low)} to {format_percent(row.high)}")
+        for row in exceeded[:MOST_LINES]
+    ]  # fmt: skip
+    groups = list(exceeded[0].group)
+    head = [*groups, "metric", "limit", "runs above", what, "95 % interval"]
+    return [Text(lead), *tabulate("Runs above each limit", head, lines, len(groups) + 1)]
 
 
 def _show_quantiles(quantiles: pd.DataFrame, rows: SweepRows) -> list[Block]:
-    groups = rows.texts
-    figures = ["mean", "min", *NAMES, "max"]
     lines = []
     for record in quantiles[quantiles.metric.isin(SHOWN)].head(MOST_LINES).to_dict("records"):
         shown = describe_column(str(record["metric"]), rows.units)
-        names = [format_level(record[key]) for key in groups]
-        values = [format_number(shown.factor * float(record[name])) for name in figures]
-        lines.append([*names, shown.words, shown.unit, str(record["runs"]), *values])
-    head = [*groups, "metric", "unit", "runs", "mean", "least", "5 %", "25 %", "median", "75 %", "95 %", "greatest"]
+        groups = (format_level(record[key]) for key in rows.texts)
+        values = (shown.factor * float(record[name]) for name in ("mean", "min", *NAMES, "max"))
+        lines.append([*groups, shown.words, shown.unit, str(record["runs"]), *values])
+    head = [*rows.texts, "metric", "unit", "runs", "mean", "least", "5 %", "25 %", "median", "75 %", "95 %", "greatest"]
     caption = f"Quantiles of the runs of each group: {len(lines)} lines; table.csv has every group and metric"
-    return [Table(caption, head, lines, words=len(groups) + 2, folded=True)] if lines else []
+    return tabulate(caption, head, lines, len(rows.texts) + 2, folded=True)
 
 
 def _show_states(rows: SweepRows) -> list[Block]:
     doubtful = rows.every[rows.every.state.isin((FAILED, UNVERIFIED))]
     reasons = doubtful.groupby(["state", "reason"]).run.agg(["size", "first"]).sort_values("size", ascending=False)
-    lines = [
-        [state, str(count), str(first), reason] for (state, reason), (count, first) in
-        zip(reasons.index[:_MOST_REASONS], reasons.to_numpy()[:_MOST_REASONS], strict=True)
-    ]  # fmt: skip
-    return [Table("Reasons, the most frequent first", ["state", "runs", "first run", "reason"], lines, 4)] * bool(lines)
+    lines = [(state, str(count), str(first), reason) for (state, reason), count, first in
+             reasons.head(_MOST_REASONS).itertuples(name=None)]  # fmt: skip
+    return tabulate("Reasons, the most frequent first", "state, runs, first run, reason", lines, 4)

@@ -12,7 +12,6 @@ from uvicorn.server import ServerState
 
 from seatsim.page.app import make_app
 from seatsim.page.controls import Choice, Slider, read_choice, read_number
-from seatsim.page.folder import Folder, NotInFolderError, TooLargeError
 from seatsim.page.scenario_view import View
 from seatsim.page.serve import Impatient, find_target, open_target
 from seatsim.report.blocks import Table
@@ -52,7 +51,7 @@ def loaded(target):
 
 @pytest.fixture
 def app(tmp_path):
-    return make_app(loaded(Plain()), Folder(tmp_path), TOKEN, PORT)
+    return make_app(loaded(Plain()), tmp_path, TOKEN, PORT)
 
 
 def ask(app, method, path, token=TOKEN, base=HOME, **options):
@@ -98,7 +97,7 @@ def test_a_connection_without_a_whole_request_is_closed(sent, answered):
 
 
 def test_a_page_keeps_its_cookie_when_another_port_is_opened(app, tmp_path):
-    other = make_app(loaded(Plain()), Folder(tmp_path), "other-token", PORT + 1)
+    other = make_app(loaded(Plain()), tmp_path, "other-token", PORT + 1)
     opened = [ask(app, "GET", f"/?token={TOKEN}", token=""),
               ask(other, "GET", "/?token=other-token", token="", base=f"http://127.0.0.1:{PORT + 1}")]  # fmt: skip
     jar = "; ".join(answer.headers["set-cookie"].partition(";")[0] for answer in opened)
@@ -129,27 +128,9 @@ def test_a_foreign_origin_is_refused(app, origin):
     assert ask(app, "POST", "/view", json={}, headers={"origin": HOME}).status_code == 200
 
 
-@pytest.mark.parametrize(
-    "path", ["/files/../secret.yaml", "/files/%2e%2e/secret.yaml", "/files/..%2fsecret.yaml", "/files//etc/passwd",
-             "/files/link.yaml", "/files/.hidden.yaml", "/files/none.yaml", "/files/a%00.yaml", "/files/run.csv"],
-)  # fmt: skip
-def test_only_the_folder_is_read(tmp_path, path):
-    inside = tmp_path / "inside"
-    inside.mkdir()
-    (tmp_path / "secret.yaml").write_text("secret")
-    (inside / ".hidden.yaml").write_text("secret")
-    (inside / "run.csv").write_text("secret")
-    (inside / "link.yaml").symlink_to(tmp_path / "secret.yaml")
-    (inside / "own.yaml").write_text("own")
-    app = make_app(loaded(Plain()), Folder(inside), TOKEN, PORT)
-    assert ask(app, "GET", "/files/own.yaml").text == "own"
-    answer = ask(app, "GET", path)
-    assert answer.status_code == 404 and "secret\n" not in answer.text
-
-
 def test_the_page_is_answered_while_its_target_loads(tmp_path):
     target = Future()
-    app = make_app(target, Folder(tmp_path), TOKEN, PORT)
+    app = make_app(target, tmp_path, TOKEN, PORT)
     first = ask(app, "GET", "/")
     assert first.status_code == 200 and "are loading" in first.text and "<script" not in first.text
     target.set_result(Plain())
@@ -160,7 +141,7 @@ def test_the_page_is_answered_while_its_target_loads(tmp_path):
 def test_a_target_with_a_fault_is_said(tmp_path):
     target = Future()
     target.set_exception(InputError("quickstart.yaml: no such key <b>"))
-    answer = ask(make_app(target, Folder(tmp_path), TOKEN, PORT), "GET", "/")
+    answer = ask(make_app(target, tmp_path, TOKEN, PORT), "GET", "/")
     assert answer.status_code == 422 and answer.headers["content-type"].startswith("text/plain")
     with pytest.raises(InputError, match="no such file"):
         find_target(tmp_path / "none.yaml")
@@ -168,13 +149,10 @@ def test_a_target_with_a_fault_is_said(tmp_path):
 
 def test_large_files_and_requests_are_refused(tmp_path, monkeypatch, app):
     (tmp_path / "large.yaml").write_text("x" * 2000)
-    monkeypatch.setattr("seatsim.page.folder.LARGEST", 1000)
-    with pytest.raises(TooLargeError):
-        Folder(tmp_path).find("large.yaml")
-    assert ask(app, "GET", "/files/large.yaml").status_code == 413
+    monkeypatch.setattr("seatsim.page.serve._LARGEST", 1000)
+    with pytest.raises(InputError, match="larger than"):
+        find_target(tmp_path)
     assert ask(app, "POST", "/view", json={"x": "y" * 200_000}).status_code == 413
-    with pytest.raises(NotInFolderError):
-        Folder(tmp_path).find("../large.yaml")
 
 
 def test_values_are_shown_and_wrong_ones_are_said(app):
@@ -212,6 +190,34 @@ def test_a_scenario_follows_what_is_moved():
     assert changed.plant.driver_mass == 95.0 and changed.excitation.road_class == "C"
     assert changed.excitation.duration == 20.0 and changed.title.endswith("(off)")
     assert view.encode({"mass": 95.0})["plant"]["driver_mass"] == 95.0
+
+
+def test_the_numbers_of_the_law_at_work_can_be_moved():
+    view = open_target(find_target(Path("road-b")))
+    request = {"road": "C", "law": "skyhook"}
+    [damping] = view.show(request).gains
+    assert (damping.name, damping.unit, damping.value, damping.high) == ("damping", "N·s/m", 2000.0, 6000.0)
+    moved = view.choose({**request, "gains": {"damping": 500.0}})
+    assert moved.control.law.damping == 500.0 and moved.excitation.road_class == "C"
+    assert view.encode({**request, "gains": {"damping": 500.0}})["controller"]["damping"] == 500.0
+    with pytest.raises(InputError, match="0 to 6000"):
+        view.choose({**request, "gains": {"damping": 1e9}})
+
+
+def test_a_temperature_without_effect_has_no_slider():
+    assert [slider.name for slider in open_target(find_target(Path("road-b"))).sliders] == ["mass"]
+    names = [slider.name for slider in open_target(find_target(Path("temperature-sweep"))).sliders]
+    assert names == ["mass", "temperature"]
+
+
+def test_a_fit_finds_the_effect_that_the_recording_holds():
+    folder = next(path for path in EXAMPLES if path.is_dir()) / "data" / "recording"
+    view = open_target(folder)
+    first = view.show({"effects": {"damper.seal_friction": {"force": 60.0}}, "fit": True})
+    before, after = (each.tables[0].rows for each in (view.show({}), first))
+    assert first.fitted["damper.seal_friction"]["force"] < 60.0
+    shown = view.show({"effects": first.fitted}).tables[0].rows
+    assert [row[1] for row in after] == [row[1] for row in before] and shown == after
 
 
 def test_an_effect_that_is_not_there_makes_the_gap_grow():

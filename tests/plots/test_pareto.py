@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seatsim.metrics.table import Metric
-from seatsim.plots.runs.pareto import BEST, BOUND, plot_pareto
+from seatsim.plots.runs.comparison import BEST, BOUND, plot_pareto
 from seatsim.simulation.result import Run
 
 

@@ -11,8 +11,8 @@ from seatsim.metrics.table import summarise
 from seatsim.plots import labels
 from seatsim.plots.runs import histories, naming, spectra
 from seatsim.plots.runs.comparison import find_swept_number, plot_comparison
+from seatsim.plots.runs.dampers import choose_amplitude, find_dampers, plot_damper_loops, plot_force_velocity
 from seatsim.plots.runs.histories import CLOSE_UP
-from seatsim.plots.runs.loops import choose_amplitude, find_dampers, plot_damper_loops, plot_force_velocity
 from seatsim.plots.thinning import BINS, Window, find_loudest, thin_line
 from seatsim.rig.coil import Coil
 from seatsim.rig.temperature import TemperatureFactors
@@ -76,7 +76,7 @@ def test_the_close_up_is_stated_and_shared(made_up):
     figure = plot_time_histories([made_up({"variant": "a"}), made_up({"variant": "b"}, seconds=7.0)])
     start, end = figure.axes[0].get_xlim()
     assert end - start == pytest.approx(CLOSE_UP) and end <= 7.0
-    assert texts(figure)[1].startswith(f"{start:.1f} to {end:.1f} s, where the RMS acceleration")
+    assert texts(figure)[1].startswith(f"{start:.1f} to {end:.1f} s, where the driver's RMS")
     assert {axes.get_xlim() for axes in figure.axes} == {(start, end)}
 
 

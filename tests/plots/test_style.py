@@ -68,9 +68,7 @@ def test_axes_beside_a_panel_are_as_tall_as_it():
 
 def test_ticks_of_a_logarithmic_axis_are_plain_numbers():
     axes = Figure().add_subplot()
-    axes.set_xscale("log")
-    axes.set_xlim(0.9, 60)
-    style.set_plain_log_ticks(axes.xaxis, 0.9, 60)
+    style.scale_log(axes, "x", 0.9, 60)
     inside = [tick for tick in axes.get_xticks() if 0.9 <= tick <= 60]
     np.testing.assert_allclose(inside, [1, 2, 5, 10, 20, 50])
     assert [axes.xaxis.get_major_formatter()(tick, 0) for tick in inside] == ["1", "2", "5", "10", "20", "50"]

@@ -41,4 +41,5 @@ def open_page(browser, address, width=1280, scheme="light"):
     page.on("pageerror", lambda error: complaints.append(str(error)))
     page.on("request", lambda request: requests.append(request.url))
     page.goto(address)
+    page.wait_for_function("() => [...document.querySelectorAll('.plot')].every(plot => plot.dataset.drawn)")
     return page, complaints, requests

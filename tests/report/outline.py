@@ -1,6 +1,8 @@
 """What a page says, for tests: its headings, texts, anchors, references and tables."""
 
 from html.parser import HTMLParser
+from urllib.parse import unquote
+from xml.etree import ElementTree
 
 VOID = ("img", "meta", "br", "input", "link")
 
@@ -28,8 +30,11 @@ class Outline(HTMLParser):
             self.tables[-1].append([])
         if tag in ("th", "td"):
             self.tables[-1][-1].append("")
+        if tag == "img":
+            drawing = ElementTree.fromstring(unquote(given["src"].removeprefix("data:image/svg+xml,")))
+            self.words += [each.text for each in drawing.iter("{http://www.w3.org/2000/svg}text") if each.text]
         self.references += [given[key] for key in ("src", "href") if key in given]
-        assert tag not in ("link", "iframe", "img") and not any(key.startswith("on") for key in given)
+        assert tag not in ("link", "iframe") and not any(key.startswith("on") for key in given)
 
     def handle_endtag(self, tag):
         assert self.open.pop() == tag

@@ -7,80 +7,82 @@ from pathlib import Path
 import pytest
 
 import seatsim
+from seatsim.dampers.base import DAMPERS
 from seatsim.provenance.statement import at_work
 from seatsim.recordings.header import NOT_STATED
-from seatsim.report.credibility.card import say_doubt, show_card
-from seatsim.report.credibility.evidence import Evidence, collect_diagnosis, collect_gap, collect_runs
-from seatsim.report.credibility.rules import FACTORS, REACH, find_level
+from seatsim.report.credibility import CONDITIONS, Factor, say_doubt, show_card, trace_inputs, validate, verify
+from seatsim.report.diagnosis import judge_diagnosis
+from seatsim.report.gap import judge_gap
+from seatsim.report.runs import judge_runs
 from seatsim.scenario.loading import load
 from seatsim.simulation.runs import run_one
 
 from .diagnoses import with_every_run
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "reports.md"
-BEST = Evidence(
-    "diagnosis",
-    energy=1e-6, step=1e-5, compared=4, held_out=2, error=0.05, noise=0.02, inputs=3, dampers={"bouc_wen": "published"},
-    parameters_known=True, intervals=["all"], parameter_intervals=True, answer_interval=True, budget=True, runs=200,
-    varied=["a"], drawn=["a"], explained=0.9, limits=True,
+PUBLISHED = [DAMPERS.find("bouc_wen")]
+
+
+def level_of(name, factors):
+    return next(factor.level for factor in factors if factor.name == name)
+
+
+@pytest.mark.parametrize(
+    ("errors", "level"), [([], 0), ([float("nan")], 0), ([1e-6, 0.02], 1), ([1e-6, 0.005], 2), ([1e-6, 1e-5], 3)]
+)
+def test_numerical_errors_count_by_the_largest(errors, level):
+    assert verify("{} is lost", errors).level == level
+
+
+@pytest.mark.parametrize(
+    ("compared", "held_out", "error", "noise", "level"),
+    [(0, 0, None, None, 0), (4, 2, 0.05, 0.02, 4), (4, 0, 0.05, 0.02, 1), (4, 2, 0.2, 0.02, 3), (4, 2, 0.5, 0.02, 2),
+     (4, 1, 0.05, 0.02, 3), (4, 2, 0.05, None, 4),
+     # A recording that agrees better than its noise was made of the simulation.
+     (4, 2, 0.05, 0.0, 2), (4, 2, 0.001, 0.02, 2)],
 )  # fmt: skip
+def test_a_condition_that_fails_ends_the_level(compared, held_out, error, noise, level):
+    assert validate(compared, held_out, error, noise).level == level
 
 
-def level(name, evidence):
-    return find_level(next(factor for factor in FACTORS if factor.name == name), evidence)
+@pytest.mark.parametrize(
+    ("given", "level"),
+    [({}, 4), ({"inputs": None}, 0), ({"doubts": ["x"]}, 1), ({"dampers": [DAMPERS.find("viscoelastic_plastic")]}, 2),
+     ({"loose": ["c_a"]}, 3), ({"parameters_known": None}, 3), ({"parameters_known": False}, 3), ({"dampers": []}, 2),
+     ({"dampers": [], "is_measured": True}, 4)],
+)  # fmt: skip
+def test_inputs_have_their_hashes_their_ranges_their_sources_and_their_tolerances(given, level):
+    best = {"doubts": [], "dampers": PUBLISHED, "parameters_known": True, "inputs": 3}
+    assert trace_inputs(**best | given).level == level
 
 
-@pytest.mark.parametrize(("name", "reached"), [
-    ("verification", 3), ("validation", 4), ("input pedigree", 4), ("uncertainty", 4), ("robustness", 4),
-])  # fmt: skip
-def test_levels_rise_from_nothing_known_to_all_known(name, reached):
-    assert level(name, Evidence("diagnosis")) == 0 and level(name, BEST) == reached
-
-
-@pytest.mark.parametrize(("name", "change", "reached"), [
-    ("verification", {"energy": None}, 3), ("verification", {"energy": 0.02}, 1), ("verification", {"step": 0.005}, 2),
-    ("validation", {"held_out": 0}, 1), ("validation", {"error": 0.2}, 3), ("validation", {"error": 0.5}, 2),
-    ("validation", {"held_out": 1}, 3), ("input pedigree", {"inputs": None}, 0),
-    ("input pedigree", {"doubts": ["x"]}, 1),
-    ("input pedigree", {"dampers": {"mine": "own"}}, 2), ("input pedigree", {"loose": ["c_a"]}, 3),
-    ("uncertainty", {"answer_interval": False}, 2), ("robustness", {"explained": 0.5}, 2),
-    ("robustness", {"runs": 64}, 3),
-])  # fmt: skip
-def test_a_condition_that_fails_ends_the_level(name, change, reached):
-    assert level(name, BEST._replace(**change)) == reached
-
-
-@pytest.mark.parametrize("change", [{"noise": 0.0}, {"error": 0.001}])
-def test_a_recording_that_agrees_better_than_its_noise_was_made_of_the_simulation(change):
-    assert level("validation", BEST._replace(**change)) == 2
-
-
-@pytest.mark.parametrize("kind", REACH)
-def test_a_card_shows_what_its_kind_of_result_can_reach_and_no_more(kind):
-    rows = show_card(REACH[kind]).blocks[1].rows
-    assert rows and all(
-        level.split("\u00a0of\u00a0")[0] == level[-1] and following == "–" for _, level, _, following in rows
-    )
-    assert say_doubt(REACH[kind]) == "" and say_doubt(Evidence(kind)).startswith("Least certain is the ")
-    assert ("verification" in [row[0] for row in rows]) == (kind in ("runs", "sweep", "diagnosis"))
+def test_a_card_says_what_the_next_level_asks_for_and_the_doubt_is_of_the_weakest_factor():
+    best, weak = Factor("verification", "all balances", (True, True)), Factor("robustness", "one run", (False,))
+    rows = {row[0]: row[1:] for row in show_card([best, weak]).blocks[1].rows}
+    assert rows["verification"] == ["2\u00a0of\u00a02", "All balances.", "–"]
+    assert rows["robustness"] == ["0\u00a0of\u00a01", "One run.", CONDITIONS["robustness"][0]]
+    assert say_doubt([best, weak]) == "Least certain is the robustness: one run." and say_doubt([best]) == ""
 
 
 def test_evidence_of_a_run_is_measured_on_it_and_on_what_was_read():
     scenario = load("quickstart", {"excitation.duration": 2.0})[2]
     run = run_one(scenario)
-    found = collect_runs([run])
-    assert 0 < found.energy < 1e-3
-    assert found.inputs is None and found.dampers == {"bouc_wen": "published"}
+    assert level_of("verification", judge_runs([run])) == 3 and level_of("input pedigree", judge_runs([run])) == 0
     with at_work("run", [], ["quickstart"]):
         load("quickstart")
-        assert collect_runs([run]).inputs == 1
-    doubted = collect_runs([replace(run, warnings=("a reason",))])
-    assert doubted.doubts == ("a reason",) and level("input pedigree", doubted._replace(inputs=1)) == 1
+        found = judge_runs([run])
+        assert level_of("input pedigree", found) == 3 and "hashes of 1 input file kept" in found[1].evidence
+        assert "bouc_wen: published" in found[1].evidence
+        assert level_of("input pedigree", judge_runs([replace(run, warnings=("a reason",))])) == 1
 
 
 def test_evidence_of_a_diagnosis_is_of_its_held_out_run():
-    found = collect_diagnosis(with_every_run())
-    assert found.held_out == 1 and found.error == with_every_run().gap.after.overall and found.answer_interval
+    diagnosis = with_every_run()
+    validation = next(factor for factor in judge_diagnosis(diagnosis) if factor.name == "validation")
+    assert (
+        "1 of 3 took no part" in validation.evidence and f"{diagnosis.gap.after.overall:.1%}"[:3] in validation.evidence
+    )
+    assert level_of("uncertainty", judge_diagnosis(diagnosis)) >= 3
 
 
 @pytest.mark.parametrize(("stated", "reached"), [("0.02", 4), ("", 3), ("fitted", 3)])
@@ -88,20 +90,23 @@ def test_a_tolerance_that_nobody_stated_is_no_pedigree(stated, reached, sound, t
     folder = shutil.copytree(sound, tmp_path / "recorded")
     lines = [each for each in (folder / "recording.yaml").read_text().splitlines() if "parameter_tolerance" not in each]
     (folder / "recording.yaml").write_text("\n".join([*lines, *([f"parameter_tolerance: {stated}"] * bool(stated))]))
-    found = collect_gap(str(folder / "nominal.yaml"), folder, seatsim.gap(folder / "nominal.yaml", folder))
-    assert level("input pedigree", found._replace(inputs=1, doubts=())) == reached
+    gap = replace(seatsim.gap(folder / "nominal.yaml", folder), notes=())
+    with at_work("gap", [], []):
+        found = judge_gap(str(folder / "nominal.yaml"), folder, gap)
+    assert level_of("input pedigree", found) == reached
     # What was not fitted to such data is validated by all runs, with whatever tolerance.
-    assert found.held_out == (0 if stated == "fitted" else found.compared)
+    assert ("none is known to have taken" in found[0].evidence) == (stated == "fitted")
 
 
 def test_a_diagnosis_within_a_tolerance_that_nobody_stated_has_less_of_a_pedigree():
     diagnosis = with_every_run()
     assumed = replace(diagnosis, notes=[*diagnosis.notes, f"{NOT_STATED}: 2 %"])
-    assert [collect_diagnosis(each).parameters_known for each in (diagnosis, assumed)] == [True, False]
+    said = ["within a stated tolerance" in judge_diagnosis(each)[2].evidence for each in (diagnosis, assumed)]
+    assert said == [True, False]
 
 
 def test_the_documentation_has_every_condition_word_for_word():
     lines = {line.split("|")[1].strip(): line for line in DOCUMENT.read_text().splitlines() if line.startswith("| ")}
-    for factor in FACTORS:
-        cells = [cell.strip() for cell in lines[factor.name].split("|")[2:-1]]
-        assert cells == [condition.words for condition in factor.conditions] + [""] * (4 - len(factor.conditions))
+    for name, conditions in CONDITIONS.items():
+        cells = [cell.strip() for cell in lines[name].split("|")[2:-1]]
+        assert cells == [*conditions, *[""] * (4 - len(conditions))]

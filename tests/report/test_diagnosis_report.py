@@ -20,9 +20,9 @@ from seatsim.diagnosis.result import (
 from seatsim.plots.diagnosis.answer import read_gap
 from seatsim.plots.labels import format_number, format_percent
 from seatsim.report.diagnosis import advise, report_diagnosis, say_diagnosis, write_report
-from seatsim.report.effect_words import WORDS, say_action, say_cause
 from seatsim.report.formatting import describe_effect, format_estimate, format_quantity, format_sentence
 from seatsim.report.rendering import render_report
+from seatsim.report.words import read_words, say_action, say_cause
 from seatsim.schema.registry import names
 
 from .diagnoses import CASES, ambiguous, known, none, unknown
@@ -82,7 +82,7 @@ def test_a_page_is_small_and_asks_for_nothing(case, pages):
     text = pages[case][1]
     assert len(text.encode()) < 700_000
     assert "default-src &#39;none&#39;" in text and "connect-src" not in text
-    assert all(reference.startswith(("#", "data:image/png;")) for reference in Outline(text).references)
+    assert all(reference.startswith(("#", "data:image/svg+xml,")) for reference in Outline(text).references)
 
 
 def test_the_same_diagnosis_gives_the_same_page(pages):
@@ -174,14 +174,14 @@ def test_the_nominal_simulation_is_not_called_one_with_effects(pages):
 
 
 def test_every_effect_is_said_in_plain_words():
-    assert set(WORDS) == set(names("effect"))
+    assert set(read_words().effects) == set(names("effect"))
     late = {"shift": Estimate(0.0166, 0.0001, "s")}
     assert say_cause(Cause("sensor.clock_skew", 1.0, 0.9, late)) == "the controller's log is 16.6 ms late"
     early = {"shift": Estimate(-0.0166, 0.0001, "s")}
     assert say_cause(Cause("sensor.clock_skew", 1.0, 0.9, early)).endswith("16.6 ms early")
     gain = {"channel": "driver_acceleration", "error": Estimate(0.1, 0.01, "-")}
     assert say_cause(Cause("sensor.gain", 1.0, 0.9, gain)) == "the channel driver acceleration reads with a wrong scale"
-    assert all("{" not in say_cause(Cause(name, 1.0, 0.9, {})) and say_action(name) for name in WORDS)
+    assert all("{" not in say_cause(Cause(name, 1.0, 0.9, {})) and say_action(name) for name in read_words().effects)
     assert say_cause(Cause("own.effect", 1.0, 0.9, {})).startswith("own.effect is at work")
 
 

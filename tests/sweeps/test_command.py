@@ -34,7 +34,7 @@ def test_a_sweep_and_its_report(write_sweep, tmp_path, seatsim_command):
     assert {row["group"]["excitation.spectral_class"] for row in content["exceeded"]} == {"EM1", "EM5"}
     page = (out / "report.html").read_text()
     links = re.findall('(?:href|src)="([^"]*)"', page)
-    assert len(page) < 600_000 and all(link.startswith(("#", "data:image/png;")) for link in links)
+    assert len(page) < 600_000 and all(link.startswith(("#", "data:image/svg+xml,")) for link in links)
     table = (out / "table.csv").read_text().splitlines()
     assert table[0].startswith("excitation.spectral_class,metric,unit,runs,mean") and len(table) > 20
     assert (out / "sensitivity.csv").read_text().startswith("metric,key,first,first_low")

@@ -6,7 +6,7 @@ import pytest
 from scipy.stats import qmc
 
 from seatsim.plots.sweeps import find_front, plot_comfort
-from seatsim.report.sweep_choices import advise_on_keys, tabulate_best
+from seatsim.report.sweep import advise_on_keys, tabulate_best
 from seatsim.sweeps.rows import SweepRows, count_exceedances, tabulate_quantiles
 from seatsim.sweeps.sensitivity import analyse_sensitivity, choose_key
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
-from seatsim.cli.options import Json, Out, OwnCode, complete_kind, pairs
+from seatsim.cli.options import Json, Out, OwnCode, Pdf, complete_kind, pairs
 from seatsim.cli.terminal import answer, complain, conclude, show_progress, warn, wrote
 from seatsim.schema.errors import InputError
 
@@ -28,6 +28,7 @@ def characterise(
     amplitudes: Annotated[str, typer.Option("--amplitudes", metavar="M,M")] = "",
     frequencies: Annotated[str, typer.Option("--frequencies", metavar="HZ,HZ")] = "",
     own_code: OwnCode = None,
+    pdf: Pdf = False,
     as_json: Json = False,
 ) -> None:
     """Show what a bench shows of a damper: loops, energy, asymmetry, offset and response times.
@@ -77,6 +78,7 @@ def identify(
     seed: Annotated[int, typer.Option("--seed", min=0)] = 0,
     out_folder: Out = None,
     own_code: OwnCode = None,
+    pdf: Pdf = False,
     as_json: Json = False,
 ) -> None:
     """Fit a damper model, or every model, to bench records and assess it on records held out.

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seatsim.cli.options import Json, NewFolder, OneScenario, Out, OwnCode, RecordingFolder
+from seatsim.cli.options import Json, NewFolder, OneScenario, Out, OwnCode, Pdf, RecordingFolder
 from seatsim.cli.terminal import answer, conclude, say, show_progress, warn, wrote
 from seatsim.schema.text import make_printable
 
@@ -22,6 +22,7 @@ def gap(
     out_folder: Out = None,
     predict: Annotated[Path | None, typer.Option("--predict", metavar="DIAGNOSIS.json")] = None,
     own_code: OwnCode = None,
+    pdf: Pdf = False,
     as_json: Json = False,
 ) -> None:
     """Replay a scenario against a recording and print the gap with the noise floor.
@@ -51,6 +52,7 @@ def diagnose(
     damper_forms: Annotated[bool, typer.Option("--damper-forms")] = False,
     after: Annotated[Path | None, typer.Option("--after", metavar="RECORDING")] = None,
     own_code: OwnCode = None,
+    pdf: Pdf = False,
     as_json: Json = False,
 ) -> None:
     """Say where the gap between a recording and its nominal scenario lies, what causes it and how far it shrinks.

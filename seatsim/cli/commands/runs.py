@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 import typer
 
 from seatsim.cli.interrupts import go_on
-from seatsim.cli.options import Json, Out, OwnCode, Scenarios, Settings, scenario_settings
+from seatsim.cli.options import Json, Out, OwnCode, Pdf, Scenarios, Settings, scenario_settings
 from seatsim.cli.terminal import answer, complain, count_progress, say, show_progress, warn, wrote
 from seatsim.schema.errors import InputError, SeatsimError
 from seatsim.schema.guarded import uncut
@@ -36,6 +36,7 @@ def run(
     out_folder: Out = None,
     settings: Settings = None,
     own_code: OwnCode = None,
+    pdf: Pdf = False,
     as_json: Json = False,
 ) -> None:
     """Simulate scenarios and print a table for each."""
@@ -50,6 +51,7 @@ def compare(
     settings: Settings = None,
     own_code: OwnCode = None,
     bracket: Annotated[bool, typer.Option("--bracket")] = False,
+    pdf: Pdf = False,
     as_json: Json = False,
 ) -> None:
     """Simulate scenarios and print one table over all of them.

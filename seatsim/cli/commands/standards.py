@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from seatsim.cli.options import Json, Out, OwnCode, Settings, scenario_settings
+from seatsim.cli.options import Json, Out, OwnCode, Pdf, Settings, scenario_settings
 from seatsim.cli.terminal import complain, conclude, count_progress, say, warn
 from seatsim.schema.errors import InputError
 
@@ -72,6 +72,7 @@ def seat_test(
     out_folder: Out = None,
     settings: Settings = None,
     own_code: OwnCode = None,
+    pdf: Pdf = False,
     as_json: Json = False,
 ) -> None:
     """Put a seat to the test of ISO 7096: SEAT factors of two drivers, damping, end stops.

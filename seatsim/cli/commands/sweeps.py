@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from seatsim.cli.options import Json, Out, OwnCode, check_out
+from seatsim.cli.options import Json, Out, OwnCode, Pdf, check_out
 from seatsim.cli.terminal import answer, complain, conclude, count_progress, say, show_progress, warn, wrote_one
 
 _FAILURES_SHOWN = 5
@@ -91,6 +91,7 @@ def sweep_report(
     out_folder: Annotated[
         Path | None, typer.Option("--out", show_default="that of the sweep", callback=check_out)
     ] = None,
+    pdf: Pdf = False,
     as_json: Json = False,
 ) -> None:
     """Say what the runs of a sweep have in common: quantiles, sensitivities, probabilities, pictures.

@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
+from seatsim.cli.outputs.printing import print_reports
 from seatsim.cli.outputs.writing import name_pictures, write_each, write_outputs
 from seatsim.provenance.manifest import write_documented
 from seatsim.report.runs import report_runs
@@ -55,7 +56,7 @@ def write_result(result: Result, folder: Path) -> list[Path]:
     contents = {**_summarise(result), "report.html": report, **name_pictures(figures)}
     if result.brackets:
         contents["brackets.json"] = Brackets(place_runs(result))
-    return write_documented(folder, partial(_write_run_files, result, contents), seed)
+    return print_reports(write_documented(folder, partial(_write_run_files, result, contents), seed))
 
 
 def write_interrupted(result: Result, folder: Path) -> list[Path]:
@@ -112,5 +113,7 @@ def write_sweep_report(folder: str | Path, out: str | Path | None = None) -> Swe
     }
     # In the folder of the sweep the manifest is that of the sweep.
     is_own = out.resolve() == folder.resolve()
-    paths = write_together(out, partial(write_each, contents)) if is_own else write_outputs(out, contents)
+    paths = (
+        print_reports(write_together(out, partial(write_each, contents))) if is_own else write_outputs(out, contents)
+    )
     return SweepReport(state_importance(found, rows), exceeded, found.rows, paths)

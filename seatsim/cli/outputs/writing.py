@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from seatsim.cli.outputs.printing import print_reports
 from seatsim.provenance.manifest import Measured, write_documented
 from seatsim.report.rendering import write_html
 from seatsim.schema.files import write_json, write_text, write_together, write_whole
@@ -43,7 +44,7 @@ def write_outputs(
         seed: as for `write_documented`.
         measured: the same.
     """
-    return write_documented(folder, partial(write_each, contents), seed, measured)
+    return print_reports(write_documented(folder, partial(write_each, contents), seed, measured))
 
 
 def write_each(contents: Mapping[str, object], folder: Path) -> list[Path]:
@@ -112,16 +113,14 @@ def write_gap(found: Gap, scenario: str, recording: Path, folder: Path) -> list[
         recording: folder of the recording.
         folder: where the files go.
     """
-    from seatsim.report.credibility.evidence import collect_gap
-    from seatsim.report.gap import report_gap
+    from seatsim.report.gap import judge_gap, report_gap
 
     contents: dict[str, object] = {"gap.json": found}
     if found.channels:
         name = f"{Path(scenario).stem} against {recording.resolve().name}"
         command = f"seatsim gap {Path(scenario).name} {recording.name}"
-        contents["report.html"] = report_gap(
-            name, found, found.replayed, collect_gap(scenario, recording, found), command
-        )
+        factors = judge_gap(scenario, recording, found)
+        contents["report.html"] = report_gap(name, found, found.replayed, factors, command)
     return write_outputs(folder, contents)
 
 

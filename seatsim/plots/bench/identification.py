@@ -58,7 +58,6 @@ def _draw_record(panels: Sequence[Axes], judged: Assessment) -> None:
     ):
         style.draw_line(axes, across[part], record.force[part], MEASURED)
         style.draw_line(axes, across[part], judged.predicted[part], _PREDICTED)
-        axes.set_xlabel(name)
-        axes.set_ylim(panels[0].get_ylim())
+        axes.set(xlabel=name, ylim=panels[0].get_ylim())
         axes.tick_params(labelleft=axes is panels[0])
     panels[0].set_ylabel("force [N]")

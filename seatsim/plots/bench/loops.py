@@ -1,4 +1,4 @@
-"""Force-velocity and force-displacement loops of a characterisation, and the clouds of records without cycles."""
+"""Loops of a characterisation: which records share their panels, in which order; and clouds of those without cycles."""
 
 from __future__ import annotations
 
@@ -11,12 +11,23 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from seatsim.characterisation.rows import Row
-from seatsim.characterisation.summary import Characterisation
+from seatsim.characterisation.summary import WARMER, Characterisation, group_by_setting, group_rows
 from seatsim.plots import style
-from seatsim.plots.bench.families import find_families, group_clouds, measure_legend
 from seatsim.plots.labels import clean_text
-from seatsim.plots.style import Entry, Grid
+from seatsim.plots.loops import Family, label_panels, make_loop_page
+from seatsim.plots.thinning import spread_evenly
+from seatsim.simulation.damper_bench import SineTest
 
+MOST, _MOST_WARM, _MOST_CLOUDS = 6, 2, 3
+"""Most settings whose loops are drawn by current, and by temperature; most groups of records without cycles."""
+MOST_LINES = 8
+"""Most loops that the colours of one panel can tell apart."""
+_LONGEST = 24
+"""Letters of a record's name in a legend."""
+_SAME_CURRENT = 0.02
+"""A; difference of currents that are the same but for their noise."""
+_SAME_MOTION = 0.1
+"""Relative difference of strokes and speeds of records whose clouds share their panels."""
 DOTS = 2000
 
 
@@ -25,62 +36,105 @@ def plot_loops(found: Characterisation) -> Figure:
     families, left_out = find_families(found.rows)
     clouds = group_clouds(found.rows)
     note = "Mean of the steady cycles." if found.measured else "Last cycle of a sine test."
-    note = note if families else "Records without steady cycles."
+    note = f"{note} Displacement from mid-stroke." if families else "Records without steady cycles."
     note += f" {left_out} further settings are not shown." if left_out else ""
-    heights = (1.9,) * (len(families) + len(clouds))
-    grid = Grid(heights, columns=2, right=measure_legend(families), top=0.3, gap=(0.2, 0.85))
-    page = style.make_page(f"Loops: {found.name}", note, grid)
-    for panels, family in zip(page.rows, families, strict=False):
-        for row, name, colour in zip(family.rows, family.names, family.colours, strict=True):
-            if row.loop is not None:
-                look = Entry(name, colour, width=1.5)
-                middle = 0.5 * (np.max(row.loop.displacement) + np.min(row.loop.displacement))
-                style.draw_line(panels[0], row.loop.velocity, row.loop.force, look)
-                style.draw_line(panels[1], 1e3 * (row.loop.displacement - middle), row.loop.force, look)
-        _label_panels(panels, family.title, "from mid-stroke [mm]")
-        style.draw_legend_beside(panels[1], family.legend)
+    page = make_loop_page(f"Loops: {found.name}", note, families, len(clouds))
     for panels, group in zip(page.rows[len(families) :], clouds, strict=True):
         _draw_clouds(panels, group)
     return page.figure
 
 
-def _label_panels(panels: Sequence[Axes], title: str, displacement: str) -> None:
-    panels[0].set_title(clean_text(title, 60), loc="left", fontsize=style.FONT)
-    panels[0].set_xlabel("velocity [m/s]")
-    panels[1].set_xlabel(displacement)
-    panels[0].set_ylabel("damper force [N]")
-    panels[1].set_ylim(panels[0].get_ylim())
-    panels[1].tick_params(labelleft=False)
+def find_families(rows: Sequence[Row]) -> tuple[list[Family], int]:
+    """Return the families of loops by current, then by temperature, and the number of settings left out."""
+    groups = group_by_setting(rows)
+    chosen = spread_evenly(groups, MOST)
+    warm = [group for group in chosen if _varies([row.temperature for row in select_largest_current(group)], WARMER)]
+    warm = [group for group in warm if _varies([row.current for row in group], _SAME_CURRENT)]
+    families = [*map(order_by_current, chosen), *map(order_by_temperature, spread_evenly(warm, _MOST_WARM))]
+    return families, len(groups) - len(chosen)
+
+
+def order_by_current(group: Sequence[Row]) -> Family:
+    """Return the loops of one setting in the order of the currents, at the lowest temperature where it varies.
+
+    Where the current is always the same they are in the order of the temperatures; where neither tells them apart, of
+    the records.
+    """
+    rows = select_lowest_temperature(group) if _varies([row.current for row in group], _SAME_CURRENT) else list(group)
+    rows = spread_evenly(sorted(rows, key=lambda row: (row.current, row.temperature)), MOST_LINES)
+    legend, names = "current", [f"{row.current:.3g} A" for row in rows]
+    if len(set(names)) < len(rows):
+        if all(np.diff([row.temperature for row in rows]) > WARMER):
+            return order_by_temperature(group)
+        legend, names = "record", [clean_text(row.record.rsplit(",", 1)[0], _LONGEST) for row in rows]
+    at = f", {rows[0].temperature:.0f} °C" if np.isfinite(rows[0].temperature) and legend == "current" else ""
+    return Family(describe_setting(rows[0]) + at, legend, list(zip(names, map(_centre_loop, rows), strict=True)))
+
+
+def order_by_temperature(group: Sequence[Row]) -> Family:
+    """Return the loops of one setting in the order of the temperatures, at the largest current."""
+    rows = spread_evenly(sorted(select_largest_current(group), key=lambda row: row.temperature), MOST_LINES)
+    loops = [(f"{row.temperature:.0f} °C", _centre_loop(row)) for row in rows]
+    return Family(f"{describe_setting(rows[0])}, {rows[0].current:.3g} A", "temperature", loops, "plasma")
+
+
+def select_largest_current(group: Sequence[Row]) -> list[Row]:
+    """Return the rows at the largest current, within the noise of a measured one."""
+    largest = max(row.current for row in group)
+    return [row for row in group if row.current >= largest - _SAME_CURRENT]
+
+
+def select_lowest_temperature(group: Sequence[Row]) -> list[Row]:
+    """Return the rows at the lowest temperature, or all where none was recorded."""
+    lowest = min(row.temperature for row in group)
+    return [row for row in group if not row.temperature > lowest + WARMER]
+
+
+def describe_setting(row: Row) -> str:
+    """Return amplitude and frequency of a row as a picture states them."""
+    return f"{1e3 * row.amplitude:.3g} mm, {row.frequency:.3g} Hz"
+
+
+def group_clouds(rows: Sequence[Row]) -> list[list[Row]]:
+    """Return the records without cycles in groups of the same motion."""
+    return group_rows([row for row in rows if row.cloud is not None], _moves_alike)[:_MOST_CLOUDS]
+
+
+def _centre_loop(row: Row) -> SineTest:
+    """Return the loop of a row with its displacement from mid-stroke."""
+    assert row.loop is not None
+    x = row.loop.displacement
+    return row.loop._replace(displacement=x - 0.5 * (np.max(x) + np.min(x)))
+
+
+def _varies(values: Sequence[float], by: float) -> bool:
+    known = [value for value in values if np.isfinite(value)]
+    return len(known) > 1 and max(known) - min(known) > by
+
+
+def _moves_alike(a: Row, b: Row) -> bool:
+    pairs = ((a.amplitude, b.amplitude), (a.peak_speed, b.peak_speed))
+    return all(abs(p - q) <= _SAME_MOTION * p for p, q in pairs) and a.current != b.current
 
 
 def _draw_clouds(panels: Sequence[Axes], group: Sequence[Row]) -> None:
-    """Draw samples of records without cycles, coloured by current; with a bar of colours where a current varies."""
+    """Draw samples of records without cycles, coloured by current, with a bar of colours."""
     most = max(float(np.percentile(row.cloud.current, 99)) for row in group if row.cloud is not None)
     # As in `style.sample_colours`, the light end of the map is left out.
     norm = Normalize(0.0, max(most, 1e-9) / 0.85)
-    switched = False
     # The largest current first: its cloud is the widest and would cover the others.
     for row in sorted(group, key=lambda row: -row.current):
-        if row.cloud is None:
-            continue
+        assert row.cloud is not None
         x, v, force, current = (values[:: max(1, len(row.cloud.force) // DOTS)] for values in row.cloud)
-        switched |= float(np.ptp(current)) > 0.05 * most
         for axes, across in ((panels[0], v), (panels[1], 1e3 * x)):
             dots = axes.scatter(
-                across, force, c=current, s=5, alpha=0.6, label=f"{row.current:.3g} A", cmap=colormaps["viridis"],
-                norm=norm, linewidths=0, rasterized=True,
+                across, force, c=current, s=5, alpha=0.6, cmap=colormaps["viridis"], norm=norm, linewidths=0,
+                rasterized=True,
             )  # fmt: skip
     names = list(dict.fromkeys(row.record.split(",")[0] for row in group))
-    title = names[0] if len(names) == 1 else f"{names[0]} and {len(names) - 1} more"
-    _label_panels(panels, f"{title}, not cyclic", "displacement [mm]")
-    if switched:
-        beside = style.add_axes_beside(panels[1], 0.02, 0.02)
-        bar = panels[1].figure.colorbar(dots, cax=beside, label="current [A]")
+    label_panels(panels, f"{names[0]}{f' and {len(names) - 1} more' * (len(names) > 1)}, not cyclic")
+    if most > 0:
+        bar = panels[1].figure.colorbar(dots, cax=style.add_axes_beside(panels[1], 0.02, 0.02), label="current [A]")
+        bar.ax.set_ylim(0.0, most)
         if bar.solids is not None:
             bar.solids.set_alpha(1.0)
-        beside.set_ylim(0.0, most)
-    elif len(group) > 1:
-        legend = style.draw_legend_beside(panels[1], "current")
-        for handle in legend.legend_handles:
-            if handle is not None:
-                handle.set_alpha(1.0)

@@ -1,4 +1,4 @@
-"""Peak force, energy and equivalent damping of a characterisation against current and temperature."""
+"""Peak force, energy, damping and asymmetry of a characterisation against current and temperature."""
 
 from __future__ import annotations
 
@@ -12,20 +12,27 @@ from matplotlib.figure import Figure
 from seatsim.characterisation.rows import Row
 from seatsim.characterisation.summary import WARMER, Characterisation, group_by_setting
 from seatsim.plots import style
-from seatsim.plots.bench.families import describe_setting, select_largest_current, select_lowest_temperature
+from seatsim.plots.bench.loops import describe_setting, select_largest_current, select_lowest_temperature
 from seatsim.plots.style import Entry, Grid
+from seatsim.schema.arrays import Array
 
 MOST = 8
 """Most settings that lines of one panel can tell apart."""
 
 
-class RowFigure(NamedTuple):
-    """A figure of a row: the label of its axis, value, spread, and its values cycle by cycle where these are kept."""
+class _Figure(NamedTuple):
+    """A figure of a row: the label of its axis, its name, factor from SI to the unit shown, least end of the axis."""
 
     label: str
-    value: Callable[[Row], float]
-    spread: Callable[[Row], float] = lambda _: float("nan")
-    cycles: Callable[[Row], Sequence[float]] = lambda _: ()
+    name: str
+    factor: float = 1.0
+    least: float = 0.0
+
+    def read(self, row: Row) -> tuple[float, float, Array]:
+        """Return value, spread over the cycles, and the values of these where they are kept."""
+        spread = getattr(row, f"{self.name}_sd", np.nan)
+        cycles = np.array((row.cycle_values or {}).get(self.name, ()))
+        return self.factor * getattr(row, self.name), abs(self.factor) * spread, self.factor * cycles
 
 
 class Abscissa(NamedTuple):
@@ -36,24 +43,16 @@ class Abscissa(NamedTuple):
     fixed: Callable[[Row], str]
 
 
-PEAKS = (
-    RowFigure(
-        "peak force\nin rebound [N]", lambda r: r.peak_rebound, lambda r: r.peak_rebound_sd,
-        lambda r: (r.cycle_values or {}).get("peak_rebound", ()),
-    ),
-    RowFigure(
-        "peak force in\ncompression [N]", lambda r: -r.peak_compression, lambda r: r.peak_compression_sd,
-        lambda r: [-value for value in (r.cycle_values or {}).get("peak_compression", ())],
-    ),
-)  # fmt: skip
-_ENERGY = RowFigure(
-    "energy per cycle [J]", lambda r: r.energy, lambda r: r.energy_sd,
-    lambda r: (r.cycle_values or {}).get("energy", ()),
-)  # fmt: skip
-DAMPING = RowFigure(
-    "equivalent damping\n[kN·s/m]", lambda r: 1e-3 * r.damping, lambda r: 1e-3 * r.damping_sd,
-    lambda r: [1e-3 * value for value in (r.cycle_values or {}).get("damping", ())],
-)  # fmt: skip
+_ENERGY = (
+    _Figure("peak force\nin rebound [N]", "peak_rebound"),
+    _Figure("peak force in\ncompression [N]", "peak_compression", -1.0),
+    _Figure("energy per cycle [J]", "energy"),
+    _Figure("equivalent damping\n[kN·s/m]", "damping", 1e-3),
+)
+_ASYMMETRY = (
+    _Figure("asymmetric part /\nRMS force [%]", "asymmetry", 100.0, 1.0),
+    _Figure("the same, less\nthe offset [%]", "asymmetry_of_shape", 100.0, 1.0),
+)
 BY_CURRENT = Abscissa("current [A]", lambda r: r.current, lambda r: f", {r.temperature:.0f} °C")
 BY_TEMPERATURE = Abscissa("temperature [°C]", lambda r: r.temperature, lambda r: f", {r.current:.3g} A")
 BY_FREQUENCY = Abscissa("frequency [Hz]", lambda r: r.frequency, lambda r: "")
@@ -61,19 +60,24 @@ BY_FREQUENCY = Abscissa("frequency [Hz]", lambda r: r.frequency, lambda r: "")
 
 def plot_energy(found: Characterisation) -> Figure:
     """Return peaks, energy and damping over the current, and over the temperature where it varies, line by setting."""
-    rows = [row for row in found.rows if row.loop is not None]
-    blocks = choose_abscissas(rows)
-    looks, note = choose_looks(blocks)
-    figures = [[PEAKS[0], PEAKS[1]], [_ENERGY, DAMPING]]
-    grid = Grid(heights=(1.9,) * (2 * len(blocks)), columns=2, left=0.9, gap=(0.9, 0.65))
-    title = f"Peak force, energy and damping: {found.name}"
-    page = style.make_page(title, note, grid, list(looks.values()))
-    for index, (across, groups) in enumerate(blocks):
-        for panels, row in zip(page.rows[2 * index : 2 * index + 2], figures, strict=True):
-            for axes, figure in zip(panels, row, strict=True):
-                draw_trend(axes, across, figure, groups, looks)
-                if min(figure.value(row) for group in groups for row in group) >= 0.0:
-                    axes.set_ylim(bottom=0.0)
+    return _plot_trends(f"Peak force, energy and damping: {found.name}", "", found, _ENERGY)
+
+
+def plot_asymmetry(found: Characterisation) -> Figure:
+    """Return the asymmetric part of the loops over the same."""
+    note = "Asymmetric part: difference from the centrosymmetric loop, (F(t) + F(t + T/2)) / 2; RMS over a cycle. "
+    return _plot_trends(f"Asymmetry: {found.name}", note, found, _ASYMMETRY)
+
+
+def _plot_trends(title: str, note: str, found: Characterisation, figures: Sequence[_Figure]) -> Figure:
+    blocks = choose_abscissas([row for row in found.rows if row.loop is not None])
+    looks, fixed = choose_looks(blocks)
+    grid = Grid((1.9,) * (len(figures) // 2 * len(blocks)), columns=2, left=0.9, gap=(0.9, 0.65))
+    page = style.make_page(title, note + fixed, grid, list(looks.values()))
+    panels = iter(page.list_panels())
+    for across, groups in blocks:
+        for figure in figures:
+            _draw_trend(next(panels), across, figure, groups, looks)
     return page.figure
 
 
@@ -84,12 +88,12 @@ def choose_abscissas(rows: Sequence[Row]) -> list[tuple[Abscissa, list[list[Row]
     frequency where neither varies.
     """
     groups = group_by_setting(rows)
-    currents = [select_lowest_temperature(group) for group in groups]
+    currents, warmed = (list(map(select, groups)) for select in (select_lowest_temperature, select_largest_current))
     blocks = []
     if any(len({row.current for row in group}) > 1 for group in currents):
         blocks.append((BY_CURRENT, currents))
-    warmed = [select_largest_current(group) for group in groups]
-    if _range([row.temperature for row in rows]) > WARMER or any(row.temperature_range > WARMER for row in rows):
+    known = [row.temperature for row in rows if np.isfinite(row.temperature)]
+    if (known and max(known) - min(known) > WARMER) or any(row.temperature_range > WARMER for row in rows):
         blocks.append((BY_TEMPERATURE, warmed))
     return blocks or [(BY_FREQUENCY, groups)]
 
@@ -108,8 +112,8 @@ def choose_looks(blocks: Sequence[tuple[Abscissa, list[list[Row]]]]) -> tuple[di
     return looks, note + (f" {MOST} of {len(names)} settings are shown." if len(names) > MOST else "")
 
 
-def draw_trend(
-    axes: Axes, across: Abscissa, figure: RowFigure, groups: Sequence[Sequence[Row]], looks: dict[str, Entry]
+def _draw_trend(
+    axes: Axes, across: Abscissa, figure: _Figure, groups: Sequence[Sequence[Row]], looks: dict[str, Entry]
 ) -> None:
     """Draw a figure of some groups of rows over a quantity: a line where no two rows are at the same place."""
     for group in groups:
@@ -117,28 +121,16 @@ def draw_trend(
         if look is None:
             continue
         ordered = sorted(group, key=across.value)
-        x = np.array([across.value(row) for row in ordered])
-        y = np.array([figure.value(row) for row in ordered])
-        bars = np.nan_to_num([figure.spread(row) for row in ordered])
-        apart = bool(np.all(np.diff(x) > (WARMER if across is BY_TEMPERATURE else 0.0)))
+        places = [across.value(row) for row in ordered]
+        values, spreads, cycles = zip(*map(figure.read, ordered), strict=True)
+        apart = bool(np.all(np.diff(places) > (WARMER if across is BY_TEMPERATURE else 0.0)))
         axes.errorbar(
-            x, y, bars if np.any(bars) else None, color=look.colour, linestyle=look.dashes if apart else "none",
+            places, values, np.nan_to_num(spreads), color=look.colour, linestyle=look.dashes if apart else "none",
             linewidth=1.4, marker="o", markersize=4.5, capsize=2.5, elinewidth=0.9,
         )  # fmt: skip
-        if across is BY_TEMPERATURE:
-            _draw_cycles(axes, ordered, figure, look)
-    axes.set_xlabel(across.label)
-    axes.set_ylabel(figure.label)
-
-
-def _draw_cycles(axes: Axes, rows: Sequence[Row], figure: RowFigure, look: Entry) -> None:
-    for row in rows:
-        values = figure.cycles(row)
-        if row.temperature_range > WARMER and len(values):
-            warmth = (row.cycle_values or {})["temperature"]
-            axes.plot(warmth, values, ".", color=look.colour, markersize=3, alpha=0.5, zorder=1)
-
-
-def _range(values: Sequence[float]) -> float:
-    known = [value for value in values if np.isfinite(value)]
-    return max(known) - min(known) if known else 0.0
+        for row, each in zip(ordered, cycles, strict=True):
+            if across is BY_TEMPERATURE and row.temperature_range > WARMER and len(each):
+                warmth = (row.cycle_values or {})["temperature"]
+                axes.plot(warmth, each, ".", color=look.colour, markersize=3, alpha=0.5, zorder=1)
+    low, high = axes.get_ylim()
+    axes.set(xlabel=across.label, ylabel=figure.label, ylim=(min(0.0, low), max(high, figure.least)))

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from seatsim.diagnosis.result import Diagnosis, Gaps
@@ -74,12 +73,9 @@ def _draw_gaps(
     ]
     shown = [name.replace("_", " ") for name in names]
     note = f"RMS of measured less simulated over the spread of the signal{where}; further left is better."
-    page = make_page(title, note, Grid((ROW * len(names) + 0.15,), left=measure_names(shown)), legend)
-    axes = page.rows[0][0]
+    figure, [[axes]] = make_page(title, note, Grid((ROW * len(names) + 0.15,), left=measure_names(shown)), legend)
     name_rows(axes, shown, [0])
-    low, high = min(known) / 1.4, max(known) * 1.4
-    axes.set_xscale("log")
-    axes.set_xlim(low, high)
+    style.scale_log(axes, "x", min(known) / 1.4, max(known) * 1.4)
     for row, values in enumerate(rows):
         seen = [(stage, 100 * value) for stage, value in zip(stages, values, strict=True) if value > SMALLEST]
         if seen:
@@ -92,9 +88,8 @@ def _draw_gaps(
                 markersize=13 if stage.mark == "|" else 7, markeredgewidth=2 if stage.mark in "|D" else 1, zorder=3,
             )  # fmt: skip
     axes.axhline(0.5, color="0.8", linewidth=0.8)
-    style.set_plain_log_ticks(axes.xaxis, low, high)
     axes.set_xlabel("gap [%]")
-    return page.figure
+    return figure
 
 
 def plot_location(diagnosis: Diagnosis) -> Figure | None:
@@ -111,18 +106,19 @@ def plot_location(diagnosis: Diagnosis) -> Figure | None:
     elif first.block in alike and len(merged) > 1:
         title = f"The gap lies in the {' or the '.join(merged)}"
         note += " Light blue: cannot be told from the first on this recording."
-    names = [share.block for share in shares]
-    page = make_page(title, note, Grid((ROW * len(shares) + 0.1,), left=measure_names(names), right=0.5, bottom=0.5))
-    axes = page.rows[0][0]
+    names, values = [share.block for share in shares], [100 * share.share for share in shares]
+    grid = Grid((ROW * len(shares) + 0.1,), left=measure_names(names), right=0.5)
+    figure, [[axes]] = make_page(title, note, grid)
     name_rows(axes, names)
-    values = [100 * share.share for share in shares]
-    colours = [_CHOSEN if k == 0 else _EQUIVALENT if share.block in alike else OTHER for k, share in enumerate(shares)]
-    draw_bars(axes, values, colours, [_format_percent(value) for value in values])
-    _scale_percent(axes, "share of the gap [%]")
-    return page.figure
+    colours = [_CHOSEN, *(_EQUIVALENT if share.block in alike else OTHER for share in shares[1:])]
+    draw_bars(axes, values, colours, list(map(_format_percent, values)))
+    axes.set(xlim=(0, 100), xticks=[0, 50, 100], xlabel="share of the gap [%]")
+    return figure
 
 
 class _Row(NamedTuple):
+    """An effect: its name, probability and shrink in per cent, colour, and the text of the first."""
+
     name: str
     probability: float
     shrink: float
@@ -134,59 +130,51 @@ def plot_ranking(diagnosis: Diagnosis) -> Figure | None:
     """Return how probable the first causes are, and what each alone takes off the gap; equal rows are one."""
     if not diagnosis.causes:
         return None
-    rows = _list_rows(diagnosis)
-    equivalent = " Light blue: explain the gap as well." if any(row.colour == _EQUIVALENT for row in rows) else ""
+    names, probabilities, shrinks, colours, texts = map(list, zip(*_list_rows(diagnosis), strict=True))
+    equivalent = " Light blue: explain the gap as well." if _EQUIVALENT in colours else ""
     note = (
         f"Bold and blue: named by the diagnosis.{equivalent} Each figure is the probability of being at work: two can"
         " both be near 100 %."
     )
-    names = [row.name for row in rows]
-    grid = Grid((ROW * len(rows) + 0.1,), 2, left=measure_names(names), right=0.45, bottom=0.65, gap=(0.5, 0.0))
-    page = make_page("Which effects are at work", note, grid)
-    left, right = page.rows[0]
-    strong = [k for k, row in enumerate(rows) if row.colour == _CHOSEN]
-    for axes, shown in ((left, names), (right, [""] * len(rows))):
+    grid = Grid((ROW * len(names) + 0.1,), 2, left=measure_names(names), right=0.45, bottom=0.65, gap=(0.5, 0.0))
+    figure, [[left, right]] = make_page("Which effects are at work", note, grid)
+    strong = [k for k, colour in enumerate(colours) if colour == _CHOSEN]
+    for axes, shown in ((left, names), (right, [""] * len(names))):
         name_rows(axes, shown, strong)
-        axes.axhline(len(rows) - 2.5, color="0.8", linewidth=0.8)
-    colours = [row.colour for row in rows]
-    draw_bars(left, [100 * row.probability for row in rows], colours, [row.text for row in rows])
-    _scale_percent(left, "probability [%]")
-    shrinks = [100 * row.shrink for row in rows]
+        axes.axhline(len(names) - 2.5, color="0.8", linewidth=0.8)
+    draw_bars(left, probabilities, colours, texts)
+    left.set(xlim=(0, 100), xticks=[0, 50, 100], xlabel="probability [%]")
     draw_bars(right, shrinks, colours, [_format_percent(each) if np.isfinite(each) else "" for each in shrinks])
     known = np.nan_to_num(shrinks)
-    right.set_xlim(min(0.0, *known) * 1.1, max(10.0, *known))
-    right.set_xlabel("alone takes off the\nrefitted gap [%]")
-    return page.figure
+    right.set(xlim=(min(0.0, *known) * 1.5, max(10.0, *known)), xlabel="alone takes off the\nrefitted gap [%]")
+    return figure
 
 
 def _list_rows(diagnosis: Diagnosis) -> list[_Row]:
     alike = _find_equivalent(diagnosis)
     ranked = [each for each in diagnosis.causes if each.effect in diagnosis.selected or each.probability >= LIKELY]
-    rows = [
-        _Row(each.effect, each.probability, each.shrink,
-             _CHOSEN if each.effect in diagnosis.selected else _EQUIVALENT if each.effect in alike else OTHER,
-             _format_percent(100 * each.probability))
-        for each in ranked[:MOST]
-    ]  # fmt: skip
+    rows = []
+    for each in ranked[:MOST]:
+        colour = _EQUIVALENT if each.effect in alike else OTHER
+        colour = _CHOSEN if each.effect in diagnosis.selected else colour
+        rows.append(_make_row(each.effect, each.probability, colour, 100 * each.shrink))
     rest = [each.probability for each in diagnosis.causes if each not in ranked[:MOST]]
     if rest:
-        words = f"{len(rest)} other effect{'s' * (len(rest) > 1)}"
-        rows.append(_Row(words, max(rest), np.nan, OTHER, f"at most {_format_percent(100 * max(rest))}"
-                         if max(rest) >= LIKELY else f"below {LIKELY:.0%}".replace("%", " %")))  # fmt: skip
+        row = _make_row(f"{len(rest)} other effect{'s' * (len(rest) > 1)}", max(rest), OTHER)
+        most = f"at most {row.text}" if max(rest) >= LIKELY else f"below {100 * LIKELY:g} %"
+        rows.append(row._replace(text=most))
     ends = (("no effect at all", diagnosis.probability_none), ("another cause", diagnosis.probability_unknown))
-    return [*rows, *(_Row(name, value, np.nan, REST, _format_percent(100 * value)) for name, value in ends)]
+    return [*rows, *(_make_row(name, value, REST) for name, value in ends)]
+
+
+def _make_row(name: str, probability: float, colour: str, shrink: float = np.nan) -> _Row:
+    return _Row(name, 100 * probability, shrink, colour, _format_percent(100 * probability))
 
 
 def _find_equivalent(diagnosis: Diagnosis) -> list[str]:
     """Return the effects in a group with a selected one, which this recording cannot tell from it."""
     groups = [group for group in diagnosis.indistinguishable if set(group) & set(diagnosis.selected)]
     return [name for group in groups for name in group]
-
-
-def _scale_percent(axes: Axes, label: str) -> None:
-    axes.set_xlim(0, 100)
-    axes.set_xticks([0, 50, 100])
-    axes.set_xlabel(label)
 
 
 def _format_percent(value: float) -> str:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.colors import LogNorm
@@ -13,7 +11,7 @@ from seatsim.diagnosis.result import Diagnosis
 from seatsim.plots import style
 from seatsim.plots.diagnosis.bins import bin_edges, find_worst, map_rms, varies
 from seatsim.plots.diagnosis.signals import name_last
-from seatsim.plots.labels import describe_channel
+from seatsim.plots.labels import Quantity, describe_channel
 from seatsim.plots.style import COLOURS, Entry, Grid
 from seatsim.plots.thinning import thin_line
 
@@ -22,19 +20,13 @@ BINS = (22, 13)
 DOTS = 2500
 
 
-class _Motion(NamedTuple):
-    """The label of an axis of measured motion, and the factor to its unit."""
-
-    label: str
-    factor: float = 1.0
-
-
 MOTIONS = {
-    "velocity": _Motion("suspension velocity [m/s]"),
-    "displacement": _Motion("travel [mm]", 1e3),
-    "coil_current": _Motion("coil current [A]"),
-    "damper_temperature": _Motion("damper temperature [°C]"),
+    "velocity": Quantity("suspension velocity", "m/s"),
+    "displacement": Quantity("travel", "mm", 1e3),
+    "coil_current": Quantity("coil current", "A"),
+    "damper_temperature": Quantity("damper temperature", "°C"),
 }
+"""How measured motion is shown."""
 
 
 def plot_maps(diagnosis: Diagnosis) -> Figure | None:
@@ -56,19 +48,19 @@ def plot_maps(diagnosis: Diagnosis) -> Figure | None:
         return None
     title = f"Error of the {shown.words} over velocity and {other.replace('_', ' ')}"
     note = f"RMS of measured less simulated on {trace.run}; cells of too few samples stay empty."
-    page = style.make_page(title, note, Grid((2.2,), 2, right=0.95, top=0.3, gap=(0.15, 0.0)))
+    figure, [panels] = style.make_page(title, note, Grid((2.2,), 2, right=0.95, top=0.3, gap=(0.15, 0.0)))
     low, high = max(float(known.min()), float(known.max()) / 100), float(known.max())
     norm = LogNorm(low, high)
-    for axes, name, values in zip(page.rows[0], ("nominal", name_last(diagnosis)), cells, strict=True):
+    for axes, name, values in zip(panels, ("nominal", name_last(diagnosis)), cells, strict=True):
         mesh = axes.pcolormesh(*borders, values, norm=norm, cmap=colormaps["viridis"], rasterized=True)
-        axes.set_xlabel(MOTIONS["velocity"].label)
+        axes.set_xlabel(MOTIONS["velocity"].axis)
         style.set_title(axes, name)
-    page.rows[0][0].set_ylabel(MOTIONS[other].label)
-    page.rows[0][1].tick_params(labelleft=False)
-    beside = style.add_axes_beside(page.rows[0][1], 0.02, 0.025)
-    bar = page.figure.colorbar(mesh, cax=beside, label=f"error [{shown.unit}]")
-    style.set_plain_log_ticks(bar.ax.yaxis, low, high)
-    return page.figure
+    panels[0].set_ylabel(MOTIONS[other].axis)
+    panels[1].tick_params(labelleft=False)
+    beside = style.add_axes_beside(panels[1], 0.02, 0.025)
+    bar = figure.colorbar(mesh, cax=beside, label=f"error [{shown.unit}]")
+    style.scale_log(bar.ax, "y", low, high)
+    return figure
 
 
 def plot_discrepancy(diagnosis: Diagnosis) -> Figure | None:
@@ -81,28 +73,19 @@ def plot_discrepancy(diagnosis: Diagnosis) -> Figure | None:
         name: values for name, values in diagnosis.evidence.motion.items()
         if name in MOTIONS and len(values) == len(found.values) and varies(values)
     }  # fmt: skip
-    rows = 1 + -(-len(motion) // 2)
     page = style.make_page(
         f"The missing {shown.words} of the {found.block}", "On the held-out run: over time, then over its motion.",
-        Grid((1.5,) * rows, columns=2, gap=(0.75, 0.6)),
+        Grid((1.5,) * (1 + -(-len(motion) // 2)), columns=2, gap=(0.75, 0.6)),
     )  # fmt: skip
-    [first, second], *others = page.rows
+    first, second, *panels = page.list_panels(2 + len(motion))
     second.remove()
     box = first.get_position()
     first.set_position((box.x0, box.y0, 1 - 0.15 / style.WIDTH - box.x0, box.height))
-    look = Entry("", COLOURS[6], width=1.0)
-    style.draw_line(first, *thin_line(found.time, shown.factor * found.values), look)
-    first.set_xlabel("time [s]")
-    panels = [axes for row in others for axes in row]
+    style.draw_line(first, *thin_line(found.time, shown.factor * found.values), Entry("", COLOURS[6], width=1.0))
+    first.set(xlabel="time [s]", ylabel=shown.axis)
     every = max(1, len(found.values) // DOTS)
-    for axes, (name, values) in zip(panels, motion.items(), strict=False):
-        places = MOTIONS[name].factor * values[::every]
-        axes.scatter(
-            places, shown.factor * found.values[::every], s=3, color=look.colour, linewidths=0, rasterized=True
-        )
-        axes.set_xlabel(MOTIONS[name].label)
-    for axes in panels[len(motion) :]:
-        axes.remove()
-    for axes in (first, *panels[: len(motion)]):
-        axes.set_ylabel(shown.axis)
+    for axes, (name, values) in zip(panels, motion.items(), strict=True):
+        places, lacking = MOTIONS[name].factor * values[::every], shown.factor * found.values[::every]
+        axes.scatter(places, lacking, s=3, color=COLOURS[6], linewidths=0, rasterized=True)
+        axes.set(xlabel=MOTIONS[name].axis, ylabel=shown.axis)
     return page.figure

@@ -1,8 +1,8 @@
-"""Comfort and travel of several runs side by side: bars, or lines over a swept number."""
+"""Runs side by side: comfort against travel, and bars or lines over a swept number."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -11,9 +11,125 @@ from matplotlib.figure import Figure
 
 from seatsim.plots import style
 from seatsim.plots.runs import naming
-from seatsim.plots.style import COLOURS, ROW, Entry, Grid
+from seatsim.plots.style import COLOURS, DARK, ROW, Entry, Grid
+from seatsim.scenario.scenario import condition_of
 from seatsim.schema.arrays import Array
+from seatsim.simulation.performance_bounds import PerformanceBounds
 from seatsim.simulation.result import Run
+
+COMFORT, TRAVEL, SEAT = "driver_acceleration_weighted", "suspension_displacement_rms", "seat_factor"
+_PARETO_NOTE = "Over the whole run; lower left is better. The numbers are in the order of comfort."
+BOUND = Entry("no damper without memory comes below", "black", width=1.6)
+BEST = Entry("best run found of an ideal damper", DARK, (0.0, (5.0, 1.5)), 1.6)
+FLOOR = Entry("as much as the floor (SEAT = 1)", DARK, ":", 1.6)
+BAND = "0.88"
+"""Grey between the bounds."""
+NEAR = 1.6
+"""How far above the greatest acceleration the floor's is still drawn, as a ratio."""
+MOST_PANELS = 12
+_SIDES = (3.3, 2.1)
+"""Height in inches of a panel that is alone, and of one among others."""
+
+
+class _RunPoint(NamedTuple):
+    """A run: RMS travel in mm, weighted RMS acceleration in m/s^2, SEAT factor, and its name."""
+
+    travel: float
+    comfort: float
+    seat: float
+    name: str
+
+
+class Panel(NamedTuple):
+    """Points that share a condition, what sets these apart from the others', and their bounds or None."""
+
+    title: str
+    points: list[_RunPoint]
+    bracket: PerformanceBounds | None
+
+    @property
+    def floor(self) -> float:
+        """Weighted acceleration of the floor that the points share; NaN where they share none, or it is far above."""
+        floors = [point.comfort / point.seat for point in self.points]
+        highest = max(point.comfort for point in self.points)
+        return floors[0] if np.allclose(floors, floors[0], rtol=1e-3) and floors[0] < NEAR * highest else float("nan")
+
+
+def plot_pareto(runs: Sequence[Run], brackets: Mapping[str, PerformanceBounds]) -> Figure:
+    """Return weighted acceleration over travel, a panel for each condition (with performance bounds: each rig).
+
+    Conditions of one run share a panel. Points are numbered; the legend names them, the most comfortable
+    first. A line says where the driver feels as much as the floor moves.
+    """
+    found = _make_panels(runs, brackets) or [Panel("", [], None)]
+    shown = found[:MOST_PANELS]
+    points = [point for panel in shown for point in panel.points]
+    # In the order of the runs, in which other pictures colour them.
+    names = list(dict.fromkeys(point.name for point in points))
+    colours = {name: COLOURS[k % len(COLOURS)] for k, name in enumerate(names)}
+    ranked = list(dict.fromkeys(point.name for point in sorted(points, key=lambda point: point.comfort)))
+    columns = min(2, len(shown))
+    legend = [Entry(f"{k + 1}  {name}", colours[name], "none", mark="o") for k, name in enumerate(ranked)]
+    legend += [BOUND, BEST] if any(panel.bracket for panel in shown) else []
+    legend += [FLOOR] if any(panel.points and np.isfinite(panel.floor) for panel in shown) else []
+    note = _PARETO_NOTE + (f" {len(shown)} of {len(found)} rigs are shown." if len(shown) < len(found) else "")
+    grid = Grid((_SIDES[columns - 1],) * -(-len(shown) // columns), columns, top=0.3, gap=(0.75, 0.85))
+    page = style.make_page(f"Comfort and travel: {naming.make_title(runs)}", note, grid, legend)
+    for axes, panel in zip(page.list_panels(len(shown)), shown, strict=True):
+        _draw_panel(axes, panel, ranked, colours)
+    return page.figure
+
+
+def _make_panels(runs: Sequence[Run], brackets: Mapping[str, PerformanceBounds]) -> list[Panel]:
+    groups: dict[str, list[Run]] = {}
+    for run in runs:
+        if all(np.isfinite(run.metrics[name].value) if name in run.metrics else False for name in (COMFORT, TRAVEL)):
+            groups.setdefault(run.scenario.rig if brackets else condition_of(run.scenario), []).append(run)
+    if not brackets and len(groups) > 1 and any(len(group) < 2 for group in groups.values()):
+        alone = [run for group in groups.values() for run in group]
+        return [Panel("", _make_points(alone, naming.label_runs(alone)), None)]
+    named = [(rig, group, *naming.distinguish_runs(group, runs)) for rig, group in groups.items()]
+    return [Panel(title, _make_points(group, names), brackets.get(rig)) for rig, group, title, names in named]
+
+
+def _make_points(runs: Sequence[Run], names: Sequence[str]) -> list[_RunPoint]:
+    found = []
+    for run, name in zip(runs, names, strict=True):
+        seat = run.metrics[SEAT].value if SEAT in run.metrics else np.nan
+        found.append(_RunPoint(1e3 * run.metrics[TRAVEL].value, run.metrics[COMFORT].value, seat, name))
+    return found
+
+
+def _pad(values: Sequence[float]) -> tuple[float, float]:
+    low, high = min(values), max(values)
+    margin = 0.12 * (high - low) or 0.1 * abs(high) or 1.0
+    return max(0.0, low - margin), high + margin
+
+
+def _draw_panel(axes: Axes, panel: Panel, ranked: Sequence[str], colours: Mapping[str, str]) -> None:
+    if not panel.points:
+        return style.explain_empty(axes, "no run with a weighted acceleration: that needs 200 samples a second")
+    travel, comfort = [point.travel for point in panel.points], [point.comfort for point in panel.points]
+    if np.isfinite(panel.floor):
+        comfort.append(panel.floor)
+        axes.axhline(panel.floor, color=FLOOR.colour, linestyle=FLOOR.dashes, linewidth=FLOOR.width, zorder=2)
+    if panel.bracket:
+        travel += [1e3 * float(x) for x in panel.bracket.travel]
+        comfort += [float(a) for a in panel.bracket.acceleration] + [float(panel.bracket.bound(max(travel) / 1e3))]
+        places = np.linspace(*_pad(travel), 200)
+        bound, best = panel.bracket.bound(1e-3 * places), panel.bracket.best(1e-3 * places)
+        axes.fill_between(places, bound, best, where=np.isfinite(best), color=BAND, linewidth=0, zorder=1)
+        style.draw_line(axes, places, bound, BOUND)
+        style.draw_line(axes, places, best, BEST)
+    axes.set(xlim=_pad(travel), ylim=_pad(comfort), xlabel="RMS suspension travel [mm]", ylabel="driver, Wk RMS [m/s²]")
+    # The most comfortable one on top of those that it meets.
+    for point in sorted(panel.points, key=lambda point: -point.comfort):
+        axes.scatter(point.travel, point.comfort, s=150, color=colours[point.name], edgecolors="1.0", zorder=4)
+        axes.annotate(
+            str(ranked.index(point.name) + 1), (point.travel, point.comfort), color="1.0", fontsize=9, zorder=5,
+            fontweight="bold", ha="center", va="center_baseline",
+        )  # fmt: skip
+    style.set_title(axes, panel.title)
 
 
 class _Compared(NamedTuple):
@@ -46,13 +162,12 @@ def plot_comparison(runs: Sequence[Run]) -> Figure:
 
 def find_swept_number(runs: Sequence[Run]) -> str:
     """Return the key with the most different values among those that are numbers in every run, or nothing."""
-    counts = {}
+    counts = {"": 1}
     for key in runs[0].scenario.label:
         values = [run.scenario.label.get(key) for run in runs]
-        if all(naming.is_number(value) for value in values):
+        if all(map(naming.is_number, values)):
             counts[key] = len(set(values))
-    best = max(counts, key=lambda key: counts[key], default="")
-    return best if counts.get(best, 0) > 1 else ""
+    return max(counts, key=lambda key: counts[key])
 
 
 def _plot_bars(title: str, runs: Sequence[Run]) -> Figure:
@@ -62,15 +177,14 @@ def _plot_bars(title: str, runs: Sequence[Run]) -> Figure:
     left = style.measure_names(names)
     grid = Grid((ROW * len(runs) + 0.1,) * 2, columns=2, left=left, bottom=0.65, gap=(0.2, 0.75))
     page = style.make_page(title, NOTE, grid)
-    for row, pair in zip(page.rows, (COMPARED[:2], COMPARED[2:]), strict=True):
-        for column, (axes, compared) in enumerate(zip(row, pair, strict=True)):
-            values = _read_metric(runs, compared)
-            texts = [f"{value:.{compared.decimals}f}" if np.isfinite(value) else "none" for value in values]
-            style.name_rows(axes, [""] * len(names) if column else names)
-            style.draw_bars(axes, values.tolist(), colours, texts)
-            # Room for the figures at the ends of the bars.
-            axes.set_xlim(0.0, (1.0 + 0.45 / grid.width) * float(np.max(np.nan_to_num(values))) or 1.0)
-            axes.set_xlabel(compared.axis)
+    for k, (axes, compared) in enumerate(zip(page.list_panels(), COMPARED, strict=True)):
+        values = _read_metric(runs, compared)
+        texts = [f"{value:.{compared.decimals}f}" if np.isfinite(value) else "none" for value in values]
+        style.name_rows(axes, [""] * len(names) if k % 2 else names)
+        style.draw_bars(axes, values.tolist(), colours, texts)
+        # Room for the figures at the ends of the bars.
+        end = (1.0 + 0.45 / grid.width) * float(np.max(np.nan_to_num(values)))
+        axes.set(xlim=(0.0, end or 1.0), xlabel=compared.axis)
     return page.figure
 
 
@@ -79,22 +193,16 @@ def _plot_lines(title: str, key: str, series: dict[str, list[Run]]) -> Figure:
     looks = style.make_entries(list(series))
     swept = sorted({float(run.scenario.label[key]) for run in runs})
     page = style.make_page(title, NOTE, Grid((1.8, 1.8), 2, left=0.85, gap=(0.9, 0.65)), looks)
-    for axes, compared in zip((axes for row in page.rows for axes in row), COMPARED, strict=True):
+    for axes, compared in zip(page.list_panels(), COMPARED, strict=True):
         for look, group in zip(looks, series.values(), strict=True):
-            _draw_curve(axes, group, key, compared, look)
-        axes.set_xlabel(naming.label_axis(runs[0].scenario, key))
-        axes.set_ylabel(compared.axis)
+            ordered = sorted(group, key=lambda run: float(run.scenario.label[key]))
+            places = [float(run.scenario.label[key]) for run in ordered]
+            style.draw_line(axes, places, _read_metric(ordered, compared), look._replace(width=1.6, mark="o"))
+        axes.set(xlabel=naming.label_axis(runs[0].scenario, key), ylabel=compared.axis)
         axes.set_ylim(0, 1.05 * axes.get_ylim()[1])
         if len(swept) <= 4:
             axes.set_xticks(swept)
     return page.figure
-
-
-def _draw_curve(axes: Axes, runs: Sequence[Run], key: str, compared: _Compared, look: Entry) -> None:
-    ordered = sorted(runs, key=lambda run: float(run.scenario.label[key]))
-    swept, values = [float(run.scenario.label[key]) for run in ordered], _read_metric(ordered, compared)
-    style.draw_line(axes, swept, values, look._replace(width=1.6))
-    axes.plot(swept, values, "o", color=look.colour, markersize=4.5)
 
 
 def _read_metric(runs: Sequence[Run], compared: _Compared) -> Array:

@@ -5,11 +5,10 @@ from __future__ import annotations
 from matplotlib.figure import Figure
 
 from seatsim.cosimulation.damper import FmuDamper
-from seatsim.plots.runs.comparison import plot_comparison
+from seatsim.plots.runs.comparison import plot_comparison, plot_pareto
+from seatsim.plots.runs.dampers import plot_damper_loops, plot_force_velocity
 from seatsim.plots.runs.histories import plot_time_histories
-from seatsim.plots.runs.loops import plot_damper_loops, plot_force_velocity
 from seatsim.plots.runs.naming import show_runs
-from seatsim.plots.runs.pareto import plot_pareto
 from seatsim.plots.runs.spectra import plot_psd, plot_transmissibility
 from seatsim.simulation.result import Result
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -10,7 +12,7 @@ from seatsim.metrics.spectra import transmissibility
 from seatsim.plots import style
 from seatsim.plots.densities import LOWEST, METHOD, estimate_density
 from seatsim.plots.runs.naming import Shown
-from seatsim.plots.style import GREY, Entry, Grid, Page
+from seatsim.plots.style import GREY, Entry, Grid
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.simulation.result import Run
@@ -32,8 +34,7 @@ NOTE = (
 def plot_psd(shown: Shown) -> Figure:
     """Return the power spectral density of the driver's acceleration in m^2/s^3, run by run, with the floor's."""
     floor = Entry("floor", GREY, width=2.2)
-    page = _make_page(f"Driver acceleration over frequency: {shown.title}", METHOD, shown, [floor])
-    axes = page.rows[0][0]
+    figure, axes = _make_page(f"Driver acceleration over frequency: {shown.title}", METHOD, shown, [floor])
     axes.set_ylabel("power density [m²/s³]")
     floors = {run.history["floor_acceleration"].tobytes(): run for run in shown.runs}.values()
     lines = [(_estimate(run, "floor_acceleration"), floor) for run in floors]
@@ -41,42 +42,36 @@ def plot_psd(shown: Shown) -> Figure:
     highest = max(float(np.max(power, initial=0.0)) for (_, power), _ in lines)
     if highest == 0.0:
         style.explain_empty(axes, "at rest, or too short a run for a spectrum")
-        return page.figure
+        return figure
     axes.set_yscale("log")
     for (frequency, power), look in lines:
         style.draw_line(axes, frequency, np.where(power > 0, power, np.nan), look)
     low, high = axes.get_ylim()
-    _scale_upright(axes, max(low, highest / 10**DECADES), high)
-    return page.figure
+    style.scale_log(axes, "y", max(low, highest / 10**DECADES), high)
+    return figure
 
 
 def plot_transmissibility(shown: Shown) -> Figure:
     """Return the magnitude of the transmissibility from floor to driver where it can be trusted."""
-    page = _make_page(f"Transmissibility, floor to driver: {shown.title}", NOTE, shown)
-    axes = page.rows[0][0]
+    figure, axes = _make_page(f"Transmissibility, floor to driver: {shown.title}", NOTE, shown)
     axes.set_ylabel("|driver / floor| [-]")
     gains = [_estimate_gain(run) for run in shown.runs]
     known = np.concatenate([gain[np.isfinite(gain) & (gain > 0)] for _, gain in gains])
     if not known.size:
         style.explain_empty(axes, "no floor motion, no coherence with it, or too short a run")
-        return page.figure
+        return figure
     axes.axhline(1.0, color=GREY, linewidth=1.0, zorder=1)
     axes.set_yscale("log")
     for (frequency, gain), look in zip(gains, shown.looks, strict=True):
         style.draw_line(axes, frequency, gain, look)
-    _scale_upright(axes, min(0.5, float(known.min())) / 1.2, max(2.0, float(known.max())) * 1.2)
-    return page.figure
+    style.scale_log(axes, "y", min(0.5, float(known.min())) / 1.2, max(2.0, float(known.max())) * 1.2)
+    return figure
 
 
-def _make_page(title: str, note: str, shown: Shown, legend: list[Entry] | None = None) -> Page:
-    page = style.make_page(title, note + shown.omission, Grid((2.9,)), [*shown.looks, *(legend or [])])
-    style.scale_frequency_axis(page.rows[0][0], *BAND)
-    return page
-
-
-def _scale_upright(axes: Axes, low: float, high: float) -> None:
-    axes.set_ylim(low, high)
-    style.set_plain_log_ticks(axes.yaxis, low, high)
+def _make_page(title: str, note: str, shown: Shown, legend: Sequence[Entry] = ()) -> tuple[Figure, Axes]:
+    figure, [[axes]] = style.make_page(title, note + shown.omission, Grid((2.9,)), [*shown.looks, *legend])
+    style.scale_frequency_axis(axes, *BAND)
+    return figure, axes
 
 
 def _estimate(run: Run, channel: str) -> tuple[Array, Array]:

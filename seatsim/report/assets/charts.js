@@ -1,116 +1,103 @@
 "use strict";
 // Draws the groups of linked pictures of a page with uPlot. Everything it draws stands on the page as packed numbers.
 (() => {
-  const MEASURED = 8;
-  const HEIGHT = 240, PAPER_WIDTH = 680;
-  const charts = [];
+  const MEASURED = 8, GAP = -32768, HEIGHT = 240, PAPER_WIDTH = 680;
   const paper = matchMedia("print"), dark = matchMedia("(prefers-color-scheme: dark)");
   const probe = document.body.appendChild(document.createElement("i"));
   const colour = name => { probe.style.color = `var(${name})`; return getComputedStyle(probe).color; };
 
-  function unpack(line) {
+  // Differences of 16-bit integers, low bytes before high ones, deflated, in base 64.
+  async function unpack(line) {
     if (!line) return null;
-    const bytes = Uint8Array.from(atob(line.bits), letter => letter.charCodeAt(0));
-    const view = new DataView(bytes.buffer), values = new Array(bytes.length / 2);
-    for (let k = 0; k < values.length; k++) {
-      const whole = view.getInt16(2 * k, true);
-      values[k] = whole === -32768 ? null : line.at + line.step * whole;
+    const packed = Uint8Array.from(atob(line.bits), letter => letter.charCodeAt(0));
+    const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
+    const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
+    const count = bytes.length / 2, values = new Array(count);
+    for (let k = 0, whole = 0; k < count; k++) {
+      whole = (whole + (bytes[k] | (bytes[count + k] << 8))) << 16 >> 16;
+      values[k] = whole === GAP ? null : line.at + line.step * whole;
     }
     return values;
   }
 
   // A little room above and below; a line that never moves stands in the middle.
   function roomAround(low, high) {
-    if (low == null || high == null) return [0, 1];
     const room = 0.06 * (high - low) || 0.1 * Math.abs(low) || 1;
-    return [low - room, high + room];
+    return low == null ? [0, 1] : [low - room, high + room];
   }
 
-  function show(value) {
-    if (value == null) return "–";
-    const size = Math.abs(value);
-    const text = size >= 1e7 || (size > 0 && size < 1e-5) ? value.toExponential(2) : value.toPrecision(3);
-    return (text.includes("e") && size >= 1 && size < 1e7 ? String(Math.round(value)) : text).replace("-", "−");
+  const show = (value, digits = 3) => value == null ? "–" : String(Number(value.toPrecision(digits))).replace("-", "−");
+
+  function download(name, address) {
+    Object.assign(document.createElement("a"), { href: address, download: name }).click();
   }
 
   class Group {
     constructor(element) {
+      const find = what => [...element.querySelectorAll(what)];
       this.element = element;
-      this.boxes = [...element.querySelectorAll(".plot")];
-      this.readouts = [...element.querySelectorAll(".readout")];
+      [this.boxes, this.readouts, this.titles, this.switches] = [".plot", ".readout", "figure h3", ".switch input"].map(find);
       this.select = element.querySelector("select.run");
-      this.switches = [...element.querySelectorAll(".switch input")];
       this.plots = [];
       this.load(JSON.parse(element.querySelector("script").textContent));
-      this.listen();
+      if (this.select) this.select.addEventListener("change", () => this.draw());
+      this.switches.forEach((box, k) => box.addEventListener("change", () => this.plots.forEach(plot => plot.setSeries(k + 1, { show: box.checked }))));
+      find(".buttons button").forEach(button => button.addEventListener("click", () => this.act(button.value)));
+      element.querySelector("form").addEventListener("submit", event => event.preventDefault());
+      this.boxes.forEach((box, k) => box.addEventListener("keydown", event => this.step(event, k)));
     }
 
-    load(data) {
-      this.data = data;
+    async load(data) {
+      const values = await Promise.all(data.panels.map(panel => Promise.all(panel.runs.map(lines => Promise.all(lines.map(unpack))))));
+      Object.assign(this, { data, values });
       this.draw();
     }
 
-    get run() { return this.select ? Number(this.select.value) : 0; }
-
-    places() {
-      const x = this.data.runs[this.run];
-      const length = Math.max(0, ...this.lines(0, true).map(line => line.length));
-      return Array.from({ length }, (_, k) => x.first + k * x.step);
-    }
-
-    lines(panel, known) {
-      const found = this.data.panels[panel].runs[this.run].map(unpack);
-      return known ? found.filter(line => line) : found;
-    }
-
     draw() {
+      if (!this.data) return;
       this.plots.forEach(plot => plot.destroy());
-      const x = this.places();
+      const run = this.select ? Number(this.select.value) : 0, place = this.data.runs[run];
+      const lines = this.values.map(panel => panel[run]);
+      const length = Math.max(0, ...lines.flat().map(line => line ? line.length : 0));
+      const x = Array.from({ length }, (_, k) => place.first + k * place.step);
       this.whole = [x[0], x[x.length - 1]];
-      this.plots = this.boxes.map((box, k) => this.plot(box, k, x));
+      this.plots = this.boxes.map((box, k) => this.plot(box, k, x, lines[k].map(line => line || new Array(length).fill(null))));
     }
 
-    plot(box, number, x) {
-      const { data } = this, panel = data.panels[number], group = this;
-      const lines = this.lines(number).map(line => line || new Array(x.length).fill(null));
-      const axis = { stroke: colour("--ink"), grid: { stroke: colour("--line"), width: 1 }, ticks: { show: false },
-        font: "13px system-ui, sans-serif", values: (plot, marks) => marks.map(mark => mark == null ? "" : String(Number(mark.toPrecision(6))).replace("-", "−")) };
+    get width() { return paper.matches ? PAPER_WIDTH : Math.max(200, this.boxes[0].clientWidth); }
+
+    plot(box, number, x, lines) {
+      const axis = { stroke: colour("--ink"), grid: { stroke: colour("--line"), width: 1 }, ticks: { show: false }, font: "13px system-ui, sans-serif",
+        values: (plot, marks) => marks.map(mark => mark == null ? "" : show(mark, 6)) };
       const options = {
-        width: paper.matches ? PAPER_WIDTH : Math.max(200, box.clientWidth), height: HEIGHT,
-        legend: { show: false },
+        width: this.width, height: HEIGHT, legend: { show: false },
         cursor: { sync: { key: this.element.id }, drag: { x: true, y: false, setScale: false }, y: false },
         scales: { x: { time: false, range: (plot, low, high) => [low, high] }, y: { range: (plot, low, high) => roomAround(low, high) } },
-        axes: [
-          { ...axis, size: 30, gap: 4, label: "time [s]", labelSize: 18, labelGap: 0, labelFont: "13px system-ui, sans-serif" },
-          { ...axis, size: 58 },
-        ],
-        series: [{}, ...data.lines.map((line, k) => ({
+        axes: [{ ...axis, size: 30, gap: 4, label: "time [s]", labelSize: 18, labelGap: 0, labelFont: axis.font }, { ...axis, size: 58 }],
+        series: [{}, ...this.data.lines.map((line, k) => ({
           label: line.name, stroke: colour(`--c${line.look}`), ...(line.look === MEASURED ? { width: 3.4, alpha: 0.55 } : { width: 1.4, dash: line.look % 2 ? [7, 3] : [] }),
           points: { show: false }, spanGaps: false, show: this.switches[k] ? this.switches[k].checked : true,
         }))],
         hooks: {
-          setCursor: [plot => group.read(plot, number)],
+          setCursor: [plot => this.read(plot, number)],
           setSelect: [plot => {
             if (plot.select.width < 3) return;
-            group.zoom(plot.posToVal(plot.select.left, "x"), plot.posToVal(plot.select.left + plot.select.width, "x"));
+            this.zoom(plot.posToVal(plot.select.left, "x"), plot.posToVal(plot.select.left + plot.select.width, "x"));
             plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
           }],
-          ready: [plot => plot.over.addEventListener("dblclick", () => group.zoom(...group.whole))],
+          ready: [plot => plot.over.addEventListener("dblclick", () => this.zoom(...this.whole))],
         },
       };
-      const made = new uPlot(options, [x, ...lines], box);
       const empty = lines.every(line => line.every(value => value == null));
       this.readouts[number].textContent = empty ? "Nothing to draw: this run does not hold the channel." : "";
       box.dataset.drawn = empty ? "empty" : "yes";
-      return made;
+      return new uPlot(options, [x, ...lines], box);
     }
 
     read(plot, number) {
-      const row = plot.cursor.idx, { data } = this;
-      if (row == null) { this.readouts[number].textContent = ""; return; }
-      const values = data.lines.map((line, k) => plot.series[k + 1].show ? `${line.name} ${show(plot.data[k + 1][row])}` : "");
-      const place = `time ${show(plot.data[0][row])} s`;
-      this.readouts[number].textContent = `${place}: ${values.filter(text => text).join(" · ")} ${data.panels[number].unit}`;
+      const row = plot.cursor.idx, { lines, panels } = this.data;
+      const values = lines.map((line, k) => plot.series[k + 1].show ? `${line.name} ${show(plot.data[k + 1][row])}` : "").filter(text => text);
+      this.readouts[number].textContent = row == null ? "" : `time ${show(plot.data[0][row])} s: ${values.join(" · ")} ${panels[number].unit}`;
     }
 
     zoom(low, high) {
@@ -118,45 +105,50 @@
       if (to > from) this.plots.forEach(plot => plot.setScale("x", { min: from, max: to }));
     }
 
-    move(what) {
+    act(what) {
       const { min: low, max: high } = this.plots[0].scales.x, size = high - low, [first, last] = this.whole;
-      const shift = { left: -Math.min(size / 4, low - first), right: Math.min(size / 4, last - high) }[what];
-      if (what === "all") this.zoom(...this.whole);
-      else if (shift !== undefined) this.zoom(low + shift, high + shift);
-      else { const grow = what === "in" ? -size / 4 : size / 2; this.zoom(low - grow, high + grow); }
+      const left = Math.min(size / 4, low - first), right = Math.min(size / 4, last - high);
+      const views = { in: [low + size / 4, high - size / 4], out: [low - size / 2, high + size / 2], all: this.whole,
+        left: [low - left, high - left], right: [low + right, high + right] };
+      if (what === "png") this.savePicture();
+      else if (what === "csv") this.saveNumbers(low, high);
+      else this.zoom(...views[what]);
     }
 
-    listen() {
-      if (this.select) this.select.addEventListener("change", () => this.draw());
-      this.switches.forEach((box, k) => box.addEventListener("change", () => this.plots.forEach(plot => plot.setSeries(k + 1, { show: box.checked }))));
-      this.element.querySelectorAll(".buttons button").forEach(button => button.addEventListener("click", () => this.move(button.value)));
-      this.element.querySelector("form").addEventListener("submit", event => event.preventDefault());
-      this.boxes.forEach((box, k) => box.addEventListener("keydown", event => this.step(event, k)));
+    // The pictures below each other, with their titles, on paper of the page's colour.
+    savePicture() {
+      const images = this.plots.map(plot => plot.ctx.canvas), { width, height } = images[0], line = 30 * devicePixelRatio;
+      const sheet = Object.assign(document.createElement("canvas"), { width, height: (height + line) * images.length });
+      const brush = Object.assign(sheet.getContext("2d"), { fillStyle: colour("--paper") });
+      brush.fillRect(0, 0, sheet.width, sheet.height);
+      Object.assign(brush, { fillStyle: colour("--ink"), font: `${line / 2}px system-ui, sans-serif` });
+      images.forEach((image, k) => {
+        brush.fillText(this.titles[k].textContent, line / 4, k * (height + line) + 0.7 * line);
+        brush.drawImage(image, 0, k * (height + line) + line);
+      });
+      download("signals.png", sheet.toDataURL());
+    }
+
+    saveNumbers(low, high) {
+      const { lines } = this.data, x = this.plots[0].data[0], shown = lines.map((_, k) => k).filter(k => this.plots[0].series[k + 1].show);
+      const quote = text => `"${text.replaceAll('"', '""')}"`, round = value => value == null ? "" : Number(value.toPrecision(7));
+      const head = ["time [s]", ...this.titles.flatMap(title => shown.map(k => `${title.textContent}, ${lines[k].name}`))].map(quote);
+      const rows = x.flatMap((place, row) => place < low || place > high ? [] : [[place, ...this.plots.flatMap(plot => shown.map(k => plot.data[k + 1][row]))].map(round)]);
+      download("signals.csv", URL.createObjectURL(new Blob([[head, ...rows].map(row => row.join(",")).join("\n") + "\n"], { type: "text/csv" })));
     }
 
     step(event, number) {
       const plot = this.plots[number], sign = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
       if (!sign) return;
       event.preventDefault();
-      const { min, max } = plot.scales.x, width = plot.over.clientWidth;
+      const { min, max } = plot.scales.x;
       const now = plot.cursor.left >= 0 ? plot.cursor.left : plot.valToPos((min + max) / 2, "x");
-      const left = Math.min(width, Math.max(0, now + sign * (event.shiftKey ? 20 : 2)));
+      const left = Math.min(plot.over.clientWidth, Math.max(0, now + sign * (event.shiftKey ? 20 : 2)));
       this.plots.forEach(each => each.setCursor({ left, top: 10 }, true, false));
-    }
-
-    fit() {
-      this.boxes.forEach((box, k) => {
-        const width = paper.matches ? PAPER_WIDTH : Math.max(200, box.clientWidth);
-        if (this.plots[k] && this.plots[k].width !== width) this.plots[k].setSize({ width, height: HEIGHT });
-      });
     }
   }
 
-  const start = () => document.querySelectorAll(".signals").forEach(element => charts.push(new Group(element)));
-  const redraw = () => charts.forEach(chart => chart.draw());
-  start();
-  dark.addEventListener("change", redraw);
-  paper.addEventListener("change", redraw);
-  addEventListener("resize", () => charts.forEach(chart => chart.fit()));
-  window.seatsimCharts = charts;
+  const charts = window.seatsimCharts = [...document.querySelectorAll(".signals")].map(element => new Group(element));
+  [dark, paper].forEach(query => query.addEventListener("change", () => charts.forEach(chart => chart.draw())));
+  addEventListener("resize", () => charts.forEach(chart => chart.plots.forEach(plot => plot.setSize({ width: chart.width, height: HEIGHT }))));
 })();

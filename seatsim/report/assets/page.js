@@ -1,20 +1,21 @@
 "use strict";
 // The page of `seatsim explore`: sends what is set, and shows what comes back.
 (() => {
-  const form = document.getElementById("controls"), main = document.querySelector("main");
-  const problem = document.getElementById("problem"), saved = document.getElementById("saved");
-  let asked = 0, running = null;
+  const main = document.querySelector("main"), find = name => document.getElementById(name);
+  const [form, gains, fit, problem, saved] = ["controls", "gains", "fit", "problem", "saved"].map(find);
+  let asked = 0, running = null, extra = {};
 
   const read = input => input.type === "range" ? Number(input.value) : input.value;
 
   function values() {
-    const found = {}, effects = {};
-    for (const input of form.querySelectorAll(":scope > label [name]")) found[input.name] = read(input);
+    const collect = inputs => Object.fromEntries([...inputs].map(input => [input.name, read(input)]));
+    const found = collect(form.querySelectorAll(":scope > label [name]")), effects = {};
+    if (gains.children.length) found.gains = collect(gains.querySelectorAll("input"));
     for (const effect of form.querySelectorAll(".effect")) {
       const box = effect.querySelector("input[type=checkbox]");
-      if (box.checked) effects[box.name] = Object.fromEntries([...effect.querySelectorAll("input[type=range]")].map(input => [input.name, read(input)]));
+      if (box.checked) effects[box.name] = collect(effect.querySelectorAll("input[type=range]"));
     }
-    return form.querySelector("fieldset") ? { ...found, effects } : found;
+    return fit ? { ...found, effects } : found;
   }
 
   async function send(address, content) {
@@ -22,6 +23,15 @@
     const found = await answer.json();
     if (!answer.ok) throw new Error(found.error);
     return found;
+  }
+
+  const say = input => { input.parentElement.querySelector("output").textContent = Number(Number(input.value).toPrecision(4)); };
+
+  function move(fitted) {
+    for (const [name, values] of Object.entries(fitted)) {
+      const { parentElement } = form.querySelector(`.effect input[name="${name}"]`).parentElement;
+      for (const input of parentElement.querySelectorAll("input[type=range]")) { input.value = values[input.name]; say(input); }
+    }
   }
 
   // One request at a time: what was moved meanwhile is sent when the answer is there.
@@ -32,10 +42,14 @@
     while (running !== asked) {
       running = asked;
       try {
-        const found = await send("/view", values());
-        document.getElementById("answer").textContent = found.answer;
-        document.getElementById("tables").innerHTML = found.tables;
-        seatsimCharts[0].load(found.signals);
+        const content = { ...values(), ...extra };
+        extra = {};
+        const found = await send("/view", content);
+        find("answer").textContent = found.answer;
+        find("tables").innerHTML = found.tables;
+        if (!gains.children.length) gains.innerHTML = found.gains;
+        move(found.fitted);
+        await seatsimCharts[0].load(found.signals);
         problem.textContent = "";
       } catch (error) { problem.textContent = error.message; }
     }
@@ -46,14 +60,16 @@
 
   form.addEventListener("input", event => {
     const { target } = event;
-    if (target.type === "range") target.parentElement.querySelector("output").textContent = Number(Number(target.value).toPrecision(4));
+    if (target.type === "range") say(target);
+    if (target.name === "law" || target.name === "run") gains.replaceChildren();
     if (target.type === "checkbox") target.closest(".effect").querySelector(".parameters").hidden = !target.checked;
     if (target.id !== "name") update();
   });
+  if (fit) fit.addEventListener("click", () => { extra = { fit: true }; update(); });
   form.addEventListener("submit", event => event.preventDefault());
-  document.getElementById("save").addEventListener("click", async () => {
+  find("save").addEventListener("click", async () => {
     try {
-      const found = await send("/save", { ...values(), name: document.getElementById("name").value });
+      const found = await send("/save", { ...values(), name: find("name").value });
       saved.textContent = `saved as ${found.saved}`;
     } catch (error) { saved.textContent = error.message; }
   });

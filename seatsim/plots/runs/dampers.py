@@ -15,7 +15,8 @@ from matplotlib.patches import Rectangle
 from seatsim.dampers.base import DamperSpecification
 from seatsim.kernel.generic import DamperModel
 from seatsim.metrics.motion import rms
-from seatsim.plots import labels, style
+from seatsim.plots import style
+from seatsim.plots.loops import Family, make_loop_page
 from seatsim.plots.runs import naming
 from seatsim.plots.style import Entry, Grid
 from seatsim.rig.temperature import TemperatureFactors, Thermal
@@ -59,28 +60,16 @@ class _InstalledDamper(NamedTuple):
         return name_of("damper", type(self.record))
 
 
-class _LoopRow(NamedTuple):
-    """Two panels: their title, that of the legend, and the name, colour and test of each loop."""
-
-    title: str
-    legend: str
-    loops: list[tuple[str, str, SineTest]]
-
-
 def plot_damper_loops(runs: Sequence[Run]) -> Figure:
     """Return the loops of each distinct damper by current, and by temperature, where these change its force."""
     dampers = find_dampers(runs)
     amplitude = choose_amplitude(runs)
-    rows = [row for damper in dampers[:MOST] for row in _make_rows(damper, len(dampers) > 1, amplitude)]
+    families = [family for damper in dampers[:MOST] for family in _make_families(damper, len(dampers) > 1, amplitude)]
     note = f"Sine test, amplitude {1e3 * amplitude:g} mm, frequency {FREQUENCY:g} Hz."
     if len(dampers) > MOST:
         note += f" {MOST} of {len(dampers)} dampers are shown."
-    grid = Grid(heights=(2.1,) * len(rows), columns=2, right=1.15, top=0.3, gap=(0.2, 0.85))
     names = ", ".join(dict.fromkeys(damper.name for damper in dampers))
-    page = style.make_page(f"Damper loops: {names}", note, grid)
-    for panels, row in zip(page.rows, rows, strict=True):
-        _draw_row(panels, row)
-    return page.figure
+    return make_loop_page(f"Damper loops: {names}", note, families).figure
 
 
 def find_dampers(runs: Iterable[Run]) -> list[_InstalledDamper]:
@@ -129,8 +118,7 @@ def plot_force_velocity(run: Run) -> Figure:
     for look, (_, test) in zip(looks, tests, strict=True):
         style.draw_line(axes, test.velocity, test.force, look)
     _shade_active_quadrants(axes)
-    axes.set_xlabel("damper velocity [m/s]")
-    axes.set_ylabel("damper force [N]")
+    axes.set(xlabel="damper velocity [m/s]", ylabel="damper force [N]")
     return page.figure
 
 
@@ -151,22 +139,16 @@ def _start_temperature(run: Run) -> float:
     return stated.start if isinstance(stated, Thermal) else stated
 
 
-def _make_rows(damper: _InstalledDamper, several: bool, amplitude: float) -> Iterator[_LoopRow]:
-    start = _start_temperature(damper.runs[0])
+def _make_families(damper: _InstalledDamper, several: bool, amplitude: float) -> Iterator[Family]:
+    start, most = _start_temperature(damper.runs[0]), damper.max_current
     called = f"{damper.name} ({naming.label_runs(damper.runs)[0]})" if several else damper.name
-
-    def list_loops(places: Sequence[tuple[str, float, float]], colours: str) -> list[tuple[str, str, SineTest]]:
-        tests = _drop_equal((name, damper.loop(amplitude, *at)) for name, *at in places)
-        picked = style.sample_colours(colours, len(tests))
-        return [(name, colour, test) for (name, test), colour in zip(tests, picked, strict=True)]
-
-    currents = [share * damper.max_current for share in SHARES]
-    by_current = list_loops([(f"{current:g} A", current, start) for current in currents], "viridis")
-    yield _LoopRow(f"{called} at {start:g} °C", "current", by_current)
+    currents = [share * most for share in SHARES]
+    by_current = _drop_equal((f"{current:g} A", damper.loop(amplitude, current, start)) for current in currents)
+    yield Family(f"{called} at {start:g} °C", "current", by_current)
     if any(damper.factors[:3]):
-        most, temperatures = damper.max_current, _choose_temperatures(damper)
-        by_temperature = list_loops([(f"{value:g} °C", most, value) for value in temperatures], "plasma")
-        yield _LoopRow(f"{called} at {most:g} A" if len(by_current) > 1 else called, "temperature", by_temperature)
+        temperatures = _choose_temperatures(damper)
+        by_heat = _drop_equal((f"{value:g} °C", damper.loop(amplitude, most, value)) for value in temperatures)
+        yield Family(f"{called} at {most:g} A" if len(by_current) > 1 else called, "temperature", by_heat, "plasma")
 
 
 def _choose_temperatures(damper: _InstalledDamper) -> list[float]:
@@ -177,26 +159,6 @@ def _choose_temperatures(damper: _InstalledDamper) -> list[float]:
     specification: DamperSpecification = specification_of(type(damper.record))
     low, high = specification.temperatures
     return [low, 0.5 * (low + high), high]
-
-
-def _draw_row(panels: Sequence[Axes], row: _LoopRow) -> None:
-    for name, colour, test in row.loops:
-        look = Entry(name, colour, width=1.6)
-        style.draw_line(panels[0], test.velocity, test.force, look)
-        style.draw_line(panels[1], 1e3 * test.displacement, test.force, look)
-    _label_loops(panels, row.title, "displacement [mm]")
-    if len(row.loops) > 1:
-        style.draw_legend_beside(panels[1], row.legend)
-
-
-def _label_loops(panels: Sequence[Axes], title: str, displacement: str) -> None:
-    """Label two panels of one damper force, over velocity and over displacement, on one scale."""
-    panels[0].set_title(labels.clean_text(title, 60), loc="left", fontsize=style.FONT)
-    panels[0].set_xlabel("velocity [m/s]")
-    panels[1].set_xlabel(displacement)
-    panels[0].set_ylabel("damper force [N]")
-    panels[1].set_ylim(panels[0].get_ylim())
-    panels[1].tick_params(labelleft=False)
 
 
 def _draw_samples(axes: Axes, velocity: np.ndarray, run: Run) -> None:
@@ -214,7 +176,6 @@ def _draw_samples(axes: Axes, velocity: np.ndarray, run: Run) -> None:
 def _shade_active_quadrants(axes: Axes) -> None:
     """Shade where force and velocity differ in sign: there a damper can only return what it stored."""
     right, top = (max(abs(end) for end in ends) for ends in (axes.get_xlim(), axes.get_ylim()))
-    axes.set_xlim(-right, right)
-    axes.set_ylim(-top, top)
+    axes.set(xlim=(-right, right), ylim=(-top, top))
     for corner in ((-right, 0.0), (0.0, -top)):
         axes.add_patch(Rectangle(corner, right, top, facecolor="0.95", zorder=0))

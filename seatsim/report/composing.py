@@ -1,0 +1,61 @@
+"""How every report is put together: its answer and sections, notes, how far to trust it, how it was made."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib.metadata import version
+from typing import NamedTuple
+
+from seatsim.plots.densities import METHOD
+from seatsim.provenance.statement import state_command
+from seatsim.report.blocks import Block, Code, Items, Report, Section, Text, list_notes, tabulate
+from seatsim.report.credibility import Factor, say_doubt, show_card
+from seatsim.report.formatting import format_sentence
+from seatsim.report.words import read_words
+
+_PACKAGES = ("seatsim", "numpy", "scipy", "numba")
+
+
+class Closing(NamedTuple):
+    """What stands at the end of a report.
+
+    notes: on the data. factors: of its credibility. command: what makes it again; of a command at work, this one with
+    its options is stated instead. settings: tables of them.
+    """
+
+    notes: Sequence[str]
+    factors: Sequence[Factor]
+    command: str
+    settings: Sequence[Block] = ()
+
+
+def compose(
+    kind: str,
+    about: str,
+    answer: Sequence[str],
+    next_steps: Sequence[str],
+    sections: Sequence[Section],
+    closing: Closing,
+    **facts: str,
+) -> Report:
+    """Return a report.
+
+    Args:
+        kind: by which its method is known.
+        about: what it is on.
+        answer: in a sentence, and further ones.
+        next_steps: what to do next.
+        sections: its own; notes, credibility and method follow them.
+        closing: of what these are made.
+        facts: what the sentences on the method leave open.
+    """
+    notes, factors, command, settings = closing
+    method = [text.format(density=METHOD, **facts) for text in read_words().methods[kind]]
+    versions = tabulate("Versions", "package, version", [(name, version(name)) for name in _PACKAGES], 2)
+    again: list[Block] = [Text("This command makes the report again:"), Code(state_command(command))]
+    ends = [
+        Section("notes", "Notes", list_notes(list(map(format_sentence, notes)))),
+        show_card(factors),
+        Section("method", "How this was made", [Items(method), *settings, *versions, *again]),
+    ]
+    return Report(about, answer[0], answer[1:], next_steps, [*sections, *ends], say_doubt(factors))

@@ -1,0 +1,236 @@
+"""Sections of a diagnosis: causes of the gap, its way to the noise floor, signals, what is missing, what is left."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from seatsim.diagnosis.result import CalibratedParameter, Cause, Diagnosis, Trace
+from seatsim.plots.diagnosis.answer import STAGES, Key, read_gap, select_stages
+from seatsim.plots.diagnosis.bins import drop_start
+from seatsim.plots.diagnosis.signals import name_last
+from seatsim.plots.labels import UNKNOWN, describe_channel, format_number, format_percent, format_unit
+from seatsim.report.blocks import Block, Items, Text, show_pictures, tabulate
+from seatsim.report.formatting import (
+    describe_effect,
+    format_estimate,
+    format_noise,
+    format_quantity,
+    format_sentence,
+    format_setting,
+    say_noise,
+)
+from seatsim.report.packing import MEASURED, Panel, pack_signals
+from seatsim.schema.arrays import Array
+from seatsim.schema.text import join_names
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+LIKELY = 0.05
+"""Probability from which on the parameters of a cause are printed."""
+_ALIKE, _MOST_PAIRS = 0.5, 12
+"""Collinearity from which on two effects are named as similar, and the most pairs that are."""
+
+
+def show_causes(diagnosis: Diagnosis, figures: Mapping[str, Figure]) -> list[Block]:
+    """Return where the gap lies, which effects may cause it, and their parameters."""
+    shown = [each for each in diagnosis.causes if each.probability >= LIKELY or each.effect in diagnosis.selected]
+    rows = [
+        [cause.effect, format_sentence(describe_effect(cause.effect)) or UNKNOWN, _list_parameters(cause),
+         format_percent(cause.probability), format_percent(cause.shrink)]
+        for cause in shown
+    ]  # fmt: skip
+    strong = [row for row, cause in enumerate(shown) if cause.effect in diagnosis.selected]
+    head = "effect, what it is, parameters, probability, alone takes off the refitted gap"
+    table = tabulate("The likely effects, their parameters ± one standard deviation", head, rows, 3, strong)
+    return [*show_pictures(figures, "location", "ranking"), *table]
+
+
+def show_confusions(diagnosis: Diagnosis) -> list[Block]:
+    """Return which effects this recording cannot tell apart, and what would decide."""
+    blocks: list[Block] = [
+        Text(f"This recording cannot distinguish {join_names(group)}: each explains the gap equally well.")
+        for group in diagnosis.indistinguishable
+        if len(group) > 1
+    ]
+    found = diagnosis.experiment
+    if found is not None:
+        row = (found.name.replace("_", " "), found.kind, found.likeness_now, found.likeness_then)
+        head = "what would decide, kind, likeness now, likeness then"
+        blocks += tabulate("Likeness: 1 is alike, 0 has nothing in common", head, [row], 2)
+        blocks.append(Text(format_sentence(found.reason)))
+    names, matrix = diagnosis.evidence.collinearity
+    pairs = sorted(
+        ((float(matrix[i][j]), names[i], names[j]) for i in range(len(names)) for j in range(i)), reverse=True
+    )
+    rows = [(one, other, format_number(value, 2)) for value, one, other in pairs[:_MOST_PAIRS] if value >= _ALIKE]
+    caption = "Effects whose signs in these channels are alike: 1 cannot be told apart, 0 has nothing in common"
+    return [*blocks, *tabulate(caption, "effect, and, likeness", rows, 2)]
+
+
+def show_forms(diagnosis: Diagnosis) -> list[Block]:
+    """Return the table of other forms of the damper, where they were tried."""
+    forms = diagnosis.alternatives
+    if not forms:
+        return []
+    own = forms[0].replaces
+    lead = (
+        f"Other models of the damper in the place of {own}, fitted to the damper force without the held-out run, free"
+        f" of the tolerance. Shares are of the refitted gap on that run; the last column is {own}, fitted as freely."
+    )
+    rows = [
+        [form.model, join_names(form.beside or ["no effect"]), format_percent(form.shrink),
+         format_percent(form.refitted)]
+        for form in forms
+    ]  # fmt: skip
+    return tabulate(lead, f"model, together with, shrinks the gap by, {own} fitted as freely", rows, 2, [0])
+
+
+def _list_parameters(cause: Cause) -> str:
+    return "; ".join(f"{name} {format_estimate(value)}" for name, value in cause.parameters.items()) or UNKNOWN
+
+
+EXPLAINED = "Refitted is the nominal scenario with its parameters moved inside their tolerance."
+
+
+def show_gaps(diagnosis: Diagnosis, figures: Mapping[str, Figure]) -> list[Block]:
+    """Return picture and tables of the gaps by channel and by run, and of the refitted parameters."""
+    gap, keys = diagnosis.gap, select_stages(diagnosis)
+    held = ", ".join(diagnosis.held_out) or "all runs"
+    rows = [_make_row(diagnosis, name, keys) for name in ("overall", *gap.before.channels)]
+    head = ["channel", *(STAGES[key].label for key in keys), "shrinks by"]
+    blocks = [Text(f"{_describe_shrink(diagnosis)} {EXPLAINED}"), *show_pictures(figures, "gaps")]
+    blocks += tabulate(f"Gaps on {held}", head, rows, 1, [0])
+    if len(gap.by_run) > 1:
+        lines = [
+            [each.run, *(_format_gap(key, getattr(each, key).overall) for key in keys), format_percent(each.shrink)]
+            for each in gap.by_run
+        ]
+        strong = [k for k, each in enumerate(gap.by_run) if each.run in diagnosis.held_out]
+        blocks += tabulate("Gaps of every run, overall; held out in bold", ["run", *head[1:]], lines, 1, strong)
+    return [*blocks, *_tabulate_parameters(diagnosis.parameters)]
+
+
+def _make_row(diagnosis: Diagnosis, name: str, keys: Sequence[Key]) -> list[str]:
+    gap = diagnosis.gap
+    before, after = read_gap(gap, "before", name), read_gap(gap, "after", name)
+    change = 1 - after / before if after is not None and before else None
+    if name == "overall" and math.isfinite(gap.shrink):
+        change = gap.shrink
+    gaps = [_format_gap(key, read_gap(gap, key, name)) for key in keys]
+    return [name.replace("_", " "), *gaps, format_percent(change)]
+
+
+def _format_gap(key: Key, gap: float | None) -> str:
+    return format_noise(gap) if key == "floor" else format_percent(gap)
+
+
+def _describe_shrink(diagnosis: Diagnosis) -> str:
+    gap = diagnosis.gap
+    if not diagnosis.selected or not math.isfinite(gap.shrink):
+        before, after = format_percent(gap.before.overall), format_percent(gap.calibrated.overall)
+        return f"Refitting alone takes the gap from {before} to {after}; {say_noise(gap.floor.overall)}."
+    low, high = gap.shrink_interval
+    known = math.isfinite(low + high)
+    between = f" (90 % interval on other runs of the kind: {format_percent(low)} to {format_percent(high)})" * known
+    effects = "effect" if len(diagnosis.selected) == 1 else "effects"
+    return f"The gap shrinks by {format_percent(gap.shrink)}{between} with the {effects} found."
+
+
+def _tabulate_parameters(parameters: Sequence[CalibratedParameter]) -> list[Block]:
+    ranked = sorted(parameters, key=lambda each: not each.at_bound)
+    rows = [
+        [f"{each.name} (at its bound)" if each.at_bound else each.name, format_unit(each.unit),
+         format_setting(each.nominal), format_number(each.value, 4),
+         f"{format_setting(each.bound[0])} to {format_setting(each.bound[1])}"]
+        for each in ranked
+    ]  # fmt: skip
+    strong = [k for k, each in enumerate(ranked) if each.at_bound]
+    caption = "Parameters refitted within their tolerance"
+    return tabulate(caption, "parameter, unit, nominal, refitted, bounds", rows, 2, strong)
+
+
+def show_signals(diagnosis: Diagnosis, figures: Mapping[str, Figure]) -> list[Block]:
+    """Return the held-out signals with what is left of them, then every run over time, the held-out one first."""
+    groups: dict[str, list[Trace]] = {}
+    for trace in map(drop_start, [*diagnosis.evidence.traces, *diagnosis.evidence.other_traces]):
+        if len(trace.time) > 1:
+            groups.setdefault(f"{trace.run}{' (held out)' * (trace.run in diagnosis.held_out)}", []).append(trace)
+    if not groups:
+        return []
+    lines = [("measured", MEASURED), ("nominal", 1), (name_last(diagnosis), 0 if diagnosis.selected else 2)]
+    gaps = diagnosis.gap.before.channels
+    first = sorted(next(iter(groups.values())), key=lambda trace: -gaps.get(trace.channel, 0.0))
+    panels = [
+        Panel(each.channel, each.unit, "", {run: _read_lines(group, each.channel) for run, group in groups.items()})
+        for each in first
+    ]
+    time = {run: group[0].time for run, group in groups.items()}
+    packed = pack_signals("Every run is in the list above the pictures.", lines, time, panels)
+    return [*show_pictures(figures, "signal_"), packed]
+
+
+def show_discrepancy(diagnosis: Diagnosis, figures: Mapping[str, Figure]) -> list[Block]:
+    """Return the signal that would close the gap, described, over time and over what may drive it."""
+    found = diagnosis.evidence.discrepancy
+    if found is None or len(found.values) < 2:
+        return []
+    lead = (
+        f"The {found.quantity} that the simulation lacks in the {found.block}: with it, it would follow the recording."
+        " It is estimated from the measured signals."
+    )
+    return [Text(lead), Items(list(map(format_sentence, found.description))), *show_pictures(figures, "discrepancy")]
+
+
+def show_comfort(diagnosis: Diagnosis) -> list[Block]:
+    """Return comfort and travel on the held-out run, the figures by which seats are assessed."""
+    rows = [
+        (each.quantity.replace("_", " "), format_quantity(each.measured, each.unit),
+         format_quantity(each.nominal, each.unit), _format_error(each.nominal, each.measured),
+         format_quantity(each.after, each.unit), _format_error(each.after, each.measured))
+        for each in diagnosis.evidence.comfort
+    ]  # fmt: skip
+    return tabulate(
+        "On the held-out run", f"figure, measured, nominal, error, {name_last(diagnosis)}, error of that", rows
+    )
+
+
+def show_budget(diagnosis: Diagnosis) -> list[Block]:
+    """Return what the error of the stated scenario is made of on the held-out run, by channel."""
+    lead = (
+        "The error E is the RMS of measured less simulated, of the scenario with the effects found. Its parts are those"
+        " of ASME V&V 20: what halving the step of the integration changes (u_num), what the noise of the recorded"
+        " inputs makes (u_input), and the noise of the sensor itself (u_D). What these leave is the error of the"
+        " form of the model."
+    )
+    rows = []
+    for channel, unit, *parts in diagnosis.error_budget:
+        shown = describe_channel(channel, unit)
+        rows.append([shown.words, shown.unit, *(shown.factor * part for part in parts)])
+    head = "channel, unit, error E, step u_num, inputs u_input, sensor u_D, model form"
+    return [Text(lead), *tabulate("Parts of the error", head, rows, 2)] if rows else []
+
+
+def list_notes(diagnosis: Diagnosis) -> list[str]:
+    """Return notes on the data, and the groups of blocks that the recorded channels can tell apart."""
+    sentences = list(diagnosis.notes)
+    if diagnosis.held_out:
+        sentences.append(f"Held out, no part of any fit: {join_names(diagnosis.held_out)}.")
+    groups = [join_names(group, "or") for group in diagnosis.isolable if group]
+    if groups:
+        sentences.append(f"These channels can distinguish these groups of blocks: {'; '.join(groups)}.")
+    return sentences
+
+
+def _read_lines(group: Sequence[Trace], channel: str) -> list[Array | None]:
+    trace = next((each for each in group if each.channel == channel), None)
+    return [None, None, None] if trace is None else [trace.measured, trace.nominal, trace.after]
+
+
+def _format_error(value: float, truth: float) -> str:
+    if not math.isfinite(value) or not math.isfinite(truth) or truth == 0:
+        return UNKNOWN
+    error = value / truth - 1
+    return f"{'+' if error >= 0 else ''}{format_percent(error)}"
