@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import platform
 import re
-import sys
 import uuid
 import zipfile
 from collections.abc import Mapping, Sequence
@@ -15,6 +14,7 @@ from typing import NamedTuple
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 import seatsim
+from seatsim.cosimulation.description import name_library
 from seatsim.exchange.block import Block, Variable, list_variables
 from seatsim.exchange.c_source import print_model, print_variables, resource
 from seatsim.exchange.compiler import compile_library
@@ -25,10 +25,8 @@ _FIRST_DAY = (1980, 1, 1, 0, 0, 0)
 """The date of the files in the archive, so that the same model gives the same archive."""
 _LONGEST_NAME = 60
 """Letters of a block's name that its files are called by, from its end."""
-_FOLDERS = {"Linux": "linux", "Darwin": "darwin", "Windows": "win"}
 _TYPES = {float: ("Real", "Float64"), int: ("Integer", "Int32"), bool: ("Boolean", "Boolean")}
 """Names of types in versions 2.0 and 3.0."""
-_ENDINGS = {"Linux": ".so", "Darwin": ".dylib", "Windows": ".dll"}
 
 
 def write_fmu(block: Block, version: int, path: Path) -> None:
@@ -44,8 +42,7 @@ def write_fmu(block: Block, version: int, path: Path) -> None:
             (Path(folder) / Path(name).name).write_bytes(content)
         library = Path(folder) / "library"
         compile_library(Path(folder) / f"fmi{version}.c", library)
-        binary = f"binaries/{_platform_folder(version)}/{identifier(block)}{_ENDINGS.get(platform.system(), '.so')}"
-        files[binary] = library.read_bytes()
+        files[name_library(version, identifier(block))] = library.read_bytes()
     write_whole(path, lambda part: _pack(files, part))
 
 
@@ -72,15 +69,6 @@ def identifier(block: Block) -> str:
     """Return the name of a block as C permits it, and as a part of a file's name."""
     name = re.sub(r"\W+", "_", block.name, flags=re.ASCII).strip("_")[-_LONGEST_NAME:]
     return f"m_{name}" if name[:1].isdigit() else name
-
-
-def _platform_folder(version: int) -> str:
-    """Return the folder of this platform's library as the version of the standard names it."""
-    system = platform.system()
-    if version == 2:
-        return _FOLDERS.get(system, "linux") + ("64" if sys.maxsize > 2**32 else "32")
-    machine = {"AMD64": "x86_64", "arm64": "aarch64"}.get(platform.machine(), platform.machine())
-    return f"{machine}-{'windows' if system == 'Windows' else _FOLDERS.get(system, 'linux')}"
 
 
 class _Unit(NamedTuple):

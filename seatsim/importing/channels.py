@@ -16,7 +16,7 @@ from seatsim.importing.time_axis import Axis
 from seatsim.recordings.quality.damage import find_spikes
 from seatsim.recordings.quality.issue import Issue
 from seatsim.schema.arrays import Array
-from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.errors import InputError, nearest, placed
 from seatsim.schema.text import name_some
 from seatsim.schema.units import conversion
 
@@ -70,10 +70,8 @@ def _in_si(name: str, entry: ChannelMap, values: Array, clocked: Clocked, wanted
         raise InputError(
             f"channels.{name}: neither the map nor the file states the unit of '{entry.column}'; write unit"
         )
-    try:
+    with placed(f"channels.{name}.unit"):
         found = conversion(unit, base)
-    except InputError as error:
-        raise InputError(f"channels.{name}.unit: {error}") from error
     return found.factor * (entry.sign * entry.scale * values + entry.offset) + found.zero
 
 

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal, NamedTuple, cast
 
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.recordings.recording import CHANNELS
-from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.errors import InputError, nearest, placed
 from seatsim.schema.fields import param
 from seatsim.schema.files import write_text
 from seatsim.schema.text import explain_bad_name
@@ -160,10 +160,8 @@ def _check_unit(name: str, entry: ChannelMap, wanted: str, source: Source) -> No
         problem = f"{entry.differentiate} is none for a channel in {wanted}; leave it out"
         raise source.error(("channels", name, "differentiate"), problem)
     if entry.unit:
-        try:
+        with placed(source.place(("channels", name, "unit"))):
             conversion(entry.unit, base)
-        except InputError as error:
-            raise source.error(("channels", name, "unit"), str(error)) from error
 
 
 def _runs(data: Mapping[str, object], source: Source) -> dict[str, list[str]]:

@@ -13,7 +13,7 @@ from seatsim.scenario.loading import single
 from seatsim.scenario.numbers import change_numbers, list_numbers
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
-from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.errors import InputError, nearest, placed
 from seatsim.schema.fields import param
 from seatsim.schema.guarded import is_there
 from seatsim.schema.tables import numbers, read_table
@@ -192,10 +192,8 @@ def _channels(
     channels, conversions = {}, {}
     for name, entry in entries.items():
         stated: ChannelEntry = build(ChannelEntry, entry, source, ("channels", name))
-        try:
+        with placed(source.place(("channels", name, "unit"))):
             found = conversion(stated.unit, known[name])
-        except InputError as error:
-            raise source.error(("channels", name, "unit"), str(error)) from error
         channels[name] = ChannelEntry(known[name], abs(found.factor) * stated.noise_rms)
         if found != Conversion(1.0):
             conversions[name] = found
