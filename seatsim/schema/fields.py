@@ -84,9 +84,7 @@ def describe(record: type) -> list[FieldSpecification]:
     defaults = default_values(record)
     specifications = []
     for name, hint in _hints(record).items():
-        info = _field_info(hint)
-        extra = info.json_schema_extra if info else None
-        known = extra if isinstance(extra, dict) else {}
+        info, known = _field_info(hint), _extra_of(hint)
         unit, stated = str(known.get("unit", "")), known.get("usual")
         usual = [each for each in stated if isinstance(each, int | float)] if isinstance(stated, list) else None
         meaning = (info.description or "") if info else ""
@@ -121,6 +119,12 @@ def choices(record: type, name: str) -> tuple[str, ...]:
     return get_args(parts[0]) if parts and get_origin(parts[0]) is Literal else ()
 
 
+def item_units(record: type, name: str) -> list[str]:
+    """Return the unit of each item of a tuple field, an empty text where it states none."""
+    parts = get_args(_hints(record)[name])
+    return [str(_extra_of(item).get("unit", "")) for item in get_args(parts[0])] if parts else []
+
+
 @cache
 def _hints(record: type) -> Mapping[str, object]:
     return get_type_hints(record, include_extras=True)
@@ -130,6 +134,12 @@ def _field_info(hint: object) -> FieldInfo | None:
     if get_origin(hint) is not Annotated:
         return None
     return next((part for part in get_args(hint) if isinstance(part, FieldInfo)), None)
+
+
+def _extra_of(hint: object) -> Mapping[str, JsonValue]:
+    """Return what `param` states of a field beyond its bounds."""
+    info = _field_info(hint)
+    return info.json_schema_extra if info and isinstance(info.json_schema_extra, dict) else {}
 
 
 class _MistakenUnit(NamedTuple):
