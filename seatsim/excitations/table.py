@@ -24,7 +24,7 @@ from seatsim.excitations.road import LONGEST, SHORTEST, TRUCK, Vehicle, floor_re
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.fields import param
-from seatsim.schema.guarded import is_there
+from seatsim.schema.guarded import is_there, nearest_beside
 from seatsim.schema.tables import numbers, read_table
 from seatsim.schema.units import conversion
 
@@ -161,7 +161,7 @@ def read_record(path: str, axis: str, column: str, start: float) -> _EvenSeries:
 
 def _read(path: str, axis: str, column: str) -> pd.DataFrame:
     if not is_there(Path(path)):
-        raise InputError(f"{path}: no such file{_neighbour(Path(path))}")
+        raise InputError(f"{path}: no such file{nearest_beside(Path(path))}")
     table = read_table(Path(path))
     for name in (axis, column):
         _check_column(path, name, list(map(str, table)))
@@ -172,10 +172,6 @@ def _check_column(path: str, name: str, known: list[str]) -> None:
     if name not in known:
         shown = ", ".join(known[:8]) + (f", ... ({len(known)} in all)" if len(known) > 8 else "")
         raise InputError(f"{path}: no column '{name}'{nearest(name, known)}; columns: {shown}")
-
-
-def _neighbour(path: Path) -> str:
-    return nearest(path.name, (p.name for p in path.parent.iterdir())) if path.parent.is_dir() else ""
 
 
 def _numbers(path: str, table: pd.DataFrame, name: str) -> Array:
