@@ -37,7 +37,9 @@ def make_channel(
         values = values - _column(name, entry, entry.minus, clocked)
     values = _in_si(name, entry, values, clocked, wanted)
     rate = clocked.axis.rate
-    doubts = [issue for issue in doubt_channel(name, values, rate, _quantity(name, entry)) if not _mends(entry, issue)]
+    # What is still to be differentiated is a position or a velocity.
+    quantity = {0: quantity_of(name), 1: None, 2: "displacement"}[entry.differentiate]
+    doubts = [issue for issue in doubt_channel(name, values, rate, quantity) if not _mends(entry, issue)]
     channel = _evened(name, *_filled(name, entry, values, clocked, notes), clocked.axis)
     return channel._replace(values=_corrected(name, channel.values, entry, channel.rate, notes)), doubts
 
@@ -55,11 +57,6 @@ def _column(name: str, entry: ChannelMap, column: str | None, clocked: Clocked) 
     if signal is None:
         raise no_column(name, column, entry.group, [clocked])
     return signal.values
-
-
-def _quantity(name: str, entry: ChannelMap) -> str | None:
-    """Return what the column holds: what is still to be differentiated is a position or a velocity."""
-    return {0: quantity_of(name), 1: None, 2: "displacement"}[entry.differentiate]
 
 
 def _in_si(name: str, entry: ChannelMap, values: Array, clocked: Clocked, wanted: str) -> Array:

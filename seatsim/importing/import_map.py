@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, cast
 
 from seatsim.importing.readers.reading import TextLayout
-from seatsim.recordings.recording import CHANNELS
+from seatsim.recordings.recording import CHANNELS, DRIVERS
 from seatsim.schema.errors import InputError, nearest, placed
 from seatsim.schema.fields import param
 from seatsim.schema.files import write_text
@@ -23,8 +23,6 @@ Gaps = Literal["split", "fill"]
 _AS_FOUND = TextLayout()
 """Layout of a text table that is left to be found."""
 FILE = "map.yaml"
-_DRIVES = {"seat": "floor_acceleration", "damper_bench": "displacement"}
-"""Channel without which no recording of a rig can be replayed."""
 PRIMITIVE = {("m/s^2", 1): "m/s", ("m/s^2", 2): "m", ("m/s", 1): "m"}
 """Unit of what is differentiated so many times, by the unit of the derivative."""
 
@@ -149,8 +147,8 @@ def _channels(data: Mapping[str, object], rig: Rig, source: Source) -> dict[str,
         if (channels[name].column is None) == (channels[name].value is None):
             raise source.error(("channels", name), "give either the name of its column, or value for a constant")
         _check_unit(name, channels[name], CHANNELS[rig][name] if rig in CHANNELS else "m", source)
-    if rig in _DRIVES and _DRIVES[rig] not in channels:
-        raise source.error(("channels",), f"channel '{_DRIVES[rig]}' is missing; it drives the simulation of this rig")
+    if rig in DRIVERS and DRIVERS[rig] not in channels:
+        raise source.error(("channels",), f"channel '{DRIVERS[rig]}' is missing; it drives the simulation of this rig")
     return channels
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from seatsim.effects.base import EFFECTS, acts_on
 from seatsim.rig.sensors import Sensors
-from seatsim.rig.temperature import TemperatureFactors, Thermal
+from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Scenario
 from seatsim.scenario.sections import SECTIONS
 from seatsim.schema.errors import nearest
@@ -185,10 +185,5 @@ def _depends_on_temperature(scenario: Scenario) -> bool:
     if law is not None and (is_own(law) or any(TEMPERATURE in name for name in field_names(law))):
         return True
     factors = [scenario.damper.factors, *([inverse.damper.factors] if inverse else [])]
-    return any(map(_act, factors)) or any(
-        acts_on(type(effect), ("factors", TEMPERATURE)) for effect in scenario.effects
-    )
-
-
-def _act(factors: TemperatureFactors) -> bool:
-    return any((factors.viscous, factors.stiffness, factors.yield_force))
+    act = any(any((each.viscous, each.stiffness, each.yield_force)) for each in factors)
+    return act or any(acts_on(type(effect), ("factors", TEMPERATURE)) for effect in scenario.effects)

@@ -21,6 +21,7 @@ from pydantic import Field, JsonValue, TypeAdapter
 from pydantic.fields import FieldInfo
 
 from seatsim.schema.registry import Record
+from seatsim.schema.units import conversion
 
 _R = TypeVar("_R")
 N = TypeVar("N", bound=Record)
@@ -142,24 +143,16 @@ def _extra_of(hint: object) -> Mapping[str, JsonValue]:
     return info.json_schema_extra if info and isinstance(info.json_schema_extra, dict) else {}
 
 
-class _MistakenUnit(NamedTuple):
-    """A unit in place of the SI unit: `factor * value + offset` is the value in SI."""
-
-    name: str
-    factor: float
-    offset: float = 0.0
-
-
-_MISTAKEN: Mapping[str, tuple[_MistakenUnit, ...]] = {
-    "m": (_MistakenUnit("mm", 1e-3), _MistakenUnit("cm", 1e-2)),
-    "kg": (_MistakenUnit("g", 1e-3), _MistakenUnit("t", 1e3)),
-    "N/m": (_MistakenUnit("N/mm", 1e3), _MistakenUnit("N/cm", 1e2)),
-    "N s/m": (_MistakenUnit("N s/mm", 1e3), _MistakenUnit("N s/cm", 1e2)),
-    "s": (_MistakenUnit("ms", 1e-3),),
-    "A": (_MistakenUnit("mA", 1e-3),),
-    "m/s": (_MistakenUnit("km/h", 1 / 3.6), _MistakenUnit("mm/s", 1e-3)),
-    "m/s^2": (_MistakenUnit("g", 9.80665), _MistakenUnit("mm/s^2", 1e-3)),
-    "degC": (_MistakenUnit("K", 1.0, -273.15), _MistakenUnit("degF", 5 / 9, -160 / 9)),
+_MISTAKEN: Mapping[str, tuple[str, ...]] = {
+    "m": ("mm", "cm"),
+    "kg": ("g", "t"),
+    "N/m": ("N/mm", "N/cm"),
+    "N s/m": ("N s/mm", "N s/cm"),
+    "s": ("ms",),
+    "A": ("mA",),
+    "m/s": ("km/h", "mm/s"),
+    "m/s^2": ("g", "mm/s^2"),
+    "degC": ("K", "degF"),
 }
 """Units that stand in place of the SI unit, the likelier first."""
 
@@ -189,9 +182,10 @@ def guess(value: object, field: FieldSpecification) -> str:
     if not isinstance(value, int | float):
         return ""
     for unit in _MISTAKEN.get(field.unit, ()):
-        meant = unit.factor * value + unit.offset
+        factor, zero = conversion(unit, field.unit)
+        meant = factor * value + zero
         if field.usual is not None and _is_usual(meant, field):
-            return f"; {value:g} {unit.name} would be {meant:.4g} {field.unit}"
+            return f"; {value:g} {unit} would be {meant:.4g} {field.unit}"
     return ""
 
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.recordings.recording import Recording
+from seatsim.recordings.recording import DRIVERS, Recording
 from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
@@ -150,7 +150,7 @@ def _band(recording: Recording, tables: list[dict[str, Array]]) -> tuple[float, 
     from scipy.signal import welch
 
     rate = recording.header.sample_rate
-    channel = "floor_acceleration" if recording.header.rig == "seat" else "displacement"
+    channel = DRIVERS[recording.header.rig]
     rows = min([len(table[channel]) for table in tables] + [round(8.0 * rate)])
     spectra = [welch(table[channel], rate, nperseg=rows) for table in tables]
     frequency = spectra[0][0]
