@@ -19,7 +19,7 @@ from pathlib import Path, PurePosixPath
 from types import ModuleType
 from typing import TYPE_CHECKING, NamedTuple
 
-from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.errors import InputError, nearest, placed
 from seatsim.schema.guarded import in_mib, read_bytes, temporary_folder
 from seatsim.schema.modules import LARGEST_UNIT
 from seatsim.schema.units import Conversion, conversion
@@ -39,7 +39,7 @@ _SYSTEMS = {
     "Windows": ("win", "windows", ".dll"),
 }
 """Names of an operating system in versions 2 and 3, and the ending of its libraries."""
-_MACHINES = {"AMD64": "x86_64", "arm64": "aarch64", "x86_64": "x86_64", "aarch64": "aarch64"}
+_MACHINES = {"AMD64": "x86_64", "arm64": "aarch64"}
 
 
 @contextmanager
@@ -91,16 +91,21 @@ def _read_description(path: Path, archive: zipfile.ZipFile) -> bytes:
     return text
 
 
+def name_library(version: int, identifier: str) -> str:
+    """Return where the library for this machine stands in an archive, as a version of the standard names it."""
+    older, newer, ending = _SYSTEMS.get(platform.system(), _SYSTEMS["Linux"])
+    machine = _MACHINES.get(platform.machine(), platform.machine())
+    here = f"{older}{64 if sys.maxsize > 2**32 else 32}" if version == 2 else f"{machine}-{newer}"
+    return f"binaries/{here}/{identifier}{ending}"
+
+
 def find_library(path: Path, archive: zipfile.ZipFile, version: int, identifier: str) -> str:
     """Return the name within the archive of the library for this machine.
 
     Raises:
         InputError: there is none; the error names the platforms that the unit is for.
     """
-    older, newer, ending = _SYSTEMS.get(platform.system(), _SYSTEMS["Linux"])
-    machine = _MACHINES.get(platform.machine(), platform.machine())
-    here = f"{older}{64 if sys.maxsize > 2**32 else 32}" if version == 2 else f"{machine}-{newer}"
-    name = f"binaries/{here}/{identifier}{ending}"
+    name = name_library(version, identifier)
     if name in archive.namelist():
         return name
     found = sorted({entry.split("/")[1] for entry in archive.namelist() if entry.startswith("binaries/")} - {""})
@@ -247,7 +252,5 @@ def find_conversion_of(variable: ScalarVariable, quantity: str) -> Conversion:
         InputError: its unit is of another quantity.
     """
     wanted = QUANTITIES.get(quantity, "N")
-    try:
+    with placed(f"'{variable.name}' cannot be the {quantity}"):
         return conversion(str(variable.unit), wanted) if variable.unit else Conversion(1.0)
-    except InputError as error:
-        raise InputError(f"'{variable.name}' cannot be the {quantity}: {error}") from error

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 
 from seatsim.cosimulation.damper import FmuDamper
 from seatsim.cosimulation.description import CO_SIMULATION, UnitDescription, describe_unit, need_fmpy, unpack
-from seatsim.cosimulation.integrated import IntegratedUnit
-from seatsim.cosimulation.running import RunningUnit
+from seatsim.cosimulation.running import IntegratedUnit, RunningUnit
 from seatsim.schema.errors import InputError
 from seatsim.schema.modules import check_in_use
 

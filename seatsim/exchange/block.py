@@ -16,7 +16,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, Any, NamedTuple, cast, get_args
+from typing import Annotated, Any, NamedTuple, cast
 
 import numba
 from numba import types
@@ -27,7 +27,7 @@ from seatsim.exchange.printing.values import is_empty, is_row
 from seatsim.kernel.augmented import AugmentedDamper
 from seatsim.kernel.rig import Rig, SeatedBody
 from seatsim.schema.content import Form, Unwritten
-from seatsim.schema.fields import bounds, describe
+from seatsim.schema.fields import bounds, describe, item_units
 from seatsim.schema.registry import Record
 
 RATES = {"floor_acceleration": "floor_jerk", "velocity": "acceleration"}
@@ -134,20 +134,11 @@ def _walk_record(name: str, place: str, record: object, what: Variable) -> Itera
 
 def _with_unit_of_element(variable: Variable, cls: type, field: str) -> Variable:
     """Return a coefficient of a law with its own unit: that of the law per power of the current."""
-    items = get_args(get_args(_hints(cls)[field])[0]) if get_args(_hints(cls)[field]) else ()
-    position = variable.name.rpartition("[")[2].rstrip("]")
-    if not position.isdigit() or not variable.unit or len(items) < int(position):
+    units, position = item_units(cls, field), variable.name.rpartition("[")[2].rstrip("]")
+    if not position.isdigit() or not variable.unit or len(units) < int(position):
         return variable
-    extra = [info.json_schema_extra for info in get_args(items[int(position) - 1])[1:]]
-    unit = str(extra[0].get("unit", "")) if extra and isinstance(extra[0], dict) else ""
-    per = unit.removeprefix("1/")
+    per = units[int(position) - 1].removeprefix("1/")
     return variable._replace(unit=f"{variable.unit}/{per}") if per else variable
-
-
-def _hints(cls: type) -> dict[str, object]:
-    from typing import get_type_hints
-
-    return get_type_hints(cls, include_extras=True)
 
 
 def _walk_effects(place: str, effects: tuple[object, ...], what: Variable) -> Iterator[Variable]:

@@ -93,7 +93,8 @@ def _as_struct(value: object) -> Any:
     if hasattr(value, "_fields"):
         record: Record = value  # type: ignore[assignment]  # has the fields of one
         items = {name: _as_struct(item) for name, item in record._asdict().items()}
-        return {name[:_LONGEST_NAME]: item for name, item in items.items() if not _is_nothing(item)}
+        there = {name: item for name, item in items.items() if not isinstance(item, dict | np.ndarray) or len(item)}
+        return {name[:_LONGEST_NAME]: item for name, item in there.items()}
     if isinstance(value, tuple):
         if all(isinstance(item, int | float) for item in value) or all(_is_row(item) for item in value):
             return np.array(value, dtype=float)
@@ -103,10 +104,6 @@ def _as_struct(value: object) -> Any:
 
 def _is_row(item: object) -> bool:
     return isinstance(item, tuple) and not hasattr(item, "_fields") and all(isinstance(v, int | float) for v in item)
-
-
-def _is_nothing(item: object) -> bool:
-    return isinstance(item, dict | np.ndarray) and len(item) == 0
 
 
 FORMATS: dict[str, Callable[[Block, Scenario, Path], object]] = {

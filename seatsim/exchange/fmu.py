@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 import platform
 import re
-import sys
 import uuid
 import zipfile
 from collections.abc import Mapping, Sequence
 from hashlib import sha256
 from pathlib import Path
-from typing import NamedTuple
-from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 import seatsim
+from seatsim.cosimulation.description import name_library
 from seatsim.exchange.block import Block, Variable, list_variables
 from seatsim.exchange.c_source import print_model, print_variables, resource
 from seatsim.exchange.compiler import compile_library
@@ -25,10 +23,8 @@ _FIRST_DAY = (1980, 1, 1, 0, 0, 0)
 """The date of the files in the archive, so that the same model gives the same archive."""
 _LONGEST_NAME = 60
 """Letters of a block's name that its files are called by, from its end."""
-_FOLDERS = {"Linux": "linux", "Darwin": "darwin", "Windows": "win"}
 _TYPES = {float: ("Real", "Float64"), int: ("Integer", "Int32"), bool: ("Boolean", "Boolean")}
 """Names of types in versions 2.0 and 3.0."""
-_ENDINGS = {"Linux": ".so", "Darwin": ".dylib", "Windows": ".dll"}
 
 
 def write_fmu(block: Block, version: int, path: Path) -> None:
@@ -44,8 +40,7 @@ def write_fmu(block: Block, version: int, path: Path) -> None:
             (Path(folder) / Path(name).name).write_bytes(content)
         library = Path(folder) / "library"
         compile_library(Path(folder) / f"fmi{version}.c", library)
-        binary = f"binaries/{_platform_folder(version)}/{identifier(block)}{_ENDINGS.get(platform.system(), '.so')}"
-        files[binary] = library.read_bytes()
+        files[name_library(version, identifier(block))] = library.read_bytes()
     write_whole(path, lambda part: _pack(files, part))
 
 
@@ -61,11 +56,13 @@ def make_files(block: Block, version: int) -> dict[str, bytes]:
     model = print_model(block) + "\n" + print_variables(variables)
     token = f"{{{uuid.UUID(sha256(model.encode()).hexdigest()[:32])}}}"
     model += f'\n#define TOKEN "{token}"\n'
-    unit = _Unit(block, variables, identifier(block), token)
     sources = {"model.h": model, "instance.h": resource("instance.h"), f"fmi{version}.c": resource(f"fmi{version}.c")}
-    files = {"modelDescription.xml": _describe(unit, version)}
+    files = {"modelDescription.xml": _describe(block, variables, version, token)}
     files |= {f"sources/{name}": text.encode() for name, text in sources.items()}
-    return files | ({"sources/buildDescription.xml": _describe_build(unit)} if version == 3 else {})
+    if version == 3:
+        words = {"identifier": identifier(block), "system": platform.system()}
+        files["sources/buildDescription.xml"] = _fill("buildDescription.xml", words)
+    return files
 
 
 def identifier(block: Block) -> str:
@@ -74,87 +71,30 @@ def identifier(block: Block) -> str:
     return f"m_{name}" if name[:1].isdigit() else name
 
 
-def _platform_folder(version: int) -> str:
-    """Return the folder of this platform's library as the version of the standard names it."""
-    system = platform.system()
-    if version == 2:
-        return _FOLDERS.get(system, "linux") + ("64" if sys.maxsize > 2**32 else "32")
-    machine = {"AMD64": "x86_64", "arm64": "aarch64"}.get(platform.machine(), platform.machine())
-    return f"{machine}-{'windows' if system == 'Windows' else _FOLDERS.get(system, 'linux')}"
-
-
-class _Unit(NamedTuple):
-    """What is described: a block with its variables, its identifier in C and its token."""
-
-    block: Block
-    variables: Sequence[Variable]
-    identifier: str
-    token: str
-
-
-def _describe(unit: _Unit, version: int) -> bytes:
+def _describe(block: Block, variables: Sequence[Variable], version: int, token: str) -> bytes:
     """Return `modelDescription.xml` in version 2.0 or 3.0; of the latter the time is a variable, after the last."""
-    block, is_second = unit.block, version == 2
     sentences = [block.summary + ".", *(f"{note[0].upper()}{note[1:]}." for note in block.notes)]
-    stated = {"fmiVersion": f"{version}.0", "modelName": block.name, "description": " ".join(sentences)}
-    stated |= {"generationTool": f"seatsim {seatsim.__version__}"}
-    stated |= {"guid" if is_second else "instantiationToken": unit.token, "variableNamingConvention": "structured"}
-    root = Element("fmiModelDescription", stated | ({"numberOfEventIndicators": "0"} if is_second else {}))
-    model = SubElement(root, "CoSimulation", {"modelIdentifier": unit.identifier} | _abilities(block, is_second))
-    if is_second:
-        SubElement(SubElement(model, "SourceFiles"), "File", {"name": "fmi2.c"})
-    units = SubElement(root, "UnitDefinitions")
-    for name in dict.fromkeys([*filter(None, map(_unit_name, unit.variables)), "s"]):
-        SubElement(units, "Unit", {"name": name})
-    categories = SubElement(root, "LogCategories")
-    SubElement(categories, "Category", {"name": "logStatusError", "description": "what was refused, and why"})
-    SubElement(root, "DefaultExperiment", {"startTime": "0", "stopTime": "10", "stepSize": repr(block.step)})
-    _add_variables(root, unit.variables, is_second)
-    return _text(root)
+    words: dict[str, object] = {"block": block, "version": version, "token": token, "identifier": identifier(block)}
+    words |= {"description": " ".join(sentences), "tool": f"seatsim {seatsim.__version__}"}
+    words["units"] = dict.fromkeys([*filter(None, map(_unit_name, variables)), "s"])
+    words["variables"] = [
+        {"type": _TYPES[type(v.value)][version - 2], "kind": _kind(v), "numbers": _numbers(v)} | v._asdict()
+        for v in variables
+    ]
+    words["outputs"] = [k for k, v in enumerate(variables) if v.causality == "output"]
+    return _fill("modelDescription.xml", words)
 
 
-def _abilities(block: Block, is_second: bool) -> dict[str, str]:
-    """Return what a unit can do, as the version of the standard names it."""
-    own = "InterpolateInputs GetAndSetFMUstate SerializeFMUstate NotUseMemoryManagementFunctions"
-    names = own if is_second else "GetAndSetFMUState SerializeFMUState"
-    step = {"fixedInternalStepSize": repr(block.step)} if block.fixed_step and not is_second else {}
-    return {f"can{name}": "true" for name in ("HandleVariableCommunicationStepSize", *names.split())} | step
+def _fill(name: str, words: Mapping[str, object]) -> bytes:
+    """Return an XML file of this package with its words put in, which the template escapes."""
+    import jinja2
 
-
-def _add_variables(root: Element, variables: Sequence[Variable], is_second: bool) -> None:
-    """Add all variables, and which of them are outputs."""
-    listed = SubElement(root, "ModelVariables")
-    structure = SubElement(root, "ModelStructure")
-    for number, v in enumerate(variables):
-        place, meaning = {"name": v.name, "valueReference": str(number)}, {"description": v.meaning}
-        if is_second:
-            scalar = SubElement(listed, "ScalarVariable", place | _kind(v) | meaning)
-            SubElement(scalar, _TYPES[type(v.value)][0], _numbers(v))
-        else:
-            SubElement(listed, _TYPES[type(v.value)][1], place | meaning | _kind(v) | _numbers(v))
-    outputs = [k for k, v in enumerate(variables) if v.causality == "output"]
-    if is_second:
-        for name in ("Outputs", "InitialUnknowns"):
-            group = SubElement(structure, name)
-            for k in outputs:
-                SubElement(group, "Unknown", {"index": str(k + 1)})
-        return
-    time = {"name": "time", "valueReference": str(len(variables)), "causality": "independent"}
-    SubElement(listed, "Float64", time | {"variability": "continuous", "unit": "s", "description": "time"})
-    for name in ("Output", "InitialUnknown"):
-        for k in outputs:
-            SubElement(structure, name, {"valueReference": str(k)})
-
-
-def _describe_build(unit: _Unit) -> bytes:
-    """Return `buildDescription.xml`, by which a program builds the sources of version 3.0."""
-    root = Element("fmiBuildDescription", {"fmiVersion": "3.0"})
-    build = SubElement(root, "BuildConfiguration", {"modelIdentifier": unit.identifier})
-    files = SubElement(build, "SourceFileSet", {"language": "C99", "compilerOptions": "-ffp-contract=off"})
-    SubElement(files, "SourceFile", {"name": "fmi3.c"})
-    if platform.system() != "Windows":
-        SubElement(build, "Library", {"name": "m"})
-    return _text(root)
+    loader, strict = jinja2.PackageLoader("seatsim.exchange", "fmi"), jinja2.StrictUndefined
+    environment = jinja2.Environment(
+        loader=loader, autoescape=True, undefined=strict, trim_blocks=True, lstrip_blocks=True
+    )
+    # An apostrophe needs no escape between quotation marks.
+    return environment.get_template(name).render(words).replace("&#39;", "'").replace("&#34;", "&quot;").encode()
 
 
 def _unit_name(v: Variable) -> str:
@@ -179,8 +119,3 @@ def _numbers(v: Variable) -> dict[str, str]:
     if v.causality != "output":
         found["start"] = str(v.value).lower() if isinstance(v.value, bool) else repr(v.value)
     return found
-
-
-def _text(root: Element) -> bytes:
-    indent(root)
-    return bytes(tostring(root, encoding="utf-8", xml_declaration=True))

@@ -24,7 +24,7 @@ from seatsim.excitations.road import LONGEST, SHORTEST, TRUCK, Vehicle, floor_re
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.fields import param
-from seatsim.schema.guarded import is_there
+from seatsim.schema.guarded import is_there, nearest_beside
 from seatsim.schema.tables import numbers, read_table
 from seatsim.schema.units import conversion
 
@@ -70,15 +70,15 @@ class Table(NamedTuple):
         """Return the motion of the floor; `seed` plays no part.
 
         Raises:
-            InputError: the table cannot be used (see `columns.read_record`), the keys do not say whether it
+            InputError: the table cannot be used (see `_read_record`), the keys do not say whether it
                 is over time or distance, the run is longer than the record, or `step` is too coarse for its
                 band.
         """
         if (self.time_column is None) == (self.distance_column is None):
             raise InputError(f"table {self.path}: give either time_column or distance_column (with speed)")
         if self.time_column is not None:
-            return self._measured(read_record(self.path, self.time_column, self.column, self.start), step)
-        return self._driven(read_record(self.path, str(self.distance_column), self.column, self.start), step)
+            return self._measured(_read_record(self.path, self.time_column, self.column, self.start), step)
+        return self._driven(_read_record(self.path, str(self.distance_column), self.column, self.start), step)
 
     def _measured(self, record: _EvenSeries, step: float) -> Floor:
         if self.speed is not None:
@@ -141,14 +141,18 @@ class _EvenSeries(NamedTuple):
         return self._replace(values=self.values[round(start / self.interval) :])
 
 
-def read_record(path: str, axis: str, column: str, start: float) -> _EvenSeries:
+def _read_record(path: str, axis: str, column: str, start: float) -> _EvenSeries:
     """Read `column` of a CSV (or CSV.gz) table over its column `axis`, from `start` after its first row.
 
     Raises:
         InputError: no such file or column, not a table, fewer than 16 rows, an entry that is not a finite
             number, or an `axis` that does not grow in even intervals.
     """
-    table = _read(path, axis, column)
+    if not is_there(Path(path)):
+        raise InputError(f"{path}: no such file{nearest_beside(Path(path))}")
+    table = read_table(Path(path))
+    for name in (axis, column):
+        _check_column(path, name, list(map(str, table)))
     if len(table) < _LEAST_ROWS:
         raise InputError(f"{path}: {len(table)} rows are too few; permitted: at least {_LEAST_ROWS}")
     position = _numbers(path, table, axis)
@@ -159,23 +163,10 @@ def read_record(path: str, axis: str, column: str, start: float) -> _EvenSeries:
     return record
 
 
-def _read(path: str, axis: str, column: str) -> pd.DataFrame:
-    if not is_there(Path(path)):
-        raise InputError(f"{path}: no such file{_neighbour(Path(path))}")
-    table = read_table(Path(path))
-    for name in (axis, column):
-        _check_column(path, name, list(map(str, table)))
-    return table
-
-
 def _check_column(path: str, name: str, known: list[str]) -> None:
     if name not in known:
         shown = ", ".join(known[:8]) + (f", ... ({len(known)} in all)" if len(known) > 8 else "")
         raise InputError(f"{path}: no column '{name}'{nearest(name, known)}; columns: {shown}")
-
-
-def _neighbour(path: Path) -> str:
-    return nearest(path.name, (p.name for p in path.parent.iterdir())) if path.parent.is_dir() else ""
 
 
 def _numbers(path: str, table: pd.DataFrame, name: str) -> Array:

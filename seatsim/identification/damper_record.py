@@ -6,17 +6,16 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import NamedTuple, Protocol, Self, TypeAlias, TypeVar, cast, get_args, get_type_hints
+from typing import NamedTuple, Protocol, Self, TypeAlias, TypeVar, cast
 
 import numpy as np
-from pydantic.fields import FieldInfo
 
 from seatsim.cosimulation.damper import PREFIX
 from seatsim.dampers.base import DAMPERS, DamperSpecification
 from seatsim.kernel.generic import DamperModel
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest
-from seatsim.schema.fields import bounds, describe
+from seatsim.schema.fields import bounds, describe, item_units
 from seatsim.schema.validation import is_finite_number
 
 FieldValue: TypeAlias = float | str | tuple[float, ...]
@@ -61,17 +60,7 @@ def law_range(fields: Mapping[str, FieldValue], default: float) -> float:
 @cache
 def is_current_law(cls: type, field: str) -> bool:
     """Whether a tuple field holds the coefficients of a polynomial in the current: units `-`, `1/A`, `1/A^2`, ..."""
-    hint = get_type_hints(cls, include_extras=True)[field]
-    units = [_unit(part) for part in get_args(get_args(hint)[0])]
-    return len(units) > 1 and units[:2] == ["", "1/A"]
-
-
-def _unit(hint: object) -> str:
-    """Return the unit that an annotated type states, an empty text where it states none."""
-    for part in get_args(hint)[1:]:
-        if isinstance(part, FieldInfo) and isinstance(part.json_schema_extra, dict):
-            return str(part.json_schema_extra.get("unit", ""))
-    return ""
+    return item_units(cls, field)[:2] == ["", "1/A"]
 
 
 def evaluate_law(coefficients: Sequence[float], currents: Array) -> Array:

@@ -183,7 +183,7 @@ def identify_records(
         seconds=time.perf_counter() - began,
         ns_per_step=_time_step(bench, problem.inputs),
         warm=problem.reference is not None,
-        commanded=problem.fits_coil,
+        commanded=any(record.commanded for record in parts.fitted),
         coverage=measure_coverage(parts.fitted),
         notes=[*notes, *_note_divergence(assessments), *unused_columns(records)],
     )

@@ -9,10 +9,9 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from seatsim.identification.coordinates import Component
-from seatsim.identification.problem import OFFSET_PER_KELVIN, PER_KELVIN, IdentificationProblem, compute_jacobian
+from seatsim.identification.problem import IdentificationProblem, compute_jacobian, read_bench
 from seatsim.schema.arrays import Array
 from seatsim.schema.content import Form, written
-from seatsim.schema.fields import describe
 
 _IDENTIFIED = 0.1
 """Standard deviation, over the parameter's size, above which the data are said not to identify it."""
@@ -81,10 +80,10 @@ def _estimates(problem: IdentificationProblem, vector: Array, covariance: Array)
     """Return the parameters with the standard deviations that follow from the covariance of the vector, (P, P)."""
     values, derivatives = _values(problem, vector), _parameter_derivatives(problem, vector)
     std = np.sqrt(np.maximum(np.diag(derivatives @ covariance @ derivatives.T), 0.0))
-    parts = zip(_names(problem), values, std, _sizes(problem, values), strict=True)
+    parts = zip(problem.components, values, std, _sizes(problem, values), strict=True)
     return [
-        ParameterEstimate(name, float(value), float(deviation), unit, bool(deviation <= _IDENTIFIED * size))
-        for (name, unit), value, deviation, size in parts
+        ParameterEstimate(c.name, float(value), float(std), c.unit + _per_current(c), bool(std <= _IDENTIFIED * size))
+        for c, value, std, size in parts
     ]
 
 
@@ -120,15 +119,6 @@ def _correlated(labels: list[str], covariance: Array) -> list[tuple[str, str, fl
     return sorted((pair for pair in pairs if abs(pair[2]) > _CORRELATED), key=lambda pair: -abs(pair[2]))
 
 
-def _names(problem: IdentificationProblem) -> list[tuple[str, str]]:
-    """Return the name and the unit of every parameter."""
-    components = problem.coordinates.components
-    unit_of = {specification.name: specification.unit for specification in describe(problem.coordinates.cls)}
-    own = [(c.name, unit_of[c.field] + _per_current(c)) for c in components]
-    units = {"temperature_factors": "1/K", "actuator": "1/s", "bench": "N/K"}
-    return own + [(name, units[name.partition(".")[0]]) for name in problem.bench_names]
-
-
 def _per_current(c: Component) -> str:
     """Return what a law's coefficient has behind the law's unit."""
     if c.at is None or not c.position:
@@ -139,15 +129,8 @@ def _per_current(c: Component) -> str:
 def _values(problem: IdentificationProblem, vector: Array) -> Array:
     """Return the parameters as their files have them, shape (P,); coefficients of a law in place of its values."""
     bench = problem.to_bench(vector)
-    fields = bench.damper._asdict()
-    own = [c.read(fields[c.field]) for c in problem.coordinates.components]
-    beside = {f"temperature_factors.{name}": value for name, value in bench.factors._asdict().items()}
-    beside |= {
-        "actuator.rate": bench.rise,
-        "actuator.rate_fall": bench.fall,
-        "bench.offset_per_kelvin": bench.offset_per_kelvin,
-    }
-    return np.array([*own, *(beside[name] for name in problem.bench_names)], dtype=float)
+    fields = {**bench.damper._asdict(), **read_bench(bench)}
+    return np.array([c.read(fields[c.field]) for c in problem.components], dtype=float)
 
 
 def _parameter_derivatives(problem: IdentificationProblem, vector: Array) -> Array:
@@ -161,15 +144,12 @@ def _parameter_derivatives(problem: IdentificationProblem, vector: Array) -> Arr
 
 def _sizes(problem: IdentificationProblem, values: Array) -> list[float]:
     """Return the size that each parameter's deviation is compared with."""
-    components, end = problem.coordinates.components, problem.coordinates.end
+    pairs, end = list(zip(problem.components, map(float, values), strict=True)), problem.coordinates.end
     laws: dict[str, float] = {}
-    for c, value in zip(components, values[: len(components)], strict=True):
+    for c, value in pairs:
         if c.at is not None:
-            laws[c.field] = max(laws.get(c.field, c.natural), abs(float(value)) * end ** (c.position or 0))
-    sizes = [_size(c, float(value), laws, end) for c, value in zip(components, values, strict=False)]
-    least = {"temperature_factors": PER_KELVIN, "actuator": 0.0, "bench": OFFSET_PER_KELVIN}
-    beside = zip(problem.bench_names, values[len(components) :], strict=True)
-    return sizes + [max(abs(float(value)), least[name.partition(".")[0]]) for name, value in beside]
+            laws[c.field] = max(laws.get(c.field, c.natural), abs(value) * end ** (c.position or 0))
+    return [_size(c, value, laws, end) for c, value in pairs]
 
 
 def _size(c: Component, value: float, laws: dict[str, float], end: float) -> float:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.identification.coordinates import Coordinates
+from seatsim.identification.coordinates import Component, Coordinates
 from seatsim.identification.damper_record import (
     DamperRecord,
     Scales,
@@ -26,15 +26,18 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import describe
 
+_COIL, _OFFSET = ("actuator.rate", "actuator.rate_fall"), "bench.offset_per_kelvin"
+_FACTORS = tuple(f"temperature_factors.{name}" for name in TemperatureFactors._fields[:3])
+"""Keys of `parameters.yaml` for what may be free beside the damper."""
 COIL_RATE = 130.0
 """1/s, the size of the coil's rates: those of Braz-Cesar and Barros 2012."""
 _COIL_RATE_SPAN = 30.0
 """Factor by which they may differ from it."""
-PER_KELVIN = 0.01
+_PER_KELVIN = 0.01
 """1/K, the size of a temperature factor's component."""
 _MOST_PER_KELVIN = 0.03
 """1/K; that much takes nine tenths of a force over 80 K."""
-OFFSET_PER_KELVIN = 1.0
+_OFFSET_PER_KELVIN = 1.0
 """N/K, the size of the component of the offset's growth."""
 _LEAST_SPREAD = 0.05
 """Least standard deviation of a record's force, over the largest one's, that its residuals are divided by."""
@@ -50,40 +53,34 @@ _DIFFERENCE_STEP = 1e-3
 
 
 class IdentificationProblem(NamedTuple):
-    """What is fitted: `coordinates` of the damper, then the coil's rates, then what temperature does.
+    """What is fitted: `coordinates` of the damper, then what is free `beside` it (see `_list_beside`).
 
-    inputs, weights: of each record, and the factor of its residuals. fits_coil: whether the coil's rates are free.
-    reference: temperature in degC at which the factors are 1, None where they are not fitted but `factors`.
-    tolerance: that of the simulation.
+    inputs, weights: of each record, and the factor of its residuals. reference: temperature in degC at which the
+    factors are 1, None where they are not fitted but `factors`. tolerance: that of the simulation.
     """
 
     coordinates: Coordinates
     inputs: list[RecordInputs]
     weights: list[float]
-    fits_coil: bool
+    beside: list[Component]
     reference: float | None
     tolerance: float = TOLERANCE
     factors: TemperatureFactors = TemperatureFactors()
 
     @property
-    def labels(self) -> list[str]:
-        """What the components are called; a law's is its value at a current."""
-        return [component.label for component in self.coordinates.components] + self.bench_names
+    def components(self) -> list[Component]:
+        """All that is free, in the order of the vector."""
+        return [*self.coordinates.components, *self.beside]
 
     @property
-    def bench_names(self) -> list[str]:
-        """Names of what is free in addition to the damper."""
-        warm = [*(f"temperature_factors.{name}" for name in TemperatureFactors._fields[:3]), "bench.offset_per_kelvin"]
-        coil = ["actuator.rate", "actuator.rate_fall"] if self.fits_coil else []
-        return coil + (warm if self.reference is not None else [])
+    def labels(self) -> list[str]:
+        """What the components are called; a law's is its value at a current."""
+        return [component.label for component in self.components]
 
     @property
     def bounds(self) -> tuple[Array, Array]:
         """Least and greatest value of every component, each of shape (P,)."""
-        coil = [math.log(_COIL_RATE_SPAN)] * 2 * self.fits_coil
-        warm = [_MOST_PER_KELVIN / PER_KELVIN] * 3 + [math.inf] if self.reference is not None else []
-        beside = np.array(coil + warm)
-        return np.append(self.coordinates.low, -beside), np.append(self.coordinates.high, beside)
+        return np.array([c.low for c in self.components]), np.array([c.high for c in self.components])
 
     def labels_at_bounds(self, vector: Array) -> list[str]:
         """Return what stands at the least or the greatest value that it may have."""
@@ -93,21 +90,20 @@ class IdentificationProblem(NamedTuple):
 
     def to_vector(self, bench: BenchModel) -> Array:
         """Return the vector of a bench, shape (P,)."""
-        coil = [math.log(rate / COIL_RATE) for rate in (bench.rise, bench.fall)] if self.fits_coil else []
-        warm = [*(factor / PER_KELVIN for factor in bench.factors[:3]), bench.offset_per_kelvin / OFFSET_PER_KELVIN]
-        beside = coil + (warm if self.reference is not None else [])
-        return np.append(self.coordinates.to_vector(bench.damper), beside)
+        values = read_bench(bench)
+        return np.append(self.coordinates.to_vector(bench.damper), [c.to_number(values[c.field]) for c in self.beside])
 
     def to_bench(self, vector: Array) -> BenchModel:
         """Return the bench of a vector of shape (P,)."""
         count = len(self.coordinates.components)
-        damper, beside = self.coordinates.to_record(vector[:count]), [float(number) for number in vector[count:]]
-        rise, fall = (COIL_RATE * math.exp(number) for number in (beside[:2] if self.fits_coil else (0.0, 0.0)))
+        damper = self.coordinates.to_record(vector[:count])
+        found = {c.field: c.to_value(number) for c, number in zip(self.beside, vector[count:], strict=True)}
+        rise, fall = (found.get(name, COIL_RATE) for name in _COIL)
         if self.reference is None:
             return BenchModel(damper, self.factors, rise, fall)
-        viscous, stiffness, yielding = (PER_KELVIN * number for number in beside[-4:-1])
+        viscous, stiffness, yielding = (found[name] for name in _FACTORS)
         factors = TemperatureFactors(viscous, stiffness, yielding, self.reference)
-        return BenchModel(damper, factors, rise, fall, OFFSET_PER_KELVIN * beside[-1])
+        return BenchModel(damper, factors, rise, fall, found[_OFFSET])
 
     def residuals(self, vector: Array) -> Array:
         """Return the residuals, each record's over the size of its force and the root of its length, shape (N,)."""
@@ -125,6 +121,26 @@ class IdentificationProblem(NamedTuple):
     def cost(self, vector: Array) -> float:
         """Return the mean square over records of the error over the size of the force."""
         return float(np.sum(self.residuals(vector) ** 2)) / len(self.inputs)
+
+
+def read_bench(bench: BenchModel) -> dict[str, float]:
+    """Return what may be free of a bench beside its damper, by the key that it has in `parameters.yaml`."""
+    return dict(
+        zip(
+            (*_COIL, *_FACTORS, _OFFSET),
+            (bench.rise, bench.fall, *bench.factors[:3], bench.offset_per_kelvin),
+            strict=True,
+        )
+    )
+
+
+def _list_beside(fits_coil: bool, fits_temperature: bool) -> list[Component]:
+    """Return what is free beside the damper: rates of the coil, temperature factors and the growth of the offset."""
+    span, most = math.log(_COIL_RATE_SPAN), _MOST_PER_KELVIN / _PER_KELVIN
+    coil = [Component(name, None, "1/s", COIL_RATE, COIL_RATE, True, -span, span, None) for name in _COIL]
+    warm = [Component(name, None, "1/K", _PER_KELVIN, _PER_KELVIN, False, -most, most, None) for name in _FACTORS]
+    offset = Component(_OFFSET, None, "N/K", _OFFSET_PER_KELVIN, _OFFSET_PER_KELVIN, False, -math.inf, math.inf, None)
+    return coil * fits_coil + [*warm, offset] * fits_temperature
 
 
 def _weight_records(records: Sequence[BenchRecord], inputs: Sequence[RecordInputs]) -> list[float]:
@@ -190,13 +206,13 @@ def state_problem(
     """
     coordinates = _choose_coordinates(records, cls, settings, known)
     reference = None if settings.ignore_temperature else _reference_temperature(records)
-    fits_coil = any(record.commanded for record in records)
+    beside = _list_beside(any(record.commanded for record in records), reference is not None)
     inputs = [prepare_inputs(record, origin, False) for record in records]
     rows = max(_LEAST_SEARCH_ROWS, _SEARCH_ROWS // len(records))
     stretches = [record.liveliest(rows) for record in records]
     short = [_with_run_up(record, stretch, origin) for record, stretch in zip(records, stretches, strict=True)]
     parts = [record.part(*stretch) for record, stretch in zip(records, stretches, strict=True)]
-    whole = IdentificationProblem(coordinates, inputs, _weight_records(records, inputs), fits_coil, reference)
+    whole = IdentificationProblem(coordinates, inputs, _weight_records(records, inputs), beside, reference)
     return whole, whole._replace(inputs=short, weights=_weight_records(parts, short))
 
 

@@ -100,16 +100,12 @@ def _group_runs(files: Sequence[DataFile], stated: ImportMap) -> list[tuple[str,
         return [(run, [by_name[name] for name in names]) for run, names in stated.runs.items()]
     if len(files) > 1 and not all(_has_all(file, stated) for file in files):
         return [("run-a", list(files))]
-    return [(_run_name(file, files), [file]) for file in files]
+    return [(file.path.name.split(".")[0] if len(files) > 1 else "run-a", [file]) for file in files]
 
 
 def _has_all(file: DataFile, stated: ImportMap) -> bool:
     columns = {signal.name for group in file.groups for signal in group.signals}
     return all(channel.column in columns for channel in stated.channels.values() if channel.column is not None)
-
-
-def _run_name(file: DataFile, files: Sequence[DataFile]) -> str:
-    return file.path.name.split(".")[0] if len(files) > 1 else "run-a"
 
 
 def _use_channels(
@@ -136,7 +132,8 @@ def _tabulate(
     run: str, used: _Used, moved: Mapping[str, float], stated: ImportMap, rate: float, notes: list[str]
 ) -> dict[str, Array]:
     """Return the table of a run on one time base, over the time that all its channels have in common."""
-    held = {name: _moved(used.by_group[label][name], moved.get(label, 0.0)) for name, label in used.taken_from.items()}
+    taken = {name: (used.by_group[label][name], moved[label]) for name, label in used.taken_from.items()}
+    held = {name: channel._replace(start=channel.start + seconds) for name, (channel, seconds) in taken.items()}
     begin = max(each.start for each in held.values())
     end = min(each.start + (len(each.values) - 1) / each.rate for each in held.values())
     shortest = min(held.values(), key=lambda each: len(each.values) / each.rate)
@@ -165,10 +162,6 @@ def _tabulate(
             notes.append(f"{name}: resampled from {each.rate:.6g} to {rate:.6g} Hz, {how}")
         table[name] = take(each.values, each.start - entry.delay, each.rate, times)
     return table
-
-
-def _moved(channel: Channel, seconds: float) -> Channel:
-    return channel._replace(start=channel.start + seconds)
 
 
 def _align(used: _Used, align: dict[str, float], notes: list[str]) -> dict[str, float]:

@@ -16,7 +16,7 @@ from seatsim.importing.time_axis import Axis
 from seatsim.recordings.quality.damage import find_spikes
 from seatsim.recordings.quality.issue import Issue
 from seatsim.schema.arrays import Array
-from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.errors import InputError, nearest, placed
 from seatsim.schema.text import name_some
 from seatsim.schema.units import conversion
 
@@ -37,7 +37,9 @@ def make_channel(
         values = values - _column(name, entry, entry.minus, clocked)
     values = _in_si(name, entry, values, clocked, wanted)
     rate = clocked.axis.rate
-    doubts = [issue for issue in doubt_channel(name, values, rate, _quantity(name, entry)) if not _mends(entry, issue)]
+    # What is still to be differentiated is a position or a velocity.
+    quantity = {0: quantity_of(name), 1: None, 2: "displacement"}[entry.differentiate]
+    doubts = [issue for issue in doubt_channel(name, values, rate, quantity) if not _mends(entry, issue)]
     channel = _evened(name, *_filled(name, entry, values, clocked, notes), clocked.axis)
     return channel._replace(values=_corrected(name, channel.values, entry, channel.rate, notes)), doubts
 
@@ -57,11 +59,6 @@ def _column(name: str, entry: ChannelMap, column: str | None, clocked: Clocked) 
     return signal.values
 
 
-def _quantity(name: str, entry: ChannelMap) -> str | None:
-    """Return what the column holds: what is still to be differentiated is a position or a velocity."""
-    return {0: quantity_of(name), 1: None, 2: "displacement"}[entry.differentiate]
-
-
 def _in_si(name: str, entry: ChannelMap, values: Array, clocked: Clocked, wanted: str) -> Array:
     base = PRIMITIVE[wanted, entry.differentiate] if entry.differentiate else wanted
     signal = clocked.group.find(entry.column or "")
@@ -70,10 +67,8 @@ def _in_si(name: str, entry: ChannelMap, values: Array, clocked: Clocked, wanted
         raise InputError(
             f"channels.{name}: neither the map nor the file states the unit of '{entry.column}'; write unit"
         )
-    try:
+    with placed(f"channels.{name}.unit"):
         found = conversion(unit, base)
-    except InputError as error:
-        raise InputError(f"channels.{name}.unit: {error}") from error
     return found.factor * (entry.sign * entry.scale * values + entry.offset) + found.zero
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, cast
 
 from seatsim.importing.readers.reading import TextLayout
-from seatsim.recordings.recording import CHANNELS
-from seatsim.schema.errors import InputError, nearest
+from seatsim.recordings.recording import CHANNELS, DRIVERS
+from seatsim.schema.errors import InputError, nearest, placed
 from seatsim.schema.fields import param
 from seatsim.schema.files import write_text
 from seatsim.schema.text import explain_bad_name
@@ -23,8 +23,6 @@ Gaps = Literal["split", "fill"]
 _AS_FOUND = TextLayout()
 """Layout of a text table that is left to be found."""
 FILE = "map.yaml"
-_DRIVES = {"seat": "floor_acceleration", "damper_bench": "displacement"}
-"""Channel without which no recording of a rig can be replayed."""
 PRIMITIVE = {("m/s^2", 1): "m/s", ("m/s^2", 2): "m", ("m/s", 1): "m"}
 """Unit of what is differentiated so many times, by the unit of the derivative."""
 
@@ -149,8 +147,8 @@ def _channels(data: Mapping[str, object], rig: Rig, source: Source) -> dict[str,
         if (channels[name].column is None) == (channels[name].value is None):
             raise source.error(("channels", name), "give either the name of its column, or value for a constant")
         _check_unit(name, channels[name], CHANNELS[rig][name] if rig in CHANNELS else "m", source)
-    if rig in _DRIVES and _DRIVES[rig] not in channels:
-        raise source.error(("channels",), f"channel '{_DRIVES[rig]}' is missing; it drives the simulation of this rig")
+    if rig in DRIVERS and DRIVERS[rig] not in channels:
+        raise source.error(("channels",), f"channel '{DRIVERS[rig]}' is missing; it drives the simulation of this rig")
     return channels
 
 
@@ -160,10 +158,8 @@ def _check_unit(name: str, entry: ChannelMap, wanted: str, source: Source) -> No
         problem = f"{entry.differentiate} is none for a channel in {wanted}; leave it out"
         raise source.error(("channels", name, "differentiate"), problem)
     if entry.unit:
-        try:
+        with placed(source.place(("channels", name, "unit"))):
             conversion(entry.unit, base)
-        except InputError as error:
-            raise source.error(("channels", name, "unit"), str(error)) from error
 
 
 def _runs(data: Mapping[str, object], source: Source) -> dict[str, list[str]]:

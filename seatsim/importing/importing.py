@@ -1,30 +1,46 @@
-"""The way in: files and a map, or the map that is proposed for them, become a recording or a road."""
+"""The way in: files and a map, or the map that is proposed for them, become a recording or a road on disk.
+
+A recording is written with its map, a road with an excitation that drives on it.
+"""
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
-from seatsim.importing.assembly import Assembled, assemble, assemble_road, doubt_runs
-from seatsim.importing.import_map import FILE, ImportMap, check_files, read_map, write_map
+import numpy as np
+
+from seatsim.importing.assembly import DISTANCE, Assembled, assemble, assemble_road, doubt_runs
+from seatsim.importing.import_map import FILE, ImportMap, Rig, check_files, read_map, write_map
 from seatsim.importing.matching import propose
 from seatsim.importing.readers.reading import read_file
 from seatsim.importing.signals import LISTED, DataFile
 from seatsim.importing.time_axis import find_clock
-from seatsim.importing.writing import make_nominal, write_recording, write_road
+from seatsim.provenance.manifest import write_documented
 from seatsim.recordings.quality.damage import QUIET, noise_of
 from seatsim.recordings.quality.examination import examine, merge_issues
 from seatsim.recordings.quality.issue import Issue
 from seatsim.recordings.recording import CHANNELS, COMMANDS, load_recording
+from seatsim.recordings.writer import state_header, state_nominal, write_files
+from seatsim.scenario.loading import load
+from seatsim.schema.arrays import Array
 from seatsim.schema.content import Form, Unwritten, written
 from seatsim.schema.errors import InputError
+from seatsim.schema.files import write_packed, write_text
 from seatsim.schema.guarded import temporary_folder
-from seatsim.schema.text import name_some
+from seatsim.schema.text import disarm, name_some
+from seatsim.schema.yaml_source import Source
+from seatsim.schema.yaml_text import dump
 
 _OWN_FILES = (".yaml", ".yml", ".json", ".md", ".png", ".pdf", ".html")
 """Endings of files that lie beside data and hold none."""
+_ROAD, _EXCITATION = "road.csv.gz", "excitation.yaml"
+_SPEED = 12.0
+"""m/s at which the excitation drives on an imported road until another is stated."""
+_CURRENTS = ("current_command", "command_voltage", "coil_current")
 
 
 class Import(NamedTuple):
@@ -92,12 +108,12 @@ def import_files(
         notes += [said for clock in clocks if clock for said in clock.assumptions] + _say_left_out(files, used)
     if used.rig == "road":
         road, doubts = assemble_road(files, used)
-        return Import(folder, used, stated is None, write_road(folder, road, used), notes, doubts)
+        return Import(folder, used, stated is None, _write_road(folder, road, used), notes, doubts)
     assembled = _assembled(files, used, folder, stated is None)
-    scenario = make_nominal(nominal, used.rig, assembled.runs[0].table) if nominal else None
+    scenario = _make_nominal(nominal, used.rig, assembled.runs[0].table) if nominal else None
     found = [*assembled.doubts, *([] if scenario else doubt_runs(assembled))]
     doubts = merge_issues(found, len(assembled.runs)) + (_examined(assembled, scenario) if scenario else [])
-    written = write_recording(folder, assembled, scenario)
+    written = _write_recording(folder, assembled, scenario)
     runs = tuple(run.name for run in assembled.runs)
     notes += assembled.notes
     return Import(folder, assembled.map, stated is None, written, notes, doubts, assembled.rate, runs)
@@ -181,5 +197,68 @@ def _commented(assembled: Assembled) -> ImportMap:
 def _examined(assembled: Assembled, scenario: Mapping[str, object]) -> list[Issue]:
     """Return the issues that `gap` and `diagnose` will name, from a copy in a temporary folder."""
     with temporary_folder() as place:
-        write_recording(Path(place), assembled, scenario)
+        _write_recording(Path(place), assembled, scenario)
         return examine(load_recording(place)).issues
+
+
+def _write_recording(folder: Path, assembled: Assembled, nominal: Mapping[str, object] | None) -> list[Path]:
+    """Write tables, nominal scenario, map and header of a recording, all or none."""
+    used, rate = assembled.map, assembled.rate
+    tables = {run.name: {"time": np.arange(run.rows) / rate, **run.table} for run in assembled.runs}
+    runs = {
+        run.name: {"repeat_of": used.repeats[run.name]} if run.name in used.repeats else {} for run in assembled.runs
+    }
+    noise = {name: entry.noise_rms for name, entry in used.channels.items()}
+    header = state_header(used.rig, rate, {}, runs, noise)
+    header |= {"actuator": used.actuator._asdict()} if used.actuator else {}
+    return write_documented(
+        folder,
+        lambda part: [*write_files(part, tables, nominal, header, "%.9g"), write_map(part / FILE, used)],
+    )
+
+
+def _write_road(folder: Path, road: Mapping[str, Array], stated: ImportMap) -> list[Path]:
+    """Write a road as a table over distance, and a scenario's `excitation` that drives on its middle track."""
+    import pandas as pd
+
+    frame = pd.DataFrame({str(disarm(name)): values for name, values in road.items()})
+    tracks = [name for name in frame if name != DISTANCE]
+    table = {"kind": "table", "path": _ROAD, "distance_column": DISTANCE}
+    excitation = {"excitation": {**table, "column": tracks[len(tracks) // 2], "speed": _SPEED}}
+    write_table = partial(frame.to_csv, mode="wb", index=False, float_format="%.9g")
+    return write_documented(
+        folder,
+        lambda part: [
+            write_packed(part / _ROAD, write_table),
+            write_map(part / FILE, stated),
+            write_text(part / _EXCITATION, dump(excitation)),
+        ],
+    )
+
+
+def _make_nominal(scenario: str, rig: Rig, recorded: Collection[str]) -> Mapping[str, object]:
+    """Return the content of the nominal scenario of a rig with these recorded channels.
+
+    Where no current was recorded, the scenario's constant one is kept.
+
+    Raises:
+        InputError: the scenario is wrong, or states no constant current where none is recorded.
+    """
+    source = load(scenario)[0].source
+    if source is None:
+        raise InputError(f"{scenario}: states no rig; give the file of a scenario")
+    return state_nominal(source.data, rig, {} if rig == "damper_bench" else _law(source, recorded))
+
+
+def _law(source: Source, recorded: Collection[str]) -> dict[str, object]:
+    if any(name in recorded for name in _CURRENTS):
+        return {"law": "replay"}
+    law = source.data.get("controller")
+    current = law.get("current") if isinstance(law, Mapping) else None
+    if current is None:
+        problem = "no current was recorded, and the scenario states no constant one"
+        raise source.error(
+            ("controller",),
+            f"{problem}; write controller: {{law: constant, current: 0.0}} with the current that flowed",
+        )
+    return {"law": "replay", "current": current}

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-
-import numpy as np
 
 from seatsim.importing.assembly import assemble, doubt_runs
 from seatsim.importing.doubts import doubt_channel
@@ -19,7 +17,9 @@ from seatsim.recordings.quality.damage import QUIET
 from seatsim.recordings.quality.examination import examine, merge_issues
 from seatsim.recordings.quality.issue import Issue, place_in_run
 from seatsim.recordings.quality.relations import doubt_relations
+from seatsim.recordings.quality.sensors import list_unrepeated, measure_unrepeated
 from seatsim.recordings.recording import CHANNELS, COMMANDS, Recording, load_recording
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 
 
@@ -35,8 +35,7 @@ def inspect_recording(folder: Path) -> Inspection:
     doubts: list[Issue] = []
     for run in recording.runs:
         table = recording.table(run)
-        signals = [Signal(name, recording.channels[name].unit, values) for name, values in table.items()]
-        channels[run] = [summarise(signal, signal.unit, signal.name, rate) for signal in signals]
+        channels[run] = _summarise_table(table, CHANNELS[recording.header.rig], rate)
         found = [
             issue for name, values in table.items() for issue in doubt_channel(name, values, rate, quantity_of(name))
         ]
@@ -64,16 +63,14 @@ def inspect_mapped(path: Path, map_file: Path) -> Inspection:
     file = read_file(path, stated.csv)
     assembled = assemble([file], dataclasses.replace(stated, runs={}))
     units = CHANNELS[stated.rig]
-    channels = {
-        run.name: [
-            summarise(Signal(name, units[name], values), units[name], name, assembled.rate)
-            for name, values in run.table.items()
-        ]
-        for run in assembled.runs
-    }
+    channels = {run.name: _summarise_table(run.table, units, assembled.rate) for run in assembled.runs}
     notes = [Issue("note", "mapped", note) for note in (*file.notes, *assembled.notes)]
     doubts = merge_issues([*assembled.doubts, *doubt_runs(assembled)], len(assembled.runs))
     return Inspection(str(path), f"{file.format} by {map_file.name}", channels, [*notes, *doubts])
+
+
+def _summarise_table(table: Mapping[str, Array], units: Mapping[str, str], rate: float) -> list[ChannelSummary]:
+    return [summarise(Signal(name, units[name], values), units[name], name, rate) for name, values in table.items()]
 
 
 def _offered(
@@ -83,12 +80,12 @@ def _offered(
     for name, entry in recording.channels.items():
         if entry.noise_rms > 0.0 or name in COMMANDS:
             continue
-        repeated = _of_repeats(recording, name)
+        repeated = measure_unrepeated(list_unrepeated(recording, name))
         floor = min(
             (each.noise for held in channels.values() for each in held if each.name == name and each.noise), default=0.0
         )
         is_quiet = any(issue.channel == name and issue.kind in QUIET for issue in doubts)
-        if repeated:
+        if repeated > 0.0:
             text = (
                 f"repeats of one excitation differ by noise_rms: {repeated:.2g}, with {floor:.2g} at high frequencies"
             )
@@ -96,14 +93,3 @@ def _offered(
         elif floor and not is_quiet:
             text = f"states no noise; its floor at high frequencies shows noise_rms: {floor:.2g}"
             yield Issue("note", "noise", f"{name}: {text}", name)
-
-
-def _of_repeats(recording: Recording, channel: str) -> float:
-    """Return the RMS of what does not come again in a repeat, over the root of 2; 0 without repeats."""
-    found = []
-    for run, entry in recording.runs.items():
-        if entry.repeat_of is not None:
-            first, second = (recording.table(name)[channel] for name in (entry.repeat_of, run))
-            rows = min(len(first), len(second))
-            found.append(float(np.std(first[:rows] - second[:rows])) / 2**0.5)
-    return min(found, default=0.0)

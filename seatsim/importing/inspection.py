@@ -13,7 +13,7 @@ from seatsim.importing.doubts import doubt_channel, doubt_distance, doubt_time
 from seatsim.importing.import_map import Rig
 from seatsim.importing.matching import Column, channel_of, read_columns
 from seatsim.importing.names import SI_UNITS, is_of, read_name, without_unit
-from seatsim.importing.readers.reading import TextLayout, read_file
+from seatsim.importing.readers.reading import read_file
 from seatsim.importing.relations import doubt_pairs
 from seatsim.importing.signals import DataFile, Group, Signal
 from seatsim.importing.time_axis import Axis, Clock, find_clock, is_spectrum
@@ -72,13 +72,13 @@ class Inspection(NamedTuple):
         return [GroupedChannel(group, each) for group, held in self.channels.items() for each in held]
 
 
-def inspect_file(path: Path, layout: TextLayout | None = None) -> Inspection:
+def inspect_file(path: Path) -> Inspection:
     """Return what a file holds.
 
     Raises:
         InputError: it cannot be read.
     """
-    file = read_file(path, layout)
+    file = read_file(path)
     channels: dict[str, list[ChannelSummary]] = {}
     doubts = [Issue("note", "left_out", note) for note in file.notes]
     columns = [column for group in file.groups for column in read_columns(group)]

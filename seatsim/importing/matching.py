@@ -37,7 +37,7 @@ class _Proposal(NamedTuple):
     open: tuple[str, ...]
 
 
-def propose(files: Sequence[DataFile], rig: Rig | None = None) -> _Proposal:
+def propose(files: Sequence[DataFile]) -> _Proposal:
     """Return the map of some files that belong to one rig.
 
     Raises:
@@ -47,9 +47,9 @@ def propose(files: Sequence[DataFile], rig: Rig | None = None) -> _Proposal:
     if all(is_spectrum(group) for group in groups):
         check_is_history(groups[0], str(files[0].path))
     columns = [column for group in groups for column in read_columns(group)]
-    if rig == "road" or (rig is None and _is_road(columns)):
+    if _is_road(columns):
         return _propose_road(columns)
-    chosen = rig or _rig_of(columns)
+    chosen = _rig_of(columns)
     candidates = _candidates(columns, chosen)
     channels, open_ends = {}, []
     for name in CHANNELS[chosen]:

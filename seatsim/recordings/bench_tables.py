@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from seatsim.recordings.bench_columns import DRIVES, KNOWN, check_needed, columns_of, constants, numbers
 from seatsim.recordings.recording import HEADER, load_recording
 from seatsim.schema.arrays import Array
-from seatsim.schema.errors import InputError, nearest
-from seatsim.schema.guarded import is_there
+from seatsim.schema.errors import InputError
+from seatsim.schema.guarded import is_there, nearest_beside
 from seatsim.schema.tables import read_table
 from seatsim.schema.yaml_source import Source
 
@@ -91,9 +91,9 @@ def load_bench(path: str | Path) -> list[BenchRecord]:
     """
     path = Path(path)
     if not is_there(path):
-        beside = [other.name for other in path.parent.iterdir()] if path.parent.is_dir() else []
-        hint = nearest(path.name, beside)
-        raise InputError(f"{path}: no such file or folder{hint}; give a bench table, or a folder of them")
+        raise InputError(
+            f"{path}: no such file or folder{nearest_beside(path)}; give a bench table, or a folder of them"
+        )
     if (path / HEADER).exists():
         return _recorded(path)
     files = sorted(file for file in path.iterdir() if file.name.endswith(_SUFFIXES)) if path.is_dir() else [path]

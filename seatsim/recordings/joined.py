@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from seatsim.recordings.header import RunEntry
-from seatsim.recordings.recording import HEADER, ChannelEntry, Recording
+from seatsim.recordings.recording import HEADER, Recording
 from seatsim.schema.errors import InputError
 
 _CURRENTS = ("current_command", "command_voltage", "coil_current")
@@ -24,7 +24,8 @@ def join_recordings(first: Recording, second: Recording) -> tuple[Recording, lis
     """
     _check_alike(first, second)
     shared = [name for name in first.channels if name in second.channels]
-    channels = {name: _louder(first.channels[name], second.channels[name]) for name in shared}
+    both = {name: (first.channels[name], second.channels[name]) for name in shared}
+    channels = {name: max(entries, key=lambda entry: entry.noise_rms) for name, entries in both.items()}
     runs = first.runs | {entry.name: entry for entry in _rename(first, second)}
     header = first.header._replace(accept=(*first.header.accept, *second.header.accept))
     return replace(first, header=header, runs=runs, channels=channels), [*_say(first, second, shared)]
@@ -63,10 +64,6 @@ def _check_nominals(first: Recording, second: Recording) -> None:
             text = f"{key}: {others.get(key)} is not permitted beside {numbers.get(key)} of {first.nominal_file}"
             advice = "state under 'set' of its runs what was changed on purpose"
             raise InputError(f"{second.nominal_file}, {text}; {advice}")
-
-
-def _louder(one: ChannelEntry, other: ChannelEntry) -> ChannelEntry:
-    return one if one.noise_rms >= other.noise_rms else other
 
 
 def _rename(first: Recording, second: Recording) -> Iterator[RunEntry]:

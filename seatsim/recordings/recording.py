@@ -13,7 +13,7 @@ from seatsim.scenario.loading import single
 from seatsim.scenario.numbers import change_numbers, list_numbers
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
-from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.errors import InputError, nearest, placed
 from seatsim.schema.fields import param
 from seatsim.schema.guarded import is_there
 from seatsim.schema.tables import numbers, read_table
@@ -42,6 +42,8 @@ BENCH_CHANNELS = {
 }
 CHANNELS = {"seat": SEAT_CHANNELS, "damper_bench": BENCH_CHANNELS}
 """Channels by rig, each with its unit."""
+DRIVERS = {"seat": "floor_acceleration", "damper_bench": "displacement"}
+"""Channel of the excitation by rig, without which no recording of it can be replayed."""
 ACCELEROMETERS = ("floor_acceleration", "frame_acceleration", "driver_acceleration")
 MOTION = (*ACCELEROMETERS, "suspension_displacement", "displacement", "velocity", "damper_force")
 """Channels of motion and force, which swing about zero and are never at rest for long."""
@@ -186,20 +188,17 @@ def _channels(
     data: Mapping[str, object], source: Source, rig: str
 ) -> tuple[dict[str, ChannelEntry], dict[str, Conversion]]:
     """Return the channels with their noise in SI units, and conversions of those that are recorded in others."""
-    known = SEAT_CHANNELS if rig == "seat" else BENCH_CHANNELS
+    known, needed = CHANNELS[rig], DRIVERS[rig]
     entries = mapping(data.get("channels", {}), source, ("channels",))
     check_keys(entries, known, source, ("channels",))
     channels, conversions = {}, {}
     for name, entry in entries.items():
         stated: ChannelEntry = build(ChannelEntry, entry, source, ("channels", name))
-        try:
+        with placed(source.place(("channels", name, "unit"))):
             found = conversion(stated.unit, known[name])
-        except InputError as error:
-            raise source.error(("channels", name, "unit"), str(error)) from error
         channels[name] = ChannelEntry(known[name], abs(found.factor) * stated.noise_rms)
         if found != Conversion(1.0):
             conversions[name] = found
-    needed = "floor_acceleration" if rig == "seat" else "displacement"
     if needed not in channels:
         raise source.error(("channels",), f"channel '{needed}' is missing; it drives the simulation of this rig")
     return channels, conversions

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from seatsim.recordings.header import USUAL, Tolerances
-from seatsim.recordings.recording import HEADER, SEAT_CHANNELS
+from seatsim.recordings.recording import CHANNELS, HEADER, SEAT_CHANNELS
 from seatsim.scenario.numbers import PARAMETERS, TEMPERATURE, list_numbers
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest
@@ -19,7 +19,7 @@ from seatsim.schema.files import write_packed, write_text, write_together
 from seatsim.schema.yaml_text import dump
 from seatsim.simulation.result import Result, Run
 
-NOMINAL = "nominal.yaml"
+_NOMINAL = "nominal.yaml"
 _OF_DAMPER = ("damper", "actuator", "temperature", "effects")
 _RIG = ("plant", "driver", *_OF_DAMPER, "solver")
 """Sections of a scenario that state its rig; on a bench those of the damper alone."""
@@ -54,17 +54,9 @@ def save_recording(
         raise InputError("the runs differ in solver.step; a recording has one sample rate")
     files = {f"run-{index + 1}": run for index, run in enumerate(result.runs)}
     nominal = _nominal(first, {"current_command", "coil_current"} & set(channels))
-    header = {
-        "rig": "seat",
-        "sample_rate": 1.0 / first.history.step,
-        "parameter_tolerance": dict(tolerance) if isinstance(tolerance, Mapping) else tolerance,
-        "nominal": NOMINAL,
-        "runs": [{"name": name, "file": f"{name}.csv.gz"} | _changes(first, run) for name, run in files.items()],
-        "channels": {
-            name: {"unit": SEAT_CHANNELS[name]} | ({"noise_rms": noise[name]} if name in noise else {})
-            for name in channels
-        },
-    }
+    stated = {"parameter_tolerance": dict(tolerance) if isinstance(tolerance, Mapping) else tolerance}
+    runs = {name: _changes(first, run) for name, run in files.items()}
+    header = state_header("seat", 1.0 / first.history.step, stated, runs, {name: noise.get(name) for name in channels})
     if model_error is not None:
         header["model_error"] = model_error
     rng = np.random.default_rng(first.scenario.seed)
@@ -75,6 +67,26 @@ def save_recording(
     }
     write_together(folder, lambda part: write_files(part, tables, nominal, header, "%.7g"))
     return folder
+
+
+def state_header(
+    rig: str,
+    rate: float,
+    stated: Mapping[str, object],
+    runs: Mapping[str, Mapping[str, object]],
+    noise: Mapping[str, float | None],
+) -> dict[str, object]:
+    """Return the content of `recording.yaml`.
+
+    `stated` are further keys at its top, `runs` those of each run by its name; `noise` has an RMS for every channel,
+    None where none is stated.
+    """
+    named = [{"name": name, "file": f"{name}.csv.gz"} | dict(more) for name, more in runs.items()]
+    channels = {
+        name: {"unit": CHANNELS[rig][name]} | ({} if rms is None else {"noise_rms": rms}) for name, rms in noise.items()
+    }
+    top = {"rig": rig, "sample_rate": rate, **stated, "nominal": _NOMINAL}
+    return {**top, "runs": named, "channels": channels}
 
 
 def write_files(
@@ -88,7 +100,7 @@ def write_files(
     frames = {name: pd.DataFrame(dict(table)) for name, table in tables.items()}
     write = {name: partial(each.to_csv, mode="wb", index=False, float_format=digits) for name, each in frames.items()}
     paths = [write_packed(folder / f"{name}.csv.gz", each, level=3) for name, each in write.items()]
-    texts = ({} if nominal is None else {NOMINAL: nominal}) | {HEADER: header}
+    texts = ({} if nominal is None else {_NOMINAL: nominal}) | {HEADER: header}
     return [*paths, *(write_text(folder / name, dump(content)) for name, content in texts.items())]
 
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from typing import cast
 
 from seatsim.cosimulation.damper import PREFIX, FmuDamper
@@ -18,7 +17,7 @@ from seatsim.cosimulation.description import (
 from seatsim.dampers.base import DAMPERS, Damper
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.scenario.scenario import DamperChoice
-from seatsim.schema.errors import InputError, gathered, raise_all
+from seatsim.schema.errors import InputError, gathered, placed, raise_all
 from seatsim.schema.fields import field_names
 from seatsim.schema.json_schema import BY_KEY, TEXT, Schema, cases_schema, mapping_schema, name_schema, record_schema
 from seatsim.schema.modules import check_in_use
@@ -39,7 +38,7 @@ def _stated_unit(stated: Mapping[str, object], source: Source, keys: KeyPath) ->
         raise source.error((*keys, "model"), "a unit has no inverse; name a damper model that the inverse assumes")
     check_keys(stated, ("model", "inputs", "outputs", "parameters"), source, keys)
     path = source.path.parent / str(stated["model"]).removeprefix(PREFIX)
-    with _placed(source, (*keys, "model")):
+    with placed(source.place((*keys, "model"))):
         check_in_use(path)
         unit = describe_unit(path)
     inputs = _names(stated, "inputs", tuple(QUANTITIES), source, keys)
@@ -49,11 +48,11 @@ def _stated_unit(stated: Mapping[str, object], source: Source, keys: KeyPath) ->
         raise source.error(keys, f"key '{missing}' is missing or empty; it names a variable of the unit for {all_of}")
     for section, names, causality in (("inputs", inputs, "input"), ("outputs", outputs, "output")):
         for quantity, name in names.items():
-            with _placed(source, (*keys, section, quantity)):
+            with placed(source.place((*keys, section, quantity))):
                 find_conversion_of(find_variable(unit, name, causality), quantity)
     values: dict[str, float] = {}
     for name, value in mapping(stated.get("parameters", {}), source, (*keys, "parameters")).items():
-        with _placed(source, (*keys, "parameters", name)):
+        with placed(source.place((*keys, "parameters", name))):
             values[name] = check_parameter(unit, name, value)
     return cast("Damper", FmuDamper(str(path), tuple(inputs.items()), outputs[FORCE], tuple(values.items())))
 
@@ -65,15 +64,6 @@ def _names(
     named = mapping(stated.get(section, {}), source, (*keys, section))
     check_keys(named, permitted, source, (*keys, section))
     return {quantity: choose(named, quantity, source, (*keys, section)) for quantity in permitted if quantity in named}
-
-
-@contextmanager
-def _placed(source: Source, keys: KeyPath) -> Iterator[None]:
-    """Give errors their place in the file."""
-    try:
-        yield
-    except InputError as error:
-        raise source.error(keys, str(error)) from error
 
 
 _MODELS = "parameters_by_model"

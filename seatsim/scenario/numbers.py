@@ -10,7 +10,7 @@ import numpy as np
 
 from seatsim.effects.base import EFFECTS, acts_on
 from seatsim.rig.sensors import Sensors
-from seatsim.rig.temperature import TemperatureFactors, Thermal
+from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Scenario
 from seatsim.scenario.sections import SECTIONS
 from seatsim.schema.errors import nearest
@@ -151,10 +151,10 @@ def list_doubts(scenario: Scenario) -> list[str]:
                 keys = (
                     (*section.split("."), field.name) if section != TEMPERATURE or _is_thermal(scenario) else (section,)
                 )
-                doubts.append(f"{_place(scenario, keys)}: {problem}")
+                doubts.append(f"{scenario.place(*keys)}: {problem}")
     if TEMPERATURE in scenario.label and not _depends_on_temperature(scenario):
         doubts.append(
-            f"{_place(scenario, (TEMPERATURE,))}: nothing depends on the temperature that is varied, so that all runs"
+            f"{scenario.place(TEMPERATURE)}: nothing depends on the temperature that is varied, so that all runs"
             " are the same; state damper.temperature_factors, or damper.thermal_fade under effects"
         )
     return doubts + _list_unread(scenario)
@@ -166,7 +166,7 @@ def _list_unread(scenario: Scenario) -> list[str]:
         return []
     ramp = np.arange(3.0)
     return [
-        f"{_place(scenario, ('effects',))}: {EFFECTS.name_of(type(effect))} states how the fluid differs from its"
+        f"{scenario.place('effects')}: {EFFECTS.name_of(type(effect))} states how the fluid differs from its"
         " thermocouple, which changes nothing here, since the temperature of the fluid is simulated; state it as a"
         " number, or replay a recorded damper_temperature"
         for effect in scenario.effects
@@ -178,10 +178,6 @@ def _is_thermal(scenario: Scenario) -> bool:
     return isinstance(scenario.temperature, Thermal)
 
 
-def _place(scenario: Scenario, keys: tuple[str, ...]) -> str:
-    return scenario.source.place(keys) if scenario.source else f"{scenario.name}, {'.'.join(keys)}"
-
-
 def _depends_on_temperature(scenario: Scenario) -> bool:
     """Return whether damper, effects, law or the damper that an inverse assumes change with the temperature."""
     inverse, law = (scenario.control.inverse, type(scenario.control.law)) if scenario.control else (None, None)
@@ -189,10 +185,5 @@ def _depends_on_temperature(scenario: Scenario) -> bool:
     if law is not None and (is_own(law) or any(TEMPERATURE in name for name in field_names(law))):
         return True
     factors = [scenario.damper.factors, *([inverse.damper.factors] if inverse else [])]
-    return any(map(_act, factors)) or any(
-        acts_on(type(effect), ("factors", TEMPERATURE)) for effect in scenario.effects
-    )
-
-
-def _act(factors: TemperatureFactors) -> bool:
-    return any((factors.viscous, factors.stiffness, factors.yield_force))
+    act = any(any((each.viscous, each.stiffness, each.yield_force)) for each in factors)
+    return act or any(acts_on(type(effect), ("factors", TEMPERATURE)) for effect in scenario.effects)

@@ -6,8 +6,8 @@ choice: law, damper, coil, springs. Runs under one condition are alternatives to
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterable, Mapping
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from typing import Annotated, Any, NamedTuple, TypeVar
 
@@ -19,7 +19,7 @@ from seatsim.rig.plant import Plant
 from seatsim.rig.sensors import Sensors
 from seatsim.rig.temperature import TemperatureFactors, Thermal
 from seatsim.scenario.checks import Check
-from seatsim.schema.errors import InputError
+from seatsim.schema.errors import placed
 from seatsim.schema.fields import param
 from seatsim.schema.registry import Record, name_of
 from seatsim.schema.yaml_source import Source
@@ -109,14 +109,13 @@ class Scenario:
         damper, drive = (self.damper, self.coil.max_current, self.temperature), (self.excitation, self.seed, self.start)
         return repr((self.plant, self.driver, damper, drive, self.effects, self.solver))
 
-    @contextmanager
-    def placed(self, *keys: str) -> Iterator[None]:
+    def place(self, *keys: str) -> str:
+        """Return the place of a key in the scenario's file."""
+        return self.source.place(keys) if self.source else f"{self.name}, {'.'.join(keys)}"
+
+    def placed(self, *keys: str) -> AbstractContextManager[None]:
         """Give errors about a section of the scenario their place in its file."""
-        try:
-            yield
-        except InputError as error:
-            place = self.source.place(keys) if self.source else f"{self.name}, {'.'.join(keys)}"
-            raise InputError(f"{place}: {error}") from error
+        return placed(self.place(*keys))
 
 
 _CONDITIONS = ("excitation", "seed", "temperature", "driver", "start", "plant.driver_mass")

@@ -55,6 +55,15 @@ def gathered(errors: list[InputError]) -> Iterator[None]:
         errors.append(error)
 
 
+@contextmanager
+def placed(place: str) -> Iterator[None]:
+    """Put before an InputError that is raised meanwhile the place of what is wrong."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(f"{place}: {error}") from error
+
+
 def raise_all(errors: Sequence[InputError]) -> None:
     """Raise the first of some errors, none where there is none; its notes (`__notes__`) say each of the others once."""
     if errors:

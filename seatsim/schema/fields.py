@@ -21,6 +21,7 @@ from pydantic import Field, JsonValue, TypeAdapter
 from pydantic.fields import FieldInfo
 
 from seatsim.schema.registry import Record
+from seatsim.schema.units import conversion
 
 _R = TypeVar("_R")
 N = TypeVar("N", bound=Record)
@@ -84,9 +85,7 @@ def describe(record: type) -> list[FieldSpecification]:
     defaults = default_values(record)
     specifications = []
     for name, hint in _hints(record).items():
-        info = _field_info(hint)
-        extra = info.json_schema_extra if info else None
-        known = extra if isinstance(extra, dict) else {}
+        info, known = _field_info(hint), _extra_of(hint)
         unit, stated = str(known.get("unit", "")), known.get("usual")
         usual = [each for each in stated if isinstance(each, int | float)] if isinstance(stated, list) else None
         meaning = (info.description or "") if info else ""
@@ -121,6 +120,12 @@ def choices(record: type, name: str) -> tuple[str, ...]:
     return get_args(parts[0]) if parts and get_origin(parts[0]) is Literal else ()
 
 
+def item_units(record: type, name: str) -> list[str]:
+    """Return the unit of each item of a tuple field, an empty text where it states none."""
+    parts = get_args(_hints(record)[name])
+    return [str(_extra_of(item).get("unit", "")) for item in get_args(parts[0])] if parts else []
+
+
 @cache
 def _hints(record: type) -> Mapping[str, object]:
     return get_type_hints(record, include_extras=True)
@@ -132,24 +137,22 @@ def _field_info(hint: object) -> FieldInfo | None:
     return next((part for part in get_args(hint) if isinstance(part, FieldInfo)), None)
 
 
-class _MistakenUnit(NamedTuple):
-    """A unit in place of the SI unit: `factor * value + offset` is the value in SI."""
-
-    name: str
-    factor: float
-    offset: float = 0.0
+def _extra_of(hint: object) -> Mapping[str, JsonValue]:
+    """Return what `param` states of a field beyond its bounds."""
+    info = _field_info(hint)
+    return info.json_schema_extra if info and isinstance(info.json_schema_extra, dict) else {}
 
 
-_MISTAKEN: Mapping[str, tuple[_MistakenUnit, ...]] = {
-    "m": (_MistakenUnit("mm", 1e-3), _MistakenUnit("cm", 1e-2)),
-    "kg": (_MistakenUnit("g", 1e-3), _MistakenUnit("t", 1e3)),
-    "N/m": (_MistakenUnit("N/mm", 1e3), _MistakenUnit("N/cm", 1e2)),
-    "N s/m": (_MistakenUnit("N s/mm", 1e3), _MistakenUnit("N s/cm", 1e2)),
-    "s": (_MistakenUnit("ms", 1e-3),),
-    "A": (_MistakenUnit("mA", 1e-3),),
-    "m/s": (_MistakenUnit("km/h", 1 / 3.6), _MistakenUnit("mm/s", 1e-3)),
-    "m/s^2": (_MistakenUnit("g", 9.80665), _MistakenUnit("mm/s^2", 1e-3)),
-    "degC": (_MistakenUnit("K", 1.0, -273.15), _MistakenUnit("degF", 5 / 9, -160 / 9)),
+_MISTAKEN: Mapping[str, tuple[str, ...]] = {
+    "m": ("mm", "cm"),
+    "kg": ("g", "t"),
+    "N/m": ("N/mm", "N/cm"),
+    "N s/m": ("N s/mm", "N s/cm"),
+    "s": ("ms",),
+    "A": ("mA",),
+    "m/s": ("km/h", "mm/s"),
+    "m/s^2": ("g", "mm/s^2"),
+    "degC": ("K", "degF"),
 }
 """Units that stand in place of the SI unit, the likelier first."""
 
@@ -179,9 +182,10 @@ def guess(value: object, field: FieldSpecification) -> str:
     if not isinstance(value, int | float):
         return ""
     for unit in _MISTAKEN.get(field.unit, ()):
-        meant = unit.factor * value + unit.offset
+        factor, zero = conversion(unit, field.unit)
+        meant = factor * value + zero
         if field.usual is not None and _is_usual(meant, field):
-            return f"; {value:g} {unit.name} would be {meant:.4g} {field.unit}"
+            return f"; {value:g} {unit} would be {meant:.4g} {field.unit}"
     return ""
 
 

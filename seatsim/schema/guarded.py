@@ -18,7 +18,7 @@ from tempfile import TemporaryDirectory
 from threading import RLock
 from typing import TextIO
 
-from seatsim.schema.errors import InputError, OutputError
+from seatsim.schema.errors import InputError, OutputError, nearest
 
 _LARGEST_JSON = 64 * 2**20
 _ReadWatcher = Callable[[Path, bytes], None]
@@ -67,6 +67,11 @@ def is_there(path: Path) -> bool:
         return path.exists()
     except (OSError, ValueError):
         return False
+
+
+def nearest_beside(path: Path) -> str:
+    """Return what `nearest` says of a missing file's name among those of its folder."""
+    return nearest(path.name, (each.name for each in path.parent.iterdir())) if path.parent.is_dir() else ""
 
 
 @contextmanager

@@ -13,9 +13,9 @@ import io
 import lzma
 import zipfile
 import zlib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, NamedTuple
+from typing import IO, TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,14 +41,6 @@ _SHORT = 2**24
 """Bytes up to which a table is read by one thread, so that an error can name the line."""
 
 
-class InvalidRow(NamedTuple):
-    """A row whose number of values is not that of the names; its line is None where several threads read."""
-
-    line: int | None
-    values: int
-    wanted: int
-
-
 def read_table(path: Path) -> pd.DataFrame:
     """Return a table with its columns by name; row k of the frame stands in line k + 2 of the file.
 
@@ -57,7 +49,7 @@ def read_table(path: Path) -> pd.DataFrame:
     Raises:
         InputError: the file cannot be read, is beyond the limits, has a name twice, or a row of another length.
     """
-    from pyarrow import ArrowInvalid
+    import pyarrow as pa
 
     content = unpack(read_bytes(path, LARGEST_FILE, "a table"), path)
     content = content.removeprefix(b"\xef\xbb\xbf")
@@ -65,28 +57,62 @@ def read_table(path: Path) -> pd.DataFrame:
     names = _read_names(content, path)
     rows = content.count(b"\n")
     check_memory(8.0 * _NUMBERS_OF_VALUE * rows * len(names) + len(content), f"{path}: {rows} rows", "split the table")
-    bad: list[InvalidRow] = []
-    try:
-        table = _parse(content, names, bad)
-    except ArrowInvalid as error:
-        raise InputError(f"{path}: cannot be read as a table: {str(error).splitlines()[0]}") from error
+    if rows:
+        table, bad = parse_rows(content, path, names, skip=1, use_threads=len(content) > _SHORT)
+    else:
+        table, bad = pa.table({name: pa.array([], pa.float64()) for name in names}), []
     _check_rows(bad, path)
     _check_quotes(content, table.num_rows, path)
     frame: pd.DataFrame = table.to_pandas()
     return frame
 
 
-def _check_rows(bad: Iterable[InvalidRow], path: Path) -> None:
-    """Raise InputError at the first row of another length than the names."""
-    found = list(bad)
-    if found:
-        line, values, wanted = found[0]
-        place = f"{path}, line {line}" if line else str(path)
-        more = f" (and {len(found) - 1} more lines)" if len(found) > 1 else ""
-        raise InputError(
-            f"{place}: has {values} columns where the others have {wanted}{more}; the file is truncated or damaged:"
-            " export it again"
+def parse_rows(
+    content: bytes,
+    path: Path,
+    names: Sequence[str],
+    *,
+    skip: int = 0,
+    use_threads: bool = True,
+    delimiter: str = ",",
+    decimal: str = ".",
+    missing: Sequence[str] | None = None,
+) -> tuple[pa.Table, list[arrow_csv.InvalidRow]]:
+    """Return the rows below so many lines under such names, and those that hold another number of values.
+
+    `missing` are what a cell without a value holds, as pyarrow has them where they are None.
+
+    Raises:
+        InputError: the content is no table.
+    """
+    import pyarrow as pa
+    from pyarrow import csv as arrow_csv
+
+    bad: list[arrow_csv.InvalidRow] = []
+
+    def note(row: arrow_csv.InvalidRow) -> str:
+        bad.append(row)
+        return "skip"
+
+    try:
+        table = arrow_csv.read_csv(
+            pa.BufferReader(content),
+            arrow_csv.ReadOptions(column_names=names, skip_rows=skip, use_threads=use_threads),
+            arrow_csv.ParseOptions(delimiter=delimiter, invalid_row_handler=note),
+            arrow_csv.ConvertOptions(decimal_point=decimal, null_values=missing, strings_can_be_null=True),
         )
+    except pa.ArrowInvalid as error:
+        raise InputError(f"{path}: cannot be read as a table: {str(error).splitlines()[0]}") from error
+    return table, bad
+
+
+def _check_rows(bad: Sequence[arrow_csv.InvalidRow], path: Path) -> None:
+    """Raise InputError at the first row of another length than the names; several threads do not tell its line."""
+    if bad:
+        place = f"{path}, line {bad[0].number}" if bad[0].number else str(path)
+        seen = f"has {bad[0].actual_columns} columns where the others have {bad[0].expected_columns}"
+        more = f" (and {len(bad) - 1} more lines)" if len(bad) > 1 else ""
+        raise InputError(f"{place}: {seen}{more}; the file is truncated or damaged: export it again")
 
 
 def unpack(content: bytes, path: Path) -> bytes:
@@ -182,21 +208,3 @@ def _read_names(content: bytes, path: Path) -> list[str]:
     if twice is not None:
         raise InputError(f"{path}, line 1: column '{twice}' stands twice; rename or remove one")
     return names
-
-
-def _parse(content: bytes, names: list[str], bad: list[InvalidRow]) -> pa.Table:
-    import pyarrow as pa
-    from pyarrow import csv as arrow_csv
-
-    def note(row: arrow_csv.InvalidRow) -> str:
-        bad.append(InvalidRow(row.number, row.actual_columns, row.expected_columns))
-        return "skip"
-
-    if b"\n" not in content:
-        return pa.table({name: pa.array([], pa.float64()) for name in names})
-    return arrow_csv.read_csv(
-        pa.BufferReader(content),
-        arrow_csv.ReadOptions(skip_rows=1, column_names=names, use_threads=len(content) > _SHORT),
-        arrow_csv.ParseOptions(invalid_row_handler=note),
-        arrow_csv.ConvertOptions(strings_can_be_null=True),
-    )

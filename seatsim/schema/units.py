@@ -44,13 +44,16 @@ _USUAL: Mapping[str, Mapping[str, float | Conversion]] = {
     "degC": {"degC": 1.0, "degF": _FAHRENHEIT, "K": _KELVIN},
     "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0},
     "rad/s^2": {"rad/s^2": 1.0, "deg/s^2": math.pi / 180.0},
+    "kg": {"g": 1e-3, "t": 1e3},
+    "N/m": {"N/mm": 1e3, "N/cm": 1e2},
+    "N s/m": {"N s/mm": 1e3, "N s/cm": 1e2},
 }
 CONVERSIONS = {
     si: {unit: how if isinstance(how, Conversion) else Conversion(how) for unit, how in units.items()}
     for si, units in _USUAL.items()
 }
-"""Conversions from the units in which a quantity is usually recorded, by its SI unit: to load pint takes 0.6 s."""
-USUAL = {si: tuple(units) for si, units in CONVERSIONS.items()}
+"""Conversions from the units in which a quantity is usually recorded or stated: to load pint takes 0.6 s."""
+USUAL = {si: tuple(CONVERSIONS[si]) for si in DIMENSIONS.values()}
 """Units in which a quantity is usually recorded, by its SI unit; errors list them, doubts compare with them."""
 OWN_SPELLINGS = {
     "m/s^2": {"g": "standard_gravity", "gn": "standard_gravity", "g_n": "standard_gravity", "gal": "cm/s^2",

@@ -9,7 +9,7 @@ from typing import TypeGuard, TypeVar
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from seatsim.schema.errors import InputError, find_nearest, nearest, raise_all
+from seatsim.schema.errors import InputError, find_nearest, nearest, placed, raise_all
 from seatsim.schema.fields import describe, field_names, guess, validated
 from seatsim.schema.registry import Record, Registry
 from seatsim.schema.yaml_source import Source
@@ -105,10 +105,8 @@ def chosen_class(
 ) -> type[_P]:
     """Return the registered class that is named under a key, or raise InputError at that place."""
     name = choose(values, key, source, keys)
-    try:
+    with placed(source.place((*keys, key))):
         return registry.find(name, source.path.parent)
-    except InputError as error:
-        raise source.error((*keys, key), str(error)) from error
 
 
 def is_finite_number(value: object) -> TypeGuard[float]:

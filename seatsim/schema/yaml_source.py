@@ -32,7 +32,7 @@ class Source:
             raise InputError(f"{path}, line {error.line}: {error}") from error
         if not isinstance(data, dict):
             raise InputError(f"{path}: holds no mapping; a YAML file has keys at its top, each as 'key: value'")
-        self.places: dict[KeyPath, str] = {keys: self._line(line) for keys, line in {(): 1, **lines}.items()}
+        self.places: dict[KeyPath, str] = {keys: f"{path}, line {line}" for keys, line in {(): 1, **lines}.items()}
         self.data: dict[str, object] = data
 
     @classmethod
@@ -106,9 +106,6 @@ class Source:
     def error(self, keys: KeyPath, problem: str) -> InputError:
         """Return the error for a key."""
         return InputError(f"{self.place(keys)}: {problem}")
-
-    def _line(self, number: int) -> str:
-        return f"{self.path}, line {number}"
 
 
 def _as_yaml(value: object) -> object:

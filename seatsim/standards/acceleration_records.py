@@ -19,7 +19,7 @@ from seatsim.recordings.bench_columns import constants
 from seatsim.recordings.bench_tables import stem
 from seatsim.recordings.recording import HEADER, load_recording
 from seatsim.schema.arrays import Array
-from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.errors import InputError, nearest, placed
 from seatsim.schema.units import conversion, is_unit
 from seatsim.schema.yaml_source import Source
 
@@ -117,10 +117,8 @@ class AccelerationRecord(NamedTuple):
         bad = np.flatnonzero(~np.isfinite(signal.values))
         if bad.size:
             raise InputError(f"{self.name}, row {bad[0] + 1}, {name}: not a finite number; {bad.size} rows are not")
-        try:
+        with placed(f"{self.name}, {name}"):
             found = conversion(signal.unit or self.unit or wanted, wanted)
-        except InputError as error:
-            raise InputError(f"{self.name}, {name}: {error}") from error
         return found.factor * signal.values + found.zero
 
     def is_unitless(self, name: str) -> bool:

@@ -22,7 +22,7 @@ from seatsim.metrics.weighting import weight
 from seatsim.recordings.quality.channels import say_implausible
 from seatsim.schema.arrays import Array
 from seatsim.schema.content import Form, Joined, Unwritten, show_record, written
-from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.errors import InputError, nearest, placed
 from seatsim.schema.units import STANDARD_GRAVITY
 from seatsim.standards.acceleration_records import AccelerationRecord, choose_axes, load_accelerations
 
@@ -182,10 +182,8 @@ def _doses(records: Sequence[AccelerationRecord], axis: str, column: str, blocks
 def _weighted(record: AccelerationRecord, column: str, along: Direction, blocks: _Blocks) -> list[Array]:
     # The high-pass would take seconds to forget a constant, and gravity in a sensor would be the largest "vibration".
     x = record.values(column, along.unit)
-    try:
+    with placed(f"{record.name}, {column}"):
         whole = weight(x - x.mean(), record.sample_rate, along.weighting)
-    except InputError as error:
-        raise InputError(f"{record.name}, {column}: {error}") from error
     return [whole[cut] for cut in _cuts(record, len(whole), blocks)]
 
 

@@ -51,19 +51,6 @@ PERSONS = {"light": 55.0, "heavy": 98.0}
 SEATED_SHARE = 0.736
 """Share of a person's mass that rests on the seat, the feet on the floor (Boileau and Rakheja 1998; recalled)."""
 
-INERT_MASS = 75.0
-"""Mass on the seat in the damping test in kg (ISO 10326-1:2016, 10.3)."""
-
-STROKE_SHARE, LARGEST_STROKE = 0.4, 0.05
-"""Peak-to-peak motion of the floor in the damping test: this share of the travel, but no more than 50 mm (recalled)."""
-
-FREQUENCY_STEP = 0.05
-"""Hz between two tones of the damping test (recalled); they reach from half to twice the resonance expected."""
-
-
-SETTLE = 2.0
-"""s; beginning of a run that is left out, while the floor fades in."""
-
 
 class Trial(NamedTuple):
     """One simulated run: doses at driver and floor, hits of the end stops (None where none are stated)."""

@@ -1,44 +1,74 @@
-"""The seat test of ISO 7096, on the scenario of a seat or on a recording of one."""
+"""The seat test of ISO 7096, on a recording of a seat or on the scenario of one.
+
+A simulated seat is tested with two drivers in every class, in three runs each, and with tones under an inert mass.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import dataclasses
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from pathlib import Path
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from seatsim.excitations.iso7096 import SpectralClass, acceleration_density
-from seatsim.metrics.comfort import dose
-from seatsim.metrics.motion import end_stop_hits
+from seatsim.effects.seat import Mass
+from seatsim.excitations.iso7096 import Iso7096, SpectralClass, acceleration_density
+from seatsim.excitations.periodic import SteppedSine
+from seatsim.metrics.comfort import RUNS, dose
+from seatsim.metrics.motion import end_stop_hits, rms
 from seatsim.metrics.spectra import power_spectral_density
 from seatsim.metrics.weighting import frequency_response, weight
 from seatsim.recordings.recording import HEADER, Recording, load_recording
-from seatsim.rig.plant import Plant
+from seatsim.rig.drivers import SINGLE_MASS, Driver
+from seatsim.rig.plant import Plant, natural_frequencies
 from seatsim.scenario.loading import load
+from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
-from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.errors import InputError, RunError, nearest
+from seatsim.schema.registry import specification_of
 from seatsim.schema.text import join_names
 from seatsim.simulation.augment import augment_plant
+from seatsim.simulation.result import History
+from seatsim.simulation.simulate import simulate
 from seatsim.standards.seat_rows import (
     LIMITS,
     PERSONS,
     RECALLED,
     SEATED_SHARE,
-    SETTLE,
+    DampingTest,
     SeatFailure,
     SeatTest,
     Trial,
     doubt_runs,
+    state_damping_row,
     state_row,
 )
-from seatsim.standards.simulated_seat import assess_simulated_seats
+
+INERT_MASS = 75.0
+"""Mass on the seat in the damping test in kg (ISO 10326-1:2016, 10.3)."""
+_STROKE_SHARE, _LARGEST_STROKE = 0.4, 0.05
+"""Peak-to-peak motion of the floor in the damping test: this share of the travel, but no more than 50 mm (recalled)."""
+_FREQUENCY_STEP = 0.05
+"""Hz between two tones of the damping test (recalled); they reach from half to twice the resonance expected."""
+_SETTLE = 2.0
+"""s; beginning of a run that is left out, while the floor fades in."""
+_INERT = "inert mass"
+"""What sits on the seat in the damping test, where others have a person."""
+_DURATION = 60.0
+"""s; length of each run that is evaluated."""
+
+_Progress = Callable[[int, int], None]
+_Result = TypeVar("_Result", Trial, DampingTest)
 
 
 def seat_test(
     source: str | Path,
     classes: Sequence[str] = (),
     settings: Mapping[str, object] | None = None,
-    progress: Callable[[int, int], None] = lambda done, of: None,
+    progress: _Progress = lambda done, of: None,
 ) -> SeatTest:
     """Put a seat to the test of ISO 7096: SEAT factors, damping at resonance, end stops.
 
@@ -55,7 +85,7 @@ def seat_test(
     if (Path(source) / HEADER).exists():
         found = _assess_recorded_seat(load_recording(source), chosen)
     else:
-        found = assess_simulated_seats(load(source, settings), chosen, progress)
+        found = _assess_simulated_seats(load(source, settings), chosen, progress)
     return found._replace(source=Path(source).name)
 
 
@@ -72,7 +102,7 @@ def _find_classes(names: Sequence[str]) -> tuple[SpectralClass, ...]:
     return tuple(known[name.lower()] for name in names)
 
 
-_NEEDED = ("floor_acceleration", "driver_acceleration")
+_NEEDED = ("driver_acceleration", "floor_acceleration")
 _TRAVEL = "suspension_displacement"
 _SEGMENT = 8.0
 """s; segments of the spectrum of the floor."""
@@ -100,14 +130,16 @@ def _assess_recorded_seat(recording: Recording, classes: Sequence[SpectralClass]
     nominal = recording.nominal
     plant = None if nominal.plant is None else augment_plant(nominal.effects, nominal.plant)
     if plant is None or any(name not in recording.channels for name in _NEEDED):
-        raise InputError(f"{recording.folder / HEADER}: the test of a seat needs the channels {join_names(_NEEDED)}")
+        raise InputError(
+            f"{recording.folder / HEADER}: the test of a seat needs the channels {join_names(_NEEDED[::-1])}"
+        )
     groups: dict[tuple[SpectralClass, str], list[Trial]] = {}
     notes = [RECALLED, "the damping test needs tones under an inert mass, and is left out"]
     failures: list[SeatFailure] = []
     for run in recording.runs:
         try:
             table = recording.table(run)
-            found, off = _nearest_class(table[_NEEDED[0]], recording.header.sample_rate, classes)
+            found, off = _nearest_class(table[_NEEDED[1]], recording.header.sample_rate, classes)
         except InputError as error:
             failures.append(SeatFailure(run, None, None, str(error)))
             continue
@@ -118,7 +150,8 @@ def _assess_recorded_seat(recording: Recording, classes: Sequence[SpectralClass]
                 f"run {run} is left out: nearest is {found}, off by {1e2 * off:.0f} %; a person of {mass:.0f} kg"
             )
             continue
-        trial = _trial(table, recording.header.sample_rate, plant)
+        swinging = table | {name: table[name] - table[name].mean() for name in _NEEDED}
+        trial = _evaluate(swinging, recording.header.sample_rate, plant.end_stops if _TRAVEL in table else None)
         expected = weighted_input(found)
         if abs(trial.floor.rms / expected - 1) > _INPUT_TOLERANCE:
             notes.append(f"run {run}: its floor has {trial.floor.rms:.3g} m/s^2 weighted, {found} has {expected:.3g}")
@@ -156,8 +189,146 @@ def weighted_input(spectral_class: SpectralClass) -> float:
     return float(np.sqrt(np.trapezoid(power, frequency)))
 
 
-def _trial(table: Mapping[str, Array], rate: float, plant: Plant) -> Trial:
-    settled = round(SETTLE * rate)
-    floor, driver = (dose(weight(table[name] - table[name].mean(), rate)[settled:], rate) for name in _NEEDED)
-    stops = plant.end_stops if _TRAVEL in table else None
-    return Trial(driver, floor, end_stop_hits(table[_TRAVEL], stops) if stops else None)
+def _evaluate(signals: Mapping[str, Array], rate: float, stops: tuple[float, float] | None) -> Trial:
+    """Return the doses of a run at a rate in Hz, without its beginning, and its hits of the end stops."""
+    settled = round(_SETTLE * rate)
+    driver, floor = (dose(weight(signals[name], rate)[settled:], rate) for name in _NEEDED)
+    return Trial(driver, floor, end_stop_hits(signals[_TRAVEL], stops) if stops else None)
+
+
+def _assess_simulated_seats(
+    scenarios: Sequence[Scenario], classes: Sequence[SpectralClass], progress: _Progress
+) -> SeatTest:
+    """Put the seats of scenarios to the test of ISO 7096, each in three runs a class and driver.
+
+    Drivers differ from the scenario's by an effect on the mass, so that a law stays designed for the mass that its file
+    states. The three runs differ in the random phases of the floor.
+
+    Args:
+        scenarios: seats with their control; their excitation is replaced.
+        classes: spectral classes.
+        progress: is called with the simulations done and all.
+
+    Raises:
+        InputError: a scenario has no seat, or a law that only replays.
+        RunError: no simulation could be carried to its end.
+    """
+    seats = {scenario.title: _seat_of(scenario) for scenario in scenarios}
+    with ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
+        trials = {
+            (title, each, person): [pool.submit(_run_trial, seat, each, person, seed) for seed in range(RUNS)]
+            for title, seat in seats.items()
+            for each in classes
+            for person in PERSONS
+        }
+        damping = {title: pool.submit(_run_damping_test, seat.scenario, seat.plant) for title, seat in seats.items()}
+        _count([*(future for futures in trials.values() for future in futures), *damping.values()], progress)
+    failures: list[SeatFailure] = []
+    done = {key: _finished(runs, (*key,), failures) for key, runs in trials.items()}
+    ended = {title: _finished([future], (title, None, _INERT), failures) for title, future in damping.items()}
+    tested = {title: found[0] for title, found in ended.items() if found}
+    rows = tuple(state_row(*key, found, len(found) == RUNS) for key, found in done.items() if found)
+    if not rows and not tested:
+        raise RunError(failures[0].reason)
+    return SeatTest(
+        rows=rows,
+        damping_rows=tuple(
+            state_damping_row(title, each, found) for title, found in tested.items() for each in classes
+        ),
+        damping=tested,
+        notes=(*_notes(seats), *doubt_runs(rows)),
+        failures=tuple(dict.fromkeys(failures)),
+    )
+
+
+def _finished(
+    futures: Sequence[Future[_Result]], place: tuple[str, SpectralClass | None, str | None], failures: list[SeatFailure]
+) -> list[_Result]:
+    """Return the results of the simulations that were carried to their end; the others are put among the failures."""
+    found = []
+    for future in futures:
+        try:
+            found.append(future.result())
+        except RunError as error:
+            failures.append(SeatFailure(*place, str(error)))
+    return found
+
+
+class _Seat(NamedTuple):
+    scenario: Scenario
+    plant: Plant
+
+
+def _seat_of(scenario: Scenario) -> _Seat:
+    if scenario.plant is None or scenario.control is None:
+        raise InputError(f"{scenario.title}: a damper bench has no seat to test; give the scenario of a seat")
+    if specification_of(type(scenario.control.law)).replays:
+        raise InputError(
+            f"{scenario.title}: its law replays a recording; state the law of the seat, or test the recording"
+        )
+    # The test has drivers of its own.
+    effects = tuple(effect for effect in scenario.effects if not isinstance(effect, Mass))
+    return _Seat(dataclasses.replace(scenario, effects=effects), augment_plant(effects, scenario.plant))
+
+
+def _run_trial(seat: _Seat, spectral_class: SpectralClass, person: str, seed: int) -> Trial:
+    change = SEATED_SHARE * PERSONS[person] - seat.plant.driver_mass
+    history = simulate(
+        dataclasses.replace(
+            seat.scenario,
+            excitation=Iso7096(spectral_class, _SETTLE + _DURATION),
+            seed=seed,
+            effects=(*seat.scenario.effects, Mass(change)),
+        )
+    )
+    signals = {name: history[name] for name in (*_NEEDED, _TRAVEL)}
+    return _evaluate(signals, 1 / history.step, seat.plant.end_stops)
+
+
+def _count(futures: Sequence[Future[Trial] | Future[DampingTest]], progress: _Progress) -> None:
+    for done, _ in enumerate(as_completed(futures), 1):
+        progress(done, len(futures))
+
+
+def _notes(seats: Mapping[str, _Seat]) -> Iterator[str]:
+    yield RECALLED
+    without = [title for title, seat in seats.items() if seat.plant.end_stops is None]
+    if without:
+        yield f"no end stops are stated for {join_names(without)}, and none are checked; state plant.travel"
+
+
+_FADE, _CYCLES, _EVALUATED = 1, 12, 6
+"""Periods over which a tone fades in and out, at full amplitude, and at its end that are evaluated."""
+
+
+def _run_damping_test(scenario: Scenario, plant: Plant) -> DampingTest:
+    """Drive a seat through tones about its resonance and return the largest transmissibility.
+
+    The control law acts as the scenario says.
+
+    Raises:
+        RunError: the simulation could not be carried to its end.
+    """
+    stroke = min(_STROKE_SHARE * (plant.travel[1] - plant.travel[0]), _LARGEST_STROKE)
+    expected = natural_frequencies(plant._replace(driver_mass=INERT_MASS))[0]
+    tones = tuple(np.arange(0.5 * expected, 2.0 * expected + 0.5 * _FREQUENCY_STEP, _FREQUENCY_STEP).tolist())
+    tested = dataclasses.replace(
+        scenario,
+        driver=Driver(SINGLE_MASS),
+        excitation=SteppedSine(tones, _CYCLES, 0.5 * stroke),
+        effects=(*scenario.effects, Mass(INERT_MASS - plant.driver_mass)),
+    )
+    ratios = _ratios(simulate(tested), tones)
+    largest = int(np.argmax(ratios))
+    return DampingTest(tones[largest], ratios[largest], stroke, tones, tuple(ratios))
+
+
+def _ratios(history: History, tones: tuple[float, ...]) -> list[float]:
+    ends = np.cumsum([(_CYCLES + 2 * _FADE) / tone for tone in tones])
+    ratios = []
+    for tone, end in zip(tones, ends, strict=True):
+        last = round((end - _FADE / tone) / history.step)
+        steady = slice(last - round(_EVALUATED / tone / history.step), last)
+        seat, floor = (history[name][steady] for name in ("driver_acceleration", "floor_acceleration"))
+        ratios.append(rms(seat) / rms(floor))
+    return ratios

@@ -14,8 +14,8 @@ from seatsim.recordings.writer import save_recording
 from seatsim.rig.plant import control_system
 from seatsim.schema.errors import InputError, RunError
 from seatsim.simulation.simulate import simulate
-from seatsim.standards.seat_rows import INERT_MASS, LIMITS, SEATED_SHARE
-from seatsim.standards.seat_test import weighted_input
+from seatsim.standards.seat_rows import LIMITS, SEATED_SHARE
+from seatsim.standards.seat_test import INERT_MASS, weighted_input
 
 from ..answers import check_answer
 
@@ -124,7 +124,7 @@ def test_a_run_that_breaks_off_leaves_the_others_and_is_a_line_with_its_reason(s
             raise RunError("a state ran away at 3 s")
         return simulate(case)
 
-    monkeypatch.setattr("seatsim.standards.simulated_seat.simulate", broken)
+    monkeypatch.setattr("seatsim.standards.seat_test.simulate", broken)
     done = CliRunner().invoke(app, ["seat-test", str(scenario), "--class", "EM5", "--out", str(tmp_path), "--json"])
     found = check_answer("seat-test", done.stdout)
     assert done.exit_code == 1 and "failed: seat, EM5, light: a state ran away" in done.stderr

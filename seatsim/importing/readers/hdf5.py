@@ -131,7 +131,8 @@ def _part(item: Hashable, path: Path, size: int, follows: bool, sources: set[Pat
     if item.is_virtual:
         return Part(made, tuple(_sources(item, place, path, sources)))
     holds_references = h5py.check_ref_dtype(item.dtype) is h5py.Reference
-    return Part(made, tuple(_referred(item)) if follows and holds_references else ())
+    referred = (item.file[each] for each in np.ravel(item[()]) if each) if follows and holds_references else ()
+    return Part(made, tuple(referred))
 
 
 def _bytes_of(array: Any) -> int:
@@ -152,10 +153,6 @@ def _members(group: h5py.Group, place: str) -> Iterator[h5py.HLObject]:
         if item is None:
             raise InputError(f"{place}: '{name}' is a link to '{link.path}', which is not there")
         yield item
-
-
-def _referred(item: h5py.Dataset) -> Iterator[h5py.HLObject]:
-    return (item.file[reference] for reference in np.ravel(item[()]) if reference)
 
 
 def _sources(item: h5py.Dataset, place: str, path: Path, sources: set[Path]) -> Iterator[h5py.HLObject]:

@@ -5,7 +5,6 @@ Objects of MATLAB, such as tables, are resolved by mat-io, which reads files of 
 
 from __future__ import annotations
 
-import re
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
@@ -18,7 +17,7 @@ from numpy.typing import NDArray
 from seatsim.importing.readers.hdf5 import open_checked
 from seatsim.importing.readers.mat_elements import AnyArray, Resolve, read_variables
 from seatsim.importing.readers.reading import HDF5, USER_BLOCK, need
-from seatsim.importing.signals import TIME, UNITS, bare, in_seconds
+from seatsim.importing.signals import TIME, in_seconds
 from seatsim.schema.bounds import BYTES_OF_PART, LEAST, check_made
 
 Value: TypeAlias = "AnyArray | str | dict[str, Value] | list[Value] | None"
@@ -31,25 +30,6 @@ _REFERENCE = 0xDD000000
 _MOST_OBJECTS = LEAST // BYTES_OF_PART
 _UNITS_OF_TABLE = ("varUnits", "VariableUnits")
 """Attributes with which mat-io states the units of a table."""
-VALUES = ("values", "data", "signal", "samples", "y", "ydata")
-LABELS = ("label", "signalname", "channelname", "name", "title", "blockname")
-TIMES = ("time", "t", "zeit", "temps", "timestamp", "timestamps", "tout")
-ABSCISSAS = (*TIMES, "x", "xdata")
-STARTS = ("x0", "xoffset", "xorg", "start")
-"""Fields of a structure that is a channel: its values, its name, its times in s, and the time in s of its first value.
-Names stand here without underscores and capitals."""
-INDEX = "xindex"
-"""Field that says which of several vectors of times a channel has, counted from 1 (dSPACE)."""
-TIME_INFO = "timeinfo"
-UNITS_OF_TIME = ("xunit", "xunits", "unitx", "timeunit", "timeunits")
-"""A structure that states the unit of times, and fields that do."""
-_BESIDE = (TIME_INFO, "header", "info", "datainfo", "capture", "meta", "metadata", "fileheader", "attributes")
-"""Structures that state something of what stands beside them."""
-_ENDING = re.compile(
-    r"^(.+?)_(data|values|header|unit|units|time|name|label|fs|dt|dx|x0|samplerate|xdelta)$", re.IGNORECASE
-)
-"""A flat variable that is part of a channel: the name of the channel, and which part it is."""
-_TIME_WITHIN = re.compile(r"^(.*?)_?time_(.*)$", re.IGNORECASE)
 
 
 def read_values(path: Path, content: bytes) -> dict[str, Value]:
@@ -173,45 +153,3 @@ class _Plain:
         if len(units) == len(frame.columns):
             columns["units"] = {str(name): str(unit) for name, unit in zip(frame, units, strict=True)}
         return columns
-
-
-def join_flat(variables: Mapping[str, Value]) -> dict[str, Value]:
-    """Return variables, and a structure of each vector with what is called after it."""
-    owners = {name: found for name in variables if (found := _owner(name, variables))}
-    parts: dict[str, dict[str, Value]] = {owner: {} for owner, _ in owners.values()}
-    for name, (owner, part) in owners.items():
-        parts[owner][part] = variables[name]
-    for owner, held in parts.items():
-        if owner in variables:
-            held["data"] = variables[owner]
-    return {name: value for name, value in variables.items() if name not in owners} | parts
-
-
-def _owner(name: str, variables: Mapping[str, Value]) -> tuple[str, str] | None:
-    """Return the channel of which a variable is a part, and which part; None where it is one of itself."""
-    ending = _ENDING.match(name)
-    if ending:
-        beginning, part = ending[1], ending[2].lower()
-        if is_vector(variables.get(beginning)):
-            return None if part in VALUES else (beginning, part)
-        siblings = (variables.get(f"{beginning}_{each}") for each in ("data", "Data", "DATA", "values", "Values"))
-        if beginning not in variables and any(is_vector(each) for each in siblings):
-            return beginning, part
-    within = _TIME_WITHIN.match(name)
-    partner = f"{within[1]}_{within[2]}".strip("_") if within else ""
-    return (partner, "time") if is_vector(variables.get(partner)) else None
-
-
-def is_vector(value: Value | None) -> bool:
-    """Say whether a value is more than one number."""
-    return isinstance(value, np.ndarray) and value.size > 1
-
-
-def statements(structure: Mapping[str, Value]) -> dict[str, Value]:
-    """Return the fields of a structure, and those of the structures in it that state something of the others."""
-    stated: dict[str, Value] = {}
-    for name, value in structure.items():
-        if bare(name) in _BESIDE and isinstance(value, dict):
-            is_of_time = bare(name) == TIME_INFO
-            stated |= {each: held for each, held in value.items() if not (is_of_time and bare(each) in UNITS)}
-    return stated | dict(structure)

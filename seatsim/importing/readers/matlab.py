@@ -7,6 +7,7 @@ those of a channel share the beginning of their names (`Channel_1_Data`, `Channe
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -14,24 +15,11 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.importing.readers.mat_elements import AnyArray
-from seatsim.importing.readers.mat_values import (
-    ABSCISSAS,
-    INDEX,
-    LABELS,
-    STARTS,
-    TIME_INFO,
-    TIMES,
-    UNITS_OF_TIME,
-    VALUES,
-    Value,
-    is_vector,
-    join_flat,
-    read_values,
-    statements,
-)
+from seatsim.importing.readers.mat_values import Value, read_values
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.signals import (
     TIME,
+    UNITS,
     Channels,
     DataFile,
     Signal,
@@ -48,6 +36,25 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.units import DIMENSIONS, find_conversion
 
 _Structure = Mapping[str, Value]
+_VALUES = ("values", "data", "signal", "samples", "y", "ydata")
+_LABELS = ("label", "signalname", "channelname", "name", "title", "blockname")
+_TIMES = ("time", "t", "zeit", "temps", "timestamp", "timestamps", "tout")
+_ABSCISSAS = (*_TIMES, "x", "xdata")
+_STARTS = ("x0", "xoffset", "xorg", "start")
+"""Fields of a structure that is a channel: its values, its name, its times in s, and the time in s of its first value.
+Names stand here without underscores and capitals."""
+_INDEX = "xindex"
+"""Field that says which of several vectors of times a channel has, counted from 1 (dSPACE)."""
+_TIME_INFO = "timeinfo"
+_UNITS_OF_TIME = ("xunit", "xunits", "unitx", "timeunit", "timeunits")
+"""A structure that states the unit of times, and fields that do."""
+_BESIDE = (_TIME_INFO, "header", "info", "datainfo", "capture", "meta", "metadata", "fileheader", "attributes")
+"""Structures that state something of what stands beside them."""
+_ENDING = re.compile(
+    r"^(.+?)_(data|values|header|unit|units|time|name|label|fs|dt|dx|x0|samplerate|xdelta)$", re.IGNORECASE
+)
+"""A flat variable that is part of a channel: the name of the channel, and which part it is."""
+_TIME_WITHIN = re.compile(r"^(.*?)_?time_(.*)$", re.IGNORECASE)
 _LATEST = 1e7
 """s; a start that is larger is a date."""
 
@@ -63,7 +70,7 @@ class _Clock(NamedTuple):
 def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     """Return the channels of a file; a note names the variables that give none, and what is no column of numbers."""
     reader = _Reader()
-    reader.read_structure("", "", join_flat(read_values(path, content)), _Clock())
+    reader.read_structure("", "", _join_flat(read_values(path, content)), _Clock())
     notes = note_left_out("left out, as they hold no columns of real numbers", reader.left_out)
     return DataFile(path, "", reader.gathered.groups(), notes)
 
@@ -77,10 +84,10 @@ class _Reader:
 
     def read_structure(self, name: str, label: str, held: _Structure, above: _Clock) -> None:
         """Take the channels of a structure, which is called `label` where it does not say how."""
-        stated = statements(held)
+        stated = _statements(held)
         channel = _channel_of(held)
-        own = _clock(held, stated, ABSCISSAS if channel else TIMES)
-        label = stated_text(stated, LABELS) or label
+        own = _clock(held, stated, _ABSCISSAS if channel else _TIMES)
+        label = stated_text(stated, _LABELS) or label
         if channel:
             signals = signals_of(label or channel, np.asarray(held[channel]), stated_unit(stated))
             self._add(name, signals, _own_clock(own, above, stated), name or channel)
@@ -90,11 +97,11 @@ class _Reader:
         inner = {key: value for key, value in held.items() if isinstance(value, dict | list)}
         vectors = {key: value for key, value in held.items() if isinstance(value, np.ndarray) and value.size > 1}
         # Nothing but times is there for the channels in the structures below.
-        if not inner or any(bare(key) not in TIMES for key in vectors):
+        if not inner or any(bare(key) not in _TIMES for key in vectors):
             self._read_vectors(name, vectors, held.get("units", held.get("unit")), clock)
         for key, below in inner.items():
-            if bare(key) not in ABSCISSAS or not own.times:
-                self._read_inner(name, key, label if bare(key) in VALUES else key, below, clock)
+            if bare(key) not in _ABSCISSAS or not own.times:
+                self._read_inner(name, key, label if bare(key) in _VALUES else key, below, clock)
         is_empty = len(self.gathered) == before
         for key, value in held.items():
             if value is None or (is_empty and isinstance(value, np.ndarray) and value.size == 0):
@@ -102,7 +109,7 @@ class _Reader:
 
     def _read_vectors(self, name: str, vectors: Mapping[str, AnyArray], units: Value, clock: _Clock) -> None:
         """Take vectors that stand beside each other, with their times if these are among them."""
-        timed = {max(vector.shape) for key, vector in vectors.items() if bare(key) in TIMES}
+        timed = {max(vector.shape) for key, vector in vectors.items() if bare(key) in _TIMES}
         for key, vector in vectors.items():
             unit = as_text(units.get(key, "")) if isinstance(units, dict) else ""
             # Simulink calls the times of its outputs tout.
@@ -114,13 +121,13 @@ class _Reader:
         """Take the channels of a structure or of each of a list; one without times of its own is beside the others."""
         name = f"{above}.{key}".strip(".")
         if isinstance(value, dict):
-            is_beside = bool(_channel_of(value)) and not _times(value, ABSCISSAS)
-            self.read_structure(above if is_beside else name, label, join_flat(value), clock)
+            is_beside = bool(_channel_of(value)) and not _times(value, _ABSCISSAS)
+            self.read_structure(above if is_beside else name, label, _join_flat(value), clock)
         elif isinstance(value, list):
             for number, each in enumerate(value, 1):
                 if isinstance(each, dict | list):
                     self._read_inner(above, key, f"{label}#{number}" if len(value) > 1 else label, each, clock)
-                elif each is None or is_vector(each):
+                elif each is None or _is_vector(each):
                     self._add(name, signals_of(f"{label}#{number}", np.asarray(each)), clock, name)
 
     def _add(self, name: str, signals: list[Signal], clock: _Clock, place: str) -> None:
@@ -138,7 +145,7 @@ def _own_clock(own: _Clock, above: _Clock, stated: _Structure) -> _Clock:
     """Return the clock of a channel: its own times or rate, else those above it, of which it may name one."""
     if own.times or own.rate:
         return own
-    index = next((scalar(value) for key, value in stated.items() if bare(key) == INDEX), None)
+    index = next((scalar(value) for key, value in stated.items() if bare(key) == _INDEX), None)
     if index is not None and 1 <= index <= len(above.times):
         return above._replace(times=(above.times[int(index) - 1],))
     return above
@@ -146,12 +153,12 @@ def _own_clock(own: _Clock, above: _Clock, stated: _Structure) -> _Clock:
 
 def _channel_of(held: _Structure) -> str | None:
     """Return the field that holds the values of a channel, None where a structure is no channel."""
-    key = next((each for name in VALUES for each in held if bare(each) == name and is_vector(held[each])), None)
+    key = next((each for name in _VALUES for each in held if bare(each) == name and _is_vector(held[each])), None)
     if key is None:
         return None
     length = max(np.asarray(held[key]).shape)
-    others = [each for each, value in held.items() if is_vector(value) and max(np.asarray(value).shape) == length]
-    return key if all(each == key or bare(each) in ABSCISSAS for each in others) else None
+    others = [each for each, value in held.items() if _is_vector(value) and max(np.asarray(value).shape) == length]
+    return key if all(each == key or bare(each) in _ABSCISSAS for each in others) else None
 
 
 def _times(held: _Structure, names: Sequence[str]) -> tuple[Array, ...]:
@@ -159,9 +166,9 @@ def _times(held: _Structure, names: Sequence[str]) -> tuple[Array, ...]:
     found: list[Array] = []
     for key, value in held.items():
         for each in value if isinstance(value, list) else [value]:
-            channel = _channel_of(each) if isinstance(each, dict) and bare(key) in ABSCISSAS else None
+            channel = _channel_of(each) if isinstance(each, dict) and bare(key) in _ABSCISSAS else None
             times = each[channel] if isinstance(each, dict) and channel else each if bare(key) in names else None
-            if is_vector(times):
+            if _is_vector(times):
                 vector = np.squeeze(np.asarray(times))
                 if vector.dtype.kind in "fiu" and vector.ndim == 1 and _rises(vector):
                     found.append(vector.astype(np.float64))
@@ -175,8 +182,8 @@ def _rises(vector: AnyArray) -> bool:
 
 def _clock(held: _Structure, stated: _Structure, names: Sequence[str]) -> _Clock:
     """Return what a structure states of time, in s and Hz."""
-    info = next((value for key, value in held.items() if bare(key) == TIME_INFO and isinstance(value, dict)), {})
-    unit = stated_text(stated, UNITS_OF_TIME) or stated_unit(info)
+    info = next((value for key, value in held.items() if bare(key) == _TIME_INFO and isinstance(value, dict)), {})
+    unit = stated_text(stated, _UNITS_OF_TIME) or stated_unit(info)
     found = find_conversion(unit, DIMENSIONS["time"]) if unit else None
     factor = found.factor if found else 1.0
     start = _start(stated)
@@ -185,5 +192,47 @@ def _clock(held: _Structure, stated: _Structure, names: Sequence[str]) -> _Clock
 
 
 def _start(stated: _Structure) -> float | None:
-    found = (scalar(value) for key, value in stated.items() if bare(key) in STARTS)
+    found = (scalar(value) for key, value in stated.items() if bare(key) in _STARTS)
     return next((each for each in found if each is not None and abs(each) < _LATEST), None)
+
+
+def _join_flat(variables: Mapping[str, Value]) -> dict[str, Value]:
+    """Return variables, and a structure of each vector with what is called after it."""
+    owners = {name: found for name in variables if (found := _owner(name, variables))}
+    parts: dict[str, dict[str, Value]] = {owner: {} for owner, _ in owners.values()}
+    for name, (owner, part) in owners.items():
+        parts[owner][part] = variables[name]
+    for owner, held in parts.items():
+        if owner in variables:
+            held["data"] = variables[owner]
+    return {name: value for name, value in variables.items() if name not in owners} | parts
+
+
+def _owner(name: str, variables: Mapping[str, Value]) -> tuple[str, str] | None:
+    """Return the channel of which a variable is a part, and which part; None where it is one of itself."""
+    ending = _ENDING.match(name)
+    if ending:
+        beginning, part = ending[1], ending[2].lower()
+        if _is_vector(variables.get(beginning)):
+            return None if part in _VALUES else (beginning, part)
+        siblings = (variables.get(f"{beginning}_{each}") for each in ("data", "Data", "DATA", "values", "Values"))
+        if beginning not in variables and any(_is_vector(each) for each in siblings):
+            return beginning, part
+    within = _TIME_WITHIN.match(name)
+    partner = f"{within[1]}_{within[2]}".strip("_") if within else ""
+    return (partner, "time") if _is_vector(variables.get(partner)) else None
+
+
+def _is_vector(value: Value | None) -> bool:
+    """Say whether a value is more than one number."""
+    return isinstance(value, np.ndarray) and value.size > 1
+
+
+def _statements(structure: Mapping[str, Value]) -> dict[str, Value]:
+    """Return the fields of a structure, and those of the structures in it that state something of the others."""
+    stated: dict[str, Value] = {}
+    for name, value in structure.items():
+        if bare(name) in _BESIDE and isinstance(value, dict):
+            is_of_time = bare(name) == _TIME_INFO
+            stated |= {each: held for each, held in value.items() if not (is_of_time and bare(each) in UNITS)}
+    return stated | dict(structure)

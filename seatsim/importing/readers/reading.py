@@ -16,8 +16,8 @@ import numpy as np
 
 from seatsim.importing.signals import DataFile, Group, Signal
 from seatsim.schema.bounds import TooMuchError, check_made
-from seatsim.schema.errors import InputError, nearest
-from seatsim.schema.guarded import is_there, read_bytes
+from seatsim.schema.errors import InputError
+from seatsim.schema.guarded import is_there, nearest_beside, read_bytes
 from seatsim.schema.tables import LARGEST_FILE, UNPACKING_ERRORS, unpack
 from seatsim.schema.text import make_printable
 
@@ -130,8 +130,7 @@ def need(module: str, kind: str) -> ModuleType:
 def _content(path: Path) -> bytes:
     """Return the bytes of a file, unpacked where it is packed."""
     if not is_there(path):
-        beside = [each.name for each in path.parent.iterdir()] if path.parent.is_dir() else []
-        raise InputError(f"{path}: cannot be read: no such file{nearest(path.name, beside)}")
+        raise InputError(f"{path}: cannot be read: no such file{nearest_beside(path)}")
     content = read_bytes(path, LARGEST_FILE, "a file of measured data")
     # An XLSX is a _ZIP itself, and its reader unpacks it.
     if not content.startswith(_ZIP):

@@ -24,10 +24,10 @@ from seatsim.importing.readers.header import (
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.signals import DataFile, Signal, find_rate, note_left_out
 from seatsim.schema.errors import InputError
+from seatsim.schema.tables import parse_rows
 
 if TYPE_CHECKING:
     import pyarrow as pa
-    from pyarrow import csv as arrow_csv
 
 _SAMPLE = 65536
 """Bytes from which delimiter, decimal sign and header are found."""
@@ -57,7 +57,10 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     content = as_utf8(content, layout.encoding)
     head = _read_head(path, content, layout)
     body, notes = _clean(_without_lines(content, len(head.above)), head)
-    table = _table(path, content, body, head, notes)
+    columns, (delimiter, decimal) = [str(index) for index in range(len(head.header.names))], head.dialect
+    table, bad = parse_rows(body, path, columns, delimiter=delimiter, decimal=decimal, missing=MISSING)
+    if bad:
+        _check_rows(path, content, [(row.text, row.actual_columns) for row in bad], head, notes)
     signals = _signals(table, head, notes)
     _check_texts(path, table, signals)
     if not content.endswith((b"\n", b"\r")):
@@ -157,33 +160,6 @@ def _cells_of_blanks(line: bytes) -> list[bytes]:
 def _repeats(body: bytes, above: Sequence[str]) -> bool:
     last = next((line for line in reversed(above) if line.strip()), None)
     return last is not None and last.strip().encode() in body
-
-
-def _table(path: Path, content: bytes, body: bytes, head: _Head, notes: list[str]) -> pa.Table:
-    import pyarrow as pa
-    from pyarrow import csv as arrow_csv
-
-    bad: list[arrow_csv.InvalidRow] = []
-
-    def note(row: arrow_csv.InvalidRow) -> str:
-        bad.append(row)
-        return "skip"
-
-    names = [str(index) for index in range(len(head.header.names))]
-    try:
-        table = arrow_csv.read_csv(
-            pa.BufferReader(body),
-            arrow_csv.ReadOptions(column_names=names),
-            arrow_csv.ParseOptions(delimiter=head.dialect.delimiter, invalid_row_handler=note),
-            arrow_csv.ConvertOptions(
-                decimal_point=head.dialect.decimal, null_values=list(MISSING), strings_can_be_null=True
-            ),
-        )
-    except pa.ArrowInvalid as error:
-        raise InputError(f"{path}: cannot be read as a table: {str(error).splitlines()[0]}") from error
-    if bad:
-        _check_rows(path, content, [(row.text, row.actual_columns) for row in bad], head, notes)
-    return table
 
 
 def _check_rows(path: Path, content: bytes, bad: Sequence[tuple[str, int]], head: _Head, notes: list[str]) -> None:

@@ -7,13 +7,13 @@ where no displacement is recorded, the integral of frame acceleration - floor ac
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.recordings.recording import Recording
+from seatsim.recordings.recording import DRIVERS, Recording
 from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
@@ -62,7 +62,7 @@ def measure_coverage(recording: Recording) -> Coverage:
         InputError: a table or the nominal scenario cannot be read.
     """
     tables = [recording.table(run) for run in recording.runs]
-    nominal, rate = recording.nominal, recording.header.sample_rate
+    rate = recording.header.sample_rate
     pools: dict[str, tuple[str, list[Array]]] = {}
     for table in tables:
         for name, (unit, values) in _quantities(recording, table).items():
@@ -71,7 +71,7 @@ def measure_coverage(recording: Recording) -> Coverage:
     drop = _largest_drop(pools.get("current", ("A", []))[1], rate)
     seconds = sum(len(next(iter(table.values()))) for table in tables) / rate
     band = _band(recording, tables)
-    return Coverage(seconds, visited, band, _missing(recording, nominal, visited, drop, band))
+    return Coverage(seconds, visited, band, [*_missing(recording, visited, drop, band)])
 
 
 def shows_falling_current(recording: Recording) -> bool:
@@ -150,7 +150,7 @@ def _band(recording: Recording, tables: list[dict[str, Array]]) -> tuple[float, 
     from scipy.signal import welch
 
     rate = recording.header.sample_rate
-    channel = "floor_acceleration" if recording.header.rig == "seat" else "displacement"
+    channel = DRIVERS[recording.header.rig]
     rows = min([len(table[channel]) for table in tables] + [round(8.0 * rate)])
     spectra = [welch(table[channel], rate, nperseg=rows) for table in tables]
     frequency = spectra[0][0]
@@ -163,63 +163,49 @@ def _band(recording: Recording, tables: list[dict[str, Array]]) -> tuple[float, 
     return low, high
 
 
-def _missing(
-    recording: Recording,
-    nominal: Scenario,
-    visited: _Visited,
-    drop: float,
-    band: tuple[float, float] | None,
-) -> list[str]:
-    """Return a sentence for each part of the operating range that is missing, with what it leaves undecided."""
-    sentences = [*_missing_motion(recording, visited), *_missing_current(nominal, visited, drop)]
-    sentences += [_missing_temperature(nominal, visited.get("temperature"))]
+def _missing(recording: Recording, visited: _Visited, drop: float, band: tuple[float, float] | None) -> Iterator[str]:
+    """Yield a sentence for each part of the operating range that is missing, with what it leaves undecided."""
+    yield from _missing_motion(recording, visited)
+    yield from _missing_current(recording.nominal, visited.get("current"), drop)
+    yield from _missing_temperature(recording.nominal, visited.get("temperature"))
     if recording.header.rig == "seat" and band is not None and not (band[0] < _TRUNK[0] and band[1] > _TRUNK[1]):
         place = f"the floor shakes between {band[0]:.2g} and {band[1]:.2g} Hz only"
-        sentences.append(
-            f"{place}: a driver's inner resonance between {_TRUNK[0]:g} and {_TRUNK[1]:g} Hz is hard to assess"
-        )
-    return [sentence for sentence in sentences if sentence]
+        yield f"{place}: a driver's inner resonance between {_TRUNK[0]:g} and {_TRUNK[1]:g} Hz is hard to assess"
 
 
-def _missing_motion(recording: Recording, visited: _Visited) -> list[str]:
-    sentences = []
+def _missing_motion(recording: Recording, visited: _Visited) -> Iterator[str]:
     travel, velocity, driver = (visited.get(name) for name in ("travel", "velocity", "driver"))
     if travel is None:
-        sentences.append(
-            "no displacement is recorded: end stops, springs and free play are seen through other channels"
-        )
+        yield "no displacement is recorded: end stops, springs and free play are seen through other channels"
     elif recording.header.rig == "seat" and max(-travel.low, travel.high) < _LARGE_TRAVEL:
         place = f"travel stays within {1e3 * travel.low:.0f} to {1e3 * travel.high:.0f} mm"
-        sentences.append(f"{place}: end stops and progressive springs beyond that cannot be assessed")
-    if velocity is not None and max(-velocity.percentiles[0], velocity.percentiles[-1]) < _FAST:
-        reached = max(-velocity.percentiles[0], velocity.percentiles[-1])
-        sentences.append(f"velocity hardly exceeds {reached:.2g} m/s: the damper's force at speed cannot be assessed")
+        yield f"{place}: end stops and progressive springs beyond that cannot be assessed"
+    reached = max(-velocity.percentiles[0], velocity.percentiles[-1]) if velocity is not None else _FAST
+    if reached < _FAST:
+        yield f"velocity hardly exceeds {reached:.2g} m/s: the damper's force at speed cannot be assessed"
     if driver is not None and driver.low > -_LIFT:
         place = f"the driver is never accelerated downwards by more than {max(0.0, -driver.low):.2g} m/s^2"
-        sentences.append(f"{place}: separation from the cushion cannot be assessed")
-    return sentences
+        yield f"{place}: separation from the cushion cannot be assessed"
 
 
-def _missing_current(nominal: Scenario, visited: _Visited, drop: float) -> list[str]:
-    current, most = visited.get("current"), nominal.coil.max_current
+def _missing_current(nominal: Scenario, current: _VisitedRange | None, drop: float) -> Iterator[str]:
+    most = nominal.coil.max_current
     if current is None:
-        return ["no current is recorded: what the coil does cannot be assessed apart from the damper"]
+        yield "no current is recorded: what the coil does cannot be assessed apart from the damper"
+        return
     low, high = current.percentiles[0], current.percentiles[-1]
     if high - low < _DROP * most:
-        return [f"current stays at {low:.2g} to {high:.2g} A: coil, remanence and saturation cannot be assessed"]
-    sentences = []
+        yield f"current stays at {low:.2g} to {high:.2g} A: coil, remanence and saturation cannot be assessed"
+        return
     if drop < _DROP * most:
-        sentences.append(f"current never drops by more than {drop:.2g} A: remanence cannot be assessed")
+        yield f"current never drops by more than {drop:.2g} A: remanence cannot be assessed"
     if high < _FULL_CURRENT * most:
-        sentences.append(f"current never exceeds {high:.2g} A: magnetic saturation beyond that cannot be assessed")
-    return sentences
+        yield f"current never exceeds {high:.2g} A: magnetic saturation beyond that cannot be assessed"
 
 
-def _missing_temperature(nominal: Scenario, temperature: _VisitedRange | None) -> str:
+def _missing_temperature(nominal: Scenario, temperature: _VisitedRange | None) -> Iterator[str]:
     stated = nominal.temperature.start if isinstance(nominal.temperature, Thermal) else nominal.temperature
     if temperature is None:
-        return "no temperature is recorded: thermal fade can only be seen as a weaker damper, not be told by its warmth"
-    warmest = temperature.percentiles[-1]
-    if warmest - stated < _WARM:
-        return f"no run is warmer than {warmest:.0f} degC: thermal fade cannot be assessed"
-    return ""
+        yield "no temperature is recorded: thermal fade can only be seen as a weaker damper, not be told by its warmth"
+    elif temperature.percentiles[-1] - stated < _WARM:
+        yield f"no run is warmer than {temperature.percentiles[-1]:.0f} degC: thermal fade cannot be assessed"

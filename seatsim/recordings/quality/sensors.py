@@ -103,8 +103,8 @@ def check_noise(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
         seen = min((measure_level(run.table[channel], run.rate) for run in runs), key=lambda level: level.fourth)
         if channel == "current_command" or stated == 0.0 or not 0.0 < seen.fourth < np.inf:
             continue
-        repeated = _repeated(runs, channel)
-        all_of = _all_of(repeated)
+        repeated = list_unrepeated(runs[0].recording, channel)
+        all_of = measure_unrepeated(repeated)
         text = f"noise_rms is stated as {stated:g}, but about {seen.fourth:.2g} is seen"
         is_too_small = seen.third > _NOISE_OFF * stated and seen.fourth > _WHITE * seen.third
         if is_too_small and (reason := _not_of_the_sensor(seen, repeated, runs[0].rate)):
@@ -130,20 +130,20 @@ def _less_is_seen(runs: Sequence[RunUnderTest], channel: str, seen: Level, state
     return issue_in_all_runs("warning", "noise", f"{text}; {advice}", channel)
 
 
-def _repeated(runs: Sequence[RunUnderTest], channel: str) -> list[Array]:
-    """Return the difference of each pair of repeats over the root of 2, shape (N,): what does not repeat itself."""
-    named, found = {run.name: run for run in runs}, []
-    for run in runs:
-        other = named.get(run.recording.runs[run.name].repeat_of or "")
-        if other is not None:
-            rows = min(run.rows, other.rows)
-            found.append((run.table[channel][:rows] - other.table[channel][:rows]) / np.sqrt(2.0))
+def list_unrepeated(recording: Recording, channel: str) -> list[Array]:
+    """Return what does not come again of each pair of repeats: their difference over the root of 2, shape (N,)."""
+    found = []
+    for run, entry in recording.runs.items():
+        if entry.repeat_of is not None:
+            first, second = (recording.table(name)[channel] for name in (run, entry.repeat_of))
+            rows = min(len(first), len(second))
+            found.append((first[:rows] - second[:rows]) / np.sqrt(2.0))
     return found
 
 
-def _all_of(repeated: Sequence[Array]) -> float:
+def measure_unrepeated(unrepeated: Sequence[Array]) -> float:
     """Return the RMS of what does not repeat itself, at all frequencies, NaN without repeats."""
-    return min((float(np.std(values)) for values in repeated), default=np.nan)
+    return min((float(np.std(values)) for values in unrepeated), default=np.nan)
 
 
 def _not_of_the_sensor(seen: Level, repeated: Sequence[Array], rate: float) -> str:
