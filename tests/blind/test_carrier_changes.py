@@ -11,7 +11,7 @@ import pytest
 
 from seatsim.blind.carrier.make import DrawnCase, draw_amount, draw_changes
 from seatsim.blind.carrier.readings import draw_faster_coils
-from seatsim.blind.carrier.recorded import Carrier, Change
+from seatsim.blind.carrier.recorded import Carrier
 from seatsim.blind.carrier.replays import Ruler
 from seatsim.blind.sealed import EFFECTS
 
@@ -130,19 +130,3 @@ def test_a_size_counts_in_standard_deviations_beyond_the_tolerance() -> None:
     known, loose = bench_carrier(0.0), bench_carrier(0.1)
     assert Ruler(known).size(gain(known)) == pytest.approx(0.08, rel=0.05)
     assert Ruler(loose).size(gain(loose)) < 0.02
-
-
-def test_an_effect_whose_opposite_is_in_the_background_is_not_put_in() -> None:
-    carrier = bench_carrier()
-    spread = float(np.std(carrier.pooled("damper_force")))
-    biased = offset(carrier, -0.2 * spread)
-    assert Ruler(carrier).stands_out(offset(carrier, 0.2 * spread))
-    assert not Ruler(biased).stands_out(offset(biased, 0.2 * spread))
-    opposed = Change("sensor.bias", "", "", (0.0, 1.0), lambda a: put(offset(biased, a * spread)))
-    assert draw_amount(Ruler(biased), opposed, 0.2) is None
-
-
-def put(carrier: Carrier) -> Any:
-    from seatsim.blind.carrier.recorded import Altered
-
-    return Altered(carrier, {})

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from seatsim import load_recording
-from seatsim.blind.carrier.make import UNTOUCHED, make_on_carrier, take_turns
-from seatsim.blind.carrier.power import SIZES, Power, Trial, measure_power
+from seatsim.blind.carrier.make import UNTOUCHED, make_on_carrier
+from seatsim.blind.carrier.power import Power, measure_power
 from seatsim.blind.carrier.recorded import read_carrier
 from seatsim.blind.score.score import score_verdicts
 from seatsim.blind.score.tables import tables
@@ -53,16 +53,6 @@ def test_a_set_is_sealed_repeatable_and_silent(recording: Path, tmp_path: Path) 
     assert 1.0 < label["materialities"][0] < 10.0
     assert list(load_recording(tmp_path / "first" / "case-0001").runs) == ["run-0", "run-1"]
     assert list(load_recording(opened.extract("case-0001", tmp_path)).runs) == ["run-2"]
-
-
-def test_effects_and_the_untouched_carrier_take_turns(recording: Path) -> None:
-    import numpy as np
-
-    turns = take_turns(read_carrier(recording), 60, np.random.default_rng(0))
-    per_round = len(set(turns))
-    assert UNTOUCHED in turns
-    assert {"coil.delay", "damper.seal_friction", "sensor.gain"} < set(turns)
-    assert len(set(turns[:per_round])) == per_round
 
 
 def test_labels_beside_the_recordings_and_short_runs_are_refused(recording: Path, tmp_path: Path) -> None:
@@ -110,14 +100,6 @@ def test_power_is_the_smallest_size_found_and_goes_on_where_it_stopped(recording
         measure_power(recording, out, never, effects, 2, seed=9)
     with pytest.raises(InputError, match=r"'coil\.dely' cannot be put in.*coil\.delay"):
         measure_power(recording, out, never, ["coil.dely"])
-
-
-def test_power_looks_at_smaller_sizes_where_a_recording_allows_no_larger_one(tmp_path: Path) -> None:
-    quick_coil = write_carrier(bench_carrier(rate=100.0), tmp_path / "quick")
-    found = measure_power(quick_coil, tmp_path / "power", find_from_finest, ["coil.lag"], 1, processes=1)[0]
-    assert found.trials[SIZES[2]] == [Trial(None, False)]
-    assert [trial.found for trial in found.trials[SIZES[0]]] == [False]
-    assert (found.smallest, found.found) == (None, {"0.06": [False], "0.1": [False], "0.16": []})
 
 
 CARRIED: dict[str, Any] = {

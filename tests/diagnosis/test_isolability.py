@@ -39,29 +39,6 @@ def test_the_groups_are_those_of_the_published_table(absent, merged):
     assert sum(map(len, groups)) == 6
 
 
-def test_what_leaves_no_trace_stands_in_no_group():
-    groups = find_isolable_groups("seat", ALL - {"current_command"})
-    assert not any("coil" in group for group in groups)
-    assert find_isolable_groups("seat", {"floor_acceleration"}) == []
-
-
-def test_without_any_record_of_the_current_coil_and_damper_are_one():
-    assert ["damper", "coil"] in find_isolable_groups("seat", ALL - {"current_command", "coil_current"})
-
-
-@pytest.mark.parametrize(
-    ("channels", "groups"),
-    [
-        ({"displacement", "damper_force", "command_voltage"}, [["damper", "coil", "sensor"]]),
-        ({"displacement", "damper_force", "coil_current"}, [["damper", "sensor"]]),
-        ({"displacement", "damper_force", "coil_current", "current_command"}, [["damper", "sensor"], ["coil"]]),
-        ({"displacement", "current_command"}, []),
-    ],
-)
-def test_a_bench_has_damper_coil_and_sensors(channels, groups):
-    assert find_isolable_groups("damper_bench", channels) == groups
-
-
 def test_the_temperature_changes_no_group():
     assert find_isolable_groups("seat", ALL | {"damper_temperature"}) == find_isolable_groups("seat", ALL)
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import pytest
 
 from seatsim.effects import base
-from seatsim.effects.base import EFFECTS, ON_DAMPER, acts_on, off
+from seatsim.effects.base import EFFECTS, off
 from seatsim.scenario.scenario import Solver
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import adapter, bounds, choices, describe
@@ -31,7 +31,6 @@ BLOCKS = {
 }
 CONTRACT = {f"{block}.{name}" for block, listed in BLOCKS.items() for name in listed.split()}
 shaken = partial(rigs.shaken, carry_all_effects=True)  # one compiled loop for all effects of a rig
-ON_BENCH = [name for name in NAMES if acts_on(find("effect", name), ON_DAMPER)]
 WITH_FORMS = [name for name in NAMES if starts(name)]
 
 

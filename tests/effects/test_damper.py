@@ -7,9 +7,6 @@ import pytest
 
 from .rigs import BINGHAM, INERT, STEP, bench, cycles, record, strokes, work
 
-STEADY = np.full(2001, 0.1)
-"""One second of extension at 0.1 m/s."""
-
 
 def yielded(current):
     """Yield force of the Bingham damper in N at a speed beyond its tanh."""

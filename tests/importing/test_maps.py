@@ -6,7 +6,6 @@ import pytest
 from seatsim.importing.import_map import read_map, render_map
 from seatsim.importing.importing import import_files
 from seatsim.importing.matching import propose
-from seatsim.importing.names import read_name
 from seatsim.importing.readers.reading import read_file
 from seatsim.recordings.recording import load_recording
 from seatsim.schema.errors import InputError
@@ -178,12 +177,6 @@ def test_differences_and_derivatives(tmp_path):
     table = read_run(tmp_path / "out")
     np.testing.assert_allclose(table["floor_acceleration"][5:-5], (-81 * floor)[5:-5], atol=1e-3)
     np.testing.assert_allclose(table["suspension_displacement"], body - floor, atol=1e-9)
-
-
-def test_a_unit_alone_tells_a_quantity_only_where_no_word_does():
-    assert read_name("Kanal 3", "kN").quantity == "force"
-    assert read_name("Kanal 3", "").quantity is None
-    assert read_name("Temperatur", "V").quantity == "temperature"
 
 
 def test_a_column_without_a_channel_is_named_and_an_offset_is_added_in_the_unit(tmp_path):

@@ -83,7 +83,6 @@ def lvm(x_columns, tables, decimal=".", steps=(0.01, 0.01), starts=("09:51:40.5"
 T = 0.01 * np.arange(50)
 F, A = np.sin(20.0 * T), np.cos(20.0 * T)
 NOTHING = np.full(50, np.nan)
-SLOW = np.where(np.arange(50) < 25, np.cos(40.0 * T), np.nan)
 
 
 @pytest.mark.parametrize(
@@ -110,16 +109,6 @@ def test_lvm_states_times_units_and_segments(tmp_path, content, times):
     assert group.signals[0].values == pytest.approx(times, abs=1e-6)
     assert group.signals[1].values == pytest.approx(F, abs=1e-6)
     assert group.signals[2].values == pytest.approx(A, abs=1e-6)
-
-
-def test_a_slower_channel_of_lvm_has_its_own_interval(tmp_path):
-    content = lvm("One", [np.column_stack([T, F, SLOW])], steps=(0.01, 0.02)).replace(
-        "Samples\t50\t50", "Samples\t50\t25"
-    )
-    (tmp_path / "a.lvm").write_text(content)
-    fast, slow = read_file(tmp_path / "a.lvm").groups
-    assert fast.signals[0].values == pytest.approx(T, abs=1e-6)
-    assert slow.signals[0].values == pytest.approx(0.02 * np.arange(25)) and slow.rows == 25
 
 
 @pytest.mark.parametrize(
@@ -201,27 +190,3 @@ def test_a_data_set_that_is_no_response_over_time_is_called_what_it_is(tmp_path,
     uff(tmp_path / "a.uff", np.sin(np.arange(498.0)), **changes)
     with pytest.raises(InputError, match=said):
         read_file(tmp_path / "a.uff")
-
-
-@pytest.mark.parametrize(
-    ("name", "expected"),
-    [
-        ("lvm_one_x_point.lvm", {"Damper force": 400, "Driver acceleration": 400}),
-        ("simulink_structure_with_time.mat", {"Fahrer_Beschl": 2000, "Federweg": 2000, "Daempferkraft": 2000}),
-        ("uff_padded.uff", {"Fahrer": 501}),
-    ],
-)
-def test_files_of_others_have_all_their_channels_and_a_time(name, expected, shared):
-    found = {}
-    for group in read_file(shared / "cases" / name).groups:
-        assert group.rate or group.signals[0].name == "time"
-        found |= {signal.name: len(signal.values) for signal in group.signals if signal.name != "time"}
-    assert found == expected
-
-
-def test_channels_of_others_that_start_apart_are_aligned(tmp_path, shared):
-    cases = shared / "cases"
-    import_files([cases / "tdms_start_times.tdms"], tmp_path / "out", cases / "map_tdms.yaml")
-    table = read_run(tmp_path / "out")
-    assert len(table) == 2500
-    assert np.corrcoef(table["floor_acceleration"], table["driver_acceleration"])[0, 1] > 0.999

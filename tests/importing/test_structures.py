@@ -23,18 +23,6 @@ def found_in(file):
     return {(group.name, signal.name): (signal.unit, group.rate) for group in file.groups for signal in group.signals}
 
 
-def test_a_mat_structure_states_units_and_rate(tmp_path):
-    acceleration = {"values": band_limited(1, FAST), "unit": "g"}
-    data = {"a_floor": acceleration, "force": band_limited(2, FAST), "units": {"force": "kN"}, "fs": 500.0}
-    savemat(tmp_path / "a.mat", {"daq": data, "note": "run 3", "matrix": np.eye(3)})
-    found = found_in(read_file(tmp_path / "a.mat"))
-    assert found["daq", "a_floor"] == ("g", 500.0)
-    assert found["daq", "force"] == ("kN", 500.0)
-    recorded = import_files([tmp_path / "a.mat"], tmp_path / "out")
-    assert recorded.rate == 500.0
-    assert set(recorded.map.channels) == {"floor_acceleration", "damper_force"}
-
-
 def test_a_matrix_of_hdf5_has_names_and_units_in_attributes(tmp_path):
     h5py = pytest.importorskip("h5py")
     with h5py.File(tmp_path / "a.h5", "w") as file:
@@ -66,21 +54,6 @@ def test_groups_of_other_rates_and_starts_share_the_clock_of_their_file(tmp_path
     assert np.std((table["suspension_displacement"] - expected)[inner]) < 0.01 * np.std(expected)
     lagging = band_limited(2, 0.25 + table["time"] - 0.02)
     assert np.std((table["coil_current"] - lagging)[inner]) < 0.01 * np.std(lagging)
-
-
-def test_channels_of_tdms_with_other_increments_are_groups(tmp_path):
-    nptdms = pytest.importorskip("nptdms")
-    with nptdms.TdmsWriter(tmp_path / "a.tdms") as writer:
-        fast = {"unit_string": "g", "wf_increment": 0.002, "wf_start_offset": 0.0}
-        slow = {"unit_string": "degF", "wf_increment": 0.01, "wf_start_offset": 0.5}
-        writer.write_segment([
-            nptdms.ChannelObject("daq", "acc_floor", band_limited(1, FAST), fast),
-            nptdms.ChannelObject("daq", "temp_damper", 68.0 + SLOW[:1800], slow),
-        ])  # fmt: skip
-    found = import_files([tmp_path / "a.tdms"], tmp_path / "out")
-    assert found.rate == 500.0
-    table = read_run(tmp_path / "out")
-    assert table["damper_temperature"].iloc[1000] == pytest.approx((68.0 + 2.0 - 32.0) / 1.8, abs=1e-3)
 
 
 def test_every_sheet_of_a_workbook_with_numbers_is_a_group(tmp_path):

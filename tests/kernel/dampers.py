@@ -30,21 +30,6 @@ class Bump(NamedTuple):
         return v * (500.0 + self.slope * i + self.height * math.exp(-(((i - self.centre) / self.width) ** 2)))
 
 
-class Twice(NamedTuple):
-    """`F = v (500 + 5 i - depth (exp(-((i - dip) / width)^2) + g))`: a dip, and g rising from 0 to 1 about `fall`."""
-
-    order = 0
-
-    dip: float
-    width: float
-    depth: float
-    fall: float
-
-    def force(self, x: float, v: float, i: float, scaling: Any, z: Any) -> float:
-        first = math.exp(-(((i - self.dip) / self.width) ** 2))
-        return v * (500.0 + 5.0 * i - self.depth * (first + 0.5 + 0.5 * math.tanh(20.0 * (i - self.fall))))
-
-
 class Parabola(NamedTuple):
     """`F = v (a + b i + c i^2)`."""
 

@@ -16,7 +16,7 @@ from seatsim.rig.plant import Plant
 from seatsim.rig.sensors import Direct, Sensors, at_rest
 from seatsim.rig.temperature import TemperatureFactors, Thermal
 
-from .uncompiled import Commanded, Feedback, Hysteretic, Linear
+from .uncompiled import Commanded, Feedback, Linear
 
 pytestmark = pytest.mark.usefixtures("uncompiled")
 PLANT = Plant(20.0, 80.0, 4600.0, 150.0, 60000.0, 1500.0, damper_ratio=0.8)
@@ -118,17 +118,6 @@ def test_a_damper_warms_by_its_work_and_its_coil():
     assert h["damper_force"] == pytest.approx(
         (800.0 * factor + 180.0 * factor) * 0.8 * h["suspension_velocity"], rel=1e-9
     )
-
-
-def test_an_assumed_damper_is_followed_beside_the_true_one():
-    true, rest = Hysteretic(), (0.0, 0.0)
-    law = {"law_state": (0.0,), "damper": true, "rest": rest, "followed": rest, "rows": 120}
-    knows, _ = run(Feedback(500.0), model=TrueModel(true, 1), **law)
-    assumes, _ = run(Feedback(500.0), model=AssumedModel(true, 1, FACTORS, math.nan), **law)
-    assert assumes["current_command"] == pytest.approx(knows["current_command"], abs=5e-3)
-    assert np.mean((knows["current_command"] > 0.02) & (knows["current_command"] < 0.98)) > 0.05
-    hot, _ = run(Feedback(500.0), model=AssumedModel(true, 1, FACTORS, 80.0), **law)
-    assert np.max(np.abs(hot["current_command"] - knows["current_command"])) > 0.05
 
 
 class Charged(NamedTuple):

@@ -52,26 +52,6 @@ def test_groups_of_a_bench_by_hand(channels, groups):
     assert find_isolable_groups("damper_bench", channels) == groups
 
 
-@pytest.mark.parametrize(
-    ("channels", "groups"),
-    [
-        # x' = v and v' = as - a0 with all three measured test the sensors alone. What the motion then says of all
-        # forces is left over once: the force balance of the frame, which every block enters.
-        (
-            {"floor_acceleration", "frame_acceleration", "suspension_displacement"},
-            [["damper", "coil", "suspension", "cushion", "driver", "floor"], ["sensor"]],
-        ),
-        # The driver hangs on the frame by the cushion: 4 unknowns xc, vc, Fc and the two measured accelerations.
-        ({"frame_acceleration", "driver_acceleration"}, [["cushion", "driver", "sensor"]]),
-        # Fd from x, v and the stated current, against the load cell.
-        ({"suspension_displacement", "damper_force"}, [["damper", "coil", "sensor"]]),
-        ({"frame_acceleration"}, []),
-    ],
-)
-def test_groups_of_a_seat_by_hand(channels, groups):
-    assert find_isolable_groups("seat", channels) == groups
-
-
 LINES = [
     ("floor", "frame_acc spring cushion_force damper"), ("suspension", "spring x v"), 
     ("driver", "driver_acc cushion_force"),

@@ -70,7 +70,6 @@ STAND_INS = {
 BENT = {Biodynamics: "three"}
 """Real effects that feed a second cause by the square of that, so that what they do depends on their size."""
 NUISANCES = (Nuisance("plant", "driver_mass", 80.0, 8.0), Nuisance("plant", "suspension_stiffness", 4600.0, 460.0))
-NUISANCE_TAPS = ("mass", "stiffness")
 TOLERANCE = 0.1
 
 
