@@ -88,18 +88,6 @@ def test_check_says_what_is_wrong(name, text, problem, tmp_path, seatsim_command
     assert status == 2 and problem in err
 
 
-def test_check_reads_the_floor_of_a_scenario(seat_file, seatsim_command):
-    seat_file.write_text(seat_file.read_text().partition("excitation")[0] + "excitation: {kind: table, path: no.csv,"
-                         " column: a, time_column: t}\n")  # fmt: skip
-    status, _, err = seatsim_command("check", seat_file)
-    assert status == 2 and "no.csv" in err
-
-
-def test_check_of_code_that_registers_nothing(tmp_path, seatsim_command, forget_own_code):
-    (tmp_path / "empty_one.py").write_text("a = 1\n")
-    assert "no class is registered" in seatsim_command("check", tmp_path / "empty_one.py")[2]
-
-
 @pytest.mark.parametrize("kind", FILES)
 def test_schemas_know_every_key(kind, seatsim_command):
     status, out, _ = seatsim_command("schema", kind)

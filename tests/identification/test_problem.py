@@ -129,11 +129,3 @@ def test_temperature_is_an_input_where_it_varies_enough(warmer, reference):
     assert stated(records)[0].reference == reference
     assert stated(records, Settings(ignore_temperature=True))[0].reference is None
     assert stated([records[0], made()])[0].reference is None, "not recorded everywhere"
-
-
-@pytest.mark.parametrize("model", ["bingham", "maxwell_nonlinear_slider"])
-def test_a_current_that_is_but_rounding_counts_as_none(model):
-    problem, _ = state_problem([made(current=3e-7)], find_model(model), 0.0, Settings())
-    low, high = problem.bounds
-    assert np.all(low < high)
-    assert problem.coordinates.end == 1.0 and not any("_b" in label for label in problem.labels)

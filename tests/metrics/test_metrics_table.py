@@ -1,12 +1,9 @@
 """The table of one run."""
 
 import math
-import time
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from seatsim.metrics.comfort import seat_factor
 from seatsim.metrics.motion import rms
@@ -98,16 +95,6 @@ def test_force_wanted_for_part_of_the_run_only():
     assert table["force_served_share"].value == 0.0
 
 
-def test_floor_at_rest():
-    channels = history()
-    channels["floor_acceleration"][:] = 0.0
-    channels["driver_acceleration"][:] = 0.0
-    table = summarise(channels, STEP)
-    assert math.isnan(table["seat_factor"].value)
-    assert math.isnan(table["driver_crest_factor"].value)
-    assert table["driver_vdv"].value == table["driver_mtvv"].value == 0.0
-
-
 def test_slow_record_keeps_what_needs_no_weighting():
     table = summarise({"driver_acceleration": np.ones(50), "floor_acceleration": np.ones(50)}, 0.01)
     assert list(table) == ["driver_acceleration_rms", "driver_acceleration_peak", "driver_jerk_rms"]
@@ -139,25 +126,3 @@ def test_refuses_channels_that_do_not_fit():
         summarise({"driver_acceleration": [1.0, 2.0, math.nan]}, STEP)
     with pytest.raises(InputError, match="coil_current"):
         summarise({"coil_current": np.ones((4, 2))}, STEP)
-
-
-@settings(derandomize=True, deadline=None, max_examples=15)
-@given(st.floats(1e-3, 1e3), st.integers(0, 1000))
-def test_scaling_the_motion(factor, seed):
-    channels = history(1.0, seed)
-    motion = [name for name in channels if "acceleration" in name]
-    plain = summarise(channels, STEP)
-    scaled = summarise(channels | {name: factor * channels[name] for name in motion}, STEP)
-    for name in NAMES[:9]:
-        power = 0 if METRICS[name].unit == "-" else 1
-        assert scaled[name].value == pytest.approx(factor**power * plain[name].value)
-
-
-def test_a_minute_at_one_kilohertz_is_quick():
-    channels = history(60.0)
-    best = math.inf
-    for _ in range(5):
-        start = time.perf_counter()
-        summarise(channels, STEP, travel=(-0.05, 0.05), coil_resistance=4.0)
-        best = min(best, time.perf_counter() - start)
-    assert best < 0.05

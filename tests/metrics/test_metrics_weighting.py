@@ -47,17 +47,6 @@ def test_formula_reproduces_the_horizontal_table():
     assert np.abs(frequency_response(NOMINAL, "Wd"))[smooth] == pytest.approx(WD[smooth], rel=4e-3)
 
 
-def test_table_belongs_to_nominal_not_to_exact_centres():
-    assert np.abs(frequency_response(EXACT, "Wk")) == pytest.approx(WK, rel=1.5e-2)
-    assert np.abs(np.abs(frequency_response(EXACT, "Wk")) / WK - 1).max() > 1e-2
-
-
-@pytest.mark.parametrize("sample_rate", RATES)
-def test_digital_weighting_meets_the_table(sample_rate):
-    gains = [abs(measured_gain(f, sample_rate, "Wk")) for f in NOMINAL]
-    assert gains == pytest.approx(WK, rel=5e-3)
-
-
 @pytest.mark.parametrize("weighting", [name for name in WEIGHTINGS if name not in ("Wf", "Wh")])
 @pytest.mark.parametrize("sample_rate", RATES)
 def test_digital_gain_and_phase_are_the_analog_ones(sample_rate, weighting):
@@ -101,24 +90,6 @@ def test_transient_agrees_with_an_oversampled_filter():
     assert np.sqrt(np.mean(error**2)) < 1e-3 * reference.std()
 
 
-def test_what_comes_later_hardly_matters():
-    signal = np.zeros(4000)
-    signal[2000] = 1.0
-    out = weight(signal, 500.0)
-    assert np.abs(out[:2000]).max() < 0.006 * np.abs(out).max()
-    assert np.abs(out[:1980]).max() < 1e-3 * np.abs(out).max()
-
-
-def test_nothing_wraps_round_from_the_end():
-    tail = np.zeros(6000)
-    tail[-500:] = 1.0
-    assert np.abs(weight(tail, 500.0)[:4000]).max() < 1e-4
-
-
-def test_constant_acceleration_is_forgotten():
-    assert np.abs(weight(np.full(10000, 9.81), 500.0)[4000:5000]).max() < 1e-3
-
-
 def test_continues_smoothly_at_zero_frequency():
     assert frequency_response(0.0) == 0
     assert frequency_response(np.zeros((2, 3))).shape == (2, 3)
@@ -130,21 +101,9 @@ def test_refuses_a_rate_it_cannot_serve(rate):
         weight(np.ones(100), rate)
 
 
-@pytest.mark.parametrize("bad", [[], [[1.0]], 1.0, ["a"], [1.0, math.nan], [math.inf]])
-def test_refuses_what_is_no_signal(bad):
-    with pytest.raises(InputError, match="signal"):
-        weight(bad, 500.0)
-
-
 def test_names_the_weightings_it_has():
     with pytest.raises(InputError, match=r"did you mean 'Wk'.*permitted: Wk, Wd"):
         weight(np.ones(10), 500.0, "Wkk")
-
-
-def test_input_is_left_alone_and_short_records_work():
-    signal = np.array([1.0])
-    assert weight(signal, 500.0).shape == (1,)
-    assert signal[0] == 1.0
 
 
 @settings(derandomize=True, deadline=None, max_examples=25)

@@ -34,13 +34,6 @@ def test_loops_are_ordered_by_current_at_the_lowest_temperature():
     assert {row.temperature for row in family.rows} == {20.0}
 
 
-def test_loops_are_ordered_by_temperature_at_the_largest_current():
-    rows = [row(i, t) for i in (0.0, 1.0, 0.99) for t in (60.0, 20.0)]
-    family = families.order_by_temperature(rows)
-    assert family.names == ["20 °C", "20 °C", "60 °C", "60 °C"] and family.legend == "temperature"
-    assert min(row.current for row in family.rows) == 0.99
-
-
 def test_one_current_is_ordered_by_temperature_or_by_record():
     warm = families.order_by_current([row(1.0, t) for t in (60.0, 20.0)])
     assert warm.legend == "temperature" and warm.names == ["20 °C", "60 °C"]
@@ -53,11 +46,6 @@ def test_settings_beyond_the_most_are_counted():
     found, left_out = families.find_families(rows)
     assert len(found) == families.MOST and left_out == 2
     assert found[0].title == "10 mm, 1 Hz" and found[-1].title == "10 mm, 8 Hz"
-
-
-def test_a_warm_setting_has_a_family_by_temperature_too():
-    found, _ = families.find_families([row(i, t) for i in (0.0, 1.0) for t in (20.0, 60.0)])
-    assert [family.legend for family in found] == ["current", "temperature"]
 
 
 def test_clouds_of_the_same_motion_share_a_panel():

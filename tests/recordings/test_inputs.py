@@ -4,11 +4,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.signal import bilinear, lfilter
 
 from seatsim.recordings.recording import BENCH_CHANNELS, SEAT_CHANNELS, ChannelEntry, Header, Recording, RunEntry
 from seatsim.recordings.replay import COMPARED, LEFT_OUT, recorded_inputs, select_compared, stands_out
-from seatsim.simulation.inputs import BenchInputs, SeatInputs
+from seatsim.simulation.inputs import BenchInputs
 
 
 def recording_of(rig, table, rate, gain=None):
@@ -23,15 +22,6 @@ TABLE = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(("largest", "parts"), [(0.01, 1), (0.004, 1), (0.0035, 2), (0.002, 2), (0.001, 4)])
-def test_the_step_is_the_largest_that_divides_the_rows(largest, parts):
-    inputs = recorded_inputs(recording_of("seat", TABLE, 250.0), TABLE, largest)
-    assert isinstance(inputs, SeatInputs)
-    assert inputs.interval == 0.004
-    assert inputs.floor.step == 0.004 / parts
-    assert len(inputs.floor.acceleration) == 2 * parts + 1
-
-
 def test_a_seat_is_driven_linearly_between_rows_with_commands_held():
     inputs = recorded_inputs(recording_of("seat", TABLE, 250.0), TABLE, 0.002)
     floor = inputs.floor
@@ -40,23 +30,6 @@ def test_a_seat_is_driven_linearly_between_rows_with_commands_held():
     assert floor.coil_current == pytest.approx([0.1, 0.3, 0.5, 0.4, 0.3])
     assert floor.temperature == pytest.approx([20.0, 22.0, 24.0, 25.0, 26.0])
     assert all(force.size == 0 for force in inputs.forces)
-
-
-def test_what_is_not_recorded_is_absent():
-    table = {"floor_acceleration": TABLE["floor_acceleration"]}
-    floor = recorded_inputs(recording_of("seat", table, 250.0), table, 0.002).floor
-    assert (floor.command, floor.coil_current, floor.temperature) == (None, None, None)
-
-
-def test_velocity_and_displacement_are_leaky_integrals_of_the_acceleration():
-    """Against scipy's bilinear transform of 1 / (s + 2 pi 0.05)."""
-    acceleration = np.sin(2 * np.pi * np.arange(1000) / 250.0)
-    floor = recorded_inputs(recording_of("seat", {"floor_acceleration": acceleration}, 250.0),
-                            {"floor_acceleration": acceleration}, 0.004).floor  # fmt: skip
-    leaky = bilinear([1.0], [1.0, 2 * np.pi * 0.05], fs=250.0)
-    velocity = lfilter(*leaky, acceleration)
-    assert floor.velocity == pytest.approx(velocity, abs=1e-12)
-    assert floor.displacement == pytest.approx(lfilter(*leaky, velocity), abs=1e-12)
 
 
 def test_a_bench_is_driven_row_by_row():
