@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pytest
@@ -34,7 +33,7 @@ def put_in(carrier: Carrier, effect: str, form: str = "", channel: str = "", see
 def share_left(carrier: Carrier, drawn: DrawnCase) -> float:
     """Return the gap with the effect in the nominal over that without, both above the untouched one."""
     ruler, altered = Ruler(carrier), drawn.altered.carrier
-    parameters: dict[str, Any] = {**drawn.altered.parameters, **FIXED.get(drawn.change.effect, {})}
+    parameters: dict[str, object] = {**drawn.altered.parameters, **FIXED.get(drawn.change.effect, {})}
     if drawn.change.channel:
         parameters["channel"] = drawn.change.channel
     effects = [*altered.nominal.get("effects", []), {"effect": drawn.change.effect, "parameters": parameters}]

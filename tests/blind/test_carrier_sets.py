@@ -5,7 +5,6 @@ from __future__ import annotations
 import gzip
 import json
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -83,11 +82,16 @@ def test_power_is_the_smallest_size_found_and_goes_on_where_it_stopped(recording
     told: list[tuple[str, int, int]] = []
     out, effects = tmp_path / "power", ("sensor.bias", "coil.delay")
 
-    def measure(diagnose: Any) -> list[Power]:
+    def measure(diagnose) -> list[Power]:
         return measure_power(
-            recording, out, diagnose, effects, 2, processes=1,
+            recording,
+            out,
+            diagnose,
+            effects,
+            2,
+            processes=1,
             progress=lambda power, done, total: told.append((power.effect, done, total)),
-        )  # fmt: skip
+        )
 
     found = measure(find_from_finest)
     assert told == [("sensor.bias", 1, 2), ("coil.delay", 2, 2)]
@@ -102,10 +106,14 @@ def test_power_is_the_smallest_size_found_and_goes_on_where_it_stopped(recording
         measure_power(recording, out, never, ["coil.dely"])
 
 
-CARRIED: dict[str, Any] = {
-    "kind": "carried", "effects": ["coil.delay"], "blocks": ["coil"], "materialities": [2.0],
-    "shapes": [{"time": 0.01}], "forms": ["command advanced"],
-}  # fmt: skip
+CARRIED: dict[str, object] = {
+    "kind": "carried",
+    "effects": ["coil.delay"],
+    "blocks": ["coil"],
+    "materialities": [2.0],
+    "shapes": [{"time": 0.01}],
+    "forms": ["command advanced"],
+}
 
 
 @pytest.mark.parametrize(
@@ -125,7 +133,7 @@ def test_what_is_right_on_a_measured_background(said: Verdict, right: bool, wron
 
 
 def test_a_score_counts_wrong_names_and_sizes_and_leaves_the_untouched_out() -> None:
-    untouched: dict[str, Any] = {"kind": "untouched", "effects": [], "blocks": []}
+    untouched: dict[str, object] = {"kind": "untouched", "effects": [], "blocks": []}
     named = Verdict(
         "unknown", causes=("coil.delay",), selected=("coil.delay",), parameters={"coil.delay": {"time": 0.012}}
     )

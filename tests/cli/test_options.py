@@ -68,8 +68,11 @@ def test_a_folder_that_cannot_be_is_refused_before_anything_runs(inside, seatsim
 
 
 def complete(typed):
-    asked = os.environ | {"_SEATSIM_COMPLETE": "complete_fish", "_TYPER_COMPLETE_FISH_ACTION": "get-args",
-                          "_TYPER_COMPLETE_ARGS": f"seatsim {typed}"}  # fmt: skip
+    asked = os.environ | {
+        "_SEATSIM_COMPLETE": "complete_fish",
+        "_TYPER_COMPLETE_FISH_ACTION": "get-args",
+        "_TYPER_COMPLETE_ARGS": f"seatsim {typed}",
+    }
     done = subprocess.run([sys.executable, "-m", "seatsim"], env=asked, capture_output=True, text=True, check=False)
     return dict((*line.split("\t"), "")[:2] for line in done.stdout.splitlines())
 

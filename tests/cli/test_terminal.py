@@ -66,16 +66,12 @@ def test_a_warning_of_own_code_is_one_line(tmp_path, seatsim_command, forget_own
     assert seatsim_command("describe", "road", "--with", tmp_path / "noisy_one.py")[2] == "warning: it is odd\n"
 
 
-def test_names_in_files_lead_nowhere_else(seat_file, tmp_path, monkeypatch, capsys):
+def test_names_in_files_lead_nowhere_else(seat_file, tmp_path, here, seatsim_command):
     for name in ("../../escaped", "/tmp/escaped", "a\\b", "", "..", "x" * 200, "\0", " a", "a\n"):
         text = "\n".join(line for line in seat_file.read_text().splitlines() if not line.startswith("name"))
         seat_file.write_text(f"name: {json.dumps(name)}\n{text}\n")
-        monkeypatch.setattr("sys.argv", ["seatsim", "run", str(seat_file)])
-        monkeypatch.chdir(tmp_path)
-        with pytest.raises(SystemExit) as stopped:
-            app.main()
-        assert stopped.value.code == 2
-        assert ", line 1" in capsys.readouterr().err
+        status, _, said = seatsim_command("run", seat_file)
+        assert status == 2 and ", line 1" in said
         assert [path.name for path in tmp_path.iterdir()] == [seat_file.name]
 
 

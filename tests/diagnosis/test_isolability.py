@@ -6,15 +6,16 @@ suspension, and the floor's unmeasured input enters the same force balance.
 
 import pytest
 
-from seatsim.diagnosis.design.isolability import (
-    describe_missing_sensors,
-    find_isolable_groups,
-)
+from seatsim.diagnosis.design.isolability import describe_missing_sensors, find_isolable_groups
 
-ALL = {
-    "floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force",
-    "coil_current", "current_command",
-}  # fmt: skip
+from ..text import words
+
+ALL = set(
+    words("""
+    floor_acceleration frame_acceleration driver_acceleration suspension_displacement damper_force coil_current
+    current_command
+""")
+)
 TABLE = [
     ((), []),
     (("damper_force",), [{"damper", "suspension"}]),
@@ -26,9 +27,8 @@ TABLE = [
     (("damper_force", "coil_current"), [{"damper", "coil", "suspension"}]),
     (("damper_force", "driver_acceleration"), [{"damper", "suspension", "cushion", "driver"}]),
     (("damper_force", "suspension_displacement"), [{"damper", "suspension", "sensor"}]),
-    (("damper_force", "coil_current", "driver_acceleration"),
-     [{"damper", "coil", "suspension", "cushion", "driver"}]),
-]  # fmt: skip
+    (("damper_force", "coil_current", "driver_acceleration"), [{"damper", "coil", "suspension", "cushion", "driver"}]),
+]
 
 
 @pytest.mark.parametrize(("absent", "merged"), TABLE)

@@ -93,8 +93,9 @@ def test_the_body_resonates_near_its_frequency(tmp_path):
         scenario = seat(tmp_path, LOOSE | {"plant.suspension_damping": 2000.0, "excitation": shaking})
         history = shaken(scenario, effect)
         turn = np.exp(-2j * np.pi * frequency * history["time"][-1000:])
-        force, acceleration = (np.sum(values[-1000:] * turn) for values in
-                               (-foam(scenario, history), history["driver_acceleration"]))  # fmt: skip
+        force, acceleration = (
+            np.sum(values[-1000:] * turn) for values in (-foam(scenario, history), history["driver_acceleration"])
+        )
         r = frequency / natural
         through = (1 + 2j * damping * r) / (1 - r**2 + 2j * damping * r)
         assert force / acceleration == pytest.approx(DRIVER * (1 - share + share * through), rel=5e-3)

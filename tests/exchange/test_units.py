@@ -152,9 +152,11 @@ def test_the_rate_of_an_input_is_the_input_that_states_it(open_unit):
     unit.setReal([number["velocity"]], [0.1])
     start = unit.getFMUstate()
     forces = []
-    for state in (lambda: unit.setReal([number["acceleration"]], [3.0]),
-                  lambda: unit.setRealInputDerivatives([number["velocity"], number["command"]], [1, 1], [3.0, 9.0]),
-                  lambda: unit.setRealInputDerivatives([number["velocity"]], [2], [3.0])):  # fmt: skip
+    for state in (
+        lambda: unit.setReal([number["acceleration"]], [3.0]),
+        lambda: unit.setRealInputDerivatives([number["velocity"], number["command"]], [1, 1], [3.0, 9.0]),
+        lambda: unit.setRealInputDerivatives([number["velocity"]], [2], [3.0]),
+    ):
         unit.setFMUstate(start)
         state()
         unit.doStep(0.0, 0.01)
@@ -240,13 +242,3 @@ def test_without_a_compiler_one_sentence_says_so(monkeypatch, seat_file, tmp_pat
     with pytest.raises(InputError, match=said):
         write_fmu(damper_block(load(seat_file)[0]), 2, tmp_path / "unit.fmu")
     assert list(tmp_path.glob("*.fmu*")) == []
-
-
-def test_flags_that_are_named_with_the_compiler_are_used(tmp_path, monkeypatch):
-    (tmp_path / "a.c").write_text("int f(void) { return NUMBER; }\n")
-    monkeypatch.setenv("CC", f"{compiler.find_compiler()} -O1 '-DNUMBER=3'")
-    compiler.compile_library(tmp_path / "a.c", tmp_path / "a.so")
-    assert (tmp_path / "a.so").is_file()
-    monkeypatch.setenv("CC", "gcc '-O2")
-    with pytest.raises(InputError, match=r"variable CC is .*No closing quotation"):
-        compiler.compile_library(tmp_path / "a.c", tmp_path / "a.so")

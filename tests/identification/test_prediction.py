@@ -132,16 +132,10 @@ def test_a_force_that_runs_away_counts_as_zero():
             "--test sine_9Hz matches no record (did you mean 'sine_2Hz'?); there are sine_2Hz, x",
         ),
         (Settings(("*",)), "--test * holds out every record; leave some to fit to"),
-        (
-            Settings(test_fraction=1.0),
-            "--test-fraction 1 is not permitted; it must be at least 0 and below 1",
-        ),
+        (Settings(test_fraction=1.0), "--test-fraction 1 is not permitted; it must be at least 0 and below 1"),
         (Settings(test_fraction=-0.1), "--test-fraction -0.1 is not permitted"),
         (Settings(test_fraction=math.nan), "--test-fraction nan is not permitted"),
-        (
-            Settings(test_fraction=0.999),
-            "--test-fraction 0.999 cuts off 1 rows of 'sine_2Hz'; a part has at least 20",
-        ),
+        (Settings(test_fraction=0.999), "--test-fraction 0.999 cuts off 1 rows of 'sine_2Hz'; a part has at least 20"),
         (Settings(test_fraction=0.001), "cuts off 1 rows of 'sine_2Hz'"),
     ],
 )

@@ -134,9 +134,11 @@ def test_a_recording_of_a_bench_is_read_as_it_says(tmp_path):
     (tmp_path / "recording.yaml").write_text(text.replace("run-a.csv", "run-a.csv, set: {temperature: 50.0}"))
     with pytest.raises(InputError, match="run run-a sets temperature; one damper, as it is, is identified"):
         load_bench(tmp_path)
-    head = text.replace("damper_bench", "seat").replace(
-        "displacement: {unit: m}", "floor_acceleration: {unit: m/s^2}"
-    ).replace("command_voltage: {unit: V}", "coil_current: {unit: A}")  # fmt: skip
+    head = (
+        text.replace("damper_bench", "seat")
+        .replace("displacement: {unit: m}", "floor_acceleration: {unit: m/s^2}")
+        .replace("command_voltage: {unit: V}", "coil_current: {unit: A}")
+    )
     (tmp_path / "recording.yaml").write_text(head)
     with pytest.raises(InputError, match=r"rig 'seat' with floor_acceleration.* 'rig: damper_bench'"):
         load_bench(tmp_path)

@@ -40,10 +40,18 @@ def test_groups_of_other_rates_and_starts_share_the_clock_of_their_file(tmp_path
     asammdf = pytest.importorskip("asammdf")
     slow = SLOW[:1500] + 0.25
     with asammdf.MDF(version="4.10") as file:
-        file.append([asammdf.Signal(band_limited(1, FAST), FAST, name="floor_acceleration", unit="m/s^2"),
-                     asammdf.Signal(band_limited(2, FAST), FAST, name="current_command", unit="A")])  # fmt: skip
-        file.append([asammdf.Signal(1e3 * band_limited(3, slow), slow, name="Federweg", unit="mm"),
-                     asammdf.Signal(band_limited(2, slow - 0.02), slow, name="coil_current", unit="A")])  # fmt: skip
+        file.append(
+            [
+                asammdf.Signal(band_limited(1, FAST), FAST, name="floor_acceleration", unit="m/s^2"),
+                asammdf.Signal(band_limited(2, FAST), FAST, name="current_command", unit="A"),
+            ]
+        )
+        file.append(
+            [
+                asammdf.Signal(1e3 * band_limited(3, slow), slow, name="Federweg", unit="mm"),
+                asammdf.Signal(band_limited(2, slow - 0.02), slow, name="coil_current", unit="A"),
+            ]
+        )
         file.save(tmp_path / "a.mf4")
     found = import_files([tmp_path / "a.mf4"], tmp_path / "out")
     assert found.rate == 500.0
@@ -88,9 +96,16 @@ def test_units_stand_in_the_metadata_of_parquet(tmp_path):
 @pytest.mark.parametrize("packed", [False, True])
 def test_variables_of_mat_files_are_those_that_scipy_reads(tmp_path, packed):
     inner = {"x": np.eye(2), "unit": "m/s²", "deeper": {"y": np.arange(3.0)}}
-    stored = {"matrix": np.arange(6.0).reshape(2, 3), "short": np.arange(5, dtype=np.int16), "text": "hällo",
-              "on": np.array([True, False]), "empty": np.zeros((0, 3)), "inner": inner,
-              "cells": np.array(["a", 1.0], dtype=object), "complex": np.array([1 + 2j])}  # fmt: skip
+    stored = {
+        "matrix": np.arange(6.0).reshape(2, 3),
+        "short": np.arange(5, dtype=np.int16),
+        "text": "hällo",
+        "on": np.array([True, False]),
+        "empty": np.zeros((0, 3)),
+        "inner": inner,
+        "cells": np.array(["a", 1.0], dtype=object),
+        "complex": np.array([1 + 2j]),
+    }
     savemat(tmp_path / "a.mat", stored, do_compression=packed)
     found = read_values(tmp_path / "a.mat", (tmp_path / "a.mat").read_bytes())
     expected = loadmat(tmp_path / "a.mat")
@@ -111,12 +126,20 @@ def test_a_channel_beyond_its_rows_and_rows_beyond_the_file_are_refused(name, tm
     content = (tmp_path / name).read_bytes()
     # Rows of four numbers of 64 bits: where the last one begins, in bits or bytes, and how many rows there are.
     begins, far, rows, many = (
-        (struct.pack("<HH", 192, 64), struct.pack("<HH", 60_000, 64), struct.pack("<HI", 32, len(FAST)),
-         struct.pack("<HI", 32, 2**31))
+        (
+            struct.pack("<HH", 192, 64),
+            struct.pack("<HH", 60_000, 64),
+            struct.pack("<HI", 32, len(FAST)),
+            struct.pack("<HI", 32, 2**31),
+        )
         if name == "a.mdf"
-        else (struct.pack("<II", 24, 64), struct.pack("<II", 2**31, 64), struct.pack("<Q", len(FAST)),
-              struct.pack("<Q", 2**40))
-    )  # fmt: skip
+        else (
+            struct.pack("<II", 24, 64),
+            struct.pack("<II", 2**31, 64),
+            struct.pack("<Q", len(FAST)),
+            struct.pack("<Q", 2**40),
+        )
+    )
     for old, new, said in ((begins, far, "lies beyond the end of its rows"), (rows, many, "of memory; permitted")):
         assert old in content
         (tmp_path / name).write_bytes(content.replace(old, new))

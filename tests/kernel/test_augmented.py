@@ -5,12 +5,7 @@ from typing import NamedTuple
 
 import pytest
 
-from seatsim.kernel.augmented import (
-    SETTLING,
-    AugmentedDamper,
-    _piston_speed,
-    classes_of,
-)
+from seatsim.kernel.augmented import SETTLING, AugmentedDamper, _piston_speed, classes_of
 from seatsim.rig.temperature import TemperatureScaling
 
 from .uncompiled import Hysteretic, Linear, Yielding, plugged

@@ -37,9 +37,16 @@ def run(
         ("replayed", "prescribed", "frame_force", "driver_force"), NONE
     )
     setup = LoopSetup(
-        Rig(plant, damper), coil, FACTORS, thermal or Thermal(), law, model or TrueModel(damper, 1),
-        Timing(STEP, every, tolerance, heating), top, sensors or Direct(),
-    )  # fmt: skip
+        Rig(plant, damper),
+        coil,
+        FACTORS,
+        thermal or Thermal(),
+        law,
+        model or TrueModel(damper, 1),
+        Timing(STEP, every, tolerance, heating),
+        top,
+        sensors or Direct(),
+    )
     out = np.full((rows, len(CHANNELS)), np.nan)
     given = LoopInputs(floor, velocity, **(given | inputs))
     reached = run_loop(setup, given, rest, followed, law_state, out, np.empty(CELLS + 1))
@@ -177,12 +184,19 @@ def test_without_sensors_a_law_sees_what_is_recorded():
     rows = np.arange(0, 40, 3)
     v, floor = h["suspension_velocity"], h["floor_velocity"]
     expected = {
-        "time": STEP * np.arange(40), "displacement": h["suspension_displacement"], "velocity": v,
-        "frame_velocity": v + floor, "driver_velocity": v + floor + h["cushion_velocity"],
-        "floor_acceleration": h["floor_acceleration"], "frame_acceleration": h["frame_acceleration"],
-        "driver_acceleration": h["driver_acceleration"], "damper_force": h["damper_force"],
-        "current": h["coil_current"], "temperature": h["damper_temperature"], "replayed": replayed,
-    }  # fmt: skip
+        "time": STEP * np.arange(40),
+        "displacement": h["suspension_displacement"],
+        "velocity": v,
+        "frame_velocity": v + floor,
+        "driver_velocity": v + floor + h["cushion_velocity"],
+        "floor_acceleration": h["floor_acceleration"],
+        "frame_acceleration": h["frame_acceleration"],
+        "driver_acceleration": h["driver_acceleration"],
+        "damper_force": h["damper_force"],
+        "current": h["coil_current"],
+        "temperature": h["damper_temperature"],
+        "replayed": replayed,
+    }
     for name, values in expected.items():
         assert [getattr(y, name) for y in seen] == pytest.approx(values[rows], rel=1e-12, abs=1e-15), name
 

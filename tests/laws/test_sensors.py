@@ -44,9 +44,7 @@ def motion():
 
 def test_readings_are_the_anti_alias_low_pass(motion):
     x, frame, driver, floor, seen = motion
-    pairs = {
-        "displacement": x, "frame_acceleration": frame, "driver_acceleration": driver, "floor_acceleration": floor,
-    }  # fmt: skip
+    pairs = {"displacement": x, "frame_acceleration": frame, "driver_acceleration": driver, "floor_acceleration": floor}
     for name, true in pairs.items():
         expected = filtered([WB], [1, WB], true, STEP)[::EVERY]
         np.testing.assert_allclose(getattr(seen, name), expected, rtol=1e-9, atol=1e-12)

@@ -95,11 +95,10 @@ def test_running_rms_stays_a_number_after_a_huge_shock():
     assert np.isfinite(running_rms(x, RATE)).all()
 
 
-@pytest.mark.parametrize(("signal", "expected"), [
-    (sine(7.0, 5.0, 4), math.sqrt(2)),
-    (np.array([1.0, -1.0, 1.0]), 1.0),
-    (np.array([0.0, 0.0, 0.0, -2.0]), 2.0),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("signal", "expected"),
+    [(sine(7.0, 5.0, 4), math.sqrt(2)), (np.array([1.0, -1.0, 1.0]), 1.0), (np.array([0.0, 0.0, 0.0, -2.0]), 2.0)],
+)
 def test_crest_factor(signal, expected):
     assert crest_factor(signal) == pytest.approx(expected, rel=1e-9)
 
@@ -136,14 +135,17 @@ def test_dose_of_a_sine():
     assert (d.rms, d.mtvv) == pytest.approx((2**0.5, 2**0.5), rel=1e-9)
 
 
-@pytest.mark.parametrize("call", [
-    lambda: vdv(np.ones(3), 0.0),
-    lambda: running_rms(np.ones(3), math.nan),
-    lambda: dose([], RATE),
-    lambda: daily_vdv(1.0, 0.0, 10.0),
-    lambda: daily_exposure(1.0, -1.0),
-    lambda: estimated_vdv(1.0, 0.0),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: vdv(np.ones(3), 0.0),
+        lambda: running_rms(np.ones(3), math.nan),
+        lambda: dose([], RATE),
+        lambda: daily_vdv(1.0, 0.0, 10.0),
+        lambda: daily_exposure(1.0, -1.0),
+        lambda: estimated_vdv(1.0, 0.0),
+    ],
+)
 def test_refuses_nonsense(call):
     with pytest.raises(InputError):
         call()

@@ -23,15 +23,18 @@ def test_a_lost_sample_is_not_hidden():
     assert math.isnan(peak([1.0, math.nan]))
 
 
-@pytest.mark.parametrize(("displacement", "hits"), [
-    ([0, 0.01, 0.02], 0),
-    ([0, 0.05, 0.06, 0.07, 0.05], 1),
-    ([0, 0.06, 0.0, 0.06, 0.0, -0.06], 3),
-    ([0.06, 0.06], 1),
-    ([0.06, -0.06, 0.06], 3),
-    ([0.05, -0.05], 0),
-    ([math.nan, 0.06], 1),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("displacement", "hits"),
+    [
+        ([0, 0.01, 0.02], 0),
+        ([0, 0.05, 0.06, 0.07, 0.05], 1),
+        ([0, 0.06, 0.0, 0.06, 0.0, -0.06], 3),
+        ([0.06, 0.06], 1),
+        ([0.06, -0.06, 0.06], 3),
+        ([0.05, -0.05], 0),
+        ([math.nan, 0.06], 1),
+    ],
+)
 def test_end_stop_hits(displacement, hits):
     assert end_stop_hits(displacement, (-0.05, 0.05)) == hits
 
@@ -102,11 +105,14 @@ def test_floor_at_rest_has_no_transmissibility():
     assert np.isnan(found.coherence).all()
 
 
-@pytest.mark.parametrize(("floor", "driver", "rate", "message"), [
-    (np.ones(400), np.ones(400), 100.0, r"lasts 4 s.*needs 4\.5 s"),
-    (np.ones(400), np.ones(500), 100.0, "floor has 400 samples, driver has 500"),
-    (np.ones(400), np.ones(400), 0.0, "sample_rate"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("floor", "driver", "rate", "message"),
+    [
+        (np.ones(400), np.ones(400), 100.0, r"lasts 4 s.*needs 4\.5 s"),
+        (np.ones(400), np.ones(500), 100.0, "floor has 400 samples, driver has 500"),
+        (np.ones(400), np.ones(400), 0.0, "sample_rate"),
+    ],
+)
 def test_transmissibility_refuses(floor, driver, rate, message):
     with pytest.raises(InputError, match=message):
         transmissibility(floor, driver, rate)

@@ -21,6 +21,8 @@ from seatsim.scenario.loading import EXAMPLES, load, single
 from seatsim.schema.content import plain
 from seatsim.schema.errors import InputError
 
+from ..text import words
+
 TOKEN, PORT = "a-token", 8123
 HOME = f"http://127.0.0.1:{PORT}"
 
@@ -69,10 +71,13 @@ def ask(app, method, path, token=TOKEN, base=HOME, **options):
 
 @pytest.mark.parametrize(
     ("sent", "answered"),
-    [(b"", False), (b"GET / HTTP/1.1\r\nHost:", False),
-     (b"POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 9\r\n\r\n12", False),
-     (b"GET / HTTP/1.1\r\nHost: a\r\n\r\n", True)],
-)  # fmt: skip
+    [
+        (b"", False),
+        (b"GET / HTTP/1.1\r\nHost:", False),
+        (b"POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 9\r\n\r\n12", False),
+        (b"GET / HTTP/1.1\r\nHost: a\r\n\r\n", True),
+    ],
+)
 def test_a_connection_without_a_whole_request_is_closed(sent, answered):
     class Quick(Impatient):
         idle = 0.1
@@ -99,8 +104,10 @@ def test_a_connection_without_a_whole_request_is_closed(sent, answered):
 
 def test_a_page_keeps_its_cookie_when_another_port_is_opened(app, tmp_path):
     other = make_app(loaded(Plain()), Folder(tmp_path), "other-token", PORT + 1)
-    opened = [ask(app, "GET", f"/?token={TOKEN}", token=""),
-              ask(other, "GET", "/?token=other-token", token="", base=f"http://127.0.0.1:{PORT + 1}")]  # fmt: skip
+    opened = [
+        ask(app, "GET", f"/?token={TOKEN}", token=""),
+        ask(other, "GET", "/?token=other-token", token="", base=f"http://127.0.0.1:{PORT + 1}"),
+    ]
     jar = "; ".join(answer.headers["set-cookie"].partition(";")[0] for answer in opened)
     for page, base in ((app, HOME), (other, f"http://127.0.0.1:{PORT + 1}")):
         assert ask(page, "GET", "/", token="", base=base, headers={"cookie": jar}).status_code == 200
@@ -130,9 +137,12 @@ def test_a_foreign_origin_is_refused(app, origin):
 
 
 @pytest.mark.parametrize(
-    "path", ["/files/../secret.yaml", "/files/%2e%2e/secret.yaml", "/files/..%2fsecret.yaml", "/files//etc/passwd",
-             "/files/link.yaml", "/files/.hidden.yaml", "/files/none.yaml", "/files/a%00.yaml", "/files/run.csv"],
-)  # fmt: skip
+    "path",
+    words("""
+                /files/../secret.yaml /files/%2e%2e/secret.yaml /files/..%2fsecret.yaml /files//etc/passwd
+                /files/link.yaml /files/.hidden.yaml /files/none.yaml /files/a%00.yaml /files/run.csv
+            """),
+)
 def test_only_the_folder_is_read(tmp_path, path):
     inside = tmp_path / "inside"
     inside.mkdir()

@@ -14,12 +14,13 @@ from seatsim.recordings.recording import load_recording
 from seatsim.recordings.writer import save_recording
 from seatsim.simulation.damper_bench import bench_force
 
-CHANNELS = ["floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement",
-            "damper_force", "current_command", "coil_current", "damper_temperature"]  # fmt: skip
-VARIANTS = {
-    "feedback": {},
-    "switched": {"controller": {"law": "on_off_skyhook", "on": 0.6, "sample_time": 0.002}},
-}
+from ..text import words
+
+CHANNELS = words("""
+    floor_acceleration frame_acceleration driver_acceleration suspension_displacement damper_force
+    current_command coil_current damper_temperature
+""")
+VARIANTS = {"feedback": {}, "switched": {"controller": {"law": "on_off_skyhook", "on": 0.6, "sample_time": 0.002}}}
 
 
 @pytest.fixture(scope="module")
@@ -98,10 +99,7 @@ def test_a_wrong_header_is_one_clear_error(recorded, old, new, expected):
     ("damage", "expected"),
     [
         (lambda frame: frame.drop(columns="driver_acceleration"), "column 'driver_acceleration' is missing"),
-        (
-            lambda frame: frame.assign(driver_acceleration=frame.driver_acceleration.where(frame.index != 7)),
-            "line 9",
-        ),
+        (lambda frame: frame.assign(driver_acceleration=frame.driver_acceleration.where(frame.index != 7)), "line 9"),
         (lambda frame: frame.iloc[:0], "holds 0 rows"),
         (lambda frame: frame.iloc[:500], "its first second is left out"),
     ],

@@ -156,7 +156,7 @@ def test_an_edit_that_fails_leaves_what_was_there(power_law):
         ("asking.py", "import other\n", "name other.py before it: --with .*other.py"),
         ("taking.py", POWER_LAW.replace("power_law", "bouc_wen"), "damper 'bouc_wen' is there already"),
     ],
-)  # fmt: skip
+)
 def test_a_file_that_cannot_be_used_is_a_clear_error(tmp_path, forget_own_code, name, text, problem):
     (tmp_path / "other.py").write_text("")
     if text is not None:

@@ -60,12 +60,22 @@ def linear(inputs):
     y = solve_ivp(motion, (0.0, time[-1]), np.zeros(4), t_eval=rows, rtol=1e-9, atol=1e-12, max_step=STEP).y
     rates = np.array([motion(t, column) for t, column in zip(rows, y.T, strict=True)]).T
     frame = rates[1] + inputs.floor.acceleration[::5]
-    return {"suspension_displacement": y[0], "frame_acceleration": frame, "driver_acceleration": rates[3] + frame,
-            "damper_force": 500.0 * y[1]}  # fmt: skip
+    return {
+        "suspension_displacement": y[0],
+        "frame_acceleration": frame,
+        "driver_acceleration": rates[3] + frame,
+        "damper_force": 500.0 * y[1],
+    }
 
 
-@pytest.mark.parametrize("forces", [Forces(), Forces(frame=20.0 * np.cos(7.0 * STEP * np.arange(2001))),
-                                    Forces(driver=20.0 * np.cos(7.0 * STEP * np.arange(2001)))])  # fmt: skip
+@pytest.mark.parametrize(
+    "forces",
+    [
+        Forces(),
+        Forces(frame=20.0 * np.cos(7.0 * STEP * np.arange(2001))),
+        Forces(driver=20.0 * np.cos(7.0 * STEP * np.arange(2001))),
+    ],
+)
 def test_a_linear_seat_answers_as_the_equations_of_motion_say(seat, inputs, forces):
     driven = inputs._replace(forces=forces)
     answer, expected = respond(seat, driven), linear(driven)
@@ -127,10 +137,12 @@ def test_a_bench_answers_with_the_damper_at_the_speed_of_its_displacement(bench)
 def test_noise_of_a_displacement_is_smoothed_out(bench):
     noisy = MOVED.displacement + 1e-5 * np.random.default_rng(0).standard_normal(1500)
     errors = [
-        np.std(respond(bench, MOVED._replace(displacement=noisy, displacement_noise=noise))["damper_force"]
-               - 500.0 * 0.08 * np.cos(8.0 * ROWS))
+        np.std(
+            respond(bench, MOVED._replace(displacement=noisy, displacement_noise=noise))["damper_force"]
+            - 500.0 * 0.08 * np.cos(8.0 * ROWS)
+        )
         for noise in (0.0, 1e-5)
-    ]  # fmt: skip
+    ]
     assert errors[1] < 0.1 * errors[0]
 
 

@@ -6,12 +6,7 @@ import numpy as np
 import pytest
 
 from controllers.synthesis.certify import certify
-from controllers.synthesis.lmi import (
-    _change_states,
-    _transpose,
-    compute_full_order_bound,
-    find_single_step_gain,
-)
+from controllers.synthesis.lmi import _change_states, _transpose, compute_full_order_bound, find_single_step_gain
 from controllers.synthesis.norm import frequency_response, hinf_norm
 from controllers.synthesis.plant import GeneralisedPlant
 from controllers.synthesis.scaling import scale

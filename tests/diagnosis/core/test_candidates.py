@@ -20,13 +20,16 @@ from seatsim.scenario.scenario import DamperChoice
 from seatsim.schema.fields import bounds
 from seatsim.schema.registry import names
 
+from ...text import words
 from .toy import add_up, draw_signals, make_problem
 
 COIL = {"coil.lag", "coil.asymmetric_lag", "coil.delay", "coil.current_limit"}
-OF_THE_SEAT = {
-    "cushion.hardening", "cushion.separation", "driver.biodynamics", "driver.mass", "suspension.end_stop",
-    "suspension.friction", "suspension.progressive_spring",
-}  # fmt: skip
+OF_THE_SEAT = set(
+    words("""
+    cushion.hardening cushion.separation driver.biodynamics driver.mass suspension.end_stop suspension.friction
+    suspension.progressive_spring
+""")
+)
 
 
 def posed(rig="seat", recorded=("current_command", "damper_force"), effects=(), damper=None, settings=None):
@@ -114,10 +117,13 @@ def test_an_effect_is_sought_as_its_record_has_it_by_default_and_with_each_furth
         assert any(
             set(required) <= set(each.free)
             and all(each.fixed.get(field, value) == value for field, value in usual.items())
-            and all(low <= usual[field] <= high for field, low, high in zip(each.free, each.low, each.high, strict=True)
-                    if field in usual)
+            and all(
+                low <= usual[field] <= high
+                for field, low, high in zip(each.free, each.low, each.high, strict=True)
+                if field in usual
+            )
             for each in listed[name]
-        )  # fmt: skip
+        )
     sought = {
         field
         for each in listed[name]
@@ -155,11 +161,18 @@ def test_only_what_grows_towards_off_is_a_limit(listed):
 
 
 ABSURD = [
-    (Gain, "error", (-0.6, 1.5)), (Bias, "share", (-60.0, 60.0)), (SensorLag, "time", (0.2,)),
-    (ClockSkew, "shift", (-0.6, 0.6)), (CoilLag, "time", (0.3,)), (Delay, "time", (0.3,)), (Friction, "force", (3e3,)),
-    (SealFriction, "force", (3e3,)), (GasSpring, "preload", (-6e3, 6e3)), (FreePlay, "gap", (0.03,)),
+    (Gain, "error", (-0.6, 1.5)),
+    (Bias, "share", (-60.0, 60.0)),
+    (SensorLag, "time", (0.2,)),
+    (ClockSkew, "shift", (-0.6, 0.6)),
+    (CoilLag, "time", (0.3,)),
+    (Delay, "time", (0.3,)),
+    (Friction, "force", (3e3,)),
+    (SealFriction, "force", (3e3,)),
+    (GasSpring, "preload", (-6e3, 6e3)),
+    (FreePlay, "gap", (0.03,)),
     (Mass, "change", (-200.0, 200.0)),
-]  # fmt: skip
+]
 """Sizes that no engineer would believe of a rig that runs."""
 
 

@@ -4,10 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from seatsim.diagnosis.cross_validate import (
-    cross_validate,
-    select_by_cross_validation,
-)
+from seatsim.diagnosis.cross_validate import cross_validate, select_by_cross_validation
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.noise import weigh_gap
 from seatsim.diagnosis.objective import Objective

@@ -8,19 +8,7 @@ from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.objective import Parameters
 from seatsim.diagnosis.screen import measure_sensitivities, name_unstable, screen_candidates
 
-from .toy import (
-    Limited,
-    Stated,
-    Wild,
-    add_up,
-    draw_signals,
-    make_problem,
-    offer,
-    offer_two,
-    place,
-    stack,
-    weigh_stated,
-)  # fmt: skip
+from .toy import Limited, Stated, Wild, add_up, draw_signals, make_problem, offer, offer_two, place, stack, weigh_stated
 
 NAMES = ["nominal", "nuisance 0", "a.one", "a.one beside", "b.two", "c.three", "d.limit"]
 INFINITE = float("inf")
@@ -93,8 +81,9 @@ def test_the_best_predicted_come_first_and_no_more_than_the_count():
     found = screened(objective, candidates)
     assert [next(iter(each.parameters.names)) for each in found] == ["b.two", "c.three", "a.one"]
     assert [next(iter(each.parameters.names)) for each in screened(objective, candidates, count=2)] == [
-        "b.two", "c.three"
-    ]  # fmt: skip
+        "b.two",
+        "c.three",
+    ]
 
 
 def test_a_structure_is_tried_once_from_its_most_promising_start():

@@ -47,9 +47,14 @@ def best_cost(objective, names):
 
 @pytest.mark.parametrize(
     "amounts",
-    [{"true.one": 1.4}, {"true.one": 1.4, "true.two": -0.6}, {"true.one": 0.3, "true.two": 0.25, "true.three": -0.2},
-     {"decoy.mix": 0.8, "true.two": 0.5}, {"true.one": 1.0, "true.two": 0.9}],
-)  # fmt: skip
+    [
+        {"true.one": 1.4},
+        {"true.one": 1.4, "true.two": -0.6},
+        {"true.one": 0.3, "true.two": 0.25, "true.three": -0.2},
+        {"decoy.mix": 0.8, "true.two": 0.5},
+        {"true.one": 1.0, "true.two": 0.9},
+    ],
+)
 def test_no_shortcut_of_the_search_misses_the_best_of_all_sets(amounts):
     objective, offered = pose(amounts, MIXED), ("decoy.mix", *DECOYS[1:], *PLANTED)
     found, _ = search(objective, offered)

@@ -3,13 +3,7 @@
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.spectra import (
-    as_complex,
-    estimate_response,
-    randomise_phases,
-    smooth_spectrum,
-    wiener_share,
-)
+from seatsim.diagnosis.spectra import as_complex, estimate_response, randomise_phases, smooth_spectrum, wiener_share
 
 
 def averaged(power, half_width):

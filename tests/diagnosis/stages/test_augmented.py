@@ -24,9 +24,11 @@ from seatsim.simulation.simulate import set_up
 from .toy import NOMINAL, place, pose, record
 
 NUISANCES = (
-    Nuisance("plant", "driver_mass", 80.0, 8.0), Nuisance("damper", "c_a", 250.0, 25.0),
-    Nuisance("coil", "rate", 130.0, 13.0), Nuisance("coil", "delay", 0.01, 0.002),
-)  # fmt: skip
+    Nuisance("plant", "driver_mass", 80.0, 8.0),
+    Nuisance("damper", "c_a", 250.0, 25.0),
+    Nuisance("coil", "rate", 130.0, 13.0),
+    Nuisance("coil", "delay", 0.01, 0.002),
+)
 PRESENT = "effects: [{effect: driver.mass, parameters: {change: 3}}]\n"
 BIAS = Candidate("sensor.bias", Bias, {"channel": "damper_force", "drift": 0.0}, ("share",), (0.1,), (-1.0,), (1.0,))
 BODY = Candidate(

@@ -7,30 +7,13 @@ import pytest
 
 from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.decide import Decision
-from seatsim.diagnosis.estimates import (
-    compare_comfort,
-    estimate_causes,
-    estimate_standard_deviations,
-    trace_motion,
-)
+from seatsim.diagnosis.estimates import compare_comfort, estimate_causes, estimate_standard_deviations, trace_motion
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.result import Trace
 from seatsim.diagnosis.select import Selection
 from seatsim.scenario.loading import single
 
-from .toy import (
-    RATE,
-    SKIP,
-    Added,
-    AddedTwice,
-    add_taps,
-    offer,
-    place,
-    pose,
-    record,
-    weigh_stated,
-    whiten,
-)
+from .toy import RATE, SKIP, Added, AddedTwice, add_taps, offer, place, pose, record, weigh_stated, whiten
 
 PRIOR = 0.58
 TWICE = Candidate(
@@ -178,7 +161,8 @@ def test_comfort_is_the_rms_of_the_quoted_channels(folder):
     known = [("damper_force", "N"), ("suspension_displacement", "m"), ("driver_acceleration", "m/s^2")]
     found = compare_comfort([trace(*each) for each in known])
     assert [(f.quantity, f.unit) for f in found] == [
-        ("RMS driver acceleration", "m/s^2"), ("RMS suspension displacement", "m"),
-    ]  # fmt: skip
+        ("RMS driver acceleration", "m/s^2"),
+        ("RMS suspension displacement", "m"),
+    ]
     for figure in found:
         assert (figure.measured, figure.nominal, figure.after) == pytest.approx(np.sqrt([17.0, 25.0, 10.0]))

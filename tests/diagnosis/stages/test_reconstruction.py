@@ -7,17 +7,7 @@ import pytest
 
 from seatsim.diagnosis.localise.reconstruction import FAR_OFF, PORTS, Port, reconstruct
 
-from .toy import (
-    CHANNELS,
-    SKIP,
-    Diverging,
-    add_taps,
-    place,
-    pose,
-    record,
-    respond_to_taps,
-    weigh_stated,
-)
+from .toy import CHANNELS, SKIP, Diverging, add_taps, place, pose, record, respond_to_taps, weigh_stated
 
 
 @pytest.fixture(scope="module")

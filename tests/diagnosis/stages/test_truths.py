@@ -33,15 +33,19 @@ SLOW = {run: slow_floor(SKIP + 300, seed) for seed, run in enumerate(RUNS, 3)}
 
 def drift(problem):
     """A zero of the frame's accelerometer that wanders."""
-    return {run: {"frame_acceleration": 0.3 * np.sin(2.0 * np.pi * 0.25 / problem.rate * np.arange(values.shape[1]))}
-            for run, values in problem.measured.items()}  # fmt: skip
+    return {
+        run: {"frame_acceleration": 0.3 * np.sin(2.0 * np.pi * 0.25 / problem.rate * np.arange(values.shape[1]))}
+        for run, values in problem.measured.items()
+    }
 
 
 def hiss(problem):
     """White noise on the frame's accelerometer, far above what its sensor states."""
     rng = np.random.default_rng(9)
-    return {run: {"frame_acceleration": 0.5 * rng.standard_normal(values.shape[1])}
-            for run, values in problem.measured.items()}  # fmt: skip
+    return {
+        run: {"frame_acceleration": 0.5 * rng.standard_normal(values.shape[1])}
+        for run, values in problem.measured.items()
+    }
 
 
 def pushed(newtons, port):
@@ -198,13 +202,18 @@ def test_neither_the_order_of_the_channels_nor_that_of_the_runs_changes_the_answ
     runs = dict(list(turned.runs.items())[:2][back] + list(turned.runs.items())[2:])
     channels = problem.channels[back]
     other = dataclasses.replace(
-        problem, channels=channels, recording=dataclasses.replace(turned, runs=runs), runs=tuple(runs),
+        problem,
+        channels=channels,
+        recording=dataclasses.replace(turned, runs=runs),
+        runs=tuple(runs),
         measured={run: problem.measured[run][back] for run in runs},
-    )  # fmt: skip
+    )
     again = diagnose_problem(other, without=row.without)
     assert (again.verdict, again.selected, again.indistinguishable) == (
-        found.verdict, found.selected, found.indistinguishable,
-    )  # fmt: skip
+        found.verdict,
+        found.selected,
+        found.indistinguishable,
+    )
     for effect, (field, _) in row.sizes.items():
         values = [next(c for c in each.causes if c.effect == effect).parameters[field].value for each in (found, again)]
         assert values[1] == pytest.approx(values[0], rel=1e-3)

@@ -24,11 +24,17 @@ def runs(under_test):
     """Two runs of white motion, whose noise is stated as it is."""
     noise = {"floor_acceleration": 1.0, "driver_acceleration": 1.0}
     return [
-        under_test({"floor_acceleration": 9.0 * np.sin(np.arange(3000) / (20.0 + k)) + motion(k),
-                    "driver_acceleration": 9.0 * np.sin(np.arange(3000) / (30.0 + k)) + motion(k + 5)},
-                   RATE, noise, name)
+        under_test(
+            {
+                "floor_acceleration": 9.0 * np.sin(np.arange(3000) / (20.0 + k)) + motion(k),
+                "driver_acceleration": 9.0 * np.sin(np.arange(3000) / (30.0 + k)) + motion(k + 5),
+            },
+            RATE,
+            noise,
+            name,
+        )
         for k, name in enumerate("ab")
-    ]  # fmt: skip
+    ]
 
 
 def test_runs_that_are_too_short_together_are_errors_or_warnings(runs):
@@ -85,9 +91,14 @@ def test_degrees_fahrenheit_are_told_by_the_nominal_temperature(runs):
 
 @pytest.mark.parametrize(
     ("clock", "expected"),
-    [(lambda t: t, []), (lambda t: 2.0 * t, [("error", "rate")]), (lambda t: 1.01 * t, [("error", "rate")]),
-     (lambda t: t + 0.04 * (t > 3.0), [("warning", "jump")]), (lambda t: t + 0.4 * (t > 3.0), [("error", "jump")])],
-)  # fmt: skip
+    [
+        (lambda t: t, []),
+        (lambda t: 2.0 * t, [("error", "rate")]),
+        (lambda t: 1.01 * t, [("error", "rate")]),
+        (lambda t: t + 0.04 * (t > 3.0), [("warning", "jump")]),
+        (lambda t: t + 0.4 * (t > 3.0), [("error", "jump")]),
+    ],
+)
 def test_a_clock_is_held_against_the_sample_rate(runs, tmp_path, clock, expected):
     run = runs[0]._replace(recording=dataclasses.replace(runs[0].recording, folder=tmp_path))
     pd.DataFrame({"time": clock(np.arange(3000) / RATE), **run.table}).to_csv(tmp_path / "a.csv", index=False)
