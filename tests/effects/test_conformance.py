@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from functools import partial
 from typing import NamedTuple
 
 import pytest
@@ -16,8 +15,7 @@ from seatsim.schema.registry import find, specification_of
 from seatsim.simulation.simulate import simulate
 
 from ..part_space import check
-from . import rigs
-from .rigs import NAMES, distance, starts
+from .rigs import NAMES, distance, shaken, starts
 
 BLOCKS = {
     "damper": "thermal_fade gas_spring asymmetry preyield_hysteresis magnetic_saturation remanence free_play"
@@ -30,7 +28,6 @@ BLOCKS = {
     "sensor": "gain bias lag clock_skew",
 }
 CONTRACT = {f"{block}.{name}" for block, listed in BLOCKS.items() for name in listed.split()}
-shaken = partial(rigs.shaken, carry_all_effects=True)  # one compiled loop for all effects of a rig
 WITH_FORMS = [name for name in NAMES if starts(name)]
 
 
