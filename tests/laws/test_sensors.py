@@ -69,11 +69,6 @@ def test_rounding_of_the_filter_does_not_grow_in_the_velocity():
         assert y.velocity == 0.0
 
 
-def test_no_floor_accelerometer_unless_stated(motion):
-    x, *_, floor, _ = motion
-    assert np.all(np.isnan(readings(Sensors(), x, np.zeros((len(x), 4)), floor).floor_acceleration))
-
-
 def test_a_displaced_start_is_no_motion():
     made, s = Sensors().instruments(STEP, PERIOD), at_rest(0.02)
     for _ in range(10):
