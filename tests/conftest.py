@@ -4,6 +4,7 @@ import gc
 import importlib
 import signal
 import sys
+from contextlib import chdir
 from pathlib import Path
 
 import pytest
@@ -75,6 +76,13 @@ def benchmark():
     sys.path.insert(0, folder)
     yield importlib.import_module
     sys.path.remove(folder)
+
+
+@pytest.fixture
+def here(tmp_path):
+    """Work in an empty folder."""
+    with chdir(tmp_path):
+        yield tmp_path
 
 
 @pytest.fixture

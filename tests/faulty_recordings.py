@@ -10,17 +10,14 @@ from ruamel.yaml import YAML
 import seatsim
 from seatsim.recordings.writer import save_recording
 
+from .text import parse, words
+
 RATE = 250.0
-NOISE = {
-    "floor_acceleration": 0.01,
-    "frame_acceleration": 0.03,
-    "driver_acceleration": 0.015,
-    "suspension_displacement": 5e-5,
-    "damper_force": 2.5,
-    "current_command": 0.0,
-    "coil_current": 0.003,
-    "damper_temperature": 0.1,
-}
+NOISE = parse("""
+    {floor_acceleration: 0.01, frame_acceleration: 0.03, driver_acceleration: 0.015,
+     suspension_displacement: 5e-05, damper_force: 2.5, current_command: 0.0, coil_current: 0.003,
+     damper_temperature: 0.1}
+""")
 DECIMALS = {"suspension_displacement": 6, "damper_force": 2, "damper_temperature": 2}
 G = 9.81
 QUICK = {"method": "gzip", "compresslevel": 1}
@@ -172,10 +169,10 @@ def at_rest(frame):
     return frame.assign(**{c: (NOISE[c] * generator.standard_normal(len(frame))).round(7) for c in moving})
 
 
-SIGNS = [
-    "floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force",
-    "current_command", "coil_current",
-]  # fmt: skip
+SIGNS = words("""
+    floor_acceleration frame_acceleration driver_acceleration suspension_displacement damper_force
+    current_command coil_current
+""")
 FAULTS = {f"sign of {c}": (scaled(c, -1.0), c, "sign is swapped") for c in SIGNS} | {
     "no rows": (lambda frame: frame.iloc[:0], None, "holds 0 rows"),
     "holes": (holed("frame_acceleration"), "frame_acceleration", "not a finite number"),

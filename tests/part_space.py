@@ -20,7 +20,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from pydantic import ValidationError
@@ -51,7 +51,7 @@ SEAT = Plant(20.0, 80.0, 4600.0, 150.0, 60000.0, 1500.0)
 DRAWN = SEAT._fields[:6]
 SIZES = Measurement(1.0, 0.02, 0.2, 0.2, 0.2, 1.0, 2.0, 2.0, 300.0, 0.5, 20.0, 1.0)
 """Usual size of each measurement, in its unit."""
-USUAL: Mapping[str, Mapping[str, Any]] = {
+USUAL: Mapping[str, Mapping[str, object]] = {
     "constant": {"current": 0.5},
     "static_output_feedback": {"gain": (2.0, 2147.6)},
     "scheduled_output_feedback": {"temperatures": (20.0, 80.0), "gains": ((2.0, 2147.6), (2.0, 2800.0))},
@@ -69,7 +69,7 @@ DURATIONS = (0.1, 20.0)
 """Seconds of the floors that are drawn."""
 
 
-def draw(rng: np.random.Generator, usual: Any, cls: type, name: str, anywhere: bool) -> Any:
+def draw(rng: np.random.Generator, usual, cls: type, name: str, anywhere: bool):
     """Return a random value of a field of a class with a `usual` value, of the same kind; lists of words stay."""
     if name == "duration":
         return round(float(rng.uniform(*DURATIONS)), 2)
@@ -87,7 +87,7 @@ def draw(rng: np.random.Generator, usual: Any, cls: type, name: str, anywhere: b
     return tuple(draw(rng, each, cls, name, anywhere=False) for each in usual)
 
 
-def draw_record(rng: np.random.Generator, cls: type, usual: Mapping[str, Any], anywhere: bool) -> Any:
+def draw_record(rng: np.random.Generator, cls: type, usual: Mapping[str, object], anywhere: bool):
     """Return a random record of a class, which its fields permit; what has no usual value keeps its default.
 
     Raises:
@@ -97,9 +97,9 @@ def draw_record(rng: np.random.Generator, cls: type, usual: Mapping[str, Any], a
     return validated(cls, {name: draw(rng, value, cls, name, anywhere) for name, value in stated.items()})
 
 
-def usual_values(rng: np.random.Generator, kind: str, name: str, cls: type) -> dict[str, Any]:
+def usual_values(rng: np.random.Generator, kind: str, name: str, cls: type) -> dict[str, object]:
     """Return usual values of a part: those of one of an effect's forms, or its defaults."""
-    stated: dict[str, Any] = {field.name: field.default for field in describe(cls)} | dict(USUAL.get(name, {}))
+    stated: dict[str, object] = {field.name: field.default for field in describe(cls)} | dict(USUAL.get(name, {}))
     if kind != "effect":
         return stated
     forms = EFFECTS.specification_of(cls).forms or (Form(USUAL[name]),)
@@ -129,7 +129,7 @@ def first_samples(floor: Floor, count: int) -> Floor:
     return Floor(STEP, *(part[:count] for part in floor[1:4]))
 
 
-def check_effect(rng: np.random.Generator, effect: Any) -> Iterator[str]:
+def check_effect(rng: np.random.Generator, effect) -> Iterator[str]:
     """Yield what is wrong with a seat that has an effect."""
     scenario = replace(seat(), effects=(effect,))
     whole = simulate(scenario, shaking(), carry_all_effects=True).channels
@@ -149,7 +149,7 @@ def check_effect(rng: np.random.Generator, effect: Any) -> Iterator[str]:
             yield "open"
 
 
-def check_law(rng: np.random.Generator, law: Any) -> Iterator[str]:
+def check_law(rng: np.random.Generator, law) -> Iterator[str]:
     """Yield what is wrong with the answers of a law to random measurements."""
     factors = np.exp(0.3 * rng.normal(size=len(DRAWN)))
     plant = SEAT._replace(**{name: getattr(SEAT, name) * factor for name, factor in zip(DRAWN, factors, strict=True)})
@@ -166,7 +166,7 @@ def check_law(rng: np.random.Generator, law: Any) -> Iterator[str]:
         yield "split"
 
 
-def ask(law: Any, asked: list[Measurement], state: Any) -> tuple[list[float], list[Any]]:
+def ask(law, asked: list[Measurement], state) -> tuple[list[float], list[object]]:
     """Return a law's answers, one after the other, and its states before each and after the last."""
     answers, states = [], [state]
     for y in asked:
@@ -175,7 +175,7 @@ def ask(law: Any, asked: list[Measurement], state: Any) -> tuple[list[float], li
     return answers, states
 
 
-def check_excitation(rng: np.random.Generator, excitation: Any) -> Iterator[str]:
+def check_excitation(rng: np.random.Generator, excitation) -> Iterator[str]:
     """Yield what is wrong with the floor of an excitation."""
     seed = int(rng.integers(1000))
     floor = excitation.floor(STEP, seed)
@@ -189,9 +189,11 @@ def check_excitation(rng: np.random.Generator, excitation: Any) -> Iterator[str]
         yield "split"
 
 
-CHECKS: Mapping[str, Callable[[np.random.Generator, Any], Iterator[str]]] = {
-    "effect": check_effect, "law": check_law, "excitation": check_excitation,
-}  # fmt: skip
+CHECKS: Mapping[str, Callable[[np.random.Generator, object], Iterator[str]]] = {
+    "effect": check_effect,
+    "law": check_law,
+    "excitation": check_excitation,
+}
 
 
 class Found(NamedTuple):

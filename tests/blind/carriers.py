@@ -10,16 +10,20 @@ from ruamel.yaml import YAML
 
 from seatsim.blind.carrier.recorded import Carrier, Table, encode_carrier
 
+from ..text import parse
+
 Array = NDArray[np.float64]
 RATE, SECONDS = 500.0, 4.0
 C, FC = (400.0, 900.0), (60.0, 500.0)
 BENCH_CHANNELS = {
-    "displacement": {"unit": "m"}, "damper_force": {"unit": "N", "noise_rms": 0.5}, "current_command": {"unit": "A"},
-}  # fmt: skip
-PLANT = {
-    "frame_mass": 20.0, "driver_mass": 80.0, "suspension_stiffness": 9000.0, "suspension_damping": 600.0,
-    "cushion_stiffness": 60000.0, "cushion_damping": 1500.0,
-}  # fmt: skip
+    "displacement": {"unit": "m"},
+    "damper_force": {"unit": "N", "noise_rms": 0.5},
+    "current_command": {"unit": "A"},
+}
+PLANT = parse("""
+    {frame_mass: 20.0, driver_mass: 80.0, suspension_stiffness: 9000.0, suspension_damping: 600.0,
+     cushion_stiffness: 60000.0, cushion_damping: 1500.0}
+""")
 
 
 def bench_carrier(tolerance: float = 0.0, logged_coil: bool = False, rate: float = 60.0) -> Carrier:
@@ -81,8 +85,10 @@ def seat_carrier() -> Carrier:
             "parameters": {"c_a": 0.0, "c_b": 0.0, "fc_a": 0.0, "fc_b": 0.0, "f0": 0.0, "v_ref": 0.02},
         },
         "actuator": {"rate": 130.0, "max_current": 1.0},
-        "temperature": 20.0, "controller": {"law": "replay", "current": 0.0}, "excitation": {"kind": "recording"},
-    }  # fmt: skip
+        "temperature": 20.0,
+        "controller": {"law": "replay", "current": 0.0},
+        "excitation": {"kind": "recording"},
+    }
     tables = {}
     for k in range(2):
         rng, rows = np.random.default_rng(k), round(RATE * 6.0)
@@ -91,12 +97,15 @@ def seat_carrier() -> Carrier:
         floor = np.clip(time, 0.0, 1.0) * np.asarray(sum(np.sin(2.0 * np.pi * f * time + p) for f, p in waves))
         motion = simulate_linear(PLANT, floor, 1.0 / RATE)
         tables[f"run-{k}"] = {
-            "floor_acceleration": floor, "driver_acceleration": motion.driver, "suspension_displacement": motion.x,
-        }  # fmt: skip
+            "floor_acceleration": floor,
+            "driver_acceleration": motion.driver,
+            "suspension_displacement": motion.x,
+        }
     channels = {
-        "floor_acceleration": {"unit": "m/s^2"}, "driver_acceleration": {"unit": "m/s^2", "noise_rms": 1e-3},
+        "floor_acceleration": {"unit": "m/s^2"},
+        "driver_acceleration": {"unit": "m/s^2", "noise_rms": 1e-3},
         "suspension_displacement": {"unit": "m", "noise_rms": 1e-6},
-    }  # fmt: skip
+    }
     header = {"rig": "seat", "sample_rate": RATE, "parameter_tolerance": 0.0, "nominal": "nominal.yaml"}
     runs = [{"name": run, "file": f"{run}.csv.gz"} for run in tables]
     return Carrier({**header, "runs": runs, "channels": channels}, nominal, tables)

@@ -5,13 +5,12 @@ from __future__ import annotations
 import gzip
 import json
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from seatsim import load_recording
-from seatsim.blind.carrier.make import UNTOUCHED, make_on_carrier, take_turns
-from seatsim.blind.carrier.power import SIZES, Power, Trial, measure_power
+from seatsim.blind.carrier.make import UNTOUCHED, make_on_carrier
+from seatsim.blind.carrier.power import Power, measure_power
 from seatsim.blind.carrier.recorded import read_carrier
 from seatsim.blind.score.score import score_verdicts
 from seatsim.blind.score.verdicts import Verdict, is_right, is_wrong_name
@@ -54,16 +53,6 @@ def test_a_set_is_sealed_repeatable_and_silent(recording: Path, tmp_path: Path) 
     assert list(load_recording(opened.extract("case-0001", tmp_path)).runs) == ["run-2"]
 
 
-def test_effects_and_the_untouched_carrier_take_turns(recording: Path) -> None:
-    import numpy as np
-
-    turns = take_turns(read_carrier(recording), 60, np.random.default_rng(0))
-    per_round = len(set(turns))
-    assert UNTOUCHED in turns
-    assert {"coil.delay", "damper.seal_friction", "sensor.gain"} < set(turns)
-    assert len(set(turns[:per_round])) == per_round
-
-
 def test_labels_beside_the_recordings_and_short_runs_are_refused(recording: Path, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="must lie elsewhere"):
         make_on_carrier(recording, 1, 1, tmp_path / "set", tmp_path / "set" / "labels.sealed")
@@ -92,11 +81,16 @@ def test_power_is_the_smallest_size_found_and_goes_on_where_it_stopped(recording
     told: list[tuple[str, int, int]] = []
     out, effects = tmp_path / "power", ("sensor.bias", "coil.delay")
 
-    def measure(diagnose: Any) -> list[Power]:
+    def measure(diagnose) -> list[Power]:
         return measure_power(
-            recording, out, diagnose, effects, 2, processes=1,
+            recording,
+            out,
+            diagnose,
+            effects,
+            2,
+            processes=1,
             progress=lambda power, done, total: told.append((power.effect, done, total)),
-        )  # fmt: skip
+        )
 
     found = measure(find_from_finest)
     assert told == [("sensor.bias", 1, 2), ("coil.delay", 2, 2)]
@@ -111,18 +105,14 @@ def test_power_is_the_smallest_size_found_and_goes_on_where_it_stopped(recording
         measure_power(recording, out, never, ["coil.dely"])
 
 
-def test_power_looks_at_smaller_sizes_where_a_recording_allows_no_larger_one(tmp_path: Path) -> None:
-    quick_coil = write_carrier(bench_carrier(rate=100.0), tmp_path / "quick")
-    found = measure_power(quick_coil, tmp_path / "power", find_from_finest, ["coil.lag"], 1, processes=1)[0]
-    assert found.trials[SIZES[2]] == [Trial(None, False)]
-    assert [trial.found for trial in found.trials[SIZES[0]]] == [False]
-    assert (found.smallest, found.found) == (None, {"0.06": [False], "0.1": [False], "0.16": []})
-
-
-CARRIED: dict[str, Any] = {
-    "kind": "carried", "effects": ["coil.delay"], "blocks": ["coil"], "materialities": [2.0],
-    "shapes": [{"time": 0.01}], "forms": ["command advanced"],
-}  # fmt: skip
+CARRIED: dict[str, object] = {
+    "kind": "carried",
+    "effects": ["coil.delay"],
+    "blocks": ["coil"],
+    "materialities": [2.0],
+    "shapes": [{"time": 0.01}],
+    "forms": ["command advanced"],
+}
 
 
 @pytest.mark.parametrize(
@@ -142,7 +132,7 @@ def test_what_is_right_on_a_measured_background(said: Verdict, right: bool, wron
 
 
 def test_a_score_counts_wrong_names_and_sizes_and_leaves_the_untouched_out() -> None:
-    untouched: dict[str, Any] = {"kind": "untouched", "effects": [], "blocks": []}
+    untouched: dict[str, object] = {"kind": "untouched", "effects": [], "blocks": []}
     named = Verdict(
         "unknown", causes=("coil.delay",), selected=("coil.delay",), parameters={"coil.delay": {"time": 0.012}}
     )

@@ -12,7 +12,7 @@ import pandas as pd
 import pytest
 
 from seatsim.blind.make import compose, draw_experiment, folder, materiality
-from seatsim.blind.make.materiality import ToleranceRefit, bounded_least_squares
+from seatsim.blind.make.materiality import ToleranceRefit
 from seatsim.blind.truth.faults import Changes, SensorFault
 
 from .experiments import small_experiment
@@ -83,14 +83,6 @@ def test_a_change_inside_the_tolerance_is_explained_and_one_beyond_it_is_not() -
     assert refit.unexplained_share(far, Changes()) > 0.5
     gain = Changes(sensor_faults=(SensorFault("gain", "damper_force", 1e-4),))
     assert refit.unexplained_share(gain, Changes()) == 1.0
-
-
-def test_the_bounded_refit_is_the_projection_onto_the_box() -> None:
-    rng = np.random.default_rng(0)
-    J, _ = np.linalg.qr(rng.standard_normal((60, 3)))
-    theta = np.array([0.4, -2.5, 0.9])
-    found = bounded_least_squares(J, J @ theta + 0.0)
-    np.testing.assert_allclose(found, [0.4, -1.0, 0.9], atol=1e-6)
 
 
 def test_a_recording_holds_what_its_header_states() -> None:

@@ -36,9 +36,9 @@ def test_a_seed_fixes_the_set_and_nothing_in_it_tells_the_label(tmp_path: Path) 
     for name, data in cases.items():
         text = (gzip.decompress(data) if name.endswith(".gz") else data).decode()
         assert not [word for word in words if word in text.splitlines()[0] or (name.endswith("yaml") and word in text)]
-    assert sorted(p.name for p in (first / "case-0001").iterdir()) == [
-        "nominal.yaml", "recording.yaml", "run-a.csv.gz", "run-b.csv.gz", "run-c.csv.gz",
-    ]  # fmt: skip
+    assert sorted(p.name for p in (first / "case-0001").iterdir()) == words(
+        "nominal.yaml recording.yaml run-a.csv.gz run-b.csv.gz run-c.csv.gz"
+    )
     assert len({p.stat().st_mtime for p in first.glob("case-*/*")}) == 1
     assert list(load_recording(first / "case-0002").runs) == ["run-a", "run-b", "run-c"]
     assert list(load_recording(opened.extract("case-0002", tmp_path)).runs) == ["run-u"]

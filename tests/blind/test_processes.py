@@ -13,8 +13,10 @@ JOBS = [(7, 2), (9, 4), (11, 3)]
 def test_results_come_in_order_and_progress_counts(processes: int) -> None:
     counts: list[tuple[int, int]] = []
     assert run_jobs(divmod, JOBS, processes, lambda done, total: counts.append((done, total))) == [
-        (3, 1), (2, 1), (3, 2),
-    ]  # fmt: skip
+        (3, 1),
+        (2, 1),
+        (3, 2),
+    ]
     assert counts[-1] == (3, 3) and [done for done, _ in counts] == sorted(done for done, _ in counts)
 
 

@@ -6,7 +6,6 @@ import dataclasses
 import gzip
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -23,7 +22,7 @@ from seatsim.blind.truth.rig import EXCITATION_RATE
 from .carriers import bench_carrier, seat_carrier, write_carrier
 
 
-def told(experiment: Experiment) -> dict[str, Any]:
+def told(experiment: Experiment) -> dict[str, object]:
     """Return what the folder of a case tells beside its signals, and how each run starts and is driven."""
     runs = experiment.runs[:-1]
     protocol = [(run.temperature, run.rows, run.law[0], float(np.std(run.floor)), run.schedule[0]) for run in runs]
@@ -36,7 +35,7 @@ def told(experiment: Experiment) -> dict[str, Any]:
     }
 
 
-def numbers(value: Any, key: str = "") -> dict[str, float]:
+def numbers(value, key: str = "") -> dict[str, float]:
     """Return nested values as numbers by their place; a word is the place of a one."""
     if isinstance(value, Mapping):
         parts = [numbers(item, f"{key}.{name}") for name, item in value.items()]
@@ -97,7 +96,7 @@ def test_an_effect_that_the_damper_cannot_have_gives_way_to_another() -> None:
 
 
 @pytest.mark.parametrize("carrier", [bench_carrier(logged_coil=True), seat_carrier()], ids=["bench", "seat"])
-def test_a_change_of_a_carrier_alters_no_file_but_its_signals(carrier: Any, tmp_path: Any) -> None:
+def test_a_change_of_a_carrier_alters_no_file_but_its_signals(carrier, tmp_path) -> None:
     rounded = {
         run: {name: np.round(values, 4) for name, values in table.items()} for run, table in carrier.tables.items()
     }

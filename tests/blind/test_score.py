@@ -6,18 +6,13 @@ import dataclasses
 import io
 import json
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from rich.console import Console
 
 from seatsim.blind.carrier.recorded import encode_carrier
-from seatsim.blind.score.cases import (
-    Rate,
-    calibration_error,
-    reliability,
-)
+from seatsim.blind.score.cases import Rate, calibration_error, reliability
 from seatsim.blind.score.score import score, score_verdicts
 from seatsim.blind.score.shrink import score_shrink
 from seatsim.blind.score.verdicts import Verdict, is_right, read_verdict
@@ -30,8 +25,8 @@ from .carriers import bench_carrier, seat_carrier, write_carrier, write_yaml
 
 ONE = {"kind": "one", "effects": ["damper.remanence"], "blocks": ["damper"], "forms": ["remanence-decay"]}
 TWO = {"kind": "two", "effects": ["coil.lag", "driver.mass"], "blocks": ["coil", "driver"]}
-NONE: dict[str, Any] = {"kind": "none", "effects": [], "blocks": []}
-OUT: dict[str, Any] = {"kind": "outside", "effects": [], "blocks": ["suspension"], "forms": ["maxwell-bushing"]}
+NONE: dict[str, object] = {"kind": "none", "effects": [], "blocks": []}
+OUT: dict[str, object] = {"kind": "outside", "effects": [], "blocks": ["suspension"], "forms": ["maxwell-bushing"]}
 
 
 @pytest.mark.parametrize(
@@ -52,7 +47,7 @@ OUT: dict[str, Any] = {"kind": "outside", "effects": [], "blocks": ["suspension"
         (OUT, Verdict("known", causes=("driver.mass",)), False),
     ],
 )
-def test_what_is_right(label: dict[str, Any], said: Verdict, right: bool) -> None:
+def test_what_is_right(label: dict[str, object], said: Verdict, right: bool) -> None:
     assert is_right(label, said) is right
 
 
@@ -148,12 +143,15 @@ def test_a_diagnosis_of_another_kind_of_rig_is_named(bench_case: bool, tmp_path:
     case, other = (bench_carrier(), seat_carrier()) if bench_case else (seat_carrier(), bench_carrier())
     folder = write_carrier(case, tmp_path / "case-0001")
     files = {path.name: path.read_bytes() for path in folder.iterdir()}
-    figures: dict[str, Any] = {"driver_acceleration" if bench_case else "damper_force": [0.1]}
+    figures: dict[str, object] = {"driver_acceleration" if bench_case else "damper_force": [0.1]}
     missed = dict.fromkeys(figures, 0.1)
     error = {
-        "bands": [[0.0, None]], "noise_rms": missed, "channels": figures, "measured_over_simulated": figures,
+        "bands": [[0.0, None]],
+        "noise_rms": missed,
+        "channels": figures,
+        "measured_over_simulated": figures,
         "by_run": [{"run": "a", "channels": figures, "missed_rms": missed}],
-    }  # fmt: skip
+    }
     (folder / "diagnosis.json").write_text(json.dumps({"verdict": "known", "causes": [], "model_error": error}))
     augmented = write_yaml(other.nominal, folder / "augmented.yaml")
     said = Verdict("known", shrink=0.5, augmented=augmented)
@@ -165,11 +163,15 @@ def test_a_verdict_is_read_as_the_contract_has_it(tmp_path: Path) -> None:
     path = tmp_path / "diagnosis.json"
     assert read_verdict(path) == Verdict("missing")
     data = {
-        "verdict": "ambiguous", "where": [{"block": "coil", "share": 0.9}, {"block": "damper", "share": 0.1}],
+        "verdict": "ambiguous",
+        "where": [{"block": "coil", "share": 0.9}, {"block": "damper", "share": 0.1}],
         "causes": [{"effect": "a", "probability": 0.2}, {"effect": "b", "probability": 0.7}, {"effect": "c"}],
-        "selected": ["b"], "indistinguishable": [["b", "a"]], "isolable": [["coil", "damper"], ["driver"]],
-        "gap": {"shrink": 0.8, "shrink_interval": [0.7, 0.9]}, "augmented": "augmented.yaml",
-    }  # fmt: skip
+        "selected": ["b"],
+        "indistinguishable": [["b", "a"]],
+        "isolable": [["coil", "damper"], ["driver"]],
+        "gap": {"shrink": 0.8, "shrink_interval": [0.7, 0.9]},
+        "augmented": "augmented.yaml",
+    }
     path.write_text(json.dumps(data))
     verdict = read_verdict(path)
     assert (verdict.causes, verdict.named, verdict.group) == (("b", "a", "c"), "b", ("b", "a"))

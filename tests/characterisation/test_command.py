@@ -16,6 +16,8 @@ from seatsim.cli.outputs.damper_tables import make_characterisation_tables
 from seatsim.plots.bench.characterisation import plot_characterisation
 from seatsim.schema.errors import InputError
 
+from ..text import words
+
 
 def command(*arguments):
     return CliRunner().invoke(app, ["characterise", *map(str, arguments)])
@@ -23,9 +25,12 @@ def command(*arguments):
 
 def table_of(record, path):
     columns = {
-        "time_s": record.time, "displacement_mm": 1e3 * record.displacement, "velocity_m_s": record.velocity,
-        "force_N": record.force, "current_A": record.current,
-    }  # fmt: skip
+        "time_s": record.time,
+        "displacement_mm": 1e3 * record.displacement,
+        "velocity_m_s": record.velocity,
+        "force_N": record.force,
+        "current_A": record.current,
+    }
     pd.DataFrame(columns).to_csv(path, index=False)
 
 
@@ -36,10 +41,12 @@ def test_a_bench_table_gives_files_and_a_table(record, sine, tmp_path):
     done = command(tmp_path, "--out", tmp_path / "out")
     assert done.exit_code == 0, done.output
     assert "rebound [N]" in done.stdout.splitlines()[1]
-    assert {path.name for path in (tmp_path / "out").iterdir()} == {
-        "cycles.csv", "characterisation.json", "report.html", "loops.png", "energy.png", "asymmetry.png",
-        "manifest.json", "ro-crate-metadata.json",
-    }  # fmt: skip
+    assert {path.name for path in (tmp_path / "out").iterdir()} == set(
+        words("""
+        cycles.csv characterisation.json report.html loops.png energy.png asymmetry.png manifest.json
+        ro-crate-metadata.json
+    """)
+    )
     found = pd.read_csv(tmp_path / "out" / "cycles.csv")
     assert list(found.current_A) == [1.0, 0.0] and list(found.cycles) == [8, 8]
     whole = json.loads((tmp_path / "out" / "characterisation.json").read_text())
@@ -105,8 +112,7 @@ def test_bad_parameters_are_refused_at_their_place(text, problem, tmp_path):
         (["--model", "bingham", "--temperatures", "20,900"], "at most 200 degC"),
     ],
 )
-def test_bad_input_is_refused(arguments, problem, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_bad_input_is_refused(arguments, problem, tmp_path, here):
     done = command(*arguments)
     assert isinstance(done.exception, InputError) and problem in str(done.exception)
     assert not list(tmp_path.iterdir())

@@ -69,13 +69,6 @@ def test_what_is_not_cyclic_is_told(record, kind):
     assert row.notes[0].startswith("not cyclic") and math.isfinite(row.force_rms)
 
 
-def test_each_rest_of_the_current_is_a_row(record, sine):
-    motion, seconds = sine(0.01, 2.0, cycles=24)
-    found = characterise([record(motion, seconds, lambda t: np.where(t < 6.5, 0.0, 0.8))], "two")
-    assert [row.current for row in found.rows] == [0.0, 0.8]
-    assert found.rows[1].peak_rebound > 3.0 * found.rows[0].peak_rebound
-
-
 def test_a_force_of_the_wrong_sign_and_a_velocity_of_the_wrong_unit_are_told(record, sine):
     motion, seconds = sine(0.01, 2.0)
     made = record(motion, seconds)

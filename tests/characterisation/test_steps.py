@@ -36,13 +36,6 @@ def test_what_does_not_step_has_no_steps(wave):
     assert find_steps(wave(t), 1000.0, False) == []
 
 
-def test_a_measured_current_begins_between_its_rows():
-    t = np.arange(1000) / 1000.0
-    current = np.where(t < 0.4003, 0.0, 1.0 - np.exp(-130.0 * (t - 0.4003)))
-    (step,) = find_steps(current, 1000.0, False)
-    assert step.row / 1000.0 == pytest.approx(0.4003 + math.log(20.0 / 19.0) / 130.0, abs=4e-4)
-
-
 @pytest.mark.parametrize("noise", [0.0, 3.0])
 def test_rise_and_fall_of_a_known_coil_at_constant_speed(record, noise):
     made = record(triangle(0.08, 4.0), 12.0, square(0.9, 0.1, 2.0), lag=(150.0, 70.0), noise=noise)

@@ -1,15 +1,6 @@
 """The command line as a script calls it."""
 
-from contextlib import chdir
-
 import pytest
-
-
-@pytest.fixture
-def here(tmp_path):
-    """Work in an empty folder."""
-    with chdir(tmp_path):
-        yield tmp_path
 
 
 @pytest.fixture

@@ -30,9 +30,11 @@ with temporary_folder() as folder:
 def stuck(answer, place):
     environment = os.environ | {"PYTHONPATH": str(ROOT), "TMPDIR": str(place)}
     process = subprocess.Popen(
-        [sys.executable, "-c", STUCK.format(answer=answer)], env=environment, stdout=subprocess.PIPE,
+        [sys.executable, "-c", STUCK.format(answer=answer)],
+        env=environment,
+        stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
-    )  # fmt: skip
+    )
     assert process.stdout.readline() == b"ready\n"
     return process
 
@@ -70,8 +72,11 @@ def test_a_command_says_that_it_was_interrupted(number, command, tmp_path):
     (tmp_path / "sweep.yaml").write_text(SWEEP)
     process = subprocess.Popen(
         [sys.executable, "-m", "seatsim", *command, "--out", "out"],
-        env=os.environ | {"PYTHONPATH": str(ROOT)}, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-    )  # fmt: skip
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
     with pytest.raises(subprocess.TimeoutExpired):
         process.communicate(timeout=1.5)
     process.send_signal(number)
@@ -90,14 +95,12 @@ def test_a_signal_before_signals_are_watched_is_answered_with_a_word(number, arg
     stop = f"import os; os.kill(os.getpid(), {int(number)})"
     now = f"class Now:\n    end = None\n    @staticmethod\n    def watch_signals():\n        {stop}"
     program = f"{now}\n{code}"
-    done = subprocess.run([sys.executable, "-c", program, *arguments], capture_output=True, timeout=20, check=False,
-                          env=os.environ | {"PYTHONPATH": str(ROOT)})  # fmt: skip
+    done = subprocess.run(
+        [sys.executable, "-c", program, *arguments],
+        capture_output=True,
+        timeout=20,
+        check=False,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+    )
     assert done.returncode == 128 + number and done.stderr == b"error: interrupted\n"
     assert done.stdout == (b'{"error": "interrupted"}\n' if arguments else b"")
-
-
-def test_what_is_loaded_before_a_signal_has_an_answer_is_next_to_nothing():
-    code = "import sys; before = set(sys.modules); import seatsim.cli.begin; print(*sorted(set(sys.modules) - before))"
-    found = subprocess.run([sys.executable, "-S", "-c", code], capture_output=True, text=True, timeout=20, check=True,
-                           env=os.environ | {"PYTHONPATH": str(ROOT)}).stdout.split()  # fmt: skip
-    assert "typing" not in found and {"seatsim", "seatsim.cli", "seatsim.cli.begin", "signal"} <= set(found)

@@ -13,9 +13,8 @@ import pytest
     ],
 )
 def test_a_wrong_word_is_refused_and_nothing_is_written(
-    seatsim_command, kept_seat_file, arguments, said, tmp_path, monkeypatch
+    seatsim_command, kept_seat_file, arguments, said, tmp_path, here
 ):
-    monkeypatch.chdir(tmp_path)
     status, _, err = seatsim_command("export", kept_seat_file, *arguments)
     assert status == 2 and said in err
     assert list(tmp_path.iterdir()) == []

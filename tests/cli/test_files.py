@@ -37,9 +37,12 @@ def test_new_classes_run_in_a_scenario(tmp_path, seat_file, forget_own_code):
     for kind in REGISTERED:
         (path,) = write_new(kind, tmp_path / f"own_{kind}")
         seatsim.use(path)
-    own = {"damper": {"model": "own_damper"}, "controller": {"law": "own_controller"},
-           "excitation": {"kind": "own_excitation", "duration": 2.0},
-           "effects": [{"effect": "suspension.own_effect", "parameters": {"drag": 100.0}}]}  # fmt: skip
+    own = {
+        "damper": {"model": "own_damper"},
+        "controller": {"law": "own_controller"},
+        "excitation": {"kind": "own_excitation", "duration": 2.0},
+        "effects": [{"effect": "suspension.own_effect", "parameters": {"drag": 100.0}}],
+    }
     result = seatsim.run(seat_file, own)
     assert result["driver_acceleration"].std() > 0.1
     assert find("damper", "own_damper").__name__ == "OwnDamper"
@@ -86,18 +89,6 @@ def test_check_says_what_is_wrong(name, text, problem, tmp_path, seatsim_command
         (tmp_path / name).write_text(text)
     status, _, err = seatsim_command("check", tmp_path / name)
     assert status == 2 and problem in err
-
-
-def test_check_reads_the_floor_of_a_scenario(seat_file, seatsim_command):
-    seat_file.write_text(seat_file.read_text().partition("excitation")[0] + "excitation: {kind: table, path: no.csv,"
-                         " column: a, time_column: t}\n")  # fmt: skip
-    status, _, err = seatsim_command("check", seat_file)
-    assert status == 2 and "no.csv" in err
-
-
-def test_check_of_code_that_registers_nothing(tmp_path, seatsim_command, forget_own_code):
-    (tmp_path / "empty_one.py").write_text("a = 1\n")
-    assert "no class is registered" in seatsim_command("check", tmp_path / "empty_one.py")[2]
 
 
 @pytest.mark.parametrize("kind", FILES)

@@ -88,11 +88,13 @@ def test_a_score_is_of_the_documented_form():
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("gapp",), "No such command 'gapp'"), (("gap", "--jsn"), "No such option: --jsn"),
-        (("gap",), "Missing argument"), (("blind", "make"), "Missing option"),
+        (("gapp",), "No such command 'gapp'"),
+        (("gap", "--jsn"), "No such option: --jsn"),
+        (("gap",), "Missing argument"),
+        (("blind", "make"), "Missing option"),
         (("comfort", "x", "--hours", "a"), "hours"),
     ],
-)  # fmt: skip
+)
 def test_a_wrong_use_of_the_command_line_is_an_object_too(seatsim_command, arguments, said):
     status, out, err = seatsim_command(*arguments, "--json")
     assert status == 2 and said in check_answer("error", out)["error"] and said in err

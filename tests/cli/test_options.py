@@ -11,11 +11,6 @@ import seatsim
 HEAVY = {"numpy", "pandas", "scipy", "numba", "pydantic", "matplotlib", "pyarrow", "control", "cvxpy"}
 
 
-def test_the_version(seatsim_command):
-    status, out, _ = seatsim_command("--version")
-    assert status == 0 and out == f"seatsim {seatsim.__version__}\n"
-
-
 def test_nothing_heavy_is_imported_at_the_start():
     code = "import sys, seatsim.cli.app; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, encoding="utf-8", check=True)
@@ -72,15 +67,12 @@ def test_a_folder_that_cannot_be_is_refused_before_anything_runs(inside, seatsim
     assert status == 2 and f"--out {out}: cannot be written: {seat_file} is a file" in err
 
 
-def test_a_folder_without_permission_is_refused(seatsim_command, seat_file, monkeypatch):
-    monkeypatch.setattr("seatsim.schema.files.os.access", lambda path, mode: False)
-    status, _, err = seatsim_command("run", seat_file, "--out", seat_file.parent / "new")
-    assert status == 2 and f"{seat_file.parent} is not yours to write in; give another --out" in err
-
-
 def complete(typed):
-    asked = os.environ | {"_SEATSIM_COMPLETE": "complete_fish", "_TYPER_COMPLETE_FISH_ACTION": "get-args",
-                          "_TYPER_COMPLETE_ARGS": f"seatsim {typed}"}  # fmt: skip
+    asked = os.environ | {
+        "_SEATSIM_COMPLETE": "complete_fish",
+        "_TYPER_COMPLETE_FISH_ACTION": "get-args",
+        "_TYPER_COMPLETE_ARGS": f"seatsim {typed}",
+    }
     done = subprocess.run([sys.executable, "-m", "seatsim"], env=asked, capture_output=True, text=True, check=False)
     return dict((*line.split("\t"), "")[:2] for line in done.stdout.splitlines())
 
@@ -91,14 +83,7 @@ def test_shells_complete_the_keys_of_a_scenario():
     assert found["controller.sensors.displacement_noise="] == "RMS noise of a displacement reading (m)"
 
 
-@pytest.mark.parametrize(
-    ("typed", "among"),
-    [
-        ("run quick", "quickstart"), ("export quickstart --to fmu", "fmu3"), ("export quickstart --what ", "rig"),
-        ("identify data --model bouc", "bouc_wen"), ("new eff", "effect"), ("schema diag", "diagnose"),
-        ("describe coil.", "coil.lag"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("typed", "among"), [("run quick", "quickstart"), ("describe coil.", "coil.lag")])
 def test_shells_complete_names(typed, among):
     found = complete(typed)
     assert among in found and all(name.startswith(typed.split(" ")[-1]) for name in found)

@@ -24,6 +24,8 @@ from seatsim.schema.yaml_source import Source
 from seatsim.simulation.performance_bounds import place_runs
 from seatsim.simulation.result import Result, Run
 
+from ..text import parse
+
 
 @dataclass(frozen=True)
 class Bounds:
@@ -53,22 +55,22 @@ def test_each_rig_has_its_bounds_and_the_distances_of_its_runs():
     assert found["travel"] == 0.01
     assert [each["scenario"] for each in found["runs"]] == ["a", "c"]
     first = found["runs"][0]
-    assert list(first) == [
-        "scenario", "label", "acceleration", "travel", "bound", "best", "above_bound", "above_best",
-    ]  # fmt: skip
+    assert list(first) == ["scenario", "label", "acceleration", "travel", "bound", "best", "above_bound", "above_best"]
     assert (first["bound"], first["best"]) == pytest.approx((0.8, 0.9))
     assert (first["above_bound"], first["above_best"]) == pytest.approx((0.1, 0.88 / 0.9 - 1))
 
 
 def test_a_summary_states_metrics_with_unit_and_meaning():
     [found] = to_content(Result([run("a", "one")]))["runs"]
-    assert found == {
-        "scenario": "a", "label": {"variant": "soft"}, "warnings": ["hot"], "unverified": [], "notes": ["n"],
-        "metrics": {
-            "driver_acceleration_weighted": {"value": 0.88, "unit": "m/s^2", "meaning": "weighted"},
-            "suspension_displacement_rms": {"value": 0.01, "unit": "m", "meaning": "travel"},
-        },
-    }  # fmt: skip
+    assert found == parse("""
+        scenario: a
+        label: {variant: soft}
+        warnings: [hot]
+        unverified: []
+        notes: [n]
+        metrics: {driver_acceleration_weighted: {value: 0.88, unit: m/s^2, meaning: weighted},
+            suspension_displacement_rms: {value: 0.01, unit: m, meaning: travel}}
+    """)
 
 
 def test_equal_figures_give_equal_files(tmp_path):

@@ -7,7 +7,6 @@ import sys
 from pathlib import Path
 
 import pytest
-from typer.core import TyperGroup
 
 from seatsim.cli import app
 
@@ -20,12 +19,11 @@ def started(*arguments, encoding="utf-8", **options):
     return subprocess.Popen([*START, *arguments], env=environment, stderr=subprocess.PIPE, **options)
 
 
-@pytest.mark.parametrize("arguments", [["describe"], ["schema", "scenario"]])
-def test_a_reader_that_goes_away_is_no_error(arguments):
+def test_a_reader_that_goes_away_is_no_error():
     """As `seatsim describe | head -1`, where nothing at all is read."""
     reading, writing = os.pipe()
     os.close(reading)
-    process = started(*arguments, stdout=writing)
+    process = started("describe", stdout=writing)
     os.close(writing)
     _, said = process.communicate()
     assert b"Traceback" not in said and b"Broken" not in said
@@ -68,37 +66,26 @@ def test_a_warning_of_own_code_is_one_line(tmp_path, seatsim_command, forget_own
     assert seatsim_command("describe", "road", "--with", tmp_path / "noisy_one.py")[2] == "warning: it is odd\n"
 
 
-@pytest.mark.parametrize("method", ["parse_args", "resolve_command"])
-def test_an_interrupt_while_the_command_is_looked_up_is_said(method, monkeypatch, capsys):
-    def interrupt(*_, **__):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(TyperGroup, method, interrupt)
-    monkeypatch.setattr("sys.argv", ["seatsim", "describe"])
-    with pytest.raises(SystemExit) as stopped:
-        app.main()
-    assert stopped.value.code == 130 and capsys.readouterr().err == "error: interrupted\n"
-
-
-def test_names_in_files_lead_nowhere_else(seat_file, tmp_path, monkeypatch, capsys):
+def test_names_in_files_lead_nowhere_else(seat_file, tmp_path, here, seatsim_command):
     for name in ("../../escaped", "/tmp/escaped", "a\\b", "", "..", "x" * 200, "\0", " a", "a\n"):
         text = "\n".join(line for line in seat_file.read_text().splitlines() if not line.startswith("name"))
         seat_file.write_text(f"name: {json.dumps(name)}\n{text}\n")
-        monkeypatch.setattr("sys.argv", ["seatsim", "run", str(seat_file)])
-        monkeypatch.chdir(tmp_path)
-        with pytest.raises(SystemExit) as stopped:
-            app.main()
-        assert stopped.value.code == 2
-        assert ", line 1" in capsys.readouterr().err
+        status, _, said = seatsim_command("run", seat_file)
+        assert status == 2 and ", line 1" in said
         assert [path.name for path in tmp_path.iterdir()] == [seat_file.name]
 
 
 @pytest.mark.parametrize(
-    "arguments",
-    [["run", "NAME.yaml"], ["run", "a/NAME"], ["gap", "quickstart", "NAME"], ["comfort", "NAME.csv"], ["check", "NAME"],
-     ["export", "quickstart", "--to", "c", "--what", "damper", "--out", "NAME.c"]],
-)  # fmt: skip
-def test_a_name_that_no_file_can_have_is_bad_input_in_a_few_words(arguments):
-    process = started(*(word.replace("NAME", 5_000 * "a") for word in arguments), stdout=subprocess.DEVNULL)
-    _, said = process.communicate()
-    assert process.returncode == 2 and b"error: " in said and len(said) < 2_000
+    "words",
+    [
+        "run NAME.yaml",
+        "run a/NAME",
+        "gap quickstart NAME",
+        "comfort NAME.csv",
+        "check NAME",
+        "export quickstart --to c --what damper --out NAME.c",
+    ],
+)
+def test_a_name_that_no_file_can_have_is_bad_input_in_a_few_words(words, seatsim_command):
+    status, _, said = seatsim_command(*(word.replace("NAME", 5_000 * "a") for word in words.split()))
+    assert status == 2 and "error: " in said and len(said) < 2_000

@@ -68,15 +68,19 @@ def check(tmp_path, seatsim_command, forget_own_code):
         (DAMPER, "return self.c * scaling", "return math.nan * scaling", "is no finite number"),
         (DAMPER, "z[0]),)", "z[0])+0.0)", "permitted: a tuple of 1, such as (0.0,)"),
         (DAMPER, "z[0]),)", "z[0]), 0.0)", "permitted: a tuple of 1, such as (0.0,)"),
-        (EFFECT, "(self, force, plant, x, v, z)", "(self, plant, x, v, z)",
-         "Tried.cushion_force(self, plant, x, v, z) is called with other arguments: too many positional arguments"),
+        (
+            EFFECT,
+            "(self, force, plant, x, v, z)",
+            "(self, plant, x, v, z)",
+            "Tried.cushion_force(self, plant, x, v, z) is called with other arguments: too many positional arguments",
+        ),
         (EFFECT, "plant.cushion_stiffness", "plant.kc", "line 10: cannot be compiled: unknown attribute 'kc'"),
         (EFFECT, "return force - plant", "return 5.0 + force - plant", "tried: changes the rig where it is off"),
         pytest.param(EFFECT, '{"gap": 2e-4}', '{"gab": 2e-4}', "gab", marks=pytest.mark.slow),
         pytest.param(EFFECT, '{"gap": 2e-4}', '{"gap": 2.0}', "0.01", marks=pytest.mark.slow),
         (LAW, "y.velocity", "y.speed", "law tried: tried.py, line 9: cannot be compiled: unknown attribute 'speed'"),
     ],
-)  # fmt: skip
+)
 def test_a_mistake_is_said_before_a_run(text, old, new, said, check):
     status, found = check(text, old, new)
     assert status == 2 and said in found and found.count("error: ") == 1

@@ -6,7 +6,7 @@ import numba
 import pytest
 from numba.core.dispatcher import Dispatcher
 
-from seatsim.compilation.jit import ARITHMETIC, INLINED, jit, jit_apart
+from seatsim.compilation.jit import ARITHMETIC, jit, jit_apart
 
 
 @jit
@@ -45,14 +45,6 @@ def test_compiled_a_division_by_zero_is_infinite():
 def test_compiled_nan_and_infinity_keep_their_meaning():
     assert apart(math.nan, 1.0) == -1.0
     assert absent((math.nan, 1.0, math.inf)) == 2
-
-
-def test_options_of_arithmetic_and_of_inlining():
-    assert {"error_model": "numpy", "fastmath": {"contract", "reassoc", "arcp", "nsz"}} == ARITHMETIC
-    assert INLINED == ARITHMETIC | {"forceinline": True, "no_cfunc_wrapper": True}
-    assert apart.targetoptions["no_cfunc_wrapper"] and apart.targetoptions["error_model"] == "numpy"
-    assert set(apart.targetoptions["fastmath"]) == ARITHMETIC["fastmath"]
-    assert "forceinline" not in apart.targetoptions
 
 
 def test_what_is_inlined_leaves_no_function_of_its_own():

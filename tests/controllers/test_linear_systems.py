@@ -6,9 +6,7 @@ import pytest
 from controllers.linear_systems import (
     LinearSystem,
     connect_in_parallel,
-    connect_in_series,
     frequency_weighting,
-    pass_through,
     second_order_section,
     zero_order_hold,
 )
@@ -34,21 +32,6 @@ def test_a_section_is_its_quotient_and_its_states_are_of_one_size():
     exact = (3.0 + 0.2 * s + 0.05 * s**2) / (2.0 + 0.1 * s + 0.04 * s**2)
     np.testing.assert_allclose(gains(system)[:, 0, 0], exact, rtol=1e-12)
     assert system.A[0, 1] == -system.A[1, 0] == system.B[1, 0]
-
-
-def test_side_by_side_and_one_after_another():
-    first, second = (
-        second_order_section((1.0, 0.0, 0.0), (1.0, 0.1, 0.02)),
-        second_order_section((1.0, 0.3, 0.1), (4.0, 0.2, 0.01)),
-    )
-    both = gains(
-        connect_in_series(connect_in_parallel(first, pass_through(1)), connect_in_parallel(pass_through(1), second))
-    )
-    exact = np.zeros((len(OMEGA), 2, 2), complex)
-    exact[:, 0, 0], exact[:, 1, 1] = gains(first)[:, 0, 0], gains(second)[:, 0, 0]
-    np.testing.assert_allclose(both, exact, rtol=1e-12)
-    chain = gains(connect_in_series(first, second))
-    np.testing.assert_allclose(chain[:, 0, 0], exact[:, 0, 0] * exact[:, 1, 1], rtol=1e-12)
 
 
 def test_a_held_input_moves_a_free_mass_and_a_lag_exactly():

@@ -31,9 +31,8 @@ DESCRIPTION = """<?xml version="1.0" encoding="UTF-8"?>
 
 
 @pytest.fixture
-def pack(tmp_path, monkeypatch):
+def pack(tmp_path):
     """Make an archive of names and texts; a description is added where it is asked for."""
-    monkeypatch.setattr("platform.system", lambda: "Linux")
 
     def make(files, description=DESCRIPTION):
         path = tmp_path / "unit.fmu"
@@ -121,8 +120,10 @@ def test_variables_are_what_they_are_taken_for(pack):
     unit = describe_unit(pack(HERE))
     assert find_conversion_of(find_variable(unit, "v", "input"), "velocity").factor == 1e-3
     for name, causality, said in (
-        ("w", "input", "no variable 'w'"), ("v", "output", "declared as input"), ("n", "output", "declared as Integer"),
-    ):  # fmt: skip
+        ("w", "input", "no variable 'w'"),
+        ("v", "output", "declared as input"),
+        ("n", "output", "declared as Integer"),
+    ):
         with pytest.raises(InputError, match=said):
             find_variable(unit, name, causality)
     with pytest.raises(InputError, match="cannot be the force"):

@@ -18,6 +18,8 @@ from seatsim.schema.errors import RunError
 from seatsim.schema.modules import use
 from seatsim.simulation.simulate import simulate
 
+from ..text import parse
+
 COMPILER = shutil.which("gcc") or shutil.which("cc")
 pytestmark = pytest.mark.skipif(
     COMPILER is None or sys.platform != "linux", reason="needs a C compiler (gcc) and the libraries of Linux"
@@ -143,9 +145,9 @@ def test_an_announced_event_ends_a_part_of_a_step(unit):
 
 
 def test_a_step_is_repeated_where_events_can_be_taken_back(unit):
-    assert [run(unit(2, *how), 1e-3, 0.002)[1] for how in ((0, "false"), (1, "false"), (1, "true"))] == [
-        True, False, True,
-    ]  # fmt: skip
+    assert [run(unit(2, *how), 1e-3, 0.002)[1] for how in ((0, "false"), (1, "false"), (1, "true"))] == parse("""
+        [true, false, true]
+    """)
     assert not run(unit(2, 0, "false", moment=1.0), 1e-3, 0.002)[1]
 
 
@@ -160,14 +162,20 @@ def test_a_seat_moves_as_with_the_damping_in_its_suspension(version, saves, unit
     unit(version, 0, saves, seat_file.parent)
     base = {"controller": {"law": "constant", "current": 0.0}, "excitation.duration": 0.2}
     damper = {
-        "model": "fmu:damper.fmu", "inputs": {"displacement": "x", "velocity": "v", "current": "i"},
+        "model": "fmu:damper.fmu",
+        "inputs": {"displacement": "x", "velocity": "v", "current": "i"},
         "outputs": {"force": "F"},
-    }  # fmt: skip
+    }
     own = load(seat_file)[0].plant.suspension_damping
     histories = [
-        simulate(load(seat_file, {**base, "damper": damper | {"parameters": {"c": c, "k": 0.0}},
-                                  "plant.suspension_damping": own + rest})[0], carry_all_effects=False)
+        simulate(
+            load(
+                seat_file,
+                {**base, "damper": damper | {"parameters": {"c": c, "k": 0.0}}, "plant.suspension_damping": own + rest},
+            )[0],
+            carry_all_effects=False,
+        )
         for c, rest in ((500.0, 0.0), (0.0, 500.0))
-    ]  # fmt: skip
+    ]
     first, second = (history["driver_acceleration"] for history in histories)
     assert np.max(np.abs(first - second)) < 2e-3 * np.max(np.abs(second))

@@ -5,10 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.dampers.bingham import Bingham, OriginalBingham
+from seatsim.dampers.bingham import Bingham
 from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.dampers.s_curves import KwokTanh
-from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.errors import InputError, RunError
 from seatsim.simulation.damper_bench import bench_force, centring, sine_test
 
@@ -33,17 +32,6 @@ def test_energy_of_a_set_valued_bingham_cycle():
     test = sine_test(damper, 0.006, 1.5, 0.5, 20.0)
     expected = 4 * 250.0 * 0.006 + math.pi * 300.0 * 3 * math.pi * 0.006**2
     assert test.dissipated_energy == pytest.approx(expected, rel=1e-5)
-
-
-def test_set_valued_friction_follows_the_sign_of_the_prescribed_velocity():
-    damper = OriginalBingham(c0=(0.0,) * 4, fc=(100.0, 0.0, 0.0, 0.0))
-    force = bench_force(damper, np.zeros(7), [0.1, 0.1, 0.0, 0.0, -1e-9, 0.0, 0.0], 0.0, 20.0, 0.01)
-    assert force.tolist() == [100.0, 0.0, -100.0, 0.0]
-
-
-def test_the_offset_is_the_asymmetric_part_of_a_symmetric_loop():
-    test = sine_test(VISCOUS._replace(f0=40.0), 0.004, 2.0, 0.0, 20.0)
-    assert test.asymmetric_part == pytest.approx(np.full(len(test.force), 40.0), abs=1e-9)
 
 
 def test_the_last_cycle_is_returned_with_both_ends():
@@ -71,15 +59,6 @@ def test_stiff_states_are_divided():
     x, v, step = motion(4, 0.4)
     force = bench_force(damper, x, v, 0.5, 20.0, step)
     assert force[1:] == pytest.approx((250.0 + 175.0) * v[2::2] + 355.0, rel=1e-3)
-
-
-def test_current_and_temperature_may_vary_along_the_run():
-    v = np.full(9, 0.1)
-    current, temperature = np.linspace(0.0, 1.0, 9), np.repeat([20.0, 20.0, 80.0], 3)
-    factors = TemperatureFactors(viscous=-0.01)
-    force = bench_force(VISCOUS, np.zeros(9), v, current, temperature, 0.1, factors)
-    share = np.array([1.0, 1.0, 1.0, math.exp(-0.6), math.exp(-0.6)])
-    assert force == pytest.approx(share * (70.0 + 35.0 * current[::2]))
 
 
 @pytest.mark.filterwarnings("ignore:overflow", "ignore:invalid value")

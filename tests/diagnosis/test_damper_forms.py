@@ -9,12 +9,7 @@ from ruamel.yaml import YAML
 
 import seatsim
 from seatsim.cli.outputs.diagnosis_tables import make_tables
-from seatsim.diagnosis.alternatives import (
-    are_forms_due,
-    compare_damper_forms,
-    describe_forms,
-    describe_obstacle,
-)
+from seatsim.diagnosis.alternatives import are_forms_due, compare_damper_forms, describe_forms, describe_obstacle
 from seatsim.diagnosis.result import DamperForm, GapFigures, Gaps
 from seatsim.effects.base import EFFECTS
 from seatsim.effects.damper import GasSpring
@@ -28,22 +23,23 @@ from seatsim.schema.content import to_content
 from seatsim.simulation.inputs import BenchInputs, SeatInputs
 from seatsim.simulation.respond import respond
 
+from ..text import parse
 from .posed import pose
 
 RATE, SECONDS = 200.0, 5
-TRUE = {
-    "c_a": 250.0, "c_b": 350.0, "alpha_a": 45.0, "alpha_b": 620.0, "k0": 0.0, "x0": 0.0, "f0": 0.0, "A": 500.0,
-    "beta": 250.0, "gamma": 250.0, "n": 2,
-}  # fmt: skip
+TRUE = parse("""
+    {c_a: 250.0, c_b: 350.0, alpha_a: 45.0, alpha_b: 620.0, k0: 0.0, x0: 0.0, f0: 0.0, A: 500.0, beta: 250.0,
+     gamma: 250.0, n: 2}
+""")
 NOMINALS = {
     "bouc_wen": TRUE | {"c_a": 255.0, "alpha_b": 610.0},
     # The yield force of the true damper is alpha, since its z settles at 1.
     "bingham": {"c_a": 250.0, "c_b": 350.0, "fc_a": 45.0, "fc_b": 620.0, "f0": 0.0, "v_ref": 0.01},
 }
-PLANT = {
-    "frame_mass": 20.0, "driver_mass": 80.0, "suspension_stiffness": 4600.0, "suspension_damping": 150.0,
-    "cushion_stiffness": 60000.0, "cushion_damping": 1500.0,
-}  # fmt: skip
+PLANT = parse("""
+    {frame_mass: 20.0, driver_mass: 80.0, suspension_stiffness: 4600.0, suspension_damping: 150.0,
+     cushion_stiffness: 60000.0, cushion_damping: 1500.0}
+""")
 NOISE = {"displacement": 1e-6, "suspension_displacement": 1e-6, "damper_force": 2.0, "frame_acceleration": 0.01}
 OTHERS = [name for name in EFFECTS.names() if name != "damper.gas_spring"]
 """Effects withheld where not they are tested: a diagnosis with one effect is quick."""

@@ -51,21 +51,26 @@ def test_the_quarter_car_maps_onto_the_seat_with_its_resonance(real_rigs, record
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name, known", [
-    ("utfsm", [{"damper.gas_spring"}]),
-    # The force follows the voltage faster one way than the other, by which the standard lag, too, is passed.
-    ("dyke", [{"coil.asymmetric_lag"}, {"damper.gas_spring"}]),
-    ("dyke-130", [{"coil.asymmetric_lag"}, {"damper.gas_spring"}]),
-    ("quanser-travel", [{"suspension.friction"}]),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "name, known",
+    [
+        ("utfsm", [{"damper.gas_spring"}]),
+        # The force follows the voltage faster one way than the other, by which the standard lag, too, is passed.
+        ("dyke", [{"coil.asymmetric_lag"}, {"damper.gas_spring"}]),
+        ("dyke-130", [{"coil.asymmetric_lag"}, {"damper.gas_spring"}]),
+        ("quanser-travel", [{"suspension.friction"}]),
+    ],
+)
 def test_what_the_data_are_known_to_show_stands_beside_what_is_unexplained(
     real_rigs, records, data, tmp_path, name, known
 ):
     rig = next(rig for rig in records.list_rigs(data) if rig.name == name)
     found = seatsim.diagnose(real_rigs.write(rig, tmp_path), budget=1200.0)  # on a busy machine, too
     assert found.verdict == "unknown"
-    groups = [{each, *(name for group in found.indistinguishable if each in group for name in group)}
-              for each in found.selected]  # fmt: skip
+    groups = [
+        {each, *(name for group in found.indistinguishable if each in group for name in group)}
+        for each in found.selected
+    ]
     assert len(groups) == len(known)
     assert all(any(effect <= group for group in groups) for effect in known)
     assert found.gap.shrink > 0.1

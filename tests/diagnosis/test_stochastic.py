@@ -30,18 +30,6 @@ def noisy(posed, true):
     return true + posed.noise[:, None] * np.random.default_rng(7).standard_normal(true.shape)
 
 
-def test_a_wandering_zero_is_named_with_its_channel(posed):
-    k, measured = posed.channels.index("frame_acceleration"), {}
-    rate = posed.recording.header.sample_rate
-    for seed, run in enumerate(posed.runs):
-        true = posed.simulated(run, posed.nominal, ())
-        true[k] += 0.3 * posed.spread[k] * coloured(true.shape[1], 0.05, 0.2, seed, rate)
-        measured[run] = noisy(posed, true)
-    solution = solved(dataclasses.replace(posed, measured=measured))
-    assert solution.stochastic == "sensor.bias"
-    assert solution.discrepancy.channel == "frame_acceleration"
-
-
 def test_a_wandering_zero_of_the_floor_is_told_from_a_motion_of_it(posed):
     measured = {}
     for seed, run in enumerate(posed.runs):

@@ -12,11 +12,15 @@ import pytest
 from seatsim.cli.app import app
 from seatsim.diagnosis.settings import DiagnosisSettings
 
+from ..text import words
+
 ROOT = Path(__file__).resolve().parents[2]
-BENCH = (
-    "--model", "--parameters", "--currents", "--temperatures", "--amplitudes", "--frequencies", "--test",
-    "--test-fraction", "--fix", "--ignore-temperature", "--predict", "--moving-average", "--centred",
-)  # fmt: skip
+BENCH = tuple(
+    words("""
+    --model --parameters --currents --temperatures --amplitudes --frequencies --test --test-fraction --fix
+    --ignore-temperature --predict --moving-average --centred
+""")
+)
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
 
 

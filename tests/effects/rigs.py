@@ -53,15 +53,10 @@ def starts(name):
     return [off(cls)._replace(**form.fixed, **form.free) for form in specification_of(cls).forms]
 
 
-def shaken(scenario, *effects, carry_all_effects=None):
-    """The history of a scenario with effects, as its sensors tell it."""
-    history = simulate(replace(scenario, effects=effects), carry_all_effects=carry_all_effects)
+def shaken(scenario, *effects):
+    """The history of a scenario with effects, as its sensors tell it; one compiled loop for all effects of a rig."""
+    history = simulate(replace(scenario, effects=effects), carry_all_effects=True)
     return read_sensors(effects, scenario.solver.step, history.channels)
-
-
-def carried(scenario):
-    """The history without effects, of the compiled rig that carries all of them."""
-    return shaken(scenario, CARRIER)
 
 
 def distance(history, reference):

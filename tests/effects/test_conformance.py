@@ -2,13 +2,12 @@
 
 import math
 from dataclasses import replace
-from functools import partial
 from typing import NamedTuple
 
 import pytest
 
 from seatsim.effects import base
-from seatsim.effects.base import EFFECTS, ON_DAMPER, acts_on, off
+from seatsim.effects.base import EFFECTS, off
 from seatsim.scenario.scenario import Solver
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import adapter, bounds, choices, describe
@@ -16,8 +15,7 @@ from seatsim.schema.registry import find, specification_of
 from seatsim.simulation.simulate import simulate
 
 from ..part_space import check
-from . import rigs
-from .rigs import NAMES, distance, starts
+from .rigs import NAMES, distance, shaken, starts
 
 BLOCKS = {
     "damper": "thermal_fade gas_spring asymmetry preyield_hysteresis magnetic_saturation remanence free_play"
@@ -30,8 +28,6 @@ BLOCKS = {
     "sensor": "gain bias lag clock_skew",
 }
 CONTRACT = {f"{block}.{name}" for block, listed in BLOCKS.items() for name in listed.split()}
-shaken = partial(rigs.shaken, carry_all_effects=True)  # one compiled loop for all effects of a rig
-ON_BENCH = [name for name in NAMES if acts_on(find("effect", name), ON_DAMPER)]
 WITH_FORMS = [name for name in NAMES if starts(name)]
 
 

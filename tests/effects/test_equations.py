@@ -64,8 +64,15 @@ def test_gas_spring_and_asymmetry(rng):
     x, v, force = rng.normal(0, 0.02), rng.normal(0, 0.05), rng.normal(0, 300)
     gas = drawn("damper.gas_spring", rng, preload=(-50, 50), stiffness=(100, 2000))
     assert gas.added_force(x, v, ()) == near(gas.preload + gas.stiffness * x)
-    e = drawn("damper.asymmetry", rng, viscous=(-0.5, 0.5), yielding=(-0.5, 0.5), speed=(0.005, 0.1),
-              offset=(-1, 1), pulling=(-0.5, 0.5))  # fmt: skip
+    e = drawn(
+        "damper.asymmetry",
+        rng,
+        viscous=(-0.5, 0.5),
+        yielding=(-0.5, 0.5),
+        speed=(0.005, 0.1),
+        offset=(-1, 1),
+        pulling=(-0.5, 0.5),
+    )
     side = np.tanh(v / e.speed) + e.offset
     expected = (0.9 * (1 + e.viscous * side), 0.8, 0.7 * (1 + e.yielding * side))
     assert e.part_scaling(TemperatureScaling(0.9, 0.8, 0.7), v, ()) == near(expected)
@@ -83,8 +90,10 @@ def test_magnetism(rng):
     felt = np.mean(plays)
     expected = felt + e.lift * np.clip(felt, 0, e.width) + e.share * max(z[2] - i, 0)
     assert e.yield_current(i, z) == near(expected)
-    rates = [MEMORY_RATE * (play - kept) + e.decay * (i - kept) if e.width else 0.0
-             for play, kept in zip(plays, z, strict=False)]  # fmt: skip
+    rates = [
+        MEMORY_RATE * (play - kept) + e.decay * (i - kept) if e.width else 0.0
+        for play, kept in zip(plays, z, strict=False)
+    ]
     rates.append((e.decay if i < z[2] else MEMORY_RATE) * (i - z[2]))
     assert e.rates(0.0, 0.0, 0.0, i, 0.0, 0.0, z) == near(tuple(rates))
 
@@ -142,8 +151,15 @@ def test_suspension(rng):
     )
     helper = e.helper * (np.hypot(x, e.reach) - e.reach) * np.sign(x)
     assert e.suspension_force(PLANT, x, v, ()) == near(4600.0 * (e.skew * x**2 + e.rise * x**3 + helper))
-    e = drawn("suspension.end_stop", rng, low=(-0.03, 0), high=(0, 0.03), stiffness=(1e4, 1e5), damping=(0.1, 10),
-              power=(1, 3))  # fmt: skip
+    e = drawn(
+        "suspension.end_stop",
+        rng,
+        low=(-0.03, 0),
+        high=(0, 0.03),
+        stiffness=(1e4, 1e5),
+        damping=(0.1, 10),
+        power=(1, 3),
+    )
     depth, side = (x - e.high, 1) if x > e.high else (max(e.low - x, 0.0), -1)
     push = e.stiffness * depth * (depth / 0.01) ** (e.power - 1) * (1 + e.damping * side * v)
     assert e.suspension_force(PLANT, x, v, ()) == near(side * max(push, 0.0))
@@ -183,8 +199,11 @@ def test_coil(rng):
         return 1 / max(1e-5, 1 / rate + time)
 
     e = drawn("coil.lag", rng, time=(-0.05, 0.05), second=(0.1, 1))
-    expected = coil._replace(rate=slowed(coil.rate, e.time), delay=0.003 + max(0.0, e.second * e.time),
-                             rate_fall=slowed(coil.rate_fall, e.time) if coil.rate_fall else 0.0)  # fmt: skip
+    expected = coil._replace(
+        rate=slowed(coil.rate, e.time),
+        delay=0.003 + max(0.0, e.second * e.time),
+        rate_fall=slowed(coil.rate_fall, e.time) if coil.rate_fall else 0.0,
+    )
     assert e.coil(coil) == near(expected)
     e = drawn("coil.asymmetric_lag", rng, time=(0, 0.05))
     assert e.coil(coil) == near(coil._replace(rate_fall=slowed(coil.rate_fall or coil.rate, e.time)))

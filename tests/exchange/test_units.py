@@ -16,7 +16,7 @@ from seatsim.exchange.blocks.rig_motion import RigOutputs
 from seatsim.exchange.fmu import write_fmu
 from seatsim.scenario.loading import load
 from seatsim.scenario.scenario import DamperChoice
-from seatsim.schema.errors import InputError, RunError
+from seatsim.schema.errors import InputError
 from seatsim.simulation.simulate import simulate
 
 STEP, SAMPLES = 1e-3, 300
@@ -124,8 +124,7 @@ def test_fmpy_finds_nothing_and_simulates(version, units):
     assert np.max(np.abs(result["force"])) > 100.0
 
 
-@pytest.mark.parametrize("version", [2, 3])
-@pytest.mark.parametrize("sensors", [True, False], ids=["sensors", "true states"])
+@pytest.mark.parametrize(("version", "sensors"), [(2, True), (3, False)], ids=["sensors", "true states"])
 def test_a_rig_driven_by_the_floor_acceleration_alone_follows_its_simulation(version, sensors, tmp_path):
     # As masters do: the value at a communication point stands until the next. Held, it would be half a step late, by
     # which the law switches late, too: 8 % of the driver's acceleration and 38 % of the current.
@@ -152,9 +151,11 @@ def test_the_rate_of_an_input_is_the_input_that_states_it(open_unit):
     unit.setReal([number["velocity"]], [0.1])
     start = unit.getFMUstate()
     forces = []
-    for state in (lambda: unit.setReal([number["acceleration"]], [3.0]),
-                  lambda: unit.setRealInputDerivatives([number["velocity"], number["command"]], [1, 1], [3.0, 9.0]),
-                  lambda: unit.setRealInputDerivatives([number["velocity"]], [2], [3.0])):  # fmt: skip
+    for state in (
+        lambda: unit.setReal([number["acceleration"]], [3.0]),
+        lambda: unit.setRealInputDerivatives([number["velocity"], number["command"]], [1, 1], [3.0, 9.0]),
+        lambda: unit.setRealInputDerivatives([number["velocity"]], [2], [3.0]),
+    ):
         unit.setFMUstate(start)
         state()
         unit.doStep(0.0, 0.01)
@@ -221,11 +222,6 @@ def test_a_unit_needs_nothing_of_python_and_is_small(units):
         assert b"Py" not in content and b"NRT_" not in content and b"numba" not in content
 
 
-def test_the_same_model_gives_the_same_unit(kept_seat_file, units, tmp_path):
-    write_fmu(damper_block(load(kept_seat_file)[0]), 2, tmp_path / "again.fmu")
-    assert (tmp_path / "again.fmu").read_bytes() == (units / "damper2.fmu").read_bytes()
-
-
 def test_a_library_that_needs_more_than_c_is_refused(tmp_path):
     source = tmp_path / "foreign.c"
     source.write_text("int PyErr_Occurred(void); int f(void) { return PyErr_Occurred(); }\n")
@@ -245,23 +241,3 @@ def test_without_a_compiler_one_sentence_says_so(monkeypatch, seat_file, tmp_pat
     with pytest.raises(InputError, match=said):
         write_fmu(damper_block(load(seat_file)[0]), 2, tmp_path / "unit.fmu")
     assert list(tmp_path.glob("*.fmu*")) == []
-
-
-def test_the_compiler_writes_only_beside_the_library(tmp_path, monkeypatch):
-    # A compiler that is ended with the export, or outlives it, leaves its temporary files where it was told to.
-    compiler_of_ours = tmp_path / "cc"
-    compiler_of_ours.write_text('#!/bin/sh\necho "$TMPDIR" >&2\nexit 1\n')
-    compiler_of_ours.chmod(0o755)
-    monkeypatch.setenv("CC", str(compiler_of_ours))
-    with pytest.raises(RunError, match=f"{tmp_path}/here$"):
-        compiler.compile_library(tmp_path / "a.c", tmp_path / "here" / "a.so")
-
-
-def test_flags_that_are_named_with_the_compiler_are_used(tmp_path, monkeypatch):
-    (tmp_path / "a.c").write_text("int f(void) { return NUMBER; }\n")
-    monkeypatch.setenv("CC", f"{compiler.find_compiler()} -O1 '-DNUMBER=3'")
-    compiler.compile_library(tmp_path / "a.c", tmp_path / "a.so")
-    assert (tmp_path / "a.so").is_file()
-    monkeypatch.setenv("CC", "gcc '-O2")
-    with pytest.raises(InputError, match=r"variable CC is .*No closing quotation"):
-        compiler.compile_library(tmp_path / "a.c", tmp_path / "a.so")

@@ -88,9 +88,7 @@ def test_random_parameters_give_a_finite_floor_that_repeats_itself_at_any_step(n
 
 
 @pytest.mark.parametrize(
-    ("cls", "mapping"),
-    [m for m in MAPPINGS if m[0] in (Road, Iso7096)],
-    ids=lambda v: getattr(v, "__name__", ""),
+    ("cls", "mapping"), [m for m in MAPPINGS if m[0] in (Road, Iso7096)], ids=lambda v: getattr(v, "__name__", "")
 )
 def test_another_seed_draws_another_motion(cls, mapping):
     made = build(cls, mapping)

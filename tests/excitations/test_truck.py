@@ -52,8 +52,7 @@ def test_stated_modes():
 
 
 @pytest.mark.parametrize(
-    ("road_class", "speed", "low", "high"),
-    [("B", 20.0, 0.3, 0.6), ("D", 10.0, 1.0, 2.0), ("D", 15.0, 1.0, 2.0)],
+    ("road_class", "speed", "low", "high"), [("B", 20.0, 0.3, 0.6), ("D", 10.0, 1.0, 2.0), ("D", 15.0, 1.0, 2.0)]
 )
 def test_floor_acceleration_is_that_of_a_truck_cab(road_class, speed, low, high):
     acceleration = Road(road_class, speed, 60.0).floor(0.001, 1).acceleration[1000:]

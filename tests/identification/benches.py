@@ -14,8 +14,9 @@ from seatsim.rig.temperature import TemperatureFactors
 from seatsim.simulation.damper_bench import bench_force
 
 BINGHAM = Bingham(c_a=400.0, c_b=900.0, fc_a=60.0, fc_b=500.0, f0=30.0, v_ref=0.004)
-BOUC_WEN = BoucWen(c_a=500.0, c_b=800.0, alpha_a=60.0, alpha_b=500.0, k0=900.0, f0=30.0, A=2000.0, beta=1300.0,
-                   gamma=900.0, n=2.0)  # fmt: skip
+BOUC_WEN = BoucWen(
+    c_a=500.0, c_b=800.0, alpha_a=60.0, alpha_b=500.0, k0=900.0, f0=30.0, A=2000.0, beta=1300.0, gamma=900.0, n=2.0
+)
 
 
 def made(damper=BINGHAM, amplitude=0.01, frequency=2.0, current=0.0, seconds=2.0, rate=500.0, noise=0.0, coil=(),
@@ -43,17 +44,18 @@ def made(damper=BINGHAM, amplitude=0.01, frequency=2.0, current=0.0, seconds=2.0
 def sines(damper, noise=0.02):
     """Return three sine records at three currents."""
     settings = ((0.01, 2.0, 0.0), (0.002, 4.0, 0.5), (0.006, 2.5, 1.0))
-    return [
-        made(damper, x, f, i, noise=noise, name=f"sine_{f:g}Hz", seed=k) for k, (x, f, i) in enumerate(settings)
-    ]  # fmt: skip
+    return [made(damper, x, f, i, noise=noise, name=f"sine_{f:g}Hz", seed=k) for k, (x, f, i) in enumerate(settings)]
 
 
 def columns(record):
     """Return a record as a table with units in its names."""
     table = {
-        "time_s": record.time, "displacement_mm": 1e3 * record.displacement, "velocity_m_s": record.velocity,
-        "force_kN": 1e-3 * record.force, "current_A": record.current,
-    }  # fmt: skip
+        "time_s": record.time,
+        "displacement_mm": 1e3 * record.displacement,
+        "velocity_m_s": record.velocity,
+        "force_kN": 1e-3 * record.force,
+        "current_A": record.current,
+    }
     return pd.DataFrame(table)
 
 

@@ -197,8 +197,7 @@ def test_places_are_ranked_by_what_was_held_out_where_anything_was():
         (["--model", "all", "--fix", "c_qq=1"], "--fix c_qq: no model has this number"),
     ],
 )
-def test_bad_input_is_refused_and_nothing_written(options, problem, bench, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_bad_input_is_refused_and_nothing_written(options, problem, bench, tmp_path, here):
     done = command("identify", bench, *options)
     assert isinstance(done.exception, InputError) and problem in str(done.exception)
     assert not list(tmp_path.iterdir())

@@ -2,7 +2,6 @@
 
 import math
 
-import numpy as np
 import pytest
 
 from seatsim.identification.assessment import measure_coverage, note_limits
@@ -26,15 +25,6 @@ def test_the_lowest_and_the_highest_tone_of_a_record_are_covered():
     slow, middle, fast = (made(frequency=f, amplitude=0.01 / f, seconds=5.0) for f in (1.0, 3.0, 6.0))
     found = measure_coverage([slow._replace(velocity=slow.velocity + middle.velocity + fast.velocity)])
     assert found.frequency == pytest.approx([1.0, 6.0], abs=0.25)
-
-
-def test_shares_of_time_follow_the_law_of_a_sine():
-    shares = measure_coverage([made(frequency=1.0, seconds=10.0, rate=2000.0)]).speeds
-    # |cos| lies below s for 2/pi asin(s) of the time
-    edges = np.linspace(0.0, 1.0, 11)
-    expected = np.diff(2.0 / math.pi * np.arcsin(edges))
-    assert list(shares.values()) == pytest.approx(list(expected), abs=2e-3)
-    assert list(shares)[-1] == f"{2.0 * math.pi * 0.01:.3g}"
 
 
 @pytest.mark.parametrize("factor, told", [(1.04, False), (1.06, True)])

@@ -6,11 +6,7 @@ import numpy as np
 import pytest
 
 from seatsim.identification.damper_record import find_model
-from seatsim.identification.information import (
-    _invert_normal_matrix,
-    compute_information,
-    correlation_length,
-)
+from seatsim.identification.information import _invert_normal_matrix, compute_information, correlation_length
 from seatsim.identification.problem import state_problem
 from seatsim.identification.settings import IdentificationSettings as Settings
 

@@ -17,9 +17,7 @@ from seatsim.identification.assessment import (
 from seatsim.identification.prediction import BenchModel, predict_force, prepare_inputs, sharpen, smooth
 from seatsim.identification.settings import IdentificationSettings as Settings
 from seatsim.identification.settings import split_records
-from seatsim.kernel.bench import simulate_current
 from seatsim.recordings.bench_tables import BenchRecord
-from seatsim.rig.coil import Coil, relax
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.errors import InputError
 from seatsim.simulation.damper_bench import bench_force
@@ -52,30 +50,6 @@ def test_a_prediction_is_the_force_of_the_bench_on_the_same_motion():
     every = predict_force(BenchModel(BOUC_WEN, PLAIN), prepare_inputs(record, 0.0, True))
     assert len(every) == len(record.force)
     np.testing.assert_allclose(every, record.force, atol=1e-3 * np.max(record.force))
-
-
-def test_a_command_drives_the_damper_through_the_coil():
-    command, step = np.repeat([0.0, 1.0, 0.2], 40), 1e-3
-    coil, now = Coil(rate=200.0, rate_fall=50.0), command[0]
-    current = simulate_current(coil, command, step, now)
-    for k, wanted in enumerate(command):
-        assert current[k] == pytest.approx(now, abs=1e-12)
-        now = relax(coil, now, wanted, step)
-    record = made(current=lambda t: np.where(t % 1.0 < 0.5, 0.0, 1.0), coil=(200.0, 50.0))
-    force = predict_force(BenchModel(BINGHAM, PLAIN, 200.0, 50.0), prepare_inputs(record, 0.0, True))
-    np.testing.assert_allclose(force, record.force, atol=1e-9)
-
-
-def test_temperature_scales_the_force_and_moves_the_offset():
-    factors = TemperatureFactors(-0.004, 0.0, -0.007, 30.0)
-    record = made(temperature=60.0, factors=factors, warming=0.5)
-    force = predict_force(BenchModel(BINGHAM, factors, offset_per_kelvin=0.5), prepare_inputs(record, 0.0, True))
-    np.testing.assert_allclose(force, record.force, atol=1e-9)
-    cold = predict_force(
-        BenchModel(BINGHAM, factors, offset_per_kelvin=0.5),
-        prepare_inputs(record._replace(temperature=None), 0.0, True),
-    )
-    assert np.mean(cold) == pytest.approx(30.0 - 0.5 * 10.0, abs=1.0), "a room has 20 degC"
 
 
 def seconds(frequency, rate=500.0, long=8.0):
@@ -158,16 +132,10 @@ def test_a_force_that_runs_away_counts_as_zero():
             "--test sine_9Hz matches no record (did you mean 'sine_2Hz'?); there are sine_2Hz, x",
         ),
         (Settings(("*",)), "--test * holds out every record; leave some to fit to"),
-        (
-            Settings(test_fraction=1.0),
-            "--test-fraction 1 is not permitted; it must be at least 0 and below 1",
-        ),
+        (Settings(test_fraction=1.0), "--test-fraction 1 is not permitted; it must be at least 0 and below 1"),
         (Settings(test_fraction=-0.1), "--test-fraction -0.1 is not permitted"),
         (Settings(test_fraction=math.nan), "--test-fraction nan is not permitted"),
-        (
-            Settings(test_fraction=0.999),
-            "--test-fraction 0.999 cuts off 1 rows of 'sine_2Hz'; a part has at least 20",
-        ),
+        (Settings(test_fraction=0.999), "--test-fraction 0.999 cuts off 1 rows of 'sine_2Hz'; a part has at least 20"),
         (Settings(test_fraction=0.001), "cuts off 1 rows of 'sine_2Hz'"),
     ],
 )

@@ -13,6 +13,7 @@ from seatsim.identification.search import refine, search_globally
 from seatsim.identification.settings import IdentificationSettings as Settings
 from seatsim.rig.temperature import TemperatureFactors
 
+from ..text import words
 from .benches import BINGHAM, made, sines
 
 
@@ -51,10 +52,10 @@ def test_a_bench_comes_back_from_its_vector_with_coil_and_temperature():
     assert found.rise == pytest.approx(200.0) and found.fall == pytest.approx(60.0)
     assert found.factors == pytest.approx(bench.factors) and found.offset_per_kelvin == pytest.approx(0.5)
     assert found.damper == pytest.approx(BINGHAM)
-    assert problem.labels[-6:] == [
-        "actuator.rate", "actuator.rate_fall", "temperature_factors.viscous", "temperature_factors.stiffness",
-        "temperature_factors.yield_force", "bench.offset_per_kelvin",
-    ]  # fmt: skip
+    assert problem.labels[-6:] == words("""
+        actuator.rate actuator.rate_fall temperature_factors.viscous temperature_factors.stiffness
+        temperature_factors.yield_force bench.offset_per_kelvin
+    """)
     low, high = problem.bounds
     assert high[-6] == pytest.approx(math.log(30.0)) and low[-4] == pytest.approx(-3.0) and high[-1] == math.inf
 
@@ -129,11 +130,3 @@ def test_temperature_is_an_input_where_it_varies_enough(warmer, reference):
     assert stated(records)[0].reference == reference
     assert stated(records, Settings(ignore_temperature=True))[0].reference is None
     assert stated([records[0], made()])[0].reference is None, "not recorded everywhere"
-
-
-@pytest.mark.parametrize("model", ["bingham", "maxwell_nonlinear_slider"])
-def test_a_current_that_is_but_rounding_counts_as_none(model):
-    problem, _ = state_problem([made(current=3e-7)], find_model(model), 0.0, Settings())
-    low, high = problem.bounds
-    assert np.all(low < high)
-    assert problem.coordinates.end == 1.0 and not any("_b" in label for label in problem.labels)

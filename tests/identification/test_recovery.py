@@ -8,7 +8,6 @@ from ruamel.yaml import YAML
 
 import seatsim
 from seatsim.identification.identify import identify_records
-from seatsim.identification.information import correlation_length
 from seatsim.identification.settings import IdentificationSettings as Settings
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.errors import InputError, RunError
@@ -59,12 +58,6 @@ def test_temperature_factors_come_back_and_may_be_ignored():
     assert not cold.warm and cold.mean("train").fit_percent < 90.0
 
 
-def test_what_is_fixed_stays():
-    found = identify_records(sines(BOUC_WEN), "bouc_wen", Settings(fix={"n": 3, "A": 1500.0}))
-    assert (found.bench.damper.n, found.bench.damper.A) == (3.0, 1500.0)
-    assert {"n", "A"}.isdisjoint(estimates(found)) and found.mean("train").fit_percent > 90.0
-
-
 def test_one_current_leaves_its_influence_unknown_and_the_rest_known():
     found = identify_records([made(current=0.5, noise=0.02)], "bingham")
     unknown = {name for name, estimate in estimates(found).items() if not estimate.identified}
@@ -72,15 +65,6 @@ def test_one_current_leaves_its_influence_unknown_and_the_rest_known():
     pairs = {frozenset(pair[:2]) for pair in found.information.correlated}
     assert {frozenset(("c_a", "c_b")), frozenset(("fc_a", "fc_b"))} <= pairs
     assert estimates(found)["f0"].identified
-
-
-def test_the_effective_number_of_samples_respects_memory():
-    rng = np.random.default_rng(0)
-    white = rng.standard_normal(20000)
-    assert correlation_length(white) == pytest.approx(1.0, abs=0.1)
-    coloured = np.convolve(white, np.full(10, 0.1), "valid")  # triangular: 1 + 2 sum (1 - k/10) = 10
-    assert correlation_length(coloured) == pytest.approx(10.0, rel=0.25)
-    assert correlation_length(np.zeros(50)) == 1.0
 
 
 @pytest.mark.parametrize("offset", [0.0, 30.0])

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from seatsim.recordings.bench_columns import meaning
-from seatsim.recordings.bench_tables import load_bench, unused_columns
+from seatsim.recordings.bench_tables import load_bench
 from seatsim.schema.errors import InputError
 
 from .benches import columns, made
@@ -55,16 +55,6 @@ def test_units_are_turned_into_si(tmp_path):
     for name in ("displacement", "velocity", "force", "current", "temperature"):
         np.testing.assert_allclose(getattr(found, name), getattr(record, name), rtol=1e-9, atol=1e-12, err_msg=name)
     assert not found.commanded
-
-
-def test_every_kind_of_compressed_table_is_found_in_a_folder(tmp_path):
-    for suffix in (".csv", ".csv.gz", ".csv.xz", ".csv.zip", ".csv.bz2"):
-        plain().to_csv(tmp_path / f"table{suffix}", index=False)
-    (tmp_path / "notes.txt").write_text("no table")
-    found = load_bench(tmp_path)
-    assert [record.file for record in found] == sorted(f"table{s}" for s in (
-        ".csv", ".csv.gz", ".csv.xz", ".csv.zip", ".csv.bz2"
-    ))  # fmt: skip
 
 
 def test_a_velocity_is_derived_where_there_is_none(tmp_path):
@@ -119,12 +109,6 @@ def test_commands_are_told_from_currents(tmp_path):
     assert not both.commanded and both.current.min() == 0.0 and both.current.max() == pytest.approx(0.4)
 
 
-def test_unused_columns_are_told(tmp_path):
-    found = loaded(tmp_path, plain(amplitude_cmd_m=0.01, f_Hz=1.0))
-    assert unused_columns(found) == ["columns that are not used: amplitude_cmd_m, f_Hz"]
-    assert unused_columns(loaded(tmp_path, plain())) == []
-
-
 RECORDING = """\
 rig: {rig}
 sample_rate: 500.0
@@ -150,9 +134,11 @@ def test_a_recording_of_a_bench_is_read_as_it_says(tmp_path):
     (tmp_path / "recording.yaml").write_text(text.replace("run-a.csv", "run-a.csv, set: {temperature: 50.0}"))
     with pytest.raises(InputError, match="run run-a sets temperature; one damper, as it is, is identified"):
         load_bench(tmp_path)
-    head = text.replace("damper_bench", "seat").replace(
-        "displacement: {unit: m}", "floor_acceleration: {unit: m/s^2}"
-    ).replace("command_voltage: {unit: V}", "coil_current: {unit: A}")  # fmt: skip
+    head = (
+        text.replace("damper_bench", "seat")
+        .replace("displacement: {unit: m}", "floor_acceleration: {unit: m/s^2}")
+        .replace("command_voltage: {unit: V}", "coil_current: {unit: A}")
+    )
     (tmp_path / "recording.yaml").write_text(head)
     with pytest.raises(InputError, match=r"rig 'seat' with floor_acceleration.* 'rig: damper_bench'"):
         load_bench(tmp_path)

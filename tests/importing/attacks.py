@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 import pytest
 
+from ..text import words
 from . import exports
 
 ROWS = np.arange(200.0)
@@ -291,8 +292,11 @@ def opencrg_rows_beyond_the_file(folder):
     return content.replace(b"REFERENCE_LINE_INCREMENT = 0.01 ", b"REFERENCE_LINE_INCREMENT = 1e-99")
 
 
-ATTACKS = {name: make for name, make in list(globals().items()) if name.partition("_")[0] in (
-    "hdf5", "mat73", "mat", "mdf", "xlsx", "tdms", "rpc", "uff", "parquet", "feather", "opencrg")} | {
+ATTACKS = {
+    name: make
+    for name, make in list(globals().items())
+    if name.partition("_")[0] in tuple(words("hdf5 mat73 mat mdf xlsx tdms rpc uff parquet feather opencrg"))
+} | {
     "mdf_groups_in_a_circle": partial(_mdf_in_a_circle, b"##DG", 0),
     "mdf_channel_groups_in_a_circle": partial(_mdf_in_a_circle, b"##CG", 0),
     "mdf_channels_in_a_circle": partial(_mdf_in_a_circle, b"##CN", 0),
@@ -302,5 +306,5 @@ ATTACKS = {name: make for name, make in list(globals().items()) if name.partitio
     "mdf_packed_zeros_that_state_less": partial(_mdf_packed, 64 * len(ROWS)),
     "mdf3_channels_in_a_circle": partial(_mdf3_in_a_circle, b"CN"),
     "mdf3_groups_in_a_circle": partial(_mdf3_in_a_circle, b"DG"),
-}  # fmt: skip
+}
 """Name of an attack, of which the first word is the format, and what makes the file."""

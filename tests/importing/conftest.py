@@ -4,6 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from ..text import parse
+
 RECORDING = Path(__file__).resolve().parents[2] / "scenarios" / "data" / "recording"
 
 
@@ -18,10 +20,10 @@ def seat_table():
 def noisy_table(seat_table):
     """Return the same with the noise of sensors on every measured channel."""
     generator = np.random.default_rng(5)
-    noise = {
-        "floor_acceleration": 0.01, "frame_acceleration": 0.03, "driver_acceleration": 0.015,
-        "suspension_displacement": 5e-5, "damper_force": 2.5, "coil_current": 0.003,
-    }  # fmt: skip
+    noise = parse("""
+        {floor_acceleration: 0.01, frame_acceleration: 0.03, driver_acceleration: 0.015,
+         suspension_displacement: 5e-05, damper_force: 2.5, coil_current: 0.003}
+    """)
     return {
         name: values + noise.get(name, 0.0) * generator.standard_normal(len(values))
         for name, values in seat_table.items()

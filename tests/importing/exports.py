@@ -8,15 +8,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-UNITS = {
-    "floor_acceleration": "m/s^2",
-    "frame_acceleration": "m/s^2",
-    "driver_acceleration": "m/s^2",
-    "suspension_displacement": "m",
-    "damper_force": "N",
-    "current_command": "A",
-    "coil_current": "A",
-}
+from ..text import parse
+
+UNITS = parse("""
+    {floor_acceleration: m/s^2, frame_acceleration: m/s^2, driver_acceleration: m/s^2,
+     suspension_displacement: m, damper_force: N, current_command: A, coil_current: A}
+""")
 
 
 def csv(path, table):
@@ -30,8 +27,9 @@ def csv_gz(path, table):
 
 def german_csv(path, table):
     """A title, names and a row of units, semicolons, decimal commas, another encoding."""
-    names = ["Zeit", "Beschl. Boden", "Beschl. Sitzrahmen", "Beschl. Fahrer", "Federweg", "Dämpferkraft", "Strom Soll",
-             "Strom Ist"]  # fmt: skip
+    names = parse("""
+        [Zeit, Beschl. Boden, Beschl. Sitzrahmen, Beschl. Fahrer, Federweg, Dämpferkraft, Strom Soll, Strom Ist]
+    """)
     units = ["ms", "m/s²", "g", "m/s²", "mm", "kN", "mA", "A"]
     factors = [1e3, 1, 1 / 9.80665, 1, 1e3, 1e-3, 1e3, 1]
     rows = np.column_stack([factor * values for factor, values in zip(factors, table.values(), strict=True)])
@@ -107,18 +105,20 @@ def simulink(path, table):
 def lvm(path, table):
     """What LabVIEW writes with one column of x."""
     names = [name for name in table if name != "time"]
-    cells = {"Channels": [len(names)], "Samples": [len(table["time"])] * len(names),
-             "Date": ["2026/03/01"] * len(names), "Time": ["09:51:40,5"] * len(names),
-             "Y_Unit_Label": [UNITS[name] for name in names], "X_Dimension": ["Time"] * len(names),
-             "X0": ["0,0"] * len(names), "Delta_X": ["0,002"] * len(names)}  # fmt: skip
-    head = [
-        "LabVIEW Measurement\t",
-        "Separator\tTab",
-        "Decimal_Separator\t,",
-        "X_Columns\tOne",
-        "***End_of_Header***",
-        "\t",
-    ]
+    cells = {
+        "Channels": [len(names)],
+        "Samples": [len(table["time"])] * len(names),
+        "Date": ["2026/03/01"] * len(names),
+        "Time": ["09:51:40,5"] * len(names),
+        "Y_Unit_Label": [UNITS[name] for name in names],
+        "X_Dimension": ["Time"] * len(names),
+        "X0": ["0,0"] * len(names),
+        "Delta_X": ["0,002"] * len(names),
+    }
+    head = parse(r"""
+        ["LabVIEW Measurement\t", "Separator\tTab", "Decimal_Separator\t,", "X_Columns\tOne",
+         "***End_of_Header***", "\t"]
+    """)
     lines = ["\t".join([key, *map(str, row), ""]) for key, row in cells.items()]
     rows = ["\t".join(f"{value:.15g}" for value in row).replace(".", ",") for row in zip(*table.values(), strict=True)]
     names_of_columns = "\t".join(["X_Value", *names, "Comment"])
@@ -140,10 +140,13 @@ def mdf(path, table):
 def tdms(path, table):
     nptdms = pytest.importorskip("nptdms")
     with nptdms.TdmsWriter(path) as writer:
-        writer.write_segment([
-            nptdms.ChannelObject("daq", name, values, {"unit_string": UNITS[name], "wf_increment": 0.002})
-            for name, values in table.items() if name != "time"
-        ])  # fmt: skip
+        writer.write_segment(
+            [
+                nptdms.ChannelObject("daq", name, values, {"unit_string": UNITS[name], "wf_increment": 0.002})
+                for name, values in table.items()
+                if name != "time"
+            ]
+        )
 
 
 def uff(path, table):
@@ -165,10 +168,18 @@ def rpc(path, table):
     channels = {name: values for name, values in table.items() if name != "time"}
     points, frame = len(table["time"]), 1024
     frames = -(-points // frame)
-    header = {"FORMAT": "BINARY_IEEE_LITTLE_END", "NUM_HEADER_BLOCKS": "", "NUM_PARAMS": "",
-              "FILE_TYPE": "TIME_HISTORY", "DATA_TYPE": "FLOATING_POINT", "DELTA_T": "2.0000000E-03",
-              "CHANNELS": str(len(channels)), "PTS_PER_FRAME": str(frame), "PTS_PER_GROUP": str(2 * frame),
-              "FRAMES": str(frames)}  # fmt: skip
+    header = {
+        "FORMAT": "BINARY_IEEE_LITTLE_END",
+        "NUM_HEADER_BLOCKS": "",
+        "NUM_PARAMS": "",
+        "FILE_TYPE": "TIME_HISTORY",
+        "DATA_TYPE": "FLOATING_POINT",
+        "DELTA_T": "2.0000000E-03",
+        "CHANNELS": str(len(channels)),
+        "PTS_PER_FRAME": str(frame),
+        "PTS_PER_GROUP": str(2 * frame),
+        "FRAMES": str(frames),
+    }
     for number, name in enumerate(channels, 1):
         header |= {f"DESC.CHAN_{number}": name, f"UNITS.CHAN_{number}": UNITS[name], f"SCALE.CHAN_{number}": "1.0"}
     header["NUM_PARAMS"] = str(len(header))

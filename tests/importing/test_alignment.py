@@ -1,10 +1,9 @@
 """Several files of one run: unequal rates, offsets between clocks, gaps, and the way onto one time base."""
 
 import numpy as np
-import pandas as pd
 import pytest
 
-from seatsim.importing.alignment import HELD, evened, hold, resample
+from seatsim.importing.alignment import HELD, evened, resample
 from seatsim.importing.importing import import_files
 from seatsim.schema.errors import InputError
 
@@ -68,14 +67,6 @@ def test_a_shared_channel_shows_the_offset_with_its_uncertainty(two_files, tmp_p
     assert error < 0.01
 
 
-def test_loggers_name_the_time_otherwise(two_files, tmp_path):
-    table = pd.read_csv(two_files[1])
-    two_files[1].write_text(
-        table.rename(columns={"time": "Zeit [ms]"}).assign(**{"Zeit [ms]": 1e3 * table["time"]}).to_csv(index=False)
-    )
-    assert import_files(two_files, tmp_path / "out").map.align["slow.csv"] == pytest.approx(OFFSET, abs=5e-4)
-
-
 def test_a_stated_offset_is_used_as_it_is(two_files, tmp_path):
     import_files(two_files, tmp_path / "first")
     text = (tmp_path / "first" / "map.yaml").read_text()
@@ -136,16 +127,6 @@ def test_gaps_are_named_and_left_to_the_map(noisy_table, tmp_path):
     np.testing.assert_allclose(filled[2020:], noisy_table["floor_acceleration"][2020:], rtol=1e-6, atol=1e-6)
 
 
-def test_a_proposed_map_cuts_at_gaps(noisy_table, tmp_path):
-    kept = np.ones(5001, dtype=bool)
-    kept[2000:2100] = False
-    path = write_csv(tmp_path / "a.csv", {name: values[kept] for name, values in noisy_table.items()})
-    found = import_files([path], tmp_path / "out")
-    assert found.runs == ("run-a-1", "run-a-2")
-    assert found.map.gaps == "split"
-    assert any("100 rows are missing" in issue.sentence for issue in found.doubts)
-
-
 def test_a_slow_channel_in_a_fast_table_keeps_its_own_rate(noisy_table, tmp_path):
     temperature = np.full(5001, np.nan)
     temperature[::50] = 20.0 + np.sin(np.arange(101) / 20.0)
@@ -175,19 +156,6 @@ def staircase(times, length=0.037):
     return np.array(LEVELS)[np.random.default_rng(2).integers(0, 3, 10_000)[(times / length).astype(int)]]
 
 
-@pytest.mark.parametrize(("rate", "new"), [(100.0, 500.0), (500.0, 300.0), (512.0, 512.0)])
-def test_a_held_command_is_that_of_the_last_row_before(rate, new):
-    start, times = 0.25, 1.0 + np.arange(4000) / new
-    command = staircase(np.arange(5000) / rate)
-    found = hold(command, start, rate, times)
-    rows = [int(np.nonzero(start + np.arange(5000) / rate <= time + 1e-9)[0][-1]) for time in times]
-    np.testing.assert_array_equal(found, command[rows])
-
-
-def test_before_and_after_its_rows_a_command_is_its_first_and_last_one():
-    np.testing.assert_array_equal(hold(np.array([1.0, 2.0, 3.0]), 5.0, 10.0, np.array([0.0, 9.0])), [1.0, 3.0])
-
-
 @pytest.mark.parametrize("rate", [400.0, 300.0])
 def test_a_command_of_another_rate_has_no_level_that_nobody_commanded(rate, tmp_path):
     fast, slow = np.arange(0.0, 20.0, 0.002), np.arange(0.0, 20.0, 1 / rate)
@@ -207,21 +175,3 @@ def test_of_rows_of_one_time_the_first_counts(channel):
     found = evened("floor_acceleration", values, times, np.array([0.05, 0.2, 0.35]))
     np.testing.assert_allclose(found, [0.05, 0.2, 0.35], atol=1e-12)
     assert evened(channel, values, times, np.array([0.0])) == 0.0
-
-
-def test_an_uneven_file_with_two_rows_of_one_time_is_read(tmp_path):
-    times = np.arange(0.0, 20.0, 0.01) + np.random.default_rng(1).uniform(0.0, 0.004, 2000)
-    times[1000] = times[999]
-    write_csv(tmp_path / "a.csv", {"time": times, "floor_acceleration": band_limited(1, times, 5.0),
-                                   "current_command": staircase(times)})  # fmt: skip
-    (tmp_path / "map.yaml").write_text(
-        "rig: seat\ntime: {column: time, unit: s}\ngaps: fill\nchannels:\n"
-        "  floor_acceleration: {column: floor_acceleration, unit: m/s^2}\n"
-        "  current_command: {column: current_command, unit: A}\n"
-    )
-    found = import_files([tmp_path / "a.csv"], tmp_path / "out", tmp_path / "map.yaml")
-    table = read_run(tmp_path / "out")
-    even = times[0] + np.arange(len(table)) / found.rate
-    assert len(table) == pytest.approx(2000, abs=3)
-    np.testing.assert_allclose(table.floor_acceleration[5:-5], band_limited(1, even, 5.0)[5:-5], atol=0.02)
-    assert set(table.current_command) == set(LEVELS)

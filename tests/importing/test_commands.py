@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from ruamel.yaml import YAML
 
+from ..text import words
 from .conftest import RECORDING
 from .helpers import write_csv
 
@@ -20,9 +21,9 @@ def test_import_shows_its_map_and_writes_a_recording(noisy_table, tmp_path, seat
     header = YAML(typ="safe").load(tmp_path / "out" / "recording.yaml")
     assert header["sample_rate"] == 500.0
     assert header["rig"] == "seat"
-    assert {each.name for each in (tmp_path / "out").iterdir()} == {
-        "recording.yaml", "map.yaml", "run-a.csv.gz", "manifest.json", "ro-crate-metadata.json",
-    }  # fmt: skip
+    assert {each.name for each in (tmp_path / "out").iterdir()} == set(
+        words("recording.yaml map.yaml run-a.csv.gz manifest.json ro-crate-metadata.json")
+    )
 
 
 def test_import_prints_one_json_object(noisy_table, tmp_path, seatsim_command):

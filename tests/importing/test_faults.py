@@ -50,8 +50,9 @@ def warm_table(noisy_table):
     generator = np.random.default_rng(7)
     rows = len(noisy_table["time"])
     return {
-        **noisy_table, "damper_temperature": 20.0 + np.linspace(0, 1, rows) + 0.05 * generator.standard_normal(rows)
-    }  # fmt: skip
+        **noisy_table,
+        "damper_temperature": 20.0 + np.linspace(0, 1, rows) + 0.05 * generator.standard_normal(rows),
+    }
 
 
 def test_a_sound_recording_raises_no_warning_but_what_is_so(warm_table, tmp_path):

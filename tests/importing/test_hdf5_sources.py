@@ -6,6 +6,8 @@ import pytest
 from seatsim.importing.readers.reading import read_file
 from seatsim.schema.errors import InputError
 
+from ..text import parse
+
 h5py = pytest.importorskip("h5py")
 ROWS = 1.0 + np.arange(100.0)
 
@@ -43,9 +45,11 @@ def virtual(source, name="force", rows=100, read=100):
         (virtual(".", rows=120), "20 of its 120 numbers have no source"),
         (lambda file: file.__setitem__("virtual", h5py.SoftLink("/force")), None),
     ],
-    ids=["external link", "link to nothing", "external storage", "no source file", "no source", "source too short",
-         "source above", "virtual", "virtual of a file beside", "virtual in part", "link within"],
-)  # fmt: skip
+    ids=parse("""
+            [external link, link to nothing, external storage, no source file, no source, source too short,
+             source above, virtual, virtual of a file beside, virtual in part, link within]
+        """),
+)
 def test_numbers_come_from_the_file_itself_or_from_sources_that_are_there(tmp_path, fill, said):
     write(tmp_path / "beside.h5", lambda file: None)
     path = write(tmp_path / "a.h5", fill)

@@ -6,27 +6,31 @@ import pytest
 from seatsim.importing.import_map import read_map, render_map
 from seatsim.importing.importing import import_files
 from seatsim.importing.matching import propose
-from seatsim.importing.names import read_name
 from seatsim.importing.readers.reading import read_file
 from seatsim.recordings.recording import load_recording
 from seatsim.schema.errors import InputError
 
+from ..text import parse, words
 from .helpers import read_run, write_csv
 
-SEAT = ("floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force",
-        "current_command", "coil_current", "damper_temperature")  # fmt: skip
-NAMES = {
-    "German": ["a_Boden [m/s²]", "a_Sitzrahmen [g]", "a_Sitz [g]", "Federweg [mm]", "Dämpferkraft [kN]",
-               "Strom_Soll [mA]", "Strom_Ist [A]", "Dämpfertemperatur [°C]"],
-    "English": ["cab floor accel (m/s2)", "Seat frame acc (m/s2)", "Driver acc (g)", "Stroke (in)", "Damper load (lbf)",
-                "current cmd (A)", "current (A)", "damper temp (degF)"],
-    "French": ["acceleration plancher [m/s2]", "acceleration cadre [m/s2]", "accélération siège [m/s2]",
-               "débattement [mm]", "effort amortisseur [N]", "consigne courant [A]", "courant bobine [A]",
-               "température amortisseur [C]"],
-    "pinyin": ["diban jiasudu [m/s2]", "kuangjia jiasudu [m/s2]", "zuoyi jiasudu [m/s2]", "weiyi [mm]", "zunili [N]",
-               "zhiling dianliu [A]", "dianliu [A]", "wendu [degC]"],
-    "short": ["acc_floor_z_g", "acc_frame_z_g", "acc_seat_z_g", "disp_mm", "force_kN", "i_cmd_A", "i_A", "temp_C"],
-}  # fmt: skip
+SEAT = tuple(
+    words("""
+    floor_acceleration frame_acceleration driver_acceleration suspension_displacement damper_force
+    current_command coil_current damper_temperature
+""")
+)
+NAMES = parse("""
+    German: ["a_Boden [m/s²]", "a_Sitzrahmen [g]", "a_Sitz [g]", "Federweg [mm]", "Dämpferkraft [kN]",
+        "Strom_Soll [mA]", "Strom_Ist [A]", "Dämpfertemperatur [°C]"]
+    English: [cab floor accel (m/s2), Seat frame acc (m/s2), Driver acc (g), Stroke (in), Damper load (lbf),
+        current cmd (A), current (A), damper temp (degF)]
+    French: ["acceleration plancher [m/s2]", "acceleration cadre [m/s2]", "accélération siège [m/s2]",
+        "débattement [mm]", "effort amortisseur [N]", "consigne courant [A]", "courant bobine [A]",
+        "température amortisseur [C]"]
+    pinyin: ["diban jiasudu [m/s2]", "kuangjia jiasudu [m/s2]", "zuoyi jiasudu [m/s2]", "weiyi [mm]",
+        "zunili [N]", "zhiling dianliu [A]", "dianliu [A]", "wendu [degC]"]
+    short: [acc_floor_z_g, acc_frame_z_g, acc_seat_z_g, disp_mm, force_kN, i_cmd_A, i_A, temp_C]
+""")
 
 
 def file_of(tmp_path, names, time="Zeit [s]"):
@@ -70,7 +74,7 @@ def test_a_bench_is_recognised(tmp_path):
         (["x_1 [g]", "x_2 [g]"], "floor_acceleration: no column is it by name.*left are x_1, x_2"),
         (["acc floor left [g]", "acc floor right [g]"], "acc floor left and acc floor right fit equally well"),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_matched_is_asked_for_by_name(tmp_path, names, expected):
     path = file_of(tmp_path, names)
     with pytest.raises(InputError, match=expected):
@@ -178,12 +182,6 @@ def test_differences_and_derivatives(tmp_path):
     table = read_run(tmp_path / "out")
     np.testing.assert_allclose(table["floor_acceleration"][5:-5], (-81 * floor)[5:-5], atol=1e-3)
     np.testing.assert_allclose(table["suspension_displacement"], body - floor, atol=1e-9)
-
-
-def test_a_unit_alone_tells_a_quantity_only_where_no_word_does():
-    assert read_name("Kanal 3", "kN").quantity == "force"
-    assert read_name("Kanal 3", "").quantity is None
-    assert read_name("Temperatur", "V").quantity == "temperature"
 
 
 def test_a_column_without_a_channel_is_named_and_an_offset_is_added_in_the_unit(tmp_path):

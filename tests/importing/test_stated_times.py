@@ -65,12 +65,24 @@ def test_a_rate_that_no_logger_has_is_refused(tmp_path, step):
 def lvm(x_columns, tables, decimal=".", steps=(0.01, 0.01), starts=("09:51:40.5",)):
     """Return a file of two channels: a segment for each of `tables`, which hold rows of cells."""
     blank = "\t" if x_columns == "Multi" else ""
-    lines = ["LabVIEW Measurement", "Separator\tTab", f"Decimal_Separator\t{decimal}", f"X_Columns\t{x_columns}",
-             "***End_of_Header***"]  # fmt: skip
+    lines = [
+        "LabVIEW Measurement",
+        "Separator\tTab",
+        f"Decimal_Separator\t{decimal}",
+        f"X_Columns\t{x_columns}",
+        "***End_of_Header***",
+    ]
     for start, table in zip(starts, tables, strict=True):
-        of_channels = {"Channels": ["2", ""], "Samples": [str(len(table))] * 2, "Date": ["2026/03/01"] * 2,
-                       "Time": [start] * 2, "Y_Unit_Label": ["Newtons", "m/s^2"], "X_Dimension": ["Time"] * 2,
-                       "X0": ["0"] * 2, "Delta_X": [str(step).replace(".", decimal) for step in steps]}  # fmt: skip
+        of_channels = {
+            "Channels": ["2", ""],
+            "Samples": [str(len(table))] * 2,
+            "Date": ["2026/03/01"] * 2,
+            "Time": [start] * 2,
+            "Y_Unit_Label": ["Newtons", "m/s^2"],
+            "X_Dimension": ["Time"] * 2,
+            "X0": ["0"] * 2,
+            "Delta_X": [str(step).replace(".", decimal) for step in steps],
+        }
         lines += ["\t", *(f"{key}\t{one}\t{blank}{two}\t" for key, (one, two) in of_channels.items())]
         names = ["X_Value", "force", *(["X_Value"] if x_columns == "Multi" else []), "acc", "Comment"]
         lines += ["***End_of_Header***\t\t", "\t".join(names)]
@@ -83,7 +95,6 @@ def lvm(x_columns, tables, decimal=".", steps=(0.01, 0.01), starts=("09:51:40.5"
 T = 0.01 * np.arange(50)
 F, A = np.sin(20.0 * T), np.cos(20.0 * T)
 NOTHING = np.full(50, np.nan)
-SLOW = np.where(np.arange(50) < 25, np.cos(40.0 * T), np.nan)
 
 
 @pytest.mark.parametrize(
@@ -93,14 +104,19 @@ SLOW = np.where(np.arange(50) < 25, np.cos(40.0 * T), np.nan)
         (lvm("One", [np.column_stack([T, F, A])], decimal=","), T),
         (lvm("No", [np.column_stack([NOTHING, F, A])]), T),
         (lvm("Multi", [np.column_stack([T, F, T, A])]), T),
-        (lvm("One", [np.column_stack([T, F, A])[:25], np.column_stack([T, F, A])[25:]],
-             starts=("09:51:40.5",) * 2), T),
-        (lvm("One", [np.column_stack([T, F, A])[:25], np.column_stack([T[:25], F[25:], A[25:]])],
-             starts=("09:51:40.5", "09:51:42,5")), np.concatenate([T[:25], 2.0 + T[:25]])),
+        (lvm("One", [np.column_stack([T, F, A])[:25], np.column_stack([T, F, A])[25:]], starts=("09:51:40.5",) * 2), T),
+        (
+            lvm(
+                "One",
+                [np.column_stack([T, F, A])[:25], np.column_stack([T[:25], F[25:], A[25:]])],
+                starts=("09:51:40.5", "09:51:42,5"),
+            ),
+            np.concatenate([T[:25], 2.0 + T[:25]]),
+        ),
         (lvm("One", [np.column_stack([T, F, A])]).replace("0.198669\t0.980067", "0.198669\t0.980067\ta remark"), T),
     ],
     ids=["one x", "decimal commas", "no x", "an x for each", "two segments", "two segments, 2 s apart", "a remark"],
-)  # fmt: skip
+)
 def test_lvm_states_times_units_and_segments(tmp_path, content, times):
     (tmp_path / "a.lvm").write_text(content)
     file = read_file(tmp_path / "a.lvm")
@@ -110,16 +126,6 @@ def test_lvm_states_times_units_and_segments(tmp_path, content, times):
     assert group.signals[0].values == pytest.approx(times, abs=1e-6)
     assert group.signals[1].values == pytest.approx(F, abs=1e-6)
     assert group.signals[2].values == pytest.approx(A, abs=1e-6)
-
-
-def test_a_slower_channel_of_lvm_has_its_own_interval(tmp_path):
-    content = lvm("One", [np.column_stack([T, F, SLOW])], steps=(0.01, 0.02)).replace(
-        "Samples\t50\t50", "Samples\t50\t25"
-    )
-    (tmp_path / "a.lvm").write_text(content)
-    fast, slow = read_file(tmp_path / "a.lvm").groups
-    assert fast.signals[0].values == pytest.approx(T, abs=1e-6)
-    assert slow.signals[0].values == pytest.approx(0.02 * np.arange(25)) and slow.rows == 25
 
 
 @pytest.mark.parametrize(
@@ -137,8 +143,11 @@ def test_an_lvm_file_of_another_kind_is_refused_with_its_reason(tmp_path, old, n
 def test_a_column_of_dates_is_the_time(tmp_path, kind, index):
     dates = pd.Timestamp("2026-03-01") + pd.to_timedelta(TIME, unit="s")
     frame = pd.DataFrame({"floor_acceleration": band_limited(1, TIME), "driver_acceleration": band_limited(2, TIME)})
-    frame.index = {"durations": pd.to_timedelta(TIME, unit="s"), "named": dates.rename("Datum"),
-                   "zone": dates.tz_localize("Europe/Berlin")}.get(index, dates)  # fmt: skip
+    frame.index = {
+        "durations": pd.to_timedelta(TIME, unit="s"),
+        "named": dates.rename("Datum"),
+        "zone": dates.tz_localize("Europe/Berlin"),
+    }.get(index, dates)
     frame = frame.reset_index(names="Datum") if index == "column" else frame
     getattr(frame, f"to_{kind}")(tmp_path / f"a.{kind}")
     assert import_files([tmp_path / f"a.{kind}"], tmp_path / "out").rate == 500.0
@@ -201,27 +210,3 @@ def test_a_data_set_that_is_no_response_over_time_is_called_what_it_is(tmp_path,
     uff(tmp_path / "a.uff", np.sin(np.arange(498.0)), **changes)
     with pytest.raises(InputError, match=said):
         read_file(tmp_path / "a.uff")
-
-
-@pytest.mark.parametrize(
-    ("name", "expected"),
-    [
-        ("lvm_one_x_point.lvm", {"Damper force": 400, "Driver acceleration": 400}),
-        ("simulink_structure_with_time.mat", {"Fahrer_Beschl": 2000, "Federweg": 2000, "Daempferkraft": 2000}),
-        ("uff_padded.uff", {"Fahrer": 501}),
-    ],
-)
-def test_files_of_others_have_all_their_channels_and_a_time(name, expected, shared):
-    found = {}
-    for group in read_file(shared / "cases" / name).groups:
-        assert group.rate or group.signals[0].name == "time"
-        found |= {signal.name: len(signal.values) for signal in group.signals if signal.name != "time"}
-    assert found == expected
-
-
-def test_channels_of_others_that_start_apart_are_aligned(tmp_path, shared):
-    cases = shared / "cases"
-    import_files([cases / "tdms_start_times.tdms"], tmp_path / "out", cases / "map_tdms.yaml")
-    table = read_run(tmp_path / "out")
-    assert len(table) == 2500
-    assert np.corrcoef(table["floor_acceleration"], table["driver_acceleration"])[0, 1] > 0.999

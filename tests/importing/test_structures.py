@@ -23,18 +23,6 @@ def found_in(file):
     return {(group.name, signal.name): (signal.unit, group.rate) for group in file.groups for signal in group.signals}
 
 
-def test_a_mat_structure_states_units_and_rate(tmp_path):
-    acceleration = {"values": band_limited(1, FAST), "unit": "g"}
-    data = {"a_floor": acceleration, "force": band_limited(2, FAST), "units": {"force": "kN"}, "fs": 500.0}
-    savemat(tmp_path / "a.mat", {"daq": data, "note": "run 3", "matrix": np.eye(3)})
-    found = found_in(read_file(tmp_path / "a.mat"))
-    assert found["daq", "a_floor"] == ("g", 500.0)
-    assert found["daq", "force"] == ("kN", 500.0)
-    recorded = import_files([tmp_path / "a.mat"], tmp_path / "out")
-    assert recorded.rate == 500.0
-    assert set(recorded.map.channels) == {"floor_acceleration", "damper_force"}
-
-
 def test_a_matrix_of_hdf5_has_names_and_units_in_attributes(tmp_path):
     h5py = pytest.importorskip("h5py")
     with h5py.File(tmp_path / "a.h5", "w") as file:
@@ -52,10 +40,18 @@ def test_groups_of_other_rates_and_starts_share_the_clock_of_their_file(tmp_path
     asammdf = pytest.importorskip("asammdf")
     slow = SLOW[:1500] + 0.25
     with asammdf.MDF(version="4.10") as file:
-        file.append([asammdf.Signal(band_limited(1, FAST), FAST, name="floor_acceleration", unit="m/s^2"),
-                     asammdf.Signal(band_limited(2, FAST), FAST, name="current_command", unit="A")])  # fmt: skip
-        file.append([asammdf.Signal(1e3 * band_limited(3, slow), slow, name="Federweg", unit="mm"),
-                     asammdf.Signal(band_limited(2, slow - 0.02), slow, name="coil_current", unit="A")])  # fmt: skip
+        file.append(
+            [
+                asammdf.Signal(band_limited(1, FAST), FAST, name="floor_acceleration", unit="m/s^2"),
+                asammdf.Signal(band_limited(2, FAST), FAST, name="current_command", unit="A"),
+            ]
+        )
+        file.append(
+            [
+                asammdf.Signal(1e3 * band_limited(3, slow), slow, name="Federweg", unit="mm"),
+                asammdf.Signal(band_limited(2, slow - 0.02), slow, name="coil_current", unit="A"),
+            ]
+        )
         file.save(tmp_path / "a.mf4")
     found = import_files([tmp_path / "a.mf4"], tmp_path / "out")
     assert found.rate == 500.0
@@ -66,21 +62,6 @@ def test_groups_of_other_rates_and_starts_share_the_clock_of_their_file(tmp_path
     assert np.std((table["suspension_displacement"] - expected)[inner]) < 0.01 * np.std(expected)
     lagging = band_limited(2, 0.25 + table["time"] - 0.02)
     assert np.std((table["coil_current"] - lagging)[inner]) < 0.01 * np.std(lagging)
-
-
-def test_channels_of_tdms_with_other_increments_are_groups(tmp_path):
-    nptdms = pytest.importorskip("nptdms")
-    with nptdms.TdmsWriter(tmp_path / "a.tdms") as writer:
-        fast = {"unit_string": "g", "wf_increment": 0.002, "wf_start_offset": 0.0}
-        slow = {"unit_string": "degF", "wf_increment": 0.01, "wf_start_offset": 0.5}
-        writer.write_segment([
-            nptdms.ChannelObject("daq", "acc_floor", band_limited(1, FAST), fast),
-            nptdms.ChannelObject("daq", "temp_damper", 68.0 + SLOW[:1800], slow),
-        ])  # fmt: skip
-    found = import_files([tmp_path / "a.tdms"], tmp_path / "out")
-    assert found.rate == 500.0
-    table = read_run(tmp_path / "out")
-    assert table["damper_temperature"].iloc[1000] == pytest.approx((68.0 + 2.0 - 32.0) / 1.8, abs=1e-3)
 
 
 def test_every_sheet_of_a_workbook_with_numbers_is_a_group(tmp_path):
@@ -115,9 +96,16 @@ def test_units_stand_in_the_metadata_of_parquet(tmp_path):
 @pytest.mark.parametrize("packed", [False, True])
 def test_variables_of_mat_files_are_those_that_scipy_reads(tmp_path, packed):
     inner = {"x": np.eye(2), "unit": "m/s²", "deeper": {"y": np.arange(3.0)}}
-    stored = {"matrix": np.arange(6.0).reshape(2, 3), "short": np.arange(5, dtype=np.int16), "text": "hällo",
-              "on": np.array([True, False]), "empty": np.zeros((0, 3)), "inner": inner,
-              "cells": np.array(["a", 1.0], dtype=object), "complex": np.array([1 + 2j])}  # fmt: skip
+    stored = {
+        "matrix": np.arange(6.0).reshape(2, 3),
+        "short": np.arange(5, dtype=np.int16),
+        "text": "hällo",
+        "on": np.array([True, False]),
+        "empty": np.zeros((0, 3)),
+        "inner": inner,
+        "cells": np.array(["a", 1.0], dtype=object),
+        "complex": np.array([1 + 2j]),
+    }
     savemat(tmp_path / "a.mat", stored, do_compression=packed)
     found = read_values(tmp_path / "a.mat", (tmp_path / "a.mat").read_bytes())
     expected = loadmat(tmp_path / "a.mat")
@@ -138,12 +126,20 @@ def test_a_channel_beyond_its_rows_and_rows_beyond_the_file_are_refused(name, tm
     content = (tmp_path / name).read_bytes()
     # Rows of four numbers of 64 bits: where the last one begins, in bits or bytes, and how many rows there are.
     begins, far, rows, many = (
-        (struct.pack("<HH", 192, 64), struct.pack("<HH", 60_000, 64), struct.pack("<HI", 32, len(FAST)),
-         struct.pack("<HI", 32, 2**31))
+        (
+            struct.pack("<HH", 192, 64),
+            struct.pack("<HH", 60_000, 64),
+            struct.pack("<HI", 32, len(FAST)),
+            struct.pack("<HI", 32, 2**31),
+        )
         if name == "a.mdf"
-        else (struct.pack("<II", 24, 64), struct.pack("<II", 2**31, 64), struct.pack("<Q", len(FAST)),
-              struct.pack("<Q", 2**40))
-    )  # fmt: skip
+        else (
+            struct.pack("<II", 24, 64),
+            struct.pack("<II", 2**31, 64),
+            struct.pack("<Q", len(FAST)),
+            struct.pack("<Q", 2**40),
+        )
+    )
     for old, new, said in ((begins, far, "lies beyond the end of its rows"), (rows, many, "of memory; permitted")):
         assert old in content
         (tmp_path / name).write_bytes(content.replace(old, new))

@@ -8,12 +8,12 @@ import pytest
 
 from seatsim.importing.importing import import_files
 from seatsim.importing.inspection import inspect_file
-from seatsim.importing.readers.reading import TextLayout, read_file
+from seatsim.importing.readers.reading import read_file
 from seatsim.schema.errors import InputError
 from seatsim.standards.comfort import comfort
 
 from .helpers import read_run
-from .text_tables import FORCE, PLAIN, RATE, READ, REFUSED, ROWS, TRAVEL, T, X, Y, Z, table
+from .text_tables import PLAIN, RATE, READ, REFUSED, ROWS, TRAVEL, T, X, Y, Z, table
 
 
 def write(folder, content):
@@ -120,33 +120,6 @@ def test_a_road_whose_track_is_a_formula_is_written_disarmed(tmp_path):
     with gzip.open(tmp_path / "road" / "road.csv.gz", "rt") as file:
         assert "'=HYPERLINK" in file.readline()
     assert "'=HYPERLINK" in (tmp_path / "road" / "excitation.yaml").read_text()
-
-
-@pytest.mark.parametrize("delimiter", [";", "\t", ",", "|", " "])
-@pytest.mark.parametrize("decimal", [".", ","])
-def test_delimiter_and_decimal_sign_are_found(tmp_path, delimiter, decimal):
-    if delimiter != decimal:
-        content = table(T, TRAVEL, Z, head=[delimiter.join(["t", "Weg", "acc"])], sep=delimiter, dec=decimal)
-        (group,) = read_file(write(tmp_path, content)).groups
-        assert [signal.name for signal in group.signals] == ["t", "Weg", "acc"]
-        for signal, expected in zip(group.signals, (T, TRAVEL, Z), strict=True):
-            np.testing.assert_allclose(signal.values, expected, atol=1e-9)
-
-
-@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "cp1252", "utf-16"])
-def test_titles_units_and_encodings(tmp_path, encoding):
-    above = ["Prüfstand; Nr. 7", "Datum;23.11.2026", "Zeit;Dämpferkraft;Weg (mm)", "s;kN;"]
-    content = table(T, FORCE, TRAVEL, head=above, sep=";", dec=",", end="\r\n").encode(encoding)
-    (group,) = read_file(write(tmp_path, content)).groups
-    assert {each.name: each.unit for each in group.signals} == {"Zeit": "s", "Dämpferkraft": "kN", "Weg": "mm"}
-    assert group.rows == ROWS
-
-
-def test_a_stated_layout_counts_the_lines_above_the_numbers(tmp_path):
-    path = write(tmp_path, table(T, X, Z, head=["a;b;c", "1;2;3"], sep=";"))
-    assert [read_file(path, TextLayout(header=lines)).groups[0].rows for lines in (2, 1)] == [ROWS, ROWS + 1]
-    with pytest.raises(InputError, match=r"csv\.header 999"):
-        read_file(path, TextLayout(header=999))
 
 
 def test_cells_without_a_value_are_missing_and_texts_are_named(tmp_path):

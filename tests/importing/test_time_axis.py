@@ -16,7 +16,7 @@ def even(rate, rows=2000):
     return 17.3 + np.arange(rows) / rate
 
 
-@pytest.mark.parametrize("rate", [37.0, 100.0, 250.0, 333.3, 512.0, 900.0, 980.0, 1024.0, 2048.0, 5000.0])
+@pytest.mark.parametrize("rate", [37.0, 250.0, 333.3, 1024.0])
 @pytest.mark.parametrize("step", [0.001, 0.01, 0.1, 1.0])
 @pytest.mark.parametrize("rounded", [np.floor, np.round])
 def test_rounded_stamps_give_the_rate_to_within_a_row(rate, step, rounded):

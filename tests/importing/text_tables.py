@@ -212,10 +212,11 @@ REFUSED = {
     "JSON records": (json.dumps([{"t": t} for t in T.tolist()], indent=1), "is a JSON file"),
     "XML": ("<?xml version='1.0'?>\n" + PLAIN, "is an XML or HTML file"),
     "a row with a column too many": (
-        PLAIN.replace(MIDDLE, f"{MIDDLE},"), r"line 302: has 4 columns where the others have 3: '.*'; correct",
+        PLAIN.replace(MIDDLE, f"{MIDDLE},"),
+        r"line 302: has 4 columns where the others have 3: '.*'; correct",
     ),
     "cut": (PLAIN[:-9], "line 601: has 2 columns where the others have 3; the file is truncated"),
     "another table": (PLAIN + PLAIN.replace("acc", "vel"), "stands a row of texts, 't, vel_x, vel_z'; if another"),
     "a letter": ("Dear sir,\nthis is no table.\n", "no row of numbers; it is no table, or csv.delimiter has to be"),
-}  # fmt: skip
+}
 """What stands in a file, and the sentence with which it is refused."""

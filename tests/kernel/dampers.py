@@ -1,7 +1,7 @@
 """Dampers made up to try the inverse: a force that is no monotone function of the current, and a parabola."""
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 
 class Wavy(NamedTuple):
@@ -12,7 +12,7 @@ class Wavy(NamedTuple):
     mean: float = 500.0
     swing: float = 400.0
 
-    def force(self, x: float, v: float, i: float, scaling: Any, z: Any) -> float:
+    def force(self, x: float, v: float, i: float, scaling, z) -> float:
         return v * (self.mean + self.swing * math.sin(3.0 * math.pi * i))
 
 
@@ -26,23 +26,8 @@ class Bump(NamedTuple):
     height: float = 300.0
     slope: float = 0.0
 
-    def force(self, x: float, v: float, i: float, scaling: Any, z: Any) -> float:
+    def force(self, x: float, v: float, i: float, scaling, z) -> float:
         return v * (500.0 + self.slope * i + self.height * math.exp(-(((i - self.centre) / self.width) ** 2)))
-
-
-class Twice(NamedTuple):
-    """`F = v (500 + 5 i - depth (exp(-((i - dip) / width)^2) + g))`: a dip, and g rising from 0 to 1 about `fall`."""
-
-    order = 0
-
-    dip: float
-    width: float
-    depth: float
-    fall: float
-
-    def force(self, x: float, v: float, i: float, scaling: Any, z: Any) -> float:
-        first = math.exp(-(((i - self.dip) / self.width) ** 2))
-        return v * (500.0 + 5.0 * i - self.depth * (first + 0.5 + 0.5 * math.tanh(20.0 * (i - self.fall))))
 
 
 class Parabola(NamedTuple):
@@ -54,7 +39,7 @@ class Parabola(NamedTuple):
     b: float = 1200.0
     c: float = -1000.0
 
-    def force(self, x: float, v: float, i: float, scaling: Any, z: Any) -> float:
+    def force(self, x: float, v: float, i: float, scaling, z) -> float:
         return v * (self.a + self.b * i + self.c * i * i)
 
 
@@ -68,5 +53,5 @@ class Steep(NamedTuple):
     height: float = 1000.0
     power: float = 9.0
 
-    def force(self, x: float, v: float, i: float, scaling: Any, z: Any) -> float:
+    def force(self, x: float, v: float, i: float, scaling, z) -> float:
         return v * (500.0 + self.height * (max(i - self.start, 0.0) / self.width) ** self.power)

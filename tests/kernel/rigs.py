@@ -19,9 +19,7 @@ STEP = 1e-3
 SEAT = Plant(20.0, 80.0, 4600.0, 150.0, 60000.0, 1500.0)
 NONE = np.zeros(0)
 COIL, NO_HEAT = Coil(), TemperatureFactors()
-METRICS = (
-    "frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force", "coil_current",
-)  # fmt: skip
+METRICS = ("frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force", "coil_current")
 
 
 def true_model(damper):

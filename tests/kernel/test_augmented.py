@@ -5,12 +5,7 @@ from typing import NamedTuple
 
 import pytest
 
-from seatsim.kernel.augmented import (
-    SETTLING,
-    AugmentedDamper,
-    _piston_speed,
-    classes_of,
-)
+from seatsim.kernel.augmented import SETTLING, AugmentedDamper, _piston_speed, classes_of
 from seatsim.rig.temperature import TemperatureScaling
 
 from .uncompiled import Hysteretic, Linear, Yielding, plugged
@@ -152,14 +147,6 @@ def test_behind_a_mount_the_damper_bears_the_mounts_force(elongation, v):
     borne = 400.0 * 0.9 * u + 0.7 * 350.0 * math.tanh(u / 0.01) + (u - v) * 1e5 / SETTLING
     assert borne == pytest.approx(1e5 * elongation, abs=0.011)
     assert rates(*effects, v=v, z=z) == pytest.approx((v - u,), rel=1e-12)
-
-
-def test_a_linear_damper_behind_a_mount_has_a_speed_in_closed_form():
-    v, elongation = 0.3, 0.0005
-    damper = Linear(c=1000.0, b=0.0, k=0.0)
-    slope = 1e5 / 5000.0
-    u = _piston_speed(damper, (Mount(),), X, v, AMPS, WARM, (), (elongation,), 900.0 * v)
-    assert u == pytest.approx((50.0 + slope * v) / (900.0 + slope), abs=0.011 / 920.0)
 
 
 def test_a_gap_without_mount_moves_the_piston_by_its_share():

@@ -56,9 +56,14 @@ def test_temperature_is_that_of_the_row():
 def maxwell(damper, time, start, frequency=2.0):
     w = 2 * np.pi * frequency
     z = solve_ivp(
-        lambda t, z: 0.01 * w * np.cos(w * t) - z / damper.time, (0.0, time[-1]), [start], t_eval=time,
-        method="DOP853", rtol=1e-11, atol=1e-14,
-    ).y[0]  # fmt: skip
+        lambda t, z: 0.01 * w * np.cos(w * t) - z / damper.time,
+        (0.0, time[-1]),
+        [start],
+        t_eval=time,
+        method="DOP853",
+        rtol=1e-11,
+        atol=1e-14,
+    ).y[0]
     return damper.k * z + 50.0 * time + 10.0 * np.sin(w * time)
 
 

@@ -10,16 +10,6 @@ STEP = 2e-3
 COIL = Coil(rate=150.0, rate_fall=60.0)
 
 
-def test_a_rise_and_a_fall():
-    command = np.repeat([0.8, 0.1], 20)
-    found = follow_command(COIL, command, STEP, 0.3)
-    time = STEP * np.arange(21)
-    rising = 0.8 - 0.5 * np.exp(-150.0 * time)
-    assert found[:21] == pytest.approx(rising, rel=1e-12)
-    falling = 0.1 + (rising[-1] - 0.1) * np.exp(-60.0 * time[:20])
-    assert found[20:] == pytest.approx(falling, rel=1e-12)
-
-
 @pytest.mark.parametrize("rows", [1, 3])
 def test_a_delay_of_whole_steps_moves_the_rows(rows):
     command = np.random.default_rng(3).uniform(0.0, 1.0, 30)
@@ -40,15 +30,3 @@ def test_a_delay_within_a_step_is_that_of_finer_steps(quarters):
     coarse = follow_command(COIL._replace(delay=quarters * STEP / 4), command, STEP, 0.4)
     fine = follow_command(COIL._replace(delay=quarters * STEP / 4), np.repeat(command, 4), STEP / 4, 0.4)
     np.testing.assert_allclose(coarse, fine[::4], rtol=1e-10)
-
-
-def test_each_command_acts_from_its_row_to_the_next():
-    found = follow_command(COIL, np.array([1.0, 0.0, 1.0]), STEP, 0.0)
-    first = 1.0 - np.exp(-150.0 * STEP)
-    assert found.tolist() == pytest.approx([0.0, first, first * np.exp(-60.0 * STEP)], rel=1e-12)
-
-
-def test_a_delay_within_a_step_acts_within_it():
-    found = follow_command(COIL._replace(delay=2.25 * STEP), np.full(5, 1.0), STEP, 0.0)
-    time = np.maximum(STEP * np.arange(5) - 2.25 * STEP, 0.0)
-    assert found == pytest.approx(1.0 - np.exp(-150.0 * time), rel=1e-12)

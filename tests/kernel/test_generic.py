@@ -1,8 +1,5 @@
 """What the loop asks of damper, law and sensors, where these answer and where they do not."""
 
-from typing import NamedTuple
-
-import numba
 import numpy as np
 import pytest
 
@@ -17,20 +14,10 @@ HOT = TemperatureScaling(0.8, 0.9, 0.7)
 Y = Measurement(*range(1, 13))
 
 
-class Nothing(NamedTuple):
-    """A record without any method."""
-
-    size: float = 1.0
-
-
 def test_a_damper_answers_for_itself():
     assert generic.force(Linear(800.0, 300.0, 1000.0), 0.01, 0.2, 0.5, HOT, ()) == pytest.approx(950 * 0.8 * 0.2 + 9.0)
     assert generic.rates(Hysteretic(), 0.01, 0.2, 0.5, HOT, (0.1, 0.0)) == pytest.approx((5.0, 0.01))
     assert generic.coulomb(Linear(friction=40.0), 0.5, HOT) == pytest.approx(28.0)
-
-
-def test_the_limit_of_friction_is_the_dampers_own_magnitude():
-    assert generic.friction_limit(Linear(friction=40.0), 0.3, 0.5, HOT, ()) == pytest.approx(28.0)
 
 
 def test_laws_want_a_force_or_a_current():
@@ -39,16 +26,6 @@ def test_laws_want_a_force_or_a_current():
     assert generic.evaluate_law(Commanded(0.7), Y, ()) == 0.7
     assert generic.update(Feedback(), Y, (4.0,)) == (5.0,)
     assert generic.update(Commanded(), Y, (4.0,)) == (4.0,)
-
-
-def test_numba_gets_the_laws_own_method():
-    feedback, commanded = numba.typeof(Feedback()), numba.typeof(Commanded())
-    assert generic._wants_force(feedback)(Feedback()) is True
-    assert generic._wants_force(commanded)(Commanded()) is False
-    assert generic._evaluate_law(feedback, None, None) is Feedback.wanted_force
-    assert generic._evaluate_law(commanded, None, None) is Commanded.wanted_current
-    with pytest.raises(TypeError, match="Nothing has neither"):
-        generic._evaluate_law(numba.typeof(Nothing()), None, None)
 
 
 def test_instruments_answer_for_themselves():

@@ -11,7 +11,7 @@ from seatsim.kernel.inverse import CELLS, invert, total_force
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 from seatsim.schema.registry import specification_of
 
-from .dampers import Bump, Parabola, Steep, Twice, Wavy
+from .dampers import Bump, Parabola, Steep, Wavy
 from .rigs import rms, rough, run
 
 HEAT = TemperatureScaling(0.9, 1.0, 0.8)
@@ -142,50 +142,6 @@ def test_a_turn_is_found_wherever_it_lies(centre, slope, height):
             assert answer.served == 1.0 and GRID[met[0]] - 1e-6 <= answer.current <= GRID[met[0] + 1] + 1e-6
         else:
             assert abs(answer.force - wanted) <= np.min(np.abs(forces - wanted)) + 2e-3
-
-
-@pytest.mark.parametrize("size", [2.0**-60, 2.0**-30, 2.0**30])
-@pytest.mark.parametrize("terms", [(200.0, 1200.0, -1000.0), (200.0, -600.0, 900.0), (200.0, 600.0, -200.0)])
-def test_the_closed_form_gives_the_same_current_in_any_unit_of_force(terms, size):
-    # Factors of two cost no rounding.
-    for wanted, x, v, z in draw((), 40):
-        usual = ask(Parabola(*terms), wanted, x, v, z)
-        other = ask(Parabola(*(size * term for term in terms)), size * wanted, x, v, z)
-        assert (other.current, other.force) == (usual.current, size * usual.force)
-
-
-@pytest.mark.parametrize("size", [2.0**-10, 2.0**10])
-@pytest.mark.parametrize("height", [300.0, -300.0])
-def test_the_search_gives_the_same_current_in_any_unit_of_current(height, size):
-    room, rng = np.empty(CELLS + 1), np.random.default_rng(4)
-    for centre, offset in rng.uniform((0.0, -0.1), (TOP, 0.1), (60, 2)):
-        usual = Bump(centre, 1.5 * CELL, height, 40.0)
-        other = Bump(size * centre, size * 1.5 * CELL, height, 40.0 / size)
-        wanted = 0.2 * (500.0 + height * (1.0 + offset))
-        in_amperes = invert(usual, 0, wanted, 0.0, 0.2, HEAT, (), TOP, room)
-        assert invert(other, 0, wanted, 0.0, 0.2, HEAT, (), size * TOP, room).current == size * in_amperes.current
-
-
-@pytest.mark.parametrize("height", [0.3, -0.3])
-@pytest.mark.parametrize("centre", [0.3 * CELL, TOP - 0.3 * CELL])
-def test_a_turn_of_less_than_a_newton_within_the_first_or_the_last_cell_is_found(centre, height):
-    damper = Bump(centre, 1.5 * CELL, height)
-    wanted = 0.2 * (500.0 + 0.999 * height)
-    answer = ask(damper, wanted, 0.0, 0.2, ())
-    forces = on_grid(damper, 0.0, 0.2, ())
-    met = np.flatnonzero((forces[1:] - wanted) * (forces[:-1] - wanted) <= 0.0)
-    assert GRID[met[0]] - 1e-6 <= answer.current <= GRID[met[0] + 1] + 1e-6
-
-
-def test_a_dip_within_the_first_cell_is_met_there_although_the_last_current_meets_the_force_too():
-    # The force dips below the wanted one at once, and falls below it again towards the end.
-    damper = Twice(0.3 * CELL, 0.25 * CELL, 300.0, 0.6 * TOP)
-    forces = on_grid(damper, 0.0, 0.2, ())
-    wanted = 0.2 * 400.0
-    met = np.flatnonzero((forces[1:] - wanted) * (forces[:-1] - wanted) <= 0.0)
-    assert len(met) == 3 and GRID[met[1]] < CELL and GRID[met[2]] > 0.5 * TOP
-    answer = ask(damper, wanted, 0.0, 0.2, ())
-    assert GRID[met[0]] <= answer.current <= GRID[met[0] + 1]
 
 
 @pytest.mark.parametrize("size", [1.0, 0.01])

@@ -56,10 +56,3 @@ def test_the_tolerance_bounds_the_error_where_the_step_is_too_long():
 def test_a_run_that_grows_beyond_all_bounds_stops():
     with pytest.raises(AssertionError, match=r"stopped at row \d+ of 5001"):
         driven(Bingham(c_a=-5e4, v_ref=0.2), rough(5.0), CURRENT)
-
-
-def test_a_run_stops_at_a_value_that_is_no_number():
-    floor = rough(1.0)
-    floor[500] = np.nan
-    with pytest.raises(AssertionError, match="stopped at row 499 of 1001"):
-        driven(DAMPER, floor, CURRENT)

@@ -53,8 +53,10 @@ def test_without_effects_it_is_the_linear_seat():
 
 
 def test_forces_from_outside_push_upward():
-    pushed, still = (derivative(Rig(PLANT, Linear()), STATE, d, 0.5, HOT, 0.0)[0] for d in (
-        Disturbance(1.3, 25.0, -40.0), Disturbance(1.3, 0.0, 0.0)))  # fmt: skip
+    pushed, still = (
+        derivative(Rig(PLANT, Linear()), STATE, d, 0.5, HOT, 0.0)[0]
+        for d in (Disturbance(1.3, 25.0, -40.0), Disturbance(1.3, 0.0, 0.0))
+    )
     change = np.subtract(pushed, still)
     frame, driver = 25.0 / 20.0, -40.0 / 80.0
     assert change[:4] == pytest.approx((0.0, frame, 0.0, driver - frame), rel=1e-12)

@@ -20,8 +20,9 @@ NOISY = {"displacement_noise": 1e-4, "acceleration_noise": 0.05}
 
 
 def settings(law, sensors=None, seed=3):
-    controller = {"law": law, "sample_time": 0.005} | {k: list(v) if isinstance(v, tuple) else v
-                                                       for k, v in REQUIRED.get(law, {}).items()}  # fmt: skip
+    controller = {"law": law, "sample_time": 0.005} | {
+        k: list(v) if isinstance(v, tuple) else v for k, v in REQUIRED.get(law, {}).items()
+    }
     return {
         "seed": seed,
         "controller": controller | ({} if sensors is None else {"sensors": sensors}),

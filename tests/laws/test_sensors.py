@@ -44,9 +44,7 @@ def motion():
 
 def test_readings_are_the_anti_alias_low_pass(motion):
     x, frame, driver, floor, seen = motion
-    pairs = {
-        "displacement": x, "frame_acceleration": frame, "driver_acceleration": driver, "floor_acceleration": floor,
-    }  # fmt: skip
+    pairs = {"displacement": x, "frame_acceleration": frame, "driver_acceleration": driver, "floor_acceleration": floor}
     for name, true in pairs.items():
         expected = filtered([WB], [1, WB], true, STEP)[::EVERY]
         np.testing.assert_allclose(getattr(seen, name), expected, rtol=1e-9, atol=1e-12)
@@ -69,11 +67,6 @@ def test_rounding_of_the_filter_does_not_grow_in_the_velocity():
     for _ in range(50):
         y, s = made.take(NOTHING._replace(displacement=1e6), s)
         assert y.velocity == 0.0
-
-
-def test_no_floor_accelerometer_unless_stated(motion):
-    x, *_, floor, _ = motion
-    assert np.all(np.isnan(readings(Sensors(), x, np.zeros((len(x), 4)), floor).floor_acceleration))
 
 
 def test_a_displaced_start_is_no_motion():

@@ -91,9 +91,13 @@ def test_motion_sickness_dose_grows_with_the_root_of_time():
 
 def test_directions_are_those_of_the_standard():
     assert {axis: (d.weighting, d.comfort) for axis, d in DIRECTIONS.items() if "." in axis} == {
-        "back.x": ("Wc", 0.8), "back.y": ("Wd", 0.5), "back.z": ("Wd", 0.4),
-        "feet.x": ("Wk", 0.25), "feet.y": ("Wk", 0.25), "feet.z": ("Wk", 0.4),
-    }  # fmt: skip
+        "back.x": ("Wc", 0.8),
+        "back.y": ("Wd", 0.5),
+        "back.z": ("Wd", 0.4),
+        "feet.x": ("Wk", 0.25),
+        "feet.y": ("Wk", 0.25),
+        "feet.z": ("Wk", 0.4),
+    }
     with pytest.raises(InputError, match=r"did you mean 'back\.x'"):
         direction("backx")
 

@@ -68,10 +68,13 @@ def ask(app, method, path, token=TOKEN, base=HOME, **options):
 
 @pytest.mark.parametrize(
     ("sent", "answered"),
-    [(b"", False), (b"GET / HTTP/1.1\r\nHost:", False),
-     (b"POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 9\r\n\r\n12", False),
-     (b"GET / HTTP/1.1\r\nHost: a\r\n\r\n", True)],
-)  # fmt: skip
+    [
+        (b"", False),
+        (b"GET / HTTP/1.1\r\nHost:", False),
+        (b"POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 9\r\n\r\n12", False),
+        (b"GET / HTTP/1.1\r\nHost: a\r\n\r\n", True),
+    ],
+)
 def test_a_connection_without_a_whole_request_is_closed(sent, answered):
     class Quick(Impatient):
         idle = 0.1

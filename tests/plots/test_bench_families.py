@@ -22,8 +22,16 @@ def row(current=0.0, temperature=math.nan, amplitude=0.01, frequency=1.0, record
 
 def cloud(current, amplitude, peak_speed):
     values = np.linspace(-1.0, 1.0, 5)
-    return Row(record="chirp", file="", cycles=0, left_out=0, current=current, amplitude=amplitude,
-               peak_speed=peak_speed, cloud=Cloud(values, values, values, values))  # fmt: skip
+    return Row(
+        record="chirp",
+        file="",
+        cycles=0,
+        left_out=0,
+        current=current,
+        amplitude=amplitude,
+        peak_speed=peak_speed,
+        cloud=Cloud(values, values, values, values),
+    )
 
 
 def names_of(family):
@@ -55,11 +63,6 @@ def test_settings_beyond_the_most_are_counted():
     found, left_out = families.find_families(rows)
     assert len(found) == families.MOST and left_out == 2
     assert found[0].title == "10 mm, 1 Hz" and found[-1].title == "10 mm, 8 Hz"
-
-
-def test_a_warm_setting_has_a_family_by_temperature_too():
-    found, _ = families.find_families([row(i, t) for i in (0.0, 1.0) for t in (20.0, 60.0)])
-    assert [family.legend for family in found] == ["current", "temperature"]
 
 
 def test_clouds_of_the_same_motion_share_a_panel():

@@ -55,9 +55,11 @@ def draw_gap():
     first: Trace = next(iter(traces.values()))
     found = diagnoses.known().gap
     pair = ReplayedPair(
-        first.time, {name: each.measured for name, each in traces.items()},
-        {name: each.nominal for name, each in traces.items()}, {name: each.unit for name, each in traces.items()},
-    )  # fmt: skip
+        first.time,
+        {name: each.measured for name, each in traces.items()},
+        {name: each.nominal for name, each in traces.items()},
+        {name: each.unit for name, each in traces.items()},
+    )
     gap = Gap(found.before.overall, found.before.channels, GapFigures(0.0, dict.fromkeys(traces, 0.0)), ())
     return {"gap": plot_gap(gap), **plot_pairs(gap, {"run-c": pair})}
 

@@ -47,10 +47,6 @@ def test_panels_are_titled_and_points_named_by_what_sets_them_apart(runs):
     assert set(numbers) == {"1", "2"}
 
 
-def test_rigs_of_one_run_share_a_panel(runs):
-    assert len(plot_pareto(runs(["soft"], (20.0, 50.0, 80.0)), {}).axes) == 1
-
-
 def test_bracket_is_drawn_where_there_is_one(runs):
     both = runs(["soft", "hard"], (20.0, 80.0))
     figure = plot_pareto(both, {both[0].scenario.rig: Fake()})
@@ -59,11 +55,6 @@ def test_bracket_is_drawn_where_there_is_one(runs):
     assert not without.lines
     assert with_bracket.get_ylim()[0] < 0.4
     assert {BOUND.label, BEST.label} <= {text.get_text() for text in figure.legends[0].get_texts()}
-
-
-def test_a_rig_of_one_run_has_a_panel_where_there_are_brackets(runs):
-    both = runs(["soft"], (20.0, 80.0))
-    assert len(plot_pareto(both, {both[0].scenario.rig: Fake()}).axes) == 2
 
 
 def test_without_weighted_accelerations_it_says_so(runs):
@@ -75,10 +66,14 @@ def test_without_weighted_accelerations_it_says_so(runs):
 @pytest.mark.parametrize(("factor", "lines"), [(0.9, 1), (0.2, 0)])
 def test_the_floor_is_a_line_where_the_seat_factor_is_one_unless_it_is_far_above(factor, lines, runs):
     found = [
-        dataclasses.replace(run, metrics={
-            **run.metrics, "seat_factor": Metric(run.metrics["driver_acceleration_weighted"].value * factor, "-", "")
-        })
+        dataclasses.replace(
+            run,
+            metrics={
+                **run.metrics,
+                "seat_factor": Metric(run.metrics["driver_acceleration_weighted"].value * factor, "-", ""),
+            },
+        )
         for run in runs(["soft", "hard"])
-    ]  # fmt: skip
+    ]
     axes = plot_pareto(found, {}).axes[0]
     assert [line.get_ydata()[0] for line in axes.lines] == pytest.approx([1 / factor] * lines)

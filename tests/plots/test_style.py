@@ -5,15 +5,8 @@ import pytest
 from matplotlib.figure import Figure
 
 from seatsim.plots import style
-from seatsim.plots.labels import clean_text, format_unit
-from seatsim.plots.style import COLOURS, LINE, WIDTH, Entry, Grid
-
-
-@pytest.mark.parametrize(
-    ("written", "printed"), [("m/s^2", "m/s²"), ("N s/m", "N·s/m"), ("degC", "°C"), ("ohm", "Ω"), ("kg m^3", "kg m³")]
-)
-def test_units_are_printed(written, printed):
-    assert format_unit(written) == printed
+from seatsim.plots.labels import clean_text
+from seatsim.plots.style import LINE, WIDTH, Entry, Grid
 
 
 def test_a_text_is_cut_in_the_middle_and_never_a_formula():
@@ -43,27 +36,6 @@ def test_a_legend_makes_the_page_higher_not_the_panels_smaller():
     assert legend._ncols == 2
     assert page.figure.get_figheight() - bare == pytest.approx(3 * LINE)
     assert page.figure.get_figheight() * page.rows[0][0].get_position().height == pytest.approx(2.0)
-
-
-def test_nine_entries_differ_but_the_first_and_the_last():
-    looks = style.make_entries([str(n) for n in range(9)])
-    assert len({look.colour for look in looks}) == len(COLOURS) == 8
-    assert looks[0].colour == looks[8].colour and looks[0].dashes != looks[1].dashes
-
-
-def test_colours_of_a_quantity_leave_out_the_light_end():
-    colours = style.sample_colours("viridis", 3)
-    assert colours[0] == "#440154" and len(set(colours)) == 3
-    assert style.sample_colours("viridis", 1) == ["#440154"]
-    red, green, blue = (int(colours[2][k : k + 2], 16) for k in (1, 3, 5))
-    assert max(red, blue) < green < 0xE7
-
-
-def test_axes_beside_a_panel_are_as_tall_as_it():
-    axes = style.make_page("title", "note", Grid((2.0,), right=2.0)).rows[0][0]
-    panel, bar = axes.get_position(), style.add_axes_beside(axes, 0.03, 0.02).get_position()
-    assert (bar.x0 - panel.x1, bar.width) == pytest.approx((0.03, 0.02))
-    assert (bar.y0, bar.height) == (panel.y0, panel.height)
 
 
 def test_ticks_of_a_logarithmic_axis_are_plain_numbers():

@@ -119,14 +119,11 @@ def test_a_sweep_of_python_or_one_that_is_not_complete_is_not_run_again(project,
 
 
 @pytest.mark.slow
-def test_a_sweep_is_run_again(tmp_path, monkeypatch):
+def test_a_sweep_is_run_again(tmp_path, here, seatsim_command):
     (tmp_path / "s.yaml").write_text(
         "scenario: quickstart\nvary: {plant.driver_mass: [60, 70], excitation.duration: [1]}\n"
     )
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys, "argv", ["seatsim", "sweep", "s.yaml", "--jobs", "1", "--out", "s"])
-    with pytest.raises(SystemExit):
-        main()
+    seatsim_command("sweep", "s.yaml", "--jobs", "1", "--out", "s")
     found = reproduce(tmp_path / "s")
     assert found.identical and found.compared == ["runs/part-000000.parquet"]
     path = tmp_path / "s" / "manifest.json"

@@ -13,7 +13,7 @@ from seatsim.recordings.recording import load_recording
 from seatsim.scenario.loading import single
 from seatsim.schema.content import to_content
 
-from ..faulty_recordings import FAULTS, NOISE, WARNINGS, edit, rewrite, scaled, shifted
+from ..faulty_recordings import FAULTS, NOISE, WARNINGS, edit, rewrite, scaled
 
 
 def refusal(ask):
@@ -30,13 +30,6 @@ def test_gap_and_diagnosis_refuse_a_fault_in_the_same_sentence_which_names_it(co
     assert sentence == refusal(lambda: seatsim.diagnose(copy))
     assert words in sentence and "\n" not in sentence
     assert channel is None or channel in sentence
-
-
-def test_a_wrong_sample_rate_is_refused_by_both(copy):
-    edit(copy, lambda header: header.update(sample_rate=500.0))
-    sentence = refusal(lambda: seatsim.gap(copy / "nominal.yaml", copy))
-    assert sentence == refusal(lambda: seatsim.diagnose(copy))
-    assert "rows are 0.004 s apart where sample_rate 500" in sentence
 
 
 @pytest.mark.parametrize("name", WARNINGS)
@@ -87,14 +80,6 @@ def test_the_command_refuses_and_writes_nothing(copy, tmp_path, seatsim_command)
     rewrite(copy, scaled("suspension_displacement", 1000.0))
     status, out, err = seatsim_command("gap", copy / "nominal.yaml", copy, "--out", tmp_path / "out")
     assert status == 2 and not (tmp_path / "out").exists() and "suspension_displacement" in out + err
-
-
-def test_the_inner_measure_examines_nothing(copy):
-    rewrite(copy, shifted("damper_temperature", 273.15))
-    recording, nominal = load_recording(copy), single(copy / "nominal.yaml")
-    assert measure_gap(nominal, recording).notes == ()
-    with pytest.raises(seatsim.InputError, match="kelvin"):
-        gap(nominal, recording)
 
 
 def test_the_figures_are_those_of_the_definition(copy):

@@ -4,11 +4,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.signal import bilinear, lfilter
 
 from seatsim.recordings.recording import BENCH_CHANNELS, SEAT_CHANNELS, ChannelEntry, Header, Recording, RunEntry
 from seatsim.recordings.replay import COMPARED, LEFT_OUT, recorded_inputs, select_compared, stands_out
-from seatsim.simulation.inputs import BenchInputs, SeatInputs
+from seatsim.simulation.inputs import BenchInputs
 
 
 def recording_of(rig, table, rate, gain=None):
@@ -18,18 +17,11 @@ def recording_of(rig, table, rate, gain=None):
 
 
 TABLE = {
-    "floor_acceleration": np.array([0.0, 4.0, -2.0]), "current_command": np.array([0.2, 0.6, 0.9]),
-    "coil_current": np.array([0.1, 0.5, 0.3]), "damper_temperature": np.array([20.0, 24.0, 26.0]),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize(("largest", "parts"), [(0.01, 1), (0.004, 1), (0.0035, 2), (0.002, 2), (0.001, 4)])
-def test_the_step_is_the_largest_that_divides_the_rows(largest, parts):
-    inputs = recorded_inputs(recording_of("seat", TABLE, 250.0), TABLE, largest)
-    assert isinstance(inputs, SeatInputs)
-    assert inputs.interval == 0.004
-    assert inputs.floor.step == 0.004 / parts
-    assert len(inputs.floor.acceleration) == 2 * parts + 1
+    "floor_acceleration": np.array([0.0, 4.0, -2.0]),
+    "current_command": np.array([0.2, 0.6, 0.9]),
+    "coil_current": np.array([0.1, 0.5, 0.3]),
+    "damper_temperature": np.array([20.0, 24.0, 26.0]),
+}
 
 
 def test_a_seat_is_driven_linearly_between_rows_with_commands_held():
@@ -42,27 +34,16 @@ def test_a_seat_is_driven_linearly_between_rows_with_commands_held():
     assert all(force.size == 0 for force in inputs.forces)
 
 
-def test_what_is_not_recorded_is_absent():
-    table = {"floor_acceleration": TABLE["floor_acceleration"]}
-    floor = recorded_inputs(recording_of("seat", table, 250.0), table, 0.002).floor
-    assert (floor.command, floor.coil_current, floor.temperature) == (None, None, None)
-
-
-def test_velocity_and_displacement_are_leaky_integrals_of_the_acceleration():
-    """Against scipy's bilinear transform of 1 / (s + 2 pi 0.05)."""
-    acceleration = np.sin(2 * np.pi * np.arange(1000) / 250.0)
-    floor = recorded_inputs(recording_of("seat", {"floor_acceleration": acceleration}, 250.0),
-                            {"floor_acceleration": acceleration}, 0.004).floor  # fmt: skip
-    leaky = bilinear([1.0], [1.0, 2 * np.pi * 0.05], fs=250.0)
-    velocity = lfilter(*leaky, acceleration)
-    assert floor.velocity == pytest.approx(velocity, abs=1e-12)
-    assert floor.displacement == pytest.approx(lfilter(*leaky, velocity), abs=1e-12)
-
-
 def test_a_bench_is_driven_row_by_row():
     rows = np.arange(4.0)
-    table = {"displacement": rows, "velocity": rows + 10, "command_voltage": rows + 20, "coil_current": rows + 30,
-             "damper_temperature": rows + 40, "damper_force": rows + 50}  # fmt: skip
+    table = {
+        "displacement": rows,
+        "velocity": rows + 10,
+        "command_voltage": rows + 20,
+        "coil_current": rows + 30,
+        "damper_temperature": rows + 40,
+        "damper_force": rows + 50,
+    }
     inputs = recorded_inputs(recording_of("damper_bench", table, 500.0, gain=0.4), table, 0.001)
     assert isinstance(inputs, BenchInputs)
     assert (inputs.interval, inputs.displacement_noise, inputs.voltage_gain) == (0.002, 0.5, 0.4)

@@ -59,15 +59,6 @@ def test_what_is_left_as_it_is_does_not_shrink(error):
     assert (found.shrink, found.shrink_interval) == (0.0, (0.0, 0.0)) and found.before == found.after > 0.0
 
 
-def test_what_is_missed_is_expected_between_a_share_of_the_amplitude_and_what_it_was(error):
-    weak, strong = (combine(error, factor * white(3), factor * white(3)) for factor in (0.1, 10.0))
-    assert weak.after == pytest.approx(0.5 * (0.15 + 0.15 / 0.1), rel=0.05)
-    assert strong.after == pytest.approx(0.5 * (0.15 + 0.15 / 10.0), rel=0.05)
-    change = white(4, 0.5)
-    near, far = (combine(error, factor * (white(3) - change), factor * white(3)) for factor in (1.0, 10.0))
-    assert np.ptp(far.shrink_interval) > 1.5 * np.ptp(near.shrink_interval)
-
-
 def test_doubtful_parameters_and_unlike_runs_widen_the_interval(error):
     after, before = white(3), white(3) - white(4, 0.5)
     sure = combine(error, before, after)
@@ -163,20 +154,3 @@ def test_what_is_no_diagnosis_is_refused_and_nothing_is_written(heavier, tmp_pat
         (tmp_path / name).write_text(text)
         call = seatsim_command("gap", right, copy, "--predict", tmp_path / name, "--out", tmp_path / "out")
         assert call[0] == 2 and name in (call[1] + call[2]).replace("\n", "") and not (tmp_path / "out").exists()
-
-
-def test_each_parameter_is_moved_by_its_deviation_and_stays_in_its_range(copy):
-    text = (copy / "nominal.yaml").read_text().replace("effects: []", "")
-    text += "\neffects: [{effect: suspension.friction, parameters: {force: 45.0}},"
-    text += " {effect: sensor.gain, parameters: {channel: damper_force, error: 0.1}}]\n"
-    (copy / "augmented.yaml").write_text(text)
-    causes = [
-        {"effect": "suspension.friction", "parameters": {"force": {"value": 45.0, "std": 2.0, "unit": "N"}}},
-        {"effect": "sensor.gain", "parameters": {"channel": "damper_force", "error": {"value": 0.1, "std": 10.0}}},
-        {"effect": "sensor.gain", "parameters": {"channel": "coil_current", "error": {"value": 0.1, "std": 1.0}}},
-        {"effect": "coil.delay", "parameters": {"time": {"value": 0.1, "std": None, "unit": "s"}}},
-    ]
-    stated = prediction._read_causes({"causes": causes})
-    moved = list(prediction._move_parameters(single(copy / "augmented.yaml"), stated))
-    assert [scenario.effects[0].force for scenario in moved] == [47.0, 45.0]
-    assert [scenario.effects[1].error for scenario in moved] == [0.1, -0.5]

@@ -21,9 +21,11 @@ from seatsim.simulation.result import Result
 
 from ..diagnosis.posed import pose
 from ..faulty_recordings import edit
+from ..text import words
 
-CHANNELS = ["floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement",
-            "current_command"]  # fmt: skip
+CHANNELS = words("""
+    floor_acceleration frame_acceleration driver_acceleration suspension_displacement current_command
+""")
 
 
 @pytest.fixture(scope="module")

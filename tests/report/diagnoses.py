@@ -22,16 +22,21 @@ from seatsim.diagnosis.result import (
     Trace,
 )
 
+from ..text import parse, words
+
 RATE = 500.0
 SEAT = {
-    "damper_force": ("N", 2.5), "frame_acceleration": ("m/s^2", 0.03), "driver_acceleration": ("m/s^2", 0.015),
-    "suspension_displacement": ("m", 5e-5), "coil_current": ("A", 0.003),
-}  # fmt: skip
-EFFECTS = [
-    "damper.remanence", "damper.magnetic_saturation", "damper.seal_friction", "suspension.friction", "coil.lag",
-    "damper.thermal_fade", "suspension.progressive_spring", "cushion.hardening", "driver.mass", "sensor.gain",
-    "sensor.clock_skew", "damper.free_play",
-]  # fmt: skip
+    "damper_force": ("N", 2.5),
+    "frame_acceleration": ("m/s^2", 0.03),
+    "driver_acceleration": ("m/s^2", 0.015),
+    "suspension_displacement": ("m", 5e-5),
+    "coil_current": ("A", 0.003),
+}
+EFFECTS = words("""
+    damper.remanence damper.magnetic_saturation damper.seal_friction suspension.friction coil.lag
+    damper.thermal_fade suspension.progressive_spring cushion.hardening driver.mass sensor.gain
+    sensor.clock_skew damper.free_play
+""")
 PARAMETERS = {
     "damper.remanence": {"width": Estimate(0.0812, 0.0041, "A"), "lift": Estimate(0.4, 0.05, "-")},
     "damper.seal_friction": {"force": Estimate(44.7, 1.3, "N")},
@@ -59,11 +64,16 @@ def rig(seconds=24.0, bench=False):
     force = 300 * v + (60 + 600 * current) * np.tanh(v / 0.03) + lacks
     shaking = 1.2 * narrow(rng, n, 1.0, 12.0)
     true = {
-        "damper_force": force, "frame_acceleration": shaking - lacks / 20, "driver_acceleration": 0.5 * shaking,
-        "suspension_displacement": x, "coil_current": current,
-    }  # fmt: skip
-    part = {"damper_force": 1.0, "frame_acceleration": -0.05, "driver_acceleration": 0.006,
-            "suspension_displacement": 3e-6, "coil_current": 2e-5}  # fmt: skip
+        "damper_force": force,
+        "frame_acceleration": shaking - lacks / 20,
+        "driver_acceleration": 0.5 * shaking,
+        "suspension_displacement": x,
+        "coil_current": current,
+    }
+    part = parse("""
+        {damper_force: 1.0, frame_acceleration: -0.05, driver_acceleration: 0.006,
+         suspension_displacement: 3e-06, coil_current: 2e-05}
+    """)
     motion = {"velocity": v, "displacement": x, "coil_current": current}
     motion |= {} if bench else {"damper_temperature": 20 + 15 * np.linspace(0, 1, n)}
     return motion, true, {name: factor * lacks for name, factor in part.items()}
@@ -132,13 +142,16 @@ def ambiguous():
     first = {"suspension.friction": 0.55, "damper.seal_friction": 0.45}
     reason = "at zero current the damper's own force is small, so that a load cell sees the friction of the seal alone"
     return replace(
-        known(("frame_acceleration", "driver_acceleration", "suspension_displacement")), verdict="ambiguous",
+        known(("frame_acceleration", "driver_acceleration", "suspension_displacement")),
+        verdict="ambiguous",
         sentence="friction of 45 N in the linkage or at the damper's seal explains 83 % of the gap; without a load"
         " cell they cannot be distinguished",
-        where=[Share("suspension", 0.5), Share("damper", 0.5)], causes=ranked(first),
-        selected=["suspension.friction"], indistinguishable=[list(first)],
+        where=[Share("suspension", 0.5), Share("damper", 0.5)],
+        causes=ranked(first),
+        selected=["suspension.friction"],
+        indistinguishable=[list(first)],
         experiment=ProposedExperiment("intervention", "add_load_cell", reason, 0.9876, 0.3456),
-    )  # fmt: skip
+    )
 
 
 def unknown(channels=tuple(SEAT)):
@@ -150,20 +163,32 @@ def unknown(channels=tuple(SEAT)):
     base = known(channels)
     found = [replace(trace, after=trace.calibrated) for trace in base.evidence.traces]
     return replace(
-        base, verdict="unknown", sentence="a force of 70 N in the damper stays that no effect of the library explains",
-        causes=ranked({"damper.magnetic_saturation": 0.3}), probability_unknown=0.94, selected=[],
-        gap=gaps_of(found), evidence=replace(base.evidence, traces=found, discrepancy=discrepancy),
-    )  # fmt: skip
+        base,
+        verdict="unknown",
+        sentence="a force of 70 N in the damper stays that no effect of the library explains",
+        causes=ranked({"damper.magnetic_saturation": 0.3}),
+        probability_unknown=0.94,
+        selected=[],
+        gap=gaps_of(found),
+        evidence=replace(base.evidence, traces=found, discrepancy=discrepancy),
+    )
 
 
 def none():
     base = known()
     found = traces(tuple(SEAT), gap=0.0)
     return replace(
-        base, verdict="none", sentence="there is no gap beyond noise and the tolerance of the parameters", where=[],
-        causes=ranked({}), probability_none=0.98, probability_unknown=0.01, selected=[], gap=gaps_of(found),
+        base,
+        verdict="none",
+        sentence="there is no gap beyond noise and the tolerance of the parameters",
+        where=[],
+        causes=ranked({}),
+        probability_none=0.98,
+        probability_unknown=0.01,
+        selected=[],
+        gap=gaps_of(found),
         evidence=replace(base.evidence, traces=found),
-    )  # fmt: skip
+    )
 
 
 def bench():

@@ -17,14 +17,13 @@ from seatsim.diagnosis.result import (
     ProposedExperiment,
     Share,
 )
-from seatsim.plots.diagnosis.answer import read_gap
-from seatsim.plots.labels import format_number, format_percent
+from seatsim.plots.labels import format_percent
 from seatsim.report.diagnosis import advise, report_diagnosis, say_diagnosis, write_report
-from seatsim.report.formatting import describe_effect, format_estimate, format_quantity, format_sentence
-from seatsim.report.rendering import render_report
+from seatsim.report.formatting import format_estimate, format_sentence
 from seatsim.report.words import read_words, say_action, say_cause
 from seatsim.schema.registry import names
 
+from ..text import words
 from .diagnoses import CASES, ambiguous, known, none, unknown
 from .outline import Outline
 
@@ -34,18 +33,7 @@ SHOWN = {
     "none": SHORT,
     "known": FULL,
     "ambiguous": FULL,
-    "unknown": [
-        "causes",
-        "gaps",
-        "signals",
-        "missing",
-        "confusions",
-        "maps",
-        "comfort",
-        "notes",
-        "credibility",
-        "method",
-    ],
+    "unknown": words("causes gaps signals missing confusions maps comfort notes credibility method"),
     "bench": [name for name in FULL if name != "comfort"],
 }
 ANSWERS = {
@@ -83,10 +71,6 @@ def test_a_page_is_small_and_asks_for_nothing(case, pages):
     assert len(text.encode()) < 700_000
     assert "default-src &#39;none&#39;" in text and "connect-src" not in text
     assert all(reference.startswith(("#", "data:image/svg+xml,")) for reference in Outline(text).references)
-
-
-def test_the_same_diagnosis_gives_the_same_page(pages):
-    assert render_report(report_diagnosis(CASES["known"]())) == pages["known"][1]
 
 
 def test_the_table_has_the_gaps_of_each_channel(pages):
@@ -149,17 +133,6 @@ def test_little_is_known(tmp_path):
     assert "–" in outline.words and not any("nan" in words for words in outline.words)
 
 
-def test_short_runs_and_motion_that_stands_still(tmp_path):
-    found = known(("damper_force", "coil_current"))
-    cut = slice(0, 560)
-    fields = ("time", "measured", "nominal", "calibrated", "after")
-    traces = [replace(t, **{name: getattr(t, name)[cut] for name in fields}) for t in found.evidence.traces]
-    motion = {"velocity": np.zeros(560), "coil_current": np.zeros(560)}
-    found = replace(found, evidence=replace(found.evidence, traces=traces, motion=motion))
-    outline = Outline(write_report(found, tmp_path / "report.html").read_text(encoding="utf-8"))
-    assert "signals" in outline.anchors and "maps" not in outline.anchors
-
-
 def test_a_group_names_both_blocks_and_what_would_decide(pages):
     outline = Outline(pages["ambiguous"][1])
     assert "The gap lies in the suspension or the damper" in outline.headings
@@ -199,30 +172,3 @@ def test_a_share_of_the_gap_is_said():
     assert say_diagnosis(known()).endswith("of the gap beyond noise; what is left is 3.5 % of the signals' spread.")
     assert "noise alone makes" in say_diagnosis(none()) and "noise alone makes" in say_diagnosis(unknown())
     assert "which look the same here" in say_diagnosis(ambiguous())
-
-
-def test_numbers_as_they_are_printed():
-    assert [format_percent(value) for value in (0.314, 0.0314, 0.0, None, np.nan)] == ["31 %", "3.1 %", "0 %", "–", "–"]
-    assert [format_number(value) for value in (0.0, -0.01234, 1234.5, 9.999, 1e-7, -2.5e9, np.inf)] == [
-        "0", "−0.0123", "1234", "10.0", "1.00 × 10⁻⁷", "−2.50 × 10⁹", "–",
-    ]  # fmt: skip
-    assert format_quantity(0.0123, "m") == "12.3 mm" and format_quantity(0.5, "-") == "0.500"
-    assert format_estimate(Estimate(0.08124, 0.0041, "A")) == "0.0812 ± 0.0041 A"
-    assert format_estimate(Estimate(0.000686, 0.0000094, "m")) == "0.6860 ± 0.0094 mm"
-    assert format_estimate(Estimate(4512.3, 130.0, "N s/m")) == "4512 ± 130 N·s/m"
-    assert format_estimate(Estimate(1.5, np.inf, "-")) == "1.500"
-    assert format_estimate("driver_acceleration") == "driver_acceleration"
-    assert format_sentence("no run is warmer than 35 degC") == "No run is warmer than 35 °C."
-    assert format_sentence("damper.remanence is at work.") == "damper.remanence is at work."
-
-
-def test_words_as_they_are_printed():
-    assert describe_effect("no.such_effect") == ""
-    assert describe_effect("suspension.friction") and "`" not in describe_effect("suspension.friction")
-
-
-def test_the_gap_of_a_stage_is_read_by_channel():
-    gaps = known().gap
-    assert read_gap(gaps, "after", "overall") == gaps.after.overall
-    assert read_gap(gaps, "before", "damper_force") == gaps.before.channels["damper_force"]
-    assert read_gap(gaps, "floor", "no_such_channel") is None

@@ -43,11 +43,6 @@ PASSIVE = (
     "“0 A” is the most comfortable: the driver feels 0.960 m/s² (weighted RMS), 8.7 % less than with the next run,"
     " “0.1 A”, at 50 % more travel (RMS)."
 )
-TRIED = (
-    "The driver feels more than the floor moves in “0.3 A” (SEAT factor 1.21). Half and twice of"
-    " plant.suspension_damping and controller.current were tried on “0.3 A”: controller.current 0.15 lowers its SEAT"
-    " factor the most, to 0.913 from 1.21, with travel up to 43.6 mm in place of 38.9 mm."
-)
 CASES = {
     "a single run": ({}, [
         "seat: the driver feels 0.781 m/s² (weighted RMS), 40 % less than the floor moves; the suspension travels up to"
@@ -82,9 +77,6 @@ CASES = {
         " plant.suspension_damping were tried on “0 A, seed 1”: plant.suspension_damping 200 lowers its SEAT factor the"
         " most, to 0.982 from 1.46, with travel up to 57.2 mm in place of 63.5 mm.",
     ]),
-    "passive dampers alone": ({"variants": {"0 A": ZERO, "0.1 A": LOW, "0.3 A": MIDDLE}}, [
-        f"Of 3 runs {PASSIVE}", HIT, TRIED, OTHERS,
-    ]),
     "a law that is worse than none": ({"variants": {"skyhook": {"controller.damping": 6e3}, "0.1 A": LOW}}, [
         "Of 2 runs “0.1 A” is the most comfortable: the driver feels 1.05 m/s² (weighted RMS); control does not make it"
         " less: with “skyhook” it is 14 % more, at 36 % less travel (RMS).",
@@ -113,15 +105,6 @@ CASES = {
         "The figures of “0 A, -10 °C” and “0.1 A, -10 °C” cannot be relied on; the notes say why.",
         f"Look at the travel of “0 A, 20 °C” (4 times) and “0.1 A, 20 °C” (2 times): {STOPS}",
     ]),
-    "unequal travel": ({"variants": {"skyhook": {"controller.damping": 500.0}, "0.3 A": MIDDLE}}, [
-        "Of 2 runs “skyhook” is the most comfortable: the driver feels 0.743 m/s² (weighted RMS), 53 % less than with"
-        " the best passive run, “0.3 A”, at 126 % more travel (RMS).",
-        TRIED, OTHERS,
-    ]),
-    "equal figures": ({"variants": {"0.1 A": LOW, "0.101 A": passive(0.101)}}, [
-        "Both runs are alike in comfort, within 1 %: the driver feels 1.05 m/s² (weighted RMS).",
-        f"Look at the travel of “0.1 A” (2 times) and “0.101 A” (2 times): {STOPS}", OTHERS,
-    ]),
     "driver masses": ({"sweep": {"plant.driver_mass": [50.0, 70.0, 90.0]}}, [
         "Under 3 conditions the driver feels 0.540 m/s² to 0.902 m/s² (weighted RMS); the worst is “driver mass 50 kg”,"
         " the mildest “driver mass 90 kg”.",
@@ -130,19 +113,6 @@ CASES = {
         "Of 2 runs “soft” is the most comfortable: the driver feels 0.743 m/s² (weighted RMS), 20 % less than with the"
         " next run, “hard”, at 55 % more travel (RMS); no passive run is there to compare with.",
         OTHERS,
-    ]),
-    "choice and condition that change together": (
-        {"variants": {"day": {}, "night": {"temperature": 40.0, "controller.damping": 500.0}}},
-        [
-            "Under 2 conditions the driver feels 0.709 m/s² to 0.781 m/s² (weighted RMS); the worst is “day”, the"
-            " mildest “night”.",
-            "No two runs share floor, temperature and driver, so that none is called better than another.",
-        ],
-    ),
-    "a step too long to weight": ({"solver.step": 0.01, "controller.sample_time": 0.01}, [
-        "seat: the driver feels 1.22 m/s² (RMS, not weighted); the suspension travels up to 36.6 mm from its rest and"
-        " never meets its end stops.",
-        "Compare it with other laws or settings: seatsim compare takes several scenarios or a sweep.",
     ]),
 }  # fmt: skip
 

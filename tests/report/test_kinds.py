@@ -37,11 +37,13 @@ def test_a_comparison_names_the_most_comfortable_run_and_marks_it():
 
 def test_conditions_with_several_runs_are_compared_each_by_itself():
     others = [
-        replace(run, scenario=replace(run.scenario, name="smoother", seed=2), metrics={
-            name: metric._replace(value=0.5 * metric.value) for name, metric in run.metrics.items()
-        })
+        replace(
+            run,
+            scenario=replace(run.scenario, name="smoother", seed=2),
+            metrics={name: metric._replace(value=0.5 * metric.value) for name, metric in run.metrics.items()},
+        )
         for run in runs()
-    ]  # fmt: skip
+    ]
     report = report_runs([*runs(), *others], {}, "seatsim compare a b", "two")
     said = "“hybrid skyhook” is the most comfortable under both conditions. The worst of them is quickstart: the driver"
     assert report.answer.startswith(said)
@@ -104,11 +106,6 @@ def test_an_identification_says_how_well_it_predicts_and_what_the_data_leave_ope
     assert any("do not determine k0" in words for words in outline.words)
     assert outline.rows("Fitted values")["k0 (not determined)"] == ["N/m", "3.0000", "59"]
     assert outline.rows("Pairs of parameters")["c_a"] == ["k0", "0.990"]
-
-
-def test_an_identification_without_held_out_records_asks_for_some():
-    outline = Outline(render_report(report_identification(identification(["train"]), {}, "seatsim identify")))
-    assert "none was held out" in outline.headings[0] and any("Hold out records" in words for words in outline.words)
 
 
 def test_a_characterisation_says_force_and_response():

@@ -19,9 +19,7 @@ WORDS = (
     "1_0", "1,5", "2024-05-01", "12:30",
 )  # fmt: skip
 """What a word of a YAML file is replaced by."""
-CELLS = (
-    "", "nan", "inf", "-1e400", "x", "1,5", '"', "'", "1 2", "\x00", "9" * 400, "é", "#", ",", ",,", "\r", "0x1",
-)  # fmt: skip
+CELLS = ("", "nan", "inf", "-1e400", "x", "1,5", '"', "'", "1 2", "\x00", "9" * 400, "é", "#", ",", ",,", "\r", "0x1")
 """What a cell of a table is replaced by."""
 
 

@@ -193,9 +193,16 @@ def make_design() -> bytes:
     with tempfile.TemporaryDirectory() as place:
         two, one = np.eye(2), np.ones((1, 1))
         found = synthesise(
-            np.array([[0.0, 1.0], [-4.0, -0.4]]), np.array([[0.0], [1.0]]), np.array([[0.0], [1.0]]), two, two,
-            np.zeros((2, 1)), 0.1 * np.vstack([one, one]), np.zeros((2, 1)), time_budget=2.0,
-        )  # fmt: skip
+            np.array([[0.0, 1.0], [-4.0, -0.4]]),
+            np.array([[0.0], [1.0]]),
+            np.array([[0.0], [1.0]]),
+            two,
+            two,
+            np.zeros((2, 1)),
+            0.1 * np.vstack([one, one]),
+            np.zeros((2, 1)),
+            time_budget=2.0,
+        )
         found.save(Path(place) / "design.yaml")
         return (Path(place) / "design.yaml").read_bytes()
 
@@ -247,8 +254,11 @@ def make_unit() -> bytes:
     variable = (
         '<ScalarVariable name="{}" valueReference="{}" causality="{}" variability="{}"><Real {}/></ScalarVariable>'
     )
-    variables = [("v", 0, "input", "continuous", 'start="0" unit="m/s"'), ("F", 1, "output", "continuous", 'unit="N"'),
-                 ("c", 2, "parameter", "tunable", 'start="1" max="5"')]  # fmt: skip
+    variables = [
+        ("v", 0, "input", "continuous", 'start="0" unit="m/s"'),
+        ("F", 1, "output", "continuous", 'unit="N"'),
+        ("c", 2, "parameter", "tunable", 'start="1" max="5"'),
+    ]
     stated = "".join(variable.format(*each) for each in variables)
     text = f"""<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="2.0" modelName="d" guid="1"><CoSimulation modelIdentifier="d"/>

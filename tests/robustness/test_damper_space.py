@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -43,7 +43,7 @@ ASYMMETRIC = ("f0", "f0_a", "f0_b", "x0", "mu", "asymmetry", "offset_share")
 class Case(NamedTuple):
     """One set of parameters with the sine it is moved through."""
 
-    damper: Any
+    damper: object
     specification: DamperSpecification
     amplitude: float
     frequency: float
@@ -73,7 +73,7 @@ def draw_case(rng: np.random.Generator, name: str) -> Case:
     cls = find("damper", name)
     specification = specification_of(cls)
     values: dict[str, object] = {}
-    defaults: Mapping[str, Any] = cls()._asdict()
+    defaults: Mapping[str, object] = cls()._asdict()
     for field, default in defaults.items():
         if isinstance(default, tuple):
             values[field] = draw_law(rng, default, specification.max_current)
@@ -144,9 +144,7 @@ def check_inverse(rng: np.random.Generator, case: Case) -> list[str]:
     wanted = float(rng.choice(forces)) if rng.uniform() < 0.3 else wanted
     if wanted * v <= 0.0:
         return []
-    answer = invert(
-        case.damper, case.specification.current_order, wanted, x, v, scaling, z, top, np.empty(CELLS + 1)
-    )  # fmt: skip
+    answer = invert(case.damper, case.specification.current_order, wanted, x, v, scaling, z, top, np.empty(CELLS + 1))
     miss, missed = abs(answer.force - wanted), np.abs(forces - wanted)
     if miss > (missed.min() if _crossing(forces, wanted) is None else 0.0) + SAME * span + CLOSE:
         return ["inverse"]

@@ -1,5 +1,5 @@
 """The command line as a script calls it."""
 
-from ..cli.conftest import here, undrawn
+from ..cli.conftest import undrawn
 
-__all__ = ["here", "undrawn"]
+__all__ = ["undrawn"]

@@ -38,7 +38,13 @@ def test_a_measured_road_takes_the_place_of_the_generated_one(shared):
 
 def test_a_measured_bus_floor_is_an_excitation_too(shared):
     table = shared / "data" / "bus_floor" / "L20_3014_Zaluhy_Drobneho.csv.gz"
-    excitation = {"kind": "table", "path": str(table), "time_column": "time_s", "column": "acc_z_m_s2", "start": 5.0,
-                  "duration": 30.0}  # fmt: skip
+    excitation = {
+        "kind": "table",
+        "path": str(table),
+        "time_column": "time_s",
+        "column": "acc_z_m_s2",
+        "start": 5.0,
+        "duration": 30.0,
+    }
     result = seatsim.run("measured-road", {"excitation": excitation})
     assert 0.0 < result.table.seat_factor[0] < 3.0

@@ -6,6 +6,8 @@ import pytest
 import seatsim
 from seatsim.scenario.loading import load
 
+from ..text import parse
+
 
 def test_a_sweep_makes_every_combination_in_order(seat_file):
     seat_file.write_text(
@@ -14,8 +16,11 @@ def test_a_sweep_makes_every_combination_in_order(seat_file):
     )
     runs = load(seat_file)
     assert [(run.label["variant"], run.temperature, run.plant.driver_mass) for run in runs] == [
-        ("light", 20.0, 55.0), ("light", 80.0, 55.0), ("heavy", 20.0, 120.0), ("heavy", 80.0, 120.0),
-    ]  # fmt: skip
+        ("light", 20.0, 55.0),
+        ("light", 80.0, 55.0),
+        ("heavy", 20.0, 120.0),
+        ("heavy", 80.0, 120.0),
+    ]
     assert runs[1].title == "seat (light, temperature 80.0)"
 
 
@@ -25,8 +30,7 @@ def test_settings_replace_values_before_anything_is_read(seat_file):
     assert run.control.law.current == 0.2
 
 
-def test_an_example_is_found_by_name(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_an_example_is_found_by_name(tmp_path, here):
     assert load("quickstart")[0].name == "quickstart"
     assert load("scenarios/quickstart.yaml")[0].name == "quickstart"
     with pytest.raises(seatsim.InputError, match=r"no such file.*quickstart, "):
@@ -69,11 +73,7 @@ def test_a_users_own_damper_and_law_run_like_built_in_ones(seat_file, forget_own
 def test_a_result_gives_channels_with_units_and_a_table(seat_file):
     result = seatsim.run(seat_file)
     acceleration = result["driver_acceleration"]
-    assert (acceleration.unit, acceleration.name, acceleration.shape) == (
-        "m/s^2",
-        "driver_acceleration",
-        (6001,),
-    )
+    assert (acceleration.unit, acceleration.name, acceleration.shape) == ("m/s^2", "driver_acceleration", (6001,))
     assert result.table.driver_acceleration_rms[0] == pytest.approx(float(np.sqrt(np.mean(acceleration**2))))
     assert acceleration[100:].unit == "m/s^2" and (2 * acceleration).unit == ""
 
@@ -84,8 +84,10 @@ def test_the_public_names_exist():
 
 
 def test_a_run_that_diverges_is_a_failure_in_one_sentence(seat_file):
-    settings = {"damper.parameters": {"c_a": 0.0, "c_b": 0.0, "alpha_a": 0.0, "alpha_b": 0.0, "k0": -1e7, "x0": 0.0,
-                                      "f0": 0.0, "A": 1.0, "beta": 0.0, "gamma": 0.0, "n": 1.0}}  # fmt: skip
+    settings = parse("""
+        damper.parameters: {c_a: 0.0, c_b: 0.0, alpha_a: 0.0, alpha_b: 0.0, k0: -10000000.0, x0: 0.0, f0: 0.0,
+            A: 1.0, beta: 0.0, gamma: 0.0, n: 1.0}
+    """)
     with pytest.raises(seatsim.RunError, match="no solution beyond"):
         seatsim.run(seat_file, settings)
 

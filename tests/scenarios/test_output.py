@@ -25,8 +25,10 @@ def test_run_writes_table_histories_and_pictures(seat_file, seatsim_command):
 
 def test_a_failed_run_exits_with_1_and_keeps_the_others(seat_file, undrawn, seatsim_command):
     out = seat_file.parent / "results"
-    bad = '{"damper.parameters": {"c_a": 0.0, "c_b": 0.0, "alpha_a": 0.0, "alpha_b": 0.0, "k0": -1.0e+7, "x0": 0.0,' \
-          ' "f0": 0.0, "A": 1.0, "beta": 0.0, "gamma": 0.0, "n": 1.0}}'  # fmt: skip
+    bad = (
+        '{"damper.parameters": {"c_a": 0.0, "c_b": 0.0, "alpha_a": 0.0, "alpha_b": 0.0, "k0": -1.0e+7, "x0": 0.0,'
+        ' "f0": 0.0, "A": 1.0, "beta": 0.0, "gamma": 0.0, "n": 1.0}}'
+    )
     status, _, err = seatsim_command("run", seat_file, "--out", out, "--set", f'variants={{"a": {{}}, "b": {bad}}}')
     assert status == 1
     assert "failed: seat (b)" in err

@@ -1,21 +1,17 @@
 """Own code: run where its file is named, never because it lies beside a scenario or a recording."""
 
 import os
-import pickle
 import shutil
 import subprocess
 import sys
-from concurrent.futures import ProcessPoolExecutor
 from contextlib import ExitStack, chdir
-from importlib.machinery import ModuleSpec, SourceFileLoader
-from multiprocessing import get_context
 from pathlib import Path
 
 import pytest
 
 import seatsim
 from seatsim.scenario.describe import describe
-from seatsim.schema.modules import MissingModuleError, _find_installed, import_named, use, use_all, used_files
+from seatsim.schema.modules import MissingModuleError, import_named, use, use_all, used_files
 from seatsim.schema.processes import run_jobs
 from seatsim.schema.registry import find, names
 
@@ -106,37 +102,6 @@ def test_python_started_in_the_folder_of_a_recording_does_not_run_its_module(str
         assert not (strange / "stolen").exists()
 
 
-def test_files_that_are_called_like_libraries_do_not_stand_before_them_under_python_m(strange):
-    for library in ("rich", "typer", "shlex"):
-        (strange / f"{library}.py").write_text("raise SystemExit('a file of the recording was run')\n")
-    command = [sys.executable, "-m", "seatsim", "describe", "road"]
-    environment = os.environ | {"PYTHONPATH": str(ROOT)}
-    done = subprocess.run(command, cwd=strange, env=environment, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    assert done.stdout.startswith("road (excitation)")
-
-
-def test_a_folder_that_is_called_like_a_plug_in_does_not_stand_before_it(strange):
-    (strange / "controllers").mkdir()
-    (strange / "controllers" / "__init__.py").write_text("raise SystemExit('a file of the recording was run')\n")
-    command = [sys.executable, "-c", "from seatsim.rig.control import LAWS; print(*LAWS.names())"]
-    environment = os.environ | {"PYTHONPATH": str(ROOT)}
-    done = subprocess.run(command, cwd=strange, env=environment, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    assert "on_off_skyhook" in done.stdout
-
-
-def test_the_python_functions_do_not_run_it_either(strange):
-    for call in (
-        lambda: seatsim.gap(strange / "nominal.yaml", strange),
-        lambda: seatsim.diagnose(strange),
-        lambda: seatsim.run(strange / "nominal.yaml"),
-    ):
-        with pytest.raises(seatsim.InputError, match=r"seatsim\.use"):
-            call()
-    assert not (strange / "stolen").exists()
-
-
 def test_a_name_that_a_named_file_registers_is_known(power_law, seat_file, seatsim_command):
     assert "damping at zero current" in seatsim_command("describe", "power_law", "--with", power_law)[1]
     (scenario,) = seatsim.load(seat_file, {"damper": {"model": "power_law"}})
@@ -191,7 +156,7 @@ def test_an_edit_that_fails_leaves_what_was_there(power_law):
         ("asking.py", "import other\n", "name other.py before it: --with .*other.py"),
         ("taking.py", POWER_LAW.replace("power_law", "bouc_wen"), "damper 'bouc_wen' is there already"),
     ],
-)  # fmt: skip
+)
 def test_a_file_that_cannot_be_used_is_a_clear_error(tmp_path, forget_own_code, name, text, problem):
     (tmp_path / "other.py").write_text("")
     if text is not None:
@@ -234,22 +199,6 @@ def test_installed_modules_are_found(searched, tmp_path):
         sys.modules.update({name: module for name, module in known.items() if module is not None})
 
 
-class Editable:
-    """Finds a module as the finder of an editable install does, which lies on no path."""
-
-    @staticmethod
-    def find_spec(name, path=None, target=None):
-        return ModuleSpec(name, SourceFileLoader(name, __file__), origin=__file__) if name == "installed_so" else None
-
-
-def test_a_module_of_an_editable_install_is_found():
-    sys.meta_path.append(Editable)
-    try:
-        assert _find_installed("installed_so").origin == __file__
-    finally:
-        sys.meta_path.remove(Editable)
-
-
 @pytest.mark.parametrize("name", ["antigravity", "pip.__main__", "seatsim.__main__"])
 def test_a_module_that_does_something_when_it_is_imported_is_refused(name):
     with pytest.raises(seatsim.InputError, match="is part of Python or a program"):
@@ -260,13 +209,6 @@ def test_a_module_that_does_something_when_it_is_imported_is_refused(name):
 def test_a_module_that_is_not_there(name):
     with pytest.raises(MissingModuleError, match="no module"):
         import_named(name)
-
-
-def test_worker_processes_know_the_same_files(power_law):
-    record = use(power_law).PowerLaw(7.0)
-    with ProcessPoolExecutor(1, get_context("spawn"), initializer=use_all, initargs=(used_files(),)) as pool:
-        back = pool.submit(pickle.loads, pickle.dumps(record)).result()
-    assert back == record and type(back) is type(record)
 
 
 def test_worker_processes_have_the_files_in_use(power_law):

@@ -25,7 +25,7 @@ FILES = [path for path in sorted(EXAMPLES.rglob("*.yaml")) if path.parent.name n
         ("start.displacement", 9.0, "9 mm would be 0.009 m"),
         ("temperature", 180.0, "temperature: 180 degC is unusual"),
     ],
-)  # fmt: skip
+)
 def test_an_unusual_value_is_said_with_what_was_meant(key, value, said, seat_file):
     (scenario,) = load(seat_file, {key: value})
     (doubt,) = list_doubts(scenario)
@@ -41,7 +41,7 @@ def test_an_unusual_value_is_said_with_what_was_meant(key, value, said, seat_fil
         ("excitation", ROAD, "80 km/h would be 22.22 m/s"),
         ("actuator.delay", 4.0, "4 ms would be 0.004 s"),
     ],
-)  # fmt: skip
+)
 def test_a_value_out_of_bounds_says_what_was_meant(key, value, meant, seat_file):
     with pytest.raises(seatsim.InputError) as error:
         load(seat_file, {key: value})
@@ -93,8 +93,10 @@ def test_a_thermocouple_that_nothing_reads_changes_nothing_and_is_said(temperatu
 
 
 def test_a_travel_that_no_seat_has_is_said_where_none_is_stated(seat_file):
-    far = {"excitation": {"kind": "sine", "amplitude": 0.15, "frequency": 1.3, "duration": 4.0},
-           "controller": {"law": "constant", "current": 0.0}}  # fmt: skip
+    far = {
+        "excitation": {"kind": "sine", "amplitude": 0.15, "frequency": 1.3, "duration": 4.0},
+        "controller": {"law": "constant", "current": 0.0},
+    }
     (run,) = seatsim.run(seat_file, far).runs
     assert any("mm from its mid-stroke" in warning and "state plant.travel" in warning for warning in run.warnings)
     (run,) = seatsim.run(seat_file, {**far, "plant.travel": [-0.05, 0.05]}).runs

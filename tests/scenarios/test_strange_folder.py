@@ -10,7 +10,7 @@ import pickle
 import shutil
 import subprocess
 import sys
-from contextlib import suppress
+from contextlib import chdir, suppress
 from pathlib import Path
 
 import numpy as np
@@ -22,11 +22,15 @@ from seatsim.recordings.recording import load_recording
 from seatsim.scenario.loading import load
 from seatsim.schema.errors import SeatsimError
 
+from ..text import words
+
 ROOT = Path(__file__).resolve().parents[2]
-MODULES = (
-    "numexpr", "bottleneck", "sitecustomize", "usercustomize", "conftest", "evil", "sympy", "mosek", "gurobipy",
-    "pickle", "random", "selectors", "numpy", "pandas", "seatsim_plugins", "controllers", "dask", "h5py",
-)  # fmt: skip
+MODULES = tuple(
+    words("""
+    numexpr bottleneck sitecustomize usercustomize conftest evil sympy mosek gurobipy pickle random selectors
+    numpy pandas seatsim_plugins controllers dask h5py
+""")
+)
 """Modules that something of seatsim, of its libraries or of Python imports by name, or a plug-in would."""
 
 
@@ -65,8 +69,9 @@ def strange(tmp_path, marks):
 
 
 def started(arguments, folder):
-    return subprocess.run(arguments, cwd=folder, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True,
-                          text=True, check=False)  # fmt: skip
+    return subprocess.run(
+        arguments, cwd=folder, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True, check=False
+    )
 
 
 @pytest.mark.slow
@@ -113,13 +118,12 @@ def test_settings_of_libraries_in_the_folder_are_not_obeyed(strange, name):
         '{{model: \'__import__("os").mkdir("{mark}")\'}}',
     ],
 )
-def test_texts_of_yaml_files_are_not_run(strange, marks, monkeypatch, text):
-    monkeypatch.chdir(strange)
+def test_texts_of_yaml_files_are_not_run(strange, marks, text):
     nominal = (strange / "nominal.yaml").read_text()
     start, end = nominal.index("damper:"), nominal.index("excitation:")
     written = text.format(mark=marks / "yaml")
     (strange / "nominal.yaml").write_text(f"{nominal[:start]}damper: {written}\n{nominal[end:]}")
-    with pytest.raises(SeatsimError):
+    with chdir(strange), pytest.raises(SeatsimError):
         load("nominal.yaml")
     header = (strange / "recording.yaml").read_text()
     (strange / "recording.yaml").write_text(f"{header}\nnote: {written}\n")
@@ -165,9 +169,11 @@ def parquet(path, mark):
 def formula(path, mark):
     asammdf = pytest.importorskip("asammdf")
     signal = asammdf.Signal(
-        np.arange(9, dtype=np.int32), np.arange(9.0), name="a",
+        np.arange(9, dtype=np.int32),
+        np.arange(9.0),
+        name="a",
         conversion={"formula": f"X1 + __import__('os').mkdir('{mark}')"},
-    )  # fmt: skip
+    )
     content = io.BytesIO()
     with asammdf.MDF() as file:
         file.append([signal])
@@ -176,21 +182,27 @@ def formula(path, mark):
 
 
 TRAPS = {
-    "a.pkl": pickled, "a.csv": pickled, "a.npz": archive, "a.npy": array, "a.mat": matlab, "a.h5": hdf5,
-    "a.parquet": parquet, "a.mf4": formula,
+    "a.pkl": pickled,
+    "a.csv": pickled,
+    "a.npz": archive,
+    "a.npy": array,
+    "a.mat": matlab,
+    "a.h5": hdf5,
+    "a.parquet": parquet,
+    "a.mf4": formula,
     "$(mkdir marks;cd marks).csv": lambda path, mark: path.write_text(f"`mkdir {mark}`,=cmd|' /C'!A0\n1,2\n3,4\n"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.filterwarnings("default")
 @pytest.mark.parametrize("name", TRAPS)
 def test_data_files_are_read_and_not_run(strange, marks, monkeypatch, name):
-    monkeypatch.chdir(strange)
     # Where sympy is installed, asammdf runs what numexpr refuses.
     monkeypatch.setattr("asammdf.blocks.v4_blocks.lambdify", lambda *_, **__: os.mkdir(marks / "sympy"))
     TRAPS[name](strange / name, marks / "data")
-    try:
-        inspect_file(Path(name))
-    except SeatsimError as error:
-        assert "\n" not in str(error)
+    with chdir(strange):
+        try:
+            inspect_file(Path(name))
+        except SeatsimError as error:
+            assert "\n" not in str(error)
     assert not list(marks.iterdir())

@@ -6,16 +6,7 @@ from typing import Annotated, Literal, NamedTuple
 import pytest
 from pydantic import ValidationError
 
-from seatsim.schema.fields import (
-    SLIGHTLY,
-    bounds,
-    choices,
-    default_values,
-    describe,
-    field_names,
-    param,
-    validated,
-)
+from seatsim.schema.fields import SLIGHTLY, bounds, choices, default_values, describe, field_names, param, validated
 
 
 class Spring(NamedTuple):

@@ -1,6 +1,5 @@
 """Files are written whole or not at all; JSON holds plain values only."""
 
-import json
 import math
 import os
 import time
@@ -12,7 +11,7 @@ import pytest
 
 from seatsim.schema import files
 from seatsim.schema.errors import InputError, OutputError, SeatsimError, nearest
-from seatsim.schema.files import check_folder, plain, remove_left, write_json, write_text, write_together, write_whole
+from seatsim.schema.files import check_folder, plain, remove_left, write_text, write_together, write_whole
 
 
 class Point(NamedTuple):
@@ -26,11 +25,6 @@ def test_values_become_plain():
     )
     assert found == {"1": {"x": None, "y": [1.5, None]}, "n": 3, "f": 0.25, "t": True, "none": None}
     assert type(found["n"]) is int and type(found["f"]) is float and found["t"] is True
-
-
-def test_json_is_written_with_missing_folders(tmp_path):
-    path = write_json(tmp_path / "a" / "b.json", {"point": Point(1.0, (2.0,))})
-    assert json.loads(path.read_text()) == {"point": {"x": 1.0, "y": [2.0]}}
 
 
 def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
@@ -89,8 +83,7 @@ def test_files_that_belong_together_replace_others_together(tmp_path):
     assert list(tmp_path.iterdir()) == [folder]
 
 
-def test_the_current_folder_is_a_place_as_well(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_the_current_folder_is_a_place_as_well(tmp_path, here):
     write_together(Path(), write_two)
     assert contents(tmp_path) == {"a.txt": "new", "b/c.txt": "new"}
 
@@ -119,12 +112,6 @@ def test_what_a_killed_process_has_left_is_removed_and_what_another_writes_is_no
     write_together(tmp_path / "set", write_two)
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted([alive.name, recent.name, ".kept.part", "set"])
     remove_left(tmp_path / "absent")
-
-
-def test_a_folder_where_a_file_should_go_is_bad_input(tmp_path):
-    (tmp_path / "a.txt").mkdir()
-    with pytest.raises(InputError, match="is a folder, where a file is to be written"):
-        write_text(tmp_path / "a.txt", "")
 
 
 @pytest.mark.parametrize("name", ["a\0b", "x" * 300])

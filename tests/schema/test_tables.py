@@ -14,7 +14,7 @@ import pytest
 from seatsim.excitations.motion import samples
 from seatsim.schema import bounds
 from seatsim.schema.errors import InputError
-from seatsim.schema.guarded import in_mib, read_bytes, read_json
+from seatsim.schema.guarded import read_bytes, read_json
 from seatsim.schema.tables import numbers, read_table
 
 TEXT = b"time,force\n0,1.5\n0.1,-2e3\n"
@@ -108,11 +108,3 @@ def test_json_that_is_none_is_one_error(tmp_path, text):
     (tmp_path / "a.json").write_bytes(text.encode("latin-1"))
     with pytest.raises(InputError, match="is no diagnosis"):
         read_json(tmp_path / "a.json", "diagnosis")
-
-
-@pytest.mark.parametrize(
-    ("size", "said"),
-    [(2**30, "1 GiB"), (2**30 - 1, "1 GiB"), (1000 * 2**20, "0.977 GiB"), (999 * 2**20, "999 MiB"), (2048, "2 KiB")],
-)
-def test_a_size_is_said_in_three_digits(size, said):
-    assert in_mib(size) == said

@@ -56,16 +56,6 @@ def test_what_is_no_unit_of_the_quantity_is_an_error_that_lists_some(unit, wante
         conversion(unit, wanted)
 
 
-def test_pint_is_not_loaded_for_si_units():
-    import subprocess
-    import sys
-
-    code = (
-        "import sys; from seatsim.schema.units import conversion as c; c('m/s2', 'm/s^2'); c('C', 'degC'); c('N', 'N')"
-    )
-    subprocess.run([sys.executable, "-c", f"{code}; assert 'pint' not in sys.modules"], check=True)
-
-
 @pytest.mark.parametrize("wanted", CONVERSIONS)
 def test_usual_units_are_those_of_pint(wanted):
     for unit, found in CONVERSIONS[wanted].items():

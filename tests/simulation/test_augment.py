@@ -20,7 +20,6 @@ from seatsim.simulation.augment import (
     augment_temperature,
     read_sensors,
     select_in_loop,
-    sum_frame_forces,
     undo_reading,
 )
 
@@ -77,18 +76,6 @@ def test_parts_are_changed_by_each_effect_in_turn():
     assert augment_temperature(TWICE, 0.5, np.array([1.0])) == pytest.approx([2.0 * 2.5 + 0.5])
 
 
-def test_without_effects_everything_is_handed_back():
-    values = np.ones(3)
-    assert augment_plant((), PLANT_80) is PLANT_80 and augment_coil((), COIL) is COIL
-    assert augment_temperature((), 0.1, values) is values and undo_reading((), values, "damper_force", 0.1) is values
-    assert sum_frame_forces((), values, 0).size == 0
-
-
-def test_forces_on_the_frame_add_up():
-    time = np.array([0.0, 1.0])
-    assert sum_frame_forces(TWICE, time, 3) == pytest.approx([6.0, 8.0])
-
-
 def test_readings_are_made_in_order_and_undone_in_the_opposite_one():
     effects, values = (Doubled(), Raised()), np.array([1.0, 4.0])
     both = read_sensors(effects, 0.1, {"damper_force": values, "coil_current": values})
@@ -129,11 +116,6 @@ def test_the_loop_carries_all_effects_of_a_side_where_one_is_at_work_or_all_wher
     kinds = [tuple(map(type, side)) for side in select_in_loop(none, True)]
     assert kinds == [tuple(map(type, side)) for side in select_in_loop([friction, seal])]
     assert kinds[1] == tuple(map(type, select_in_loop([friction])[1]))
-
-
-def test_the_loop_carries_only_those_at_work_where_it_is_asked():
-    at_work = [effect("damper.seal_friction", force=9.0), effect("driver.mass", change=5.0)]
-    assert select_in_loop(at_work, False) == ((at_work[0],), ())
 
 
 def test_a_second_effect_of_a_kind_is_carried_beside_the_first():

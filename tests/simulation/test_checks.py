@@ -74,10 +74,15 @@ def test_the_margins_are_those_of_the_sampled_loop_beyond_the_delay_of_the_coil(
 
 def test_a_check_may_be_made_of_some_variants(seat_file):
     variants = {"soft": {"controller": {"law": "constant", "current": 0.0}}, "controlled": {}}
-    runs = seatsim.run(seat_file, {
-        **SHORT, "controller": LOOP, "variants": variants,
-        "checks": {"delay_margin": {"min": 0.005, "per": ["controlled"]}, "seat_factor": {"max": 9.0}},
-    }).runs  # fmt: skip
+    runs = seatsim.run(
+        seat_file,
+        {
+            **SHORT,
+            "controller": LOOP,
+            "variants": variants,
+            "checks": {"delay_margin": {"min": 0.005, "per": ["controlled"]}, "seat_factor": {"max": 9.0}},
+        },
+    ).runs
     assert [[checked.check for checked in check_run(run)] for run in runs] == [
         ["seat_factor"],
         ["delay_margin", "seat_factor"],

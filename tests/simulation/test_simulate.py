@@ -40,20 +40,6 @@ def test_energy_is_conserved(history):
     assert spent == pytest.approx(history["energy_floor"], abs=5e-3 * np.max(np.abs(history["energy_floor"])))
 
 
-def test_the_energy_stored_is_that_of_masses_and_springs(scenario, history):
-    plant, k = scenario.plant, 1234
-    v, x = history["suspension_velocity"][k], history["suspension_displacement"][k]
-    driver, cushion = v + history["cushion_velocity"][k], history["cushion_displacement"][k]
-    stored = 0.5 * (plant.frame_mass * v**2 + plant.driver_mass * driver**2
-                    + plant.suspension_stiffness * x**2 + plant.cushion_stiffness * cushion**2)  # fmt: skip
-    assert history["energy_stored"][k] == pytest.approx(stored, rel=1e-12)
-
-
-def test_a_sampled_law_commands_every_sample_time(history):
-    changes = np.flatnonzero(np.diff(history["current_command"])) + 1
-    assert len(changes) > 10 and np.all(changes % 5 == 0)
-
-
 def test_a_sample_time_that_is_no_multiple_of_the_step_is_refused(scenario):
     odd = replace(scenario, control=replace(scenario.control, sample_time=0.0033))
     with pytest.raises(InputError, match=r"choose 0\.003 s"):

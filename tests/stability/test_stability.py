@@ -75,11 +75,7 @@ def test_in_the_printed_state_matrix_the_driver_does_not_feel_the_controller():
 
 
 BINGHAM = {"model": "original_bingham"}
-INVERSES = {
-    "the damper itself": None,
-    "a Bingham damper": BINGHAM,
-    "no temperature": {**BINGHAM, "temperature": 20.0},
-}
+INVERSES = {"the damper itself": None, "a Bingham damper": BINGHAM, "no temperature": {**BINGHAM, "temperature": 20.0}}
 
 
 @pytest.mark.parametrize("inverse", INVERSES)
@@ -110,7 +106,10 @@ def test_no_limit_cycle_of_the_full_loop(seat_file, damper, temperature, inverse
 
 @pytest.mark.parametrize("law", [{"law": "skyhook", "damping": 2000.0}, {"law": "on_off_skyhook", "on": 1.0}])
 def test_switching_laws_come_to_rest(seat_file, law):
-    settings = {"controller": {**law, "sample_time": 0.005}, "excitation": {"kind": "rest", "duration": 12.0},
-                "start": {"displacement": 0.02}}  # fmt: skip
+    settings = {
+        "controller": {**law, "sample_time": 0.005},
+        "excitation": {"kind": "rest", "duration": 12.0},
+        "start": {"displacement": 0.02},
+    }
     result = seatsim.run(seat_file, settings)
     assert np.max(np.abs(result["suspension_velocity"][-2000:])) < 1e-3

@@ -97,10 +97,7 @@ def test_measured_runs_are_put_to_their_class(scenario, tmp_path):
 
 @pytest.mark.parametrize(
     ("settings", "message"),
-    [
-        ({"controller": {"law": "replay"}}, "replays a recording"),
-        ({"plant.travel": [0.05, -0.05]}, "travel"),
-    ],
+    [({"controller": {"law": "replay"}}, "replays a recording"), ({"plant.travel": [0.05, -0.05]}, "travel")],
 )
 def test_what_cannot_be_tested_is_refused(scenario, settings, message):
     with pytest.raises(InputError, match=message):

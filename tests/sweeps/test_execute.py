@@ -16,6 +16,7 @@ from seatsim.sweeps.engines import LocalEngine
 from seatsim.sweeps.execute import Share
 from seatsim.sweeps.folder import hold_folder
 
+from ..text import parse
 from .conftest import MASSES, bytes_of
 
 MASS = "plant.driver_mass"
@@ -93,8 +94,10 @@ def test_jobs_shares_and_interruptions_give_the_same_bytes(write_sweep, carry_ou
 
 
 def test_a_failed_run_is_a_row_with_its_reason(write_sweep, carry_out, tmp_path):
-    lost = {"c_a": 0.0, "c_b": 0.0, "alpha_a": 0.0, "alpha_b": 0.0, "k0": -1e9, "x0": 0.0, "f0": 0.0, "A": 1.0,
-            "beta": 0.0, "gamma": 0.0, "n": 1.0}  # fmt: skip
+    lost = parse("""
+        {c_a: 0.0, c_b: 0.0, alpha_a: 0.0, alpha_b: 0.0, k0: -1000000000.0, x0: 0.0, f0: 0.0, A: 1.0, beta: 0.0,
+         gamma: 0.0, n: 1.0}
+    """)
     sound = {**lost, "c_a": 500.0, "k0": 0.0}
     result = carry_out(write_sweep(vary={"damper.parameters": [sound, lost]}, runs=None))
     frame = seatsim.read_sweep(tmp_path / "out")
@@ -124,7 +127,7 @@ def test_histories_are_kept_where_asked(write_sweep, carry_out, tmp_path):
         ({"runs": 3}, "runs was 5 and is 3"),
         ({"design": "lhs"}, 'design was "cross" and is "lhs"'),
     ],
-)  # fmt: skip
+)
 def test_another_sweep_is_refused_by_name(change, named, write_sweep, carry_out):
     carry_out(write_sweep())
     with pytest.raises(seatsim.InputError, match="holds a sweep already, 5 of 5 runs"):
@@ -150,8 +153,10 @@ def test_a_changed_scenario_is_named_and_more_runs_are_added(write_sweep, carry_
 
 
 def test_the_lock_names_its_owner(write_sweep, carry_out, tmp_path):
-    code = "import sys, time; from pathlib import Path; from seatsim.sweeps.folder import hold_folder\n" \
-           "with hold_folder(Path(sys.argv[1])): print('held', flush=True); time.sleep(60)"  # fmt: skip
+    code = (
+        "import sys, time; from pathlib import Path; from seatsim.sweeps.folder import hold_folder\n"
+        "with hold_folder(Path(sys.argv[1])): print('held', flush=True); time.sleep(60)"
+    )
     with subprocess.Popen([sys.executable, "-c", code, str(tmp_path / "out")], stdout=subprocess.PIPE) as other:
         other.stdout.readline()
         with pytest.raises(seatsim.InputError, match=f"process {other.pid} on .* works on this sweep"):

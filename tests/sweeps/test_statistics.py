@@ -7,7 +7,7 @@ from scipy.stats import qmc
 
 from seatsim.plots.sweeps import find_front, plot_comfort
 from seatsim.report.sweep import advise_on_keys, tabulate_best
-from seatsim.sweeps.rows import SweepRows, count_exceedances, tabulate_quantiles
+from seatsim.sweeps.rows import SweepRows
 from seatsim.sweeps.sensitivity import analyse_sensitivity, choose_key
 
 COMFORT, HITS = "driver_acceleration_weighted", "end_stop_hits"
@@ -57,23 +57,6 @@ def test_indices_are_refused_where_they_have_no_meaning(known):
     assert "too few for 4 keys" in analyse_sensitivity(rows_of(known.head(8), "abct")).problem
     constant = known.assign(**{COMFORT: 1.0})
     assert analyse_sensitivity(rows_of(constant, "abct")).problem == "no metric varies"
-
-
-def test_shares_have_wilson_intervals(known):
-    frame = pd.DataFrame({"t": ["x"] * 50 + ["y"] * 50, COMFORT: [1.0] * 5 + [0.2] * 95, HITS: 0.0})
-    found = count_exceedances(rows_of(frame, "t"))
-    first = found[0]
-    assert (first.group, first.metric, first.limit, first.exceeding, first.runs) == ({"t": "x"}, COMFORT, 0.5, 5, 50)
-    # Wilson 1927 for 5 of 50.
-    assert (first.low, first.high) == pytest.approx((0.0435, 0.2136), abs=1e-4)
-    assert [row.exceeding for row in found[1:]] == [0, 0, 0]
-
-
-def test_quantiles_are_those_of_each_group():
-    frame = pd.DataFrame({"t": ["x", "y"] * 21, COMFORT: np.arange(42.0)})
-    table = tabulate_quantiles(rows_of(frame, "t"))
-    assert list(table.t) == ["x", "y"] and list(table.runs) == [21, 21]
-    assert (table["median"][0], table.p05[0], table["max"][1]) == (20.0, 2.0, 41.0)
 
 
 def test_the_front_holds_what_nothing_is_better_than():

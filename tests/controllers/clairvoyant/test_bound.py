@@ -1,7 +1,5 @@
 """The lower bound: its ascent on known functions, its hats, and what it may not exceed."""
 
-from collections import deque
-
 import numpy as np
 import pytest
 
@@ -9,7 +7,6 @@ from controllers.clairvoyant.bound import (
     _ascend,
     _build_hat_functions,
     _find_constant_multipliers,
-    _find_direction,
     _make_dual_function,
     _sum_hats,
     find_lower_bound,
@@ -29,18 +26,6 @@ def test_the_ascent_comes_near_the_top_of_a_concave_function():
     assert objective(reached)[0] > 5.0 - 1e-4
     assert len(calls) < 160
     np.testing.assert_array_equal(_ascend(lambda y: None, top), top)
-
-
-def test_directions_solve_the_secant_equation_and_are_limited():
-    gradient = np.array([3.0, -40.0])
-    first = _find_direction(gradient, deque())
-    np.testing.assert_allclose(first, 0.1 * gradient / 40.0)
-    step, bend = np.array([0.2, 0.1]), np.array([0.6, 1.7])
-    # A quasi-Newton direction of the bend is the step that made it.
-    np.testing.assert_allclose(_find_direction(bend, deque([(step, bend)])), step, rtol=1e-12)
-    pairs = deque([(np.array([1.0, 0.0]), np.array([2.0, 0.5])), (step, bend)])
-    np.testing.assert_allclose(_find_direction(bend, pairs), step, rtol=1e-12)
-    assert np.abs(_find_direction(1e6 * bend, pairs)).max() == pytest.approx(2.0)
 
 
 def test_the_dual_function_has_the_gradient_of_its_value(problem, band):

@@ -2,13 +2,11 @@
 
 import dataclasses
 import json
-import sys
 
 import numpy as np
 import pytest
 
 from controllers.clairvoyant import ClairvoyantBounds
-from seatsim.cli.app import main
 from seatsim.schema.errors import InputError
 
 LAWS = """
@@ -53,24 +51,20 @@ class Interrupted:
 
 
 @pytest.fixture
-def compared(seat_file, tmp_path, monkeypatch, capsys):
+def compared(seat_file, tmp_path, monkeypatch, seatsim_command):
     def call(kind):
         seat_file.write_text(seat_file.read_text() + LAWS)
         monkeypatch.setattr("seatsim.simulation.performance_bounds.find", lambda *_: kind)
-        monkeypatch.setattr(
-            sys, "argv", ["seatsim", "compare", str(seat_file), "--bracket", "--out", str(tmp_path / "o")]
-        )
-        with pytest.raises(SystemExit) as end:
-            main()
-        assert end.value.code == 0
-        return capsys.readouterr(), tmp_path / "o"
+        status, out, err = seatsim_command("compare", seat_file, "--bracket", "--out", tmp_path / "o")
+        assert status == 0
+        return out, err, tmp_path / "o"
 
     return call
 
 
 def test_distances_are_printed_and_written(compared):
-    said, folder = compared(Made)
-    assert "above" in said.out and "brackets.json" in said.out
+    said, _, folder = compared(Made)
+    assert "above" in said and "brackets.json" in said
     [rig] = json.loads((folder / "brackets.json").read_text())["rigs"]
     assert rig["width"] == pytest.approx(
         [np.sqrt((0.04 + 400 * 0.012**2) / 0.08) - 1, np.sqrt((0.16 + 0.0036) / 0.15) - 1]
@@ -83,12 +77,11 @@ def test_distances_are_printed_and_written(compared):
 
 
 def test_a_run_below_the_bound_is_told(compared):
-    said, _ = compared(Beaten)
-    assert "seat (soft) is below its bound, which holds for dampers without memory" in said.err
+    assert "seat (soft) is below its bound, which holds for dampers without memory" in compared(Beaten)[1]
 
 
 @pytest.mark.parametrize(("kind", "reason"), [(Refused, "no bracket: the seat is bent"), (Interrupted, "interrupted")])
 def test_the_rest_is_kept_without_a_bracket(compared, kind, reason):
-    said, folder = compared(kind)
-    assert reason in said.err
+    _, said, folder = compared(kind)
+    assert reason in said
     assert (folder / "pareto.png").exists() and not (folder / "brackets.json").exists()

@@ -5,7 +5,7 @@ import time
 import numpy as np
 import pytest
 
-from controllers.synthesis.bfgs import Iterate, _line_search, _update, minimise
+from controllers.synthesis.bfgs import Iterate, _line_search, minimise
 
 BOWL = np.array([[3.0, 1.0], [1.0, 40.0]])
 CENTRE = np.array([2.0, -1.0])
@@ -59,24 +59,6 @@ def test_the_search_ends_when_it_has_enough_or_no_time_or_no_gain():
     assert minimise(bowl(), CENTRE, np.ones(2), later()).value == 0.0
 
 
-def test_the_update_solves_the_secant_equation():
-    here = Iterate(np.array([0.3, 0.4]), 0.0, BOWL @ [0.3, 0.4])
-    there = Iterate(np.array([-0.2, 0.9]), 0.0, BOWL @ [-0.2, 0.9])
-    for fresh in (False, True):
-        H = _update(np.eye(2), here, there, fresh)
-        np.testing.assert_allclose(H @ (there.gradient - here.gradient), there.x - here.x, rtol=1e-12)
-        np.testing.assert_allclose(H, H.T)
-        assert np.linalg.eigvalsh(H)[0] > 0
-    # The first update scales the unit matrix by s'y / y'y; across s and y the scale is all that is left.
-    s, y = there.x - here.x, there.gradient - here.gradient
-    H = _update(np.eye(2), here, there, True)
-    across = np.array([-y[1], y[0]])
-    correction = (s @ across) ** 2 / (s @ y) * 2
-    np.testing.assert_allclose(across @ H @ across, (s @ y) / (y @ y) * (across @ across) + correction, rtol=1e-12)
-    backwards = Iterate(there.x, 0.0, here.gradient - (there.gradient - here.gradient))
-    np.testing.assert_array_equal(_update(np.eye(2), here, backwards, False), np.eye(2))
-
-
 @pytest.mark.parametrize("length", [1e-3, 1.0, 50.0])
 def test_the_line_search_meets_the_weak_wolfe_conditions(length):
     function = bowl()
@@ -87,16 +69,3 @@ def test_the_line_search_meets_the_weak_wolfe_conditions(length):
     assert found.value <= here.value + 1e-4 * step * slope
     assert found.gradient @ direction >= 0.5 * slope
     assert _line_search(function, here, -direction) is None
-
-
-def search(value, gradient):
-    """Search from 0 along a line of slope -1; return the point and its slope."""
-    function = Counted(lambda x: value(x[0]), lambda x: [gradient(x[0])])
-    found = _line_search(function, Iterate(np.zeros(1), 0.0, np.array([-1.0])), np.ones(1))
-    return found.x[0], found.gradient[0]
-
-
-def test_the_line_search_bisects_between_a_point_too_near_and_one_too_far():
-    # A slope of -1 up to a steep wall: 1 and 2 are too near, 4 and 3.5 too far, 3 too near, 3.25 is right.
-    wall = search(lambda x: 100 * max(0.0, x - 3.2) ** 2 - x, lambda x: 200 * max(0.0, x - 3.2) - 1.0)
-    assert wall == pytest.approx((3.25, 9.0))

@@ -5,11 +5,7 @@ import pytest
 from scipy.linalg import block_diag
 
 from controllers.synthesis import norm as module
-from controllers.synthesis.norm import (
-    grid_norm,
-    hinf_norm,
-    largest_singular_values,
-)
+from controllers.synthesis.norm import grid_norm, hinf_norm, largest_singular_values
 from controllers.synthesis.plant import Loop
 
 METHODS = [hinf_norm, grid_norm]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from controllers.synthesis.norm import hinf_norm
-from controllers.synthesis.objective import NormObjective, differentiate_singular_values
+from controllers.synthesis.objective import NormObjective
 from controllers.synthesis.plant import GeneralisedPlant
 from controllers.synthesis.scaling import scale
 
@@ -41,21 +41,6 @@ def test_gradient_of_the_norm(seat, e1, gain):
     np.testing.assert_allclose(objective.log_norm(theta)[1], slopes(objective.log_norm, theta), rtol=1e-4, atol=1e-7)
 
 
-def test_gradients_of_singular_values(random_plant):
-    plant, omega, step = random_plant(1), [0.3, 2.0], 1e-6
-    gain = 0.1 * np.random.default_rng(0).standard_normal((2, 2))
-    values, found = differentiate_singular_values(plant, plant.close(gain), omega, 2)
-    for i in range(2):
-        for j in range(2):
-            moved = np.zeros((2, 2))
-            moved[i, j] = step
-            up, down = (
-                differentiate_singular_values(plant, plant.close(gain + sign * moved), omega, 2)[0] for sign in (1, -1)
-            )
-            np.testing.assert_allclose(found[:, :, i, j], (up - down) / (2 * step), rtol=1e-4, atol=1e-6)
-    assert np.all(values[:, 0] > values[:, 1])
-
-
 def test_angles_undo_entries_and_stay_within_limits(seat):
     plant = scale(seat(30.0)).plant
     low, high = np.array([[-10.0, 0.0]]), np.array([[50.0, 30.0]])
@@ -67,16 +52,6 @@ def test_angles_undo_entries_and_stay_within_limits(seat):
     np.testing.assert_allclose(objective.entries(objective.angles(np.array([1e9, -5.0]))), [49.97, 0.015])
     # For small gains about the centre an angle is the entry.
     assert objective.entries(objective.angles(np.array([20.01, 15.0])))[0] == pytest.approx(20.01)
-
-
-def test_sizes_of_changes_are_the_entries_own(random_plant):
-    limits, unit = np.full((2, 2), 9.0), np.array([[1.0, 50.0], [1.0, 1.0]])
-    objective = NormObjective([random_plant(0, structure=[[1, 1], [0, 0]])], -limits, limits, unit)
-    np.testing.assert_allclose(objective.sizes(np.array([4.0, 0.0])), [4.0, 2.0])
-    np.testing.assert_allclose(objective.sizes(np.zeros(2)), [1.0, 50.0])
-    # 100 is twice the unit of 50: the other is at least a hundredth of twice its own.
-    np.testing.assert_allclose(objective.sizes(np.array([0.0, 100.0])), [0.02, 100.0])
-    np.testing.assert_array_equal(objective.gain(np.array([4.0, 5.0])), [[4.0, 5.0], [0.0, 0.0]])
 
 
 def test_the_worst_plant_counts(random_plant):

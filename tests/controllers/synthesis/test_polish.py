@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from controllers.synthesis.objective import NormObjective
-from controllers.synthesis.polish import _peaks, _solve, _values, polish
+from controllers.synthesis.polish import polish
 
 OPTIMA = {10.0: 1.0681900, 30.0: 1.1359585, 50.0: 1.1848133}
 GAINS = {10.0: [-1937.2, 2013.9], 30.0: [967.0, 2339.1], 50.0: [3268.6, 2613.3]}
@@ -54,23 +54,3 @@ def test_what_is_not_stable_or_has_no_time_comes_back(seat):
     wild, fine = np.array([0.0, -1e5]), np.array([500.0, 2000.0])
     assert polish(problem, wild, later()) is wild
     assert polish(problem, fine, time.monotonic() - 1) is fine
-
-
-def test_the_step_keeps_to_its_trust_and_tells_what_it_promises(seat):
-    problem, entries = objective(seat(30.0)), np.array([1500.0, 3500.0])
-    level = problem.norm(entries)
-    frequencies = _peaks(problem, entries, level)
-    trial, promised = _solve(problem, entries, frequencies, level, 0.1)
-    assert np.all(np.abs(trial - entries) <= 0.1 * np.abs(entries) * (1 + 1e-9))
-    assert promised < level
-    assert promised == pytest.approx(_values(problem, trial, frequencies)[0].max(), rel=1e-12)
-
-
-def test_values_and_slopes_at_frequencies(seat):
-    problem, entries = objective(seat(30.0)), np.array([1500.0, 3500.0])
-    frequencies = [np.array([3.0, 9.0])]
-    values, slopes = _values(problem, entries, frequencies)
-    for k, step in enumerate(np.eye(2) * 1e-2):
-        up, down = (_values(problem, entries + sign * step, frequencies)[0] for sign in (1, -1))
-        np.testing.assert_allclose(slopes[:, k], (up - down) / 2e-2, rtol=1e-4, atol=1e-12)
-    assert values.shape == (2,)

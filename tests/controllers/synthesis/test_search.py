@@ -67,13 +67,3 @@ def test_failure_tells_of_starts_limit_time_and_abscissa():
         ask([plant], 100.0, 1.0)
     with pytest.raises(SynthesisError, match="mode 2 1/s is not reached"):
         ask([state_feedback(), GeneralisedPlant(2 * ONE, ONE, 0 * ONE, ONE, ONE, 0 * ONE, 0 * ONE, 0 * ONE)])
-
-
-def test_where_starts_disagree_the_best_is_looked_about(random_plant):
-    lines = []
-    plant = random_plant(7, n=3)
-    gain = ask([plant], 20.0, 4.0, lines)
-    few = hinf_norm(plant.close(gain)).value
-    assert lines[0] == "searching" and "starts" in lines[1] and "stabilised" in lines[1]
-    assert float(lines[-1].split()[1]) == pytest.approx(few, rel=1e-5)
-    assert np.isfinite(few)

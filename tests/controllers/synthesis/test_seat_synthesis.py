@@ -9,12 +9,10 @@ from controllers.synthesis.norm import grid_norm, hinf_norm
 from controllers.synthesis.plant import GeneralisedPlant
 from controllers.synthesis.verify import verify
 from seatsim.rig.plant import Plant, state_space
-from seatsim.schema.errors import InputError
 
 OPTIMA = {10.0: (1.0681900, [-1937.2, 2013.9]), 30.0: (1.1359585, [967.0, 2339.1]), 50.0: (1.1848133, [3268.6, 2613.3])}
 # From the Riccati equations in 60 digits, with control and noise weights of 1e-7; e1 = 10 from the LMI.
 FULL_ORDER = {10.0: 1.0000889, 30.0: 1.0007985, 50.0: 1.0022106}
-STATED = {10.0: (3.838, 1.110), 30.0: (4.423, 1.194), 50.0: (5.408, 1.477)}
 
 
 @pytest.mark.parametrize("e1", OPTIMA)
@@ -33,12 +31,6 @@ def test_reaches_the_optimum_and_proves_it(seat, designed, e1):
     assert largest_lmi_eigenvalue(seat(e1), design.gain, proof.factor, proof.gamma) == proof.largest_eigenvalue
     assert design.worst.norms_agree
     assert design.lower_bound == pytest.approx(FULL_ORDER[e1], rel=1e-5)
-
-
-@pytest.mark.parametrize("e1", OPTIMA)
-def test_norms_of_stated_gains(seat, e1):
-    norms = [hinf_norm(seat(e1).close([gain])).value for gain in ([0.0, 0.0], [2.0, 2147.6])]
-    np.testing.assert_allclose(norms, STATED[e1], atol=5e-4)
 
 
 def test_the_same_seed_gives_the_same_design(seat, designed):
@@ -76,15 +68,6 @@ def test_matrices_plant_and_state_space_agree(seat, designed):
     assert len({design.gain.tobytes() for design in designs}) == 1
 
 
-@pytest.mark.parametrize(
-    ("bounds", "words"),
-    [(([0.0, 1.0], [0.0, 2.0]), "no room"), ((1.0, 2.0, 3.0), "low, high"), (("a", 1.0), "low, high")],
-)
-def test_wrong_bounds(seat, bounds, words):
-    with pytest.raises(InputError, match=words):
-        synthesise(seat(30.0), bounds=bounds)
-
-
 def test_one_gain_for_drivers_of_50_to_120_kg(seat):
     plants = [seat(50.0, m=m) for m in np.linspace(50.0, 120.0, 15)]
     design = synthesise(plants)
@@ -95,11 +78,6 @@ def test_one_gain_for_drivers_of_50_to_120_kg(seat):
     assert design.worst is design.loops[-1]
     assert all(loop.certificate.delta <= 1e-4 for loop in design.loops)
     assert 1.0 < design.lower_bound <= design.gamma
-
-
-def test_plants_must_be_alike(seat):
-    with pytest.raises(InputError, match="plant 1 has 1 controls"):
-        synthesise([seat(50.0), seat(50.0, structure=[[0, 1]])])
 
 
 def test_disk_margin_of_a_known_loop(seat):

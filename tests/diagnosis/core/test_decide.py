@@ -14,9 +14,7 @@ from seatsim.diagnosis.solution import decide_beside_unknown, decide_without, do
 from .toy import offer, place, pose_tones
 
 RUNS = {"first": 120, "second": 200}
-SIZES = {
-    "a.one": (0.3, 0.0), "b.two": (0.0, 0.5), "c.three": (0.02, 0.0), "d.four": (0.3, 0.1), "e.five": (0.2, 0.1),
-}  # fmt: skip
+SIZES = {"a.one": (0.3, 0.0), "b.two": (0.0, 0.5), "c.three": (0.02, 0.0), "d.four": (0.3, 0.1), "e.five": (0.2, 0.1)}
 EFFECTS = ["z.other", *SIZES]
 
 
@@ -186,13 +184,6 @@ def test_a_set_is_enlarged_where_less_than_a_share_is_left(rig, further, second,
         assert len(found.chosen.parameters.terms) == 1
 
 
-def test_a_set_is_enlarged_where_one_channel_is_explained(rig):
-    first = ({"b.two": 1.0}, 2.0, (4.0, 0.05))
-    for left, size in ((1.7, 2), (1.9, 1)):
-        found = decide(rig, 10.0, [first], [(both(), 1.5, (left, 1.3))])
-        assert len(found.chosen.parameters.terms) == size
-
-
 @pytest.mark.parametrize("first, second, size", [(8.9, 4.1, 1), (8.9, 4.0, 2), (9.1, 4.4, 2), (9.1, 9.2, 0)])
 def test_a_first_effect_that_helps_little_is_kept_for_now(rig, first, second, size):
     found = decide(rig, 10.0, [({"b.two": 0.5}, first)], [(both(0.5, 0.5), second)])
@@ -212,23 +203,6 @@ def test_an_immaterial_effect_is_neither_chosen_nor_named_beside_the_chosen_one_
     assert skipped.chosen.parameters.terms == ()
 
 
-def test_beside_an_unknown_cause_effects_are_weighed_by_what_runs_left_out_support(rig):
-    found = decide(rig, 10.0, [({"b.two": 0.5}, 4.0)])
-    assert found.unknown > 0.9
-    none, chosen, other = (state(rig, effects, 4.0) for effects in ({}, {"a.one": 1.0}, {"d.four": 1.0}))
-    larger = state(rig, {"a.one": 1.0, "d.four": 1.0}, 4.0)
-    tried = [(none, 1.0), (chosen, 0.3), (other, 0.35), (larger, 0.001)]
-    weighed = [(each, math.log(0.05 ** len(each.parameters.terms) / left**4)) for each, left in tried]
-    beside = decide_beside_unknown(rig.settings.decision, found, chosen, [other], weighed)
-    assert (beside.verdict, beside.unknown, beside.none) == ("unknown", found.unknown, 0.01)
-    assert beside.chosen is chosen and beside.groups == [["a.one", "d.four"]]
-    assert list(beside.probabilities) == EFFECTS
-    # Sets larger than the chosen one do not count; the margin is that of an excess, which a mean square does not need.
-    total = 1.0 + 0.05 / 0.3**4 + 0.05 / 0.35**4
-    expected = {"a.one": 0.05 / 0.3**4 / total, "d.four": 0.05 / 0.35**4 / total}
-    assert beside.probabilities == pytest.approx(dict.fromkeys(EFFECTS, 0.006) | expected)
-
-
 @pytest.mark.parametrize(
     ("probability", "shrink", "doubted"), [(0.06, 0.55, True), (0.04, 0.55, False), (0.06, 0.51, False)]
 )
@@ -236,9 +210,11 @@ def test_a_held_out_run_that_speaks_for_another_effect_makes_a_known_one_ambiguo
     known = decide(rig, 10.0, [({"b.two": 0.5}, 0.1)])
     selection = selected(rig, 10.0, [({name: 1.0}, 5.0) for name in ("a.one", "b.two", "c.three")])
     causes = [
-        Cause("b.two", 0.9, 0.5, {}), Cause("a.one", probability, shrink, {}), Cause("c.three", 0.9, 0.9, {}),
+        Cause("b.two", 0.9, 0.5, {}),
+        Cause("a.one", probability, shrink, {}),
+        Cause("c.three", 0.9, 0.9, {}),
         Cause("d.four", 0.006, 0.9, {}),
-    ]  # fmt: skip
+    ]
     found = doubt_single(rig.problem, selection, known, causes)
     assert (found.verdict, found.groups) == (("ambiguous", [["b.two", "a.one"]]) if doubted else ("known", []))
     joined = doubt_single(rig.problem, selection, dataclasses.replace(known, groups=[["b.two", "d.four"]]), causes)

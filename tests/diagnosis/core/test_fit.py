@@ -7,18 +7,7 @@ from scipy.optimize import lsq_linear
 from seatsim.diagnosis.fit import fit, solve_step
 from seatsim.diagnosis.settings import DiagnosisSettings
 
-from .toy import (
-    Cubed,
-    Wild,
-    add_up,
-    draw_signals,
-    make_problem,
-    offer,
-    offer_two,
-    place,
-    stack,
-    weigh_stated,
-)  # fmt: skip
+from .toy import Cubed, Wild, add_up, draw_signals, make_problem, offer, offer_two, place, stack, weigh_stated
 
 NAMES = ["nominal", "nuisance 0", "nuisance 1", "a.one", "a.one beside", "b.two"]
 PAIR = offer_two("a.one", (-2.0, 0.5), (-9.0, -9.0), (9.0, 9.0))

@@ -1,12 +1,9 @@
 """How much effects move a rig, against root mean squares that are known, and which effects stand for each other."""
 
-import dataclasses
-
 import numpy as np
 import pytest
 
 from seatsim.diagnosis.movement import (
-    _expect_power,
     group_equivalent,
     is_material,
     measure_gap_taken,
@@ -136,15 +133,3 @@ def test_the_gap_taken_is_a_share_of_what_a_right_model_would_take():
     assert measure_gap_taken(objective, none, one) == pytest.approx((before - after) / (before - left), rel=1e-6)
     assert measure_gap_taken(objective, none, both) > 0.9 > measure_gap_taken(objective, none, one)
     assert measure_gap_taken(objective, one, none) < 0.0 == measure_gap_taken(objective, one, one)
-
-
-@pytest.mark.parametrize("compared", [101, 60, 5])
-def test_above_the_frequencies_that_are_compared_noise_goes_on_as_it_ends(compared):
-    objective = pose(noise=(0.1, 0.02))
-    samples = RUNS["first"]
-    # White noise of a variance has a mean square of this, whatever part of its spectrum is looked at.
-    power = np.tile(np.array([[0.1], [0.02]]) ** 2 * samples, (1, compared))
-    power[:, 0] /= 2.0  # the mean counts once
-    weights = dataclasses.replace(objective.weights, power={"first": power})
-    found = _expect_power(dataclasses.replace(objective, weights=weights), "first")
-    np.testing.assert_allclose(found, [0.01, 0.0004], rtol=0.01)

@@ -46,9 +46,11 @@ def test_conventions_geometry_and_exponents_do_not_vary():
 def test_a_parameter_is_off_by_its_tolerance_times_the_deviation():
     nominal = scenario()
     parameters = (
-        Nuisance("damper", "c_b", -350.0, 35.0), Nuisance("coil", "rate", 130.0, 13.0),
-        Nuisance("plant", "driver_mass", 80.0, 8.0), Nuisance("damper", "f0", 0.0, 10.0),
-    )  # fmt: skip
+        Nuisance("damper", "c_b", -350.0, 35.0),
+        Nuisance("coil", "rate", 130.0, 13.0),
+        Nuisance("plant", "driver_mass", 80.0, 8.0),
+        Nuisance("damper", "f0", 0.0, 10.0),
+    )
     varied = vary(nominal, parameters, np.array([1.0, -0.5, 0.25, -1.0]))
     assert varied.damper.record == DAMPER._replace(c_b=-315.0, f0=-10.0)
     assert varied.coil == Coil(rate=123.5)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seatsim.diagnosis.noise import weigh_gap
-from seatsim.diagnosis.objective import Evaluation, scale
+from seatsim.diagnosis.objective import Evaluation
 
 from .toy import Cubed, Edge, add_up, draw_signals, make_problem, offer, offer_two, place, weigh_stated, whiten
 
@@ -87,17 +87,6 @@ def test_at_an_upper_bound_the_difference_is_taken_downwards(objective):
     np.testing.assert_allclose(found[1], below * whiten(objective, "b.two"), rtol=1e-5, atol=1e-4)
 
 
-def test_normal_equations_are_products_of_the_stacked_jacobian(objective, evaluation):
-    nuisances, effects = objective.linearise_nuisances(evaluation), objective.linearise_effects(evaluation)
-    for run, whitened in evaluation.whitened.items():
-        own = effects.jacobian[run]
-        stacked = np.vstack([nuisances.jacobian[run], own])
-        matrix, right = nuisances.normal_equations(run, own, whitened)
-        np.testing.assert_allclose(matrix, stacked @ stacked.T, rtol=1e-10)
-        np.testing.assert_allclose(right, stacked @ whitened.ravel(), rtol=1e-10)
-        np.testing.assert_allclose(nuisances.normal_matrices[run], matrix[:2, :2], rtol=1e-12)
-
-
 def test_the_gradient_of_the_cost_is_that_of_the_normal_equations(objective):
     """Half the cost's slope is `-J'r` and the prior's part, where the rig is linear."""
     rig = place(objective.problem, (PAIR, 1.0, -0.5), deviations=[0.25, -0.5])
@@ -135,14 +124,3 @@ def test_weights_by_the_gap_charge_every_further_parameter_by_schwarz(objective,
     # A rig with two more is charged twice as much, in logarithms.
     twice = by_gap.evaluate([rig.add(offer_two("b.two", (1.0, 1.0), (0.0, 0.0), (2.0, 2.0)), np.zeros(2))])[0]
     assert (twice.charged / twice.cost) ** -20 == pytest.approx(40.0**-1.0)
-
-
-def test_numbers_weighed_by_one_objective_are_scaled_to_another(objective, evaluation):
-    by_gap = dataclasses.replace(objective, weights=weigh_gap(objective.problem, evaluation.residuals))
-    expected = by_gap.evaluate([evaluation.parameters])[0].whitened
-    found = scale(evaluation.whitened, objective, by_gap)
-    jacobian = scale(objective.linearise(evaluation, range(3)).jacobian, objective, by_gap)
-    assert not np.allclose(expected["first"], evaluation.whitened["first"])
-    for run, own in by_gap.linearise(by_gap.evaluate([evaluation.parameters])[0], range(3)).jacobian.items():
-        np.testing.assert_allclose(found[run], expected[run], rtol=1e-9)
-        np.testing.assert_allclose(jacobian[run], own, rtol=1e-4, atol=1e-6)

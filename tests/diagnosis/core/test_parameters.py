@@ -19,12 +19,6 @@ def rig():
     return Parameters(np.array([0.5, -1.0])).add(FIRST, np.array([-2.0, 0.25])).add(SECOND, np.array([0.03]))
 
 
-def test_the_bounds_are_in_natural_sizes(rig):
-    low, high = rig.limits
-    np.testing.assert_allclose(low, [-1.0, -1.0, -2.0, 0.0, 0.0])
-    np.testing.assert_allclose(high, [1.0, 1.0, 0.5, 2.0, 5.0])
-
-
 def test_moving_to_a_vector_undoes_the_natural_sizes(rig):
     target = np.array([-0.25, 0.75, -1.5, 1.75, 4.0])
     moved = rig.move_to(target)
@@ -39,9 +33,14 @@ def test_moving_to_a_vector_undoes_the_natural_sizes(rig):
 def test_what_ends_at_a_bound_is_found_unless_it_is_off_there():
     gain = Candidate("sensor.gain", Gain, {"channel": "damper_force"}, ("error",), (0.05,), (-0.5,), (1.0,))
     stop = Candidate(
-        "suspension.end_stop", EndStop, {"power": 1.0}, ("low", "high", "stiffness", "damping"),
-        (-0.01, 0.01, 1e4, 0.5), (-1.0, 0.0, 5e3, 0.0), (0.0, 1.0, 1e6, 100.0),
-    )  # fmt: skip
+        "suspension.end_stop",
+        EndStop,
+        {"power": 1.0},
+        ("low", "high", "stiffness", "damping"),
+        (-0.01, 0.01, 1e4, 0.5),
+        (-1.0, 0.0, 5e3, 0.0),
+        (0.0, 1.0, 1e6, 100.0),
+    )
     bent = stop._replace(
         fixed={}, free=(*stop.free, "power"), start=(*stop.start, 1.0), low=(*stop.low, 1.0), high=(*stop.high, 3.0)
     )
@@ -78,12 +77,6 @@ def test_a_shift_goes_down_where_no_room_is_above(rig, component):
     moved, step = top.shift(component, 0.02)
     assert step == -0.02
     np.testing.assert_allclose(moved.vector - top.vector, -0.02 * (np.arange(5) == component), atol=1e-12)
-
-
-def test_parameters_beyond_the_sizes_of_the_effects_are_counted(rig):
-    assert rig.further == 1
-    assert rig.add(offer_two("coil.three", (1.0, 1.0), (0.0, 0.0), (2.0, 2.0)), np.ones(2)).further == 2
-    assert Parameters(np.zeros(3)).further == 0
 
 
 @pytest.mark.parametrize("start, size", [(1.2, 1.2), (0.2, 0.8), (-0.2, 1.2)])

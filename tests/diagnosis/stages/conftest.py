@@ -2,12 +2,15 @@
 
 import pytest
 
+from ...text import words
 from .toy import NOMINAL, respond_linearly
 
-SIMULATING = (
-    "seatsim.recordings.replay", "seatsim.diagnosis.problem", "seatsim.diagnosis.error_budget",
-    "seatsim.diagnosis.localise.reconstruction", "seatsim.diagnosis.design.experiment",
-)  # fmt: skip
+SIMULATING = tuple(
+    words("""
+    seatsim.recordings.replay seatsim.diagnosis.problem seatsim.diagnosis.error_budget
+    seatsim.diagnosis.localise.reconstruction seatsim.diagnosis.design.experiment
+""")
+)
 """Modules that simulate a rig."""
 
 

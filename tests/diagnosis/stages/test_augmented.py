@@ -24,9 +24,11 @@ from seatsim.simulation.simulate import set_up
 from .toy import NOMINAL, place, pose, record
 
 NUISANCES = (
-    Nuisance("plant", "driver_mass", 80.0, 8.0), Nuisance("damper", "c_a", 250.0, 25.0),
-    Nuisance("coil", "rate", 130.0, 13.0), Nuisance("coil", "delay", 0.01, 0.002),
-)  # fmt: skip
+    Nuisance("plant", "driver_mass", 80.0, 8.0),
+    Nuisance("damper", "c_a", 250.0, 25.0),
+    Nuisance("coil", "rate", 130.0, 13.0),
+    Nuisance("coil", "delay", 0.01, 0.002),
+)
 PRESENT = "effects: [{effect: driver.mass, parameters: {change: 3}}]\n"
 BIAS = Candidate("sensor.bias", Bias, {"channel": "damper_force", "drift": 0.0}, ("share",), (0.1,), (-1.0,), (1.0,))
 BODY = Candidate(
@@ -55,21 +57,6 @@ def test_parameters_move_by_their_deviations_in_tolerances_where_they_stand(prob
     assert content["temperature"] == 20.0 and content["controller"] == before["controller"]
     # What the scenario was read from stays as it is.
     assert problem.scenario.source.data == before
-
-
-def test_effects_are_appended_with_all_their_parameters(problem, tmp_path):
-    other = loaded(problem, NOMINAL + PRESENT, tmp_path)
-    rig = place(problem, (BIAS, 0.25), (BODY, 0.3, 4.5, 0.2))
-    assert write_augmented(other, rig)["effects"] == [
-        {"effect": "driver.mass", "parameters": {"change": 3}},
-        {"effect": "sensor.bias", "parameters": {"channel": "damper_force", "share": 0.25, "drift": 0.0}},
-        {"effect": "driver.biodynamics", "parameters": {"share": 0.3, "frequency": 4.5, "damping": 0.2}},
-    ]
-    # Neither the list nor what it holds is that of the file.
-    other.scenario.source.data["effects"][0]["parameters"]["change"] = 4
-    content = write_augmented(other, rig)
-    content["effects"][0]["parameters"]["change"] = 3
-    assert other.scenario.source.data["effects"] == [{"effect": "driver.mass", "parameters": {"change": 4}}]
 
 
 def test_an_effect_replaces_the_one_of_the_nominal_scenario_at_its_place(problem, tmp_path):

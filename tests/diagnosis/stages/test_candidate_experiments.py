@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 
 from seatsim.diagnosis.design.candidate_experiments import EXCITATIONS, SWEPT, excite, list_candidate_experiments
-from seatsim.excitations.bumps import Bumps
-from seatsim.excitations.periodic import Chirp, Sine
 from seatsim.simulation.inputs import BenchInputs
 
 from .toy import CHANNELS, RATE, pose, record
@@ -44,36 +42,6 @@ def test_the_cheapest_come_first_and_a_sensor_is_added_where_it_lacks(seat):
     assert added == {"coil_current": ("coil_current",), "load_cell": ("damper_force",)}
     full = dataclasses.replace(seat, channels=CHANNELS)
     assert list(by_name(full)) == [*EXCITED, *INTERVENTIONS]
-
-
-def test_excitations_say_what_to_shake(seat, bench):
-    assert by_name(seat)["sweep"].text == "sweep the floor from 1 to 20 Hz at 1.5 m/s^2"
-    assert by_name(bench)["sweep"].text == "sweep the damper from 1 to 20 Hz at 1.5 m/s^2"
-    assert by_name(seat)["large_slow_sine"].text == "shake the floor at 0.5 Hz with 25 mm"
-    assert by_name(seat)["bump"].text == "drive over a bump of 50 mm"
-
-
-@pytest.mark.parametrize(
-    ("name", "excitation"),
-    [
-        ("bump", Bumps(shape="haversine", height=0.05, length=1.0, speed=3.0, duration=8.0, through="direct")),
-        (
-            "sweep",
-            Chirp(start_frequency=1.0, stop_frequency=20.0, amplitude=1.5, duration=12.0, quantity="acceleration"),
-        ),
-        ("large_slow_sine", Sine(amplitude=0.025, frequency=0.5, duration=12.0)),
-        ("very_slow_sine", Sine(amplitude=0.025, frequency=0.05, duration=20.0)),
-        ("current_steps", Sine(amplitude=0.03, frequency=1.0, duration=12.0)),
-    ],
-)  # fmt: skip
-def test_the_floor_of_an_excitation_is_that_of_its_scenario(seat, name, excitation):
-    found, step = by_name(seat)[name], seat.scenario.solver.step
-    floor = excitation.floor(step, 0)
-    assert found.floor.step == step
-    assert np.array_equal(found.floor.acceleration, floor.acceleration)
-    keys = {key: value for key, value in found.scenario["excitation"].items() if key != "kind"}
-    assert keys.items() <= excitation._asdict().items()
-    assert not found.set and found.added_sensors == ()
 
 
 def test_a_switched_current_is_off_and_nearly_full_every_quarter_of_a_second(seat):

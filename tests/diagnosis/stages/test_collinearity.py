@@ -1,14 +1,10 @@
 """Collinearity of effects of a linear seat, against angles between what ridge regressions leave of their signals."""
 
 import numpy as np
-import pytest
-from scipy.optimize import lsq_linear
 
-from seatsim.diagnosis.candidates import list_candidates
-from seatsim.diagnosis.design.separability import fit_member, measure_collinearity, stack_whitened
-from seatsim.diagnosis.objective import Parameters
+from seatsim.diagnosis.design.separability import measure_collinearity
 
-from .toy import Added, offer, place, pose, record, weigh_stated, whiten
+from .toy import offer, place, pose, record, weigh_stated, whiten
 
 PRIOR = 0.58
 
@@ -55,65 +51,9 @@ def test_identical_effects_have_one_and_those_that_share_nothing_have_zero(folde
     assert np.allclose(matrix, [[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 1.0]], atol=1e-9)
 
 
-def bend(objective, share):
-    return share * whiten(objective, "one") + share**2 * whiten(objective, "three")
-
-
-@pytest.mark.parametrize("amount", [2.0, 0.5, 0.001, 15.0])
-def test_an_effect_that_the_rig_lacks_is_made_as_large_as_the_largest_fitted_one(folder, amount):
-    objective = make_objective(folder)
-    nuisances = linearise(objective, (offer("a", "two"), amount), (offer("b", "three"), 0.1 * amount))
-    sizes = [np.linalg.norm(amount * share * whiten(objective, cause)) for cause, share in [("two", 1), ("three", 0.1)]]
-    assert sizes[0] > sizes[1]
-    # From its start of 0.2, by no more than a factor of 8, within its bounds of 0 to 0.95.
-    share = min(0.2 * np.clip(sizes[0] / np.linalg.norm(bend(objective, 0.2)), 1.0 / 8.0, 8.0), 0.95)
-    expected = cosine(leave(objective, whiten(objective, "two")), leave(objective, bend(objective, share)))
-    names, matrix = compare(objective, nuisances, "a", "driver.biodynamics", "b")
-    assert names[1] == "driver.biodynamics"
-    assert matrix[0, 1] == pytest.approx(expected, abs=1e-6)
-
-
 def test_names_that_cannot_act_here_are_left_out_and_repeated_ones_said_once(folder):
     objective = make_objective(folder)
     nuisances = linearise(objective, (offer("a", "one"), 1.0))
     found = compare(objective, nuisances, "a", "no.such", "a")
     assert found.effects == ["a"] and np.array_equal(found.matrix, [[1.0]])
     assert compare(objective, nuisances).matrix.shape == (0, 0)
-
-
-def solve(objective, causes):
-    """Return the least-squares amounts of the causes, and the cost, under prior and bounds of the nuisances."""
-    columns = np.array(
-        [*(0.1 * whiten(objective, c) for c in ("mass", "stiffness")), *(whiten(objective, c) for c in causes)]
-    )
-    rows = np.vstack([columns.T, np.eye(2, len(columns)) / PRIOR])
-    nominal = objective.evaluate([Parameters(objective.problem.nominal)])[0]
-    target = np.concatenate([stack_whitened(objective, nominal.whitened), np.zeros(2)])
-    limits = np.array([1.0, 1.0, *(np.inf for _ in causes)])
-    best = lsq_linear(rows, target, (-limits, limits), tol=1e-14).x
-    return best[2:], float(np.sum((target - rows @ best) ** 2))
-
-
-@pytest.fixture(scope="module")
-def rubbing(folder):
-    """A rig with two effects, one of which two others could stand for."""
-    objective = make_objective(folder, truth=(Added("one", 0.5), Added("two", 0.4), Added("three", 0.5)))
-    return objective, linearise(objective, (offer("x.one", "one"), 0.7), (offer("y.three", "three"), 0.5))
-
-
-def test_a_member_stands_alone_for_its_group_and_is_fitted(rubbing):
-    objective, nuisances = rubbing
-    found = fit_member(objective, nuisances, "suspension.friction", ["x.one", "suspension.friction"])
-    assert [term.effect for term in found.parameters.terms] == ["y.three", "suspension.friction"]
-    amounts, cost = solve(objective, ["three", "two"])
-    assert found.cost == pytest.approx(cost, rel=1e-6)
-    assert [found.parameters.values[0][0], 0.01 * found.parameters.values[1][0]] == pytest.approx(
-        list(amounts), rel=1e-4
-    )
-
-
-def test_of_all_structures_the_best_is_returned(rubbing):
-    objective, nuisances = rubbing
-    found = fit_member(objective, nuisances, "damper.seal_friction", ["x.one", "damper.seal_friction"])
-    starts = [c for c in list_candidates(objective.problem) if c.effect == "damper.seal_friction"]
-    assert len(starts) > 1 and found.cost == pytest.approx(solve(objective, ["three", "one"])[1], rel=1e-6)

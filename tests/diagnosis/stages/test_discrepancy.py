@@ -3,12 +3,7 @@
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.localise.discrepancy import (
-    Discrepancy,
-    describe_in_words,
-    is_bias_drift,
-    is_from_outside,
-)
+from seatsim.diagnosis.localise.discrepancy import Discrepancy, describe_in_words, is_bias_drift, is_from_outside
 from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.diagnosis.settings.examining import LocalisationSettings
 
@@ -26,10 +21,16 @@ def found(signals, shares=None, block="suspension", channel=""):
 @pytest.mark.parametrize(
     ("predicted", "strengths", "outside"),
     [
-        (0.03, (1.0, 1.0), True), (0.119, (1.0, 1.0), True), (0.121, (1.0, 1.0), False), (0.03, (1.0, 1.39), True),
-        (0.03, (1.0, 1.41), False), (0.03, (1.41, 1.0, 1.2), False), (0.5, (1.0, 2.0), False), (0.03, (2.0,), True),
+        (0.03, (1.0, 1.0), True),
+        (0.119, (1.0, 1.0), True),
+        (0.121, (1.0, 1.0), False),
+        (0.03, (1.0, 1.39), True),
+        (0.03, (1.0, 1.41), False),
+        (0.03, (1.41, 1.0, 1.2), False),
+        (0.5, (1.0, 2.0), False),
+        (0.03, (2.0,), True),
     ],
-)  # fmt: skip
+)
 def test_what_is_not_predicted_and_as_strong_in_every_run_comes_from_outside(predicted, strengths, outside):
     # A constant part is no strength, and one family alone is not all of them.
     signals = [strength * WAVE + 5.0 * k for k, strength in enumerate(strengths)]
@@ -61,17 +62,22 @@ def tone(frequency, rms=1.0, samples=2000):
 @pytest.mark.parametrize(
     ("signals", "block", "drifts"),
     [
-        ([tone(0.1)], "sensor", True), ([tone(0.5)], "sensor", True), ([tone(0.6)], "sensor", False),
-        ([tone(0.1)], "suspension", False), ([np.ones(2000)], "sensor", True),
+        ([tone(0.1)], "sensor", True),
+        ([tone(0.5)], "sensor", True),
+        ([tone(0.6)], "sensor", False),
+        ([tone(0.1)], "suspension", False),
+        ([np.ones(2000)], "sensor", True),
         # 0.95 and 0.85 of the power are slow.
         ([tone(0.2, np.sqrt(0.95)) + tone(3.0, np.sqrt(0.05))], "sensor", True),
         ([tone(0.2, np.sqrt(0.85)) + tone(3.0, np.sqrt(0.15))], "sensor", False),
         # The runs count together.
-        ([tone(0.2, 2.0), tone(3.0, 0.5)], "sensor", True), ([tone(0.2, 1.0), tone(3.0, 0.5)], "sensor", False),
+        ([tone(0.2, 2.0), tone(3.0, 0.5)], "sensor", True),
+        ([tone(0.2, 1.0), tone(3.0, 0.5)], "sensor", False),
         # A run of half the length has bins of twice the width.
-        ([tone(0.4, samples=1000)], "sensor", True), ([tone(0.6, samples=1000)], "sensor", False),
+        ([tone(0.4, samples=1000)], "sensor", True),
+        ([tone(0.6, samples=1000)], "sensor", False),
     ],
-)  # fmt: skip
+)
 def test_what_is_slow_and_a_sensors_is_the_drift_of_its_zero(signals, block, drifts):
     assert is_bias_drift(SETTINGS, found(signals, block=block), RATE, 0.0) is drifts
 

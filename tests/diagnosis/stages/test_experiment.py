@@ -3,19 +3,14 @@
 import dataclasses
 import re
 
-import numpy as np
 import pytest
 
 from seatsim.diagnosis.candidates import Candidate
-from seatsim.diagnosis.design import experiment
-from seatsim.diagnosis.design.candidate_experiments import CandidateExperiment, list_candidate_experiments
 from seatsim.diagnosis.design.experiment import propose_experiment
 from seatsim.effects.sensor import Gain
-from seatsim.excitations.base import Floor
 
-from .toy import RATE, SIZES, SKIP, Added, add_taps, offer, place, pose, record, slow_floor, weigh_stated
+from .toy import SKIP, Added, offer, place, pose, record, slow_floor, weigh_stated
 
-PRIOR, WIDE = 0.58, 10.0
 NOISE = 0.05
 GROUP, GROUP_FAST = ["x.slow", "damper.gas_spring"], ["x.fast", "damper.gas_spring"]
 
@@ -47,74 +42,6 @@ def test_the_cheapest_experiment_that_parts_the_members_is_proposed(equivalent):
     assert found.scenario["name"] == "experiment-sweep"
 
 
-def ridge(change, columns, deviations):
-    rows = np.vstack([columns.T, np.diag(1.0 / np.array(deviations))])
-    target = np.concatenate([change, np.zeros(len(deviations))])
-    return target - rows @ np.linalg.lstsq(rows, target, rcond=None)[0]
-
-
-def stack_taps(problem, cause, weights, floor):
-    """Return the weighted signal of a cause under a floor at the rows, without the first second, on end."""
-    return (weights * add_taps(cause, floor)[:2, SKIP:]).ravel()
-
-
-def assess(objective, nuisances, base, members, name):
-    (candidate,) = [c for c in list_candidate_experiments(objective.problem) if c.name == name]
-    return experiment._assess(objective, nuisances, base, members, candidate), candidate
-
-
-@pytest.fixture(scope="module")
-def assessed(folder):
-    """Two rigs with an effect each, and the rig without, all unfitted."""
-    objective = make_objective(folder, (Added("one", 0.5),))
-    problem, terms = objective.problem, [(offer("a", "one"), 0.5), (offer("b", "two"), 0.4)]
-    first, second, base = objective.evaluate([place(problem, terms[0]), place(problem, terms[1]), place(problem)])
-    return objective, objective.linearise_nuisances(first), base, [first, second]
-
-
-@pytest.mark.parametrize("name", ["sweep", "added_mass"])
-def test_separability_and_likeness_are_those_of_the_signals_under_the_floor_of_the_experiment(assessed, name):
-    objective, nuisances, base, members = assessed
-    found, candidate = assess(objective, nuisances, base, members, name)
-    step = round(1.0 / RATE / candidate.floor.step)
-    floor = candidate.floor.acceleration[::step]
-    added = (candidate.set.get("plant.driver_mass", 80.0) - 80.0) / 80.0
-    rig = add_taps("floor", floor) + 0.5 * add_taps("one", floor) + added * add_taps("mass", floor)
-    if candidate.floor.command is not None:
-        rig = rig + add_taps("current", candidate.floor.command[::step])
-    noise = NOISE * SIZES[:2]
-    weights = 1.0 / np.hypot(noise, 0.01 * np.std(rig[:2, SKIP:], axis=1))[:, None]
-    signals = {cause: stack_taps(objective.problem, cause, weights, floor) for cause in ("one", "two", "mass")}
-    own = {"one": signals["one"], "two": signals["two"]}
-    # The tolerance is relative, so that a mass that was set is known as well as the nominal one.
-    shared = 0.1 * (1.0 + added) * signals["mass"][None]
-    changes = [0.5 * signals["one"], 0.4 * signals["two"]]
-    left = [ridge(change, shared, [PRIOR]) for change in changes]
-    likeness = (2.0 * abs(left[0] @ left[1]) + 1.0) / (left[0] @ left[0] + left[1] @ left[1] + 1.0)
-    assert found.likeness == pytest.approx(likeness, rel=1e-6)
-    whitened = {cause: whiten_all(objective, cause) for cause in ("one", "two", "mass")}
-    known = 0.1 * whitened["mass"][None]
-    gains = []
-    for cause in own:
-        gap_old = 0.4 * whitened["two"] - 0.5 * whitened["one"]
-        gap_new = changes[1] - changes[0]
-        both = np.hstack([np.vstack([known, whitened[cause]]), np.vstack([shared, own[cause]])])
-        after = ridge(np.concatenate([gap_old, gap_new]), both, [PRIOR, WIDE])
-        before = ridge(gap_old, np.vstack([known, whitened[cause]]), [PRIOR, WIDE])
-        gains.append(after @ after - before @ before)
-    assert found.separability == pytest.approx(np.sqrt(min(gains)), rel=1e-5)
-
-
-def whiten_all(objective, cause):
-    problem = objective.problem
-    parts = []
-    for run in problem.runs:
-        floor = problem.recording.table(run)["floor_acceleration"]
-        rows = slice(SKIP, SKIP + problem.measured[run].shape[1])
-        parts.append(objective.weights(add_taps(cause, floor)[:2, rows], run).ravel())
-    return np.concatenate(parts)
-
-
 def test_an_optimised_excitation_parts_the_members_better_within_travel_and_current(equivalent):
     objective, nuisances = equivalent
     usual = objective.settings
@@ -130,18 +57,6 @@ def test_an_optimised_excitation_parts_the_members_better_within_travel_and_curr
     assert 0.0 < found.scenario["controller"]["current"] <= top
     # No floor that moves the suspension is within no travel: a change of the rig is proposed, or nothing.
     assert propose(largest_travel=1e-12).kind != "excitation"
-
-
-def test_the_reach_of_an_excitation_is_its_share_of_the_travel(assessed):
-    objective, nuisances, base, members = assessed
-    problem, (found, candidate) = objective.problem, assess(objective, nuisances, base, members, "sweep")
-    rig = nuisances.evaluation.parameters
-    travel = experiment._respond(problem, candidate, rig)["suspension_displacement"]
-    assert found.reach == pytest.approx(np.max(np.abs(travel)) / 0.05)
-    plant = problem.scenario.plant._replace(travel=(-1e3, 0.02))
-    stated = dataclasses.replace(problem, scenario=dataclasses.replace(problem.scenario, plant=plant))
-    assert experiment._measure_reach(stated, candidate, rig) == pytest.approx(np.max(travel) / 0.02)
-    assert assess(objective, nuisances, base, members, "added_mass")[0].reach == 0.0
 
 
 def gain(channel, amount=0.1):
@@ -165,16 +80,3 @@ def test_beside_a_calibration_the_other_members_are_parted(folder):
     found = propose_experiment(objective, nuisances, group)
     first = "calibrating driver acceleration tells a wrong sensor from a change of the rig; beside that, "
     assert found.reason.startswith(first) and found.kind in ("excitation", "none")
-
-
-def test_noise_is_that_stated_or_usual_and_a_share_of_the_channel(equivalent):
-    problem = equivalent[0].problem
-    silent = {name: entry._replace(noise_rms=0.0) for name, entry in problem.recording.channels.items()}
-    unstated = dataclasses.replace(problem, recording=dataclasses.replace(problem.recording, channels=silent))
-    candidate = CandidateExperiment("x", "", Floor(0.005, *[np.zeros(3)] * 3), ("damper_force", "coil_current"))
-    outputs = np.array([[1.0, -1.0], [20.0, -20.0], [1000.0, 0.0], [1.0, 1.0]])
-    expected = 1.0 / np.hypot([0.05, 0.05, 2.5, 0.003], 0.01 * np.array([1.0, 20.0, 500.0, 0.0]))
-    assert experiment._weigh(problem, candidate, outputs) == pytest.approx(expected[:, None])
-    expected = 1.0 / np.hypot([0.03, 0.015, 2.5, 0.003], 0.01 * np.array([1.0, 20.0, 500.0, 0.0]))
-    assert experiment._weigh(unstated, candidate, outputs) == pytest.approx(expected[:, None])
-    assert dict(experiment.USUAL_NOISE)["suspension_displacement"] == 5e-5

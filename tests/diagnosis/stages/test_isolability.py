@@ -16,6 +16,8 @@ from seatsim.diagnosis.design.isolability import (
     find_overdetermined,
 )
 
+from ...text import parse, words
+
 
 def equation(unknowns, fault=None):
     return Equation(frozenset(unknowns), fault)
@@ -52,37 +54,22 @@ def test_groups_of_a_bench_by_hand(channels, groups):
     assert find_isolable_groups("damper_bench", channels) == groups
 
 
-@pytest.mark.parametrize(
-    ("channels", "groups"),
-    [
-        # x' = v and v' = as - a0 with all three measured test the sensors alone. What the motion then says of all
-        # forces is left over once: the force balance of the frame, which every block enters.
-        (
-            {"floor_acceleration", "frame_acceleration", "suspension_displacement"},
-            [["damper", "coil", "suspension", "cushion", "driver", "floor"], ["sensor"]],
-        ),
-        # The driver hangs on the frame by the cushion: 4 unknowns xc, vc, Fc and the two measured accelerations.
-        ({"frame_acceleration", "driver_acceleration"}, [["cushion", "driver", "sensor"]]),
-        # Fd from x, v and the stated current, against the load cell.
-        ({"suspension_displacement", "damper_force"}, [["damper", "coil", "sensor"]]),
-        ({"frame_acceleration"}, []),
-    ],
-)
-def test_groups_of_a_seat_by_hand(channels, groups):
-    assert find_isolable_groups("seat", channels) == groups
-
-
 LINES = [
-    ("floor", "frame_acc spring cushion_force damper"), ("suspension", "spring x v"), 
+    ("floor", "frame_acc spring cushion_force damper"),
+    ("suspension", "spring x v"),
     ("driver", "driver_acc cushion_force"),
-    ("cushion", "cushion_force xc vc"), ("damper", "damper x v i"), ("", "x v"), ("", "v frame_acc floor_acc"),
-    ("", "xc vc"), ("", "vc driver_acc frame_acc"),
-]  # fmt: skip
+    ("cushion", "cushion_force xc vc"),
+    ("damper", "damper x v i"),
+    ("", "x v"),
+    ("", "v frame_acc floor_acc"),
+    ("", "xc vc"),
+    ("", "vc driver_acc frame_acc"),
+]
 """The seat once more: force balance of frame and driver, laws of spring, cushion and damper, and derivatives."""
-MEASURED = {
-    "floor_acceleration": "floor_acc", "frame_acceleration": "frame_acc", "driver_acceleration": "driver_acc",
-    "suspension_displacement": "x", "damper_force": "damper", "coil_current": "i",
-}  # fmt: skip
+MEASURED = parse("""
+    {floor_acceleration: floor_acc, frame_acceleration: frame_acc, driver_acceleration: driver_acc,
+     suspension_displacement: x, damper_force: damper, coil_current: i}
+""")
 
 
 def group_by_rank(channels):
@@ -151,10 +138,12 @@ def test_sentences_on_a_bench(channels, sentences):
 
 
 def test_a_seat_without_the_driver_lists_what_cannot_be_told_and_what_cannot_be_judged():
-    full = {
-        "floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force",
-        "coil_current", "current_command",
-    }  # fmt: skip
+    full = set(
+        words("""
+        floor_acceleration frame_acceleration driver_acceleration suspension_displacement damper_force
+        coil_current current_command
+    """)
+    )
     assert describe_missing_sensors("seat", full - {"driver_acceleration", "damper_force"}) == [
         "without damper_force, damper and suspension or cushion or driver cannot be distinguished: add a load cell at"
         " the damper",

@@ -27,18 +27,6 @@ def test_a_projection_is_what_a_ridge_regression_leaves(drawn):
         assert np.allclose(found, regress(change, sensitivities, deviations), atol=1e-10)
 
 
-def test_its_power_is_the_least_cost_that_parameters_can_reach(drawn):
-    changes, sensitivities, deviations = drawn
-    least = np.sum(project(*drawn)[0] ** 2)
-
-    def cost(u):
-        return np.sum((changes[0] - u @ sensitivities) ** 2) + np.sum((u / deviations) ** 2)
-
-    best = np.linalg.solve(sensitivities @ sensitivities.T + np.diag(deviations**-2), sensitivities @ changes[0])
-    assert least == pytest.approx(cost(best))
-    assert all(cost(best + 0.01 * shift) > least for shift in np.vstack([np.eye(4), -np.eye(4)]))
-
-
 def test_cosines_are_those_of_the_angles_between_vectors():
     angles = np.radians([0.0, 60.0, 180.0, 90.0])
     vectors = np.array([1.0, 5.0, 0.2, 3.0])[:, None] * np.array([np.cos(angles), np.sin(angles)]).T

@@ -4,7 +4,6 @@ import dataclasses
 
 import numpy as np
 import pytest
-from scipy.signal import decimate
 
 from seatsim.diagnosis.localise.discrepancy import explain_signal, predict_share
 from seatsim.diagnosis.settings.examining import LocalisationSettings
@@ -49,19 +48,6 @@ def test_each_run_is_predicted_by_the_others(ridge):
     assert predict_share(settings, regressors, target) == pytest.approx(expected, rel=1e-6)
 
 
-def test_a_single_run_is_predicted_by_halves():
-    regressors = draw({"a": 101})
-    known = regressors["a"]
-    target = np.array([1.0, -0.02, 30.0]) @ known + np.random.default_rng(2).standard_normal(101)
-    halves = slice(0, 50), slice(50, 101)
-    errors = [
-        ridge_errors(SETTINGS, (known[:, train], target[train]), (known[:, test], target[test]))
-        for train, test in (halves, halves[::-1])
-    ]
-    expected = 1.0 - np.sum(np.concatenate(errors) ** 2) / np.sum(target**2)
-    assert predict_share(SETTINGS, regressors, {"a": target}) == pytest.approx(expected, rel=1e-6)
-
-
 def test_what_the_regressors_make_is_predicted_and_what_they_do_not_is_not():
     regressors = draw({"a": 200, "b": 200})
     made = {run: np.array([1.0, -0.02, 30.0]) @ known for run, known in regressors.items()}
@@ -95,45 +81,6 @@ def of_motion(problem, make):
         floor = problem.recording.table(run)["floor_acceleration"][SKIP : SKIP + len(x)]
         signals[run] = make(x, np.gradient(x, 1.0 / RATE), i, floor)
     return signals
-
-
-def thin(values):
-    """Return every second row of a signal, as `explain_signal` has it, as if it were sampled at 200 rows per second."""
-    return decimate(values, 2, ftype="fir")
-
-
-def own_families(problem, run):
-    """Return the families of regressors of a run by their formulas."""
-
-    def lagged(values):
-        return [np.concatenate([np.full(k, values[0]), values[: len(values) - k]]) for k in range(10)]
-
-    (x, v, i, a) = (thin(values) for values in of_motion(problem, lambda *parts: parts)[run])
-    slow, fast = np.tanh(v / 0.03), np.tanh(v / 0.005)
-    return {
-        "displacement": [x, x * abs(x), x**3],
-        "velocity": [v, v * abs(v), v**3, slow, fast],
-        "velocity and current": [i, i * v, i * slow, i * fast, i**2 * slow, i * x, np.gradient(i)],
-        "past motion": lagged(x) + lagged(v),
-        "floor motion": lagged(a),
-    }
-
-
-def test_families_are_those_of_the_simulated_motion(problem):
-    rng = np.random.default_rng(4)
-    signals = of_motion(
-        problem, lambda x, v, i, a: 300.0 * x + v + 5.0 * i * np.tanh(v / 0.005) + rng.standard_normal(len(x))
-    )
-    found = explain_signal(problem, place(problem), signals)
-    families = {run: own_families(problem, run) for run in problem.runs}
-    target = {run: thin(values) for run, values in signals.items()}
-    assert list(found) == [*FAMILIES, "everything"]
-    for family in FAMILIES:
-        regressors = {run: np.array(each[family]) for run, each in families.items()}
-        assert found[family] == pytest.approx(predict_share(SETTINGS, regressors, target), abs=1e-9)
-    together = {run: np.vstack(list(each.values())) for run, each in families.items()}
-    alone = max(found[family] for family in FAMILIES)
-    assert found["everything"] == pytest.approx(max(predict_share(SETTINGS, together, target), alone), abs=1e-9)
 
 
 @pytest.mark.parametrize(

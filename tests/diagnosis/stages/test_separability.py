@@ -38,19 +38,3 @@ def test_the_nearest_pair_counts():
     old = predict([[0.0, 0.0]] * 3)
     new = predict([[0.0, 0.0], [3.0, 4.0], [3.0, 6.0]])
     assert measure_separability(old, new, 1.0, 1.0) == pytest.approx(2.0)
-
-
-def test_two_nuisances_keep_the_tight_prior_beside_an_own_parameter():
-    # The nuisances have 0.1, the own parameter 10: the first two directions stay nearly whole.
-    old = predict([[0.0] * 3] * 2, np.zeros((2, 3)), [np.zeros((1, 3))] * 2)
-    new = predict([[0.0] * 3, [3.0, 4.0, 5.0]], np.eye(3)[:2], [np.eye(3)[2:]] * 2)
-    expected = 9.0 / 1.01 + 16.0 / 1.01 + 25.0 / 101.0
-    assert measure_separability(old, new, 0.1, 10.0) == pytest.approx(np.sqrt(expected))
-
-
-def test_rigs_may_have_different_numbers_of_own_parameters():
-    own = [np.eye(3)[1:], np.eye(3)[:1]]
-    old = predict([[0.0] * 3] * 2, np.zeros((0, 3)), [np.zeros((2, 3)), np.zeros((1, 3))])
-    new = predict([[0.0] * 3, [3.0, 4.0, 5.0]], np.zeros((0, 3)), own)
-    # The first rig may move along two axes, the second along one: 9 + 41 / 2 is less than 9 / 2 + 41.
-    assert measure_separability(old, new, 9.0, 1.0) == pytest.approx(np.sqrt(29.5))

@@ -10,7 +10,7 @@ from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.result import Share
 from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.solution import Solution
-from seatsim.diagnosis.state import state_diagnosis, validate_on_held_out
+from seatsim.diagnosis.state import validate_on_held_out
 
 from .toy import CHANNELS, Added, offer, place, pose, record, weigh_stated
 
@@ -86,8 +86,3 @@ def test_a_known_effect_that_takes_too_little_off_the_held_out_run_stays_beside_
     assert decision.verdict == "unknown" and decision.unknown == 0.55
     assert decision.chosen is solution.decision.chosen
     assert decision.probabilities == solution.decision.probabilities
-
-
-def state(solution, notes=()):
-    said = []
-    return state_diagnosis(solution, notes, said.append), said

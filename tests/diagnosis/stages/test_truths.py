@@ -2,6 +2,7 @@
 
 import dataclasses
 import itertools
+import json
 from functools import cache
 from typing import NamedTuple
 
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 from ruamel.yaml import YAML
 
+from seatsim.cli.outputs.writing import write_diagnosis
 from seatsim.diagnosis.diagnose import diagnose, diagnose_problem
 from seatsim.diagnosis.result import Estimate, Share
 from seatsim.diagnosis.settings import DiagnosisSettings
@@ -17,6 +19,7 @@ from seatsim.effects.damper import GasSpring, SealFriction
 from seatsim.effects.seat import Friction, Mass, ProgressiveSpring
 from seatsim.effects.sensor import Gain
 from seatsim.recordings.gap import measure_gap
+from seatsim.report.formatting import format_sentence
 from seatsim.scenario.loading import single
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import names
@@ -30,15 +33,19 @@ SLOW = {run: slow_floor(SKIP + 300, seed) for seed, run in enumerate(RUNS, 3)}
 
 def drift(problem):
     """A zero of the frame's accelerometer that wanders."""
-    return {run: {"frame_acceleration": 0.3 * np.sin(2.0 * np.pi * 0.25 / problem.rate * np.arange(values.shape[1]))}
-            for run, values in problem.measured.items()}  # fmt: skip
+    return {
+        run: {"frame_acceleration": 0.3 * np.sin(2.0 * np.pi * 0.25 / problem.rate * np.arange(values.shape[1]))}
+        for run, values in problem.measured.items()
+    }
 
 
 def hiss(problem):
     """White noise on the frame's accelerometer, far above what its sensor states."""
     rng = np.random.default_rng(9)
-    return {run: {"frame_acceleration": 0.5 * rng.standard_normal(values.shape[1])}
-            for run, values in problem.measured.items()}  # fmt: skip
+    return {
+        run: {"frame_acceleration": 0.5 * rng.standard_normal(values.shape[1])}
+        for run, values in problem.measured.items()
+    }
 
 
 def pushed(newtons, port):
@@ -195,23 +202,31 @@ def test_neither_the_order_of_the_channels_nor_that_of_the_runs_changes_the_answ
     runs = dict(list(turned.runs.items())[:2][back] + list(turned.runs.items())[2:])
     channels = problem.channels[back]
     other = dataclasses.replace(
-        problem, channels=channels, recording=dataclasses.replace(turned, runs=runs), runs=tuple(runs),
+        problem,
+        channels=channels,
+        recording=dataclasses.replace(turned, runs=runs),
+        runs=tuple(runs),
         measured={run: problem.measured[run][back] for run in runs},
-    )  # fmt: skip
+    )
     again = diagnose_problem(other, without=row.without)
     assert (again.verdict, again.selected, again.indistinguishable) == (
-        found.verdict, found.selected, found.indistinguishable,
-    )  # fmt: skip
+        found.verdict,
+        found.selected,
+        found.indistinguishable,
+    )
     for effect, (field, _) in row.sizes.items():
         values = [next(c for c in each.causes if c.effect == effect).parameters[field].value for each in (found, again)]
         assert values[1] == pytest.approx(values[0], rel=1e-3)
 
 
-def test_the_augmented_scenario_leaves_the_gap_that_is_stated_and_the_pictures_show(solved, tmp_path):
+def test_the_files_of_a_diagnosis_hold_the_gap_that_is_stated_and_the_pictures_show(solved, tmp_path):
     _, problem, found, _ = solved("two effects")
-    path = tmp_path / "augmented.yaml"
-    YAML(typ="safe").dump(found.augmented, path)
-    left = measure_gap(single(path), problem.recording, found.held_out)
+    write_diagnosis(found, tmp_path)
+    written = json.loads((tmp_path / "diagnosis.json").read_text())
+    assert {cause["effect"] for cause in written["causes"]} == set(names("effect"))
+    assert sum(place["share"] for place in written["where"]) == pytest.approx(1.0)
+    assert format_sentence(found.sentence) in (tmp_path / "report.html").read_text()
+    left = measure_gap(single(tmp_path / "augmented.yaml"), problem.recording, written["held_out"])
     assert left.overall == pytest.approx(found.gap.after.overall, rel=1e-6)
     for k, trace in enumerate(found.evidence.traces):
         assert (trace.run, trace.channel) == (found.held_out[0], problem.channels[k])

@@ -32,12 +32,6 @@ def test_what_no_parameter_can_take_is_left_to_the_first_search(folder):
     assert len(notes) in (0, 2) and all("the stated tolerance holds" in note for note in notes[1:])
 
 
-@pytest.fixture
-def two(folder):
-    """A rig with one effect whose driver is heavier by one and a half times the tolerance."""
-    return pose(record(folder, (Added("one", 1.0), Mass(12.0)), RUNS, CHANNELS[:4], noise=0.02), 2)
-
-
 def test_a_parameter_at_its_bound_has_its_values_and_its_key(absorbed):
     rig = place(absorbed, deviations=[-1.0, 0.97])
     assert find_at_bound(absorbed, rig.add(offer("driver.mass", "mass"), np.ones(1))) == {}

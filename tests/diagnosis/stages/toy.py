@@ -63,14 +63,16 @@ TAPS = {
 }
 """By cause, the share of the channel's size that its signal, now and a row ago, adds to each channel."""
 STAND_INS = {
-    SealFriction: ("force", "one", 0.01), Friction: ("force", "two", 0.01), GasSpring: ("stiffness", "slow", 1e-3),
-    ProgressiveSpring: ("rise", "fast", 1e-3), Biodynamics: ("share", "one", 1.0),
-}  # fmt: skip
+    SealFriction: ("force", "one", 0.01),
+    Friction: ("force", "two", 0.01),
+    GasSpring: ("stiffness", "slow", 1e-3),
+    ProgressiveSpring: ("rise", "fast", 1e-3),
+    Biodynamics: ("share", "one", 1.0),
+}
 """Real effects that act here: the field, the cause that it feeds, and by how much."""
 BENT = {Biodynamics: "three"}
 """Real effects that feed a second cause by the square of that, so that what they do depends on their size."""
 NUISANCES = (Nuisance("plant", "driver_mass", 80.0, 8.0), Nuisance("plant", "suspension_stiffness", 4600.0, 460.0))
-NUISANCE_TAPS = ("mass", "stiffness")
 TOLERANCE = 0.1
 
 
@@ -155,9 +157,7 @@ def _acting(effect):
     return [(cause, amount)] + ([(bent, amount**2)] if bent else [])
 
 
-def record(
-    folder, truth=(), runs=None, channels=CHANNELS[:2], noise=0.05, repeats=None, commands=None, seed=0,
-):  # fmt: skip
+def record(folder, truth=(), runs=None, channels=CHANNELS[:2], noise=0.05, repeats=None, commands=None, seed=0):
     """Return a recording of the toy seat with effects that its nominal scenario lacks.
 
     Args:

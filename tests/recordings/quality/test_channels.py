@@ -51,10 +51,6 @@ def test_flat_tops_are_errors_where_many_rows_stand_there_and_warnings_where_few
         assert f"{np.sum(clipped == limit)} rows stand at its extreme {limit:.4g}" in found[0].sentence
 
 
-def test_a_channel_that_moves_freely_has_no_shape_to_name(under_test):
-    assert kinds(check_shapes, under_test({"frame_acceleration": MOVING}, RATE, NOISE)) == []
-
-
 def test_a_stuck_stretch_is_placed_in_time_and_a_shorter_one_is_none(under_test):
     for seconds, expected in ((0.6, ["stuck"]), (0.4, [])):
         rows = slice(500, 500 + round(seconds * RATE))

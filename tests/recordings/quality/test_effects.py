@@ -17,40 +17,45 @@ from seatsim.simulation.damper_bench import bench_force
 from seatsim.simulation.respond import respond
 
 from ...faulty_recordings import late, rewrite, scaled, without_time
+from ...text import parse
 
-LARGE = {
-    "damper.thermal_fade": ({"viscous": 0.02, "yielding": 0.02, "rise": 60.0}, {"viscous": -0.02, "rise": 60.0}),
-    "damper.gas_spring": ({"preload": 800.0}, {"preload": -300.0, "stiffness": 5000.0}),
-    "damper.asymmetry": ({"viscous": 0.9, "yielding": 0.9}, {"viscous": 0.0, "pulling": 0.9}),
-    "damper.preyield_hysteresis": ({"travel": 0.01}, {"travel": 0.0, "lag": 0.05}, {"travel": 0.0, "behind": 0.05}),
-    "damper.magnetic_saturation": ({"bend": 10.0},),
-    "damper.remanence": ({"width": 0.5}, {"width": 1.0}),
-    "damper.free_play": ({"gap": 0.002, "stiffness": 1e5}, {"gap": 0.005, "stiffness": 1e5}, {"gap": 0.005},
-                         {"gap": 0.01, "turning": 0.02}),
-    "damper.seal_friction": ({"force": 500.0}, {"force": 500.0, "presliding": 0.001}),
-    "coil.lag": ({"time": 0.2},), "coil.asymmetric_lag": ({"time": 0.2},), "coil.delay": ({"time": 0.2},),
-    "coil.current_limit": ({"limit": 0.1},),
-    "suspension.friction": ({"force": 300.0}, {"force": 100.0, "presliding": 0.001}),
-    "suspension.end_stop": ({"low": -0.005, "high": 0.005}, {"low": -0.005, "high": 0.005, "power": 2.0},
-                            {"low": -0.018, "high": 0.018}, {"low": -0.018, "high": 0.018, "power": 2.0}),
-    "suspension.progressive_spring": ({"rise": 5000.0}, {"helper": 20.0, "reach": 0.01}),
-    "cushion.hardening": ({"rise": 2000.0},), "cushion.separation": ({"limit": 20.0},),
-    "driver.mass": ({"change": 70.0}, {"change": -60.0}),
-    "driver.biodynamics": ({"share": 0.9, "frequency": 4.0, "damping": 0.1},),
-    "floor.unmeasured_input": ({"rms": 400.0}, {"rms": 0.0, "tone": 1000.0, "frequency": 6.0}),
-    "sensor.clock_skew": ({"shift": 0.1}, {"shift": -0.1}),
-}  # fmt: skip
+LARGE = parse("""
+    damper.thermal_fade: [{viscous: 0.02, yielding: 0.02, rise: 60.0}, {viscous: -0.02, rise: 60.0}]
+    damper.gas_spring: [{preload: 800.0}, {preload: -300.0, stiffness: 5000.0}]
+    damper.asymmetry: [{viscous: 0.9, yielding: 0.9}, {viscous: 0.0, pulling: 0.9}]
+    damper.preyield_hysteresis: [{travel: 0.01}, {travel: 0.0, lag: 0.05}, {travel: 0.0, behind: 0.05}]
+    damper.magnetic_saturation: [{bend: 10.0}]
+    damper.remanence: [{width: 0.5}, {width: 1.0}]
+    damper.free_play: [{gap: 0.002, stiffness: 100000.0}, {gap: 0.005, stiffness: 100000.0}, {gap: 0.005},
+        {gap: 0.01, turning: 0.02}]
+    damper.seal_friction: [{force: 500.0}, {force: 500.0, presliding: 0.001}]
+    coil.lag: [{time: 0.2}]
+    coil.asymmetric_lag: [{time: 0.2}]
+    coil.delay: [{time: 0.2}]
+    coil.current_limit: [{limit: 0.1}]
+    suspension.friction: [{force: 300.0}, {force: 100.0, presliding: 0.001}]
+    suspension.end_stop: [{low: -0.005, high: 0.005}, {low: -0.005, high: 0.005, power: 2.0}, {low: -0.018,
+        high: 0.018}, {low: -0.018, high: 0.018, power: 2.0}]
+    suspension.progressive_spring: [{rise: 5000.0}, {helper: 20.0, reach: 0.01}]
+    cushion.hardening: [{rise: 2000.0}]
+    cushion.separation: [{limit: 20.0}]
+    driver.mass: [{change: 70.0}, {change: -60.0}]
+    driver.biodynamics: [{share: 0.9, frequency: 4.0, damping: 0.1}]
+    floor.unmeasured_input: [{rms: 400.0}, {rms: 0.0, tone: 1000.0, frequency: 6.0}]
+    sensor.clock_skew: [{shift: 0.1}, {shift: -0.1}]
+""")
 """Effects at the upper end of what is plausible, in several forms."""
 ON_A_CHANNEL = {
-    "sensor.gain": ({"error": 1.0}, {"error": -0.5}), "sensor.bias": ({"share": 5.0}, {"share": -5.0}),
+    "sensor.gain": ({"error": 1.0}, {"error": -0.5}),
+    "sensor.bias": ({"share": 5.0}, {"share": -5.0}),
     "sensor.lag": ({"time": 0.03}, {"time": 0.1}),
-}  # fmt: skip
+}
 OF_A_SEAT = ("suspension.", "cushion.", "driver.", "floor.")
-CHANNELS = {
-    "seat": ("floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement",
-             "damper_force", "coil_current"),
-    "bench": ("displacement", "damper_force", "coil_current"),
-}  # fmt: skip
+CHANNELS = parse("""
+    seat: [floor_acceleration, frame_acceleration, driver_acceleration, suspension_displacement, damper_force,
+        coil_current]
+    bench: [displacement, damper_force, coil_current]
+""")
 CASES = [
     pytest.param(rig, name, values, marks=pytest.mark.slow if k else ())
     for rig in CHANNELS
@@ -65,8 +70,9 @@ CASES = [
     for k, values in enumerate(several)
 ]
 """Every form and sign; the first of each is in the fast suite."""
-DAMPER = BoucWen(c_a=500.0, c_b=800.0, alpha_a=60.0, alpha_b=500.0, k0=900.0, f0=30.0, A=2000.0, beta=1300.0,
-                 gamma=900.0, n=2.0)  # fmt: skip
+DAMPER = BoucWen(
+    c_a=500.0, c_b=800.0, alpha_a=60.0, alpha_b=500.0, k0=900.0, f0=30.0, A=2000.0, beta=1300.0, gamma=900.0, n=2.0
+)
 RATE = 250.0
 
 
@@ -77,9 +83,10 @@ def multisine(time, seed):
 
 
 MOTIONS = {
-    "slow": (lambda t: 0.02 * np.sin(np.pi * t), 0.5), "fast": (lambda t: 0.01 * np.sin(4 * np.pi * t), 1.0),
+    "slow": (lambda t: 0.02 * np.sin(np.pi * t), 0.5),
+    "fast": (lambda t: 0.01 * np.sin(4 * np.pi * t), 1.0),
     "random": (lambda t: multisine(t, 1), 0.7),
-}  # fmt: skip
+}
 
 
 @pytest.fixture(scope="module")
@@ -94,11 +101,18 @@ def bench(tmp_path_factory):
         columns = {"displacement": stroke[::2] + 2e-5 * noise[0], "damper_force": force + 3.0 * noise[1]}
         pd.DataFrame(columns | {"coil_current": current}).to_csv(folder / f"{name}.csv", index=False)
     units = {"displacement": ("m", 2e-5), "damper_force": ("N", 3.0), "coil_current": ("A", 0.0)}
-    header = {"rig": "damper_bench", "sample_rate": RATE, "nominal": "nominal.yaml",
-              "runs": [{"name": name, "file": f"{name}.csv"} for name in MOTIONS],
-              "channels": {c: {"unit": u, "noise_rms": n} for c, (u, n) in units.items()}}  # fmt: skip
-    nominal = {"damper": {"model": "bouc_wen", "parameters": DAMPER._asdict()}, "temperature": 20.0,
-               "actuator": {"rate": 130.0, "max_current": 1.0}}  # fmt: skip
+    header = {
+        "rig": "damper_bench",
+        "sample_rate": RATE,
+        "nominal": "nominal.yaml",
+        "runs": [{"name": name, "file": f"{name}.csv"} for name in MOTIONS],
+        "channels": {c: {"unit": u, "noise_rms": n} for c, (u, n) in units.items()},
+    }
+    nominal = {
+        "damper": {"model": "bouc_wen", "parameters": DAMPER._asdict()},
+        "temperature": 20.0,
+        "actuator": {"rate": 130.0, "max_current": 1.0},
+    }
     YAML(typ="safe").dump(header, folder / "recording.yaml")
     YAML(typ="safe").dump(nominal, folder / "nominal.yaml")
     return folder

@@ -46,9 +46,14 @@ def test_a_gap_is_no_fault(copy, name):
 
 
 @pytest.mark.parametrize(
-    ("old", "new"), [("driver_mass: 80.0", "driver_mass: 110.0"), ("alpha_b: 620.0", "alpha_b: 100.0"),
-                     ("cushion_stiffness: 60000.0", "cushion_stiffness: 25000.0"), ("rate: 130.0", "rate: 30.0")],
-)  # fmt: skip
+    ("old", "new"),
+    [
+        ("driver_mass: 80.0", "driver_mass: 110.0"),
+        ("alpha_b: 620.0", "alpha_b: 100.0"),
+        ("cushion_stiffness: 60000.0", "cushion_stiffness: 25000.0"),
+        ("rate: 130.0", "rate: 30.0"),
+    ],
+)
 def test_a_nominal_that_is_far_off_is_no_fault(copy, old, new):
     path = copy / "nominal.yaml"
     assert old in path.read_text()
@@ -75,9 +80,12 @@ def test_a_refusal_names_the_check_that_may_be_overruled(copy, name):
 
 
 @pytest.mark.parametrize(
-    ("stated", "said"), [(["lat"], "'lat' is not permitted (did you mean 'late'?); permitted: rate, jump"),
-                         ("late", "must be a list, such as [late]")],
-)  # fmt: skip
+    ("stated", "said"),
+    [
+        (["lat"], "'lat' is not permitted (did you mean 'late'?); permitted: rate, jump"),
+        ("late", "must be a list, such as [late]"),
+    ],
+)
 def test_an_unknown_check_cannot_be_accepted(copy, stated, said):
     edit(copy, lambda header: header.update(accept=stated))
     with pytest.raises(InputError) as refused:
@@ -123,8 +131,12 @@ def test_one_run_only_is_a_warning(copy):
 
 
 def test_where_two_faults_explain_it_alike_both_are_named(copy):
-    edit(copy, lambda header: [header["channels"].pop(c) for c in
-                               ("frame_acceleration", "suspension_displacement", "damper_force")])  # fmt: skip
+    edit(
+        copy,
+        lambda header: [
+            header["channels"].pop(c) for c in ("frame_acceleration", "suspension_displacement", "damper_force")
+        ],
+    )
     rewrite(copy, scaled("floor_acceleration", -1.0))
     (sentence,) = errors(copy)
     assert "floor_acceleration" in sentence
@@ -152,16 +164,26 @@ def test_a_bench_with_a_swapped_force_is_named(tmp_path):
         omega = 2 * np.pi * hertz
         x, v = 0.01 * np.sin(omega * fine), 0.01 * omega * np.cos(omega * fine)
         force = bench_force(BoucWen(), x, v, 0.6, 20.0, 0.002)
-        columns = {"displacement": x[::2] + 1e-5 * generator.standard_normal(len(rows)), "coil_current": 0.6,
-                   "damper_force": force + 2.0 * generator.standard_normal(len(rows))}  # fmt: skip
+        columns = {
+            "displacement": x[::2] + 1e-5 * generator.standard_normal(len(rows)),
+            "coil_current": 0.6,
+            "damper_force": force + 2.0 * generator.standard_normal(len(rows)),
+        }
         pd.DataFrame(columns).round(7).to_csv(tmp_path / f"{name}.csv.gz", index=False)
     yaml = YAML(typ="safe")
     units = {"displacement": ("m", 1e-5), "coil_current": ("A", 0.0), "damper_force": ("N", 2.0)}
-    header = {"rig": "damper_bench", "sample_rate": 500.0, "nominal": "nominal.yaml",
-              "runs": [{"name": n, "file": f"{n}.csv.gz"} for n in "ab"],
-              "channels": {c: {"unit": u, "noise_rms": n} for c, (u, n) in units.items()}}  # fmt: skip
-    nominal = {"damper": {"model": "bouc_wen", "parameters": BoucWen()._asdict()}, "temperature": 20.0,
-               "actuator": {"rate": 130.0, "max_current": 1.0}}  # fmt: skip
+    header = {
+        "rig": "damper_bench",
+        "sample_rate": 500.0,
+        "nominal": "nominal.yaml",
+        "runs": [{"name": n, "file": f"{n}.csv.gz"} for n in "ab"],
+        "channels": {c: {"unit": u, "noise_rms": n} for c, (u, n) in units.items()},
+    }
+    nominal = {
+        "damper": {"model": "bouc_wen", "parameters": BoucWen()._asdict()},
+        "temperature": 20.0,
+        "actuator": {"rate": 130.0, "max_current": 1.0},
+    }
     yaml.dump(header, tmp_path / "recording.yaml")
     yaml.dump(nominal, tmp_path / "nominal.yaml")
     assert errors(tmp_path) == []

@@ -19,10 +19,14 @@ def heavy(sound, tmp_path):
     """The sound recording with gravity in all accelerometers, upside down at the driver, and an offset beside it."""
     folder = tmp_path / "heavy"
     shutil.copytree(sound, folder)
-    rewrite(folder, lambda f: f.assign(
-        floor_acceleration=f.floor_acceleration + 9.81, frame_acceleration=f.frame_acceleration + 9.9,
-        driver_acceleration=f.driver_acceleration - 9.7,
-    ))  # fmt: skip
+    rewrite(
+        folder,
+        lambda f: f.assign(
+            floor_acceleration=f.floor_acceleration + 9.81,
+            frame_acceleration=f.frame_acceleration + 9.9,
+            driver_acceleration=f.driver_acceleration - 9.7,
+        ),
+    )
     return folder
 
 

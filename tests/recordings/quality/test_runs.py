@@ -6,7 +6,6 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from seatsim.recordings.quality.issue import Issue, is_at_rest, issue_in_all_runs, select_errors
 from seatsim.recordings.quality.runs import check_all_runs, check_clock
 
 RATE = 250.0
@@ -25,15 +24,17 @@ def runs(under_test):
     """Two runs of white motion, whose noise is stated as it is."""
     noise = {"floor_acceleration": 1.0, "driver_acceleration": 1.0}
     return [
-        under_test({"floor_acceleration": 9.0 * np.sin(np.arange(3000) / (20.0 + k)) + motion(k),
-                    "driver_acceleration": 9.0 * np.sin(np.arange(3000) / (30.0 + k)) + motion(k + 5)},
-                   RATE, noise, name)
+        under_test(
+            {
+                "floor_acceleration": 9.0 * np.sin(np.arange(3000) / (20.0 + k)) + motion(k),
+                "driver_acceleration": 9.0 * np.sin(np.arange(3000) / (30.0 + k)) + motion(k + 5),
+            },
+            RATE,
+            noise,
+            name,
+        )
         for k, name in enumerate("ab")
-    ]  # fmt: skip
-
-
-def test_two_sound_runs_have_no_issue(runs):
-    assert found(*runs) == []
+    ]
 
 
 def test_runs_that_are_too_short_together_are_errors_or_warnings(runs):
@@ -90,9 +91,14 @@ def test_degrees_fahrenheit_are_told_by_the_nominal_temperature(runs):
 
 @pytest.mark.parametrize(
     ("clock", "expected"),
-    [(lambda t: t, []), (lambda t: 2.0 * t, [("error", "rate")]), (lambda t: 1.01 * t, [("error", "rate")]),
-     (lambda t: t + 0.04 * (t > 3.0), [("warning", "jump")]), (lambda t: t + 0.4 * (t > 3.0), [("error", "jump")])],
-)  # fmt: skip
+    [
+        (lambda t: t, []),
+        (lambda t: 2.0 * t, [("error", "rate")]),
+        (lambda t: 1.01 * t, [("error", "rate")]),
+        (lambda t: t + 0.04 * (t > 3.0), [("warning", "jump")]),
+        (lambda t: t + 0.4 * (t > 3.0), [("error", "jump")]),
+    ],
+)
 def test_a_clock_is_held_against_the_sample_rate(runs, tmp_path, clock, expected):
     run = runs[0]._replace(recording=dataclasses.replace(runs[0].recording, folder=tmp_path))
     pd.DataFrame({"time": clock(np.arange(3000) / RATE), **run.table}).to_csv(tmp_path / "a.csv", index=False)
@@ -105,18 +111,3 @@ def test_a_table_without_a_clock_is_taken_at_its_word(runs, tmp_path):
     run = runs[0]._replace(recording=dataclasses.replace(runs[0].recording, folder=tmp_path))
     pd.DataFrame(run.table).to_csv(tmp_path / "a.csv", index=False)
     assert list(check_clock(run)) == []
-
-
-def test_issues_name_their_place(runs):
-    assert runs[0].issue("note", "k", "is so").sentence == "a: is so"
-    assert runs[0].issue("note", "k", "is so", "damper_force") == Issue(
-        "note", "k", "a, damper_force: is so", "damper_force", "a"
-    )
-    assert issue_in_all_runs("error", "k", "are so", "damper_force").sentence == "all runs, damper_force: are so"
-    both = [issue_in_all_runs("error", "k", "x"), issue_in_all_runs("warning", "k", "x")]
-    assert select_errors(both) == both[:1]
-
-
-def test_rest_is_three_times_the_noise():
-    values = np.array([-1.0, 1.0])
-    assert is_at_rest(values, 0.34) and not is_at_rest(values, 0.33)
