@@ -11,11 +11,13 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.metrics.motion import rms
+from seatsim.metrics.objective_rating import ObjectiveRating, rate_agreement
 from seatsim.recordings.prediction import Prediction, predict_gap
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.quality.sensors import without_gravity
 from seatsim.recordings.recording import Recording, load_recording
 from seatsim.recordings.replay import COMPARED, LEFT_OUT, note_unused_log, replay, stands_out
+from seatsim.recordings.validation import Validation, validate
 from seatsim.scenario.loading import single
 from seatsim.scenario.numbers import list_doubts
 from seatsim.scenario.scenario import Scenario
@@ -45,6 +47,10 @@ class Gap:
     """The same two for the stated noise alone."""
     notes: tuple[str, ...] = ()
     """A sentence for each warning about the recording."""
+    iso18571: dict[str, ObjectiveRating] = field(default_factory=dict, kw_only=True)
+    """Ratings of each channel against the measured one, means over the runs."""
+    v_and_v: dict[str, Validation] = field(default_factory=dict, kw_only=True)
+    """Comparison error of each channel and its validation uncertainty."""
 
     def _repr_html_(self) -> str:
         floor = {name: value or "not stated" for name, value in self.floor.channels.items()}
@@ -95,7 +101,7 @@ def gap(scenario: str | Path | Scenario, recording: str | Path | Recording, runs
     examination = examine(recording)
     refuse(examination)
     notes = dict.fromkeys([*list_doubts(scenario), *note_unused_log(scenario, recording), *examination.sentences])
-    return replace(measure_gap(scenario, without_gravity(recording), runs), notes=tuple(notes))
+    return _assess(scenario, without_gravity(recording), list(runs) or list(recording.runs), tuple(notes))
 
 
 def measure_gap(scenario: str | Path | Scenario, recording: str | Path | Recording, runs: Sequence[str] = ()) -> Gap:
@@ -107,6 +113,27 @@ def measure_gap(scenario: str | Path | Scenario, recording: str | Path | Recordi
     """
     scenario, recording = _load(scenario, recording)
     return compare_signals(recording, *pool_runs(scenario, recording, list(runs) or list(recording.runs)))
+
+
+def _assess(scenario: Scenario, recording: Recording, runs: Sequence[str], notes: tuple[str, ...]) -> Gap:
+    """Return the gap with the ratings and the uncertainty of every channel."""
+    found = measure_gap(scenario, recording, runs)
+    names = list(found.channels)
+    ratings, uncertainties = _rate(scenario, recording, runs, names), validate(scenario, recording, runs, names)
+    return replace(found, notes=notes, iso18571=ratings, v_and_v=uncertainties)
+
+
+def _rate(
+    scenario: Scenario, recording: Recording, runs: Sequence[str], channels: Sequence[str]
+) -> dict[str, ObjectiveRating]:
+    """Return the mean ratings of channels over the runs in which they are not zero throughout."""
+    ratings: dict[str, list[ObjectiveRating]] = {name: [] for name in channels}
+    for run in runs:
+        measured, simulated = replay(scenario, recording, run)
+        for name in channels:
+            if np.any(measured[name]):
+                ratings[name].append(rate_agreement(measured[name], simulated[name], recording.header.sample_rate))
+    return {name: ObjectiveRating(*np.mean(rows, axis=0).tolist()) for name, rows in ratings.items()}
 
 
 def compare_signals(recording: Recording, measured: Signals, simulated: Signals) -> Gap:
@@ -181,9 +208,9 @@ def forecast_gap(scenario: str | Path | Scenario, recording: str | Path | Record
     notes = tuple(dict.fromkeys([*note_unused_log(scenario, recording), *examination.sentences]))
     if not has_outputs(recording):
         return Forecast(math.nan, {}, GapFigures(math.nan, {}), notes, predicted=predicted)
-    before, after = measure_gap(recording.nominal, recording), measure_gap(scenario, recording)
+    before, after = measure_gap(recording.nominal, recording), _assess(scenario, recording, list(recording.runs), notes)
     measured = MeasuredShrink(before.overall, after.overall, 1.0 - after.overall / before.overall, before.channels)
-    return Forecast(after.overall, after.channels, after.floor, notes, measured, predicted=predicted)
+    return Forecast(**vars(after), measured=measured, predicted=predicted)
 
 
 def has_outputs(recording: Recording) -> bool:

@@ -12,6 +12,7 @@ from seatsim.plots.diagnosis.answer import plot_gap
 from seatsim.plots.diagnosis.signals import plot_pairs
 from seatsim.plots.labels import UNKNOWN, describe_channel, format_number, format_percent
 from seatsim.recordings.gap import Gap, ReplayedPair
+from seatsim.report.agreement import show_agreement
 from seatsim.report.blocks import Report, Section, Signals, Table, list_notes, show_pictures
 from seatsim.report.credibility.card import say_doubt, show_card
 from seatsim.report.credibility.evidence import Evidence
@@ -48,6 +49,7 @@ def report_gap(name: str, found: Gap, pairs: Mapping[str, ReplayedPair], evidenc
     sections = [
         Section("gaps", "How far: gap of each channel", [*show_pictures(figures, "gaps"), *tables]),
         Section("signals", "Measured and simulated", [*show_pictures(figures, "signal_"), _show_pairs(found, pairs)]),
+        Section("agreement", "Objective rating and uncertainty", show_agreement(found)),
         Section("notes", "Notes on the data", list_notes([format_sentence(note) for note in found.notes])),
         show_card(evidence),
         describe_method(METHOD, command),

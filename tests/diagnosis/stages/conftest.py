@@ -5,7 +5,7 @@ import pytest
 from .toy import NOMINAL, respond_linearly
 
 SIMULATING = (
-    "seatsim.recordings.replay", "seatsim.diagnosis.problem", "seatsim.diagnosis.error_budget",
+    "seatsim.recordings.replay", "seatsim.diagnosis.problem", "seatsim.recordings.error_budget",
     "seatsim.diagnosis.localise.reconstruction", "seatsim.diagnosis.design.experiment",
 )  # fmt: skip
 """Modules that simulate a rig."""

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from ruamel.yaml import YAML
 
-from seatsim.diagnosis.answer import write_augmented
+from seatsim.diagnosis.answer import list_calibrated, write_augmented
 from seatsim.diagnosis.candidates import Candidate, list_candidates
-from seatsim.diagnosis.nuisance import Nuisance
 from seatsim.diagnosis.objective import Parameters
 from seatsim.effects.seat import Biodynamics
 from seatsim.effects.sensor import Bias
 from seatsim.exchange.blocks.rig import rig_block
+from seatsim.recordings.nuisance import Nuisance
 from seatsim.rig.drivers import BODIES, SINGLE_MASS
 from seatsim.scenario.loading import single
 from seatsim.scenario.sections import FILES
@@ -55,6 +55,15 @@ def test_parameters_move_by_their_deviations_in_tolerances_where_they_stand(prob
     assert content["temperature"] == 20.0 and content["controller"] == before["controller"]
     # What the scenario was read from stays as it is.
     assert problem.scenario.source.data == before
+
+
+def test_a_refitted_parameter_states_its_value_and_its_tolerance():
+    parameters = (Nuisance("damper", "c_b", -350.0, 35.0), Nuisance("plant", "driver_mass", 80.0, 8.0))
+    first, second = list_calibrated(parameters, np.array([0.5, -0.95]), 0.9)
+    assert (first.name, first.value, first.at_bound) == ("damper.parameters.c_b", -332.5, False)
+    assert tuple(first.bound) == (-385.0, -315.0)
+    assert (second.name, second.value, second.at_bound) == ("plant.driver_mass", pytest.approx(72.4), True)
+    assert tuple(second.bound) == (72.0, 88.0)
 
 
 def test_effects_are_appended_with_all_their_parameters(problem, tmp_path):
