@@ -27,11 +27,11 @@ from typical_effects import CHANNELS
 from seatsim.diagnosis.candidates import Candidate, list_candidates
 from seatsim.diagnosis.estimates import estimate_standard_deviations
 from seatsim.diagnosis.noise import weigh_noise
-from seatsim.diagnosis.nuisance import vary
 from seatsim.diagnosis.objective import Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, pose_problem
 from seatsim.diagnosis.validate import refit_closely
 from seatsim.recordings.header import Header, RunEntry
+from seatsim.recordings.nuisance import vary
 from seatsim.recordings.recording import SEAT_CHANNELS, ChannelEntry, Recording
 from seatsim.recordings.replay import recorded_inputs
 from seatsim.scenario.loading import single

@@ -5,7 +5,9 @@ A label is written in words of its own: kinds of cases, the contract's effects, 
 
 from __future__ import annotations
 
+import base64
 import hashlib
+import hmac
 import io
 import json
 import zipfile
@@ -14,6 +16,10 @@ from pathlib import Path
 from typing import Literal, Required, TypedDict, get_args
 
 from cryptography.fernet import Fernet, InvalidToken
+from cryptography.hazmat.primitives.ciphers import Cipher
+from cryptography.hazmat.primitives.ciphers.algorithms import AES
+from cryptography.hazmat.primitives.ciphers.modes import CBC
+from cryptography.hazmat.primitives.padding import PKCS7
 
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import make_folder, write_bytes, write_text
@@ -111,25 +117,49 @@ def new_key() -> str:
     return Fernet.generate_key().decode()
 
 
+def key_of(name: str) -> str:
+    """Return the key of the public set with a name."""
+    return base64.urlsafe_b64encode(hashlib.sha256(name.encode()).digest()).decode()
+
+
 def seal(path: Path, folder: Path, key: str, content: Sealed) -> str:
     """Write the sealed file and its SHA-256 into `folder`/seal.txt; return the hash.
 
-    The hash lies beside the recordings, so that labels cannot be exchanged for others after the diagnoses.
+    The hash lies beside the recordings, so that labels cannot be exchanged for others after the diagnoses. The same key
+    and content give the same bytes.
 
     Raises:
         InputError: a file cannot be written.
     """
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as archive:
-        archive.writestr(_LABELS, json.dumps({"made": content.made, "cases": content.labels}))
+        archive.writestr(_entry(_LABELS), json.dumps({"made": content.made, "cases": content.labels}))
         for case, files in content.unseen.items():
             for name, data in files.items():
-                archive.writestr(f"unseen/{case}/{name}", data)
-    token = Fernet(key.encode()).encrypt(packed.getvalue())
+                archive.writestr(_entry(f"unseen/{case}/{name}"), data)
+    token = _encrypt(key, packed.getvalue())
     write_bytes(path, token)
     digest = hashlib.sha256(token).hexdigest()
-    write_text(folder / SEAL, f"sha256 {digest}  {path.name}\n")
+    write_text(folder / SEAL, f"sha256 {digest}\n")
     return digest
+
+
+def _entry(name: str) -> zipfile.ZipInfo:
+    """Return the head of a file of an archive without time and system."""
+    head = zipfile.ZipInfo(name)
+    head.create_system = 0
+    return head
+
+
+def _encrypt(key: str, content: bytes) -> bytes:
+    """Return a Fernet token without time, whose initialisation vector follows from key and content."""
+    secret = base64.urlsafe_b64decode(key)
+    signing, encryption = secret[:16], secret[16:]
+    vector = hmac.digest(signing, content, "sha256")[:16]
+    padder, cipher = PKCS7(128).padder(), Cipher(AES(encryption), CBC(vector)).encryptor()
+    padded = padder.update(content) + padder.finalize()
+    token = b"\x80" + bytes(8) + vector + cipher.update(padded) + cipher.finalize()
+    return base64.urlsafe_b64encode(token + hmac.digest(signing, token, "sha256"))
 
 
 def unseal(path: Path, key: str, folder: Path | None = None) -> Sealed:
@@ -162,6 +192,6 @@ def _check_hash(path: Path, token: bytes, folder: Path) -> None:
     note = folder / SEAL
     if not note.is_file():
         raise InputError(f"{note}: not there; {folder} is not a folder that `blind make` finished")
-    words = read_bytes(note, _LARGEST, "a seal").decode(errors="replace").split()  # "sha256 HASH  NAME"
+    words = read_bytes(note, _LARGEST, "a seal").decode(errors="replace").split()  # "sha256 HASH"
     if len(words) < 2 or words[1] != hashlib.sha256(token).hexdigest():
         raise InputError(f"{path}: is not the file sealed for {folder} (its SHA-256 differs from {SEAL})")

@@ -1,15 +1,16 @@
-"""The answer: in one sentence, and as a scenario file with the refitted parameters and the effects found."""
+"""The answer: in one sentence, the refitted parameters, and both with the effects found as a scenario file."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
-from seatsim.diagnosis.nuisance import SECTIONS
 from seatsim.diagnosis.objective import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
-from seatsim.diagnosis.result import Cause, Diagnosis, Estimate, Gaps
+from seatsim.diagnosis.result import CalibratedParameter, Cause, Diagnosis, Estimate, Gaps
 from seatsim.effects.base import EFFECTS, same_place
+from seatsim.recordings.nuisance import SECTIONS, Nuisance
 from seatsim.scenario.sections import FILES
+from seatsim.schema.arrays import Array
 from seatsim.schema.text import join_names
 
 
@@ -86,6 +87,21 @@ def _values(cause: Cause) -> str:
         else:
             parts.append(str(found))
     return ", ".join(parts)
+
+
+def list_calibrated(parameters: Sequence[Nuisance], deviations: Array, at_bound: float) -> list[CalibratedParameter]:
+    """List the refitted parameters, of deviations of shape (parameters,); from `at_bound` on one is at its bound."""
+    return [
+        CalibratedParameter(
+            each.key,
+            each.nominal,
+            each.at(deviation),
+            (each.at(-1.0), each.at(1.0)),
+            abs(deviation) >= at_bound,
+            each.unit,
+        )
+        for each, deviation in zip(parameters, deviations.tolist(), strict=True)
+    ]
 
 
 def write_augmented(problem: DiagnosisProblem, parameters: Parameters) -> dict[str, object]:

@@ -13,9 +13,9 @@ from functools import cached_property
 import numpy as np
 from scipy.fft import prev_fast_len
 
-from seatsim.diagnosis.nuisance import Nuisance, list_varied, vary
 from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.effects.base import replace_effects
+from seatsim.recordings.nuisance import Nuisance, list_varied, vary
 from seatsim.recordings.quality.coverage import shows_falling_current
 from seatsim.recordings.quality.sensors import without_gravity
 from seatsim.recordings.recording import Recording

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Annotated, Literal, NamedTuple
 
+from seatsim.recordings.error_budget import ErrorBudget
 from seatsim.recordings.gap import GapFigures
 from seatsim.recordings.model_error import ModelError
 from seatsim.schema.arrays import Array
@@ -73,18 +74,6 @@ class CalibratedParameter(NamedTuple):
     bound: tuple[float, float]
     at_bound: bool
     unit: str = "-"
-
-
-class ErrorBudget(NamedTuple):
-    """Comparison error of a channel and its parts as in ASME V&V 20, RMS on the held-out run in `unit`."""
-
-    channel: str
-    unit: str
-    comparison_error: float
-    u_num: float
-    u_input: float
-    u_d: float
-    model_form: float
 
 
 @dataclass(frozen=True)

@@ -8,18 +8,16 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from seatsim.diagnosis.alternatives import are_forms_due, compare_damper_forms, describe_forms, describe_obstacle
-from seatsim.diagnosis.answer import write_answer, write_augmented
+from seatsim.diagnosis.answer import list_calibrated, write_answer, write_augmented
 from seatsim.diagnosis.decide import Decision
 from seatsim.diagnosis.design.experiment import propose_experiment
 from seatsim.diagnosis.design.isolability import describe_missing_sensors, find_isolable_groups
 from seatsim.diagnosis.design.separability import measure_collinearity
-from seatsim.diagnosis.error_budget import budget_errors
 from seatsim.diagnosis.estimates import compare_comfort, estimate_causes, trace_motion, trace_replayed, trace_run
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.localise.discrepancy import show_discrepancy
 from seatsim.diagnosis.localise.stochastic import add_strength
 from seatsim.diagnosis.movement import name_immaterial, share_removable
-from seatsim.diagnosis.nuisance import list_calibrated
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters
 from seatsim.diagnosis.result import Cause, DamperForm, Diagnosis, Evidence, Gaps, ProposedExperiment
 from seatsim.diagnosis.solution import Solution, call_unknown, decide_without, doubt_single
@@ -35,6 +33,7 @@ from seatsim.diagnosis.validate import (
     shrink_by_run,
     state_model_error,
 )
+from seatsim.recordings.error_budget import budget_errors
 from seatsim.recordings.quality.coverage import measure_coverage
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import RunError
@@ -165,7 +164,7 @@ def state_diagnosis(
         evidence=_collect_evidence(validation, nuisances, causes), alternatives=forms,
         parameters=list_calibrated(problem.parameters, validation.fitted.deviations, at_bound),
         model_error=state_model_error(problem, runs),
-        error_budget=budget_errors(problem, validation.scenarios[2], validation.run),
+        error_budget=budget_errors(validation.scenarios[2], recording, validation.run, problem.channels),
     )  # fmt: skip
     said = describe_forms(forms, diagnosis.gap, problem.settings.damper_forms.better)
     return dataclasses.replace(diagnosis, sentence=" ".join(filter(None, (write_answer(diagnosis), said))))

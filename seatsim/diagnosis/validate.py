@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.movement import measure_movements
-from seatsim.diagnosis.nuisance import vary
 from seatsim.diagnosis.objective import Evaluation, Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
 from seatsim.diagnosis.result import Gaps, RunGaps
 from seatsim.effects.base import replace_effects
 from seatsim.recordings.gap import GapFigures, Signals, compare_signals, loud_channels
 from seatsim.recordings.model_error import ModelError, measure_model_error
+from seatsim.recordings.nuisance import vary
 from seatsim.recordings.replay import replay
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array

@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from seatsim.diagnosis.answer import list_calibrated
 from seatsim.diagnosis.fit import refit
-from seatsim.diagnosis.nuisance import list_calibrated
 from seatsim.diagnosis.objective import Evaluation, Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, OutOfTimeError, normalise_rms_errors
 from seatsim.diagnosis.solution import Progress, Solution

@@ -11,11 +11,13 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.metrics.motion import rms
+from seatsim.metrics.objective_rating import ObjectiveRating, rate_agreement
 from seatsim.recordings.prediction import Prediction, predict_gap
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.quality.sensors import without_gravity
 from seatsim.recordings.recording import Recording, load_recording
 from seatsim.recordings.replay import COMPARED, LEFT_OUT, note_unused_log, replay, stands_out
+from seatsim.recordings.validation import Validation, validate
 from seatsim.scenario.loading import single
 from seatsim.scenario.numbers import list_doubts
 from seatsim.scenario.scenario import Scenario
@@ -58,6 +60,10 @@ class Gap:
         default_factory=dict, repr=False, compare=False, kw_only=True
     )
     """The runs that were compared."""
+    iso18571: dict[str, ObjectiveRating] = field(default_factory=dict, kw_only=True)
+    """Ratings of each channel against the measured one, means over the runs."""
+    v_and_v: dict[str, Validation] = field(default_factory=dict, kw_only=True)
+    """Comparison error of each channel and its validation uncertainty."""
 
     def _repr_html_(self) -> str:
         floor = {name: value or "not stated" for name, value in self.floor.channels.items()}
@@ -80,7 +86,7 @@ def gap(scenario: str | Path | Scenario, recording: str | Path | Recording, runs
     examination = examine(recording)
     refuse(examination)
     notes = dict.fromkeys([*list_doubts(scenario), *note_unused_log(scenario, recording), *examination.sentences])
-    return replace(measure_gap(scenario, without_gravity(recording), runs), notes=tuple(notes))
+    return _assess(scenario, without_gravity(recording), list(runs) or list(recording.runs), tuple(notes))
 
 
 def measure_gap(scenario: str | Path | Scenario, recording: str | Path | Recording, runs: Sequence[str] = ()) -> Gap:
@@ -93,6 +99,24 @@ def measure_gap(scenario: str | Path | Scenario, recording: str | Path | Recordi
     scenario, recording = _load(scenario, recording)
     replayed = {run: _replay(scenario, recording, run) for run in runs or recording.runs}
     return replace(compare_signals(recording, *_pool(recording, replayed)), replayed=replayed)
+
+
+def _assess(scenario: Scenario, recording: Recording, runs: Sequence[str], notes: tuple[str, ...]) -> Gap:
+    """Return the gap with the ratings and the uncertainty of every channel."""
+    found = measure_gap(scenario, recording, runs)
+    ratings = _rate(found, recording.header.sample_rate)
+    uncertainties = validate(scenario, recording, runs, list(found.channels))
+    return replace(found, notes=notes, iso18571=ratings, v_and_v=uncertainties)
+
+
+def _rate(found: Gap, sample_rate: float) -> dict[str, ObjectiveRating]:
+    """Return the mean ratings of the channels of a gap over the runs in which they are not zero throughout."""
+    ratings: dict[str, ObjectiveRating] = {}
+    for name in found.channels:
+        pairs = [(run.measured[name], run.simulated[name]) for run in found.replayed.values()]
+        rows = [rate_agreement(*pair, sample_rate) for pair in pairs if np.any(pair[0])]
+        ratings[name] = ObjectiveRating(*np.mean(rows, axis=0).tolist())
+    return ratings
 
 
 def compare_signals(recording: Recording, measured: Signals, simulated: Signals) -> Gap:
@@ -176,9 +200,9 @@ def forecast_gap(scenario: str | Path | Scenario, recording: str | Path | Record
     notes = tuple(dict.fromkeys([*note_unused_log(scenario, recording), *examination.sentences]))
     if not has_outputs(recording):
         return Forecast(math.nan, {}, GapFigures(math.nan, {}), notes, predicted=predicted)
-    before, after = measure_gap(recording.nominal, recording), measure_gap(scenario, recording)
+    before, after = measure_gap(recording.nominal, recording), _assess(scenario, recording, list(recording.runs), notes)
     measured = MeasuredShrink(before.overall, after.overall, 1.0 - after.overall / before.overall, before.channels)
-    return Forecast(**{**vars(after), "notes": notes}, measured=measured, predicted=predicted)
+    return Forecast(**vars(after), measured=measured, predicted=predicted)
 
 
 def has_outputs(recording: Recording) -> bool:

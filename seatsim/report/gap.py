@@ -13,6 +13,7 @@ from seatsim.plots.diagnosis.signals import plot_pairs
 from seatsim.plots.labels import UNKNOWN, describe_channel, format_number, format_percent
 from seatsim.recordings.gap import Gap, ReplayedPair
 from seatsim.recordings.recording import load_recording
+from seatsim.report.agreement import show_agreement
 from seatsim.report.blocks import Report, Section, Signals, Table, show_pictures
 from seatsim.report.composing import Closing, compose
 from seatsim.report.credibility import (
@@ -46,6 +47,7 @@ def report_gap(
     sections = [
         Section("gaps", "How far: gap of each channel", [*show_pictures(figures, "gaps"), *tables]),
         Section("signals", "Measured and simulated", [*show_pictures(figures, "signal_"), _show_pairs(found, pairs)]),
+        Section("agreement", "Objective rating and uncertainty", show_agreement(found)),
     ]
     closing = Closing(found.notes, factors, command)
     return compose("gap", f"Gap: {name}", [say_gap(found)], _advise(found), sections, closing)

@@ -10,7 +10,8 @@ import pytest
 
 from seatsim import load_recording
 from seatsim.blind.make.compose import compose, null_subsets
-from seatsim.blind.make.make import make
+from seatsim.blind.make.folder import encode_table
+from seatsim.blind.make.make import make, make_public
 from seatsim.blind.sealed import EFFECTS, unseal
 from seatsim.schema.errors import InputError
 
@@ -91,3 +92,48 @@ def test_the_composition() -> None:
     assert len(null_subsets()) > 60
     with pytest.raises(InputError, match="did you mean 'outside'"):
         compose(3, "outsid", np.random.default_rng(0))
+
+
+def test_a_public_set_is_the_same_bytes_whoever_makes_it(tmp_path: Path) -> None:
+    keys = [make_public("a name", tmp_path / k / "set", tmp_path / f"{k}.sealed", None, 1, 1) for k in "ab"]
+    assert keys[0] == keys[1]
+    assert contents(tmp_path / "a") == contents(tmp_path / "b")
+    assert (tmp_path / "a.sealed").read_bytes() == (tmp_path / "b.sealed").read_bytes()
+    opened = unseal(tmp_path / "a.sealed", keys[0], tmp_path / "a" / "set")
+    assert opened.made["kinds"] == "varied" and opened.made["cases"] == 1
+    for value in opened.labels["case-0001"]["rig"].values():
+        assert value == float(f"{value:.9g}")
+    with pytest.raises(InputError, match="a public set has 60 cases"):
+        make_public("a name", tmp_path / "c", tmp_path / "c.sealed", cases=61)
+
+
+def test_the_name_of_a_public_set_fixes_what_its_key_opens(tmp_path: Path) -> None:
+    key = make_public("one", tmp_path / "one", tmp_path / "one.sealed", None, 1, 1)
+    other = make_public("other", tmp_path / "other", tmp_path / "other.sealed", None, 1, 1)
+    assert contents(tmp_path / "one") != contents(tmp_path / "other")
+    with pytest.raises(InputError, match="the key does not open it"):
+        unseal(tmp_path / "other.sealed", key)
+    assert unseal(tmp_path / "other.sealed", other).labels
+
+
+@pytest.mark.parametrize("rows", [1, 5000, 30000])
+def test_a_table_is_a_gzip_file_that_does_not_depend_on_who_packs_it(rows: int) -> None:
+    packed = encode_table({"time": np.arange(rows) / 500.0, "x": np.ones(rows)}, ("%.3f", "%.4f"))
+    lines = gzip.decompress(packed).decode().splitlines()
+    assert len(lines) == rows + 1 and lines[0] == "time,x" and lines[-1] == f"{(rows - 1) / 500.0:.3f},1.0000"
+    assert len(packed) < len(gzip.decompress(packed)) + 100
+
+
+@pytest.mark.parametrize(
+    ("options", "expected"),
+    [
+        (("--set", "x", "--seed", "3"), "leave out --seed"),
+        (("--set", "x", "--kinds", "one"), "the name fixes seed and rigs"),
+        (("--set", "x", "--cases", "70"), "a public set has 60 cases"),
+        ((), "state how many recordings by --cases"),
+    ],
+)
+def test_a_public_set_takes_no_other_options(tmp_path: Path, seatsim_command, options, expected) -> None:
+    place = ("--out", tmp_path / "set", "--sealed", tmp_path / "set.sealed")
+    status, out, err = seatsim_command("blind", "make", *options, *place)
+    assert status == 2 and expected in " ".join((out + err).split()) and not (tmp_path / "set").exists()

@@ -66,7 +66,7 @@ def test_the_gap_of_one_run_only(recorded):
 def test_the_command_writes_the_gap(recorded, tmp_path, seatsim_command):
     assert seatsim_command("gap", recorded / "nominal.yaml", recorded, "--out", tmp_path / "gap")[0] == 0
     written = json.loads((tmp_path / "gap" / "gap.json").read_text())
-    assert set(written) == {"overall", "channels", "floor", "notes"}
+    assert set(written) == {"overall", "channels", "floor", "notes", "iso18571", "v_and_v"}
     assert set(written["floor"]) == {"overall", "channels"}
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import gzip
 import io
 import os
+import struct
+import zlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -18,6 +19,10 @@ from seatsim.schema.yaml_text import dump
 
 _EPOCH = 1_600_000_000
 """Time stamp of every file, s: the true time would reveal how long its case took to draw."""
+_GZIP = b"\x1f\x8b\x08" + bytes(6) + b"\xff"
+"""Head of a gzip file without time and system."""
+_BLOCK = 0xFFFF
+"""Most bytes of a stored block."""
 
 
 def nominal_scenario(experiment: Experiment) -> dict[str, object]:
@@ -87,11 +92,20 @@ def add_noise(experiment: Experiment, readings: Readings, rng: Generator) -> Rea
 
 def encode_table(columns: Readings, formats: Sequence[str]) -> bytes:
     """Return a run as a gzipped CSV whose bytes depend on nothing but the numbers; a format for each column."""
-    text, packed = io.StringIO(), io.BytesIO()
+    text = io.StringIO()
     np.savetxt(text, np.column_stack(list(columns.values())), list(formats), ",", header=",".join(columns), comments="")
-    with gzip.GzipFile(fileobj=packed, mode="wb", mtime=0, compresslevel=6) as stream:
-        stream.write(text.getvalue().encode())
-    return packed.getvalue()
+    return _store(text.getvalue().encode())
+
+
+def _store(content: bytes) -> bytes:
+    """Return a gzip file (RFC 1952) of stored blocks: what is compressed depends on the library that does it."""
+    starts = range(0, len(content), _BLOCK)
+    blocks = [content[start : start + _BLOCK] for start in starts]
+    packed = [
+        struct.pack("<BHH", start + _BLOCK >= len(content), len(block), len(block) ^ _BLOCK) + block
+        for start, block in zip(starts, blocks, strict=True)
+    ]
+    return b"".join([_GZIP, *packed, struct.pack("<II", zlib.crc32(content), len(content))])
 
 
 def encode_yaml(value: Mapping[str, object]) -> bytes:

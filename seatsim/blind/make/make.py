@@ -7,6 +7,7 @@ alone, so that a call that was broken off goes on; that folder is deleted when t
 
 from __future__ import annotations
 
+import hashlib
 import json
 import secrets
 import shutil
@@ -20,12 +21,16 @@ from numpy.random import Generator
 from seatsim.blind.make.compose import CaseSpecification, compose
 from seatsim.blind.make.draw_case import draw_case
 from seatsim.blind.make.folder import encode_recording, write_folder
-from seatsim.blind.sealed import SEAL, Label, Sealed, new_key, seal
+from seatsim.blind.sealed import SEAL, Label, Sealed, key_of, new_key, seal
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import make_folder, write_bytes, write_text
 from seatsim.schema.processes import Progress, run_jobs
 
 Wanted = TypeVar("Wanted")
+PUBLIC_CASES, _PUBLIC_KINDS = 60, "varied"
+"""Cases of a public set, and what they are."""
+_LABEL_DIGITS = 9
+"""Significant digits of the numbers of a label; the later ones differ between processors."""
 
 
 class CaseFiles(NamedTuple):
@@ -68,11 +73,39 @@ def make(
     Raises:
         InputError: fewer than one case, an unknown preset, a folder or file that is another set's.
     """
+    return make_set(
+        cases, seed, kinds, Path(out), Path(sealed), lambda s: _order(cases, kinds, s), draw_files, progress, processes
+    )
 
-    def order(seed: int) -> Sequence[CaseSpecification]:
-        return compose(cases, kinds, np.random.default_rng(np.random.SeedSequence(seed).spawn(1)[0]))
 
-    return make_set(cases, seed, kinds, Path(out), Path(sealed), order, draw_files, progress, processes)
+def make_public(
+    name: str,
+    out: str | Path,
+    sealed: str | Path,
+    progress: Progress | None = None,
+    cases: int = PUBLIC_CASES,
+    processes: int = 2,
+) -> str:
+    """Write the public set with a name, or its first `cases`; return the key.
+
+    The name fixes everything, the key too: 60 cases of the kinds `varied`, whose bytes are the same everywhere. Whoever
+    makes the set can read its labels, so that it compares programs and proves nothing of one that was fitted to it. The
+    rest is that of `make_set`.
+
+    Raises:
+        InputError: not 1 to 60 cases, a folder or file that is another set's.
+    """
+    if cases > PUBLIC_CASES:
+        raise InputError(f"--cases {cases}: a public set has {PUBLIC_CASES} cases; give another name for others")
+    seed = int.from_bytes(hashlib.sha256(name.encode()).digest())
+    return make_set(
+        cases, seed, _PUBLIC_KINDS, Path(out), Path(sealed), lambda s: _order(PUBLIC_CASES, _PUBLIC_KINDS, s),
+        draw_files, progress, processes, key_of(name),
+    )  # fmt: skip
+
+
+def _order(cases: int, kinds: str | Sequence[str], seed: int) -> Sequence[CaseSpecification]:
+    return compose(cases, kinds, np.random.default_rng(np.random.SeedSequence(seed).spawn(1)[0]))
 
 
 def make_set(
@@ -85,11 +118,12 @@ def make_set(
     draw: _Draw[Wanted],
     progress: Progress | None,
     processes: int,
+    key: str | None = None,
 ) -> str:
     """Write `folder`/case-0001/... and the sealed file `target`; return the key, which is stored nowhere.
 
-    Without `seed` one is drawn and sealed. `order` returns what each case is to be, by seed. A call broken off goes on
-    where it stopped. `progress` is called with the cases done and all cases.
+    Without `key` one is made; without `seed` one is drawn and sealed. `order` returns what each case is to be, by seed.
+    A call broken off goes on where it stopped. `progress` is called with the cases done and all cases.
 
     Raises:
         InputError: fewer than one case, a folder or file that is another set's, or what `order` and `draw` raise.
@@ -97,7 +131,7 @@ def make_set(
     partial = target.with_name(f"{target.name}.partial")
     if target.resolve().is_relative_to(folder.resolve()):
         raise InputError(f"{target}: lies inside {folder}; the labels must lie elsewhere than the recordings")
-    plan = _begin_or_resume(cases, seed, kinds, folder, target, partial)
+    plan = _begin_or_resume(cases, seed, kinds, folder, target, partial, key)
     wanted = order(plan.seed)
     todo = [k for k in range(cases) if not _is_finished(folder, partial, case_name(k))]
     done_before = cases - len(todo)
@@ -116,7 +150,13 @@ def case_name(k: int) -> str:
 
 
 def _begin_or_resume(
-    cases: int, seed: int | None, kinds: str | list[str], folder: Path, target: Path, partial: Path
+    cases: int,
+    seed: int | None,
+    kinds: str | list[str],
+    folder: Path,
+    target: Path,
+    partial: Path,
+    key: str | None,
 ) -> _Plan:
     """Return the plan of an unfinished set, or begin one."""
     if cases < 1:
@@ -129,7 +169,7 @@ def _begin_or_resume(
         return plan
     if target.exists() or (folder / SEAL).exists() or any(folder.glob("case-*")):
         raise InputError(f"{folder}: {target} or a set of cases is there already; give another --out and --sealed")
-    plan = _Plan(cases, kinds, secrets.randbits(62) if seed is None else seed, new_key(), seed is not None)
+    plan = _Plan(cases, kinds, secrets.randbits(62) if seed is None else seed, key or new_key(), seed is not None)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         partial.mkdir(parents=True, mode=0o700)  # its owner alone can read it, since the key opens the labels
@@ -156,7 +196,8 @@ def make_case(draw: _Draw[Wanted], k: int, wanted: Wanted, seed: int, folder: Pa
     if (folder / name).is_dir():
         shutil.rmtree(folder / name)
     write_folder(folder / name, case.recording)
-    write_text(partial / f"{name}.json", json.dumps(case.label))
+    label = json.loads(json.dumps(case.label), parse_float=lambda text: float(f"{float(text):.{_LABEL_DIGITS}g}"))
+    write_text(partial / f"{name}.json", json.dumps(label))
 
 
 def _gather(plan: _Plan, partial: Path) -> Sealed:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
@@ -19,9 +20,15 @@ blind = typer.Typer(help="Check diagnoses on recordings whose effects are sealed
 
 @blind.command("make")
 def blind_make(
-    cases: Annotated[int, typer.Option("--cases", min=1, help="How many recordings.")],
     out_folder: NewFolder,
     sealed: Annotated[Path, typer.Option("--sealed", help="File for the encrypted labels.")],
+    cases: Annotated[
+        int | None, typer.Option("--cases", min=1, help="How many recordings; of a public set the first ones.")
+    ] = None,
+    public: Annotated[
+        str | None,
+        typer.Option("--set", metavar="NAME", help="The public set of this name, the same everywhere: 60 varied rigs."),
+    ] = None,
     seed: Annotated[int | None, typer.Option("--seed", help="Seed of the draw; drawn and sealed where absent.")] = None,
     kinds: Annotated[
         str, typer.Option("--kinds", help="mixed, varied, none, one, two, outside, null or background.")
@@ -34,13 +41,20 @@ def blind_make(
 ) -> None:
     """Draw rigs with hidden effects, write recordings of them and seal the labels; the key is printed once."""
     from seatsim.blind.carrier.make import make_on_carrier
-    from seatsim.blind.make.make import make
+    from seatsim.blind.make.make import PUBLIC_CASES, make, make_public
     from seatsim.cli.outputs.answers import BlindMakeAnswer
 
     if carrier is not None and kinds != "mixed":
         raise InputError(f"--kinds {kinds}: a measured recording carries one effect a case; leave out --kinds")
+    if public is not None and (seed is not None or kinds != "mixed" or carrier is not None):
+        raise InputError(f"--set {public}: the name fixes seed and rigs; leave out --seed, --kinds and --carrier")
+    if public is None and cases is None:
+        raise InputError("state how many recordings by --cases, such as --cases 20, or a public set by --set NAME")
+    cases = cases or PUBLIC_CASES
     with count_progress("making recordings") as count:
-        if carrier is not None:
+        if public is not None:
+            key = make_public(public, out_folder, sealed, count, cases)
+        elif carrier is not None:
             key = make_on_carrier(carrier, cases, seed, out_folder, sealed, count)
         else:
             key = make(cases, seed, out_folder, sealed, count, kinds)
@@ -131,6 +145,7 @@ def _diagnose_one(case: Path) -> None:
     from seatsim.schema.files import write_json
 
     try:
-        write_diagnosis(diagnose(case), case / "diagnosis")
+        # Without a limit of time, since what is found until then differs between machines.
+        write_diagnosis(diagnose(case, budget=math.inf), case / "diagnosis")
     except SeatsimError as error:
         write_json(case / "diagnosis" / "error.json", {"error": str(error)})

@@ -12,12 +12,12 @@ import numpy as np
 from seatsim.dampers.bingham import Bingham
 from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.noise import weigh_uniformly
-from seatsim.diagnosis.nuisance import Nuisance
 from seatsim.diagnosis.objective import Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.effects.base import EffectSpecification
 from seatsim.excitations.base import Floor
+from seatsim.recordings.nuisance import Nuisance
 from seatsim.recordings.recording import ChannelEntry, Header, Recording, RunEntry
 from seatsim.rig.coil import Coil
 from seatsim.rig.temperature import TemperatureFactors

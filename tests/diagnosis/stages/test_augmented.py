@@ -11,11 +11,11 @@ from ruamel.yaml import YAML
 
 from seatsim.diagnosis.answer import write_augmented
 from seatsim.diagnosis.candidates import Candidate, list_candidates
-from seatsim.diagnosis.nuisance import Nuisance
 from seatsim.diagnosis.objective import Parameters
 from seatsim.effects.seat import Biodynamics
 from seatsim.effects.sensor import Bias
 from seatsim.exchange.blocks.rig import rig_block
+from seatsim.recordings.nuisance import Nuisance
 from seatsim.rig.drivers import BODIES, SINGLE_MASS
 from seatsim.scenario.loading import single
 from seatsim.scenario.sections import FILES

@@ -5,8 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.error_budget import budget_errors, carry_input_noise, measure_step_error
 from seatsim.diagnosis.validate import list_gaps, make_scenario, replay_runs, state_model_error
+from seatsim.recordings.error_budget import budget_errors, carry_input_noise, measure_step_error
 from seatsim.recordings.gap import measure_gap
 from seatsim.scenario.loading import single
 
@@ -45,7 +45,7 @@ def test_the_model_error_is_that_of_the_last_scenario(posed):
 
 def test_an_error_is_divided_into_what_noise_makes_and_the_form(posed):
     problem, scenarios = posed
-    budget = budget_errors(problem, scenarios[0], "second")
+    budget = budget_errors(scenarios[0], problem.recording, "second", problem.channels)
     gaps = measure_gap(scenarios[0], problem.recording, ["second"]).channels
     measured = problem.recording.table("second")
     for k, each in enumerate(budget):
@@ -54,8 +54,9 @@ def test_an_error_is_divided_into_what_noise_makes_and_the_form(posed):
         assert (each.u_num, each.u_input, each.u_d) == (0.0, 0.0, 0.05)
         assert each.comparison_error**2 == pytest.approx(each.model_form**2 + each.u_d**2)
     right = budget_errors(
-        problem, make_scenario(problem, scenarios[0], place(problem, (offer("x", "one"), 1.0))), "first"
-    )
+        make_scenario(problem, scenarios[0], place(problem, (offer("x", "one"), 1.0))), problem.recording, "first",
+        problem.channels,
+    )  # fmt: skip
     assert all(each.model_form < 0.5 * each.u_d for each in right)
 
 

@@ -12,13 +12,13 @@ import numpy as np
 from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.localise.reconstruction import PORTS, reconstruct
 from seatsim.diagnosis.noise import weigh_uniformly
-from seatsim.diagnosis.nuisance import Nuisance
 from seatsim.diagnosis.objective import Objective, Parameters
 from seatsim.diagnosis.problem import pose_problem
 from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.effects.base import EffectSpecification
 from seatsim.effects.damper import GasSpring, SealFriction
 from seatsim.effects.seat import Biodynamics, Friction, ProgressiveSpring
+from seatsim.recordings.nuisance import Nuisance
 from seatsim.recordings.recording import ChannelEntry, Header, Recording, RunEntry
 from seatsim.recordings.replay import recorded_inputs
 from seatsim.scenario.loading import single

@@ -7,7 +7,7 @@ import pytest
 
 from seatsim.dampers.bingham import Bingham, OriginalBingham
 from seatsim.dampers.bouc_wen import BoucWen
-from seatsim.diagnosis.nuisance import Nuisance, list_calibrated, list_nuisances, vary
+from seatsim.recordings.nuisance import Nuisance, list_nuisances, vary
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant
 from seatsim.rig.temperature import TemperatureFactors
@@ -59,15 +59,6 @@ def test_a_parameter_is_off_by_its_tolerance_times_the_deviation():
     rest = {"damper": nominal.damper, "coil": nominal.coil, "plant": nominal.plant}
     assert dataclasses.replace(varied, **rest) == nominal
     assert varied.damper.factors == nominal.damper.factors
-
-
-def test_a_refitted_parameter_states_its_value_and_its_tolerance():
-    parameters = (Nuisance("damper", "c_b", -350.0, 35.0), Nuisance("plant", "driver_mass", 80.0, 8.0))
-    first, second = list_calibrated(parameters, np.array([0.5, -0.95]), 0.9)
-    assert (first.name, first.value, first.at_bound) == ("damper.parameters.c_b", -332.5, False)
-    assert tuple(first.bound) == (-385.0, -315.0)
-    assert (second.name, second.value, second.at_bound) == ("plant.driver_mass", pytest.approx(72.4), True)
-    assert tuple(second.bound) == (72.0, 88.0)
 
 
 def test_a_parameter_may_have_a_tolerance_of_its_own():

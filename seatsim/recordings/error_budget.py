@@ -1,4 +1,4 @@
-"""The error of the augmented scenario on the held-out run, divided as in ASME V&V 20.
+"""The error of a scenario on a run, divided as in ASME V&V 20.
 
 For each channel the comparison error E = RMS of simulation less data is set against the validation uncertainty
 
@@ -10,13 +10,12 @@ simulation, and u_D the stated noise of the channel; all are RMS values over the
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline, UnivariateSpline
 
-from seatsim.diagnosis.problem import DiagnosisProblem
-from seatsim.diagnosis.result import ErrorBudget
 from seatsim.metrics.motion import rms
 from seatsim.recordings.recording import COMMANDS, Recording
 from seatsim.recordings.replay import COMPARED, recorded_inputs, replay_table, select_compared
@@ -31,17 +30,34 @@ _REPLICATES = 3
 """Simulations with newly drawn noise of the inputs."""
 
 
-def budget_errors(problem: DiagnosisProblem, scenario: Scenario, run: str) -> list[ErrorBudget]:
-    """Return the error budget of each compared channel of a run."""
-    recording, table = problem.recording, problem.recording.table(run)
+class ErrorBudget(NamedTuple):
+    """Comparison error of a channel and its parts as in ASME V&V 20, RMS over a run in `unit`."""
+
+    channel: str
+    unit: str
+    comparison_error: float
+    u_num: float
+    u_input: float
+    u_d: float
+    model_form: float
+
+
+def budget_errors(scenario: Scenario, recording: Recording, run: str, channels: Iterable[str]) -> list[ErrorBudget]:
+    """Return the error budget of channels of a run.
+
+    Raises:
+        RunError: a simulation could not be carried to its end.
+    """
+    scenario = recording.scenario_of(run, scenario)
+    table = recording.table(run)
     simulated = replay_table(scenario, recording, table)
-    measured = select_compared(table, recording.header.rig, problem.rate)
+    measured = select_compared(table, recording.header.rig, recording.header.sample_rate)
     numerical = measure_step_error(scenario, recording, table)
     carried = carry_input_noise(scenario, recording, table)
     return [
         _divide(name, recording.channels[name].unit, rms(measured[name] - simulated[name]), numerical[name],
                 carried[name], recording.channels[name].noise_rms)
-        for name in problem.channels
+        for name in channels
     ]  # fmt: skip
 
 

@@ -8,7 +8,6 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import NamedTuple
 
-from seatsim.diagnosis.result import CalibratedParameter
 from seatsim.recordings.header import USUAL, Header, Tolerance
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
@@ -47,21 +46,6 @@ class Nuisance(NamedTuple):
     def at(self, deviation: float) -> float:
         """Return the value at a deviation from -1 to 1, in units of the tolerance, within the permitted range."""
         return float(min(max(self.nominal + self.tolerance * deviation, self.low), self.high))
-
-
-def list_calibrated(parameters: Sequence[Nuisance], deviations: Array, at_bound: float) -> list[CalibratedParameter]:
-    """List the refitted parameters, of deviations of shape (parameters,); from `at_bound` on one is at its bound."""
-    return [
-        CalibratedParameter(
-            each.key,
-            each.nominal,
-            each.at(deviation),
-            (each.at(-1.0), each.at(1.0)),
-            abs(deviation) >= at_bound,
-            each.unit,
-        )
-        for each, deviation in zip(parameters, deviations.tolist(), strict=True)
-    ]
 
 
 def list_varied(header: Header, scenario: Scenario, fitted: float) -> tuple[Nuisance, ...]:
