@@ -52,7 +52,7 @@ def pytest_addoption(parser):
 def pytest_configure(config):
     """Have SIGINT mean what it does in a terminal: a shell lets what it starts in the background ignore it."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    if config.option.ledger:
+    if config.getoption("ledger", default=False):
         config.pluginmanager.register(Ledger(ROOT / "docs" / "conformance.csv"))
 
 

@@ -5,14 +5,15 @@ fails where a row came, went, or moved by more than a tenth of its tolerance: lo
 """
 
 import csv
-import math
 import sys
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[1]
-PRODUCT = tuple(str(ROOT / package) for package in ("seatsim", "controllers"))
+import controllers
+import seatsim
+
+PRODUCT = tuple(str(Path(package.__file__).parent) for package in (controllers, seatsim))
 COLUMNS = ("claim", "reference", "expected", "figure", "tolerance", "test")
 
 
@@ -32,18 +33,15 @@ def conform(request):
     def check(claim, reference, figure, expected=0.0, *, tolerance):
         assert called, f"{claim}: no function of seatsim was called"
         assert abs(figure - expected) <= tolerance, f"{claim}: {figure} is not {expected} within {tolerance}"
-        digits = _count_digits(max(abs(figure), abs(expected)), tolerance)
+        size = max(abs(figure), abs(expected))
+        # Enough to show a twentieth of the tolerance.
+        digits = len(f"{size / tolerance:.0f}") + 2 if size > tolerance else 2
         values = f"{expected:.{digits}g}", f"{figure:.{digits}g}", f"{tolerance:.2g}"
         request.node.user_properties.append(("row", (claim, reference, *values, request.node.nodeid.split("[")[0])))
 
     sys.setprofile(note_first_call)
     yield check
     sys.setprofile(None)
-
-
-def _count_digits(size, tolerance):
-    """Return how many digits show a twentieth of the tolerance, two at least."""
-    return 2 if 0.0 in (size, tolerance) else max(2, math.ceil(math.log10(size / tolerance)) + 2)
 
 
 class Ledger:
