@@ -47,8 +47,8 @@ def run_variant(variant: str, **settings: object) -> Run:
     """Return the run of a variant of the quickstart on its rough ground at 20 degC, without end stops."""
     content = yaml.safe_load((HERE.parent / "scenarios" / "quickstart.yaml").read_text(encoding="utf-8"))
     content = {key: value for key, value in content.items() if key not in ("sweep", "checks", "effects")}
-    content["variants"] = {variant: content["variants"][variant]}
-    return seatsim.run(content, settings).runs[0]
+    content["variants"] = {variant: content["variants"][variant] | settings}
+    return seatsim.run(content).runs[0]
 
 
 def place(run: Run) -> tuple[float, float]:

@@ -13,6 +13,9 @@ from seatsim.cli.app import main
 from seatsim.schema import modules, registry
 
 from .faulty_recordings import record_sound_rig
+from .ledger import Ledger, conform
+
+__all__ = ["conform"]
 
 pytest_plugins = ["pytester"]
 ROOT = Path(__file__).resolve().parents[1]
@@ -42,9 +45,16 @@ def pytest_collection_modifyitems(items):
             item.add_marker(pytest.mark.slow)
 
 
-def pytest_configure():
+def pytest_addoption(parser):
+    """Add the option that writes the ledger of conformance."""
+    parser.addoption("--ledger", action="store_true", help="run the tests that enter rows, and write the ledger")
+
+
+def pytest_configure(config):
     """Have SIGINT mean what it does in a terminal: a shell lets what it starts in the background ignore it."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    if config.getoption("ledger", default=False):
+        config.pluginmanager.register(Ledger(ROOT / "docs" / "conformance.csv"))
 
 
 @pytest.fixture

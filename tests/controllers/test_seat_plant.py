@@ -29,11 +29,13 @@ def gains(system, omega=OMEGA):
     return frequency_response(Loop(*system), omega)
 
 
-def test_actuator_lags_as_coil_and_delay():
+def test_actuator_lags_as_coil_and_delay(conform):
     lag = ActuatorLag(rate=130.0, delay=0.004)
     omega = np.geomspace(1.0, 1.0 / lag.delay, 20)
     exact = np.exp(-1j * omega * lag.delay) * lag.rate / (1j * omega + lag.rate)
-    np.testing.assert_allclose(gains(build_actuator(lag), omega)[:, 0, 0], exact, atol=2e-3)
+    deviation = np.max(np.abs(gains(build_actuator(lag), omega)[:, 0, 0] - exact))
+    claim = "actuator with a Pade delay, greatest deviation of the gain up to 1 / delay"
+    conform(claim, "exp(-s T) rate / (s + rate)", deviation, tolerance=2e-3)
     assert len(build_actuator(ActuatorLag(delay=0.0)).A) == 1
 
 
@@ -52,7 +54,7 @@ def test_every_path_with_lag_and_weighting():
     np.testing.assert_allclose(paths(full), rows * paths(bare) * columns, rtol=1e-8, atol=1e-14)
 
 
-def test_every_measure_is_what_the_seat_moves_by():
+def test_every_measure_is_what_the_seat_moves_by(conform):
     measures = ("driver_velocity", "velocity", "frame_acceleration", "driver_acceleration", "frame_velocity")
     lag = ActuatorLag()
     plant = build_generalised_plant(SEAT, Weights(), lag, measures=measures)
@@ -61,7 +63,10 @@ def test_every_measure_is_what_the_seat_moves_by():
     s = 1j * OMEGA
     leak, frame = 1.0 / (s + 2 * np.pi * Sensors().corner), s * s * x + 1.0
     expected = (leak * driver, s * x, frame, driver, leak * frame)
-    np.testing.assert_allclose(found[:, 2:], np.transpose(expected), rtol=1e-9)
+    for k, name in enumerate(measures):
+        deviation = np.max(np.abs(found[:, 2 + k] / expected[k] - 1))
+        claim = f"generalised plant, greatest relative deviation of the response of {name}"
+        conform(claim, "kinematics of the seat", deviation, tolerance=1e-9)
 
 
 @pytest.mark.slow

@@ -20,18 +20,19 @@ def motion(steps, duration):
     return 0.01 * t + 0.001 * np.sin(4.0 * t), 0.01 + 0.004 * np.cos(4.0 * t), duration / steps
 
 
-def test_a_viscous_damper_is_its_own_equivalent_damping():
+def test_a_viscous_damper_is_its_own_equivalent_damping(conform):
     test = sine_test(VISCOUS, 0.004, 2.0, 0.0, 20.0)
-    assert test.equivalent_damping == pytest.approx(700.0, rel=1e-9)
-    assert test.peak_force == pytest.approx(700.0 * 0.004 * 4 * math.pi, rel=1e-9)
+    claim, peak = "viscous damper of 700 N s/m, sine of 4 mm, 2 Hz", 700.0 * 0.004 * 4 * math.pi
+    conform(f"{claim}: equivalent damping, N s/m", "c", test.equivalent_damping, 700.0, tolerance=7e-7)
+    conform(f"{claim}: peak force, N", "c X omega", test.peak_force, peak, tolerance=1e-9 * peak)
 
 
-def test_energy_of_a_set_valued_bingham_cycle():
-    # 4 fc X from friction, pi c w X^2 from the dashpot
+def test_energy_of_a_set_valued_bingham_cycle(conform):
     damper = Bingham(c_a=300.0, c_b=0.0, fc_a=50.0, fc_b=400.0, v_ref=0.0)
     test = sine_test(damper, 0.006, 1.5, 0.5, 20.0)
     expected = 4 * 250.0 * 0.006 + math.pi * 300.0 * 3 * math.pi * 0.006**2
-    assert test.dissipated_energy == pytest.approx(expected, rel=1e-5)
+    claim = "set-valued Bingham, energy of a cycle, J"
+    conform(claim, "4 fc X + pi c omega X^2", test.dissipated_energy, expected, tolerance=1e-5 * expected)
 
 
 def test_the_last_cycle_is_returned_with_both_ends():

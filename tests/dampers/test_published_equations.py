@@ -67,7 +67,7 @@ def test_every_damper_has_its_published_equation(cls):
 
 
 @pytest.mark.parametrize("condition", ["cold", "hot, with a current that changes"])
-def test_the_force_is_that_of_the_published_equation(cls, model, specification, condition):
+def test_the_force_is_that_of_the_published_equation(cls, model, specification, condition, conform):
     name, most = name_of("damper", cls), specification.max_current
     damper = model._replace(**EQUATIONS[name].parameters)
     temperature = 20.0 if condition == "cold" else 55.0
@@ -78,5 +78,7 @@ def test_the_force_is_that_of_the_published_equation(cls, model, specification, 
 
     expected, half, (x, v) = solve(name, damper, current, temperature, specification.max_speed)
     force = bench_force(damper, x, v, current(half), temperature, STEP, FACTORS)
-    close = 4e-3 if name == SWITCHING else CLOSE
-    assert np.max(np.abs(force - expected)) < close * np.max(np.abs(expected))
+    source = EQUATIONS[name].compute.__doc__.partition(": ")[0].removesuffix(".")
+    deviation = np.max(np.abs(force - expected)) / np.max(np.abs(expected))
+    claim = f"{name}, {condition}: deviation of the force over its peak"
+    conform(claim, source, deviation, tolerance=4e-3 if name == SWITCHING else CLOSE)

@@ -24,6 +24,17 @@ def test_road_under_a_small_patch_is_the_bump(name):
     np.testing.assert_allclose(floor.displacement, expected, atol=3.5e-4)
 
 
+@pytest.mark.parametrize("name", ["half_sine", "haversine"])
+def test_patch_takes_the_mean_elevation(name, conform):
+    made = HALF._replace(shape=name, patch=0.3)
+    floor = made.floor(0.001, 0)
+    k = 1100
+    edge = 5.0 * (floor.time[k] - 1.0)
+    under = shape(name, np.linspace(edge - 0.3, edge, 100001), 0.04, 1.0)
+    claim, mean = f"{name} bump under a patch of 0.3 m, elevation, m", under.mean()
+    conform(claim, "mean elevation under the patch", floor.displacement[k], mean, tolerance=1e-4 * mean)
+
+
 @pytest.mark.parametrize("step", [0.002, 0.001, 0.00037, 0.0001])
 @pytest.mark.parametrize("first", [1.0, 1.00013])
 def test_impulse_at_the_kink_has_its_area_at_any_step(step, first):
@@ -37,6 +48,19 @@ def test_impulse_at_the_kink_has_its_area_at_any_step(step, first):
     assert area == pytest.approx(5.0 * 0.04 * np.pi, rel=0.05)
     total = np.trapezoid(floor.acceleration, dx=step)
     assert abs(total) < 1e-9
+
+
+@pytest.mark.parametrize("step", [0.002, 0.001, 0.0005])
+def test_rms_does_not_depend_on_the_step(step):
+    rms = [np.sqrt(np.mean(HALF.floor(s, 0).acceleration ** 2)) for s in (step, 0.0001)]
+    assert rms[0] == pytest.approx(rms[1], rel=0.05)
+
+
+def test_pulse_height_is_that_of_the_patch(conform):
+    peak, expected = HALF.floor(0.0002, 0).acceleration.max(), 5.0**2 * 0.04 * np.pi / 0.05
+    conform(
+        "half-sine bump, peak acceleration, m/s^2", "v^2 h pi / (L patch)", peak, expected, tolerance=0.01 * expected
+    )
 
 
 def test_cab_comes_to_rest_after_the_bump():

@@ -19,7 +19,7 @@ def linear(damping):
 
 
 @pytest.mark.parametrize(("damping", "ratio"), [(0.0, 1.0), (800.0, 1.0), (800.0, 0.6)])
-def test_the_linear_seat(damping, ratio):
+def test_the_linear_seat(damping, ratio, conform):
     plant = SEAT._replace(damper_ratio=ratio)
     floor = rough(4.0, rms=2.0, seed=2)
     s = state_space(plant)
@@ -33,7 +33,9 @@ def test_the_linear_seat(damping, ratio):
     expected["frame_acceleration"] = states @ A[1]
     expected["damper_force"] = damping * ratio * states[:, 1]
     for name, values in expected.items():
-        assert h[name] == pytest.approx(values, abs=1e-6 * max(1e-9, np.max(np.abs(values))))
+        deviation = np.max(np.abs(h[name] - values)) / max(1e-9, np.max(np.abs(values)))
+        claim = f"linear seat, damper {damping:g} N s/m, ratio {ratio:g}: deviation of {name}, over its greatest value"
+        conform(claim, "scipy.signal.lsim", deviation, tolerance=1e-6)
     assert imbalance(h, plant) < 1e-6
 
 
@@ -44,25 +46,28 @@ def block(floor, limit):
     return driven(damper, floor, 0.0, plant=BLOCK, effects=effects)
 
 
-def test_a_block_is_held_below_the_limit():
+def test_a_block_is_held_below_the_limit(conform):
     floor = 7.4 * np.sin(2 * np.pi * 3.0 * STEP * np.arange(1001))
     h = block(floor, 150.0)
     assert np.all(h["suspension_displacement"] == 0.0) and np.all(h["suspension_velocity"] == 0.0)
     assert h["frame_acceleration"] == pytest.approx(floor)
-    assert h["damper_force"] == pytest.approx(-20.0 * floor * DAMPER_SHARE / 150.0, abs=1e-6)
+    deviation = np.max(np.abs(h["damper_force"] + 20.0 * floor * DAMPER_SHARE / 150.0))
+    conform("block that sticks, deviation of the damper's force, N", "closed form", deviation, tolerance=1e-6)
 
 
-def test_a_block_breaks_away_when_the_limit_is_reached():
+def test_a_block_breaks_away_when_the_limit_is_reached(conform):
     time = STEP * np.arange(301)
     h = block(-50.0 * time, 147.34)
     sliding = np.maximum(0.0, time - 147.34 / 20.0 / 50.0)
-    assert h["suspension_displacement"] == pytest.approx(50.0 / 6.0 * sliding**3, abs=1e-12)
-    assert h["suspension_velocity"] == pytest.approx(25.0 * sliding**2, abs=1e-11)
+    errors = h["suspension_displacement"] - 50.0 / 6.0 * sliding**3, h["suspension_velocity"] - 25.0 * sliding**2
+    for name, error, tolerance in zip(("displacement, m", "velocity, m/s"), errors, (1e-12, 1e-11), strict=True):
+        claim = f"block that breaks away, deviation of the {name}"
+        conform(claim, "closed form", np.max(np.abs(error)), tolerance=tolerance)
     assert h["damper_force"][-1] == pytest.approx(DAMPER_SHARE)
     assert imbalance(h, BLOCK) < 1e-9
 
 
-def test_a_sliding_block_stops_at_the_analytic_time():
+def test_a_sliding_block_stops_at_the_analytic_time(conform):
     floor = np.where(np.arange(1001) <= 200, -20.0, 0.0)
     h = block(floor, 150.0)
     top = 12.5 * 0.2 + 1e-3 * (20.0 / 2 - 7.5)
@@ -71,14 +76,17 @@ def test_a_sliding_block_stops_at_the_analytic_time():
     rest = np.flatnonzero((h["suspension_velocity"] == 0.0) & (np.arange(1001) > 0))
     assert rest[0] == np.ceil(stop / STEP) and len(rest) == 1001 - rest[0]
     before = stop - STEP * (rest[0] - 1)
-    assert h["suspension_velocity"][rest[0] - 1] == pytest.approx(7.5 * before, abs=1e-10)
-    assert h["suspension_displacement"][-1] == pytest.approx(way, abs=1e-11)
-    assert h["energy_damper"][-1] == pytest.approx(DAMPER_SHARE * way, abs=1e-8)
-    assert h["energy_suspension"][-1] == pytest.approx(50.0 * way, abs=1e-8)
+    for claim, found, expected, tolerance in (
+        ("velocity a row before it stops, m/s", h["suspension_velocity"][rest[0] - 1], 7.5 * before, 1e-10),
+        ("way until it stops, m", h["suspension_displacement"][-1], way, 1e-11),
+        ("energy dissipated in the damper, J", h["energy_damper"][-1], DAMPER_SHARE * way, 1e-8),
+        ("energy dissipated in the linkage, J", h["energy_suspension"][-1], 50.0 * way, 1e-8),
+    ):
+        conform(f"sliding block, {claim}", "closed form", found, expected, tolerance=tolerance)
     assert imbalance(h, BLOCK) < 1e-9
 
 
-def test_a_block_that_is_pushed_back_reverses_without_rest():
+def test_a_block_that_is_pushed_back_reverses_without_rest(conform):
     floor = np.where(np.arange(501) <= 200, -20.0, 20.0)
     h = block(floor, 150.0)
     middle = 0.2 + 1e-3 * (20.0 - 7.5) / 40.0
@@ -87,6 +95,7 @@ def test_a_block_that_is_pushed_back_reverses_without_rest():
     assert h["suspension_velocity"][201] == pytest.approx(speed, abs=1e-9) and middle < 0.201
     back = 0.299 - speed / 27.5
     way = start + speed**2 / 55.0 - 0.5 * 12.5 * back**2
-    assert h["suspension_velocity"][-1] == pytest.approx(-12.5 * back, abs=1e-9)
-    assert h["suspension_displacement"][-1] == pytest.approx(way, abs=1e-9)
+    velocity, displacement = h["suspension_velocity"][-1], h["suspension_displacement"][-1]
+    conform("block that reverses, velocity at the end, m/s", "closed form", velocity, -12.5 * back, tolerance=1e-9)
+    conform("block that reverses, way at the end, m", "closed form", displacement, way, tolerance=1e-9)
     assert imbalance(h, BLOCK) < 1e-9

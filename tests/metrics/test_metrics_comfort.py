@@ -29,11 +29,12 @@ def sine(amplitude, frequency, seconds, sample_rate=RATE):
     return amplitude * np.sin(2 * np.pi * frequency * np.arange(int(seconds * sample_rate)) / sample_rate)
 
 
-def test_weighted_rms_of_a_sine_is_the_weighted_amplitude():
+def test_weighted_rms_of_a_sine_is_the_weighted_amplitude(conform):
     # The start-up of the high-pass is 2 of 300 s.
-    assert weighted_rms(sine(2.0, 5.0, 300), RATE) == pytest.approx(
-        2 * abs(frequency_response(5.0)) / math.sqrt(2), rel=1e-3
-    )
+    found = weighted_rms(sine(2.0, 5.0, 300), RATE)
+    expected = 2 * 1.039 / math.sqrt(2)
+    claim = "a_w of a sine of 5 Hz and 2 m/s^2, m/s^2"
+    conform(claim, "ISO 2631-1:1997, table 3: 1.039", found, expected, tolerance=1e-3 * expected)
 
 
 def test_weighted_rms_of_noise_agrees_with_the_integrated_spectrum():
@@ -43,9 +44,9 @@ def test_weighted_rms_of_noise_agrees_with_the_integrated_spectrum():
     assert weighted_rms(noise, RATE) == pytest.approx(expected, rel=0.02)
 
 
-def test_vdv_of_a_sine():
-    # integral of (A sin)^4 over T is 3/8 A^4 T
-    assert vdv(sine(3.0, 4.0, 60), RATE) == pytest.approx(3 * (3 / 8 * 60) ** 0.25, rel=1e-12)
+def test_vdv_of_a_sine(conform):
+    found, expected = vdv(sine(3.0, 4.0, 60), RATE), 3 * (3 / 8 * 60) ** 0.25
+    conform("VDV of a sine of 3 m/s^2 over 60 s, m/s^1.75", "A (3 T / 8)^(1/4)", found, expected, tolerance=1e-11)
 
 
 def test_vdv_of_a_day():
@@ -53,12 +54,19 @@ def test_vdv_of_a_day():
     assert daily_vdv(vdv(hour[:6000], 100.0), 60.0, 3600.0) == pytest.approx(vdv(hour, 100.0), rel=1e-9)
 
 
-def test_daily_exposure():
-    assert daily_exposure(0.5, 8 * 3600) == 0.5
-    assert daily_exposure(1.0, 2 * 3600) == pytest.approx(0.5)
+def test_estimated_vdv_of_gaussian_motion_is_six_percent_high(conform):
+    x = np.random.default_rng(2).normal(size=500_000)
+    found = estimated_vdv(1.0, 500.0) / vdv(x, RATE)
+    conform("estimated VDV over VDV of Gaussian motion", "1.4 / 3^(1/4)", found, 1.4 / 3**0.25, tolerance=0.01)
 
 
-def test_running_rms_of_a_burst():
+@pytest.mark.parametrize(("a_w", "hours"), [(0.5, 8), (1.0, 2)])
+def test_daily_exposure(a_w, hours, conform):
+    claim = f"A(8) of {hours} h at {a_w} m/s^2, m/s^2"
+    conform(claim, "a_w sqrt(T / 8 h)", daily_exposure(a_w, hours * 3600), 0.5, tolerance=1e-12)
+
+
+def test_running_rms_of_a_burst(conform):
     x = np.zeros(5000)
     x[2000:2500] = 2.0
     running = running_rms(x, RATE)
@@ -67,7 +75,8 @@ def test_running_rms_of_a_burst():
     assert running[2249] == pytest.approx(1.0)
     assert running[2499:3000] == pytest.approx(math.sqrt(2))
     assert running[3499] == pytest.approx(0, abs=1e-6)
-    assert mtvv(x, RATE) == pytest.approx(math.sqrt(2))
+    claim = "MTVV of a burst of 2 m/s^2 over half a second, m/s^2"
+    conform(claim, "closed form, window of 1 s", mtvv(x, RATE), math.sqrt(2), tolerance=1e-6)
 
 
 def test_running_rms_stays_a_number_after_a_huge_shock():
@@ -103,12 +112,20 @@ def test_seat_factor_weighs_what_the_seat_adds():
     assert seat_factor(floor + added, floor, RATE) == pytest.approx(expected, rel=2e-3)
 
 
-def test_dose_of_a_sine():
+def test_seat_factor_needs_equal_lengths():
+    with pytest.raises(InputError, match="driver has 3 samples, floor has 4"):
+        seat_factor(np.ones(3), np.ones(4), RATE)
+
+
+def test_dose_of_a_sine(conform):
     d = dose(sine(2.0, 5.0, 16), RATE)
     assert d.duration == 16.0
-    assert d.estimated_vdv == pytest.approx(1.4 * math.sqrt(2) * 2)
-    assert (d.crest_factor, d.mtvv_ratio, d.vdv_ratio) == pytest.approx((2**0.5, 1, 1.5**0.25), rel=1e-9)
-    assert (d.rms, d.mtvv) == pytest.approx((2**0.5, 2**0.5), rel=1e-9)
+    for name, expected in {
+        "rms": 2**0.5, "mtvv": 2**0.5, "estimated_vdv": 2.8 * 2**0.5,
+        "crest_factor": 2**0.5, "mtvv_ratio": 1.0, "vdv_ratio": 1.5**0.25,
+    }.items():  # fmt: skip
+        claim = f"{name} of a weighted sine of 2 m/s^2 over 16 s"
+        conform(claim, "closed form", getattr(d, name), expected, tolerance=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from scipy.stats import qmc
 
 from seatsim.plots.sweeps import find_front, plot_comfort
 from seatsim.report.sweep import advise_on_keys, tabulate_best
-from seatsim.sweeps.rows import SweepRows
+from seatsim.sweeps.rows import SweepRows, count_exceedances
 from seatsim.sweeps.sensitivity import analyse_sensitivity, choose_key
 
 COMFORT, HITS = "driver_acceleration_weighted", "end_stop_hits"
@@ -30,15 +30,16 @@ def known():
     return pd.DataFrame({"a": u[:, 0], "b": np.exp(u[:, 1]), "c": u[:, 2], "t": text, COMFORT: y})
 
 
-def test_sobol_indices_are_the_exact_ones(known):
+def test_sobol_indices_are_the_exact_ones(known, conform):
     parts = {"a": 3.0, "b": 1 / 3, "ab": 4 / 9, "t": 4 * 2 / 9}
     whole = sum(parts.values())
     exact = {"a": (3.0, 3 + 4 / 9), "b": (1 / 3, 7 / 9), "c": (0, 0), "t": (8 / 9, 8 / 9)}
     found = analyse_sensitivity(rows_of(known, "abct", drawn="ab"))
     assert [row.key for row in found.rows] == ["a", "t", "b", "c"]
     for row in found.rows:
-        first, total = (part / whole for part in exact[row.key])
-        assert (row.first, row.total) == pytest.approx((first, total), abs=0.02)
+        for kind, index, part in zip(("first", "total"), (row.first, row.total), exact[row.key], strict=True):
+            claim = f"Sobol index of {row.key} in 3 a + b + 2 a b + 2 [t is B], {kind}"
+            conform(claim, "closed form", index, part / whole, tolerance=0.02)
         assert row.first_low <= row.first <= row.first_high and row.explained > 0.99
     best = choose_key(found.rows, rows_of(known, "abct", drawn="bc"))
     assert best.key == "b" and (best.at_low, best.at_high) == pytest.approx((-0.9 + 2 / 3, 0.9 + 2 / 3), abs=0.15)
@@ -57,6 +58,16 @@ def test_indices_are_refused_where_they_have_no_meaning(known):
     assert "too few for 4 keys" in analyse_sensitivity(rows_of(known.head(8), "abct")).problem
     constant = known.assign(**{COMFORT: 1.0})
     assert analyse_sensitivity(rows_of(constant, "abct")).problem == "no metric varies"
+
+
+def test_shares_have_wilson_intervals(known, conform):
+    frame = pd.DataFrame({"t": ["x"] * 50 + ["y"] * 50, COMFORT: [1.0] * 5 + [0.2] * 95, HITS: 0.0})
+    found = count_exceedances(rows_of(frame, "t"))
+    first = found[0]
+    assert (first.group, first.metric, first.limit, first.exceeding, first.runs) == ({"t": "x"}, COMFORT, 0.5, 5, 50)
+    for end, found_end, expected in (("low", first.low, 0.0435), ("high", first.high, 0.2136)):
+        conform(f"95 % interval of a share of 5 of 50, {end} end", "Wilson 1927", found_end, expected, tolerance=1e-4)
+    assert [row.exceeding for row in found[1:]] == [0, 0, 0]
 
 
 def test_the_front_holds_what_nothing_is_better_than():

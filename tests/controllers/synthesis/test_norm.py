@@ -25,11 +25,14 @@ def random_loop(seed, n, nw, nz):
 
 @pytest.mark.parametrize("norm", METHODS)
 @pytest.mark.parametrize("damping", [1e-5, 1e-2, 0.3, 0.6])
-def test_resonance(norm, damping):
+def test_resonance(norm, damping, conform):
     oscillator = loop([[0, 1], [-4, -4 * damping]], [[0], [4]], [[1, 0]], 0)
     peak = norm(oscillator)
-    assert peak.value == pytest.approx(1 / (2 * damping * np.sqrt(1 - damping**2)), rel=1e-9)
-    assert peak.frequency == pytest.approx(2 * np.sqrt(1 - 2 * damping**2), rel=1e-4)
+    value, frequency = 1 / (2 * damping * np.sqrt(1 - damping**2)), 2 * np.sqrt(1 - 2 * damping**2)
+    claim = f"{norm.__name__} of an oscillator of 2 rad/s, damping {damping:g}"
+    conform(claim, "1 / (2 D sqrt(1 - D^2))", peak.value, value, tolerance=1e-9 * value)
+    claim = f"{claim}: frequency, rad/s"
+    conform(claim, "omega0 sqrt(1 - 2 D^2)", peak.frequency, frequency, tolerance=1e-4 * frequency)
 
 
 @pytest.mark.parametrize("norm", METHODS)

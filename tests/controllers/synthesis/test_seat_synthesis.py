@@ -13,24 +13,46 @@ from seatsim.rig.plant import Plant, state_space
 OPTIMA = {10.0: (1.0681900, [-1937.2, 2013.9]), 30.0: (1.1359585, [967.0, 2339.1]), 50.0: (1.1848133, [3268.6, 2613.3])}
 # From the Riccati equations in 60 digits, with control and noise weights of 1e-7; e1 = 10 from the LMI.
 FULL_ORDER = {10.0: 1.0000889, 30.0: 1.0007985, 50.0: 1.0022106}
+STATED = {10.0: (3.838, 1.110), 30.0: (4.423, 1.194), 50.0: (5.408, 1.477)}
 
 
 @pytest.mark.parametrize("e1", OPTIMA)
-def test_reaches_the_optimum_and_proves_it(seat, designed, e1):
+def test_reaches_the_optimum_and_proves_it(seat, designed, e1, conform):
     design = designed(e1)
     loop = seat(e1).close(design.gain)
     gamma, gain = OPTIMA[e1]
-    assert design.gamma == pytest.approx(gamma, rel=1e-6)
-    np.testing.assert_allclose(design.gain, [gain], rtol=2e-4)
-    assert grid_norm(loop).value == pytest.approx(design.gamma, rel=1e-6)
-    assert hinf_norm(loop).value == pytest.approx(design.gamma, rel=1e-6)
+    claim = f"static output feedback of the seat, e1 {e1:g}"
+    conform(f"{claim}: gamma", "optimum, derived apart", design.gamma, gamma, tolerance=1e-6 * gamma)
+    for k, unit in enumerate(("N/m", "N s/m")):
+        tolerance = 2e-4 * abs(gain[k])
+        conform(
+            f"{claim}: gain {k + 1}, {unit}",
+            "optimum, derived apart",
+            design.gain[0, k],
+            gain[k],
+            tolerance=tolerance,
+        )
+    for norm, way in ((grid_norm, "grid of frequencies"), (hinf_norm, "Hamiltonian bisection")):
+        deviation = norm(loop).value / design.gamma - 1
+        conform(f"{claim}: relative deviation of the loop's norm from gamma", way, deviation, tolerance=1e-6)
     assert design.poles.real.max() < 0
     proof = design.certificate
-    assert proof.delta <= 1e-6 and proof.gamma == pytest.approx(design.gamma * (1 + proof.delta), rel=1e-12)
+    conform(f"{claim}: proven gamma over gamma, less 1", "bounded-real certificate", proof.delta, tolerance=1e-6)
+    assert proof.gamma == pytest.approx(design.gamma * (1 + proof.delta), rel=1e-12)
     assert proof.largest_eigenvalue < 0
     assert largest_lmi_eigenvalue(seat(e1), design.gain, proof.factor, proof.gamma) == proof.largest_eigenvalue
     assert design.worst.norms_agree
-    assert design.lower_bound == pytest.approx(FULL_ORDER[e1], rel=1e-5)
+    bound = FULL_ORDER[e1]
+    conform(
+        f"{claim}: lower bound", "Riccati equations in 60 digits", design.lower_bound, bound, tolerance=1e-5 * bound
+    )
+
+
+@pytest.mark.parametrize("e1", OPTIMA)
+def test_norms_of_stated_gains(seat, e1, conform):
+    for gain, stated in zip(([0.0, 0.0], [2.0, 2147.6]), STATED[e1], strict=True):
+        norm = hinf_norm(seat(e1).close([gain])).value
+        conform(f"norm of the seat with the gain {gain}, e1 {e1:g}", "derived apart", norm, stated, tolerance=5e-4)
 
 
 def test_the_same_seed_gives_the_same_design(seat, designed):
@@ -68,10 +90,11 @@ def test_matrices_plant_and_state_space_agree(seat, designed):
     assert len({design.gain.tobytes() for design in designs}) == 1
 
 
-def test_one_gain_for_drivers_of_50_to_120_kg(seat):
+def test_one_gain_for_drivers_of_50_to_120_kg(seat, conform):
     plants = [seat(50.0, m=m) for m in np.linspace(50.0, 120.0, 15)]
     design = synthesise(plants)
-    assert design.gamma == pytest.approx(1.24271, rel=1e-5)
+    claim = "one gain for drivers of 50 to 120 kg: gamma"
+    conform(claim, "optimum, derived apart", design.gamma, 1.24271, tolerance=1.3e-5)
     np.testing.assert_allclose(design.gain, [[4887.9, 3213.3]], rtol=1e-3)
     norms = [hinf_norm(plant.close(design.gain)).value for plant in plants]
     np.testing.assert_allclose([loop.gamma for loop in design.loops], norms, rtol=1e-9)
@@ -80,9 +103,9 @@ def test_one_gain_for_drivers_of_50_to_120_kg(seat):
     assert 1.0 < design.lower_bound <= design.gamma
 
 
-def test_disk_margin_of_a_known_loop(seat):
-    # K = 0 can be multiplied by anything.
-    assert verify(seat(30.0), np.zeros((1, 2))).disk_margin == pytest.approx(2.0)
+def test_disk_margin_of_a_known_loop(seat, conform):
+    margin = verify(seat(30.0), np.zeros((1, 2))).disk_margin
+    conform("disk margin without feedback", "K = 0 can be multiplied by anything", margin, 2.0, tolerance=2e-6)
 
 
 @pytest.mark.parametrize("e1", OPTIMA)
