@@ -11,6 +11,7 @@ arithmetic and `math` only; what they call from their module is decorated with `
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable
 from typing import Literal, NamedTuple, Protocol, TypeVar
 
@@ -19,6 +20,7 @@ from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import Record, Registry, is_own
+from seatsim.schema.text import split_source
 
 _T = TypeVar("_T", bound=type)
 
@@ -77,7 +79,7 @@ def find_confidence(cls: type) -> str:
 
 def damper(
     name: str,
-    source: str,
+    source: str = "",
     initial: State = (),
     state: str = "",
     current_order: int = 0,
@@ -90,20 +92,19 @@ def damper(
     confidence: Confidence = "published",
     fixed: tuple[str, ...] = (),
     smooth: bool = False,
+    defaults: str = "",
 ) -> Callable[[_T], _T]:
     """Register a record class as the damper `model: name`; see `DamperSpecification` for the facts.
 
-    `factors` are the temperature factors that a scenario may leave out, none where they are not given.
+    `factors` are the temperature factors that a scenario may leave out, none where they are not given. Where `source`
+    is not given it is the last paragraph of the class's docstring, `Source: ...`; `defaults` adds where its defaults
+    come from.
 
     Raises:
         InputError: the class lacks a method that a damper has.
     """
     ranges = max_speed, max_current, temperatures
     stated = factors or TemperatureFactors()
-    specification = DamperSpecification(
-        source, initial, state, current_order, centred, *ranges, stated, complete, confidence, fixed, smooth
-    )
-    enter = DAMPERS.register(name, specification)
 
     def check_and_enter(cls: _T) -> _T:
         for method in ("force", "rates") if initial else ("force",):
@@ -112,6 +113,10 @@ def damper(
                 raise InputError(
                     f"damper '{name}': has {has}no method {method}(self, x, v, i, scaling, z); see seatsim new damper"
                 )
-        return enter(cls)
+        origin = "; ".join(filter(None, (source or split_source(inspect.getdoc(cls) or "")[1], defaults)))
+        specification = DamperSpecification(
+            origin, initial, state, current_order, centred, *ranges, stated, complete, confidence, fixed, smooth
+        )
+        return DAMPERS.register(name, specification)(cls)
 
     return check_and_enter

@@ -6,7 +6,7 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import damper
-from seatsim.dampers.pieces import UTFSM, CurrentLaw, cubic, power, utfsm_damper
+from seatsim.dampers.pieces import CurrentLaw, cubic, power, utfsm_damper
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
@@ -15,20 +15,15 @@ _SET_VALUED_BELOW = 1e-6
 """m/s; a sharper `v_ref` than this is taken as the set-valued sign itself."""
 
 
-@damper(
-    "bingham",
-    source="Stanway, Sproston and Stevens 1987, J. Electrostatics 20:167",
-    current_order=1,
-    complete=True,
-    confidence="published",
-    fixed=("v_ref",),
-)
+@damper("bingham", current_order=1, complete=True, confidence="published", fixed=("v_ref",))
 class Bingham(NamedTuple):
     """Bingham damper with laws linear in the current.
 
         F = (c_a + c_b i) v + (fc_a + fc_b i) tanh(v / v_ref) + f0
 
     `v_ref` regularises the sign; 0 means the sign itself, set-valued at rest (`|F - f0| <= fc` at v = 0).
+
+    Source: Stanway, Sproston and Stevens 1987, J. Electrostatics 20:167
     """
 
     c_a: Annotated[float, param("N s/m", "viscous damping at zero current", low=0)] = 250.0
@@ -52,19 +47,15 @@ class Bingham(NamedTuple):
         return 0.0
 
 
-@damper(
-    "original_bingham",
-    source="Stanway et al. 1987 with the current laws of Braz-Cesar and Barros 2012 eqs 4.1-4.2, whose"
-    " printed numbers are lost: defaults fitted by us to their modified Bouc-Wen model of the RD-1005-3",
-    max_speed=0.13,
-    max_current=1.0,
-    confidence="published",
-)
+@damper("original_bingham", max_speed=0.13, max_current=1.0, confidence="published")
 class OriginalBingham(NamedTuple):
     """Bingham damper with cubic current laws and a set-valued yield force: `F = c0(I) v + fc(I) sgn(v) + f0`.
 
     Defaults are a surrogate of the RD-1005-3 (derived, not published): fitted over 0.5-2 Hz, 2-10 mm and 0-1
     A, rms 20-279 N; `f0` is the paper's 40 N, off by default because the seat's rest position absorbs it.
+
+    Source: Stanway et al. 1987 with the current laws of Braz-Cesar and Barros 2012 eqs 4.1-4.2, whose printed
+    numbers are lost: defaults fitted by us to their modified Bouc-Wen model of the RD-1005-3
     """
 
     c0: Annotated[CurrentLaw, param("N s/m", "viscous damping c0(I)")] = (940.0, 13280.0, 20350.0, -20040.0)
@@ -80,12 +71,7 @@ class OriginalBingham(NamedTuple):
         return max(0.0, cubic(self.fc, i) * scaling.yield_force)
 
 
-@utfsm_damper(
-    "updated_bingham",
-    source="Occhiuzzi, Spizzuoco and Serino 2003, Smart Mater. Struct. 12:703; form vaguely recalled, their"
-    f" function C(I, |v|) not found and read by us as shear thinning; {UTFSM}",
-    confidence="reading",
-)
+@utfsm_damper("updated_bingham", confidence="reading")
 class UpdatedBingham(NamedTuple):
     """Bingham damper whose viscous damping depends on the speed, with a set-valued yield force.
 
@@ -97,6 +83,9 @@ class UpdatedBingham(NamedTuple):
     defaults are derived by us (see `pieces.UTFSM`), with fc, which these data leave next to nothing of,
     chosen; rms error 28, 62, 133, 216, 284 N at 0, 0.25, 0.5, 0.75, 1 A. Valid to 0.13 m/s and 1 A. Temperature
     scales c0 (viscous) and fc (yield).
+
+    Source: Occhiuzzi, Spizzuoco and Serino 2003, Smart Mater. Struct. 12:703; form vaguely recalled, their
+    function C(I, |v|) not found and read by us as shear thinning
     """
 
     c0: Annotated[CurrentLaw, param("N s/m", "viscous damping c0(I) at rest")] = (18030.0, 75540.0, 155800.0, -110400.0)
@@ -116,11 +105,7 @@ class UpdatedBingham(NamedTuple):
         return max(0.0, cubic(self.fc, min(i, self.law_end)) * scaling.yield_force)
 
 
-@utfsm_damper(
-    "powell",
-    source=f"Powell 1994, Smart Mater. Struct. 3:416; form recalled, no parameter set found; {UTFSM}",
-    confidence="recalled",
-)
+@utfsm_damper("powell", confidence="recalled")
 class Powell(NamedTuple):
     """Three elements side by side: a spring, a dashpot, and friction that falls from static to dynamic.
 
@@ -131,6 +116,8 @@ class Powell(NamedTuple):
     `pieces.UTFSM`) with k chosen; rms error 25, 58, 129, 213, 281 N at 0, 0.25, 0.5, 0.75, 1 A. In them e is
     the slope of the pre-yield flow, and r and a round its corner: no static friction was seen. Valid to 0.13 m/s
     and 1 A. Temperature scales c (viscous), k (elastic) and fc (yield).
+
+    Source: Powell 1994, Smart Mater. Struct. 3:416; form recalled, no parameter set found
     """
 
     c: Annotated[CurrentLaw, param("N s/m", "viscous damping c(I)")] = (377.0, 556.0, 5353.0, -3467.0)

@@ -9,7 +9,6 @@ from seatsim.compilation.jit import jit
 from seatsim.dampers.pieces import (
     BRANCH_STATE,
     SETTLING,
-    UTFSM,
     CurrentLaw,
     between,
     branch,
@@ -22,8 +21,6 @@ from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
-_WERELEY = "Wereley, Pang and Kamath 1998, J. Intell. Mater. Syst. Struct. 9:642; form recalled, no parameter set found"
-
 
 @jit
 def two_slopes(pre: float, post: float, fy: float, v: float, shift: float) -> float:
@@ -31,7 +28,7 @@ def two_slopes(pre: float, post: float, fy: float, v: float, shift: float) -> fl
     return post * v + limited((pre - post) * v + shift, fy)
 
 
-@utfsm_damper("biviscous", source=f"{_WERELEY}; {UTFSM}", confidence="recalled")
+@utfsm_damper("biviscous", confidence="recalled")
 class Biviscous(NamedTuple):
     """Nonlinear bi-viscous damper, without hysteresis.
 
@@ -41,6 +38,9 @@ class Biviscous(NamedTuple):
     The form is recalled. All three coefficients are cubic laws in the current, held beyond `law_end`; c_pre is
     above c_post. The defaults are derived by us (see `pieces.UTFSM`); rms error 28, 62, 135, 219, 288 N at
     0, 0.25, 0.5, 0.75, 1 A. Valid to 0.13 m/s and 1 A. Temperature scales the damping (viscous) and fy (yield).
+
+    Source: Wereley, Pang and Kamath 1998, J. Intell. Mater. Syst. Struct. 9:642; form recalled, no parameter
+    set found
     """
 
     c_pre: Annotated[CurrentLaw, param("N s/m", "damping before yield")] = (12480.0, 87900.0, -16640.0, 3062.0)
@@ -57,13 +57,7 @@ class Biviscous(NamedTuple):
 
 
 @utfsm_damper(
-    "hysteretic_biviscous",
-    source=f"{_WERELEY}; {UTFSM}",
-    initial=(0.0,),
-    state=BRANCH_STATE,
-    centred=True,
-    confidence="recalled",
-    smooth=True,
+    "hysteretic_biviscous", initial=(0.0,), state=BRANCH_STATE, centred=True, confidence="recalled", smooth=True
 )
 class HystereticBiviscous(NamedTuple):
     """Nonlinear hysteretic bi-viscous damper: the pre-yield line crosses zero force at a speed v0, not at rest.
@@ -77,6 +71,9 @@ class HystereticBiviscous(NamedTuple):
     (`pieces.branch`). v0 = v0_a + v0_b I; the rest are cubic laws, held beyond `law_end`. The defaults are derived
     by us (see `pieces.UTFSM`); rms error 23, 47, 96, 155, 206 N at 0, 0.25, 0.5, 0.75, 1 A. Valid to 0.13
     m/s and 1 A. Temperature scales the damping (viscous) and fy (yield).
+
+    Source: Wereley, Pang and Kamath 1998, J. Intell. Mater. Syst. Struct. 9:642; form recalled, no parameter
+    set found
     """
 
     c_pre: Annotated[CurrentLaw, param("N s/m", "damping before yield")] = (12410.0, 71070.0, -13320.0, -10410.0)
@@ -100,13 +97,7 @@ class HystereticBiviscous(NamedTuple):
 
 
 @utfsm_damper(
-    "hysteretic_arctangent",
-    source=f"named in Table 2.1 of Braz-Cesar and Barros 2012; form recalled, no parameter set found; {UTFSM}",
-    initial=(0.0,),
-    state=BRANCH_STATE,
-    centred=True,
-    confidence="recalled",
-    smooth=True,
+    "hysteretic_arctangent", initial=(0.0,), state=BRANCH_STATE, centred=True, confidence="recalled", smooth=True
 )
 class HystereticArctangent(NamedTuple):
     """Nonlinear hysteretic arctangent damper: the hysteretic bi-viscous one with rounded corners.
@@ -119,6 +110,8 @@ class HystereticArctangent(NamedTuple):
     are cubic laws, held beyond `law_end`. The defaults are derived by us (see `pieces.UTFSM`), with c_post
     chosen; rms error 23, 45, 94, 152, 202 N at 0, 0.25, 0.5, 0.75, 1 A. Valid to 0.13 m/s and 1 A. Temperature
     scales c_post (viscous) and fy (yield).
+
+    Source: named in Table 2.1 of Braz-Cesar and Barros 2012; form recalled, no parameter set found
     """
 
     c_post: Annotated[CurrentLaw, param("N s/m", "damping past yield")] = (350.0, 900.0, 500.0, 0.0)
@@ -145,8 +138,6 @@ class HystereticArctangent(NamedTuple):
 
 @utfsm_damper(
     "lumped_biviscous",
-    source="Sims, Peel, Stanway, Johnson and Bullough 2000, J. Sound Vib. 229:207; form recalled, no parameter set"
-    f" found; {UTFSM}",
     initial=(0.0, 0.0),
     state="e = x - x1, deflection in m of the compressible fluid; u = x1', speed in m/s of the flow",
     confidence="recalled",
@@ -163,6 +154,9 @@ class LumpedBiviscous(NamedTuple):
     force. The defaults are derived by us (see `pieces.UTFSM`), with m chosen; rms error 25, 50, 84, 102, 143 N
     at 0, 0.25, 0.5, 0.75, 1 A. Valid to 0.13 m/s, 1 A and 20 Hz. Temperature scales the damping (viscous), k
     (elastic) and fy (yield).
+
+    Source: Sims, Peel, Stanway, Johnson and Bullough 2000, J. Sound Vib. 229:207; form recalled, no parameter
+    set found
     """
 
     c_pre: Annotated[CurrentLaw, param("N s/m", "damping before yield")] = (14960.0, 59430.0, 82700.0, -42600.0)

@@ -15,7 +15,6 @@ _HYSTERESIS = "z, the hysteretic displacement"
 
 @damper(
     "bouc_wen",
-    source="Wen 1976; Spencer et al. 1997, J. Eng. Mech. 123:230",
     initial=(0.0,),
     state=_HYSTERESIS,
     current_order=1,
@@ -30,6 +29,8 @@ class BoucWen(NamedTuple):
         z' = A v - beta v |z|^n - gamma |v| z |z|^(n-1),   |z| <= (A / (beta + gamma))^(1/n)
 
     The hysteretic variable z has no unit of its own: A sets its scale.
+
+    Source: Wen 1976; Spencer et al. 1997, J. Eng. Mech. 123:230
     """
 
     c_a: Annotated[float, param("N s/m", "viscous damping at zero current", low=0)] = 250.0
@@ -57,8 +58,6 @@ class BoucWen(NamedTuple):
 
 @damper(
     "simple_bouc_wen",
-    source="Braz-Cesar and Barros 2012, eqs 2.2-2.3 (A, beta, gamma, k0, n as printed); its current laws"
-    " 4.3-4.4 are lost: alpha and c0 fitted by us to its modified Bouc-Wen model of the RD-1005-3",
     initial=(0.0,),
     state=_HYSTERESIS,
     max_speed=0.13,
@@ -74,6 +73,9 @@ class SimpleBoucWen(NamedTuple):
 
     z in m. alpha and c0 are a surrogate (derived, not published): fitted over 0.5-2 Hz, 2-10 mm, 0-1 A, rms
     14-166 N.
+
+    Source: Braz-Cesar and Barros 2012, eqs 2.2-2.3 (A, beta, gamma, k0, n as printed); its current laws
+    4.3-4.4 are lost: alpha and c0 fitted by us to its modified Bouc-Wen model of the RD-1005-3
     """
 
     c0: Annotated[CurrentLaw, param("N s/m", "viscous damping c0(I)")] = (855.0, 11200.0, 18970.0, -18690.0)
@@ -102,7 +104,6 @@ class SimpleBoucWen(NamedTuple):
 
 @damper(
     "modified_bouc_wen",
-    source="Spencer et al. 1997, J. Eng. Mech. 123:230; RD-1005-3 set of Braz-Cesar and Barros 2012, eqs 4.5-4.7",
     initial=(0.0, 0.0),
     state="y, displacement behind the series dashpot; z, hysteretic displacement",
     max_speed=0.13,
@@ -120,6 +121,9 @@ class ModifiedBoucWen(NamedTuple):
     Defaults: RD-1005-3, cubic laws as published (converted from N, mm, s). gamma = 0.103 1/mm^2 goes with
     |r|, beta = 3.044 1/mm^2 with r. alpha peaks at 0.91 A and is negative at 1.5 A: the laws hold at 1 A
     beyond 1 A. The published offset f0 = 40 N is off by default because the seat's rest position absorbs it.
+
+    Source: Spencer et al. 1997, J. Eng. Mech. 123:230; RD-1005-3 set of Braz-Cesar and Barros 2012, eqs
+    4.5-4.7
     """
 
     c0: Annotated[CurrentLaw, param("N s/m", "damping c0(I) of the inner dashpot")] = (

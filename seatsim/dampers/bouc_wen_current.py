@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple
 
 from seatsim.compilation.jit import jit
 from seatsim.dampers.bouc_wen_variants import NORMALISED, normalised_rate
-from seatsim.dampers.pieces import BRANCH_MEMORY, UTFSM, branch_rate, utfsm_damper
+from seatsim.dampers.pieces import BRANCH_MEMORY, branch_rate, utfsm_damper
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
@@ -39,13 +39,7 @@ def excitation_factor(d2: float, d4: float, s: float, r: float) -> float:
     return of_frequency * of_amplitude
 
 
-@utfsm_damper(
-    "current_dependent_bouc_wen",
-    source=f"Dominguez, Sedaghati and Stiharu 2004, Smart Mater. Struct. 13:1351; form recalled; {UTFSM}",
-    initial=(0.0,),
-    state=NORMALISED,
-    confidence="recalled",
-)
+@utfsm_damper("current_dependent_bouc_wen", initial=(0.0,), state=NORMALISED, confidence="recalled")
 class CurrentDependentBoucWen(NamedTuple):
     """Bouc-Wen damper whose damping and yield force saturate in the current.
 
@@ -60,6 +54,8 @@ class CurrentDependentBoucWen(NamedTuple):
     Defaults: derived by us from measurement, steady cycles of 2-25 mm and 0.5-5 Hz at 0-1 A, offset
     removed; rms error 20 N at 0 A to 99 N at 1 A, 8 % of the peak force. Valid to 0.13 m/s and 1 A.
     Temperature scales c (viscous), k (elastic) and alpha (yield).
+
+    Source: Dominguez, Sedaghati and Stiharu 2004, Smart Mater. Struct. 13:1351; form recalled
     """
 
     c_0: Annotated[float, param("N s/m", "damping c0 at zero current", low=0)] = 1025.0
@@ -92,8 +88,6 @@ class CurrentDependentBoucWen(NamedTuple):
 
 @utfsm_damper(
     "frequency_dependent_bouc_wen",
-    source="Dominguez, Sedaghati and Stiharu 2006, Smart Mater. Struct. 15:1179, of which only the structure is"
-    f" recalled; frequency and amplitude from running mean squares are ours; {UTFSM}",
     initial=(0.0, 0.5 * AMPLITUDE**2, 0.5 * (_FREQUENCY * AMPLITUDE) ** 2, 0.0),
     state="d, displacement about its recent mean in m; s, recent mean square of d in m^2; r, recent mean square of"
     f" the velocity in m^2/s^2; {NORMALISED}",
@@ -116,6 +110,9 @@ class FrequencyDependentBoucWen(NamedTuple):
     Defaults: derived by us from measurement, steady cycles of 2-25 mm and 0.5-5 Hz at 0-1 A, offset
     removed; rms error 19 N at 0 A to 99 N at 1 A, 7 % of the peak force. Valid to 0.13 m/s and 1 A.
     Temperature scales c (viscous), k (elastic) and alpha (yield).
+
+    Source: Dominguez, Sedaghati and Stiharu 2006, Smart Mater. Struct. 15:1179, of which only the structure
+    is recalled; frequency and amplitude from running mean squares are ours
     """
 
     c_0: Annotated[float, param("N s/m", "damping c0 at zero current", low=0)] = 1174.0

@@ -6,7 +6,7 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.compilation.jit import jit
-from seatsim.dampers.pieces import UTFSM, CurrentLaw, between, cubic, inertance, inertance_rate, power, utfsm_damper
+from seatsim.dampers.pieces import CurrentLaw, between, cubic, inertance, inertance_rate, power, utfsm_damper
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
@@ -21,14 +21,7 @@ def normalised_rate(rho: float, sigma: float, n: float, r: float, w: float) -> f
     return rho * r * (1.0 - size if r * w >= 0.0 else 1.0 + (2.0 * sigma - 1.0) * size)
 
 
-@utfsm_damper(
-    "shear_bouc_wen",
-    source="Jansen and Dyke 2000, normalised after Ikhouane and Dyke 2007, Smart Mater. Struct. 16:605; form recalled;"
-    f" {UTFSM}",
-    initial=(0.0,),
-    state=NORMALISED,
-    confidence="recalled",
-)
+@utfsm_damper("shear_bouc_wen", initial=(0.0,), state=NORMALISED, confidence="recalled")
 class ShearBoucWen(NamedTuple):
     """Shear-mode Bouc-Wen damper: a dashpot beside a hysteresis, no spring.
 
@@ -42,6 +35,9 @@ class ShearBoucWen(NamedTuple):
     Defaults: derived by us from measurement, steady cycles of 2-25 mm and 0.5-5 Hz at 0-1 A, offset
     removed; rms error 20 N at 0 A to 100 N at 1 A, 8 % of the peak force. Valid to 0.13 m/s and 1 A.
     Temperature scales kx (viscous) and kw (yield).
+
+    Source: Jansen and Dyke 2000, normalised after Ikhouane and Dyke 2007, Smart Mater. Struct. 16:605; form
+    recalled
     """
 
     kx: Annotated[CurrentLaw, param("N s/m", "viscous damping kx(I)")] = (980.0, 3020.0, 4450.0, -3340.0)
@@ -66,7 +62,6 @@ class ShearBoucWen(NamedTuple):
 
 @utfsm_damper(
     "large_scale_bouc_wen",
-    source=f"Yang, Spencer, Jung and Carlson 2004, J. Eng. Mech. 130:1107; form recalled; {UTFSM}",
     initial=(0.0, 0.0),
     state=f"{NORMALISED}; u, velocity of the inertance in m/s",
     confidence="recalled",
@@ -85,6 +80,8 @@ class LargeScaleBoucWen(NamedTuple):
     Defaults: derived by us from measurement, steady cycles of 2-25 mm and 0.5-5 Hz at 0-1 A, offset
     removed; rms error 16 N at 0 A to 75 N at 1 A, 6 % of the peak force. Valid to 0.13 m/s and 1 A.
     Temperature scales a1 and, so that the whole force follows, m (viscous), k (elastic) and alpha (yield).
+
+    Source: Yang, Spencer, Jung and Carlson 2004, J. Eng. Mech. 130:1107; form recalled
     """
 
     a1: Annotated[CurrentLaw, param("N s/m", "damping a1(I) at low speed")] = (12400.0, 58000.0, 8900.0, -15200.0)
@@ -113,14 +110,7 @@ class LargeScaleBoucWen(NamedTuple):
         return (normalised_rate(rho, self.sigma, self.n, v, z[0]), inertance_rate(v, z[1]))
 
 
-@utfsm_damper(
-    "nonsymmetrical_bouc_wen",
-    source=f"Kwok, Ha, Nguyen, Li and Samali 2007, ISA Trans. 46:167; form recalled; {UTFSM}",
-    initial=(0.0,),
-    state=NORMALISED,
-    confidence="recalled",
-    fixed=("mu",),
-)
+@utfsm_damper("nonsymmetrical_bouc_wen", initial=(0.0,), state=NORMALISED, confidence="recalled", fixed=("mu",))
 class NonsymmetricalBoucWen(NamedTuple):
     """Bouc-Wen damper whose hysteresis sees the velocity shifted by mu, so that the loop is not symmetric.
 
@@ -135,6 +125,8 @@ class NonsymmetricalBoucWen(NamedTuple):
     Defaults: derived by us from measurement, steady cycles of 2-25 mm and 0.5-5 Hz at 0-1 A, offset
     removed; rms error 19 N at 0 A to 100 N at 1 A, 8 % of the peak force. Valid to 0.13 m/s and 1 A.
     Temperature scales c (viscous), k (elastic) and alpha (yield).
+
+    Source: Kwok, Ha, Nguyen, Li and Samali 2007, ISA Trans. 46:167; form recalled
     """
 
     c: Annotated[CurrentLaw, param("N s/m", "viscous damping c(I)")] = (990.0, 3030.0, 4520.0, -3410.0)

@@ -6,7 +6,7 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.compilation.jit import jit
-from seatsim.dampers.pieces import SETTLING, UTFSM, CurrentLaw, between, cubic, utfsm_damper
+from seatsim.dampers.pieces import SETTLING, CurrentLaw, between, cubic, utfsm_damper
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
@@ -62,8 +62,6 @@ def series_force(d: Ellis, v: float, i: float, scaling: TemperatureScaling, stop
 
 @utfsm_damper(
     "ellis",
-    source="composed by us from the fluid of Ellis (Bird, Armstrong and Hassager, Dynamics of Polymeric Liquids) and a"
-    f" free play; {UTFSM}",
     initial=(0.0, 0.0),
     state="y, position in the free play in m; w, seal friction over its limit",
     confidence="derived",
@@ -86,6 +84,9 @@ class Ellis(NamedTuple):
     0.5, 0.75, 1 A. Held out, the tests of 10 mm 2 Hz and 5 mm 4 Hz are predicted, start and stop included, with a fit
     1 - rms error / standard deviation of 92.1 % on average over the currents. Valid to 0.13 m/s and 1 A. Temperature
     scales K and f_s (yield), c0, c_p, c_y (viscous), k_s and k0 (stiffness).
+
+    Source: composed by us from the fluid of Ellis (Bird, Armstrong and Hassager, Dynamics of Polymeric
+    Liquids) and a free play
     """
 
     K: Annotated[CurrentLaw, param("N", "force K(I) of the power law at 0.1 m/s")] = (130.0, 685.0, 1396.0, -947.0)
@@ -122,8 +123,6 @@ class Ellis(NamedTuple):
 
 @utfsm_damper(
     "hydro_mechanical",
-    source="Hong, Choi, Choi and Wereley 2005, J. Sound Vib. 285:1180; form vaguely recalled, read by us as lumped"
-    f" hydraulics, no parameter set found; {UTFSM}",
     initial=(0.0, 0.0),
     state="V, volume in m^3 that the chambers give; Q, flow in m^3/s through the gap",
     confidence="reading",
@@ -149,6 +148,9 @@ class HydroMechanical(NamedTuple):
     defaults are derived by us (see `pieces.UTFSM`), with A, C, L and fs chosen; rms error 22, 40, 71, 95,
     136 N at 0, 0.25, 0.5, 0.75, 1 A. Valid to 0.13 m/s, 1 A and 20 Hz. Temperature scales R and L (viscous), 1/C
     and k_g (elastic), P_y and fs (yield).
+
+    Source: Hong, Choi, Choi and Wereley 2005, J. Sound Vib. 285:1180; form vaguely recalled, read by us as
+    lumped hydraulics, no parameter set found
     """
 
     R: Annotated[CurrentLaw, param("Pa s/m^3", "resistance R(I) of the gap")] = (8.68e8, 3.03e9, 6.71e9, -5.23e9)
@@ -185,13 +187,7 @@ _ORDERED_AT = 0.1
 
 
 @utfsm_damper(
-    "phase_transition",
-    source="Wang and Kamath 2006, Smart Mater. Struct. 15:1725, whose equations were not at hand: our reading of its"
-    f" idea; {UTFSM}",
-    initial=(0.0,),
-    state="p, order parameter of the flow",
-    confidence="reading",
-    smooth=True,
+    "phase_transition", initial=(0.0,), state="p, order parameter of the flow", confidence="reading", smooth=True
 )
 class PhaseTransition(NamedTuple):
     """Yield as a phase transition: the flow's order parameter relaxes in a Landau potential.
@@ -207,6 +203,9 @@ class PhaseTransition(NamedTuple):
     Defaults: derived by us from measurement, steady cycles of 2-25 mm and 0.5-5 Hz at 0-1 A, offset
     removed; rms error 19 N at 0 A to 108 N at 1 A, 8 % of the peak force. Valid to 0.13 m/s and 1 A.
     Temperature scales c (viscous) and fy (yield).
+
+    Source: Wang and Kamath 2006, Smart Mater. Struct. 15:1725, whose equations were not at hand: our reading
+    of its idea
     """
 
     c: Annotated[CurrentLaw, param("N s/m", "viscous damping c(I)")] = (150.0, 0.0, 0.0, 0.0)

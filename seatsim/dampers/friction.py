@@ -5,20 +5,13 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 from seatsim.dampers.bouc_wen_variants import NORMALISED
-from seatsim.dampers.pieces import UTFSM, CurrentLaw, between, cubic, utfsm_damper
+from seatsim.dampers.pieces import CurrentLaw, between, cubic, utfsm_damper
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
 
-@utfsm_damper(
-    "modified_dahl",
-    source=f"Zhou and Qu 2002; form recalled; {UTFSM}",
-    initial=(0.0,),
-    state=NORMALISED,
-    current_order=1,
-    confidence="recalled",
-)
+@utfsm_damper("modified_dahl", initial=(0.0,), state=NORMALISED, current_order=1, confidence="recalled")
 class ModifiedDahl(NamedTuple):
     """Modified Dahl damper: spring, dashpot and Dahl friction with laws linear in the current.
 
@@ -30,6 +23,8 @@ class ModifiedDahl(NamedTuple):
     Defaults: derived by us from measurement, steady cycles of 2-25 mm and 0.5-5 Hz at 0-1 A, offset
     removed; rms error 24 N at 0 A to 155 N at 1 A, 11 % of the peak force. Valid to 0.13 m/s and 1 A.
     Temperature scales c00, c01 (viscous), k0 (elastic), Fd0 and Fd1 (yield).
+
+    Source: Zhou and Qu 2002; form recalled
     """
 
     k0: Annotated[float, param("N/m", "stiffness, of the gas accumulator", low=0)] = 350.0
@@ -50,14 +45,7 @@ class ModifiedDahl(NamedTuple):
         return (self.sigma * (v - abs(v) * z[0]),)
 
 
-@utfsm_damper(
-    "viscous_dahl",
-    source="Ikhouane and Dyke 2007, Smart Mater. Struct. 16:605; form as in public code of UTFPR (Brazil, repository"
-    f" labcontrol-data/mr-damper, MIT); {UTFSM}",
-    initial=(0.0,),
-    state=NORMALISED,
-    confidence="published",
-)
+@utfsm_damper("viscous_dahl", initial=(0.0,), state=NORMALISED, confidence="published")
 class ViscousDahl(NamedTuple):
     """Viscous Dahl damper: a dashpot beside Dahl friction.
 
@@ -70,6 +58,9 @@ class ViscousDahl(NamedTuple):
     Defaults: derived by us from measurement, steady cycles of 2-25 mm and 0.5-5 Hz at 0-1 A, offset
     removed; rms error 22 N at 0 A to 119 N at 1 A, 9 % of the peak force. Valid to 0.13 m/s and 1 A.
     Temperature scales kx (viscous) and kw (yield).
+
+    Source: Ikhouane and Dyke 2007, Smart Mater. Struct. 16:605; form as in public code of UTFPR (Brazil,
+    repository labcontrol-data/mr-damper, MIT)
     """
 
     kx: Annotated[CurrentLaw, param("N s/m", "viscous damping kx(I)")] = (1062.0, 3490.0, 5170.0, -3600.0)
@@ -92,13 +83,7 @@ class ViscousDahl(NamedTuple):
 _DEFLECTION = "w, deflection of the bristles over its bound, from -1 to 1"
 
 
-@utfsm_damper(
-    "lugre_jimenez",
-    source=f"Jimenez and Alvarez-Icaza 2005, Struct. Control Health Monit. 12:91; form recalled, unsurely; {UTFSM}",
-    initial=(0.0,),
-    state=_DEFLECTION,
-    confidence="recalled",
-)
+@utfsm_damper("lugre_jimenez", initial=(0.0,), state=_DEFLECTION, confidence="recalled")
 class LuGreJimenez(NamedTuple):
     """LuGre damper whose bristle force grows with the current and saturates, after Jimenez and Alvarez-Icaza.
 
@@ -113,6 +98,8 @@ class LuGreJimenez(NamedTuple):
     Defaults: derived by us from measurement, steady cycles of 2-25 mm and 0.5-5 Hz at 0-1 A, offset
     removed; rms error 25 N at 0 A to 192 N at 1 A, 12 % of the peak force. Valid to 0.13 m/s and 1 A.
     Temperature scales sigma1 and sigma2 (viscous) and the bristle force (yield).
+
+    Source: Jimenez and Alvarez-Icaza 2005, Struct. Control Health Monit. 12:91; form recalled, unsurely
     """
 
     sigma0: Annotated[float, param("N/(m A)", "stiffness of the bristles per current", low=1e5, high=1e9)] = 1.2e7
@@ -134,14 +121,7 @@ class LuGreJimenez(NamedTuple):
         return (self.sigma0 * self.a0 * (1.0 + self.a1 * (i + self.i0)) * (v - abs(v) * z[0]),)
 
 
-@utfsm_damper(
-    "lugre_sakai",
-    source=f"Sakai, Ohmori and Sano 2003; Terasawa et al. 2004 (IEEE CDC); form recalled; {UTFSM}",
-    initial=(0.0,),
-    state=_DEFLECTION,
-    current_order=1,
-    confidence="recalled",
-)
+@utfsm_damper("lugre_sakai", initial=(0.0,), state=_DEFLECTION, current_order=1, confidence="recalled")
 class LuGreSakai(NamedTuple):
     """LuGre damper after Sakai et al., linear in the current.
 
@@ -155,6 +135,8 @@ class LuGreSakai(NamedTuple):
     Defaults: derived by us from measurement, steady cycles of 2-25 mm and 0.5-5 Hz at 0-1 A, offset
     removed; rms error 21 N at 0 A to 131 N at 1 A, 10 % of the peak force. Valid to 0.13 m/s and 1 A.
     Temperature scales sigma1, sigma2, sigmab (viscous), fa and fb (yield).
+
+    Source: Sakai, Ohmori and Sano 2003; Terasawa et al. 2004 (IEEE CDC); form recalled
     """
 
     fa: Annotated[float, param("N", "bristle force at zero current", low=0)] = 106.0

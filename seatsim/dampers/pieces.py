@@ -38,7 +38,7 @@ Stiffnesses of elements in series were kept to what explicit steps of 1 ms bear;
 show, were chosen.
 """
 
-utfsm_damper = partial(damper, max_speed=0.13, max_current=1.0, temperatures=(20.0, 20.0))
+utfsm_damper = partial(damper, max_speed=0.13, max_current=1.0, temperatures=(20.0, 20.0), defaults=UTFSM)
 """`damper` for a model with such defaults: the data reach 0.13 m/s and 1 A, at 20 degC."""
 
 BRANCH_STATE = "w, the displacement in m about its recent mean, whose sign is the branch of the loop"

@@ -9,7 +9,6 @@ from seatsim.compilation.jit import jit
 from seatsim.dampers.base import damper
 from seatsim.dampers.pieces import (
     BRANCH_STATE,
-    UTFSM,
     CurrentLaw,
     QuadraticLaw,
     branch,
@@ -26,7 +25,6 @@ from seatsim.schema.fields import param
 
 @utfsm_damper(
     "weng_arctangent",
-    source=f"Weng et al., as eq 12 of Braz-Cesar and Barros 2012; {UTFSM}",
     initial=(0.0,),
     state=BRANCH_STATE,
     centred=True,
@@ -45,6 +43,8 @@ class WengArctangent(NamedTuple):
     0.25, 0.5, 0.75, 1 A, offset removed; rms error 22, 37, 72, 123, 189 N at these currents, 10 % of the peak
     force over all. Valid to 0.126 m/s and 1 A, at which the laws are held. Temperature scales c0 (viscous)
     and fc (yield).
+
+    Source: Weng et al., as eq 12 of Braz-Cesar and Barros 2012
     """
 
     c0: Annotated[CurrentLaw, param("N s/m", "viscous damping c0(I)")] = (391.3, 2709.0, 0.0, 0.0)
@@ -68,8 +68,6 @@ class WengArctangent(NamedTuple):
 
 @damper(
     "kwok_tanh",
-    source="Kwok, Ha, Nguyen, Li and Samali 2006, Sensors and Actuators A 132:441; RD-1005-3 set recalled,"
-    " not read in the paper, corroborated by the tables of Hong et al. for the same damper",
     initial=(0.0,),
     state=BRANCH_STATE,
     centred=True,
@@ -89,6 +87,9 @@ class KwokTanh(NamedTuple):
     the accumulator and the load cell's zero, is off by default because the seat's rest position absorbs it;
     give f0_a and f0_b to have it. Tested at 1 Hz 4 mm and 2 Hz 8 mm, up to 0.1 m/s. Temperature scales c
     (viscous), k (elastic) and alpha (yield).
+
+    Source: Kwok, Ha, Nguyen, Li and Samali 2006, Sensors and Actuators A 132:441; RD-1005-3 set recalled, not
+    read in the paper, corroborated by the tables of Hong et al. for the same damper
     """
 
     c_a: Annotated[float, param("N s/m", "viscous damping at zero current", low=0)] = 1232.0
@@ -125,7 +126,6 @@ def logistic(k: float, a: float, s: float) -> float:
 
 @utfsm_damper(
     "sigmoid",
-    source=f"Ma, Wang, Rakheja and Su 2002-2007; form recalled; {UTFSM}",
     initial=(0.0, 0.0),
     state=f"{BRANCH_STATE}; e, envelope of the speed in m/s, for the cycle's peak speed",
     centred=True,
@@ -147,6 +147,8 @@ class Sigmoid(NamedTuple):
     Defaults: derived by us from measurement, steady cycles of 2-25 mm and 0.5-5 Hz at 0-1 A, offset
     removed; rms error 18 N at 0 A to 130 N at 1 A, 8 % of the peak force. Valid to 0.13 m/s and 1 A.
     Temperature scales ft (yield) and ft kv (viscous).
+
+    Source: Ma, Wang, Rakheja and Su 2002-2007; form recalled
     """
 
     ft0: Annotated[float, param("N", "height of the S-curve at no current, over two", low=0.2, high=2000)] = 18.7

@@ -11,7 +11,6 @@ from typing import Annotated, NamedTuple
 from seatsim.compilation.jit import jit
 from seatsim.dampers.pieces import (
     SETTLING,
-    UTFSM,
     CurrentLaw,
     cubic,
     inertance,
@@ -27,11 +26,7 @@ from seatsim.schema.fields import param
 
 
 @utfsm_damper(
-    "modified_bingham",
-    source=f"Wang and Liao 2011, Smart Mater. Struct. 20:023001, eq 13, without parameters; {UTFSM}",
-    initial=(0.0,),
-    state="e = x - x1, deflection in m of the series spring",
-    confidence="published",
+    "modified_bingham", initial=(0.0,), state="e = x - x1, deflection in m of the series spring", confidence="published"
 )
 class ModifiedBingham(NamedTuple):
     """Bingham element (displacement x1) in series with a spring k1.
@@ -43,6 +38,8 @@ class ModifiedBingham(NamedTuple):
     k_a + k_b I; c0 and fc are cubic laws, held beyond `law_end`. The defaults are derived by us (see
     `pieces.UTFSM`); rms error 29, 69, 117, 150, 190 N at 0, 0.25, 0.5, 0.75, 1 A. Valid to 0.13 m/s and
     1 A. Temperature scales c0 (viscous), k1 (elastic) and fc (yield).
+
+    Source: Wang and Liao 2011, Smart Mater. Struct. 20:023001, eq 13, without parameters
     """
 
     c0: Annotated[CurrentLaw, param("N s/m", "viscous damping c0(I)")] = (1163.0, 5447.0, 8467.0, -7215.0)
@@ -66,7 +63,6 @@ class ModifiedBingham(NamedTuple):
 
 @utfsm_damper(
     "gamota_filisko",
-    source=f"Gamota and Filisko 1991, J. Rheology 35:399; form recalled, no parameter set found; {UTFSM}",
     initial=(0.0, 0.0),
     state="e2 = x - x2, deflection in m of the outer spring; e1 = x2 - x1, deflection in m of the inner solid",
     confidence="recalled",
@@ -84,6 +80,8 @@ class GamotaFilisko(NamedTuple):
     `pieces.UTFSM`); rms error 29, 65, 98, 106, 141 N at 0, 0.25, 0.5, 0.75, 1 A; these data leave next to
     no k1, so that the solid creeps. Valid to 0.13 m/s and 1 A. Temperature scales c0 and c1 (viscous), k1 and k2
     (elastic) and fc (yield).
+
+    Source: Gamota and Filisko 1991, J. Rheology 35:399; form recalled, no parameter set found
     """
 
     c0: Annotated[CurrentLaw, param("N s/m", "viscous damping c0(I) past yield")] = (1146.0, 5505.0, 3984.0, -5248.0)
@@ -111,8 +109,6 @@ class GamotaFilisko(NamedTuple):
 
 @utfsm_damper(
     "bingmax",
-    source="Makris, Burton, Hill and Jordan 1996, J. Eng. Mech. 122:1003; form recalled, no parameter set found;"
-    f" {UTFSM}",
     initial=(0.0,),
     state="e, deflection in m of the Maxwell element's spring",
     confidence="recalled",
@@ -127,6 +123,9 @@ class Bingmax(NamedTuple):
     stiffness k = k_a + k_b I follows the current. c and fy are cubic laws, held beyond `law_end`. The defaults are
     derived by us (see `pieces.UTFSM`); rms error 35, 82, 161, 241, 308 N at 0, 0.25, 0.5, 0.75, 1 A. Valid
     to 0.13 m/s and 1 A. Temperature scales c (viscous), k (elastic) and fy (yield).
+
+    Source: Makris, Burton, Hill and Jordan 1996, J. Eng. Mech. 122:1003; form recalled, no parameter set
+    found
     """
 
     c: Annotated[CurrentLaw, param("N s/m", "damping c(I) of the Maxwell element")] = (1282.0, 4943.0, 13030.0, -8457.0)
@@ -161,8 +160,6 @@ def rising_power(b: float, n: float, size: float, tangent_below: float) -> float
 
 @utfsm_damper(
     "maxwell_nonlinear_slider",
-    source="Chae, Ricles and Sause 2010, 2013; form recalled, parameters of the 200 kN RD-9001-01 in a file of Chae"
-    f" 2010; {UTFSM}",
     initial=(0.0, 0.0),
     state="e, deflection in m of the Maxwell element's spring; u, inner speed in m/s of the inertance",
     confidence="recalled",
@@ -184,6 +181,9 @@ class MaxwellNonlinearSlider(NamedTuple):
     91.46, b 122.5, n 0.517. It is not used: the defaults are derived by us for a seat's damper (see
     `pieces.UTFSM`), with n and v_t chosen; rms error 23, 45, 73, 91, 130 N at 0, 0.25, 0.5, 0.75, 1 A. Valid
     to 0.13 m/s and 1 A. Temperature scales b, c, m0 (viscous), k (elastic) and a (yield).
+
+    Source: Chae, Ricles and Sause 2010, 2013; form recalled, parameters of the 200 kN RD-9001-01 in a file of
+    Chae 2010
     """
 
     a: Annotated[CurrentLaw, param("N", "force a(I) of the slider at rest")] = (50.5, 158.1, 805.0, -436.8)

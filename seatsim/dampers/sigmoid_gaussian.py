@@ -85,9 +85,6 @@ def _at(c: Array, s: float) -> float:
 
 @damper(
     "hong_sigmoid_gaussian",
-    source="Hong, Nguyen, Kwok, Ha and Li, 'Hysteretic model for magnetorheological fluid dampers using a"
-    " curve fitting approach', eqs 4, 6, 7 and tables 1 and 2 (RD-1005-3), with the sign of eq 7 corrected;"
-    " the velocity unit is ours",
     initial=(0.0,),
     state=BRANCH_STATE,
     centred=True,
@@ -116,6 +113,10 @@ class HongSigmoidGaussian(NamedTuple):
     `offset_share`, 0 by default because the seat's rest position absorbs it. Valid to 0.1 m/s. Temperature
     scales G, less its offset, and D alike (yield); nothing here is viscous. To identify the form from data, take
     `sigmoid_gaussian`.
+
+    Source: Hong, Nguyen, Kwok, Ha and Li, 'Hysteretic model for magnetorheological fluid dampers using a
+    curve fitting approach', eqs 4, 6, 7 and tables 1 and 2 (RD-1005-3), with the sign of eq 7 corrected; the
+    velocity unit is ours
     """
 
     test: Annotated[int, param("-", "table: 1 (1 Hz, 4 mm) or 2 (2 Hz, 8 mm)", low=1, high=2)] = 1
@@ -138,9 +139,6 @@ class HongSigmoidGaussian(NamedTuple):
 
 @damper(
     "sigmoid_gaussian",
-    source="form of Hong, Nguyen, Kwok, Ha and Li, eqs 4, 6, 7, as in `hong_sigmoid_gaussian`; laws in the current by"
-    " us; defaults fitted by us to one steady cycle each of four measured sine tests of the damper of UTFSM (Chile,"
-    " repository DanielMaurelE/vRTHS_AMBC_MRdamper, MIT)",
     initial=(0.0,),
     state=BRANCH_STATE,
     centred=True,
@@ -163,6 +161,10 @@ class SigmoidGaussian(NamedTuple):
     Defaults: derived by us from measurement, one steady cycle each of 2 mm 5 Hz, 5 mm 3 Hz, 10 mm 1 Hz and 25 mm 0.5
     Hz at 0, 0.25, 0.5, 0.75, 1 A, a fit at each current, then laws through these. Valid to 0.09 m/s and 1 A.
     Temperature scales c0 (viscous), s and r (yield).
+
+    Source: form of Hong, Nguyen, Kwok, Ha and Li, eqs 4, 6, 7, as in `hong_sigmoid_gaussian`; laws in the
+    current by us; defaults fitted by us to one steady cycle each of four measured sine tests of the damper of
+    UTFSM (Chile, repository DanielMaurelE/vRTHS_AMBC_MRdamper, MIT)
     """
 
     s: Annotated[CurrentLaw, param("N", "height s(I) of the sigmoid")] = (177.0, 949.0, 1271.0, -899.0)

@@ -8,7 +8,6 @@ from typing import Annotated, NamedTuple
 from seatsim.compilation.jit import jit
 from seatsim.dampers.pieces import (
     SETTLING,
-    UTFSM,
     CurrentLaw,
     cubic,
     inertance,
@@ -36,8 +35,6 @@ def solid_force(k1: float, k2: float, scaling: TemperatureScaling, z: State) -> 
 
 @utfsm_damper(
     "viscoelastic_plastic",
-    source="Kamath and Wereley 1997, J. Guidance Control Dyn. 20:1125; shape functions recalled, the elements"
-    f" between them read by us, no parameter set found; {UTFSM}",
     initial=(0.0, 0.0),
     state="e, deflection in m of the pre-yield spring; u, inner speed in m/s of the inertance",
     confidence="reading",
@@ -59,6 +56,9 @@ class ViscoelasticPlastic(NamedTuple):
     c1, c and fc are cubic laws, held beyond `law_end`. The defaults are derived by us (see `pieces.UTFSM`),
     with m and vy chosen; rms error 22, 44, 74, 102, 140 N at 0, 0.25, 0.5, 0.75, 1 A. Valid to 0.13 m/s and 1 A.
     Temperature scales c1, c, m (viscous), k1 (elastic) and fc (yield).
+
+    Source: Kamath and Wereley 1997, J. Guidance Control Dyn. 20:1125; shape functions recalled, the elements
+    between them read by us, no parameter set found
     """
 
     c1: Annotated[CurrentLaw, param("N s/m", "damping c1(I) before yield")] = (15770.0, 58330.0, 166400.0, -93440.0)
@@ -92,8 +92,6 @@ class ViscoelasticPlastic(NamedTuple):
 
 @utfsm_damper(
     "li_viscoelastic_plastic",
-    source="Li, Yao, Chen, Yeo and Yap 2000, Smart Mater. Struct. 9:95; form vaguely recalled, the passage through"
-    f" yield read by us, no parameter set found; {UTFSM}",
     initial=(0.0, 0.0, 0.0),
     state="e1, deflection in m of spring k1; e2, deflection in m of spring k2; u, inner speed in m/s of the inertance",
     confidence="reading",
@@ -113,6 +111,9 @@ class LiViscoelasticPlastic(NamedTuple):
     derived by us (see `pieces.UTFSM`), with R chosen; rms error 29, 51, 92, 133, 174 N at 0, 0.25, 0.5,
     0.75, 1 A. Valid to 0.13 m/s and 1 A. Temperature scales cv, c2, R (viscous), k1, k2 (elastic), fc and fs
     (yield).
+
+    Source: Li, Yao, Chen, Yeo and Yap 2000, Smart Mater. Struct. 9:95; form vaguely recalled, the passage
+    through yield read by us, no parameter set found
     """
 
     fc: Annotated[CurrentLaw, param("N", "yield force fc(I)")] = (65.2, 506.4, 902.5, -617.9)
@@ -150,8 +151,6 @@ class LiViscoelasticPlastic(NamedTuple):
 
 @utfsm_damper(
     "stiffness_viscosity_elasto_slide",
-    source="named in Table 2.1 of Braz-Cesar and Barros 2012, of the group of Wereley; form recalled, no parameter set"
-    f" found; {UTFSM}",
     initial=(0.0,),
     state="e, deflection in m of the elasto-slide element",
     confidence="recalled",
@@ -167,6 +166,9 @@ class StiffnessViscosityElastoSlide(NamedTuple):
     N_s and leaves it at a reversal. ke = ke_a + ke_b I; c0 and N_s are cubic laws, held beyond `law_end`. The
     defaults are derived by us (see `pieces.UTFSM`); rms error 27, 60, 105, 141, 186 N at 0, 0.25, 0.5, 0.75,
     1 A. Valid to 0.13 m/s and 1 A. Temperature scales c0 (viscous), k0 and ke (elastic), and N_s (yield).
+
+    Source: named in Table 2.1 of Braz-Cesar and Barros 2012, of the group of Wereley; form recalled, no
+    parameter set found
     """
 
     c0: Annotated[CurrentLaw, param("N s/m", "viscous damping c0(I)")] = (1169.0, 5098.0, 8317.0, -6917.0)
@@ -192,12 +194,7 @@ class StiffnessViscosityElastoSlide(NamedTuple):
 
 
 @utfsm_damper(
-    "equivalent_oh_onoda",
-    source="Oh and Onoda 2002, Smart Mater. Struct. 11:156, whose equations were not at hand: our reading of its"
-    f" lumped elements; {UTFSM}",
-    initial=(0.0,),
-    state="e, elongation of the series spring in m",
-    confidence="reading",
+    "equivalent_oh_onoda", initial=(0.0,), state="e, elongation of the series spring in m", confidence="reading"
 )
 class EquivalentOhOnoda(NamedTuple):
     """Lumped elements: a spring before friction and dashpot of the flow, beside seal and accumulator.
@@ -213,6 +210,9 @@ class EquivalentOhOnoda(NamedTuple):
     Defaults: derived by us from measurement, steady cycles of 2-25 mm and 0.5-5 Hz at 0-1 A, offset
     removed; rms error 23 N at 0 A to 152 N at 1 A, 10 % of the peak force. Valid to 0.13 m/s and 1 A.
     Temperature scales c (viscous), ks and ka (elastic), fy and fs (yield).
+
+    Source: Oh and Onoda 2002, Smart Mater. Struct. 11:156, whose equations were not at hand: our reading of
+    its lumped elements
     """
 
     c: Annotated[CurrentLaw, param("N s/m", "viscous damping c(I) of the flow")] = (1105.0, 3240.0, 7970.0, -5580.0)

@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple
 
 from seatsim.compilation.jit import jit
 from seatsim.dampers.base import damper
-from seatsim.dampers.pieces import BRANCH_STATE, UTFSM, QuadraticLaw, branch, branch_rate, quadratic, utfsm_damper
+from seatsim.dampers.pieces import BRANCH_STATE, QuadraticLaw, branch, branch_rate, quadratic, utfsm_damper
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 from seatsim.schema.fields import param
@@ -26,7 +26,6 @@ def envelope_rate(speed: float, envelope: float) -> float:
 
 @utfsm_damper(
     "yu2017",
-    source=f"Yu, Dong and Zhang 2017, Smart Mater. Struct. 26, as eq 5 of Yu et al. 2019 (conventional model); {UTFSM}",
     initial=(0.0, 0.0),
     state=f"{BRANCH_STATE}; e, envelope of the speed in m/s, for the cycle's peak speed",
     centred=True,
@@ -50,6 +49,8 @@ class Yu2017(NamedTuple):
     removed, with d2 = 0 and cI2 = -0.3 1/A chosen (these data rise almost linearly with current); rms error
     21, 62, 94, 162, 228 N, 12 % of the peak force over all. Valid to 0.126 m/s and 1 A. Temperature scales S
     (yield); nothing here is viscous.
+
+    Source: Yu, Dong and Zhang 2017, Smart Mater. Struct. 26, as eq 5 of Yu et al. 2019 (conventional model)
     """
 
     c1: Annotated[float, param("N", "height S, constant")] = 5828.0
@@ -108,8 +109,6 @@ def opening(q: _Seven, d: _Six, u: float) -> float:
 
 @damper(
     "yu2019",
-    source="Yu, Dong, Wang, Pan and Zhou 2019, Front. Mater. 6:227, eqs 1-4 and 9-12; no coefficients are"
-    " published: defaults derived by us from measured loops of another damper and from what the paper states",
     initial=(0.0,),
     state=BRANCH_STATE,
     current_order=2,
@@ -149,6 +148,9 @@ class Yu2019(NamedTuple):
 
     `asymmetry` weighs the asymmetric part of the hysteresis: 0 leaves its centrosymmetric part, the ideal
     symmetric damper to compare with (the paper's model I; its conventional model is `yu2017`).
+
+    Source: Yu, Dong, Wang, Pan and Zhou 2019, Front. Mater. 6:227, eqs 1-4 and 9-12; no coefficients are
+    published: defaults derived by us from measured loops of another damper and from what the paper states
     """
 
     c: Annotated[QuadraticLaw, param("N s/m", "viscous damping c(I)")] = (120.0, 600.0, -100.0)

@@ -12,6 +12,7 @@ from seatsim.schema import registry
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.fields import FieldSpecification
 from seatsim.schema.fields import describe as fields_of
+from seatsim.schema.text import split_source
 
 KINDS = ("damper", "law", "excitation", "effect")
 
@@ -68,6 +69,7 @@ def _make_page(name: str, kind: str) -> Page:
     text, specification = inspect.getdoc(cls) or "", None if kind == "section" else registry.specification_of(cls)
     facts = list(_state_facts(cls, specification)) if isinstance(specification, DamperSpecification) else []
     source = specification.source if specification else ""
+    text = split_source(text)[0] if source else text
     title = " ".join(text.partition("\n\n")[0].partition(": `")[0].split()).rstrip(".")
     # What the fields of such a damper have as default is where its fit starts.
     is_stated = isinstance(specification, DamperSpecification) and specification.complete

@@ -42,6 +42,12 @@ def name_some(names: Sequence[str], most: int = 3, last: str = "and") -> str:
     return join_names([*names[:most], *others], last)
 
 
+def split_source(text: str) -> tuple[str, str]:
+    """Return a docstring without its last paragraph `Source: ...`, and what that says, in one line."""
+    words, _, source = text.partition("\n\nSource: ")
+    return words, " ".join(source.split())
+
+
 def make_printable(text: str) -> str:
     """Return a text in which signs that a terminal would obey or hide are written as Python escapes them."""
     return "".join(sign if sign.isprintable() or sign in "\n\t" else ascii(sign)[1:-1] for sign in text)

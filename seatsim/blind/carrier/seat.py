@@ -7,6 +7,7 @@ With the rig's equations linear, the difference d of the motion with and without
 from __future__ import annotations
 
 import dataclasses
+import itertools
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
@@ -166,8 +167,8 @@ def _mass(change: float) -> _Force:
 
 
 def _random(size: float, rng: Generator, step: float) -> _Force:
-    """Return a force with a spectrum between 1 and 8 Hz, of two minutes, another one in every run."""
+    """Return a force with a spectrum between 1 and 8 Hz, another one in every run; it repeats after two minutes."""
     white = rng.standard_normal(round(120.0 / step))
     shaped = sosfiltfilt(butter(2, (1.0, 8.0), "bandpass", fs=1.0 / step, output="sos"), white)
-    values = iter(np.repeat(size * shaped / np.std(shaped), _SUBSTEPS))
+    values = itertools.cycle(np.repeat(size * shaped / np.std(shaped), _SUBSTEPS))
     return lambda x, v, xc, vc, driver: (float(next(values)), 0.0)
