@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from seatsim.plots import style
 from seatsim.plots.runs import naming
 from seatsim.plots.style import COLOURS, DARK, ROW, Entry, Grid
+from seatsim.scenario.scenario import condition_of
 from seatsim.schema.arrays import Array
 from seatsim.simulation.performance_bounds import PerformanceBounds
 from seatsim.simulation.result import Run
@@ -40,7 +41,7 @@ class _RunPoint(NamedTuple):
 
 
 class Panel(NamedTuple):
-    """Points that share a seat and a floor, what sets these apart from the others', and their bounds or None."""
+    """Points that share a condition, what sets these apart from the others', and their bounds or None."""
 
     title: str
     points: list[_RunPoint]
@@ -55,9 +56,9 @@ class Panel(NamedTuple):
 
 
 def plot_pareto(runs: Sequence[Run], brackets: Mapping[str, PerformanceBounds]) -> Figure:
-    """Return weighted acceleration over travel, a panel for each rig, with the performance bounds by `Scenario.rig`.
+    """Return weighted acceleration over travel, a panel for each condition (with performance bounds: for each rig).
 
-    Without bounds, rigs of one run share a panel. Points are numbered; the legend names them, the most comfortable
+    Conditions of one run share a panel. Points are numbered; the legend names them, the most comfortable
     first. A line says where the driver feels as much as the floor moves.
     """
     found = _make_panels(runs, brackets) or [Panel("", [], None)]
@@ -83,7 +84,7 @@ def _make_panels(runs: Sequence[Run], brackets: Mapping[str, PerformanceBounds])
     groups: dict[str, list[Run]] = {}
     for run in runs:
         if all(np.isfinite(run.metrics[name].value) if name in run.metrics else False for name in (COMFORT, TRAVEL)):
-            groups.setdefault(run.scenario.rig, []).append(run)
+            groups.setdefault(run.scenario.rig if brackets else condition_of(run.scenario), []).append(run)
     if not brackets and len(groups) > 1 and any(len(group) < 2 for group in groups.values()):
         alone = [run for group in groups.values() for run in group]
         return [Panel("", _make_points(alone, naming.label_runs(alone)), None)]
