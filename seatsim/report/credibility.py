@@ -8,7 +8,8 @@ right. A kind of result lists only the conditions that it can meet at all.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 from seatsim.dampers.base import CONFIDENCE, DAMPERS, find_confidence
@@ -16,6 +17,7 @@ from seatsim.plots.labels import UNKNOWN, format_number, format_percent
 from seatsim.provenance.statement import current_invocation
 from seatsim.report.blocks import Section, Text, tabulate
 from seatsim.report.formatting import format_sentence
+from seatsim.report.words import read_words
 from seatsim.schema.registry import name_of
 from seatsim.schema.text import join_names
 
@@ -28,39 +30,6 @@ NEAR_NOISE = 1.2
 EXPLAINED = 0.8
 """Share of the variance that the varied keys must explain."""
 ENOUGH_RUNS = 100
-CONDITIONS = {
-    "verification": (
-        "an energy balance or a run with half the step is known",
-        f"its error is at most {_SMALL:.0%}",
-        f"its error is at most {NEGLIGIBLE:.1%}",
-    ),
-    "validation": (
-        "a recording is compared",
-        "a recorded run took no part in a fit",
-        f"the recording has sensor noise, and the error is at most {FAIR:.0%} of the signals' spread",
-        f"the error is at most {GOOD:.0%}, or {NEAR_NOISE} times the noise, on two held-out runs or more",
-    ),
-    "input pedigree": (
-        "the manifest keeps the hashes of the inputs",
-        "no model leaves its range, and no value is doubtful",
-        "the equation of every damper was seen at its source",
-        "parameters are known within a stated tolerance or fitted to records, and the data determine all that were"
-        " fitted",
-    ),
-    "uncertainty": (
-        "some figure has an interval, a standard deviation or a noise floor",
-        "parameters or inputs have a standard deviation or a distribution",
-        "the answer has an interval",
-        "the error is divided into step, inputs, data and model form",
-    ),
-    "robustness": (
-        "there is more than one run",
-        "keys are varied, or refitted within their tolerance",
-        f"the varied keys explain {EXPLAINED:.0%} or more of the variance of comfort",
-        f"keys are drawn from distributions, over {ENOUGH_RUNS} runs or more, and runs beyond limits are counted",
-    ),
-}
-"""What each level of a factor asks for beyond the one below."""
 _LEAD = (
     "Levels of the factors of NASA-STD-7009B, as far as such a result can reach them. Each follows by a rule from what"
     " this very result shows, and says nothing of what was checked elsewhere."
@@ -68,7 +37,7 @@ _LEAD = (
 
 
 class Factor(NamedTuple):
-    """A factor of credibility: its name, what is known in words, and which of its first `CONDITIONS` hold."""
+    """A factor of credibility: its name, what is known in words, and which of its first conditions hold."""
 
     name: str
     evidence: str
@@ -82,7 +51,17 @@ class Factor(NamedTuple):
     @property
     def next_condition(self) -> str:
         """What the next level asks for, where this kind of result can reach one."""
-        return CONDITIONS[self.name][self.level] if self.level < len(self.holds) else UNKNOWN
+        return read_conditions()[self.name][self.level] if self.level < len(self.holds) else UNKNOWN
+
+
+@lru_cache(maxsize=1)
+def read_conditions() -> Mapping[str, Sequence[str]]:
+    """Return what each level of a factor asks for beyond the one below."""
+    facts = {
+        "small": f"{_SMALL:.0%}", "negligible": f"{NEGLIGIBLE:.1%}", "fair": f"{FAIR:.0%}", "good": f"{GOOD:.0%}",
+        "near_noise": NEAR_NOISE, "explained": f"{EXPLAINED:.0%}", "enough_runs": ENOUGH_RUNS,
+    }  # fmt: skip
+    return {name: [text.format(**facts) for text in texts] for name, texts in read_words().conditions.items()}
 
 
 def show_card(factors: Sequence[Factor]) -> Section:

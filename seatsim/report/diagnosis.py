@@ -36,16 +36,10 @@ from seatsim.report.diagnosis_sections import (
 )
 from seatsim.report.formatting import format_sentence, say_noise
 from seatsim.report.rendering import write_html
-from seatsim.report.words import say_action, say_cause
+from seatsim.report.words import read_words, say_action, say_cause
 from seatsim.schema.fields import UNUSUAL
 from seatsim.schema.text import join_names
 
-_BADGES = {
-    "none": ("No material gap", "Nothing to explain beyond noise and the tolerance of the parameters."),
-    "known": ("Cause known", "Effects of the library explain the gap on a run that took no part in the fit."),
-    "ambiguous": ("Ambiguous", "Two or more effects explain the gap equally well on this recording."),
-    "unknown": ("Cause unknown", "A gap remains that no effect of the library explains."),
-}
 _NEARLY_ALL = 0.98
 
 
@@ -79,7 +73,7 @@ def report_diagnosis(diagnosis: Diagnosis) -> Report:
     answer = [say_diagnosis(diagnosis), format_sentence(diagnosis.sentence)]
     closing = Closing(list_notes(diagnosis), judge_diagnosis(diagnosis), f"seatsim diagnose {diagnosis.name}")
     report = compose("diagnosis", f"Diagnosis: {diagnosis.name}", answer, advise(diagnosis), sections, closing)
-    badge = (diagnosis.verdict, *_BADGES[diagnosis.verdict])
+    badge = (diagnosis.verdict, *read_words().verdicts[diagnosis.verdict])
     return report._replace(badge=badge, doubt=f"{_say_probabilities(diagnosis)} {report.doubt}".strip())
 
 

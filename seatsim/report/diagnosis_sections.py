@@ -32,6 +32,7 @@ LIKELY = 0.05
 """Probability from which on the parameters of a cause are printed."""
 _ALIKE, _MOST_PAIRS = 0.5, 12
 """Collinearity from which on two effects are named as similar, and the most pairs that are."""
+EXPLAINED = "Refitted is the nominal scenario with its parameters moved inside their tolerance."
 
 
 def show_causes(diagnosis: Diagnosis, figures: Mapping[str, Figure]) -> list[Block]:
@@ -90,9 +91,6 @@ def show_forms(diagnosis: Diagnosis) -> list[Block]:
 
 def _list_parameters(cause: Cause) -> str:
     return "; ".join(f"{name} {format_estimate(value)}" for name, value in cause.parameters.items()) or UNKNOWN
-
-
-EXPLAINED = "Refitted is the nominal scenario with its parameters moved inside their tolerance."
 
 
 def show_gaps(diagnosis: Diagnosis, figures: Mapping[str, Figure]) -> list[Block]:

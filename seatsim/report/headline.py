@@ -19,8 +19,9 @@ from seatsim.simulation.result import Run
 COMFORT, _UNWEIGHTED, TRAVEL = "driver_acceleration_weighted", "driver_acceleration_rms", "suspension_displacement_rms"
 SAME = 0.01
 """Difference, as a share, up to which figures count as equal: other phases of the same floor change them by more."""
-
 EQUAL = "as much"
+LISTED = 3
+"""Conditions beside the worst of which a sentence names the best choice."""
 
 
 class Alternatives(NamedTuple):
@@ -116,10 +117,6 @@ def _compare_runs(run: Run, base: Run) -> tuple[str, str]:
 
 def _is_reliable(run: Run) -> bool:
     return bool(np.isfinite(measure_comfort(run))) and not run.unverified
-
-
-LISTED = 3
-"""Conditions beside the worst of which a sentence names the best choice."""
 
 
 def describe_run(run: Run) -> str:

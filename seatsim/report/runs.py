@@ -28,6 +28,48 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SEAT, HITS, _PEAK = "seat_factor", "end_stop_hits", "suspension_displacement_peak"
+CHANNELS = (
+    "driver_acceleration", "suspension_displacement", "damper_force", "coil_current", "frame_acceleration",
+    "floor_acceleration", "damper_temperature",
+)  # fmt: skip
+UNVERIFIED = "* unverified, and never the best: the notes say why."
+
+
+def report_runs(
+    runs: Sequence[Run], figures: Mapping[str, Figure], command: str, title: str, failures: Sequence[str] = ()
+) -> Report:
+    """Return the report of runs: of a single one, or of a comparison.
+
+    Args:
+        runs: the runs, at least one.
+        figures: of their result, by name.
+        command: what makes the report again.
+        title: what they are on.
+        failures: why others were not carried to their end.
+    """
+    bars, signals = show_pictures(figures, "pareto", "comparison"), show_pictures(figures, "time_histories")
+    sections = [
+        Section("figures", "Comfort, travel and effort", [*bars, *_tabulate_figures(runs)]),
+        Section("signals", "Signals over time", [*signals, show_signals(show_runs(runs))]),
+        Section("spectra", "Driver and floor over frequency", show_pictures(figures, "transmissibility", "psd")),
+        Section("loops", "Loops of the damper", show_pictures(figures, "damper_loops", "force_velocity")),
+    ]
+    single = len(runs) == 1
+    about = f"Simulated run: {title}" if single else f"Comparison of {len(runs)} simulated runs: {title}"
+    answer = [*([describe_run(runs[0])] if single else compare_runs(runs)), *_list_gaps(runs, failures)]
+    closing = Closing(_state_notes(runs), judge_runs(runs), command, _list_settings(runs[0].scenario))
+    return compose("runs", about, answer, advise_on_runs(runs), sections, closing, same=f"{100 * SAME:g} %")
+
+
+def judge_runs(runs: Sequence[Run]) -> list[Factor]:
+    """Return how far simulated runs may be trusted."""
+    energies = [run.metrics["energy_residual"].value for run in runs if "energy_residual" in run.metrics]
+    doubts = dict.fromkeys(text for run in runs for text in run.warnings)
+    return [
+        verify("up to {} of the energy is unaccounted for", energies),
+        trace_inputs(list(doubts), {type(run.scenario.damper.record) for run in runs}),
+        count_variations(len(runs)),
+    ]
 
 
 def advise_on_runs(runs: Sequence[Run]) -> list[str]:
@@ -79,12 +121,6 @@ def _say_trials(name: str, run: Run) -> str:
     )
 
 
-CHANNELS = (
-    "driver_acceleration", "suspension_displacement", "damper_force", "coil_current", "frame_acceleration",
-    "floor_acceleration", "damper_temperature",
-)  # fmt: skip
-
-
 def show_signals(groups: Sequence[Shown], finest: int = FINEST) -> Signals:
     """Return linked pictures of the channels that some run has; of several scenarios the reader chooses one."""
     names = list(dict.fromkeys(look.label for shown in groups for look in shown.looks))
@@ -116,46 +152,6 @@ def _read(shown: Shown, channel: str, names: Sequence[str], length: int) -> list
         known = np.isfinite(values).any()
         found.append(np.pad(values, (0, length - len(values)), constant_values=np.nan) if known else None)
     return found
-
-
-UNVERIFIED = "* unverified, and never the best: the notes say why."
-
-
-def report_runs(
-    runs: Sequence[Run], figures: Mapping[str, Figure], command: str, title: str, failures: Sequence[str] = ()
-) -> Report:
-    """Return the report of runs: of a single one, or of a comparison.
-
-    Args:
-        runs: the runs, at least one.
-        figures: of their result, by name.
-        command: what makes the report again.
-        title: what they are on.
-        failures: why others were not carried to their end.
-    """
-    bars, signals = show_pictures(figures, "pareto", "comparison"), show_pictures(figures, "time_histories")
-    sections = [
-        Section("figures", "Comfort, travel and effort", [*bars, *_tabulate_figures(runs)]),
-        Section("signals", "Signals over time", [*signals, show_signals(show_runs(runs))]),
-        Section("spectra", "Driver and floor over frequency", show_pictures(figures, "transmissibility", "psd")),
-        Section("loops", "Loops of the damper", show_pictures(figures, "damper_loops", "force_velocity")),
-    ]
-    single = len(runs) == 1
-    about = f"Simulated run: {title}" if single else f"Comparison of {len(runs)} simulated runs: {title}"
-    answer = [*([describe_run(runs[0])] if single else compare_runs(runs)), *_list_gaps(runs, failures)]
-    closing = Closing(_state_notes(runs), judge_runs(runs), command, _list_settings(runs[0].scenario))
-    return compose("runs", about, answer, advise_on_runs(runs), sections, closing, same=f"{100 * SAME:g} %")
-
-
-def judge_runs(runs: Sequence[Run]) -> list[Factor]:
-    """Return how far simulated runs may be trusted."""
-    energies = [run.metrics["energy_residual"].value for run in runs if "energy_residual" in run.metrics]
-    doubts = dict.fromkeys(text for run in runs for text in run.warnings)
-    return [
-        verify("up to {} of the energy is unaccounted for", energies),
-        trace_inputs(list(doubts), {type(run.scenario.damper.record) for run in runs}),
-        count_variations(len(runs)),
-    ]
 
 
 def _list_gaps(runs: Sequence[Run], failures: Sequence[str]) -> list[str]:

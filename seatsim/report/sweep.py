@@ -40,6 +40,57 @@ if TYPE_CHECKING:
 
 _MATTERS = 0.1
 """Share of the variance from which on a key is worth a step."""
+SHOWN = (COMFORT, "driver_vdv", "seat_factor", TRAVEL, "suspension_displacement_peak", "end_stop_hits", "current_rms")
+"""Metrics of the tables of the page; `table.csv` has all of them."""
+MOST_LINES = 60
+"""Lines of a table on the page."""
+_MOST_REASONS = 8
+
+
+def report_sweep(
+    rows: SweepRows, quantiles: pd.DataFrame, found: Sensitivities, exceeded: Sequence[Exceedance]
+) -> Report:
+    """Return the report of a sweep from its rows and the statistics on them."""
+    settings = [Text(_say_seeds(rows)), Text(f"Identity of the sweep: {rows.manifest['identity']}")]
+    figures = draw_figures(found, rows)
+    sections = [
+        Section("limits", "How often limits are exceeded", _show_limits(exceeded, rows)),
+        Section("choices", "Best choice under each condition", tabulate_best(rows)),
+        Section("sensitivity", "What matters most", _show_sensitivity(found, rows, figures)),
+        Section("pareto", "Comfort and travel", show_pictures(figures, "comfort")),
+        Section("maps", "Means over two keys", show_pictures(figures, "means")),
+        Section("quantiles", "Quantiles", _show_quantiles(quantiles, rows)),
+        Section("states", "Failed and unverified runs", _show_states(rows)),
+    ]
+    answer, factors = [state_importance(found, rows), _count_runs(rows)], _judge(rows, found, exceeded)
+    closing = Closing([], factors, f"seatsim sweep-report {rows.folder.name}", settings)
+    return compose("sweep", f"Sweep: {rows.folder.name}", answer, _advise(found, exceeded, rows), sections, closing)
+
+
+def state_importance(found: Sensitivities, rows: SweepRows) -> str:
+    """Return in one sentence which key matters most to comfort, or to the first metric that varies."""
+    here = found.of(_choose_metric(found)) if found.rows else []
+    chosen = choose_key(here, rows)
+    if chosen is None:
+        return f"Which key matters most cannot be said: {found.problem or 'no key but the variant varies'}."
+    words = describe_column(chosen.metric, rows.units).words
+    what = "tolerances" if rows.drawn and not any(map(is_condition, rows.drawn)) else "varied keys"
+    many = len(rows.drawn or [row for row in here if row.key != "variant"])
+    first = max(here, key=lambda row: row.total)
+    lead = "" if first is chosen else (
+        f"{first.key} explains {format_percent(first.total)} of the variance of the {words}. "
+    )  # fmt: skip
+    total = format_percent(chosen.total)
+    interval = f"95 % interval {format_percent(chosen.total_low)} to {format_percent(chosen.total_high)}"
+    if many > 1:
+        said = f"Of {many} {what} {chosen.key} matters most to the {words}: it explains {total} of the variance"
+    else:
+        said = f"{chosen.key}, the only one of the {what}, explains {total} of the variance of the {words}"
+    choice = choose_choice(here, rows) if is_condition(chosen.key) else None
+    rest = "" if choice is None else (
+        f" It is a condition; of the choices {choice.key} matters most and explains {format_percent(choice.total)}."
+    )  # fmt: skip
+    return f"{lead}{said} together with its interactions ({interval}).{rest}"
 
 
 def choose_choice(found: Sequence[Sensitivity], rows: SweepRows) -> Sensitivity | None:
@@ -97,33 +148,6 @@ def tabulate_best(rows: SweepRows) -> list[Block]:
     return tabulate(caption, [*conditions, *choices, shown.axis], lines, len(conditions) + len(choices))
 
 
-SHOWN = (COMFORT, "driver_vdv", "seat_factor", TRAVEL, "suspension_displacement_peak", "end_stop_hits", "current_rms")
-"""Metrics of the tables of the page; `table.csv` has all of them."""
-MOST_LINES = 60
-"""Lines of a table on the page."""
-_MOST_REASONS = 8
-
-
-def report_sweep(
-    rows: SweepRows, quantiles: pd.DataFrame, found: Sensitivities, exceeded: Sequence[Exceedance]
-) -> Report:
-    """Return the report of a sweep from its rows and the statistics on them."""
-    settings = [Text(_say_seeds(rows)), Text(f"Identity of the sweep: {rows.manifest['identity']}")]
-    figures = draw_figures(found, rows)
-    sections = [
-        Section("limits", "How often limits are exceeded", _show_limits(exceeded, rows)),
-        Section("choices", "Best choice under each condition", tabulate_best(rows)),
-        Section("sensitivity", "What matters most", _show_sensitivity(found, rows, figures)),
-        Section("pareto", "Comfort and travel", show_pictures(figures, "comfort")),
-        Section("maps", "Means over two keys", show_pictures(figures, "means")),
-        Section("quantiles", "Quantiles", _show_quantiles(quantiles, rows)),
-        Section("states", "Failed and unverified runs", _show_states(rows)),
-    ]
-    answer, factors = [state_importance(found, rows), _count_runs(rows)], _judge(rows, found, exceeded)
-    closing = Closing([], factors, f"seatsim sweep-report {rows.folder.name}", settings)
-    return compose("sweep", f"Sweep: {rows.folder.name}", answer, _advise(found, exceeded, rows), sections, closing)
-
-
 def _judge(rows: SweepRows, found: Sensitivities, exceeded: Sequence[Exceedance]) -> list[Factor]:
     """Return how far a sweep may be trusted, whose identity keeps the hashes of its inputs."""
     stated = rows.manifest["configuration"]
@@ -143,32 +167,6 @@ def _judge(rows: SweepRows, found: Sensitivities, exceeded: Sequence[Exceedance]
         count_variations(len(rows.usable), rows.keys, said, (explained or 0.0) >= EXPLAINED,
                          many and bool(rows.drawn and exceeded)),
     ]  # fmt: skip
-
-
-def state_importance(found: Sensitivities, rows: SweepRows) -> str:
-    """Return in one sentence which key matters most to comfort, or to the first metric that varies."""
-    here = found.of(_choose_metric(found)) if found.rows else []
-    chosen = choose_key(here, rows)
-    if chosen is None:
-        return f"Which key matters most cannot be said: {found.problem or 'no key but the variant varies'}."
-    words = describe_column(chosen.metric, rows.units).words
-    what = "tolerances" if rows.drawn and not any(map(is_condition, rows.drawn)) else "varied keys"
-    many = len(rows.drawn or [row for row in here if row.key != "variant"])
-    first = max(here, key=lambda row: row.total)
-    lead = "" if first is chosen else (
-        f"{first.key} explains {format_percent(first.total)} of the variance of the {words}. "
-    )  # fmt: skip
-    total = format_percent(chosen.total)
-    interval = f"95 % interval {format_percent(chosen.total_low)} to {format_percent(chosen.total_high)}"
-    if many > 1:
-        said = f"Of {many} {what} {chosen.key} matters most to the {words}: it explains {total} of the variance"
-    else:
-        said = f"{chosen.key}, the only one of the {what}, explains {total} of the variance of the {words}"
-    choice = choose_choice(here, rows) if is_condition(chosen.key) else None
-    rest = "" if choice is None else (
-        f" It is a condition; of the choices {choice.key} matters most and explains {format_percent(choice.total)}."
-    )  # fmt: skip
-    return f"{lead}{said} together with its interactions ({interval}).{rest}"
 
 
 def _say_seeds(rows: SweepRows) -> str:

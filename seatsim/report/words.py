@@ -22,9 +22,15 @@ class _EffectWords(NamedTuple):
 
 
 class Words(NamedTuple):
-    """The content of `assets/words.yaml`: sentences on the method of each kind of report, and words for each effect."""
+    """The content of `assets/words.yaml`.
+
+    Sentences on the method of each kind of report, conditions of each level of credibility, name and explanation of
+    each verdict, and words for each effect.
+    """
 
     methods: Mapping[str, Sequence[str]]
+    conditions: Mapping[str, Sequence[str]]
+    verdicts: Mapping[str, tuple[str, str]]
     effects: Mapping[str, _EffectWords]
 
 

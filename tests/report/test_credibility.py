@@ -10,7 +10,7 @@ import seatsim
 from seatsim.dampers.base import DAMPERS
 from seatsim.provenance.statement import at_work
 from seatsim.recordings.header import NOT_STATED
-from seatsim.report.credibility import CONDITIONS, Factor, say_doubt, show_card, trace_inputs, validate, verify
+from seatsim.report.credibility import Factor, read_conditions, say_doubt, show_card, trace_inputs, validate, verify
 from seatsim.report.diagnosis import judge_diagnosis
 from seatsim.report.gap import judge_gap
 from seatsim.report.runs import judge_runs
@@ -60,7 +60,7 @@ def test_a_card_says_what_the_next_level_asks_for_and_the_doubt_is_of_the_weakes
     best, weak = Factor("verification", "all balances", (True, True)), Factor("robustness", "one run", (False,))
     rows = {row[0]: row[1:] for row in show_card([best, weak]).blocks[1].rows}
     assert rows["verification"] == ["2\u00a0of\u00a02", "All balances.", "–"]
-    assert rows["robustness"] == ["0\u00a0of\u00a01", "One run.", CONDITIONS["robustness"][0]]
+    assert rows["robustness"] == ["0\u00a0of\u00a01", "One run.", read_conditions()["robustness"][0]]
     assert say_doubt([best, weak]) == "Least certain is the robustness: one run." and say_doubt([best]) == ""
 
 
@@ -107,6 +107,6 @@ def test_a_diagnosis_within_a_tolerance_that_nobody_stated_has_less_of_a_pedigre
 
 def test_the_documentation_has_every_condition_word_for_word():
     lines = {line.split("|")[1].strip(): line for line in DOCUMENT.read_text().splitlines() if line.startswith("| ")}
-    for name, conditions in CONDITIONS.items():
+    for name, conditions in read_conditions().items():
         cells = [cell.strip() for cell in lines[name].split("|")[2:-1]]
         assert cells == [*conditions, *[""] * (4 - len(conditions))]

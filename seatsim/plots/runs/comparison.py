@@ -56,7 +56,7 @@ class Panel(NamedTuple):
 
 
 def plot_pareto(runs: Sequence[Run], brackets: Mapping[str, PerformanceBounds]) -> Figure:
-    """Return weighted acceleration over travel, a panel for each condition (with performance bounds: each rig).
+    """Return weighted acceleration over travel, a panel for each condition (with performance bounds: for each rig).
 
     Conditions of one run share a panel. Points are numbered; the legend names them, the most comfortable
     first. A line says where the driver feels as much as the floor moves.

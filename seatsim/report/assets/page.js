@@ -5,10 +5,8 @@
   const [form, gains, fit, problem, saved] = ["controls", "gains", "fit", "problem", "saved"].map(find);
   let asked = 0, running = null, extra = {};
 
-  const read = input => input.type === "range" ? Number(input.value) : input.value;
-
   function values() {
-    const collect = inputs => Object.fromEntries([...inputs].map(input => [input.name, read(input)]));
+    const collect = inputs => Object.fromEntries([...inputs].map(input => [input.name, input.type === "range" ? Number(input.value) : input.value]));
     const found = collect(form.querySelectorAll(":scope > label [name]")), effects = {};
     if (gains.children.length) found.gains = collect(gains.querySelectorAll("input"));
     for (const effect of form.querySelectorAll(".effect")) {
