@@ -4,12 +4,10 @@ import math
 from types import SimpleNamespace
 from typing import get_args
 
-import numba
 import numpy as np
 import pytest
 
 from seatsim.dampers.base import CONFIDENCE, Confidence
-from seatsim.kernel import generic
 from seatsim.kernel.bench import FORCE_SCALE
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 from seatsim.schema.fields import adapter, describe
@@ -19,21 +17,6 @@ from seatsim.simulation.damper_bench import bench_force, sine_test
 COLD = TemperatureScaling()
 COARSEST, LEVELS, HALVINGS = 256, 6, 3
 """Steps in a cycle of the longest steps, how often they are halved at most, and over how many an order is measured."""
-
-
-@numba.njit
-def compiled_force(damper, x, v, i, scaling, z):
-    return generic.force(damper, x, v, i, scaling, z)
-
-
-@numba.njit
-def compiled_rates(damper, x, v, i, scaling, z):
-    return generic.rates(damper, x, v, i, scaling, z)
-
-
-@numba.njit
-def compiled_coulomb(damper, i, scaling):
-    return generic.coulomb(damper, i, scaling)
 
 
 def states(model, specification, count=20):
@@ -135,18 +118,6 @@ def test_force_and_rates_are_finite(model, specification):
         for current in (0.0, specification.max_current, 3.0):
             assert math.isfinite(whole_force(model, s, current))
         assert all(math.isfinite(rate) for rate in rates_of(model, s.x, s.v, s.i, s.z))
-
-
-def test_the_compiled_model_is_the_python_model(model, specification):
-    scaling = TemperatureScaling(0.8, 0.9, 0.7)
-    for s in states(model, specification):
-        expected = model.force(s.x, s.v, s.i, scaling, s.z)
-        assert compiled_force(model, s.x, s.v, s.i, scaling, s.z) == pytest.approx(expected, rel=1e-10, abs=1e-9)
-        if hasattr(model, "rates"):
-            rates = model.rates(s.x, s.v, s.i, scaling, s.z)
-            assert compiled_rates(model, s.x, s.v, s.i, scaling, s.z) == pytest.approx(rates, rel=1e-10, abs=1e-12)
-        if hasattr(model, "coulomb"):
-            assert compiled_coulomb(model, s.i, scaling) == pytest.approx(model.coulomb(s.i, scaling), rel=1e-12)
 
 
 def test_the_force_is_the_polynomial_in_the_current_that_the_card_says(model, specification):

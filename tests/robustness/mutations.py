@@ -1,4 +1,4 @@
-"""Random changes of valid files: bytes, words, cells, lines, packed content; each by a generator of its own."""
+"""Random changes of valid files: bytes, words, packed content; each by a generator of its own."""
 
 from __future__ import annotations
 
@@ -11,82 +11,49 @@ import zlib
 
 from seatsim.schema.tables import UNPACKING_ERRORS
 
-WORDS = (
-    "~", "true", "-1", "0", "1e400", "-.inf", ".nan", "1e-320", "9" * 5000, "0x" + "f" * 300, "'" * 3, '"\\0"', "[]",
-    "{}", "!!bool x", "!!python/name:os.system", "!own {a: 1}", "&a [*a]", "*a", "<<", "[" * 50, "{a: " * 40,
-    "a" * 70_000, "é", "../../escaped", "/etc/passwd", "/dev/zero", "nowhere.csv", ":X", "os:system", "evil.py:X",
-    "{1: 2, [a]: 3}", "- - -", "? x", "|", ">", "%YAML 1.1", "---", "...", "#", "@", "`", "\t", "\x00", "\ufeff",
-    "1_0", "1,5", "2024-05-01", "12:30",
-)  # fmt: skip
-"""What a word of a YAML file is replaced by."""
-CELLS = ("", "nan", "inf", "-1e400", "x", "1,5", '"', "'", "1 2", "\x00", "9" * 400, "é", "#", ",", ",,", "\r", "0x1")
-"""What a cell of a table is replaced by."""
+AWKWARD = r"""~ true -1 0 1e400 -.inf .nan 1e-320 0x1 ''' "\0" [] {} !!bool !!python/name:os.system !own &a *a <<
+    é ../../escaped /etc/passwd /dev/zero nowhere.csv :X os:system evil.py:X | > --- ... # @ ` 1_0 1,5 " ' nan inf x
+    2024-05-01 12:30""".split()  # noqa: SIM905 - so that quotation marks and backslashes stand as they are
+WORDS = (*AWKWARD, "", "\t", "\r", "\x00", "\ufeff", "9" * 5000, "[" * 50, "{a: " * 40, "a" * 70_000, "&a [*a]")
+"""What a word of a text is replaced by."""
+NUMBERS = (0, 1, 2, 255, 2**15, 2**16 - 1, 2**24, 2**31 - 1, 2**32 - 1, 2**40, 2**63)
+"""What a size, a dimension or an address is replaced by."""
 
 
 def mutate(content: bytes, generator: random.Random) -> bytes:
-    """Return content with one change."""
-    if content.startswith(b"\x1f\x8b"):
-        if generator.random() < 0.5:
-            return _damage(content, generator)
+    """Return content with one change, which may lie within what is packed."""
+    if generator.random() < 0.5:
         try:
-            return gzip.compress(mutate(gzip.decompress(content), generator), 1)
-        except (OSError, EOFError, zlib.error):  # an earlier change has damaged it
+            if content.startswith(b"\x1f\x8b"):
+                return gzip.compress(mutate(gzip.decompress(content), generator), 1)
+            if content.startswith(b"PK\x03\x04"):
+                return _change_member(content, generator)
+        except (*UNPACKING_ERRORS, RuntimeError, OSError, EOFError, zlib.error):  # an earlier change has damaged it
             return _damage(content, generator)
-    if content.startswith(b"PK\x03\x04") and generator.random() < 0.5:
-        return _change_member(content, generator)
     try:
         text = content.decode()
     except UnicodeDecodeError:
         return generator.choice((_damage, _lie))(content, generator)
-    choices = (_replace_word, _replace_word, _change_lines, _damage_text)
-    return generator.choice(choices)(text, generator).encode("utf-8", "surrogateescape")
+    return _damage(content, generator) if generator.random() < 0.3 else _replace_word(text, generator).encode()
 
 
 def _replace_word(text: str, generator: random.Random) -> str:
-    """Replace a word, or a cell of a table, by an awkward one."""
-    is_table = text[:400].count(",") > 8 and ":" not in text[:400]
-    # Most of a table is rows; its first lines hold the names.
-    end = len(text) if not is_table or generator.random() < 0.5 else min(len(text), 400)
-    words = list(re.finditer(r"[^\s,\[\]{}:]+", text[:end])) if end < 100_000 else []
+    """Replace a word, or a cell of a table, by an awkward one or another of the text; the first lines hold names."""
+    end = len(text) if generator.random() < 0.5 else min(len(text), 400)
+    words = list(re.finditer(r"[^\s,\[\]{}:]+", text[: min(end, 100_000)]))
     if not words:
-        return text + generator.choice(CELLS)
+        return text + generator.choice(WORDS)
     chosen = generator.choice(words)
-    new = generator.choice(CELLS if is_table else (*WORDS, generator.choice(words)[0]))
-    return text[: chosen.start()] + new + text[chosen.end() :]
-
-
-def _change_lines(text: str, generator: random.Random) -> str:
-    """Drop, double, exchange or indent lines."""
-    lines = text.splitlines(keepends=True)
-    if len(lines) < 2:
-        return text * 2
-    first, second = generator.randrange(len(lines)), generator.randrange(len(lines))
-    how = generator.randrange(4)
-    if how == 0:
-        del lines[first]
-    elif how == 1:
-        lines.insert(second, lines[first])
-    elif how == 2:
-        lines[first], lines[second] = lines[second], lines[first]
-    else:
-        lines[first] = "  " + lines[first]
-    return "".join(lines)
-
-
-def _damage_text(text: str, generator: random.Random) -> str:
-    return _damage(text.encode(), generator).decode("utf-8", "surrogateescape")
+    return text[: chosen.start()] + generator.choice((*WORDS, generator.choice(words)[0])) + text[chosen.end() :]
 
 
 def _change_member(content: bytes, generator: random.Random) -> bytes:
     """Change a file within a ZIP."""
     changed = io.BytesIO()
-    try:
-        with zipfile.ZipFile(io.BytesIO(content)) as old, zipfile.ZipFile(changed, "w", zipfile.ZIP_DEFLATED) as new:
-            chosen = generator.choice(["", *old.namelist()])
-            for name in old.namelist():
-                new.writestr(name, mutate(old.read(name), generator) if name == chosen else old.read(name))
-    except (*UNPACKING_ERRORS, RuntimeError):  # an earlier change has damaged it
-        return _damage(content, generator)
+    with zipfile.ZipFile(io.BytesIO(content)) as old, zipfile.ZipFile(changed, "w", zipfile.ZIP_DEFLATED) as new:
+        chosen = generator.choice(["", *old.namelist()])
+        for name in old.namelist():
+            new.writestr(name, mutate(old.read(name), generator) if name == chosen else old.read(name))
     return changed.getvalue()
 
 
@@ -98,22 +65,14 @@ def _lie(content: bytes, generator: random.Random) -> bytes:
     at = generator.randrange(max(1, min(reach, len(content))))
     at = size * ((len(content) - at if generator.random() < 0.3 else at) // size)
     other = size * (generator.randrange(len(content) + 1) // size)
-    number: int = generator.choice((0, 1, 2, 255, 2**15, 2**16 - 1, 2**24, 2**31 - 1, 2**32 - 1, 2**40, 2**63, other))
+    number: int = generator.choice((*NUMBERS, other))
     new = (number % (1 << 8 * size)).to_bytes(size, generator.choice(("little", "little", "big")))
-    if generator.random() < 0.3:
-        new = content[other : other + size]
+    new = content[other : other + size] if generator.random() < 0.3 else new
     return content[:at] + new + content[at + len(new) :]
 
 
 def _damage(content: bytes, generator: random.Random) -> bytes:
     """Flip, cut out, double or put in bytes."""
-    at = generator.randrange(len(content) + 1)
-    size = generator.choice((1, 1, 2, 8, 64, 1000))
-    how = generator.randrange(4)
-    if how == 0:
-        return content[:at] + content[at + size :]
-    if how == 1:
-        return content[:at] + content[at : at + size] * generator.choice((2, 3)) + content[at + size :]
-    if how == 2:
-        return content[:at]
-    return content[:at] + generator.randbytes(generator.choice((1, 2, 8))) + content[at + size :]
+    at, size = generator.randrange(len(content) + 1), generator.choice((1, 1, 2, 8, 64, 1000))
+    middle = generator.choice((b"", content[at : at + size] * 2, generator.randbytes(size)))
+    return content[:at] + (middle + content[at + size :] if generator.random() < 0.75 else b"")
