@@ -10,13 +10,16 @@ import numpy as np
 
 from seatsim.characterisation.response import Response
 from seatsim.characterisation.rows import Row
+from seatsim.characterisation.sheet import BenchSheet, list_tables
 from seatsim.characterisation.summary import Characterisation, group_by_setting
-from seatsim.plots.labels import format_number, format_percent
+from seatsim.plots.labels import format_number, format_percent, format_unit
 from seatsim.report.blocks import Block, Code, Report, Section, Table, Text, list_notes, show_pictures
 from seatsim.report.credibility.card import say_doubt, show_card
 from seatsim.report.credibility.evidence import collect_characterisation
 from seatsim.report.formatting import format_quantity, format_sentence
 from seatsim.report.method import describe_method
+from seatsim.schema.content import list_written
+from seatsim.schema.fields import describe
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,6 +27,19 @@ if TYPE_CHECKING:
 MOST_ROWS = 60
 ROUNDING = 1e-9
 """Share of the peak force below which an offset is no finding."""
+_CAPTIONS = {
+    "peak_forces": "Force at the peak speed, mean of the repeats with the larger standard deviation of them",
+    "beside": "The same of the model beside",
+    "gas_force": "Gas force: mean of both directions at mid-stroke of the slowest test, and its slope over the stroke",
+    "friction": "Friction: half the difference of both directions at mid-stroke of the slowest test",
+    "dynamic_range": "Dynamic range: force at the largest current over that at the smallest",
+    "linearity": "Linearity in current: 0 is the softest force, 1 the hardest",
+    "hysteresis": "Hysteresis: difference of the forces at which a cycle passes a speed of 0, and half its peak speed",
+    "energy": "Energy of a cycle and equivalent damping",
+    "fade": "Fade: change of the force with temperature, over that at the lowest temperature",
+    "response": "Response from the current's own 10 % on; recovery after a dip, overshoot over the change",
+}
+"""Captions of the tables, in their order."""
 METHOD = (
     "A loop is the mean of a record's steady cycles; energy is its area, damping that of a dashpot that dissipates as"
     " much, E / (π ω X²).",
@@ -43,6 +59,8 @@ def report_characterisation(
         Section("loops", "Force, energy and damping", show_pictures(figures, "loops", "energy", "asymmetry")),
         Section("figures", "Figures of each record", [_make_table(found)]),
         Section("steps", "Response to steps of the current", steps),
+        Section("limits", "Limits", _show_tables(found.sheet, ["limits"])),
+        Section("sheet", "Tables of the bench day", _show_tables(found.sheet, [*_CAPTIONS])),
         Section("notes", "Notes", list_notes([format_sentence(text) for text in remarks])),
         show_card(evidence),
         describe_method(METHOD, command, [Text("What was tested:"), Code(found.source, "What was tested")]),
@@ -105,6 +123,28 @@ def _make_table(found: Characterisation) -> Table:
 def _clean(row: Row) -> float:
     """Return the offset of a loop, 0 where it is rounding."""
     return 0.0 if abs(row.offset) < ROUNDING * abs(row.peak_rebound) else row.offset
+
+
+def _show_tables(sheet: BenchSheet, names: Sequence[str]) -> list[Block]:
+    """Return the tables with these names that have rows."""
+    tables, blocks = list_tables(sheet), list[Block]()
+    for name in names:
+        record, rows = tables[name]
+        units = {field.name: format_unit(field.unit) for field in describe(record)}
+        written = list_written(record)
+        head = [f"{each.key.replace('_', ' ')} [{units[each.name]}]" if units[each.name] else each.key.replace("_", " ")
+                for each in written]  # fmt: skip
+        lines = [[_say(getattr(row, each.name)) for each in written] for row in rows[:MOST_ROWS]]
+        more = f"; {len(rows) - MOST_ROWS} more in characterisation.xlsx" if len(rows) > MOST_ROWS else ""
+        if rows:
+            blocks.append(Table(f"{_CAPTIONS.get(name, 'Worst figure against each limit')}{more}", head, lines))
+    return blocks
+
+
+def _say(value: object) -> str:
+    if isinstance(value, bool):
+        return "pass" if value else "FAIL"
+    return format_number(value) if isinstance(value, int | float) else str(value)
 
 
 def _show_steps(answers: Sequence[Response]) -> list[Block]:

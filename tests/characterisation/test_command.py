@@ -37,8 +37,8 @@ def test_a_bench_table_gives_files_and_a_table(record, sine, tmp_path):
     assert done.exit_code == 0, done.output
     assert "rebound [N]" in done.stdout.splitlines()[1]
     assert {path.name for path in (tmp_path / "out").iterdir()} == {
-        "cycles.csv", "characterisation.json", "report.html", "loops.png", "energy.png", "asymmetry.png",
-        "manifest.json", "ro-crate-metadata.json",
+        "cycles.csv", "characterisation.json", "characterisation.xlsx", "report.html", "loops.png", "energy.png",
+        "asymmetry.png", "manifest.json", "ro-crate-metadata.json",
     }  # fmt: skip
     found = pd.read_csv(tmp_path / "out" / "cycles.csv")
     assert list(found.current_A) == [1.0, 0.0] and list(found.cycles) == [8, 8]

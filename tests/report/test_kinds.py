@@ -10,6 +10,7 @@ import pytest
 from seatsim.characterisation.response import Response
 from seatsim.characterisation.rows import Row
 from seatsim.characterisation.summary import Characterisation
+from seatsim.characterisation.tabulate import make_sheet
 from seatsim.cli.outputs.diagnosis_tables import make_gap_table
 from seatsim.cli.show_table import make_plain
 from seatsim.identification.assessment import Agreement, Assessment
@@ -166,7 +167,7 @@ def test_a_characterisation_says_force_and_response():
     row = Row("a", "a.csv", 3, 0, 0.0, amplitude=0.01, frequency=1.0, peak_rebound=100.0, offset=1e-12, loop=loop)
     rows = [row, row._replace(record="b", current=1.0, peak_rebound=450.0)]
     step = Response("a", 0.0, 1.0, 5, "constant speed", t95=0.0231, time=np.linspace(0, 0.1, 50), share=np.ones(50))
-    found = Characterisation("rig", "data", True, rows, [step], [])
+    found = Characterisation("rig", "data", True, rows, [step], [], make_sheet(rows, [step]))
     outline = Outline(render_report(report_characterisation(found, {}, ["a remark"], "seatsim characterise data")))
     assert outline.headings[0] == (
         "Moved by ±10 mm at 1 Hz, the damper gives up to 450 N at 1 A, 4.5 times its force at 0 A; it follows a step"
@@ -181,10 +182,11 @@ def test_text_of_files_stays_text_in_every_kind(text):
     hostile = identification(["test"])
     hostile.model, hostile.notes = text, [text]
     hostile.assessments[0] = hostile.assessments[0]._replace(record=hostile.assessments[0].record._replace(name=text))
+    empty = Characterisation(text, text, True, [], [], [text], make_sheet([], []))
     pages = [
         render_report(report_identification(hostile, {"loops": plot_predictions(hostile)}, text)),
         render_report(report_gap(text, gap(0.3), {text: pair(3.0)}, Evidence("gap"), text)),
-        render_report(report_characterisation(Characterisation(text, text, True, [], [], [text]), {}, [text], text)),
+        render_report(report_characterisation(empty, {}, [text], text)),
     ]
     for page in pages:
         assert text in " ".join(Outline(page).words) and page.count("<script>") == 1 and "<img" not in page

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.characterisation.rows import Row
-from seatsim.characterisation.summary import WARMER, group_by_setting, group_rows
+from seatsim.characterisation.rows import WARMER, Row, group_rows
+from seatsim.characterisation.summary import group_by_setting
 from seatsim.plots import labels, style
 from seatsim.plots.thinning import spread_evenly
 
