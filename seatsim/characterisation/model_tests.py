@@ -11,8 +11,10 @@ from typing import NamedTuple, cast
 import numpy as np
 
 from seatsim.characterisation.response import Response, StepEnsemble, estimate_response, find_crossing
-from seatsim.characterisation.rows import summarise_loops
+from seatsim.characterisation.rows import Row, summarise_loops
+from seatsim.characterisation.sheet import PeakForce
 from seatsim.characterisation.summary import Characterisation
+from seatsim.characterisation.tabulate import WINDOW, make_sheet
 from seatsim.dampers.base import DAMPERS, Damper, DamperSpecification
 from seatsim.rig.coil import Coil, relax
 from seatsim.rig.temperature import TemperatureFactors
@@ -22,7 +24,7 @@ from seatsim.schema.registry import name_of, specification_of
 from seatsim.schema.validation import build, mapping
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import KeyPath
-from seatsim.simulation.damper_bench import bench_force, sine_test
+from seatsim.simulation.damper_bench import SineTest, bench_force, sine_test
 
 
 class DamperSpecimen(NamedTuple):
@@ -169,7 +171,7 @@ _TIME_CONSTANTS = 12.0
 """Time constants of the coil after the step."""
 
 
-def characterise_model(tested: DamperSpecimen, chosen: _SweepSettings) -> Characterisation:
+def characterise_model(tested: DamperSpecimen, chosen: _SweepSettings, window: float = WINDOW) -> Characterisation:
     """Return what a bench would show of a model: sine tests at all settings, and steps of the command.
 
     Raises:
@@ -177,17 +179,35 @@ def characterise_model(tested: DamperSpecimen, chosen: _SweepSettings) -> Charac
     """
     rows = []
     for x, f, warm, i in itertools.product(chosen.amplitudes, chosen.frequencies, chosen.temperatures, chosen.currents):
-        cycles = max(3, math.ceil(_SETTLED * f) + 1)
-        test = sine_test(tested.damper, x, f, i, warm, tested.factors, cycles)
-        test = test._replace(time=test.time - test.time[0])
+        test = _test_sine(tested, x, f, i, warm)
         row = summarise_loops([test], f"{1e3 * x:g} mm, {f:g} Hz, {i:g} A, {warm:g} degC", "", i, warm)
         # One cycle is like the other.
         rows.append(row._replace(cycle_values=None))
     speed = 0.5 * min(max(row.peak_speed for row in rows), tested.specification.max_speed)
     answers = list(_responses(tested, chosen, speed))
-    return Characterisation(
-        tested.name, f"{tested.name}: {tested.damper}", False, rows, answers, list(_notes(tested, chosen))
-    )
+    source, notes = f"{tested.name}: {tested.damper}", list(_notes(tested, chosen))
+    return Characterisation(tested.name, source, False, rows, answers, notes, make_sheet(rows, answers, window))
+
+
+def model_peaks(tested: DamperSpecimen, rows: Sequence[Row], window: float) -> list[PeakForce]:
+    """Return the peak forces of a model in the tests of measured rows, each at the temperature that the row states.
+
+    Raises:
+        RunError: the damper's state ran away in one of the tests.
+    """
+    modelled = []
+    for row in rows:
+        if row.loop is not None:
+            warm = row.temperature if math.isfinite(row.temperature) else tested.factors.reference
+            modelled.append(row._replace(loop=_test_sine(tested, row.amplitude, row.frequency, row.current, warm)))
+    return make_sheet(modelled, [], window).peak_forces
+
+
+def _test_sine(tested: DamperSpecimen, x: float, f: float, current: float, warm: float) -> SineTest:
+    """Return a cycle of a sine after which the model has forgotten its start."""
+    cycles = max(3, math.ceil(_SETTLED * f) + 1)
+    test = sine_test(tested.damper, x, f, current, warm, tested.factors, cycles)
+    return test._replace(time=test.time - test.time[0])
 
 
 def _responses(tested: DamperSpecimen, chosen: _SweepSettings, speed: float) -> Iterator[Response]:
@@ -217,7 +237,11 @@ def step_response(tested: DamperSpecimen, before: float, after: float, speed: fl
         bench_force(tested.damper, *motion, i, temperature, _STEP, tested.factors) for i in (current, before, after)
     )
     share = (current[::2] - before) / (after - before)
-    blank = Response("", before, after, 1, "simulated", speed=speed, current_t95=find_crossing(time[::2], share, 0.95))
+    t10, t95 = (find_crossing(time[::2], share, level) for level in (0.1, 0.95))
+    blank = Response(
+        "", before, after, 1, "simulated", speed=speed, current_t10=t10, current_t95=t95,
+        direction="rebound" if speed > 0.0 else "compression",
+    )  # fmt: skip
     # The first half of the lead only brings the damper's state to this speed.
     kept = slice(lead // 2, None)
     if float(np.max(np.abs(on - off)[kept])) <= 1e-9 * float(np.max(np.abs(on))):

@@ -136,7 +136,8 @@ class Response(NamedTuple):
 
     t95_sd: standard deviation of t95 by resampling the steps. current_t95: of the current itself, where it was measured
     or is simulated. speed: in m/s, where it is constant. method: how the motion was taken out of the force, or empty
-    where the response cannot be determined; then `note` says why. time, share: the curve, shape (N,).
+    where the response cannot be determined; then `note` says why. time, share: the curve, shape (N,). direction: of the
+    motion, rebound, compression or both. current_t10: as current_t95, of 10 %.
     """
 
     record: str
@@ -157,6 +158,8 @@ class Response(NamedTuple):
     speed: _Speed = math.nan
     time: Unwritten[Array | None] = None
     share: Unwritten[Array | None] = None
+    direction: Unwritten[str] = "both"
+    current_t10: Unwritten[float] = math.nan
 
     @property
     def rises(self) -> bool:

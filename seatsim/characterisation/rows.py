@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from typing import Annotated, NamedTuple
+from collections.abc import Callable, Iterable, Sequence
+from typing import Annotated, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,6 +16,7 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.content import Form, IfAny, Unwritten, to_content
 from seatsim.simulation.damper_bench import SineTest
 
+_T = TypeVar("_T")
 _COARSE = 16
 """Rows of a cycle below which its peaks and areas are coarse."""
 _DISAGREE = 0.05
@@ -26,6 +27,10 @@ _UNEVEN = 0.05
 """Asymmetric part of the motion itself, RMS over that of the motion, from which on a note says so."""
 _VARIES = 0.05
 """Range of a current, over its largest, from which on a note says so."""
+WARMER = 4.0
+"""degC; least difference of temperatures that are different settings."""
+_ALIKE = 0.05
+"""Relative difference of amplitudes, frequencies and speeds that are the same setting."""
 _MOST_POINTS = 3000
 """Points of the cloud of a record without cycles."""
 
@@ -220,3 +225,25 @@ def _temperatures(record: BenchRecord, cycles: Sequence[Cycle]) -> Array:
 
 def _ratio(part: float, whole: float) -> float:
     return part / whole if whole > 0.0 else math.nan
+
+
+def group_rows(rows: Iterable[_T], alike: Callable[[_T, _T], bool]) -> list[list[_T]]:
+    """Return rows in groups, each row with the first group whose first row is like it, in the order they come."""
+    groups: list[list[_T]] = []
+    for row in rows:
+        group = next((group for group in groups if alike(group[0], row)), None)
+        if group is None:
+            groups.append([row])
+        else:
+            group.append(row)
+    return groups
+
+
+def has_same_motion(a: Row, b: Row) -> bool:
+    """Whether two rows have the same amplitude and frequency."""
+    return is_alike(a.amplitude, b.amplitude) and is_alike(a.frequency, b.frequency)
+
+
+def is_alike(a: float, b: float) -> bool:
+    """Whether two amplitudes, frequencies or speeds are the same setting."""
+    return abs(a - b) <= _ALIKE * a

@@ -126,8 +126,8 @@ _UNSURE = 0.1
 def measure_responses(record: BenchRecord) -> list[Response]:
     """Return the response of a record's force to the steps of its current, one for each pair of levels.
 
-    At constant speed the force before and after the step is what stands there. Where the speed varies, the steady
-    force at either level is a least-squares fit to the settled rows,
+    At constant speed the force before and after the step is what stands there, less a spring over the stroke. Where the
+    speed varies, the steady force at either level is a least-squares fit to the settled rows,
 
         F_level = sum c_k f_k,  f = 1, x, v, dv/dt, tanh(v(t - lag) / (q v_rms)),
 
@@ -154,7 +154,10 @@ def _of_pair(record: BenchRecord, steps: Sequence[_CurrentStep], every: Sequence
         answer = _demodulated(record, steps, every, answer)
     if not answer.method and 0 < 2 * len(even) < len(steps):
         answer = _at_constant_speed(record, even, blank)
-    return answer if record.commanded else answer._replace(current_t95=_of_current(record, steps))
+    if record.commanded:
+        return answer
+    t10, t95 = (_of_current(record, steps, level) for level in (0.1, 0.95))
+    return answer._replace(current_t10=t10, current_t95=t95)
 
 
 def _constant_speed_rows(record: BenchRecord, step: _CurrentStep) -> tuple[_CurrentStep, int, int] | None:
@@ -178,17 +181,28 @@ def _at_constant_speed(
     after = int(np.median([length for *_, length in found]))
     chosen = [one for one in found if one[2] >= after]
     before = min(*(one[1] for one in chosen), round(0.05 * record.rate))
-    force = _about(record.force, [step for step, *_ in chosen], before, after)
+    force, x = (_about(y, [step for step, *_ in chosen], before, after) for y in (record.force, record.displacement))
+    force = force - _slope_at_rest(force, x, before, after // 5) * (x - x[:, before : before + 1])
     off = np.median(force[:, :before], axis=1, keepdims=True)
     on = np.median(force[:, -(after // 5) :], axis=1, keepdims=True)
     noise = float(np.mean(np.std(force[:, :before], axis=1)))
-    speed = float(np.mean([abs(record.velocity[round(step.row)]) for step, *_ in chosen]))
-    blank = blank._replace(steps=len(chosen), method="constant speed", speed=speed)
+    speeds = [float(record.velocity[round(step.row)]) for step, *_ in chosen]
+    ways = {"rebound" if speed > 0.0 else "compression" for speed in speeds}
+    way, speed = ways.pop() if len(ways) == 1 else "both", float(np.mean(np.abs(speeds)))
+    blank = blank._replace(steps=len(chosen), method="constant speed", speed=speed, direction=way)
     if float(np.min(np.abs(on - off))) < 5.0 * noise:
         return blank._replace(method="", note="the force changes by less than five times its noise")
     levels = np.broadcast_to(off, force.shape), np.broadcast_to(on, force.shape)
     instants = np.array([round(step.row) - step.row for step, *_ in chosen]) / record.rate
     return estimate_response(StepEnsemble(force, *levels, instants, before, record.rate), blank)
+
+
+def _slope_at_rest(force: Array, x: Array, before: int, last: int) -> float:
+    """Return the slope in N/m of the force over the stroke, as of a gas spring, while the current rests."""
+    parts = [(y[:, rows] - np.mean(y[:, rows], axis=1, keepdims=True) for y in (force, x))
+             for rows in (slice(before), slice(-last, None))]  # fmt: skip
+    away, moved = (np.concatenate([each.ravel() for each in sides]) for sides in zip(*parts, strict=True))
+    return float(away @ moved / (moved @ moved)) if np.any(moved) else 0.0
 
 
 def _demodulated(
@@ -247,13 +261,13 @@ def _steady(
     return force, math.sqrt(float(np.mean((record.force - force)[settled] ** 2)))
 
 
-def _of_current(record: BenchRecord, steps: Sequence[_CurrentStep]) -> float:
-    """Return the median time to 95 % of the steps of a measured current."""
+def _of_current(record: BenchRecord, steps: Sequence[_CurrentStep], level: float) -> float:
+    """Return the median time in which the steps of a measured current cover a share."""
     times = []
     for step in steps:
         rows = np.arange(int(step.row), step.after.last)
         share = (record.current[rows] - step.before.level) / (step.after.level - step.before.level)
-        times.append(find_crossing(np.asarray((rows - step.row) / record.rate, dtype=float), share, 0.95))
+        times.append(find_crossing(np.asarray((rows - step.row) / record.rate, dtype=float), share, level))
     reached = [time for time in times if math.isfinite(time)]
     return float(np.median(reached)) if reached else math.nan
 

@@ -2,29 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
 from seatsim.characterisation.response import Response, find_cycles
-from seatsim.characterisation.rows import Row, summarise_aperiodic_record, summarise_record
+from seatsim.characterisation.rows import Row, group_rows, has_same_motion, summarise_aperiodic_record, summarise_record
+from seatsim.characterisation.sheet import BenchSheet, LimitCheck, PeakForce
 from seatsim.characterisation.steps import find_plateaus, measure_responses
+from seatsim.characterisation.tabulate import WINDOW, make_sheet
 from seatsim.recordings.bench_tables import BenchRecord, load_bench, unused_columns
-from seatsim.schema.content import Form, show_record
+from seatsim.schema.content import Form, Joined, show_record
 
 _SETTLED = 0.2
 """Seconds after a step of current from which on cycles are counted."""
-_ALIKE = 0.05
-"""Relative difference of amplitudes and frequencies that are the same setting."""
-WARMER = 4.0
-"""degC; least difference of temperatures that are different settings."""
 
 
 class Characterisation(NamedTuple):
     """The rows of a damper's records (or of a model's tests), its responses to steps, and what is to be known of them.
 
     It is the content of `characterisation.json`. measured: whether the rows are of records. source: the data, or the
-    model with its parameters, as text.
+    model with its parameters, as text. sheet: the tables of the bench day.
     """
 
     name: str
@@ -33,6 +31,7 @@ class Characterisation(NamedTuple):
     rows: Annotated[list[Row], Form(key="records")]
     responses: Annotated[list[Response], Form(key="steps")]
     notes: list[str]
+    sheet: Joined[BenchSheet]
 
     @property
     def remarks(self) -> list[str]:
@@ -47,6 +46,14 @@ class Characterisation(NamedTuple):
                 affected.setdefault(answer.note, []).append(f"{answer.record}, {who}" if answer.record else who)
         return [*self.notes, *(f"{_list_names(names)}: {note}" for note, names in affected.items())]
 
+    def set_beside(self, peaks: list[PeakForce]) -> Characterisation:
+        """Return the same with the peak forces of a model beside."""
+        return self._replace(sheet=self.sheet._replace(beside=peaks))
+
+    def set_limits(self, checks: list[LimitCheck]) -> Characterisation:
+        """Return the same with limits that were checked."""
+        return self._replace(sheet=self.sheet._replace(limits=checks))
+
     def _repr_html_(self) -> str:
         return show_record(self)
 
@@ -55,8 +62,12 @@ def _list_names(names: Sequence[str]) -> str:
     return ", ".join(names) if len(names) <= 3 else f"{names[0]} and {len(names) - 1} more"
 
 
-def characterise(data: str | Path | Sequence[BenchRecord], name: str = "", source: str = "") -> Characterisation:
+def characterise(
+    data: str | Path | Sequence[BenchRecord], name: str = "", source: str = "", window: float = WINDOW
+) -> Characterisation:
     """Return what bench records, or the tables of a folder, show before anything is modelled.
+
+    `window` is the part of the stroke over which the force at the peak speed is averaged.
 
     A record whose current rests at several levels, with steady cycles at one of them, has a row for each such stretch;
     any other record has one row.
@@ -65,7 +76,8 @@ def characterise(data: str | Path | Sequence[BenchRecord], name: str = "", sourc
     name = name or (Path(data).stem if isinstance(data, str | Path) else records[0].name)
     rows = [row for record in records for row in _rows(record)]
     answers = [answer for record in records for answer in measure_responses(record)]
-    return Characterisation(name, source or name, True, rows, answers, unused_columns(records))
+    sheet = make_sheet(rows, answers, window)
+    return Characterisation(name, source or name, True, rows, answers, unused_columns(records), sheet)
 
 
 def _rows(record: BenchRecord) -> list[Row]:
@@ -84,21 +96,5 @@ def _rows(record: BenchRecord) -> list[Row]:
 
 def group_by_setting(rows: Sequence[Row]) -> list[list[Row]]:
     """Return rows with cycles in groups of the same amplitude and frequency, in the order of these."""
-    groups = group_rows([row for row in rows if row.loop is not None], _same)
+    groups = group_rows([row for row in rows if row.loop is not None], has_same_motion)
     return sorted(groups, key=lambda group: (round(1e3 * group[0].amplitude), group[0].frequency))
-
-
-def group_rows(rows: Sequence[Row], alike: Callable[[Row, Row], bool]) -> list[list[Row]]:
-    """Return rows in groups, each row with the first group whose first row is like it, in the order they come."""
-    groups: list[list[Row]] = []
-    for row in rows:
-        group = next((group for group in groups if alike(group[0], row)), None)
-        if group is None:
-            groups.append([row])
-        else:
-            group.append(row)
-    return groups
-
-
-def _same(a: Row, b: Row) -> bool:
-    return all(abs(p - q) <= _ALIKE * p for p, q in ((a.amplitude, b.amplitude), (a.frequency, b.frequency)))

@@ -8,6 +8,7 @@ where the time jumps and where the column `segment` changes; rows whose `valid` 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
@@ -26,6 +27,9 @@ from seatsim.schema.yaml_source import Source
 
 _Table = dict[str, Array]
 
+NAMED = r"(?P<current>\d+(?:[.,]\d+)?) ?A(?![a-zA-Z])|(?P<temperature>\d+(?:[.,]\d+)?) ?(?:deg)?C(?![a-zA-Z])"
+"""Current and temperature as they usually stand in the names of files."""
+_NAMED_GROUPS = ("current", "temperature")
 _SUFFIXES = (".csv", ".csv.gz", ".csv.bz2", ".csv.xz", ".csv.zip")
 _GAP = 1.5
 """A pause of more median row intervals than this ends a record."""
@@ -83,8 +87,11 @@ class BenchRecord(NamedTuple):
         return first, first + rows
 
 
-def load_bench(path: str | Path) -> list[BenchRecord]:
+def load_bench(path: str | Path, pattern: str = "") -> list[BenchRecord]:
     """Return the records of a table or of every table of a folder, in the order of their names.
+
+    `pattern` is a regular expression for the names of the files, whose groups `current` in A and `temperature` in degC
+    count where neither a column nor a sidecar states these; `NAMED` reads `0.3A-2.csv` and `1.5A_80C.csv`.
 
     Raises:
         InputError: nothing is there, or a table is short of a column, not numeric, too short or unevenly sampled.
@@ -99,7 +106,36 @@ def load_bench(path: str | Path) -> list[BenchRecord]:
     files = sorted(file for file in path.iterdir() if file.name.endswith(_SUFFIXES)) if path.is_dir() else [path]
     if not files:
         raise InputError(f"{path}: holds no table; give a folder with files that end in {', '.join(_SUFFIXES)}")
-    return [record for file in files for record in _records(file)]
+    named = _compile(pattern)
+    return [record for file in files for record in _records(file, named)]
+
+
+def _compile(pattern: str) -> re.Pattern[str] | None:
+    """Return the pattern of file names.
+
+    Raises:
+        InputError: it is no regular expression with one of the groups.
+    """
+    try:
+        found = re.compile(pattern) if pattern else None
+    except re.error as error:
+        raise InputError(
+            f"--pattern {pattern}: is no regular expression: {error}; write one such as {NAMED}"
+        ) from error
+    if found and not set(found.groupindex) & set(_NAMED_GROUPS):
+        raise InputError(f"--pattern {pattern}: has no group named current or temperature; write one such as {NAMED}")
+    return found
+
+
+def _read_name(name: str, pattern: re.Pattern[str] | None) -> dict[str, float]:
+    """Return what the name of a file states by quantity; a decimal comma counts as a point."""
+    if pattern is None:
+        return {}
+    stated = [(key, text) for match in pattern.finditer(name) for key, text in match.groupdict().items()]
+    try:
+        return {key: float(text.replace(",", ".")) for key, text in stated if text and key in _NAMED_GROUPS}
+    except ValueError as error:
+        raise InputError(f"--pattern {pattern.pattern}: finds no number in '{name}'; {error}") from error
 
 
 def stem(file: str) -> str:
@@ -113,11 +149,11 @@ def unused_columns(records: Sequence[BenchRecord]) -> list[str]:
     return [f"columns that are not used: {', '.join(names)}"] if names else []
 
 
-def _records(file: Path) -> Iterator[BenchRecord]:
+def _records(file: Path, pattern: re.Pattern[str] | None) -> Iterator[BenchRecord]:
     frame = read_table(file)
     columns = columns_of(map(str, frame), file)
     sidecar = file.with_name(stem(file.name) + ".yaml")
-    stated = constants(Source(sidecar)) if sidecar.exists() else {}
+    stated = _read_name(stem(file.name), pattern) | (constants(Source(sidecar)) if sidecar.exists() else {})
     if "time" not in columns.by_quantity and "rate" in stated:
         frame = frame.assign(time=np.arange(len(frame)) / stated["rate"])
         columns.by_quantity["time"] = "time"

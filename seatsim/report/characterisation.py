@@ -10,13 +10,16 @@ import numpy as np
 
 from seatsim.characterisation.response import Response
 from seatsim.characterisation.rows import Row
+from seatsim.characterisation.sheet import BenchSheet, list_tables
 from seatsim.characterisation.summary import Characterisation, group_by_setting
 from seatsim.dampers.base import DAMPERS
-from seatsim.plots.labels import format_number, format_percent
+from seatsim.plots.labels import format_number, format_percent, format_unit
 from seatsim.report.blocks import Block, Code, Report, Section, Text, show_pictures, tabulate
 from seatsim.report.composing import Closing, compose
 from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs
 from seatsim.report.formatting import format_quantity
+from seatsim.schema.content import list_written
+from seatsim.schema.fields import describe
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,6 +27,19 @@ if TYPE_CHECKING:
 MOST_ROWS = 60
 ROUNDING = 1e-9
 """Share of the peak force below which an offset is no finding."""
+_CAPTIONS = {
+    "peak_forces": "Force at the peak speed, mean of the repeats with the larger standard deviation of them",
+    "beside": "The same of the model beside",
+    "gas_force": "Gas force: mean of both directions at mid-stroke of the slowest test, and its slope over the stroke",
+    "friction": "Friction: half the difference of both directions at mid-stroke of the slowest test",
+    "dynamic_range": "Dynamic range: force at the largest current over that at the smallest",
+    "linearity": "Linearity in current: 0 is the softest force, 1 the hardest",
+    "hysteresis": "Hysteresis: difference of the forces at which a cycle passes a speed of 0, and half its peak speed",
+    "energy": "Energy of a cycle and equivalent damping",
+    "fade": "Fade: change of the force with temperature, over that at the lowest temperature",
+    "response": "Response from the current's own 10 % on; recovery after a dip, overshoot over the change",
+}
+"""Captions of the tables, in their order."""
 
 
 def report_characterisation(
@@ -34,11 +50,13 @@ def report_characterisation(
     sections = [
         Section("loops", "Force, energy and damping", show_pictures(figures, "loops", "energy", "asymmetry")),
         Section("figures", "Figures of each record", _tabulate_rows(found)),
+        Section("limits", "Limits", _tabulate_sheet(found.sheet, ["limits"])),
         Section(
             "steps",
             "Response to steps of the current",
             [*show_pictures(figures, "steps"), *_tabulate_steps(found.responses)],
         ),
+        Section("sheet", "Tables of the bench day", _tabulate_sheet(found.sheet, [*_CAPTIONS])),
     ]
     about, closing = f"Characterisation: {found.name}", Closing(remarks, _judge(found), command, tested)
     return compose("characterisation", about, [_say_character(found)], _advise(found), sections, closing)
@@ -109,6 +127,27 @@ def _tabulate_rows(found: Characterisation) -> list[Block]:
 def _clean(row: Row) -> float:
     """Return the offset of a loop, 0 where it is rounding."""
     return 0.0 if abs(row.offset) < ROUNDING * abs(row.peak_rebound) else row.offset
+
+
+def _tabulate_sheet(sheet: BenchSheet, names: Sequence[str]) -> list[Block]:
+    """Return the tables with these names that have rows."""
+    tables, blocks = list_tables(sheet), list[Block]()
+    for name in names:
+        record, rows = tables[name]
+        units = {field.name: format_unit(field.unit) for field in describe(record)}
+        written = list_written(record)
+        head = [f"{each.key.replace('_', ' ')} [{units[each.name]}]" if units[each.name] else each.key.replace("_", " ")
+                for each in written]  # fmt: skip
+        lines = [[_say(getattr(row, each.name)) for each in written] for row in rows[:MOST_ROWS]]
+        more = f"; {len(rows) - MOST_ROWS} more in characterisation.xlsx" if len(rows) > MOST_ROWS else ""
+        blocks += tabulate(f"{_CAPTIONS.get(name, 'Worst figure against each limit')}{more}", head, lines)
+    return blocks
+
+
+def _say(value: object) -> str:
+    if isinstance(value, bool):
+        return "pass" if value else "FAIL"
+    return format_number(value) if isinstance(value, int | float) else str(value)
 
 
 def _tabulate_steps(answers: Sequence[Response]) -> list[Block]:

@@ -43,8 +43,8 @@ def test_a_bench_table_gives_files_and_a_table(record, sine, tmp_path):
     assert "rebound [N]" in done.stdout.splitlines()[1]
     assert {path.name for path in (tmp_path / "out").iterdir()} == set(
         words("""
-        cycles.csv characterisation.json report.html loops.png energy.png asymmetry.png manifest.json
-        ro-crate-metadata.json
+        cycles.csv characterisation.json characterisation.xlsx report.html loops.png energy.png asymmetry.png
+        manifest.json ro-crate-metadata.json
     """)
     )
     found = pd.read_csv(tmp_path / "out" / "cycles.csv")

@@ -10,6 +10,7 @@ import pandas as pd
 from seatsim.characterisation.response import Response
 from seatsim.characterisation.rows import Row
 from seatsim.characterisation.summary import Characterisation
+from seatsim.characterisation.tabulate import make_sheet
 from seatsim.identification.assessment import Agreement, Assessment
 from seatsim.identification.information import Information, ParameterEstimate
 from seatsim.metrics.table import METRICS
@@ -87,7 +88,7 @@ def characterisation():
         "a", 0.0, 1.0, 5, "constant speed", t5=0.001, t90=0.018, t95=0.0231, rate_95=130.0,
         time=np.linspace(0, 0.1, 50), share=np.linspace(0, 1, 50),
     )  # fmt: skip
-    return Characterisation("rig", "data", True, rows, [step], [])
+    return Characterisation("rig", "data", True, rows, [step], [], make_sheet(rows, [step]))
 
 
 @cache

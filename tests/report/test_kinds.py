@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from seatsim.characterisation.summary import Characterisation
+from seatsim.characterisation.tabulate import make_sheet
 from seatsim.cli.outputs.diagnosis_tables import make_gap_table
 from seatsim.cli.show_table import make_plain
 from seatsim.plots.bench.identification import plot_predictions
@@ -125,10 +126,11 @@ def test_text_of_files_stays_text_in_every_kind(text):
     hostile = identification(["test"])
     hostile.model, hostile.notes = text, [text]
     hostile.assessments[0] = hostile.assessments[0]._replace(record=hostile.assessments[0].record._replace(name=text))
+    empty = Characterisation(text, text, True, [], [], [text], make_sheet([], []))
     pages = [
         render_report(report_identification(hostile, {"loops": plot_predictions(hostile)}, text)),
         render_report(report_gap(text, gap(0.3), {text: pair(3.0)}, JUDGED, text)),
-        render_report(report_characterisation(Characterisation(text, text, True, [], [], [text]), {}, [text], text)),
+        render_report(report_characterisation(empty, {}, [text], text)),
     ]
     for page in pages:
         assert text in " ".join(Outline(page).words) and page.count("<script>") == 1 and "<img src=x" not in page

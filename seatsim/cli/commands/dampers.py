@@ -27,6 +27,10 @@ def characterise(
     temperatures: Annotated[str, typer.Option("--temperatures", metavar="C,C")] = "",
     amplitudes: Annotated[str, typer.Option("--amplitudes", metavar="M,M")] = "",
     frequencies: Annotated[str, typer.Option("--frequencies", metavar="HZ,HZ")] = "",
+    limits: Annotated[Path | None, typer.Option("--limits", metavar="LIMITS.yaml")] = None,
+    beside: Annotated[Path | None, typer.Option("--beside", metavar="DAMPER.yaml")] = None,
+    pattern: Annotated[str, typer.Option("--pattern", metavar="REGEX")] = "",
+    window: Annotated[float, typer.Option("--window", min=0.001, max=1.0)] = 0.1,
     own_code: OwnCode = None,
     pdf: Pdf = False,
     as_json: Json = False,
@@ -41,23 +45,34 @@ def characterise(
         temperatures: Temperatures in degC.
         amplitudes: Amplitudes in m.
         frequencies: Frequencies.
+        limits: Limits of figures, which pass or fail.
+        beside: A damper whose forces stand beside.
+        pattern: Groups current and temperature of file names.
+        window: Part of the stroke over which forces are averaged.
     """
-    from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
+    from seatsim.characterisation.limits import check_limits
+    from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen, model_peaks
     from seatsim.characterisation.summary import characterise as of_records
     from seatsim.cli.outputs.damper_tables import make_characterisation_tables
     from seatsim.cli.outputs.writing import write_characterisation
     from seatsim.cli.show_table import show_table
-    from seatsim.recordings.bench_tables import load_bench
+    from seatsim.recordings.bench_tables import NAMED, load_bench
 
     grid = (currents, temperatures, amplitudes, frequencies)
     if (data is None) == (model is None and parameters is None) or (data is not None and any(grid)):
         raise InputError("characterise either DATA, or a model by --model or --parameters with its tests; see --help")
     if data is not None:
-        records = load_bench(data)
-        found = of_records(records, _title(data), data.resolve().name)
+        specimen = load_specimen(None, beside) if beside else None
+        found = of_records(load_bench(data, pattern or NAMED), _title(data), data.resolve().name, window)
+        if specimen:
+            found = found.set_beside(model_peaks(specimen, found.rows, window))
+    elif beside or pattern:
+        raise InputError("--beside and --pattern are of DATA; leave them out for a model")
     else:
         tested = load_specimen(model, parameters)
-        found = characterise_model(tested, choose_settings(tested, *grid))
+        found = characterise_model(tested, choose_settings(tested, *grid), window)
+    if limits:
+        found = found.set_limits(check_limits(found.sheet, limits))
     show_table(*make_characterisation_tables(found))
     warn(found.remarks)
     folder = out_folder or Path("out") / f"characterise-{found.name}"

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from seatsim.cli.outputs.printing import print_reports
+from seatsim.cli.outputs.workbook import write_workbook
 from seatsim.provenance.manifest import Measured, write_documented
 from seatsim.report.rendering import write_html
 from seatsim.schema.files import write_json, write_text, write_together, write_whole
@@ -39,8 +40,8 @@ def write_outputs(
 
     Args:
         folder: where they go.
-        contents: by name of the file a record (.json), rows or a frame (.csv), a report (.html), a figure (.png) or
-            text (.yaml).
+        contents: by name of the file a record (.json), rows or a frame (.csv), tables (.xlsx), a report (.html), a
+            figure (.png) or text (.yaml).
         seed: as for `write_documented`.
         measured: the same.
     """
@@ -90,6 +91,7 @@ _WRITERS: Mapping[str, Callable[[Path, Any], Path]] = {
     ".csv": _write_rows,
     ".html": lambda path, report: write_html(report, path),
     ".png": _write_picture,
+    ".xlsx": write_workbook,
     ".yaml": write_text,
 }
 """Writers by the ending of a file."""
@@ -144,8 +146,9 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> list[Path]:
 
 
 def write_characterisation(found: Characterisation, folder: Path) -> list[Path]:
-    """Write `cycles.csv`, `characterisation.json`, `report.html` and the pictures; return their paths."""
+    """Write `cycles.csv`, `characterisation.json` and `.xlsx`, `report.html` and the pictures; return their paths."""
     from seatsim.characterisation.rows import row_columns
+    from seatsim.characterisation.sheet import list_tables
     from seatsim.plots.bench.characterisation import plot_characterisation
     from seatsim.report.characterisation import report_characterisation
 
@@ -154,6 +157,7 @@ def write_characterisation(found: Characterisation, folder: Path) -> list[Path]:
     contents = {
         "cycles.csv": [row_columns(row) for row in found.rows],
         "characterisation.json": found,
+        "characterisation.xlsx": list_tables(found.sheet),
         "report.html": report_characterisation(found, figures, found.remarks, command),
         **name_pictures(figures),
     }

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from seatsim.characterisation.rows import Row
-from seatsim.characterisation.summary import WARMER, Characterisation, group_by_setting, group_rows
+from seatsim.characterisation.rows import WARMER, Row, group_rows
+from seatsim.characterisation.summary import Characterisation, group_by_setting
 from seatsim.plots import style
 from seatsim.plots.labels import clean_text
 from seatsim.plots.loops import Family, label_panels, make_loop_page

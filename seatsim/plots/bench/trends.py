@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from seatsim.characterisation.rows import Row
-from seatsim.characterisation.summary import WARMER, Characterisation, group_by_setting
+from seatsim.characterisation.rows import WARMER, Row
+from seatsim.characterisation.summary import Characterisation, group_by_setting
 from seatsim.plots import style
 from seatsim.plots.bench.loops import describe_setting, select_largest_current, select_lowest_temperature
 from seatsim.plots.style import Entry, Grid

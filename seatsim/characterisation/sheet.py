@@ -1,0 +1,151 @@
+"""The tables of a bench day, as records: forces, gas and friction, hysteresis, energy, fade, responses, limits."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Annotated, NamedTuple, get_args, get_type_hints
+
+from seatsim.schema.content import Form
+from seatsim.schema.fields import param
+
+_Current = Annotated[float, param("A", "current")]
+_Warmth = Annotated[float, param("degC", "temperature of the damper")]
+_Speed = Annotated[float, param("m/s", "peak speed")]
+_Force = Annotated[float, param("N", "force")]
+_Stiffness = Annotated[float, param("N/m", "stiffness")]
+_Length = Annotated[float, param("m", "amplitude")]
+_Frequency = Annotated[float, param("Hz", "frequency")]
+_Energy = Annotated[float, param("J", "energy of a cycle")]
+_Damping = Annotated[float, param("N s/m", "equivalent damping")]
+_PerKelvin = Annotated[float, param("1/K", "relative change")]
+_Time = Annotated[float, param("s", "time")]
+
+
+class PeakForce(NamedTuple):
+    """Force at the peak speed in either direction, mean of the repeats, and the larger standard deviation of them."""
+
+    current: _Current
+    temperature: _Warmth
+    speed: _Speed
+    rebound: _Force
+    compression: _Force
+    repeats: int
+    spread: _Force
+
+
+class StepResponse(NamedTuple):
+    """Times in s from the current's own 10 % (a command's step) on, of the force; overshoot over the change.
+
+    start, t10, t63, t90: the force has covered 5, 10, 63.2 and 90 % of its change. settling: from then on it keeps
+    within 5 % of its end. recovery: from first reaching 90 % until it no longer falls below; 0 without a dip.
+    """
+
+    before: Annotated[_Current, Form(key="from")]
+    after: Annotated[_Current, Form(key="to")]
+    speed: _Speed
+    direction: str
+    start: _Time
+    t10: _Time
+    t63: _Time
+    t90: _Time
+    settling: _Time
+    recovery: _Time
+    overshoot: float
+
+
+class SlowForce(NamedTuple):
+    """Mean of both directions at mid-stroke, and its slope over the middle half of the stroke, of the slowest test."""
+
+    current: _Current
+    temperature: _Warmth
+    speed: _Speed
+    force: _Force
+    stiffness: _Stiffness
+
+
+class Friction(NamedTuple):
+    """Half the difference of both directions at mid-stroke of the slowest test."""
+
+    current: _Current
+    temperature: _Warmth
+    speed: _Speed
+    force: _Force
+
+
+class Share(NamedTuple):
+    """A ratio of forces at one speed in either direction, and of their difference, which has no gas force."""
+
+    current: _Current
+    temperature: _Warmth
+    speed: _Speed
+    rebound: float
+    compression: float
+    both: float
+
+
+class Hysteresis(NamedTuple):
+    """Difference in N of the two forces at which a cycle passes a speed of 0, and half of its peak speed."""
+
+    current: _Current
+    temperature: _Warmth
+    speed: _Speed
+    width: _Force
+    width_at_half_speed: _Force
+
+
+class CycleEnergy(NamedTuple):
+    """Energy in J dissipated in a cycle, the viscous damping in N s/m that dissipates the same, and the asymmetry."""
+
+    current: _Current
+    temperature: _Warmth
+    amplitude: _Length
+    frequency: _Frequency
+    speed: _Speed
+    energy: _Energy
+    damping: _Damping
+    asymmetry: float
+
+
+class Fade(NamedTuple):
+    """Change of the force at the peak speed in 1/K, over that at the lowest temperature, between two temperatures."""
+
+    current: _Current
+    speed: _Speed
+    coldest: _Warmth
+    warmest: _Warmth
+    per_kelvin: _PerKelvin
+
+
+class LimitCheck(NamedTuple):
+    """A figure against a limit: the worst value, and whether it passes."""
+
+    name: str
+    value: float
+    limit: float
+    bound: str
+    passes: Annotated[bool, Form(key="pass")]
+
+
+class BenchSheet(NamedTuple):
+    """The tables; SI units, degC, a force is positive in rebound.
+
+    `beside` holds the peak forces of a model in the same tests.
+    """
+
+    peak_forces: list[PeakForce]
+    response: list[StepResponse]
+    gas_force: list[SlowForce]
+    friction: list[Friction]
+    dynamic_range: list[Share]
+    linearity: list[Share]
+    hysteresis: list[Hysteresis]
+    energy: list[CycleEnergy]
+    fade: list[Fade]
+    limits: Sequence[LimitCheck] = ()
+    beside: Sequence[PeakForce] = ()
+
+
+def list_tables(sheet: BenchSheet) -> dict[str, tuple[type, Sequence[object]]]:
+    """Return the class of the rows and the rows of each table, by its name."""
+    hints = get_type_hints(BenchSheet, include_extras=True)
+    return {name: (get_args(hints[name])[0], getattr(sheet, name)) for name in BenchSheet._fields}

@@ -1,0 +1,186 @@
+"""From the rows and responses of a damper to the tables of its bench day."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.characterisation.response import Response, find_crossing
+from seatsim.characterisation.rows import WARMER, Row, group_rows, has_same_motion, is_alike
+from seatsim.characterisation.sheet import (
+    BenchSheet,
+    CycleEnergy,
+    Fade,
+    Friction,
+    Hysteresis,
+    PeakForce,
+    Share,
+    SlowForce,
+    StepResponse,
+)
+from seatsim.metrics.motion import ratio
+from seatsim.schema.arrays import Array
+from seatsim.simulation.damper_bench import SineTest
+
+WINDOW = 0.1
+"""Part of the stroke about its middle over which the force at the peak speed is averaged."""
+_SAME_CURRENT, _SMALLEST_CURRENT = 0.02, 0.005
+"""Relative difference, and difference in A, of currents that are the same."""
+_SETTLED = 0.05
+"""Half width of the band, over the change of force, within which a response has settled."""
+
+
+def make_sheet(rows: Sequence[Row], responses: Iterable[Response], window: float = WINDOW) -> BenchSheet:
+    """Return the tables of a damper's rows and responses.
+
+    With F+ and F- the means of the force in rebound and compression over `window` of the stroke about its middle,
+
+        gas force = (F+ + F-) / 2,         friction = (F+ - F-) / 2                         of the slowest test,
+        dynamic range = F_hard / F_soft,   linearity = (F - F_soft) / (F_hard - F_soft)     at one speed
+
+    Rows of one current, temperature, amplitude and frequency are repeats. A fade is a straight line over temperatures.
+    """
+    groups = sorted(
+        group_rows([row for row in rows if row.loop is not None], _is_repeat),
+        key=lambda group: (group[0].temperature, round(group[0].peak_speed, 3), group[0].current),
+    )
+    peaks = [measure_peak(group, window) for group in groups]
+    slow = [min(alike, key=lambda pair: pair[1].speed) for alike in group_rows(zip(groups, peaks, strict=True), _slow)]
+    families = group_rows(peaks, lambda a, b: is_alike(a.speed, b.speed) and _as_warm(a.temperature, b.temperature))
+    ladders = [family for family in families if len(family) > 1]
+    return BenchSheet(
+        peak_forces=peaks,
+        response=[_describe_step(each) for each in responses if each.time is not None and each.share is not None],
+        gas_force=[_measure_gas(group[0], peak) for group, peak in slow],
+        friction=[Friction(*peak[:3], 0.5 * (peak.rebound - peak.compression)) for _, peak in slow],
+        dynamic_range=[_divide(peak, ladder[0]) for ladder in ladders for peak in ladder[-1:]],
+        linearity=[_place(peak, ladder[0], ladder[-1]) for ladder in ladders for peak in ladder],
+        hysteresis=[_measure_hysteresis(group, peak) for group, peak in zip(groups, peaks, strict=True)],
+        energy=[_measure_energy(group) for group in groups],
+        fade=_measure_fade(peaks),
+    )
+
+
+def measure_peak(rows: Sequence[Row], window: float) -> PeakForce:
+    """Return the force at the peak speed of rows that are repeats, each with a loop."""
+    forces = np.array([_average(row.loop, window) for row in rows if row.loop is not None])
+    rebound, compression = map(float, np.mean(forces, axis=0))
+    spread = float(np.max(np.std(forces, axis=0, ddof=1))) if len(rows) > 1 else math.nan
+    current, temperature, speed = (_average_of(rows, name) for name in ("current", "temperature", "peak_speed"))
+    return PeakForce(current, temperature, speed, rebound, compression, len(rows), spread)
+
+
+def _average(loop: SineTest, window: float) -> tuple[float, float]:
+    """Return the mean force in rebound and in compression about mid-stroke."""
+    x = loop.displacement - 0.5 * (np.max(loop.displacement) + np.min(loop.displacement))
+    near = np.abs(x) <= 0.5 * window * np.ptp(x)
+    rebound, compression = (float(np.mean(loop.force[near & (sign * loop.velocity > 0.0)])) for sign in (1.0, -1.0))
+    return rebound, compression
+
+
+def _measure_gas(row: Row, peak: PeakForce) -> SlowForce:
+    """Return the gas force of a slow test, with its slope where reversals are far: what both directions share there."""
+    assert row.loop is not None
+    x = row.loop.displacement - 0.5 * (np.max(row.loop.displacement) + np.min(row.loop.displacement))
+    near = np.abs(x) <= 0.25 * np.ptp(x)
+    shares = np.column_stack([x, np.ones(len(x)), np.sign(row.loop.velocity)])[near]
+    (stiffness, *_), *_ = np.linalg.lstsq(shares, row.loop.force[near], rcond=None)
+    return SlowForce(*peak[:3], 0.5 * (peak.rebound + peak.compression), float(stiffness))
+
+
+def _forces(peak: PeakForce) -> tuple[float, float, float]:
+    """Return the force of either direction, and half their difference."""
+    return peak.rebound, peak.compression, _size(peak)
+
+
+def _divide(peak: PeakForce, soft: PeakForce) -> Share:
+    return Share(*peak[:3], *map(ratio, _forces(peak), _forces(soft)))
+
+
+def _place(peak: PeakForce, soft: PeakForce, hard: PeakForce) -> Share:
+    forces = zip(_forces(peak), _forces(soft), _forces(hard), strict=True)
+    return Share(*peak[:3], *(ratio(force - low, high - low) for force, low, high in forces))
+
+
+def _measure_hysteresis(rows: Sequence[Row], peak: PeakForce) -> Hysteresis:
+    loops = [row.loop for row in rows if row.loop is not None]
+    widths = [np.mean([_measure_width(loop, share) for loop in loops]) for share in (0.0, 0.5)]
+    return Hysteresis(*peak[:3], *map(float, widths))
+
+
+def _measure_width(loop: SineTest, share: float) -> float:
+    """Return the largest difference of the forces at which the velocity passes a share of its peak, up and down."""
+    v, force = loop.velocity[:-1], loop.force[:-1]
+    widths = []
+    for level in {share * float(np.max(v)), share * float(np.min(v))}:
+        away = v - level
+        k = np.flatnonzero(np.signbit(away) != np.signbit(np.roll(away, -1)))
+        part = away[k] / (away[k] - np.roll(away, -1)[k])
+        passed = force[k] + part * (np.roll(force, -1)[k] - force[k])
+        widths.append(float(np.ptp(passed)) if len(k) > 1 else math.nan)
+    return max(widths)
+
+
+def _measure_energy(rows: Sequence[Row]) -> CycleEnergy:
+    names = ("current", "temperature", "amplitude", "frequency", "peak_speed", "energy", "damping", "asymmetry")
+    return CycleEnergy(*(_average_of(rows, name) for name in names))
+
+
+def _measure_fade(peaks: Sequence[PeakForce]) -> list[Fade]:
+    found = []
+    for family in group_rows(peaks, lambda a, b: is_alike(a.speed, b.speed) and _same_current(a.current, b.current)):
+        warmth, force = (np.array(part) for part in zip(*((p.temperature, _size(p)) for p in family), strict=True))
+        if len(family) > 1 and np.ptp(warmth) >= WARMER:
+            slope, coldest = np.polyfit(warmth - np.min(warmth), force, 1)
+            low, high = float(np.min(warmth)), float(np.max(warmth))
+            found.append(Fade(family[0].current, family[0].speed, low, high, float(slope / coldest)))
+    return found
+
+
+def _size(peak: PeakForce) -> float:
+    """Return half the difference of both directions, which has no gas force."""
+    return 0.5 * (peak.rebound - peak.compression)
+
+
+def _describe_step(found: Response) -> StepResponse:
+    assert found.time is not None and found.share is not None
+    start = found.current_t10 if math.isfinite(found.current_t10) else 0.0
+    share = found.share
+    t5, t10, t63, t90 = (
+        find_crossing(found.time, share, level) - start for level in (0.05, 0.1, 1.0 - math.exp(-1.0), 0.9)
+    )
+    again = _find_last(found.time, share < 0.9) - start
+    return StepResponse(
+        found.before, found.after, found.speed, found.direction, t5, t10, t63, t90,
+        settling=_find_last(found.time, np.abs(share - 1.0) > _SETTLED) - start,
+        recovery=max(again - t90, 0.0), overshoot=max(float(np.max(share)) - 1.0, 0.0),
+    )  # fmt: skip
+
+
+def _find_last(time: Array, outside: NDArray[np.bool_]) -> float:
+    """Return the instant from which on a curve is no longer outside."""
+    rows = np.flatnonzero(outside)
+    return float(time[min(int(rows[-1]) + 1, len(time) - 1)]) if rows.size else math.nan
+
+
+def _is_repeat(a: Row, b: Row) -> bool:
+    return has_same_motion(a, b) and _same_current(a.current, b.current) and _as_warm(a.temperature, b.temperature)
+
+
+def _slow(a: tuple[Sequence[Row], PeakForce], b: tuple[Sequence[Row], PeakForce]) -> bool:
+    return _same_current(a[1].current, b[1].current) and _as_warm(a[1].temperature, b[1].temperature)
+
+
+def _same_current(a: float, b: float) -> bool:
+    return abs(a - b) <= max(_SAME_CURRENT * abs(a), _SMALLEST_CURRENT)
+
+
+def _as_warm(a: float, b: float) -> bool:
+    return not abs(a - b) >= WARMER
+
+
+def _average_of(rows: Sequence[Row], name: str) -> float:
+    return float(np.mean([getattr(row, name) for row in rows]))
