@@ -34,7 +34,7 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import write_whole
 
-_MOST_GAINS = 4
+MOST_GAINS = 4
 """Free gains up to which boxes are searched."""
 FACTOR = 1 - 1e-3
 """Level that is proven, over the norm of the design."""
@@ -141,12 +141,12 @@ def prove_no_better(
         progress: is told, now and then, how much of the box is excluded.
 
     Raises:
-        InputError: more free gains than `_MOST_GAINS`, or a box of another shape.
+        InputError: more free gains than `MOST_GAINS`, or a box of another shape.
     """
     low, high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
     count = int(plants[0].free.sum())
-    if count > _MOST_GAINS:
-        raise InputError(f"{count} free gains; at most {_MOST_GAINS} are searched over their whole box")
+    if count > MOST_GAINS:
+        raise InputError(f"{count} free gains; at most {MOST_GAINS} are searched over their whole box")
     if not low.shape == high.shape == (count,) or not np.all(low < high):
         raise InputError(f"the box needs bounds low < high of {count} gains each")
     proof = GlobalProof(plants, low, high, level)
