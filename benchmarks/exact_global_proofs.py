@@ -17,7 +17,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from exact_certificates import NAMES, Exact, Plain, is_positive_definite, to_fractions
+from exact_certificates import NAMES, Exact, Plain, to_fractions
 
 Number = tuple[Fraction, Fraction]
 """Real and imaginary part; of arrays, the two arrays."""
@@ -26,20 +26,6 @@ Number = tuple[Fraction, Fraction]
 def multiply(a: tuple[Exact, Exact], b: tuple[Exact, Exact]) -> tuple[Exact, Exact]:
     """Return the product of two complex matrices."""
     return a[0] @ b[0] - a[1] @ b[1], a[0] @ b[1] + a[1] @ b[0]
-
-
-def determinant(M: Exact) -> Fraction:
-    """Return the determinant of a real matrix by elimination."""
-    M, result = M.copy(), Fraction(1)
-    for k in range(len(M)):
-        pivot = next((i for i in range(k, len(M)) if M[i, k] != 0), None)
-        if pivot is None:
-            return Fraction(0)
-        if pivot != k:
-            M[[k, pivot]], result = M[[pivot, k]], -result
-        result *= M[k, k]
-        M[k + 1 :, k:] -= np.outer(M[k + 1 :, k] / M[k, k], M[k, k:])
-    return result
 
 
 def solve(M: Exact, right: Exact) -> Exact:
@@ -64,7 +50,7 @@ class Plant:
             to_fractions(plain[name]) for name in NAMES
         )
         self.free = np.array(plain["free"], dtype=bool)
-        self.respond = cache(self._respond)
+        self.respond, self.characterise = cache(self._respond), cache(self._characterise)
 
     def gain(self, corner: tuple[Fraction, ...]) -> Exact:
         """Return the gain of values of the free entries."""
@@ -72,10 +58,22 @@ class Plant:
         K[self.free] = corner
         return K
 
-    def close(self, corner: tuple[Fraction, ...]) -> Exact:
-        """Return A of the closed loop."""
-        closed: Exact = self.A + self.B2 @ self.gain(corner) @ self.C2
-        return closed
+    def _characterise(self, corner: tuple[Fraction, ...]) -> list[Fraction]:
+        """Return the characteristic polynomial of the loop at a corner, s^0 first, by Faddeev's recursion."""
+        A = self.A + self.B2 @ self.gain(corner) @ self.C2
+        n, found = len(A), [Fraction(1)]
+        identity = np.array([[Fraction(int(i == j)) for j in range(n)] for i in range(n)], dtype=object)
+        M = identity
+        for k in range(1, n + 1):
+            product = A @ M
+            found.append(-sum(product.diagonal(), Fraction(0)) / k)
+            M = product + found[-1] * identity
+        return found[::-1]
+
+    def sign(self, s: Fraction) -> int:
+        """Return the sign of det(s I - A) at a real s."""
+        value = sum(c * s**k for k, c in enumerate(self.characterise((Fraction(0),) * int(self.free.sum()))))
+        return 1 if value > 0 else -1
 
     def _respond(self, s: Number | None) -> list[tuple[Exact, Exact]]:
         """Return P11, P12, P21, P22 at s; None is infinity."""
@@ -124,14 +122,12 @@ def root_above(value: Fraction) -> Fraction:
 def evaluate(plant: Plant, inequality: Plain, corner: tuple[Fraction, ...], level: Fraction | None) -> Fraction:
     """Return a number not above the function of an inequality at a corner; without a level none of a norm counts."""
     if "power" in inequality:
-        return -coefficient(plant.close(corner), inequality["power"])
+        return -plant.characterise(corner)[inequality["power"]]
     if level is None:
         raise SystemExit("that no gain is stable is concluded from a norm, for which the proof has no level")
-    s = None if inequality["s"] is None else (Fraction(inequality["s"][0]), Fraction(inequality["s"][1]))
-    if s is not None and s[0] < 0:
-        raise SystemExit("a point lies left of the imaginary axis")
+    s = point(inequality["s"])
     P11, P12, P21, P22 = plant.respond(s)
-    K, zero = plant.gain(corner), Fraction(0)
+    K = plant.gain(corner)
     identity = np.array([[Fraction(int(i == j)) for j in range(len(K))] for i in range(len(K))], dtype=object)
     L = identity - K @ P22[0], -(K @ P22[1])
     d = complex_determinant(L)
@@ -142,33 +138,112 @@ def evaluate(plant: Plant, inequality: Plain, corner: tuple[Fraction, ...], leve
     )
     real, imaginary = multiply(N, (q[0][:, None], q[1][:, None]))
     along: Fraction = p[0] @ real[:, 0] + p[1] @ imaginary[:, 0]
-    squares = [sum((x * x for x in (*v[0], *v[1])), zero) for v in (p, q)]
+    squares = [square((v[0], v[1])) for v in (p, q)]
+    if s is None or s[1] == 0:
+        # At a real s the characteristic polynomials of stable loops are positive, and so is d but for a sign.
+        size = d[0] if s is None else d[0] * plant.sign(s[0])
+        lengths = root_above(squares[0] * squares[1])
+        return along - level * size * (lengths if size > 0 else 1 / root_above(1 / (squares[0] * squares[1])))
     return along - level * root_above((d[0] ** 2 + d[1] ** 2) * squares[0] * squares[1])
 
 
-def coefficient(A: Exact, power: int) -> Fraction:
-    """Return the coefficient of s^power of the characteristic polynomial: a sum of principal minors."""
-    n = len(A)
-    chosen = itertools.combinations(range(n), n - power)
-    return sum(((-1) ** (n - power) * determinant(A[np.ix_(rows, rows)]) for rows in chosen), Fraction(0))
+def shift_argument(polynomial: list[Fraction], shift: Fraction) -> list[Fraction]:
+    """Return p(s + shift) by Horner's scheme, s^0 first."""
+    found = polynomial.copy()
+    for start in range(len(found) - 1):
+        for k in range(len(found) - 2, start - 1, -1):
+            found[k] += shift * found[k + 1]
+    return found
+
+
+def is_hurwitz(polynomial: list[Fraction]) -> bool:
+    """Whether all roots of a monic polynomial lie left of the imaginary axis, by Routh's scheme."""
+    rows = polynomial[::-1][::2], polynomial[::-1][1::2]
+    while rows[1]:
+        if rows[0][0] <= 0 or rows[1][0] <= 0:
+            return False
+        upper, lower = rows[0], [*rows[1], *[Fraction(0)] * (len(rows[0]) - len(rows[1]))]
+        rows = rows[1], [upper[k] - upper[0] / lower[0] * lower[k] for k in range(1, len(upper))]
+    return True
+
+
+def is_positive(h: list[Fraction]) -> bool:
+    """Whether a polynomial, x^0 first, is positive for all x >= 0, by Sturm's sequence."""
+    if h[0] <= 0 or h[-1] <= 0:
+        return False
+    chain = [h, [k * c for k, c in enumerate(h)][1:]]
+    while len(chain[-1]) > 1:
+        rest = chain[-2].copy()
+        while len(rest) >= len(chain[-1]):
+            factor, offset = rest[-1] / chain[-1][-1], len(rest) - len(chain[-1])
+            rest = [c - factor * chain[-1][k - offset] if k >= offset else c for k, c in enumerate(rest)][:-1]
+        while rest and rest[-1] == 0:
+            rest.pop()
+        if not rest:
+            break
+        chain.append([-c for c in rest])
+    signs = [[p[end] for p in chain if p and p[end] != 0] for end in (0, -1)]
+    changes = [sum(a * b < 0 for a, b in itertools.pairwise(values)) for values in signs]
+    return changes[0] == changes[1]
+
+
+def excludes_zero(corners: list[list[Fraction]]) -> bool:
+    """Whether Re(p_c conj(p_0)) > 0 on the imaginary axis for each p_c and their mean p_0."""
+    mean = [sum(column, Fraction(0)) / len(corners) for column in zip(*corners, strict=True)]
+    n = len(mean) - 1
+    for corner in corners:
+        real = [
+            sum((-1) ** (k + j) * corner[j] * mean[2 * k - j] for j in range(max(0, 2 * k - n), min(n, 2 * k) + 1))
+            for k in range(n + 1)
+        ]
+        if not is_positive(real):
+            return False
+    return True
+
+
+def point(plain: list[float] | None) -> Number | None:
+    """Return a point of the half-plane, None for infinity."""
+    s = None if plain is None else (Fraction(plain[0]), Fraction(plain[1]))
+    if s is not None and s[0] < 0:
+        raise SystemExit("a point lies left of the imaginary axis")
+    return s
+
+
+def is_out_of_reach(plant: Plant, step: Plain, level: Fraction) -> bool:
+    """Whether a direction that no control reaches, or no measurement sees, keeps a response of at least the level."""
+    P11, P12, P21, _ = plant.respond(point(step["s"]))
+    path, T = (P12, P11) if step["at_output"] else (adjoint(P21), adjoint(P11))
+    v = tuple(np.array([[Fraction(z[part])] for z in step["vector"]], dtype=object) for part in (0, 1))
+    gram, along = multiply(adjoint(path), path), multiply(adjoint(path), (v[0], v[1]))
+    M = np.block([[gram[0], -gram[1]], [gram[1], gram[0]]])
+    x = solve(M, np.vstack(along))
+    reached = multiply(path, (x[: len(x) // 2], x[len(x) // 2 :]))
+    p = v[0] - reached[0], v[1] - reached[1]
+    return square(multiply(adjoint(T), p)) >= level**2 * square(p) > 0
+
+
+def adjoint(M: tuple[Exact, Exact]) -> tuple[Exact, Exact]:
+    """Return the conjugate transpose of a complex matrix."""
+    return M[0].T, -M[1].T
+
+
+def square(v: tuple[Exact, Exact]) -> Fraction:
+    """Return the squared length of a complex vector."""
+    return sum((x * x for part in v for x in part.ravel()), Fraction(0))
 
 
 def is_excluded(plants: list[Plant], step: Plain, corners: list[tuple[Fraction, ...]], level: Fraction | None) -> bool:
     """Whether a step excludes the box with these corners."""
-    if "X" in step:
-        plant, X, shift = plants[step["plant"]], to_fractions(step["X"]), Fraction(step["shift"])
-        loops = [plant.close(corner) - shift * np.eye(len(X), dtype=int) for corner in corners]
-        falls = all(is_positive_definite(-(F.T @ X + X @ F)) for F in loops)
-        return shift >= 0 and falls and not is_positive_semidefinite(X)
+    if "shift" in step:
+        shift = Fraction(step["shift"])
+        loops = [shift_argument(plants[step["plant"]].characterise(corner), shift) for corner in corners]
+        return shift >= 0 and excludes_zero(loops) and not is_hurwitz(loops[0])
+    if "vector" in step:
+        return level is not None and is_out_of_reach(plants[step["plant"]], step, level)
     named = [(Fraction(one["weight"]), plants[one["plant"]], one) for one in step["inequalities"]]
     if min(weight for weight, *_ in named) <= 0:
         return False
     return all(sum(w * evaluate(plant, one, corner, level) for w, plant, one in named) >= 0 for corner in corners)
-
-
-def is_positive_semidefinite(M: Exact) -> bool:
-    """Whether all principal minors of a symmetric matrix are at least zero."""
-    return all(coefficient(-M, power) >= 0 for power in range(len(M)))
 
 
 def check(path: Path) -> str:

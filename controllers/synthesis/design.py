@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import NotRequired, TypedDict, cast
+from typing import TYPE_CHECKING, NotRequired, TypedDict, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,6 +19,9 @@ from seatsim.schema.errors import InputError
 from seatsim.schema.files import write_text
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import dump
+
+if TYPE_CHECKING:
+    import control
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,12 +48,14 @@ class ClosedLoop:
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """A static output feedback `u = gain @ y` and what is known of its loops, one a plant.
+    """An output feedback `u = gain @ y`, static or of some `order`, and what is known of its loops, one a plant.
 
     `gain` (nu, ny) is in the user's units, every entry at most `max_gain` in magnitude. `lower_bound` is what no linear
     controller of any order can go below. `gamma`, `certificate`, `peak_frequency`, `poles` and `plant` are those of
     the worst loop. `measures` names what is measured, where its user has names for it; `proof`, where it was asked for,
     says whether any gain within `max_gain` is better (`prove_no_better`), and `clipping` what a damper's limits cost.
+    With an order the loops' plants have the controller's states, and the gain is [[D_K, C_K], [B_K, A_K]]
+    (`GeneralisedPlant.with_controller_states`).
     """
 
     gain: Array
@@ -60,6 +65,15 @@ class Design:
     measures: tuple[str, ...] = ()
     proof: GlobalProof | None = None
     clipping: Clipping | None = None
+    order: int = 0
+
+    @property
+    def controller(self) -> control.StateSpace:
+        """The controller from y to u in continuous time."""
+        import control
+
+        u, y = (size - self.order for size in self.gain.shape)
+        return control.ss(self.gain[u:, y:], self.gain[u:, :y], self.gain[:u, y:], self.gain[:u, :y])
 
     @property
     def worst(self) -> ClosedLoop:
@@ -102,9 +116,10 @@ class Design:
 
     def save(self, path: str | Path) -> None:
         """Write the design as YAML; the file appears whole or not at all."""
+        order = {"order": self.order} if self.order else {}
         proof = {"global": _to_plain_global(self.proof)} if self.proof else {}
         clipping = {"clipping": self.clipping._asdict()} if self.clipping else {}
-        write_text(Path(path), dump({**_to_plain(self), **proof, **clipping}))
+        write_text(Path(path), dump({**order, **_to_plain(self), **proof, **clipping}))
 
     @classmethod
     def load(cls, path: str | Path) -> Design:
@@ -152,8 +167,9 @@ class _PlainLoop(TypedDict):
 
 
 class _PlainDesign(TypedDict):
-    """A design as it stands in the file."""
+    """A design as it stands in the file; a static one states no order."""
 
+    order: NotRequired[int]
     measures: NotRequired[list[str]]
     gain: list[list[float]]
     gamma: float
@@ -219,7 +235,8 @@ def _from_plain(plain: _PlainDesign) -> Design:
     if gain.shape != wanted:
         raise ValueError(f"gain has the shape {gain.shape}; the plant of its loop has {wanted}, a row for each control")
     measures = tuple(map(str, plain.get("measures", ())))
-    return Design(gain, float(plain["max_gain"]), float(plain["lower_bound"]), loops, measures)
+    order = int(plain.get("order", 0))
+    return Design(gain, float(plain["max_gain"]), float(plain["lower_bound"]), loops, measures, order=order)
 
 
 def _from_plain_loop(plain: _PlainLoop) -> ClosedLoop:

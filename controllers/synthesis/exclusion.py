@@ -7,31 +7,35 @@ these functions of it, each concave in every entry of K by itself, is at least z
 *at a point s*, Re s >= 0: with P(s) = [[P11, P12], [P21, P22]] from (w, u) to (z, y), L = I - K P22, d = det L and
     N = d P11 + P12 adj(L) K P21, so that the closed loop is T(s) = N / d, and any vectors p, q,
     `g(K) = Re(p* N(K) q) - level |d(K)| |p| |q|  <=  (||T(s)|| - level) |d| |p| |q|`;
-    N and d are affine in each entry of K.
+    N and d are affine in each entry of K. At a real s the sign of d is that of det(s I - A) for every stable loop, so
+    that +-d stands in for |d|.
 *a coefficient* of the characteristic polynomial of A + B2 K C2, which is affine in each entry: `g(K) = -c(K)`.
 
 Where a sum of such functions with weights >= 0 is at least zero, one of them is. A sum is smallest at a corner of a
-box. The weights are those of a matrix game, found by a linear program: near the best gain, where several peaks are
-equally high, their slopes cancel in the sum.
+box. The weights are those of a matrix game against the corners: near the best gain, where several peaks are equally
+high, their slopes cancel in the sum. Of all vectors p, q those are taken that are best against the corners' present
+mixture, the singular vectors of its mean N; where no inequality has a positive mean there, none helps.
 
-A third reason holds without a level: `F(K) = A + B2 K C2 - shift I` is affine in K. Where a symmetric X that is not
-positive semidefinite has F'X + X F < 0 at all corners, every loop of the box has a pole right of the shift, by the
-inertia theorem (Ostrowski and Schneider 1962, J. Math. Anal. Appl. 4:72).
+A second reason holds without a level. In a box, p_K(s) = det(s I - A - B2 K C2) lies in the convex hull of its values
+at the corners. Where Re(p_c conj(p_0)) > 0 at all corners c on a line Re s = shift, with p_0 their mean, no pole is on
+it; where one loop has a pole right of it, all have. Source: zero exclusion and the mapping theorem, in Barmish 1994,
+New Tools for Robustness of Linear Systems, chapters 7 and 14.
+
+A third holds for all gains. Where p* P12(s) = 0, control leaves p* T(s) = p* P11(s) as it is; so does it T(s) q where
+P21(s) q = 0 (`controllers.synthesis.bound`). Where that is as large as the level, no controller is better.
 """
 
 from __future__ import annotations
 
 import itertools
-import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-import scipy.linalg
 import scipy.optimize
 from numpy.typing import NDArray
 
-from controllers.synthesis.norm import hinf_norm
+from controllers.synthesis.norm import Peak, hinf_norm
 from controllers.synthesis.plant import GeneralisedPlant
 from seatsim.schema.arrays import Array
 
@@ -39,6 +43,12 @@ Complex = NDArray[np.complex128]
 # How many points of the half-plane every box is looked at, by their angle from the real axis in degrees.
 _POINTS = {90.0: 60, 60.0: 20, 0.0: 20}
 _ROUNDING = 1e-10
+# Beside zero, where plants may have a pole: this share of the least of the points.
+_SLOWEST = 1e-6
+# A root is taken for a real one where its angle is less.
+_CLOSE = 1e-3
+# Distance of points from the plant's poles over their size: closer, rounding would decide.
+_APART = 1e-3
 # Vectors and weights are kept with so many binary digits, points with more, since resonances may be sharp: the
 # inequalities hold for any, and fractions stay short.
 _DIGITS = 14
@@ -72,11 +82,23 @@ class WeightedSum(NamedTuple):
 
 
 class Unstable(NamedTuple):
-    """A box in which every loop of a plant has a pole right of `shift` in 1/s, with the matrix X (n, n)."""
+    """A box in which every loop of a plant has a pole right of `shift` in 1/s."""
 
     plant: int
     shift: float
-    X: Array
+
+
+class OutOfReach(NamedTuple):
+    """A direction in which no controller of any order changes a plant's response, already at the level, at s in rad/s.
+
+    `vector` is of performance outputs where `at_output`, else of disturbances; what control reaches (or measurements
+    see) of it is rounding, to be taken off.
+    """
+
+    plant: int
+    s: complex
+    at_output: bool
+    vector: Complex
 
 
 class Inequalities(NamedTuple):
@@ -86,18 +108,27 @@ class Inequalities(NamedTuple):
     sizes: Array
     rows: list[_Inequality]
 
+    def joined(self, others: Sequence[Inequalities]) -> Inequalities:
+        """Return these inequalities and others."""
+        every = [self, *others]
+        return Inequalities(
+            np.vstack([one.values for one in every]),
+            np.concatenate([one.sizes for one in every]),
+            [row for one in every for row in one.rows],
+        )
+
 
 class BoxView:
     """What one plant says of boxes of gains for a `level` of the norm."""
 
     def __init__(self, number: int, plant: GeneralisedPlant, level: float) -> None:
         self.number, self.plant, self.level = number, plant, level
-        self._corners = np.array(list(itertools.product((0.0, 1.0), repeat=int(plant.free.sum()))))
         poles = np.abs(np.linalg.eigvals(plant.A))
         scale = poles[poles > 0] if np.any(poles > 0) else np.ones(1)
         ends = scale.min() / 10, scale.max() * 10
+        self._slowest = float(ends[0]) * _SLOWEST
         grid = [np.geomspace(*ends, n) * np.exp(1j * np.radians(angle)) for angle, n in _POINTS.items()]
-        self._points, self._responses = _respond(plant, np.concatenate([[0.0, np.inf], *grid]))
+        self._points = _respond(plant, np.concatenate([[0.0, self._slowest, np.inf], *grid]))
 
     def gain(self, values: Array) -> Array:
         """Return the gains (boxes, nu, ny) of values of the free entries (boxes, free)."""
@@ -105,84 +136,118 @@ class BoxView:
         K[:, self.plant.free] = values
         return K
 
-    def _middle_and_corners(self, low: Array, high: Array) -> Array:
-        return self.gain(np.vstack([(low + high) / 2, low + self._corners * (high - low)]))
+    def norm_at(self, values: Array) -> Peak:
+        """Return the norm of a gain, infinite where it is unstable, or a peak above the level."""
+        return hinf_norm(self.plant.close(self.gain(values[None])[0]), enough=self.level)
 
-    def norm_at(self, values: Array) -> tuple[float, Complex]:
-        """Return the norm of a gain, infinite where it is unstable, and the points that matter around it."""
-        loop = self.plant.close(self.gain(values[None])[0])
-        poles = loop.poles
-        if poles[0].real >= 0:
-            return np.inf, np.where(poles.real > 0, poles, 1j * poles.imag)[poles.imag >= 0]
-        peak = hinf_norm(loop, enough=self.level)
-        nearest = poles[np.argsort(-poles.real)[:2]]
-        frequencies = np.append(np.abs(nearest.imag), peak.frequency)
-        return peak.value, 1j * frequencies[np.isfinite(frequencies)]  # infinity is a common point
+    def look(self, corners: Array, points: Complex) -> CornerView:
+        """Return the view of the box with these corners, at the common points and some more."""
+        middle = self.plant.close(self.gain(corners.mean(axis=0)[None])[0])
+        poles = middle.poles
+        own = np.where(poles.real > 0, poles, 1j * poles.imag)[poles.imag >= 0]
+        return CornerView(
+            self,
+            self.gain(corners),
+            self._points.joined(_respond(self.plant, np.append(own[np.abs(own) > self._slowest], points))),
+        )
 
-    def list_inequalities(self, low: Array, high: Array, points: Complex) -> Inequalities:
-        """Return the inequalities of a box at the common points and at its own ones."""
-        K = self._middle_and_corners(low, high)
-        coefficients, terms = self._coefficients(K[1:])
-        of_coefficients = [_OfCoefficient(self.number, power) for power in range(self.plant.order)]
-        if np.isinf(self.level):  # only instability counts, which no transfer matrix shows
-            sizes = terms.max(axis=1)
-            return Inequalities((-coefficients - _ROUNDING * terms) / sizes[:, None], sizes, [*of_coefficients])
-        own, responses = _respond(self.plant, points)
-        s = np.concatenate([self._points, own])
-        N, d = _numerators(K, *(np.concatenate(both) for both in zip(self._responses, responses, strict=True)))
-        left, _, right = np.linalg.svd(N[:, 0])
-        p, q = _shorten_complex(left[:, :, 0]), _shorten_complex(right[:, 0].conj())
-        along = np.einsum("fi,fvij,fj->fv", p.conj(), N[:, 1:], q).real
-        across = (np.linalg.norm(p, axis=1) * np.linalg.norm(q, axis=1))[:, None]
-        bound = self.level * np.abs(d[:, 1:]) * across
-        size = bound + np.linalg.norm(N[:, 1:], axis=(2, 3)) * across
-        values = np.vstack([along - bound - _ROUNDING * size, -coefficients - _ROUNDING * terms])
-        sizes = np.concatenate([size.max(axis=1), terms.max(axis=1)])
-        rows: list[_Inequality] = [AtPoint(self.number, *row) for row in zip(s.tolist(), p, q, strict=True)]
-        return Inequalities(values / sizes[:, None], sizes, [*rows, *of_coefficients])
-
-    def _coefficients(self, K: Array) -> tuple[Array, Array]:
-        """Return the coefficients of s^0 to s^(n-1) by corner, shape (n, corners), and the size of their terms."""
-        poles = np.linalg.eigvals(self.plant.A + self.plant.B2 @ K @ self.plant.C2)
-        found = np.array([np.poly(row).real for row in poles])
-        sizes = np.array([np.poly(-np.abs(row)) for row in poles])
-        return found[:, :0:-1].T, sizes[:, :0:-1].T
-
-    def prove_unstable(self, low: Array, high: Array) -> Unstable | None:
-        """Return the proof that all loops of a box are unstable, if that in its middle gives one."""
-        K = self._middle_and_corners(low, high)
-        A = self.plant.A + self.plant.B2 @ K @ self.plant.C2
-        for shift in _gaps(np.linalg.eigvals(A[0]).real):
-            F = A - shift * np.eye(self.plant.order)
-            X = _lyapunov(F[0])
-            if X is None:
+    def prove_out_of_reach(self) -> OutOfReach | None:
+        """Return the proof that no controller of any order is better than the level, from Parrott's theorem."""
+        P = self._points
+        for at_output, path, T in ((True, P.P12, P.P11), (False, _adjoint(P.P21), _adjoint(P.P11))):
+            if path.shape[1] <= path.shape[2]:
                 continue
-            values = np.linalg.eigvalsh(np.swapaxes(F[1:], 1, 2) @ X + X @ F[1:])
-            if np.all(values[:, -1] < -_ROUNDING * np.abs(values).max(axis=1)) and np.linalg.eigvalsh(X)[0] < 0:
-                return Unstable(self.number, shift, X)
+            basis, reach, _ = np.linalg.svd(path)
+            basis = basis[:, :, path.shape[2] :]
+            left, values, _ = np.linalg.svd(_adjoint(basis) @ T)
+            # Where control acts weakly in some direction, rounding decides what it does not reach.
+            heights = np.where(reach[:, -1] > _APART * reach[:, 0], values[:, 0], 0.0)
+            top = int(heights.argmax())
+            if heights[top] >= self.level * (1 + _ROUNDING):
+                return OutOfReach(self.number, complex(P.s[top]), at_output, basis[top] @ left[top, :, 0])
+        return None
+
+    def prove_unstable(self, corners: Array) -> Unstable | None:
+        """Return the proof that all loops of the box with these corners are unstable, if there is one."""
+        K = self.gain(np.vstack([corners.mean(axis=0), corners]))
+        poles = np.linalg.eigvals(self.plant.A + self.plant.B2 @ K @ self.plant.C2)
+        for shift in _gaps(poles[0].real):
+            if _excludes_zero(poles - shift):
+                return Unstable(self.number, shift)
         return None
 
 
-def weigh(inequalities: Inequalities) -> tuple[WeightedSum, Array]:
-    """Return the sum of inequalities whose smallest value at the corners is largest, and its values at the corners.
+class CornerView:
+    """The functions of a plant at the corners of a box."""
 
-    Of a matrix game with the corners as the opponent's choices: max t with `weights @ values >= t`, weights of sum 1.
+    def __init__(self, view: BoxView, K: Array, points: _Points) -> None:
+        self._view, self._points = view, points
+        loops = view.plant.A + view.plant.B2 @ K @ view.plant.C2
+        poles = np.linalg.eigvals(loops)
+        coefficients, terms = _polynomials(poles), _polynomials(-np.abs(poles))
+        self._coefficient_sizes = terms.max(axis=1)
+        self._coefficients = (-coefficients - _ROUNDING * terms) / self._coefficient_sizes[:, None]
+        if np.isfinite(view.level):
+            self._N, d = _numerators(K, points)
+            # At a real s the characteristic polynomials of stable loops are positive.
+            self._bound = view.level * np.where(points.signs[:, None], points.signs[:, None] * d.real, np.abs(d))
+            self._norms = np.linalg.norm(self._N, axis=(2, 3))
+            self._sizes = (np.abs(self._bound) + self._norms).max(axis=1)
+
+    def list_inequalities(self, mixture: Array) -> Inequalities:
+        """Return the inequalities whose mean over the corners, weighted by `mixture`, is positive."""
+        view = self._view
+        chosen = np.flatnonzero(self._coefficients @ mixture > 0)
+        of_coefficients: list[_Inequality] = [_OfCoefficient(view.number, power) for power in chosen.tolist()]
+        listed = Inequalities(self._coefficients[chosen], self._coefficient_sizes[chosen], of_coefficients)
+        if np.isinf(view.level):  # only instability counts, which no transfer matrix shows
+            return listed
+        N = np.einsum("c,fcij->fij", mixture, self._N)
+        bound = (self._bound + _ROUNDING * (np.abs(self._bound) + self._norms)) @ mixture
+        # The Frobenius norm is no less than the largest singular value.
+        near = np.flatnonzero(np.linalg.norm(N, axis=(1, 2)) > bound)
+        left, top, right = np.linalg.svd(N[near], full_matrices=False)
+        kept = top[:, 0] > bound[near]
+        near, p, q = near[kept], _shorten_complex(left[kept, :, 0]), _shorten_complex(right[kept, 0].conj())
+        along = np.einsum("fi,fcij,fj->fc", p.conj(), self._N[near], q).real
+        across = (np.linalg.norm(p, axis=1) * np.linalg.norm(q, axis=1))[:, None]
+        bounds = self._bound[near]
+        values = along - across * (bounds + _ROUNDING * (np.abs(bounds) + self._norms[near]))
+        sizes = self._sizes[near]
+        rows: list[_Inequality] = [
+            AtPoint(view.number, *row) for row in zip(self._points.s[near].tolist(), p, q, strict=True)
+        ]
+        return Inequalities(
+            np.vstack([values / sizes[:, None], listed.values]),
+            np.concatenate([sizes, listed.sizes]),
+            rows + listed.rows,
+        )
+
+
+def weigh(values: Array) -> tuple[Array, Array]:
+    """Return weights >= 0 of rows whose sum comes nearest to at least one in every column, and the shortfalls.
+
+    `values` has the shape (rows, corners). As a mixture of the corners the shortfalls `r` prove that no weights do
+    better: `values @ r <= 0`, zero where there is a weight. Only a row with a positive mean there can help.
     """
+    rows, corners = values.shape
+    target = np.ones(corners)
+    found = scipy.optimize.nnls(np.hstack([values.T, -np.eye(corners)]), target)[0]
+    return found[:rows], np.maximum(target - found[:rows] @ values, 0.0)
+
+
+def state_sum(weights: Array, inequalities: Inequalities) -> tuple[WeightedSum, Array]:
+    """Return a sum of inequalities with weights of few digits, and its values at the corners."""
     values, sizes, rows = inequalities
-    alone = values.min(axis=1)
-    weights = np.zeros(len(rows))
-    weights[alone.argmax()] = 1.0
-    if alone.max() < 0:
-        count, corners = values.shape
-        solved = scipy.optimize.linprog(
-            np.append(np.zeros(count), -1.0), bounds=[(0, None)] * count + [(None, None)],
-            A_ub=np.hstack([-values.T, np.ones((corners, 1))]), b_ub=np.zeros(corners),
-            A_eq=np.append(np.ones(count), 0.0)[None], b_eq=[1.0],
-        )  # fmt: skip
-        weights = weights if solved.x is None else solved.x[:-1]
     used = np.flatnonzero(weights > 0)
-    stated = _shorten(weights[used] / sizes[used])
+    stated = _shorten(weights[used] / sizes[used], _POINT_DIGITS)
     return WeightedSum(tuple(stated.tolist()), tuple(rows[i] for i in used)), (stated * sizes[used]) @ values[used]
+
+
+def corners_of(low: Array, high: Array) -> Array:
+    """Return the corners of a box, the last entry fastest, shape (corners, gains)."""
+    shares = np.array(list(itertools.product((0.0, 1.0), repeat=len(low))))
+    return np.where(shares, high, low)
 
 
 def _gaps(parts: Array) -> Iterator[float]:
@@ -193,53 +258,79 @@ def _gaps(parts: Array) -> Iterator[float]:
         yield float(_shorten(np.array([edges[i] + widths[i] / 2]))[0])
 
 
-def _lyapunov(F: Array) -> Array | None:
-    """Return X with F'X + XF = -W for a W > 0 that suits the states' units; None where there is none."""
-    _, (scale, _) = scipy.linalg.matrix_balance(F, permute=False, separate=True)
-    try:
-        with warnings.catch_warnings():  # of poles that mirror each other: what comes out is checked at the corners
-            warnings.simplefilter("ignore", RuntimeWarning)
-            X = scipy.linalg.solve_continuous_lyapunov((F * scale / scale[:, None]).T, -np.eye(len(F)))
-    except (np.linalg.LinAlgError, ValueError):
-        return None
-    X = (X + X.T) / 2 / np.outer(scale, scale)
-    return X if np.isfinite(X).all() else None
+def _excludes_zero(poles: NDArray[np.number]) -> bool:
+    """Whether Re(p_c conj(p_0)) > 0 on the imaginary axis; the first row of `poles` is of p_0, another one of a p_c."""
+    n = poles.shape[1]
+    poles = poles / np.exp(np.log(np.abs(poles[0]) + np.finfo(float).tiny).mean())
+    # On the axis p_c(s) p_0(-s) has this real part, a polynomial of the squared frequency whose first term is 1.
+    signs = (-1.0) ** (np.arange(n) + n)
+    even = signs * _polynomials(np.hstack([poles[1:], np.broadcast_to(-poles[0], poles[1:].shape)]))[::2].T
+    if np.any(even[:, 0] <= _ROUNDING):
+        return False
+    companion = np.tile(np.eye(n, k=-1), (len(even), 1, 1))
+    companion[:, :, -1] -= even
+    roots = np.linalg.eigvals(companion)
+    return not np.any((roots.real > 0) & (np.abs(roots.imag) <= _CLOSE * np.abs(roots)))
 
 
-def _respond(plant: GeneralisedPlant, points: Complex) -> tuple[Complex, tuple[Complex, ...]]:
-    """Return the points in rad/s, in few digits, at which the plant has no pole, and P11, P12, P21, P22 there."""
+class _Points(NamedTuple):
+    """Points of the half-plane, (points,), signs of det(s I - A), 0 where not real; P11, P12, P21, P22."""
+
+    s: Complex
+    signs: Array
+    P11: Complex
+    P12: Complex
+    P21: Complex
+    P22: Complex
+
+    def joined(self, other: _Points) -> _Points:
+        """Return these points and others."""
+        return _Points(*(np.concatenate(both) for both in zip(self, other, strict=True)))
+
+
+def _adjoint(matrices: Complex) -> Complex:
+    """Return the conjugate transposes."""
+    return np.conj(np.swapaxes(matrices, -1, -2))
+
+
+def _respond(plant: GeneralisedPlant, points: Complex) -> _Points:
+    """Return the points in rad/s, in few digits, with the plant's response; none is close to a pole of the plant."""
+    near = np.abs(points[:, None] - np.linalg.eigvals(plant.A)).min(axis=1) <= _APART * np.abs(points)
+    s = _shorten_complex(points[~near | np.isinf(points)], _POINT_DIGITS)
     B, C = np.hstack([plant.B1, plant.B2]), np.vstack([plant.C1, plant.C2])
     D = np.block([[plant.D11, plant.D12], [plant.D21, np.zeros((plant.measured_count, plant.control_count))]])
-    kept, found = [], []
-    for s in _shorten_complex(points, _POINT_DIGITS):
-        try:
-            states = np.linalg.solve(s * np.eye(plant.order) - plant.A, B) if np.isfinite(s) else np.zeros(B.shape)
-        except np.linalg.LinAlgError:
-            continue
-        kept.append(s)
-        found.append(D + C @ states)
-    P: Complex = np.array(found, dtype=complex).reshape(-1, *D.shape)
+    finite = np.isfinite(s)[:, None, None]
+    resolvent = np.where(finite, s[:, None, None], 1.0) * np.eye(plant.order) - plant.A * finite
+    P: Complex = D + C @ (np.linalg.solve(resolvent, B[None]) * finite)
     z, w = len(plant.C1), plant.B1.shape[1]
-    return np.array(kept, dtype=complex), (P[:, :z, :w], P[:, :z, w:], P[:, z:, :w], P[:, z:, w:])
+    signs = np.where(s.imag == 0, np.sign(np.linalg.det(resolvent).real), 0.0)
+    return _Points(s, signs, P[:, :z, :w], P[:, :z, w:], P[:, z:, :w], P[:, z:, w:])
 
 
-def _numerators(K: Array, P11: Complex, P12: Complex, P21: Complex, P22: Complex) -> tuple[Complex, Complex]:
+def _numerators(K: Array, points: _Points) -> tuple[Complex, Complex]:
     """Return N, shape (points, gains, nz, nw), and d, shape (points, gains)."""
-    L = np.eye(K.shape[1]) - K[None] @ P22[:, None]
-    d = np.linalg.det(L)
-    return d[..., None, None] * P11[:, None] + P12[:, None] @ adjugate(L) @ K[None] @ P21[:, None], d
+    adjugate, d = adjugate_and_determinant(np.eye(K.shape[1]) - K[None] @ points.P22[:, None])
+    return d[..., None, None] * points.P11[:, None] + points.P12[:, None] @ (adjugate @ K) @ points.P21[:, None], d
 
 
-def adjugate(L: Complex) -> Complex:
-    """Return adj(L) of square matrices, `L adj(L) = det(L) I`, also where L is singular; shape (..., n, n)."""
-    if L.shape[-1] == 1:
-        return np.ones_like(L)
-    U, s, V = np.linalg.svd(L)
-    others = np.stack([np.prod(np.delete(s, i, axis=-1), axis=-1) for i in range(s.shape[-1])], axis=-1)
-    phase = np.linalg.det(U) * np.linalg.det(V)
-    right = np.swapaxes(V.conj(), -1, -2) * (phase[..., None] * others)[..., None, :]
-    answer: Complex = right @ np.swapaxes(U.conj(), -1, -2)
-    return answer
+def adjugate_and_determinant(L: Complex) -> tuple[Complex, Complex]:
+    """Return adj(L) and det(L) of square matrices (..., n, n) by the recursion of Faddeev and LeVerrier."""
+    n, identity = L.shape[-1], np.eye(L.shape[-1])
+    M = np.broadcast_to(identity, L.shape).astype(complex)
+    for k in range(1, n):
+        product = L @ M
+        M = product - np.trace(product, axis1=-2, axis2=-1)[..., None, None] / k * identity
+    adjugate: Complex = (-1) ** (n - 1) * M
+    return adjugate, np.trace(L @ adjugate, axis1=-2, axis2=-1) / n
+
+
+def _polynomials(roots: NDArray[np.number]) -> Array:
+    """Return the coefficients of s^0 to s^(n-1) of monic polynomials by their roots (polynomials, n), by column."""
+    rising = np.ones((1, len(roots)), dtype=roots.dtype)
+    for root in roots.T:
+        rising = np.vstack([-root * rising[:1], rising[:-1] - root * rising[1:], rising[-1:]])
+    found: Array = rising[:-1].real
+    return found
 
 
 def _shorten(values: Array, digits: int = _DIGITS) -> Array:

@@ -17,18 +17,33 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from controllers.synthesis.exclusion import AtPoint, BoxView, Inequalities, Unstable, WeightedSum, weigh
+from controllers.synthesis.exclusion import (
+    AtPoint,
+    BoxView,
+    Complex,
+    Inequalities,
+    OutOfReach,
+    Unstable,
+    WeightedSum,
+    corners_of,
+    state_sum,
+    weigh,
+)
 from controllers.synthesis.plant import MATRICES, GeneralisedPlant
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import write_whole
 
-_MOST_GAINS = 4
+MOST_GAINS = 4
 """Free gains up to which boxes are searched."""
 FACTOR = 1 - 1e-3
 """Level that is proven, over the norm of the design."""
 _SMALLEST = 1e-12
 _LEAST_SHARE = 0.1
+# Rounds in which inequalities are sought that help at the corners where the sum still falls short of one, and by how
+# much it may.
+_ROUNDS = 10
+_MET = 0.5
 # An inequality that holds in part of a box by interpolation holds there in floating-point numbers too.
 _ROUNDING = 1e-6
 
@@ -40,7 +55,7 @@ class Split(NamedTuple):
     at: float
 
 
-_Reason = WeightedSum | Unstable
+_Reason = WeightedSum | Unstable | OutOfReach
 
 
 @dataclass(eq=False)
@@ -83,19 +98,26 @@ class GlobalProof:
 
 
 def _to_plain(step: Split | _Reason) -> dict[str, object]:
-    if isinstance(step, Split):
+    if isinstance(step, Split | Unstable):
         return step._asdict()
-    if isinstance(step, Unstable):
-        return step._asdict() | {"X": step.X.tolist()}
+    if isinstance(step, OutOfReach):
+        return step._asdict() | {"s": _pair_at(step.s), "vector": _pairs(step.vector)}
     named = []
     for weight, inequality in zip(*step, strict=True):
         plain = inequality._asdict() | {"weight": weight}
         if isinstance(inequality, AtPoint):
-            s = inequality.s
-            plain |= {"s": [s.real, s.imag] if np.isfinite(s) else None}
-            plain |= {name: [[z.real, z.imag] for z in getattr(inequality, name)] for name in "pq"}
+            plain |= {"s": _pair_at(inequality.s), "p": _pairs(inequality.p), "q": _pairs(inequality.q)}
         named.append(plain)
     return {"inequalities": named}
+
+
+def _pair_at(s: complex) -> list[float] | None:
+    """Return the parts of a point; None is infinity."""
+    return [s.real, s.imag] if np.isfinite(s) else None
+
+
+def _pairs(vector: Complex) -> list[list[float]]:
+    return [[z.real, z.imag] for z in vector.tolist()]
 
 
 def prove_no_better(
@@ -119,18 +141,19 @@ def prove_no_better(
         progress: is told, now and then, how much of the box is excluded.
 
     Raises:
-        InputError: more free gains than `_MOST_GAINS`, or a box of another shape.
+        InputError: more free gains than `MOST_GAINS`, or a box of another shape.
     """
     low, high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
     count = int(plants[0].free.sum())
-    if count > _MOST_GAINS:
-        raise InputError(f"{count} free gains; at most {_MOST_GAINS} are searched over their whole box")
+    if count > MOST_GAINS:
+        raise InputError(f"{count} free gains; at most {MOST_GAINS} are searched over their whole box")
     if not low.shape == high.shape == (count,) or not np.all(low < high):
         raise InputError(f"the box needs bounds low < high of {count} gains each")
     proof = GlobalProof(plants, low, high, level)
     views = [BoxView(number, plant, level) for number, plant in enumerate(plants)]
     # Depth first, the lower half first: the order in which a checker walks through the steps again.
-    waiting = [_Box(low, high, 1.0, None)]
+    known = (view.prove_out_of_reach() for view in views if np.isfinite(level))
+    waiting = [_Box(low, high, 1.0, next((reason for reason in known if reason is not None), None))]
     done, end, told = 0.0, time.monotonic() + time_budget, 0.0
     while waiting:
         box = waiting.pop()
@@ -140,7 +163,7 @@ def prove_no_better(
         if time.monotonic() - told > 1.0:
             told = time.monotonic()
             progress(f"no better gain in {100 * done:.1f} % of the box, {proof.boxes} boxes")
-        found = box.reason or _exclude_or_divide(views, box)
+        found = box.reason or _exclude_or_divide(views, box, high - low)
         if isinstance(found, _Division):
             if found.better is not None:
                 proof.better = found.better
@@ -154,12 +177,13 @@ def prove_no_better(
 
 
 class _Box(NamedTuple):
-    """A box of free gains, its share of the whole, and why no gain in it is good enough, where that is known."""
+    """A box of free gains, its share of the whole, why no gain in it is good enough, where known; points to look at."""
 
     low: Array
     high: Array
     share: float
     reason: _Reason | None
+    points: tuple[complex, ...] = ()
 
 
 class _Division(NamedTuple):
@@ -171,34 +195,54 @@ class _Division(NamedTuple):
     better: Array | None = None
 
 
-def _exclude_or_divide(views: Sequence[BoxView], box: _Box) -> _Reason | _Division:
-    """Return why no gain in a box is good enough, or its two parts."""
-    middle = (box.low + box.high) / 2
-    norms = [view.norm_at(middle) for view in views]
-    listed = [view.list_inequalities(box.low, box.high, own) for view, (_, own) in zip(views, norms, strict=True)]
-    values, sizes = np.vstack([one.values for one in listed]), np.concatenate([one.sizes for one in listed])
-    inequalities = Inequalities(values, sizes, [row for one in listed for row in one.rows])
-    reason, at_corners = weigh(inequalities)
-    if at_corners.min() >= 0:
+def _exclude_or_divide(views: Sequence[BoxView], box: _Box, whole: Array) -> _Reason | _Division:
+    """Return why no gain in a box is good enough, or its two parts; `whole` is the width of the whole."""
+    corners = corners_of(box.low, box.high)
+    listed, weights = _weigh(views, corners, box.points)
+    reason, at_corners = state_sum(weights, listed)
+    if at_corners.min() > 0:
         return reason
     for view in views:
-        unstable = view.prove_unstable(box.low, box.high)
+        unstable = view.prove_unstable(corners)
         if unstable is not None:
             return unstable
-        # Where the inequality is violated most is where a better gain is likely to be, if there is one.
-    is_high = np.unravel_index(int(at_corners.argmin()), (2,) * len(box.low))
-    corner = np.where(is_high, box.high, box.low)
-    for values_met, found in ((middle, norms), (corner, [view.norm_at(corner) for view in views])):
-        if all(norm < view.level for view, (norm, _) in zip(views, found, strict=True)):
-            better = views[0].gain(values_met[None])[0]
+    middle = corners.mean(axis=0)
+    peaks = [view.norm_at(middle) for view in views]
+    # Where the sum falls short most is where a better gain is likely to be, if there is one.
+    worst = corners[int(at_corners.argmin())]
+    for values, found in ((middle, peaks), (worst, [view.norm_at(worst) for view in views])):
+        if all(peak.value < view.level for view, peak in zip(views, found, strict=True)):
+            better = views[0].gain(values[None])[0]
             return _divide(box, _Slab(0, 0.5, 0, False), None)._replace(better=better)
-    slab = _largest_slab(np.vstack([values, at_corners]))
+    points = {one.s for one in reason.inequalities if isinstance(one, AtPoint)}
+    points |= {1j * peak.frequency for peak in peaks if 0 < peak.frequency < np.inf}
+    box = box._replace(points=tuple(points))
+    slab = _largest_slab(np.vstack([listed.values, at_corners]))
     if slab.share > _LEAST_SHARE:
-        alone = WeightedSum((1.0,), (inequalities.rows[slab.row],)) if slab.row < len(values) else reason
+        alone = WeightedSum((1.0,), (listed.rows[slab.row],)) if slab.row < len(listed.rows) else reason
         return _divide(box, slab, alone)
-    cube = values.reshape(len(values), *(2,) * len(box.low))
-    widest = int(np.argmax([np.abs(np.diff(cube, axis=axis)).mean() for axis in range(1, cube.ndim)]))
-    return _divide(box, _Slab(0, 0.5, widest, False), None)
+    # That gain is halved which changes most of what was weighed; of nothing, the widest.
+    cube = (weights[:, None] * listed.values).reshape(len(weights), *(2,) * len(middle))
+    changes = np.array([np.abs(np.diff(cube, axis=axis)).sum() for axis in range(1, cube.ndim)])
+    spans = (box.high - box.low) / whole
+    return _divide(box, _Slab(0, 0.5, int(np.argmax(changes if changes.any() else spans)), False), None)
+
+
+def _weigh(views: Sequence[BoxView], corners: Array, points: tuple[complex, ...]) -> tuple[Inequalities, Array]:
+    """Return inequalities and weights whose sum comes as near as was found to holding at all corners of a box."""
+    seen = [view.look(corners, np.array(points, dtype=complex)) for view in views]
+    listed, weights = Inequalities(np.zeros((0, len(corners))), np.zeros(0), []), np.zeros(0)
+    mixture = np.ones(len(corners))
+    for _ in range(_ROUNDS):
+        more = [one.list_inequalities(mixture) for one in seen]
+        # Where none has a positive mean, no sum holds at all corners.
+        if not any(one.rows for one in more):
+            break
+        listed = listed.joined(more)
+        weights, mixture = weigh(listed.values)
+        if mixture.max() < _MET:
+            break
+    return listed, weights
 
 
 class _Slab(NamedTuple):
@@ -220,9 +264,9 @@ def _largest_slab(values: Array) -> _Slab:
     for gain in range(cube.ndim - 1):
         low, high = np.moveaxis(cube, gain + 1, 0).reshape(2, len(values), -1)
         for near, far, at_the_top in ((low, high, False), (high, low, True)):
-            crossing = (near >= 0) & (far < 0)
+            crossing = (near > 0) & (far < 0)
             shares = np.where(crossing, near / np.where(crossing, near - far, 1.0), 1.0).min(axis=1)
-            shares[near.min(axis=1) < 0] = 0.0
+            shares[near.min(axis=1) <= 0] = 0.0
             row = int(shares.argmax())
             if shares[row] > best.share:
                 best = _Slab(row, float(shares[row]) * (1 - _ROUNDING), gain, at_the_top)
@@ -235,6 +279,6 @@ def _divide(box: _Box, slab: _Slab, reason: _Reason | None) -> _Division:
     at = float(box.low[gain] + part * (box.high[gain] - box.low[gain]))
     middle_low, middle_high = box.low.copy(), box.high.copy()
     middle_low[gain] = middle_high[gain] = at
-    below = _Box(box.low, middle_high, box.share * part, None if slab.at_the_top else reason)
-    above = _Box(middle_low, box.high, box.share * (1 - part), reason if slab.at_the_top else None)
+    below = _Box(box.low, middle_high, box.share * part, None if slab.at_the_top else reason, box.points)
+    above = _Box(middle_low, box.high, box.share * (1 - part), reason if slab.at_the_top else None, box.points)
     return _Division(Split(gain, at), below, above)

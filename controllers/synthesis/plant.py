@@ -126,6 +126,21 @@ class GeneralisedPlant:
         A, B = self.A + left @ self.C2, self.B1 + left @ self.D21
         return Loop(A, B, self.C1 + right @ self.C2, self.D11 + right @ self.D21)
 
+    def with_controller_states(self, order: int) -> GeneralisedPlant:
+        """Return the plant whose static gain [[D_K, C_K], [B_K, A_K]] is a controller with `order` states.
+
+        The controller is x_K' = A_K x_K + B_K y, u = C_K x_K + D_K y: integrators x_K' = u_K join the plant's states,
+        u_K its controls and x_K its measurements. All of A_K, B_K, C_K is free.
+        Source: El Ghaoui, Oustry & AitRami 1997, IEEE Trans. Autom. Control 42:1171.
+        """
+        n, k = self.order, order
+        rows, columns = {"A": k, "B1": k, "B2": k, "C2": k, "D21": k}, {"A": k, "B2": k, "C1": k, "C2": k, "D12": k}
+        padded = [np.pad(getattr(self, name), ((0, rows.get(name, 0)), (0, columns.get(name, 0)))) for name in MATRICES]
+        B2, C2 = padded[MATRICES.index("B2")], padded[MATRICES.index("C2")]
+        B2[n:, self.control_count :] = C2[self.measured_count :, n:] = np.eye(k)
+        free = np.pad(self.free, (0, k), constant_values=True)
+        return GeneralisedPlant.from_matrices(padded, free)
+
     @classmethod
     def from_state_space(
         cls, system: StateSpaceLike, disturbances: int, performance: int, structure: ArrayLike | None = None

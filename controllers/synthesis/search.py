@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from controllers.synthesis.descent import Descent, StabilisingGain, explore, improve, refine
+from controllers.synthesis.global_proof import MOST_GAINS, prove_no_better
 from controllers.synthesis.modes import require_stabilisable
 from controllers.synthesis.objective import NormObjective
 from controllers.synthesis.plant import GeneralisedPlant
@@ -76,7 +77,7 @@ def search(
         starts = _starts(objective, best, seed)
         found = _explore(objective, starts, part)
         if not found.candidates:
-            raise SynthesisError(_not_stabilised(found, first.rate, float(np.abs(limits).max()), clock.budget))
+            raise SynthesisError(_not_stabilised(found, first.rate, [plants[i] for i in chosen], limits, clock))
         best = _lowest(objective, found, starts, seed, part, progress)
         norms = [everything.on([each.plant]).norm(best.entries) for each in scaled]
         worst = int(np.argmax(norms))
@@ -133,8 +134,17 @@ def _lowest(
     return best
 
 
-def _not_stabilised(found: Descent, rate: float, max_gain: float, budget: float) -> str:
+def _not_stabilised(
+    found: Descent, rate: float, plants: Sequence[GeneralisedPlant], limits: tuple[Array, Array], clock: TimeBudget
+) -> str:
+    """Return that no permitted gain is stabilising where the time left suffices to prove it, else what was tried."""
+    permitted, free = f"|gain| <= {np.abs(limits).max():g}", plants[0].free
+    if free.sum() <= MOST_GAINS:
+        low, high = (limit[free] for limit in limits)
+        proof = prove_no_better(plants, np.inf, low, high, max(clock.after(1.0) - time.monotonic(), 0.0))
+        if proof.is_proven:
+            return f"no gain with {permitted} stabilises this plant: proven for all of them (in boxes: {proof.boxes})"
     return (
-        f"no stabilising gain with |gain| <= {max_gain:g} was found from {found.starts} starts in at most "
-        f"{budget:g} s; the least spectral abscissa reached is {found.abscissa * rate:.3g} 1/s"
+        f"no stabilising gain with {permitted} was found from {found.starts} starts in at most {clock.budget:g} s; the "
+        f"least spectral abscissa reached is {found.abscissa * rate:.3g} 1/s"
     )

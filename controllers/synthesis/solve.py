@@ -31,6 +31,7 @@ def synthesise(
     *,
     max_gain: float = ...,
     bounds: tuple[ArrayLike, ArrayLike] | None = ...,
+    order: int = ...,
     time_budget: float = ...,
     seed: int = ...,
     progress: Progress = ...,
@@ -43,6 +44,7 @@ def synthesise(
     split: tuple[int, int],
     max_gain: float = ...,
     bounds: tuple[ArrayLike, ArrayLike] | None = ...,
+    order: int = ...,
     time_budget: float = ...,
     seed: int = ...,
     progress: Progress = ...,
@@ -60,6 +62,7 @@ def synthesise(
     *,
     max_gain: float = ...,
     bounds: tuple[ArrayLike, ArrayLike] | None = ...,
+    order: int = ...,
     time_budget: float = ...,
     seed: int = ...,
     progress: Progress = ...,
@@ -79,6 +82,7 @@ def synthesise(
     split: tuple[int, int] | None = None,
     max_gain: float = _MAX_GAIN,
     bounds: tuple[ArrayLike, ArrayLike] | None = None,
+    order: int = 0,
     time_budget: float = _TIME_BUDGET,
     seed: int = 0,
     progress: Progress = lambda text: None,
@@ -90,6 +94,8 @@ def synthesise(
     plants (a sequence) with the same controls and measurements, the one gain minimises the worst norm.
     `max_gain` bounds every |gain_ij| in the user's units: many infima lie at infinite gain, so quote gamma with it.
     `bounds = (low, high)`, each one number or (nu, ny), bounds the entries further.
+    With an `order` k of 1 to 4 the controller has as many states, x_K' = A_K x_K + B_K y, u = C_K x_K + D_K y. The gain
+    is then [[D_K, C_K], [B_K, A_K]], (nu + k, ny + k), bounded likewise, and `Design.controller` the state space.
     `time_budget` in s: the search stops there, a computation under way may take a few seconds more. The same seed
     gives the same design, unless time runs out. `progress` is called with a line on what the search does.
     The problem is not convex: the answer is the best of several starts, a local optimum with a certificate of its own
@@ -102,9 +108,12 @@ def synthesise(
     begin = time.monotonic()
     plants = _collect_plants(A, (B1, B2, C1, C2, D11, D12, D21), split)
     _check_options(max_gain, time_budget)
+    if order not in range(5):
+        raise InputError(f"order is {order!r}; a controller of order 0 (a static gain) to 4 is wanted")
+    plants = [plant.with_controller_states(order) for plant in plants] if order else plants
     gain = search(plants, _limits(plants[0], max_gain, bounds), seed, TimeBudget(begin, time_budget), progress)
-    loops = tuple(verify(plant, gain) for plant in plants)
-    design = Design(gain, float(max_gain), 0.0, loops)
+    loops = tuple(verify(plant, gain, order) for plant in plants)
+    design = Design(gain, float(max_gain), 0.0, loops, order=order)
     progress("the bound of any controller")
     return replace(design, lower_bound=min(_find_largest_bound(design, begin + time_budget), design.gamma))
 

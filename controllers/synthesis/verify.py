@@ -15,12 +15,18 @@ _ROUNDING = 1e-10
 _AGREEMENT = 1e-6  # what the documentation states of the norm
 
 
-def verify(plant: GeneralisedPlant, gain: Array) -> ClosedLoop:
-    """Return what is known of a plant under a stabilising gain (nu, ny)."""
+def verify(plant: GeneralisedPlant, gain: Array, order: int = 0) -> ClosedLoop:
+    """Return what is known of a plant under a stabilising gain (nu, ny); the last `order` controls are not physical."""
     loop = plant.close(gain)
     peak, agree = _compute_verified_norm(loop)
     return ClosedLoop(
-        plant, peak.value, peak.frequency, agree, certify(plant, gain, peak.value), disk_margin(plant, gain), loop.poles
+        plant,
+        peak.value,
+        peak.frequency,
+        agree,
+        certify(plant, gain, peak.value),
+        disk_margin(plant, gain, plant.control_count - order),
+        loop.poles,
     )
 
 
@@ -32,7 +38,7 @@ def _compute_verified_norm(loop: Loop) -> tuple[Peak, bool]:
     return norm, norm.value - grid.value <= _AGREEMENT * norm.value
 
 
-def disk_margin(plant: GeneralisedPlant, gain: Array) -> float:
-    """Return the balanced disk margin at the control, 2 / ||2 S - I||, with S = (I - K G)^-1; at most 2."""
+def disk_margin(plant: GeneralisedPlant, gain: Array, controls: int) -> float:
+    """Return the balanced disk margin at the first `controls`, 2 / ||2 S - I||, with S = (I - K G)^-1; at most 2."""
     A = plant.A + plant.B2 @ gain @ plant.C2
-    return 2 / hinf_norm(Loop(A, plant.B2, 2 * gain @ plant.C2, np.eye(plant.control_count))).value
+    return 2 / hinf_norm(Loop(A, plant.B2[:, :controls], 2 * gain[:controls] @ plant.C2, np.eye(controls))).value

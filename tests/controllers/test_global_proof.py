@@ -7,7 +7,7 @@ import pytest
 
 from controllers import Design, GeneralisedPlant, synthesise
 from controllers.seat_plant import Weights, build_generalised_plant
-from controllers.synthesis.exclusion import adjugate
+from controllers.synthesis.exclusion import adjugate_and_determinant
 from controllers.synthesis.global_proof import prove_no_better
 from controllers.synthesis.norm import hinf_norm
 from seatsim.rig.plant import Plant
@@ -110,6 +110,32 @@ def test_a_plant_that_no_gain_stabilises_is_proven_to_be_one(check, tmp_path):
     assert check(tmp_path / "global.json") == f"proven in {proof.boxes} boxes"
 
 
+def test_loops_that_are_unstable_whatever_the_gain_moves(check, tmp_path):
+    # Beside a stable pole that k moves, a pair of poles at 1 +- 2j that turns with it, always right of zero.
+    A, zero = np.array([[1.0, 2.0, 0.0], [-2.0, 1.0, 0.0], [0.0, 0.0, -3.0]]), np.zeros((1, 1))
+    B2, C2 = np.array([[0.0], [1.0], [1.0]]), np.array([[0.2, 0.0, 1.0]])
+    plant = GeneralisedPlant(A, B2, B2, C2, C2, zero, zero, zero)
+    proof = prove_no_better([plant], np.inf, [-1.0], [1.0])
+    assert proof.is_proven
+    proof.save(tmp_path / "global.json")
+    assert "shift" in (tmp_path / "global.json").read_text()
+    assert check(tmp_path / "global.json") == f"proven in {proof.boxes} boxes"
+
+
+def test_what_no_controller_changes_is_proven_at_once(check, tmp_path):
+    # Of z = (x1, x2) the control moves x2 only: T from w to x1 is 1 / (s + 0.5), with the norm 2.
+    A, B1, B2 = np.diag([-0.5, -1.0]), np.ones((2, 1)), np.array([[0.0], [1.0]])
+    plant = GeneralisedPlant(A, B1, B2, np.eye(2), np.eye(2), np.zeros((2, 1)), np.zeros((2, 1)), np.zeros((2, 1)))
+    proof = prove_no_better([plant], 1.999, [-1e6, -1e6], [1e6, 1e6])
+    assert proof.is_proven
+    proof.save(tmp_path / "global.json")
+    assert check(tmp_path / "global.json") == "proven in 1 boxes"
+    plain = json.loads((tmp_path / "global.json").read_text())
+    plain["level"] = 2.001
+    (tmp_path / "global.json").write_text(json.dumps(plain))
+    assert check(tmp_path / "global.json").startswith("REFUTED")
+
+
 @pytest.mark.filterwarnings("error")
 def test_a_norm_that_stands_at_infinite_frequency(check, tmp_path):
     # x' = -x + w + u, z = x + 2 w, y = x: T = 2 + 1 / (s + 1 - k), so that the norm is T(0), least 2.5 at k = -1.
@@ -132,10 +158,13 @@ def test_what_time_does_not_suffice_for_is_counted():
 def test_the_adjugate_of_a_singular_matrix():
     rng = np.random.default_rng(0)
     L = rng.normal(size=(3, 3)) + 1j * rng.normal(size=(3, 3))
-    np.testing.assert_allclose(adjugate(L) @ L, np.linalg.det(L) * np.eye(3), atol=1e-12)
+    adjugate, determinant = adjugate_and_determinant(L)
+    assert determinant == pytest.approx(np.linalg.det(L))
+    np.testing.assert_allclose(adjugate @ L, determinant * np.eye(3), atol=1e-12)
     L[2] = L[0] + L[1]
-    np.testing.assert_allclose(adjugate(L) @ L, np.zeros((3, 3)), atol=1e-12)
-    assert np.abs(adjugate(L)).max() > 0.1
+    adjugate, _ = adjugate_and_determinant(L)
+    np.testing.assert_allclose(adjugate @ L, np.zeros((3, 3)), atol=1e-12)
+    assert np.abs(adjugate).max() > 0.1
 
 
 @pytest.mark.parametrize(("low", "high", "said"), [([0.0], [1.0], "2 gains"), ([1.0, 0.0], [0.0, 1.0], "low < high")])

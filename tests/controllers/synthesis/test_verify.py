@@ -32,7 +32,7 @@ def test_figures_of_three_lags(k):
 
 
 def test_the_disk_margin_is_where_a_factor_makes_the_loop_unstable():
-    margin = disk_margin(LAGS, np.array([[-7.0]]))
+    margin = disk_margin(LAGS, np.array([[-7.0]]), 1)
     most = (2 + margin) / (2 - margin)
     assert 1.0 < most <= 8.0 / 7.0 * (1 + 1e-9)
-    assert disk_margin(LAGS, NONE) == pytest.approx(2.0)
+    assert disk_margin(LAGS, NONE, 1) == pytest.approx(2.0)
