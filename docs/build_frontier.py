@@ -75,7 +75,7 @@ def main() -> None:
         style.draw_line(axes, travel, comfort, curve.entry)
         axes.plot(travel, comfort, "o", color=curve.entry.colour, markersize=4)
     axes.plot(*place(published), "D", color=PUBLISHED.colour)
-    across = np.linspace(6.0, 20.0, 200)
+    across = np.linspace(5.0, 19.0, 200)
     style.draw_line(axes, across, bounds.bound(1e-3 * across), BOUND)
     style.draw_line(axes, across, bounds.best(1e-3 * across), REACHED)
     axes.axvline(place(ours)[0], color=style.GREY, linewidth=1.0)

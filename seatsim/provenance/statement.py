@@ -147,7 +147,7 @@ def read_manifest(folder: Path) -> Manifest:
 REPEATABLE: Mapping[str, frozenset[str]] = {
     name: frozenset(options.split())
     for name, options in {
-        "run": "--set", "compare": "--set --bracket", "synthesise": "--set", "gap": "--predict",
+        "run": "--set", "compare": "--set --bracket", "synthesise": "--set --global", "gap": "--predict",
         "diagnose": "--without --budget --damper-forms --after",
         "characterise": "--model --parameters --currents --temperatures --amplitudes --frequencies",
         "identify": "--model --test --test-fraction --fix --ignore-temperature --predict --moving-average --centred"

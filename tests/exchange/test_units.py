@@ -132,9 +132,10 @@ def test_fmpy_finds_nothing_and_simulates(version, units):
 def test_a_rig_driven_by_the_floor_acceleration_alone_follows_its_simulation(version, sensors, tmp_path, conform):
     # As masters do: the value at a communication point stands until the next. Held, it would be half a step late, by
     # which the law switches late, too: 8 % of the driver's acceleration and 38 % of the current.
-    scenario = load("quickstart", {"excitation.duration": 8.0})[0]
-    quiet = scenario.control.sensors._replace(displacement_noise=0.0, acceleration_noise=0.0) if sensors else None
-    scenario = dataclasses.replace(scenario, control=dataclasses.replace(scenario.control, sensors=quiet))
+    law = {"law": "hybrid", "damping": 1000.0, "share": 0.8, "sample_time": 0.005, "sensors": {"bandwidth": 80.0}}
+    (scenario,) = load("quickstart", {"excitation.duration": 8.0, "variants": {}, "sweep": {}, "controller": law})
+    if not sensors:
+        scenario = dataclasses.replace(scenario, control=dataclasses.replace(scenario.control, sensors=None))
     history = simulate(scenario, carry_all_effects=False)
     floor = np.zeros(len(history["time"]), dtype=[("time", float), ("floor_acceleration", float)])
     floor["time"], floor["floor_acceleration"] = history["time"], history["floor_acceleration"]

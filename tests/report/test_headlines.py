@@ -59,14 +59,14 @@ CASES = {
         " “80 °C”.",
     ]),
     "laws on floors": ({"variants": THREE, "sweep": {"excitation.spectral_class": ["EM2", "EM5", "EM6"]}}, [
-        "Which run is the most comfortable depends on the condition. At the worst, EM2, it is"
+        "Which run is the most comfortable depends on the condition. At the worst, class EM2, it is"
         " “skyhook”: the driver feels 0.781 m/s² (weighted RMS), 19 % less than with the best passive run, “0 A”, at"
         " 38 % less travel (RMS).",
-        "At EM5 it is “0 A”: the driver feels 0.569 m/s² (weighted RMS); control does not make it less:"
+        "At class EM5 it is “0 A”: the driver feels 0.569 m/s² (weighted RMS); control does not make it less:"
         " with “skyhook” it is 4.3 % more, at 32 % less travel (RMS).",
-        "At EM6 it is “0 A”: the driver feels 0.379 m/s² (weighted RMS); control does not make it less:"
+        "At class EM6 it is “0 A”: the driver feels 0.379 m/s² (weighted RMS); control does not make it less:"
         " with “skyhook” it is 5.8 % more, at 7.0 % less travel (RMS).",
-        "Look at the travel of “0 A, EM2” (4 times) and “0.1 A, EM2” (2 times):"
+        "Look at the travel of “0 A, class EM2” (4 times) and “0.1 A, class EM2” (2 times):"
         f" {STOPS}",
     ]),
     "a law that is best everywhere": ({"variants": {"skyhook": {}, "0 A": ZERO}, "sweep": {"seed": [0, 1]}}, [

@@ -115,8 +115,11 @@ def _describe(scenario: Scenario, named: bool, without: str = "") -> str:
 
 
 def _describe_part(scenario: Scenario, key: str, value: object) -> str:
+    if key == "variant":
+        return str(value)
     if isinstance(value, str):
-        return value
+        # The last word tells enough of a key whose value is a name: class EM2.
+        return f"{_name_key(key).rpartition(' ')[2]} {value}"
     text = f"{value:g}" if is_number(value) else str(value)
     unit = format_unit(find_unit(scenario, key)).removesuffix("-")
     return f"{text} {unit}" if key == "temperature" else f"{_name_key(key)} {text} {unit}".strip()
