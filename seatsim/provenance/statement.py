@@ -149,7 +149,8 @@ REPEATABLE: Mapping[str, frozenset[str]] = {
     for name, options in {
         "run": "--set", "compare": "--set --bracket", "synthesise": "--set --global", "gap": "--predict",
         "diagnose": "--without --budget --damper-forms --after",
-        "characterise": "--model --parameters --currents --temperatures --amplitudes --frequencies",
+        "characterise": "--model --parameters --currents --temperatures --amplitudes --frequencies --limits --beside"
+                        " --pattern --window",
         "identify": "--model --test --test-fraction --fix --ignore-temperature --predict --moving-average --centred"
                     " --seed",
         "import": "--map --nominal", "comfort": "--channel --hours --run --block --rate --unit",

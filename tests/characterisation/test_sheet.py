@@ -145,6 +145,7 @@ def test_the_command_judges_limits_and_writes_a_workbook(folder, tmp_path, seats
     assert next(book["response"].values)[:2] == ("from [A]", "to [A]")
     workbooks = [(tmp_path / name / "characterisation.xlsx").read_bytes() for name in ("out", "again")]
     assert workbooks[0] == workbooks[1]
+    assert seatsim_command("reproduce", tmp_path / "out")[0] == 0
     assert "Worst figure against each limit" in (tmp_path / "out" / "report.html").read_text()
 
 
