@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.exchange.block import Block, list_variables
-from seatsim.exchange.compiler import find_compiler
-from seatsim.exchange.fmu import write_fmu
+from seatsim.exchange.fmu import find_compiler, write_fmu
 
 Array = NDArray[np.float64]
 HERE = Path(__file__).parent

@@ -10,8 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.importing.alignment import HELD, Channel, describe_offset, estimate_offset, hold, resample
-from seatsim.importing.channels import make_channel, no_column
-from seatsim.importing.clocks import SHORTEST_RUN, Clocked, clock_groups, split_at_gaps
+from seatsim.importing.channels import SHORTEST_RUN, Clocked, clock_groups, make_channel, no_column, split_at_gaps
 from seatsim.importing.doubts import doubt_channel, doubt_distance
 from seatsim.importing.import_map import ImportMap
 from seatsim.importing.signals import LISTED, DataFile

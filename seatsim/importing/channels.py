@@ -1,27 +1,162 @@
-"""Channels of a run from the columns of a group: converted to SI units and corrected, as the map states them."""
+"""Groups on their own clocks, and channels from their columns, as the map says.
+
+A group has the time of a column, of its format, or of a stated rate; it makes a run, or runs between its gaps. Channels
+are converted to SI units and corrected.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
 from seatsim.importing.alignment import Channel, evened
-from seatsim.importing.clocks import Clocked
-from seatsim.importing.doubts import doubt_channel
-from seatsim.importing.import_map import PRIMITIVE, ChannelMap
+from seatsim.importing.doubts import doubt_channel, doubt_time
+from seatsim.importing.import_map import PRIMITIVE, AxisMap, ChannelMap, ImportMap
 from seatsim.importing.names import quantity_of
-from seatsim.importing.signals import LISTED
-from seatsim.importing.time_axis import Axis
+from seatsim.importing.signals import LISTED, DataFile, Group
+from seatsim.importing.time_axis import Axis, check_is_history, even_axis, find_clock, measured_axis, unbroken
 from seatsim.recordings.quality.damage import find_spikes
 from seatsim.recordings.quality.issue import Issue
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest, placed
 from seatsim.schema.text import name_some
-from seatsim.schema.units import conversion
+from seatsim.schema.units import DIMENSIONS, conversion
 
+_LONGEST_FILL = 0.1
+"""s; longest gap that `gaps: fill` interpolates."""
+SHORTEST_RUN = 1.0
+"""s; parts between gaps that are shorter make no run."""
 _SLOWER = 0.9
 """Share of the rows of its table below which a channel has a rate of its own."""
+
+
+class Clocked(NamedTuple):
+    """A group on its own time base: the name of its file, its own label, and its axis in s."""
+
+    file: str
+    label: str
+    group: Group
+    axis: Axis
+
+
+def clock_groups(files: Sequence[DataFile], stated: ImportMap, doubts: list[Issue]) -> list[Clocked]:
+    """Return the groups of some files that hold a column of the map, each with its time.
+
+    Raises:
+        InputError: the time of a group is neither stated nor to be found.
+    """
+    columns = {name for entry in stated.channels.values() for name in (entry.column, entry.minus)}
+    every = [(file, group) for file in files for group in file.groups]
+    used = [each for each in every if any(signal.name in columns for signal in each[1].signals)]
+    return [_clock(file, group, stated, doubts) for file, group in used or every]
+
+
+def _clock(file: DataFile, group: Group, stated: ImportMap, doubts: list[Issue]) -> Clocked:
+    """Return a group with its time: of the column that the map names, of the format, or at the stated rate."""
+    label = f"{file.path.name}, {group.name}" if group.name and len(file.groups) > 1 else file.path.name
+    check_is_history(group, str(file.path))
+    rate = stated.sample_rate or group.rate
+    time = _time_column(group, stated, label, doubts)
+    if time is not None:
+        group, axis = _timed(label, group, time, stated.sample_rate, doubts)
+        return Clocked(file.path.name, label, group, axis)
+    if rate is not None:
+        return Clocked(file.path.name, label, group, even_axis(group.rows, rate, group.start or 0.0))
+    names = [signal.name for signal in group.signals]
+    lacking = f"no column '{stated.time.column}'{nearest(stated.time.column, names)}" if stated.time else "no rate"
+    raise InputError(
+        f"{file.path}: states {lacking}; write sample_rate: or time: {{column: ...}} in the map; columns are"
+        f" {name_some(names, LISTED)}"
+    )
+
+
+def _time_column(group: Group, stated: ImportMap, label: str, doubts: list[Issue]) -> AxisMap | None:
+    """Return the column of time that the map names, else the one that is found: other loggers name it otherwise."""
+    if stated.time is not None and group.find(stated.time.column) is not None:
+        return stated.time
+    clock = find_clock(group)
+    if clock is None or (stated.sample_rate is not None and stated.time is None):
+        return None
+    doubts += [Issue("note", "time", f"{label}: {said}") for said in clock.assumptions]
+    return AxisMap(clock.column, clock.unit)
+
+
+def _timed(label: str, group: Group, time: AxisMap, rate: float | None, doubts: list[Issue]) -> tuple[Group, Axis]:
+    """Return a group without the rows that have no time, and the times of the others.
+
+    Of stamps that are as coarse as the rows, or coarser, a stated rate takes the place.
+    """
+    times = next(signal.values for signal in group.signals if signal.name == time.column)
+    there = np.isfinite(times)
+    group = group.take(there)
+    axis = measured_axis(conversion(time.unit or "s", DIMENSIONS["time"]).factor * times[there])
+    if axis is None:
+        raise InputError(f"{label}: column '{time.column}' does not rise as a time does; name another one under time")
+    if axis.resolution and rate is not None:
+        return group, even_axis(group.rows, rate, float(axis.times[0]))
+    found = list(doubt_time(axis, f"{label}, {time.column}"))
+    if axis.resolution and not axis.is_even:
+        raise InputError(found[-1].sentence)
+    doubts += found
+    return group, axis
+
+
+def split_at_gaps(
+    name: str, clocked: list[Clocked], stated: ImportMap, notes: list[str]
+) -> list[tuple[str, list[Clocked]]]:
+    """Return a run, or the runs between its gaps, as the map says."""
+    broken = next((each for each in clocked if len(each.axis.breaks)), None)
+    if broken is None:
+        return [(name, clocked)]
+    if stated.gaps == "fill":
+        return [(name, [_without_repeats(each) for each in clocked])]
+    if stated.gaps is None or len(clocked) > 1:
+        said = next(doubt_time(broken.axis, broken.label)).sentence
+        allowed = "gaps: fill" if len(clocked) > 1 else "gaps: split (runs of the parts) or gaps: fill (interpolate)"
+        raise InputError(f"{said}; say in the map what to do: {allowed}")
+    return _parts(name, broken, notes)
+
+
+def _parts(name: str, broken: Clocked, notes: list[str]) -> list[tuple[str, list[Clocked]]]:
+    """Return the runs between the gaps of a group; a sentence names those that are too short to be one."""
+    parts: list[tuple[str, list[Clocked]]] = []
+    short: list[str] = []
+    for begin, end in pairwise([0, *broken.axis.breaks.tolist(), len(broken.axis.times)]):
+        lasts = (end - begin - 1) / broken.axis.rate
+        if lasts < SHORTEST_RUN:
+            short.append(f"{lasts:.3g} s from {broken.axis.times[begin]:.6g} s on")
+        else:
+            axis = unbroken(broken.axis.times[begin:end], broken.axis.rate, broken.axis.is_even)
+            part = broken._replace(group=broken.group.take(slice(begin, end)), axis=axis)
+            parts.append((f"{name}-{len(parts) + 1}", [part]))
+    if not parts:
+        raise InputError(f"{broken.label}: no part between its gaps lasts {SHORTEST_RUN:g} s; nothing is left")
+    if short:
+        notes.append(f"{broken.label}: parts of less than {SHORTEST_RUN:g} s are left out: {name_some(short, LISTED)}")
+    return parts
+
+
+def _without_repeats(clocked: Clocked) -> Clocked:
+    """Return a group without rows that repeat a time, its gaps to be interpolated.
+
+    Raises:
+        InputError: time runs back, or a gap is too long to be filled.
+    """
+    times = clocked.axis.times
+    steps = np.diff(times)
+    if (steps < 0.0).any():
+        raise InputError(f"{clocked.label}: time runs back, which cannot be filled; write gaps: split")
+    longest = float(np.max(steps))
+    if longest > _LONGEST_FILL + 1.0 / clocked.axis.rate:
+        raise InputError(
+            f"{clocked.label}: a gap of {longest:.3g} s is not filled, {_LONGEST_FILL} s at most are; write gaps: split"
+        )
+    kept = np.concatenate([[True], steps > 0.0])
+    axis = unbroken(times[kept], clocked.axis.rate, is_even=False)
+    return clocked._replace(group=clocked.group.take(kept), axis=axis)
 
 
 def make_channel(

@@ -77,10 +77,11 @@ def _offered(
     recording: Recording, channels: dict[str, list[ChannelSummary]], doubts: Sequence[Issue]
 ) -> Iterator[Issue]:
     """Yield the noise of each measured channel that states none: of its floor, or of repeats, which show all of it."""
+    tables = {run: recording.table(run) for run in recording.runs}
     for name, entry in recording.channels.items():
         if entry.noise_rms > 0.0 or name in COMMANDS:
             continue
-        repeated = measure_unrepeated(list_unrepeated(recording, name))
+        repeated = measure_unrepeated(list_unrepeated(recording.runs, tables, name))
         floor = min(
             (each.noise for held in channels.values() for each in held if each.name == name and each.noise), default=0.0
         )

@@ -10,8 +10,7 @@ from seatsim.cli.check_files import check_file
 from seatsim.exchange.blocks.controller import controller_block
 from seatsim.exchange.blocks.damper import damper_block
 from seatsim.exchange.blocks.rig import rig_block
-from seatsim.exchange.compiler import compile_library
-from seatsim.exchange.fmu import write_fmu
+from seatsim.exchange.fmu import compile_library, write_fmu
 from seatsim.identification.damper_record import find_model
 from seatsim.scenario.loading import load
 from seatsim.scenario.sections import scenario_schema

@@ -16,9 +16,8 @@ from seatsim.exchange.blocks.damper import damper_block
 from seatsim.exchange.blocks.held import nothing_held
 from seatsim.exchange.blocks.rig import rig_block
 from seatsim.exchange.c_source import print_c, print_model
-from seatsim.exchange.compiler import find_compiler
 from seatsim.exchange.export import write_mat
-from seatsim.exchange.fmu import identifier, make_files
+from seatsim.exchange.fmu import find_compiler, identifier, make_files
 from seatsim.exchange.printing.values import NotPrintableError
 from seatsim.rig.plant import control_system
 from seatsim.scenario.loading import load

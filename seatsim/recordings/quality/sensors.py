@@ -8,14 +8,15 @@ the gravity of the floor's accelerometer would pull the simulated suspension dow
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
+from seatsim.recordings.header import RunEntry
 from seatsim.recordings.quality.damage import SILENT, Level, measure_level, quantum
-from seatsim.recordings.quality.issue import Issue, RunUnderTest, is_at_rest, issue_in_all_runs
+from seatsim.recordings.quality.issue import Issue, RunUnderTest, Table, is_at_rest, issue_in_all_runs
 from seatsim.recordings.recording import ACCELEROMETERS, Recording
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
@@ -98,12 +99,13 @@ def check_constants(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
 
 def check_noise(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     """Compare the stated noise with the least white noise seen in any run."""
-    for channel, entry in runs[0].recording.channels.items():
+    recording, tables = runs[0].recording, {run.name: run.table for run in runs}
+    for channel, entry in recording.channels.items():
         stated = entry.noise_rms
         seen = min((measure_level(run.table[channel], run.rate) for run in runs), key=lambda level: level.fourth)
         if channel == "current_command" or stated == 0.0 or not 0.0 < seen.fourth < np.inf:
             continue
-        repeated = list_unrepeated(runs[0].recording, channel)
+        repeated = list_unrepeated(recording.runs, tables, channel)
         all_of = measure_unrepeated(repeated)
         text = f"noise_rms is stated as {stated:g}, but about {seen.fourth:.2g} is seen"
         is_too_small = seen.third > _NOISE_OFF * stated and seen.fourth > _WHITE * seen.third
@@ -130,12 +132,12 @@ def _less_is_seen(runs: Sequence[RunUnderTest], channel: str, seen: Level, state
     return issue_in_all_runs("warning", "noise", f"{text}; {advice}", channel)
 
 
-def list_unrepeated(recording: Recording, channel: str) -> list[Array]:
+def list_unrepeated(entries: Mapping[str, RunEntry], tables: Mapping[str, Table], channel: str) -> list[Array]:
     """Return what does not come again of each pair of repeats: their difference over the root of 2, shape (N,)."""
     found = []
-    for run, entry in recording.runs.items():
+    for run, entry in entries.items():
         if entry.repeat_of is not None:
-            first, second = (recording.table(name)[channel] for name in (run, entry.repeat_of))
+            first, second = (tables[name][channel] for name in (run, entry.repeat_of))
             rows = min(len(first), len(second))
             found.append((first[:rows] - second[:rows]) / np.sqrt(2.0))
     return found
