@@ -33,12 +33,14 @@ def test_a_seed_fixes_the_set_and_nothing_in_it_tells_the_label(tmp_path: Path) 
     opened = unseal(sealed, key, first)
     assert opened.labels == unseal(again, other, second).labels
     assert {label["kind"] for label in opened.labels.values()} == {"one"}
-    words = {*EFFECTS, "effect:", "seed", "severity", "outside", *opened.labels["case-0001"]["forms"]}
+    telling = {*EFFECTS, "effect:", "seed", "severity", "outside", *opened.labels["case-0001"]["forms"]}
     for name, data in cases.items():
         text = (gzip.decompress(data) if name.endswith(".gz") else data).decode()
-        assert not [word for word in words if word in text.splitlines()[0] or (name.endswith("yaml") and word in text)]
-    assert sorted(p.name for p in (first / "case-0001").iterdir()) == words(
-        "nominal.yaml recording.yaml run-a.csv.gz run-b.csv.gz run-c.csv.gz"
+        assert not [
+            word for word in telling if word in text.splitlines()[0] or (name.endswith("yaml") and word in text)
+        ]
+    assert sorted(p.name for p in (first / "case-0001").iterdir()) == (
+        ["nominal.yaml", "recording.yaml", "run-a.csv.gz", "run-b.csv.gz", "run-c.csv.gz"]
     )
     assert len({p.stat().st_mtime for p in first.glob("case-*/*")}) == 1
     assert list(load_recording(first / "case-0002").runs) == ["run-a", "run-b", "run-c"]

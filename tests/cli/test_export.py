@@ -33,10 +33,8 @@ def test_of_several_runs_the_first_is_exported(seatsim_command, tmp_path):
     out = tmp_path / "here" / "damper.mat"
     status, said, err = seatsim_command("export", "quickstart", "--to", "mat", "--what", "damper", "--out", out)
     assert status == 0 and out.is_file()
-    assert (
-        "holds 24 runs; the first is exported: quickstart (H-infinity, spectral_class EM2, temperature 20.0); --variant takes another one:"
-        in err
-    )
+    assert "holds 24 runs; the first is exported: quickstart (H-infinity, spectral_class EM2" in err
+    assert "--variant takes another one: H-infinity; " in err
     assert f"written: {out}" in said
 
 

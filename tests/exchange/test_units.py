@@ -9,7 +9,7 @@ import pytest
 from fmpy.validation import validate_fmu
 
 from seatsim.dampers.base import DAMPERS
-from seatsim.exchange import compiler
+from seatsim.exchange import fmu
 from seatsim.exchange.blocks.damper import damper_block
 from seatsim.exchange.blocks.rig import rig_block
 from seatsim.exchange.blocks.rig_motion import RigOutputs
@@ -235,10 +235,10 @@ def test_a_unit_needs_nothing_of_python_and_is_small(units):
 def test_a_library_that_needs_more_than_c_is_refused(tmp_path):
     source = tmp_path / "foreign.c"
     source.write_text("int PyErr_Occurred(void); int f(void) { return PyErr_Occurred(); }\n")
-    flags = compiler.FLAGS
+    flags = fmu.FLAGS
     assert "-shared" in flags
     with pytest.raises(Exception, match="PyErr_Occurred"):
-        compiler.compile_library(source, tmp_path / "foreign.so")
+        fmu.compile_library(source, tmp_path / "foreign.so")
 
 
 @pytest.mark.parametrize(

@@ -28,7 +28,8 @@ def found(under_test):
             under_test({CHANNEL: each}, RATE, {CHANNEL: stated}, name) for name, each in zip("ab", values, strict=True)
         ]
         entry = runs[1].recording.runs["b"]._replace(repeat_of="a" if is_repeat else None)
-        runs[1] = runs[1]._replace(recording=dataclasses.replace(runs[1].recording, runs={"b": entry}))
+        whole = dataclasses.replace(runs[0].recording, runs={**runs[0].recording.runs, "b": entry})
+        runs = [run._replace(recording=whole) for run in runs]
         return [(issue.severity, issue.sentence) for issue in check_noise(runs)]
 
     return check
