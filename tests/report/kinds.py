@@ -44,7 +44,7 @@ COMFORT, TRAVEL = "driver_acceleration_weighted", "suspension_displacement_rms"
 @cache
 def runs():
     """Four runs under one condition; the first is the most comfortable."""
-    chosen = ("hybrid skyhook", "no current", "passive, best", "passive, same travel")
+    chosen = ("hybrid skyhook", "no current", "passive, best", "passive, firm")
     by_variant = {
         each.label["variant"]: each for each in load("quickstart", {"excitation.duration": 20.0, "sweep": {}})
     }
