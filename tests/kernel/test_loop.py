@@ -54,7 +54,7 @@ def run(
 
 
 def test_the_rows_keep_the_seats_equations():
-    push, lift = np.full(40, 15.0), np.full(40, -9.0)
+    push, lift = np.linspace(15.0, 40.0, 40), np.linspace(-9.0, 20.0, 40)
     h, reached = run(Commanded(0.5), frame_force=push, driver_force=lift, start_displacement=0.01, start_velocity=0.1)
     assert reached == 40
     x, v, xc, vc = (h[f"{part}_{kind}"] for part in ("suspension", "cushion") for kind in ("displacement", "velocity"))
@@ -62,9 +62,9 @@ def test_the_rows_keep_the_seats_equations():
     cushion = 60000.0 * xc + 1500.0 * vc
     force = (800.0 + 300.0 * h["coil_current"]) * 0.8 * v
     assert h["damper_force"] == pytest.approx(force, rel=1e-12)
-    frame = (cushion - 4600.0 * x - 150.0 * v - 0.8 * force + 15.0) / 20.0
+    frame = (cushion - 4600.0 * x - 150.0 * v - 0.8 * force + push) / 20.0
     assert h["frame_acceleration"] == pytest.approx(frame, rel=1e-9, abs=1e-12)
-    assert h["driver_acceleration"] == pytest.approx((-cushion - 9.0) / 80.0, rel=1e-9, abs=1e-9)
+    assert h["driver_acceleration"] == pytest.approx((-cushion + lift) / 80.0, rel=1e-9, abs=1e-9)
     assert np.gradient(x, STEP)[1:-1] == pytest.approx(v[1:-1], abs=2e-3)
     relative = h["driver_acceleration"] - h["frame_acceleration"]
     assert np.gradient(vc, STEP)[1:-1] == pytest.approx(relative[1:-1], abs=0.1 * np.max(np.abs(relative)))

@@ -133,3 +133,34 @@ def test_of_two_that_help_as_much_the_rig_is_chosen_before_the_sensor():
     assert select(pose(), [("sensor.alike",), ("rig.one",)]) == ({"rig.one"}, [{"sensor.alike"}])
     assert select(pose(), [("rig.alike",), ("rig.one",)]) == ({"rig.one"}, [{"rig.alike"}])
     assert select(pose(), [("sensor.alike",)]) == ({"sensor.alike"}, [])
+
+
+@pytest.mark.parametrize(
+    "ratio, pair, is_chosen",
+    [
+        (1.05, ("rig.one", "rig.two"), True),
+        (0.95, ("rig.one", "rig.two"), False),
+        (3.2, ("rig.alike", "rig.two"), True),
+        (2.8, ("rig.alike", "rig.two"), False),
+    ],
+)
+def test_two_other_effects_take_the_place_of_one_only_where_the_evidence_decides(ratio, pair, is_chosen):
+    amounts = TRUE | {"rig.two": 0.4}
+    # 0.05 (1 - gain)^-n = ratio
+    taken = gain(pose(amounts=amounts), pair, ["rig.one"])
+    objective = pose(amounts=amounts, independent=np.log(ratio / 0.05) / -np.log(1.0 - taken))
+    chosen = set(pair) if is_chosen else {"rig.one"}
+    assert select(objective, [("rig.one",)], [pair]) == (chosen, [])
+
+
+def test_every_set_tried_is_returned_with_its_weight():
+    objective = pose(amounts=TRUE | {"nuisance 0": 0.8})
+    calibrated, one, two = (fitted(objective, *names) for names in ((), ("rig.one",), ("rig.two",)))
+    selection = Selection(calibrated, ((calibrated,), (one, two)), ())
+    tried = select_by_cross_validation(objective, selection).tried
+    assert [each for each, _ in tried] == [calibrated, one, two]
+    expected = [(1.0 - gain(objective, names)) ** 2 for names in ([], ["rig.one"], ["rig.two"])]
+    # The prior of the nuisance parameter raises what is left by as much as it lowers the evidence.
+    charged = [np.exp((each.parameters.deviations[0] / 0.58) ** 2 / 40.0) for each in (calibrated, one, two)]
+    weights = np.log([1.0, 0.05, 0.05]) - 20.0 * np.log(np.array(expected) * charged)
+    np.testing.assert_allclose([weight for _, weight in tried], weights, atol=0.02)

@@ -1,6 +1,7 @@
 """Collinearity of effects of a linear seat, against angles between what ridge regressions leave of their signals."""
 
 import numpy as np
+import pytest
 
 from seatsim.diagnosis.design.separability import measure_collinearity
 
@@ -57,3 +58,21 @@ def test_names_that_cannot_act_here_are_left_out_and_repeated_ones_said_once(fol
     found = compare(objective, nuisances, "a", "no.such", "a")
     assert found.effects == ["a"] and np.array_equal(found.matrix, [[1.0]])
     assert compare(objective, nuisances).matrix.shape == (0, 0)
+
+
+def bend(objective, share):
+    return share * whiten(objective, "one") + share**2 * whiten(objective, "three")
+
+
+@pytest.mark.parametrize("amount", [2.0, 0.5, 0.001, 15.0])
+def test_an_effect_that_the_rig_lacks_is_made_as_large_as_the_largest_fitted_one(folder, amount):
+    objective = make_objective(folder)
+    nuisances = linearise(objective, (offer("a", "two"), amount), (offer("b", "three"), 0.1 * amount))
+    sizes = [np.linalg.norm(amount * share * whiten(objective, cause)) for cause, share in [("two", 1), ("three", 0.1)]]
+    assert sizes[0] > sizes[1]
+    # From its start of 0.2, by no more than a factor of 8, within its bounds of 0 to 0.95.
+    share = min(0.2 * np.clip(sizes[0] / np.linalg.norm(bend(objective, 0.2)), 1.0 / 8.0, 8.0), 0.95)
+    expected = cosine(leave(objective, whiten(objective, "two")), leave(objective, bend(objective, share)))
+    names, matrix = compare(objective, nuisances, "a", "driver.biodynamics", "b")
+    assert names[1] == "driver.biodynamics"
+    assert matrix[0, 1] == pytest.approx(expected, abs=1e-6)

@@ -3,9 +3,12 @@
 import dataclasses
 import re
 
+import numpy as np
 import pytest
 
 from seatsim.diagnosis.candidates import Candidate
+from seatsim.diagnosis.design import experiment
+from seatsim.diagnosis.design.candidate_experiments import list_candidate_experiments
 from seatsim.diagnosis.design.experiment import propose_experiment
 from seatsim.effects.sensor import Gain
 
@@ -80,3 +83,29 @@ def test_beside_a_calibration_the_other_members_are_parted(folder):
     found = propose_experiment(objective, nuisances, group)
     first = "calibrating driver acceleration tells a wrong sensor from a change of the rig; beside that, "
     assert found.reason.startswith(first) and found.kind in ("excitation", "none")
+
+
+def assess(objective, nuisances, base, members, name):
+    (candidate,) = [c for c in list_candidate_experiments(objective.problem) if c.name == name]
+    return experiment._assess(objective, nuisances, base, members, candidate), candidate
+
+
+@pytest.fixture(scope="module")
+def assessed(folder):
+    """Two rigs with an effect each, and the rig without, all unfitted."""
+    objective = make_objective(folder, (Added("one", 0.5),))
+    problem, terms = objective.problem, [(offer("a", "one"), 0.5), (offer("b", "two"), 0.4)]
+    first, second, base = objective.evaluate([place(problem, terms[0]), place(problem, terms[1]), place(problem)])
+    return objective, objective.linearise_nuisances(first), base, [first, second]
+
+
+def test_the_reach_of_an_excitation_is_its_share_of_the_travel(assessed):
+    objective, nuisances, base, members = assessed
+    problem, (found, candidate) = objective.problem, assess(objective, nuisances, base, members, "sweep")
+    rig = nuisances.evaluation.parameters
+    travel = experiment._respond(problem, candidate, rig)["suspension_displacement"]
+    assert found.reach == pytest.approx(np.max(np.abs(travel)) / 0.05)
+    plant = problem.scenario.plant._replace(travel=(-1e3, 0.02))
+    stated = dataclasses.replace(problem, scenario=dataclasses.replace(problem.scenario, plant=plant))
+    assert experiment._measure_reach(stated, candidate, rig) == pytest.approx(np.max(travel) / 0.02)
+    assert assess(objective, nuisances, base, members, "added_mass")[0].reach == 0.0

@@ -104,3 +104,16 @@ def test_signals_at_a_low_rate_are_not_thinned(problem):
     )
     signals = of_motion(problem, lambda x, v, i, a: 1e5 * x**3)
     assert explain_signal(slow, place(slow), signals)["displacement"] > 0.999
+
+
+def test_a_single_run_is_predicted_by_halves():
+    regressors = draw({"a": 101})
+    known = regressors["a"]
+    target = np.array([1.0, -0.02, 30.0]) @ known + np.random.default_rng(2).standard_normal(101)
+    halves = slice(0, 50), slice(50, 101)
+    errors = [
+        ridge_errors(SETTINGS, (known[:, train], target[train]), (known[:, test], target[test]))
+        for train, test in (halves, halves[::-1])
+    ]
+    expected = 1.0 - np.sum(np.concatenate(errors) ** 2) / np.sum(target**2)
+    assert predict_share(SETTINGS, regressors, {"a": target}) == pytest.approx(expected, rel=1e-6)

@@ -11,15 +11,18 @@ from seatsim.diagnosis.localise.stochastic import (
     BIAS_DRIFT,
     FORCE_FROM_OUTSIDE,
     add_strength,
+    add_to_noise,
     find_bias_drift,
     merge_effect,
     name_stochastic_effect,
 )
+from seatsim.diagnosis.noise import weigh_noise
 from seatsim.diagnosis.objective import Evaluation
 from seatsim.diagnosis.result import Cause, Estimate, Share
 from seatsim.diagnosis.settings import DiagnosisSettings
+from seatsim.diagnosis.spectra import smooth_spectrum
 
-from .toy import CHANNELS, RATE, place, pose, record
+from .toy import CHANNELS, RATE, SKIP, add_taps, place, pose, record
 
 SETTINGS = DiagnosisSettings()
 
@@ -120,3 +123,21 @@ def test_a_cause_has_the_strength_of_its_signal_and_the_channel_that_errs():
     assert strong.parameters["channel"] == "damper_force"
     assert strong.parameters["rms"] == Estimate(pytest.approx(np.sqrt(12.5)), 0.0, "N")
     assert list(add_strength(cause, found._replace(channel="")).parameters) == ["rms"]
+
+
+def powers_beyond(problem, effect, found):
+    """Return the power of the noise by run that is added to what was there, whatever that was."""
+    before = weigh_noise(problem).add({run: np.full((4, 1), 0.3) for run in problem.runs})
+    after = add_to_noise(problem, before, effect, found)
+    return {run: after.power[run] - before.power[run] for run in problem.runs}
+
+
+def test_a_drift_of_the_floors_sensor_adds_what_its_motion_leaves_in_all_channels(problem):
+    found = discrepancy("sensor", 0.25, channel="floor_acceleration", rms=0.3)
+    beyond = powers_beyond(problem, BIAS_DRIFT, found)
+    for run, power in beyond.items():
+        whole = np.zeros(len(problem.recording.table(run)["floor_acceleration"]))
+        whole[SKIP : SKIP + len(found.signals[run])] = found.signals[run]
+        change = add_taps("floor", whole)[:4, SKIP : SKIP + len(found.signals[run])]
+        expected = smooth_spectrum(np.abs(np.fft.rfft(change)) ** 2, 0.15)[:, : power.shape[1]]
+        assert np.allclose(power, expected, rtol=1e-6, atol=1e-9 * np.max(expected))
