@@ -44,7 +44,7 @@ Complex = NDArray[np.complex128]
 _POINTS = {90.0: 60, 60.0: 20, 0.0: 20}
 _ROUNDING = 1e-10
 # Beside zero, where plants may have a pole: this share of the least of the points.
-_SLOWEST = 1e-6
+_SLOWEST = 1e-4
 # A root is taken for a real one where its angle is less.
 _CLOSE = 1e-3
 # Distance of points from the plant's poles over their size: closer, rounding would decide.
@@ -124,7 +124,8 @@ class BoxView:
     def __init__(self, number: int, plant: GeneralisedPlant, level: float) -> None:
         self.number, self.plant, self.level = number, plant, level
         poles = np.abs(np.linalg.eigvals(plant.A))
-        scale = poles[poles > 0] if np.any(poles > 0) else np.ones(1)
+        moving = poles[poles > _ROUNDING * poles.max()]
+        scale = moving if len(moving) else np.ones(1)
         ends = scale.min() / 10, scale.max() * 10
         self._slowest = float(ends[0]) * _SLOWEST
         grid = [np.geomspace(*ends, n) * np.exp(1j * np.radians(angle)) for angle, n in _POINTS.items()]
@@ -295,7 +296,9 @@ def _adjoint(matrices: Complex) -> Complex:
 
 def _respond(plant: GeneralisedPlant, points: Complex) -> _Points:
     """Return the points in rad/s, in few digits, with the plant's response; none is close to a pole of the plant."""
-    near = np.abs(points[:, None] - np.linalg.eigvals(plant.A)).min(axis=1) <= _APART * np.abs(points)
+    poles = np.linalg.eigvals(plant.A)
+    sizes = np.maximum(np.abs(points), _ROUNDING * np.abs(poles).max())
+    near = np.abs(points[:, None] - poles).min(axis=1) <= _APART * sizes
     s = _shorten_complex(points[~near | np.isinf(points)], _POINT_DIGITS)
     B, C = np.hstack([plant.B1, plant.B2]), np.vstack([plant.C1, plant.C2])
     D = np.block([[plant.D11, plant.D12], [plant.D21, np.zeros((plant.measured_count, plant.control_count))]])
