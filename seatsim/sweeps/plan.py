@@ -120,13 +120,17 @@ class Selection(NamedTuple):
 def make_plan(definition: SweepDefinition, foresee: Callable[[int], None] = lambda runs: None) -> Plan:
     """Return the runs of a sweep: the points of its design, for each variant of its scenario and each replicate.
 
-    `foresee` is called with their number before any of them is made.
+    A varied key takes the place of the scenario's own sweep of it. `foresee` is called with the number of runs before
+    any of them is made.
 
     Raises:
         InputError: there are too many, the design cannot be resolved, or a varied key is one that the scenario varies
             itself.
     """
-    bases = tuple(_Base(source, label) for source, label in expand(definition.scenario, {}))
+    varied = definition.table.columns if definition.table else {axis.key for axis in definition.axes}
+    own = definition.scenario.data.get("sweep")
+    others = {"sweep": {key: own[key] for key in own if key not in varied}} if isinstance(own, dict) else {}
+    bases = tuple(_Base(source, label) for source, label in expand(definition.scenario, others))
     factors = {"points": count_points(definition), "variants": len(bases), "replicates": definition.replicates}
     runs = math.prod(factors.values())
     if runs > MOST_RUNS:
