@@ -168,7 +168,8 @@ class StaticOutputFeedback(NamedTuple):
         named = ", ".join(
             f"{value:.4g} {unit_of_gain(measure)} on {measure.replace('_', ' ')}" for value, measure in entries
         )
-        norm = f"gamma {max(loop.gamma for loop in loops):.4g}, {proven} for {len(loops)} plants"
+        several = f" for {len(loops)} plants" if len(loops) > 1 else ""
+        norm = f"gamma {max(loop.gamma for loop in loops):.4g}, {proven}{several}"
         return f"gain {named}; {norm}; margins: {self.margins(plant, coil, gain)}"
 
     def promise(self, plant: Plant, coil: Coil, gain: Array, floor: FloorRecord) -> Array:
