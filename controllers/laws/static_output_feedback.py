@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
+from threading import Lock
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import numpy as np
@@ -27,7 +28,7 @@ from seatsim.schema.fields import param
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from controllers.synthesis import Design, GeneralisedPlant
+    from controllers.synthesis import ClosedLoop, Design, GeneralisedPlant
 
 # Margins above this are crossings that rounding alone makes.
 _UNBOUNDED = 1e6
@@ -98,11 +99,7 @@ class StaticOutputFeedback(NamedTuple):
         if self.gain is not None:
             return self._compile(np.array([self.gain]))
         if self.design is None:
-            # Lists, which Python users may give, have no hash.
-            masses = None if self.masses is None else tuple(self.masses)
-            factors, measures = tuple(self.force_factors), tuple(self.measures)
-            hashable = self._replace(masses=masses, force_factors=factors, measures=measures)
-            return self._compile(_design_gain(hashable, plant, self._shape_floors(floors)))
+            return self._compile(self._find_loops(plant, floors)[0])
         from controllers.synthesis import Design
 
         design = Design.load(Path(self.design))
@@ -145,6 +142,15 @@ class StaticOutputFeedback(NamedTuple):
             return (None,)
         return tuple(map(fit_shaping_filter, floors()))
 
+    def _find_loops(self, plant: Plant, floors: Floors) -> tuple[Array, tuple[ClosedLoop, ...]]:
+        """Return the synthesised gain and the loops that it closes."""
+        # Lists, which Python users may give, have no hash.
+        masses = None if self.masses is None else tuple(self.masses)
+        factors, measures = tuple(self.force_factors), tuple(self.measures)
+        hashable = self._replace(masses=masses, force_factors=factors, measures=measures)
+        with _DESIGNING:
+            return _design(hashable, plant, self._shape_floors(floors))
+
     @property
     def is_limited_by_travel(self) -> bool:
         """Whether the travel weight is still to be found."""
@@ -156,13 +162,9 @@ class StaticOutputFeedback(NamedTuple):
 
     def describe(self, plant: Plant, coil: Coil, floors: Floors) -> str:
         """Return in a line the synthesised gain, its norm and its margins; nothing where the gain is stated."""
-        from controllers.synthesis import verify
-
         if self.weights is None:
             return ""
-        filters = self._shape_floors(floors)
-        gain = _design_gain(self, plant, filters)
-        loops = [verify(each, gain) for each in self.plants(plant, filters)]
+        gain, loops = self._find_loops(plant, floors)
         proven = "certified" if all(loop.certificate for loop in loops) else "not certified"
         entries = zip(gain[0], self.measures, strict=True)
         named = ", ".join(
@@ -194,9 +196,17 @@ class StaticOutputFeedback(NamedTuple):
         return f"gain {rises}, phase {turns}, delay {waits}, with the coil's lag"
 
 
-@lru_cache(maxsize=64)
-def _design_gain(law: StaticOutputFeedback, plant: Plant, floors: tuple[ShapingFilter | None, ...]) -> Array:
-    """Return the gain of a law for a plant; runs that differ in temperature alone share one design."""
-    from controllers.synthesis import find_gain
+_DESIGNING = Lock()
+"""Held while a gain is looked up or searched: runs side by side that share a design wait for it."""
 
-    return find_gain(law.plants(plant, floors))
+
+@lru_cache(maxsize=64)
+def _design(
+    law: StaticOutputFeedback, plant: Plant, floors: tuple[ShapingFilter | None, ...]
+) -> tuple[Array, tuple[ClosedLoop, ...]]:
+    """Return gain and loops of a law for a plant; runs that differ in temperature alone share one design."""
+    from controllers.synthesis import find_gain, verify
+
+    plants = law.plants(plant, floors)
+    gain = find_gain(plants)
+    return gain, tuple(verify(each, gain) for each in plants)

@@ -7,7 +7,7 @@ from controllers.laws.scheduled_output_feedback import ScheduledOutputFeedback
 from controllers.laws.static_output_feedback import StaticOutputFeedback
 from controllers.seat_plant import Weights
 from seatsim.rig.coil import Coil
-from seatsim.rig.control import Measurement, prepare_law
+from seatsim.rig.control import Measurement, no_floors, prepare_law
 from seatsim.rig.plant import Plant
 from seatsim.schema.errors import InputError
 
@@ -68,6 +68,7 @@ def test_lists_serve_as_tuples():
     given = StaticOutputFeedback(weights=Weights(), masses=[50.0, 80.0], force_factors=[1.0])
     stated = StaticOutputFeedback(weights=Weights(), masses=(50.0, 80.0), force_factors=(1.0,))
     assert prepare_law(given, SEAT, COIL, 0.005) == prepare_law(stated, SEAT, COIL, 0.005)
+    assert given.describe(SEAT, COIL, no_floors) == stated.describe(SEAT, COIL, no_floors)
 
 
 GAINS = ((1.0, 1.0), (1.0, 1.0))
