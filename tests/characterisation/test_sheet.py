@@ -29,7 +29,7 @@ def force_of(v, current, temperature=20.0):
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """A folder of tests whose names alone say the current and the temperature, twice each; with noise and a zero that drifts."""
+    """A folder of tests, twice each, whose names alone say current and temperature; with noise and a drifting zero."""
     place, rng = tmp_path_factory.mktemp("day"), np.random.default_rng(0)
     for current in (0.0, 0.5, 1.0):
         for warm in (20.0, 60.0):
