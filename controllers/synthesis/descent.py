@@ -7,6 +7,7 @@ Source: Apkarian & Noll 2006, IEEE Trans. Autom. Control 51:71; Burke, Henrion, 
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterable
 from typing import NamedTuple
@@ -45,6 +46,10 @@ class StabilisingGain(NamedTuple):
     entries: Array
 
 
+def _log(gamma: float) -> float:
+    return math.log(gamma) if gamma > 0.0 else -math.inf
+
+
 def _gamma(candidate: StabilisingGain) -> float:
     return candidate.gamma
 
@@ -60,6 +65,11 @@ class Descent(NamedTuple):
     starts: int
 
     @property
+    def gamma(self) -> float:
+        """The lowest norm, infinite where no candidate is there."""
+        return self.candidates[0].gamma if self.candidates else np.inf
+
+    @property
     def agrees(self) -> bool:
         """Whether every start led to the same value."""
         return len(self.candidates) == self.starts and len(_distinct(self.candidates)) == 1
@@ -70,8 +80,8 @@ class Descent(NamedTuple):
         return Descent(candidates, min(self.abscissa, more.abscissa), self.starts + more.starts)
 
 
-def explore(objective: NormObjective, starts: Iterable[StartingGain], deadline: float) -> Descent:
-    """Descend coarsely from every start until the deadline."""
+def explore(objective: NormObjective, starts: Iterable[StartingGain], deadline: float, best: float = np.inf) -> Descent:
+    """Descend coarsely from every start until the deadline; `best` is the lowest gamma known before."""
     candidates: list[StabilisingGain] = []
     abscissa, tried = float("inf"), 0
     for start in starts:
@@ -79,9 +89,10 @@ def explore(objective: NormObjective, starts: Iterable[StartingGain], deadline: 
         point = minimise(objective.abscissa, theta, unit, deadline, _STABLE_ENOUGH, _STABILISING_PATIENCE, 1e-4)
         abscissa, tried = min(abscissa, point.value), tried + 1
         if point.value < -STABILITY_MARGIN:
-            lowest = minimise(objective.log_norm, point.x, unit, deadline, progress=_COARSE)
+            lowest = minimise(objective.log_norm, point.x, unit, deadline, progress=_COARSE, target=_log(best))
             entries = objective.entries(lowest.x)
             candidates.append(StabilisingGain(objective.norm(entries), entries))
+            best = min(best, candidates[-1].gamma)
         if time.monotonic() > deadline:
             break
     return Descent(sorted(candidates, key=_gamma), abscissa, tried)
@@ -106,7 +117,7 @@ def improve(objective: NormObjective, best: StabilisingGain, seed: int, deadline
         scattered = [
             StartingGain(objective.gain(entries), objective.gain(sizes)) for entries in best.entries + step * sizes
         ]
-        found = explore(objective, scattered, deadline)
+        found = explore(objective, scattered, deadline, best.gamma)
         lower = refine(objective, [best, *found.candidates], deadline)
         fruitless = 0 if lower.gamma < best.gamma * (1 - _COARSE) else fruitless + 1
         best = lower
@@ -126,7 +137,8 @@ def _lower(objective: NormObjective, candidate: StabilisingGain, target: float, 
     """BFGS and polish in turn, until both together gain nothing or too little to come below `target`."""
     for _ in range(_TURNS):
         unit = objective.sizes(candidate.entries)
-        point = minimise(objective.log_norm, objective.angles(candidate.entries), unit, deadline, progress=_FINE)
+        angles = objective.angles(candidate.entries)
+        point = minimise(objective.log_norm, angles, unit, deadline, progress=_FINE, target=_log(target))
         entries = polish(objective, objective.entries(point.x), deadline)
         lower = StabilisingGain(objective.norm(entries), entries)
         gained = candidate.gamma - lower.gamma

@@ -102,9 +102,9 @@ def _explore(objective: NormObjective, starts: Iterator[StartingGain], clock: Ti
         return found
     plant = objective.plants[0]
     size = float(np.linalg.norm(plant.B1) * np.linalg.norm(plant.C1)) or 1.0
-    gamma = found.candidates[0].gamma if found.candidates else size
+    gamma = found.gamma if found.candidates else size
     convex = generate_convex_start(plant, max(gamma, 1e-9 * size), objective.gain(objective.unit), deadline)
-    found = found.with_more(explore(objective, chain(convex, islice(starts, _MORE_STARTS)), deadline))
+    found = found.with_more(explore(objective, chain(convex, islice(starts, _MORE_STARTS)), deadline, found.gamma))
     while not found.candidates and time.monotonic() < clock.after(_REFINED):
         found = found.with_more(explore(objective, islice(starts, _FIRST_STARTS), clock.after(_REFINED)))
     return found
@@ -119,7 +119,7 @@ def _lowest(
     progress: Progress,
 ) -> StabilisingGain:
     """Refine the candidates; where starts disagree, improve upon the best, and go on while further starts gain."""
-    progress(f"{found.starts} starts, {len(found.candidates)} stabilised, gamma {found.candidates[0].gamma:.6g}")
+    progress(f"{found.starts} starts, {len(found.candidates)} stabilised, gamma {found.gamma:.6g}")
     best = refine(objective, found.candidates, clock.after(_REFINED))
     deadline = clock.after(_IMPROVED)
     gained = not found.agrees
@@ -127,7 +127,7 @@ def _lowest(
         progress(f"gamma {best.gamma:.6g}, looking about it")
         best = improve(objective, best, seed, deadline)
         progress(f"gamma {best.gamma:.6g}, further starts")
-        more = explore(objective, islice(starts, _FIRST_STARTS), deadline)
+        more = explore(objective, islice(starts, _FIRST_STARTS), deadline, best.gamma)
         lower = refine(objective, [best, *more.candidates], deadline)
         gained, best = lower.gamma < best.gamma * _GAINED, lower
     progress(f"gamma {best.gamma:.6g}")
