@@ -1,7 +1,4 @@
-"""Every picture of every kind of result: legible, inside its page, free of collisions, fit for a page of HTML.
-
-`contact_sheet.png`, in the folder of pytest's temporary files, shows all of them.
-"""
+"""Every picture of every kind of result: legible, inside its page, free of collisions, fit for a page of HTML."""
 
 import re
 from dataclasses import replace
@@ -13,7 +10,6 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
-from PIL import Image
 
 from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
 from seatsim.diagnosis.result import Trace
@@ -97,16 +93,15 @@ OTHERS = {
     "gap": draw_gap, "identification": draw_identification, "bench": draw_bench, "seat test": draw_seat_test,
     "sweep": draw_sweep,
 }  # fmt: skip
-DRAWN: dict[str, dict] = {}
 
 
 @pytest.fixture(scope="module", params=[*RUNS, *OTHERS])
 def figures(request, made_up):
     kind = request.param
-    DRAWN[kind] = plot_result(Result(RUNS[kind](made_up))) if kind in RUNS else OTHERS[kind]()
-    for figure in DRAWN[kind].values():
+    drawn = plot_result(Result(RUNS[kind](made_up))) if kind in RUNS else OTHERS[kind]()
+    for figure in drawn.values():
         FigureCanvasAgg(figure).draw()
-    return DRAWN[kind]
+    return drawn
 
 
 def test_everything_is_legible_and_inside_the_page(figures):
@@ -148,13 +143,14 @@ def test_every_axis_that_is_numbered_has_a_unit_and_lines_have_a_legend(figures)
 def test_a_picture_inside_a_page_is_a_drawing_of_its_own(figures):
     for name, figure in figures.items():
         shown = render_inline(figure)
-        assert shown == render_inline(figure) and len(shown.source) < 200_000, (name, len(shown.source))
+        assert len(shown.source) < 200_000, (name, len(shown.source))
         assert shown.title and shown.title in figure.texts[0].get_text().replace("\n", " ").replace(r"\$", "$")
         drawing = ElementTree.fromstring(unquote(shown.source.removeprefix("data:image/svg+xml,")))
         texts = [each.text for each in drawing.iter("{http://www.w3.org/2000/svg}text")]
         assert texts and shown.title not in texts
         assert not any(value.startswith("http") for each in drawing.iter() for value in each.attrib.values())
         assert all(text.get_visible() for text in figure.texts)
+    assert shown == render_inline(figure)
 
 
 def test_stages_without_effects_do_not_repeat_the_refit():
@@ -188,19 +184,3 @@ def test_a_run_is_not_changed_by_drawing_it(made_up):
     plot_result(Result([run]))
     for name, values in run.history.channels.items():
         np.testing.assert_array_equal(values, before[name])
-
-
-def test_the_contact_sheet(tmp_path_factory):
-    """All pictures that were drawn, in columns of one picture each; to be looked at."""
-    pictures = [figure for found in DRAWN.values() for figure in found.values()]
-    images = [Image.fromarray(np.asarray(figure.canvas.buffer_rgba())) for figure in pictures]
-    columns = 8
-    heights, places = [0] * columns, []
-    for image in images:
-        column = heights.index(min(heights))
-        places.append((column * (image.width + 20), heights[column]))
-        heights[column] += image.height + 20
-    sheet = Image.new("RGB", (columns * 600, max(heights, default=0) or 1), "#999")
-    for image, place in zip(images, places, strict=True):
-        sheet.paste(image, place)
-    sheet.save(tmp_path_factory.getbasetemp() / "contact_sheet.png")
