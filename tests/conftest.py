@@ -8,6 +8,7 @@ from contextlib import chdir
 from pathlib import Path
 
 import pytest
+from xdist.scheduler import LoadScopeScheduling
 
 from seatsim.cli.app import main
 from seatsim.schema import modules, registry
@@ -39,10 +40,23 @@ gc.set_threshold(100_000, 50, 100)
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """Leave the checks of scenarios whose design or compilation takes long to the slow tests."""
+    """Leave the checks of the shipped scenarios, most of which design a law, to the slow tests."""
     for item in items:
-        if item.path.match("scenarios/h-infinity-drivers.yaml") or item.path.match("scenarios/yu2019/*.yaml"):
+        if item.path.is_relative_to(ROOT / "scenarios"):
             item.add_marker(pytest.mark.slow)
+
+
+class _ByFolder(LoadScopeScheduling):
+    """Gives the tests of a folder to one worker, since they share rigs: each is compiled and simulated once."""
+
+    def _split_scope(self, nodeid):
+        return nodeid.partition("::")[0].rpartition("/")[0]
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    """Share out folders of tests."""
+    return _ByFolder(config, log)
 
 
 def pytest_addoption(parser):

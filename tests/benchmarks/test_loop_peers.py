@@ -5,6 +5,7 @@ import shutil
 import pytest
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not shutil.which("gcc"), reason="needs gcc")
 @pytest.mark.parametrize("source", ["loop.c", "lean.c"])
 def test_c_agrees_with_seatsim(source, tmp_path, benchmark):

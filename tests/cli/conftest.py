@@ -6,4 +6,5 @@ import pytest
 @pytest.fixture
 def undrawn(monkeypatch):
     """Leave out the pictures, which take most of the time."""
-    monkeypatch.setattr("seatsim.plots.runs.draw.plot_result", lambda result: {})
+    for picture in ("runs.draw.plot_result", "bench.characterisation.plot_characterisation"):
+        monkeypatch.setattr(f"seatsim.plots.{picture}", lambda _: {})

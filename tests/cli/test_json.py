@@ -45,8 +45,7 @@ COMMANDS = {
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_standard_output_is_one_object(name, seatsim_command, undrawn, tmp_path, monkeypatch):
-    monkeypatch.setattr("seatsim.plots.bench.characterisation.plot_characterisation", lambda found: {})
+def test_standard_output_is_one_object(name, seatsim_command, undrawn, tmp_path):
     own = {"describe": [], "check": [], "inspect": [], "new": [tmp_path / "my_own"]}
     place = own.get(name, ["--out", tmp_path])
     place = ["--out", tmp_path / "damper.c"] if name == "export" else place

@@ -1,7 +1,6 @@
 """Estimates of unknown inputs against signals that were planted, and against their formulas."""
 
 import dataclasses
-from unittest import mock
 
 import numpy as np
 import pytest
@@ -16,7 +15,7 @@ from seatsim.diagnosis.localise.reconstruction import PORTS, Port, reconstruct
 from seatsim.diagnosis.objective import Parameters
 from seatsim.diagnosis.spectra import measure_power
 
-from .toy import CHANNELS, RATE, SIZES, SKIP, TAPS, add_taps, place, pose, record, weigh_stated
+from .toy import CHANNELS, RATE, SKIP, add_taps, place, pose, record, weigh_stated
 
 SAMPLES = 400
 LOUD = 1e-3
@@ -120,42 +119,6 @@ def test_without_repeats_of_the_same_length_there_is_no_such_force(folder):
     assert add_taps("floor", np.zeros(3)).shape == (5, 3)
 
 
-@pytest.fixture
-def gains():
-    """Let forces act at once, without their second tap, so that their response is a gain."""
-    at_once = {cause: [[a, 0.0] for a, _ in TAPS[cause]] for cause in ("frame force", "driver force")}
-    with mock.patch.dict(TAPS, at_once):
-        yield
-
-
-@pytest.mark.usefixtures("gains")
-@pytest.mark.parametrize(("highest", "rounds"), [(np.inf, 1), (6.0, 1), (np.inf, 2), (6.0, 2)])
-def test_a_correction_is_its_formula_and_the_signal_is_filtered_by_wieners(folder, highest, rounds):
-    runs, rng = {"first": SAMPLES, "second": 300}, np.random.default_rng(6)
-    problem = pose(record(folder, runs=runs, channels=CHANNELS[:3]), reconstruction={"rounds": rounds})
-    # Other channels miss by more than their noise, so that no correction is the last.
-    loud = {run: v + 4.0 * problem.noise[:, None] * rng.standard_normal(v.shape) for run, v in problem.measured.items()}
-    problem = dataclasses.replace(problem, measured=loud)
-    objective, nominal = plant(weigh_stated(problem), PORTS["driver"], slow_force(SAMPLES, 60.0))
-    found = estimate_input(objective, nominal, "first", PORTS["driver"], highest)
-    gain = np.array([size * a for size, (a, _) in zip(SIZES, TAPS["driver force"], strict=False)])[:3, None]
-    weights, bins = objective.weights.weights["first"], objective.weights.bins["first"]
-    response = weights * gain
-    whitened = weights * np.fft.rfft(nominal.residuals["first"])[:, :bins]
-    size = np.sum(response**2, axis=0)
-    plausible = reconstruct(objective, place(problem), "first", PORTS["driver"]).plausible_power()
-    free, permitted = np.zeros(bins, dtype=complex), np.fft.rfftfreq(SAMPLES, 1.0 / RATE)[:bins] <= highest
-    for _ in range(rounds):
-        free += permitted * np.sum(response * (whitened - response * free), axis=0) / (size + 2.0 / plausible)
-    power = measure_power(free, 0.15)
-    assert np.allclose(found.power, power, rtol=1e-6)
-    wiener = np.maximum(0.0, 1.0 - 2.0 / (size * power))
-    assert np.min(wiener) < 0.97
-    expected = np.zeros(SAMPLES // 2 + 1, dtype=complex)
-    expected[:bins] = free * wiener
-    assert np.allclose(found.signal, np.fft.irfft(expected, SAMPLES), atol=1e-6)
-
-
 def repeat(folder, forces, noise=LOUD):
     """Return an objective with a run, its repeat and a third run, and the nominal rig; forces act on the frame."""
     floor = np.random.default_rng(4).standard_normal(SKIP + SAMPLES)
@@ -168,18 +131,10 @@ def repeat(folder, forces, noise=LOUD):
     return objective, objective.evaluate([Parameters(objective.problem.nominal)])[0]
 
 
-@pytest.mark.usefixtures("gains")
-def test_the_filter_of_a_nonrepeatable_force_is_its_formula(folder):
+def test_a_force_by_which_a_run_and_its_repeat_differ_is_half_of_the_difference_in_power(folder):
     forces = {"first": slow_force(SAMPLES, 5.0, 1), "again": slow_force(SAMPLES, 5.0, 2)}
-    objective, nominal = repeat(folder, forces, 0.05)
-    rig = reconstruct(objective, place(objective.problem), "again", PORTS["suspension"])
-    gain = np.array([size * a for size, (a, _) in zip(SIZES, TAPS["frame force"], strict=False)])[:3, None]
-    response, bins = objective.weights.weights["again"] * gain, objective.weights.bins["again"]
-    difference = (objective.problem.measured["first"] - objective.problem.measured["again"]) / np.sqrt(2.0)
-    whitened = objective.weights.weights["again"] * np.fft.rfft(difference)[:, :bins]
-    size = np.sum(response**2, axis=0)
-    spectrum = np.sum(response * whitened, axis=0) / (size + 2.0 / rig.plausible_power())
-    spectrum *= 1.2 * np.maximum(0.0, 1.0 - 2.0 / (size * measure_power(spectrum, 0.15)))
-    expected = np.fft.irfft(spectrum, SAMPLES)
-    assert np.std(expected) > 1.0
-    assert np.allclose(estimate_nonrepeatable_force(objective, nominal)["first"], expected, atol=1e-6)
+    found = estimate_nonrepeatable_force(*repeat(folder, forces))["first"]
+    expected = (forces["first"] - forces["again"]) / np.sqrt(2.0)
+    assert np.corrcoef(found, expected)[0, 1] > 0.99
+    # What the filter takes off is given back by the factor `regained` of 1.2.
+    assert 1.0 < np.std(found) / np.std(expected) < 1.3

@@ -72,9 +72,15 @@ def test_what_its_owner_accepts_is_a_note_and_the_later_checks_are_made(copy):
 
 
 @pytest.mark.parametrize("name", FAULTS)
-def test_a_refusal_names_the_check_that_may_be_overruled(copy, name):
-    rewrite(copy, FAULTS[name][0])
-    for issue in examine(load_recording(copy)).errors:
+def test_a_fault_is_refused_in_one_sentence_that_names_it_and_the_check_that_may_be_overruled(copy, name):
+    fault, channel, words = FAULTS[name]
+    rewrite(copy, fault)
+    examination = examine(load_recording(copy))
+    with pytest.raises(InputError) as refused:
+        refuse(examination)
+    assert words in str(refused.value) and "\n" not in str(refused.value)
+    assert channel is None or channel in str(refused.value)
+    for issue in examination.errors:
         assert issue.kind == "unreadable" or f"write accept: [{issue.kind}]" in issue.sentence
         assert issue.kind == "unreadable" or issue.kind in get_args(Refusal)
 
