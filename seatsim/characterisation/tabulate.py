@@ -29,6 +29,8 @@ WINDOW = 0.1
 """Part of the stroke about its middle over which the force at the peak speed is averaged."""
 _SAME_CURRENT, _SMALLEST_CURRENT = 0.02, 0.005
 """Relative difference, and difference in A, of currents that are the same."""
+_FAR = 0.4
+"""Largest distance from mid-stroke, over the stroke, at which reversals are far."""
 _SETTLED = 0.05
 """Half width of the band, over the change of force, within which a response has settled."""
 
@@ -54,7 +56,7 @@ def make_sheet(rows: Sequence[Row], responses: Iterable[Response], window: float
     return BenchSheet(
         peak_forces=peaks,
         response=[_describe_step(each) for each in responses if each.time is not None and each.share is not None],
-        gas_force=[_measure_gas(group[0], peak) for group, peak in slow],
+        gas_force=[_measure_gas(group, peak) for group, peak in slow],
         friction=[Friction(*peak[:3], 0.5 * (peak.rebound - peak.compression)) for _, peak in slow],
         dynamic_range=[_divide(peak, ladder[0]) for ladder in ladders for peak in ladder[-1:]],
         linearity=[_place(peak, ladder[0], ladder[-1]) for ladder in ladders for peak in ladder],
@@ -81,14 +83,20 @@ def _average(loop: SineTest, window: float) -> tuple[float, float]:
     return rebound, compression
 
 
-def _measure_gas(row: Row, peak: PeakForce) -> SlowForce:
-    """Return the gas force of a slow test, with its slope where reversals are far: what both directions share there."""
-    assert row.loop is not None
-    x = row.loop.displacement - 0.5 * (np.max(row.loop.displacement) + np.min(row.loop.displacement))
-    near = np.abs(x) <= 0.25 * np.ptp(x)
-    shares = np.column_stack([x, np.ones(len(x)), np.sign(row.loop.velocity)])[near]
-    (stiffness, *_), *_ = np.linalg.lstsq(shares, row.loop.force[near], rcond=None)
-    return SlowForce(*peak[:3], 0.5 * (peak.rebound + peak.compression), float(stiffness))
+def _measure_gas(rows: Sequence[Row], peak: PeakForce) -> SlowForce:
+    """Return the gas force of slow tests, with its slope where reversals are far: what both directions share there."""
+    stiffness = float(np.mean([_measure_slope(row.loop) for row in rows if row.loop is not None]))
+    return SlowForce(*peak[:3], 0.5 * (peak.rebound + peak.compression), stiffness)
+
+
+def _measure_slope(loop: SineTest) -> float:
+    """Return the slope over the stroke of the mean of both directions, at the same places of either."""
+    x, order = loop.displacement, np.argsort(loop.displacement)
+    half = _FAR * float(np.ptp(x))
+    grid = 0.5 * (np.max(x) + np.min(x)) + np.linspace(-half, half, len(x) // 2)
+    ways = (order[sign * loop.velocity[order] > 0.0] for sign in (1.0, -1.0))
+    both = np.mean([np.interp(grid, x[way], loop.force[way]) for way in ways], axis=0)
+    return float(np.polyfit(grid - grid[0], both, 1)[0])
 
 
 def _forces(peak: PeakForce) -> tuple[float, float, float]:
