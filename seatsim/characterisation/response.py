@@ -103,7 +103,7 @@ def resample_loops(record: BenchRecord, cycles: Sequence[Cycle]) -> list[SineTes
     least, most = _SAMPLES
     length = float(np.median([cycle.length for cycle in cycles]))
     samples = min(most, max(least, 2 * round(0.5 * length)))
-    rows, drift = np.arange(len(record.force)), find_drift(record, cycles)
+    rows, drift = np.arange(len(record.force), dtype=float), find_drift(record, cycles)
     width = 2 * int(0.5 * length / samples) + 1
     parts = [uniform_filter1d(y, width) for y in (record.displacement, record.velocity, record.force)]
     loops = []
