@@ -93,17 +93,34 @@ def select_steady_cycles(cycles: Sequence[Cycle]) -> list[Cycle]:
 
 
 def resample_loops(record: BenchRecord, cycles: Sequence[Cycle]) -> list[SineTest]:
-    """Return cycles of a record as loops of equally many samples, both ends included, by linear interpolation."""
+    """Return cycles of a record as loops of equally many samples, both ends included, by linear interpolation.
+
+    A sample is the mean of the rows that it stands for, and the slope of a drifting zero (`find_drift`) is taken from
+    the force of each loop about its middle, so that the loop closes.
+    """
+    from scipy.ndimage import uniform_filter1d
+
     least, most = _SAMPLES
     length = float(np.median([cycle.length for cycle in cycles]))
     samples = min(most, max(least, 2 * round(0.5 * length)))
-    rows = np.arange(len(record.force))
+    rows, drift = np.arange(len(record.force), dtype=float), find_drift(record, cycles)
+    width = 2 * int(0.5 * length / samples) + 1
+    parts = [uniform_filter1d(y, width) for y in (record.displacement, record.velocity, record.force)]
     loops = []
     for cycle in cycles:
         at = np.linspace(cycle.first, cycle.last, samples + 1)
-        x, v, force = (np.interp(at, rows, y) for y in (record.displacement, record.velocity, record.force))
-        loops.append(SineTest((at - cycle.first) / record.rate, x, v, force))
+        x, v, force = (np.interp(at, rows, y) for y in parts)
+        time = (at - cycle.first) / record.rate
+        loops.append(SineTest(time, x, v, force - drift * (time - 0.5 * time[-1])))
     return loops
+
+
+def find_drift(record: BenchRecord, cycles: Sequence[Cycle]) -> float:
+    """Return the slope in N/s of the mean forces of cycles over time, 0 for a single cycle."""
+    if len(cycles) < 2:
+        return 0.0
+    middles = [0.5 * (cycle.first + cycle.last) / record.rate for cycle in cycles]
+    return float(np.polyfit(middles, [np.mean(record.force[cycle.rows]) for cycle in cycles], 1)[0])
 
 
 def average_loops(loops: Sequence[SineTest]) -> SineTest:

@@ -3,15 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Annotated, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from seatsim.characterisation.response import Cycle, average_loops, find_cycles, resample_loops, select_steady_cycles
+from seatsim.characterisation.response import (
+    Cycle,
+    average_loops,
+    find_cycles,
+    find_drift,
+    resample_loops,
+    select_steady_cycles,
+)
 from seatsim.metrics.motion import rms
 from seatsim.recordings.bench_tables import BenchRecord
+from seatsim.recordings.quality.damage import Doubter, doubt_dropouts, flat_tops, plateaus
 from seatsim.schema.arrays import Array
 from seatsim.schema.content import Form, IfAny, Unwritten, to_content
 from seatsim.simulation.damper_bench import SineTest
@@ -25,6 +33,8 @@ _DRIFT = 0.1
 """Change of the energy over the cycles from which on a note says so, relative to its mean."""
 _UNEVEN = 0.05
 """Asymmetric part of the motion itself, RMS over that of the motion, from which on a note says so."""
+_WANDERS = 0.02
+"""Change of the mean force over the cycles from which on a note says so, over half the range of the force."""
 _VARIES = 0.05
 """Range of a current, over its largest, from which on a note says so."""
 WARMER = 4.0
@@ -151,7 +161,7 @@ def summarise_record(record: BenchRecord) -> Row:
     if not steady:
         return summarise_aperiodic_record(record, found)
     loops = resample_loops(record, steady)
-    notes = [*_of_current(record), *_of_loops(loops), *_of_sign(record)]
+    notes = [*_of_damage(record), *_of_current(record), *_of_loops(loops), *_of_zero(record, steady), *_of_sign(record)]
     if min(cycle.length for cycle in steady) < _COARSE:
         notes.append(f"fewer than {_COARSE} rows a cycle: peaks and areas are coarse")
     return summarise_loops(
@@ -176,7 +186,7 @@ def summarise_aperiodic_record(record: BenchRecord, found: Sequence[Cycle]) -> R
         amplitude=0.5 * float(np.ptp(record.displacement)), peak_speed=float(np.max(np.abs(record.velocity))),
         peak_rebound=float(np.max(record.force)), peak_compression=float(np.min(record.force)),
         offset=float(np.mean(record.force)), force_rms=rms(record.force), cloud=cloud,
-        notes=(_motion(record, found), *_of_current(record), *_of_sign(record)),
+        notes=(_motion(record, found), *_of_damage(record), *_of_current(record), *_of_sign(record)),
     )  # fmt: skip
 
 
@@ -186,6 +196,24 @@ def _motion(record: BenchRecord, found: Sequence[Cycle]) -> str:
     low, high = np.percentile([record.rate / cycle.length for cycle in found], (5, 95))
     small, large = 1e3 * np.percentile([cycle.amplitude for cycle in found], (5, 95))
     return f"not cyclic: {len(found)} cycles, {low:.2g} to {high:.2g} Hz, {small:.2g} to {large:.2g} mm"
+
+
+def _of_damage(record: BenchRecord) -> Iterator[str]:
+    """Yield where force or displacement is clipped or drops out."""
+    for name in ("force", "displacement"):
+        values = getattr(record, name)
+        if not np.ptp(values):
+            continue
+        for extreme, rows in flat_tops(values):
+            yield f"{name}: {rows} rows stand at its extreme {extreme:.5g}; it is clipped"
+        for issue in doubt_dropouts(Doubter(name, record.rate), values, *plateaus(values)):
+            yield issue.sentence
+
+
+def _of_zero(record: BenchRecord, cycles: Sequence[Cycle]) -> list[str]:
+    moved = find_drift(record, cycles) * (cycles[-1].first - cycles[0].first) / record.rate
+    large = abs(moved) > _WANDERS * 0.5 * float(np.ptp(record.force))
+    return [f"the mean force drifts by {moved:+.3g} N over the cycles: a drifting zero, or a gas that warms"] * large
 
 
 def _of_current(record: BenchRecord) -> list[str]:

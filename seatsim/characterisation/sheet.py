@@ -54,7 +54,7 @@ class StepResponse(NamedTuple):
 
 
 class SlowForce(NamedTuple):
-    """Mean of both directions at mid-stroke, and its slope over the middle half of the stroke, of the slowest test."""
+    """Mean of both directions at mid-stroke, and its slope over the middle 80 %, of the slowest test."""
 
     current: _Current
     temperature: _Warmth

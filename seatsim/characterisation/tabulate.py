@@ -29,8 +29,8 @@ WINDOW = 0.1
 """Part of the stroke about its middle over which the force at the peak speed is averaged."""
 _SAME_CURRENT, _SMALLEST_CURRENT = 0.02, 0.005
 """Relative difference, and difference in A, of currents that are the same."""
-_FAR = 0.7
-"""Share of the amplitude within which a slow test is far from its reversals."""
+_FAR = 0.4
+"""Largest distance from mid-stroke, over the stroke, at which reversals are far."""
 _SETTLED = 0.05
 """Half width of the band, over the change of force, within which a response has settled."""
 
@@ -41,7 +41,6 @@ def make_sheet(rows: Sequence[Row], responses: Iterable[Response], window: float
     With F+ and F- the means of the force in rebound and compression over `window` of the stroke about its middle,
 
         gas force = (F+ + F-) / 2,         friction = (F+ - F-) / 2                         of the slowest test,
-        gas stiffness = dF / dx            that the slowest tests of all currents share, far from reversals,
         dynamic range = F_hard / F_soft,   linearity = (F - F_soft) / (F_hard - F_soft)     at one speed
 
     Rows of one current, temperature, amplitude and frequency are repeats. A fade is a straight line over temperatures.
@@ -57,7 +56,7 @@ def make_sheet(rows: Sequence[Row], responses: Iterable[Response], window: float
     return BenchSheet(
         peak_forces=peaks,
         response=[_describe_step(each) for each in responses if each.time is not None and each.share is not None],
-        gas_force=[SlowForce(*peak[:3], _mean(peak), _measure_stiffness(peak.temperature, slow)) for _, peak in slow],
+        gas_force=[_measure_gas(group, peak) for group, peak in slow],
         friction=[Friction(*peak[:3], 0.5 * (peak.rebound - peak.compression)) for _, peak in slow],
         dynamic_range=[_divide(peak, ladder[0]) for ladder in ladders for peak in ladder[-1:]],
         linearity=[_place(peak, ladder[0], ladder[-1]) for ladder in ladders for peak in ladder],
@@ -84,27 +83,20 @@ def _average(loop: SineTest, window: float) -> tuple[float, float]:
     return rebound, compression
 
 
-def _measure_stiffness(temperature: float, slow: Iterable[tuple[Sequence[Row], PeakForce]]) -> float:
-    """Return the mean slope of the force over the stroke in slow tests at a temperature, whatever their current."""
-    alike = (rows for rows, peak in slow if _as_warm(peak.temperature, temperature))
-    return float(np.mean([_find_slope(row.loop) for rows in alike for row in rows if row.loop is not None]))
+def _measure_gas(rows: Sequence[Row], peak: PeakForce) -> SlowForce:
+    """Return the gas force of slow tests, with its slope where reversals are far: what both directions share there."""
+    stiffness = float(np.mean([_measure_slope(row.loop) for row in rows if row.loop is not None]))
+    return SlowForce(*peak[:3], 0.5 * (peak.rebound + peak.compression), stiffness)
 
 
-def _find_slope(loop: SineTest) -> float:
-    """Return the slope of the force over the stroke that both directions share, beside a zero that drifts.
-
-    It is fitted within `_FAR` of the middle: what a damper forgets after a reversal is forgotten there, and a force
-    that depends on speed is as large before the middle as after it.
-    """
-    x = loop.displacement - 0.5 * (np.max(loop.displacement) + np.min(loop.displacement))
-    near = np.abs(x) <= _FAR * np.max(x)
-    shares = np.column_stack([x, np.sign(loop.velocity), np.ones(len(x)), loop.time])[near]
-    (slope, *_), *_ = np.linalg.lstsq(shares, loop.force[near], rcond=None)
-    return float(slope)
-
-
-def _mean(peak: PeakForce) -> float:
-    return 0.5 * (peak.rebound + peak.compression)
+def _measure_slope(loop: SineTest) -> float:
+    """Return the slope over the stroke of the mean of both directions, at the same places of either."""
+    x, order = loop.displacement, np.argsort(loop.displacement)
+    half = _FAR * float(np.ptp(x))
+    grid = 0.5 * (np.max(x) + np.min(x)) + np.linspace(-half, half, len(x) // 2)
+    ways = (order[sign * loop.velocity[order] > 0.0] for sign in (1.0, -1.0))
+    both = np.mean([np.interp(grid, x[way], loop.force[way]) for way in ways], axis=0)
+    return float(np.polyfit(grid - grid[0], both, 1)[0])
 
 
 def _forces(peak: PeakForce) -> tuple[float, float, float]:

@@ -18,8 +18,8 @@ from seatsim.report.blocks import Block, Code, Report, Section, Text, show_pictu
 from seatsim.report.composing import Closing, compose
 from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs
 from seatsim.report.formatting import format_quantity
+from seatsim.schema.columns import head_columns
 from seatsim.schema.content import list_written
-from seatsim.schema.fields import describe
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -134,11 +134,8 @@ def _tabulate_sheet(sheet: BenchSheet, names: Sequence[str]) -> list[Block]:
     tables, blocks = list_tables(sheet), list[Block]()
     for name in names:
         record, rows = tables[name]
-        units = {field.name: format_unit(field.unit) for field in describe(record)}
-        written = list_written(record)
-        head = [f"{each.key.replace('_', ' ')} [{units[each.name]}]" if units[each.name] else each.key.replace("_", " ")
-                for each in written]  # fmt: skip
-        lines = [[_say(getattr(row, each.name)) for each in written] for row in rows[:MOST_ROWS]]
+        head = [text.replace("_", " ") for text in head_columns(record, format_unit)]
+        lines = [[_say(getattr(row, each.name)) for each in list_written(record)] for row in rows[:MOST_ROWS]]
         more = f"; {len(rows) - MOST_ROWS} more in characterisation.xlsx" if len(rows) > MOST_ROWS else ""
         blocks += tabulate(f"{_CAPTIONS.get(name, 'Worst figure against each limit')}{more}", head, lines)
     return blocks

@@ -87,3 +87,19 @@ def test_measured_sines(shared):
     assert all(20.0 < row.offset < 60.0 for row in found.rows)
     swept = characterise(load_bench(shared / "data" / "utfsm_mr_chirp"), "chirps")
     assert all(row.cycles == 0 for row in swept.rows)
+
+
+def test_a_damaged_record_is_named_and_a_drifting_zero_bends_no_loop(record, sine):
+    motion, seconds = sine(0.015, 1.0)
+    made = record(motion, seconds, lambda t: 0.5 + 0.0 * t, FRICTION, noise=2.0)
+    clean = summarise_record(made)
+    assert clean.notes == ()
+    top = 0.8 * np.max(made.force)
+    assert "force: " in (note := summarise_record(made._replace(force=np.minimum(made.force, top))).notes[0])
+    assert "it is clipped" in note
+    lost = made.force.copy()
+    lost[3000:3100] = 0.0
+    assert "a dropout" in summarise_record(made._replace(force=lost)).notes[0]
+    drifting = summarise_record(made._replace(force=made.force + 10.0 * made.time))
+    assert "the mean force drifts by +" in drifting.notes[0]
+    assert drifting.energy == pytest.approx(clean.energy, rel=1e-3)

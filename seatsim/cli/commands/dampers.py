@@ -63,7 +63,11 @@ def characterise(
         raise InputError("characterise either DATA, or a model by --model or --parameters with its tests; see --help")
     if data is not None:
         specimen = load_specimen(None, beside) if beside else None
-        found = of_records(load_bench(data, pattern or NAMED), _title(data), data.resolve().name, window)
+        with show_progress() as progress:
+            progress("reading the tables")
+            records = load_bench(data, pattern or NAMED)
+            progress(f"characterising {len(records)} records")
+            found = of_records(records, _title(data), data.resolve().name, window)
         if specimen:
             found = found.set_beside(model_peaks(specimen, found.rows, window))
     elif beside or pattern:

@@ -10,8 +10,8 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
+from seatsim.schema.columns import head_columns
 from seatsim.schema.content import list_written
-from seatsim.schema.fields import describe
 from seatsim.schema.files import write_whole
 from seatsim.schema.text import disarm
 
@@ -35,7 +35,7 @@ def _write(tables: _Tables, path: Path) -> None:
     book.remove(book.active)
     for name, (record, rows) in tables.items():
         sheet = book.create_sheet(name)
-        sheet.append(_head(record))
+        sheet.append(head_columns(record))
         for row in rows:
             sheet.append([_cell(getattr(row, field.name)) for field in list_written(record)])
         sheet.freeze_panes = "A2"
@@ -46,12 +46,6 @@ def _write(tables: _Tables, path: Path) -> None:
             if part == _PROPERTIES:
                 content = _INSTANT.sub(_NO_INSTANT, content)
             target.writestr(zipfile.ZipInfo(part), content, zipfile.ZIP_DEFLATED)
-
-
-def _head(record: type) -> list[str]:
-    """Return the name of each column with its unit."""
-    units = {field.name: field.unit for field in describe(record)}
-    return [f"{field.key} [{units[field.name]}]" if units[field.name] else field.key for field in list_written(record)]
 
 
 def _cell(value: object) -> object:
