@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from seatsim.cosimulation.damper import FmuDamper
-from seatsim.cosimulation.description import CO_SIMULATION, UnitDescription, describe_unit, need_fmpy, unpack
-from seatsim.cosimulation.running import IntegratedUnit, RunningUnit
+from seatsim.cosimulation.description import UnitDescription, describe_unit, need_fmpy, unpack
+from seatsim.cosimulation.running import RunningUnit
 from seatsim.schema.errors import InputError
 from seatsim.schema.modules import check_in_use
 
@@ -46,7 +46,7 @@ def run_unit(damper: FmuDamper) -> Iterator[RunningUnit]:
         _try_to_load(path, folder, library)
         instance = load_unit(path, unit, folder, library, told)
         try:
-            running = (RunningUnit if unit.kind == CO_SIMULATION else IntegratedUnit)(damper, unit, instance, told)
+            running = RunningUnit(damper, unit, instance, told)
             yield running
             running.end()
         finally:
@@ -62,7 +62,7 @@ def load_unit(path: Path, unit: UnitDescription, folder: Path, library: Path, to
     """
     try:
         return need_fmpy().instantiate_fmu(
-            str(folder), unit.described, unit.kind, logger=_logger(told), library_path=str(library)
+            str(folder), unit.described, "CoSimulation", logger=_logger(told), library_path=str(library)
         )
     except Exception as error:  # FMPy raises plain exceptions
         said = "; ".join(told[-3:]) or str(error).strip().split("\n")[0]
