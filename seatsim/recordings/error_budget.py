@@ -55,10 +55,16 @@ def budget_errors(scenario: Scenario, recording: Recording, run: str, channels: 
     numerical = measure_step_error(scenario, recording, table)
     carried = carry_input_noise(scenario, recording, table)
     return [
-        _divide(name, recording.channels[name].unit, rms(measured[name] - simulated[name]), numerical[name],
-                carried[name], recording.channels[name].noise_rms)
+        _divide(
+            name,
+            recording.channels[name].unit,
+            rms(measured[name] - simulated[name]),
+            numerical[name],
+            carried[name],
+            recording.channels[name].noise_rms,
+        )
         for name in channels
-    ]  # fmt: skip
+    ]
 
 
 def _divide(channel: str, unit: str, error: float, numerical: float, inputs: float, data: float) -> ErrorBudget:

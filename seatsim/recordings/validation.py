@@ -59,10 +59,12 @@ def validate(
     squares, rows = [], []
     for run in runs:
         tolerated = _carry_tolerances(scenario, recording, run)
-        squares.append([
-            (each.comparison_error**2, each.u_num**2, each.u_input**2 + tolerated[each.channel], each.u_d**2)
-            for each in budget_errors(scenario, recording, run, channels)
-        ])  # fmt: skip
+        squares.append(
+            [
+                (each.comparison_error**2, each.u_num**2, each.u_input**2 + tolerated[each.channel], each.u_d**2)
+                for each in budget_errors(scenario, recording, run, channels)
+            ]
+        )
         measured = select_compared(recording.table(run), recording.header.rig, recording.header.sample_rate)
         rows.append(len(measured[channels[0]]))
     pooled = np.sqrt(np.average(squares, axis=0, weights=rows))
