@@ -123,10 +123,13 @@ def _seat(plant: Plant, measures: Sequence[Measure]) -> LinearSystem:
     frame, at_once = s.A[1:2], np.array([[0.0, float(s.B2[1, 0])]])
     driver, nothing = s.C1[1:2], np.zeros((1, 2))
     paths = {
-        "displacement": (s.C2[:1], nothing), "velocity": (s.C2[1:], nothing),
-        "frame_velocity": (frame, at_once), "frame_acceleration": (frame, at_once),
-        "driver_velocity": (driver, nothing), "driver_acceleration": (driver, nothing),
-    }  # fmt: skip
+        "displacement": (s.C2[:1], nothing),
+        "velocity": (s.C2[1:], nothing),
+        "frame_velocity": (frame, at_once),
+        "frame_acceleration": (frame, at_once),
+        "driver_velocity": (driver, nothing),
+        "driver_acceleration": (driver, nothing),
+    }
     measured = [paths[measure] for measure in measures]
     C, D = (np.vstack(parts) for parts in zip((s.C1, np.zeros((2, 2))), *measured, strict=True))
     seat = LinearSystem(s.A, np.hstack([s.B1, s.B2]), C, D)

@@ -13,8 +13,8 @@ import numpy as np
 from pydantic import Field
 from scipy.signal import lsim
 
-from controllers.analysis.margins import compute_margins
 from controllers.linear_systems import LinearSystem
+from controllers.margins import compute_margins
 from controllers.seat_plant import TRAVEL_AND_RATE, ActuatorLag, Measure, Weights, build_generalised_plant
 from controllers.shaping_filter import ShapingFilter, fit_shaping_filter
 from seatsim.rig.coil import Coil

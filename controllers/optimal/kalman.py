@@ -8,7 +8,7 @@ import numpy as np
 from scipy.linalg import expm, solve_discrete_are
 
 from controllers.linear_systems import zero_order_hold
-from controllers.optimal.riccati import solving
+from controllers.optimal.regulator import solving
 from seatsim.compilation.jit import jit
 from seatsim.rig.control import Measurement, State
 from seatsim.rig.plant import Plant, PlantMatrices, state_space

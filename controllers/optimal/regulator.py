@@ -1,15 +1,35 @@
-"""Linear-quadratic regulator: full state feedback that trades the driver's acceleration against travel and force."""
+"""Linear-quadratic regulator: full state feedback that trades the driver's acceleration against travel and force.
+
+A Riccati equation that has no solution in double precision is one clear error.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from controllers.optimal.riccati import solving
 from seatsim.rig.control import State
 from seatsim.rig.plant import Plant, state_space
+from seatsim.schema.errors import SynthesisError
 from seatsim.schema.fields import param
+
+
+@contextmanager
+def solving(what: str) -> Iterator[None]:
+    """Raise SynthesisError where the equation of `what`, which is solved meanwhile, has no solution in numbers.
+
+    Its weights, or its noise, then lie so many orders of magnitude apart that an eigenvalue is lost in rounding.
+    """
+    try:
+        yield
+    except (np.linalg.LinAlgError, ValueError) as error:
+        raise SynthesisError(
+            f"the Riccati equation of the {what} has no solution in numbers ({error}); choose values of its weights or"
+            " of its noise that are less far apart"
+        ) from error
 
 
 class QuadraticWeights(NamedTuple):

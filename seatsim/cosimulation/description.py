@@ -139,14 +139,10 @@ _SETTABLE = {"Real": float, "Float64": float, "Integer": int, "Int32": int, "Boo
 """Types of parameters that a scenario may state."""
 
 
-CO_SIMULATION, _MODEL_EXCHANGE = "CoSimulation", "ModelExchange"
-
-
 class UnitDescription(NamedTuple):
-    """Version of the standard, kind, identifier in C, variables by name, whether a state can be saved and restored."""
+    """Version of the standard, identifier in C, variables by name, whether a state can be saved and restored."""
 
     version: int
-    kind: str
     identifier: str
     described: ModelDescription
     variables: Mapping[str, ScalarVariable]
@@ -166,11 +162,11 @@ def need_fmpy() -> ModuleType:
 
 
 def describe_unit(path: Path) -> UnitDescription:
-    """Return what a unit says of itself; of one that is for both kinds, as a unit for co-simulation.
+    """Return what a unit for co-simulation says of itself.
 
     Raises:
         InputError: the archive is not one of a unit, its description cannot be read, it is of a version or kind that
-            cannot be stepped, or it has no library for this machine.
+            does not step itself, or it has no library for this machine.
     """
     need_fmpy()
     from fmpy.model_description import read_model_description
@@ -187,15 +183,14 @@ def describe_unit(path: Path) -> UnitDescription:
         except Exception as error:  # lxml's and FMPy's own errors have no common class
             said = str(error).strip().split("\n")[0]
             raise InputError(f"{path}: its description cannot be read: {said}") from error
-        model = described.coSimulation or described.modelExchange
+        model = described.coSimulation
         if model is None:
-            raise InputError(f"{path}: is neither for co-simulation nor for model exchange, as a damper must be")
-        kind = CO_SIMULATION if described.coSimulation else _MODEL_EXCHANGE
+            raise InputError(f"{path}: is not for co-simulation, as a damper must be")
         identifier = str(model.modelIdentifier)
         find_library(path, archive, version, identifier)
     saves = getattr(model, "canGetAndSetFMUstate", False) or getattr(model, "canGetAndSetFMUState", False)
     variables = {v.name: v for v in described.modelVariables}
-    return UnitDescription(version, kind, identifier, described, variables, bool(saves))
+    return UnitDescription(version, identifier, described, variables, bool(saves))
 
 
 def _alone(text: bytes) -> io.BytesIO:

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Annotated, Literal, NamedTuple
 
-from seatsim.recordings.error_budget import ErrorBudget
 from seatsim.recordings.gap import GapFigures
 from seatsim.recordings.model_error import ModelError
+from seatsim.recordings.validation import ErrorBudget
 from seatsim.schema.arrays import Array
 from seatsim.schema.content import Form, IfAny, Unwritten, show_record
 

@@ -33,8 +33,8 @@ from seatsim.diagnosis.validate import (
     shrink_by_run,
     state_model_error,
 )
-from seatsim.recordings.error_budget import budget_errors
 from seatsim.recordings.quality.coverage import measure_coverage
+from seatsim.recordings.validation import budget_errors
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import RunError
 

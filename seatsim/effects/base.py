@@ -60,9 +60,9 @@ _R = TypeVar("_R", bound=Record)
 _Values = Mapping[str, float]
 
 ON_DAMPER = (
-    "part_scaling", "transmitted_share", "mount_force", "mount_stiffness", "yield_current", "yield_speed",
-    "yield_shape", "yield_force", "added_force", "stiction",
-)  # fmt: skip
+    *("part_scaling", "transmitted_share", "mount_force", "mount_stiffness", "yield_current"),
+    *("yield_speed", "yield_shape", "yield_force", "added_force", "stiction"),
+)
 """Hooks of the time loop by which an effect acts on the damper."""
 ON_SEAT = ("suspension_force", "linkage_friction", "cushion_force", "inner_mass", "inner_force")
 """Hooks of the time loop by which an effect acts on suspension, cushion or driver."""

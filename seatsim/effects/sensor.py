@@ -13,9 +13,14 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.fields import param
 
 _ChannelName = Literal[
-    "floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement", "displacement",
-    "damper_force", "coil_current",
-]  # fmt: skip
+    "floor_acceleration",
+    "frame_acceleration",
+    "driver_acceleration",
+    "suspension_displacement",
+    "displacement",
+    "damper_force",
+    "coil_current",
+]
 _ChannelField = Annotated[_ChannelName, Field(description="the recorded channel that is wrong")]
 _SCALES = {"damper_force": 100.0, "coil_current": 0.1, "suspension_displacement": 0.01, "displacement": 0.01}
 """Scale of a channel in its unit, about a tenth of its range on a shaken seat; 1 m/s^2 for an acceleration."""

@@ -11,20 +11,17 @@ import numpy as np
 
 from seatsim.importing.alignment import HELD, Channel, describe_offset, estimate_offset, hold, resample
 from seatsim.importing.channels import SHORTEST_RUN, Clocked, clock_groups, make_channel, no_column, split_at_gaps
-from seatsim.importing.doubts import doubt_channel, doubt_distance
 from seatsim.importing.import_map import ImportMap
-from seatsim.importing.signals import LISTED, DataFile
+from seatsim.importing.signals import DataFile
 from seatsim.recordings.quality.issue import Issue, place_in_run
 from seatsim.recordings.quality.relations import doubt_relations
 from seatsim.recordings.recording import CHANNELS
 from seatsim.schema.arrays import Array
-from seatsim.schema.errors import InputError, nearest
-from seatsim.schema.text import name_some
-from seatsim.schema.units import DIMENSIONS, conversion
+from seatsim.schema.errors import InputError
+from seatsim.schema.units import conversion
 
 _SAME_RATE = 1e-4
 """Fraction by which rates differ that are one rate by the clocks of two loggers: nothing is said of it."""
-DISTANCE = "distance_m"
 
 
 class Run(NamedTuple):
@@ -177,44 +174,3 @@ def _align(used: _Used, align: dict[str, float], notes: list[str]) -> dict[str, 
                 align[label] = found.seconds
         moved[label] = align.get(label, 0.0)
     return moved
-
-
-def assemble_road(files: Sequence[DataFile], stated: ImportMap) -> tuple[dict[str, Array], list[Issue]]:
-    """Return the distance and the tracks that are measured over the whole length, in m, with doubts about them.
-
-    Raises:
-        InputError: there are several files, a column is missing, or no track is complete.
-    """
-    if len(files) > 1:
-        raise InputError(f"{files[1].path}: a road is imported from one file; import the others by themselves")
-    if stated.distance is None:
-        raise InputError(f"{files[0].path}: the map of a road needs distance: {{column: ..., unit: m}}")
-    along = _column(files[0], stated.distance.column, stated.distance.unit, "distance")
-    doubts = list(doubt_distance(along, stated.distance.column))
-    road = {DISTANCE: along}
-    left_out = []
-    for name, entry in stated.channels.items():
-        column = _column(files[0], entry.column or "", entry.unit or "", f"channels.{name}")
-        values = entry.sign * entry.scale * column + entry.offset
-        doubts += doubt_channel(name, values, None, "elevation")
-        if np.isfinite(values).all():
-            road[name] = values - float(np.mean(values)) if entry.remove_mean else values
-        else:
-            left_out.append(name)
-    if len(road) < 2:
-        raise InputError(f"{files[0].path}: {doubts[-1].sentence}; no track is measured over the whole length")
-    if left_out:
-        text = f"tracks that are not measured over the whole length are left out: {name_some(left_out, LISTED)}"
-        doubts.append(Issue("note", "missing", text))
-    return road, doubts
-
-
-def _column(file: DataFile, name: str, unit: str, key: str) -> Array:
-    """Return a column in m."""
-    for group in file.groups:
-        signal = group.find(name)
-        if signal is not None:
-            return conversion(unit or signal.unit or "m", DIMENSIONS["length"]).factor * signal.values
-    names = [signal.name for group in file.groups for signal in group.signals]
-    listed = name_some(names, LISTED)
-    raise InputError(f"{file.path}: {key}: no column '{name}'{nearest(name, names)}; columns are {listed}")

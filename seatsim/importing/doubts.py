@@ -40,8 +40,6 @@ _SWITCHED = ("current", "voltage")
 """Quantities that rest and jump by themselves."""
 _SLOWEST, _FASTEST = 5.0, 200_000.0
 """Hz; rates of loggers of vibration lie between."""
-_COARSE_ROAD = 0.1
-"""m; distance of rows above which a tyre feels waves that a road does not hold."""
 
 
 def doubt_channel(channel: str, raw: Array, rate: float | None, quantity: str | None) -> Iterator[Issue]:
@@ -167,13 +165,3 @@ def _say_rounded(axis: Axis) -> str:
     if axis.is_even:
         return f"{steps}; the rate is estimated as {axis.rate:.6g} Hz: state it by sample_rate in the map, or by --rate"
     return f"{steps}, and the rows are not even by them; state the rate by sample_rate in the map, or by --rate"
-
-
-def doubt_distance(along: Array, channel: str) -> Iterator[Issue]:
-    """Yield what the rows of a road cannot show."""
-    step = float(np.median(np.diff(along)))
-    if step > _COARSE_ROAD:
-        text = f"{channel}: rows are {step:.3g} m apart; waves shorter than {2.0 * step:.3g} m are missing"
-        yield Issue("note", "coarse", text, channel)
-    if np.ptp(np.diff(along)) > 0.01 * step:
-        yield Issue("warning", "uneven", f"{channel}: rows are not evenly spaced along the road", channel)

@@ -18,7 +18,7 @@ from seatsim.schema.validation import build, check_keys, is_finite_number, mappi
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import dump
 
-Rig = Literal["seat", "damper_bench", "road"]
+Rig = Literal["seat", "damper_bench"]
 Gaps = Literal["split", "fill"]
 _AS_FOUND = TextLayout()
 """Layout of a text table that is left to be found."""
@@ -52,7 +52,7 @@ class ChannelMap(NamedTuple):
 
 
 class AxisMap(NamedTuple):
-    """The column that rows are counted along: the time, or the distance of a road."""
+    """The column of time."""
 
     column: str
     unit: str = ""
@@ -75,7 +75,7 @@ class _Numbers(NamedTuple):
     gaps: Gaps | None = None
 
 
-_RECORDS: dict[str, type[Any]] = {"time": AxisMap, "distance": AxisMap, "csv": TextLayout, "actuator": _Actuator}
+_RECORDS: dict[str, type[Any]] = {"time": AxisMap, "csv": TextLayout, "actuator": _Actuator}
 """Records of a map by their key."""
 
 
@@ -91,7 +91,6 @@ class ImportMap:
     rig: Rig = "seat"
     time: AxisMap | None = None
     sample_rate: float | None = None
-    distance: AxisMap | None = None
     csv: TextLayout = _AS_FOUND
     resample: float | None = None
     runs: dict[str, list[str]] = field(default_factory=dict)
@@ -112,11 +111,12 @@ def read_map(path: Path) -> ImportMap:
     data = source.data
     check_keys(data, [each.name for each in fields(ImportMap) if each.name != "comments"], source, ())
     numbers: _Numbers = build(_Numbers, {key: data[key] for key in _Numbers._fields if key in data}, source, ())
-    rig = numbers.rig if "rig" in data else _rig_of(mapping(data.get("channels", {}), source, ("channels",)), data)
+    channels = mapping(data.get("channels", {}), source, ("channels",))
+    rig: Rig = numbers.rig if "rig" in data else "damper_bench" if "displacement" in channels else "seat"
     repeats = mapping(data.get("repeats", {}), source, ("repeats",))
     records = {key: build(kind, data[key], source, (key,)) for key, kind in _RECORDS.items() if key in data}
     return ImportMap(
-        _channels(data, rig, source),
+        _channels(channels, rig, source),
         rig,
         sample_rate=numbers.sample_rate,
         resample=numbers.resample,
@@ -128,25 +128,16 @@ def read_map(path: Path) -> ImportMap:
     )
 
 
-def _rig_of(channels: Mapping[str, object], data: Mapping[str, object]) -> Rig:
-    """Return the rig that a map without `rig` is of."""
-    if "distance" in data:
-        return "road"
-    return "damper_bench" if "displacement" in channels else "seat"
-
-
-def _channels(data: Mapping[str, object], rig: Rig, source: Source) -> dict[str, ChannelMap]:
-    entries = mapping(data.get("channels", {}), source, ("channels",))
+def _channels(entries: Mapping[str, object], rig: Rig, source: Source) -> dict[str, ChannelMap]:
     if not entries:
         raise source.error((), "key 'channels' is missing; write channels: {floor_acceleration: {column: a, unit: g}}")
-    if rig in CHANNELS:
-        check_keys(entries, CHANNELS[rig], source, ("channels",))
+    check_keys(entries, CHANNELS[rig], source, ("channels",))
     channels: dict[str, ChannelMap] = {}
     for name, entry in entries.items():
         channels[name] = build(ChannelMap, entry, source, ("channels", name))
         if (channels[name].column is None) == (channels[name].value is None):
             raise source.error(("channels", name), "give either the name of its column, or value for a constant")
-        _check_unit(name, channels[name], CHANNELS[rig][name] if rig in CHANNELS else "m", source)
+        _check_unit(name, channels[name], CHANNELS[rig][name], source)
     if rig in DRIVERS and DRIVERS[rig] not in channels:
         raise source.error(("channels",), f"channel '{DRIVERS[rig]}' is missing; it drives the simulation of this rig")
     return channels
@@ -198,9 +189,7 @@ def write_map(path: Path, stated: ImportMap) -> Path:
 
 def render_map(stated: ImportMap) -> str:
     """Return the text of a map."""
-    axes = {"time": stated.time, "distance": stated.distance}
-    content: dict[str, object] = {"rig": stated.rig}
-    content |= {name: axis._asdict() for name, axis in axes.items() if axis}
+    content: dict[str, object] = {"rig": stated.rig, "time": stated.time and stated.time._asdict()}
     content |= {"sample_rate": stated.sample_rate, "resample": stated.resample}
     content |= {"channels": {name: _shown(channel) for name, channel in stated.channels.items()}}
     content |= {"csv": {key: value for key, value in stated.csv._asdict().items() if value is not None}}

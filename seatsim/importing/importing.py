@@ -1,19 +1,15 @@
-"""The way in: files and a map, or the map that is proposed for them, become a recording or a road on disk.
-
-A recording is written with its map, a road with an excitation that drives on it.
-"""
+"""The way in: files and a map, or the map that is proposed for them, become a recording on disk, with its map."""
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Collection, Mapping, Sequence
-from functools import partial
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from seatsim.importing.assembly import DISTANCE, Assembled, assemble, assemble_road, doubt_runs
+from seatsim.importing.assembly import Assembled, assemble, doubt_runs
 from seatsim.importing.import_map import FILE, ImportMap, Rig, check_files, read_map, write_map
 from seatsim.importing.matching import propose
 from seatsim.importing.readers.reading import read_file
@@ -26,28 +22,19 @@ from seatsim.recordings.quality.issue import Issue
 from seatsim.recordings.recording import CHANNELS, COMMANDS, load_recording
 from seatsim.recordings.writer import state_header, state_nominal, write_files
 from seatsim.scenario.loading import load
-from seatsim.schema.arrays import Array
 from seatsim.schema.content import Form, Unwritten, written
 from seatsim.schema.errors import InputError
-from seatsim.schema.files import write_packed, write_text
 from seatsim.schema.guarded import temporary_folder
-from seatsim.schema.text import disarm, name_some
+from seatsim.schema.text import name_some
 from seatsim.schema.yaml_source import Source
-from seatsim.schema.yaml_text import dump
 
 _OWN_FILES = (".yaml", ".yml", ".json", ".md", ".png", ".pdf", ".html")
 """Endings of files that lie beside data and hold none."""
-_ROAD, _EXCITATION = "road.csv.gz", "excitation.yaml"
-_SPEED = 12.0
-"""m/s at which the excitation drives on an imported road until another is stated."""
 _CURRENTS = ("current_command", "command_voltage", "coil_current")
 
 
 class Import(NamedTuple):
-    """What was imported: the map as used, whether it was proposed, the files written, sentences, and doubts.
-
-    `rate` in Hz and the names of the `runs` are those of a recording; a road has none.
-    """
+    """What was imported: the map as used, whether it was proposed, files, sentences, doubts, rate in Hz and runs."""
 
     folder: Path
     map: Unwritten[ImportMap]
@@ -55,13 +42,13 @@ class Import(NamedTuple):
     paths: Unwritten[list[Path]]
     notes: list[str]
     doubts: list[Issue]
-    rate: Annotated[float | None, Form(key="sample_rate")] = None
-    runs: tuple[str, ...] = ()
+    rate: Annotated[float, Form(key="sample_rate")]
+    runs: tuple[str, ...]
 
     @property
     @written()
     def rig(self) -> str:
-        """What was recorded: a seat, a damper on its bench, or a road."""
+        """What was recorded: a seat, or a damper on its bench."""
         return self.map.rig
 
     @property
@@ -87,7 +74,7 @@ class Import(NamedTuple):
 def import_files(
     paths: Sequence[Path], folder: Path, map_file: Path | None = None, nominal: str | None = None
 ) -> Import:
-    """Write a recording, or a road, made of files.
+    """Write a recording made of files.
 
     Without `map_file` the map is proposed from names and units. Where it cannot be used as it is, it is written to the
     folder to be completed, and nothing else is.
@@ -106,9 +93,6 @@ def import_files(
     if stated is None:
         clocks = (find_clock(group) for file in files for group in file.groups)
         notes += [said for clock in clocks if clock for said in clock.assumptions] + _say_left_out(files, used)
-    if used.rig == "road":
-        road, doubts = assemble_road(files, used)
-        return Import(folder, used, stated is None, _write_road(folder, road, used), notes, doubts)
     assembled = _assembled(files, used, folder, stated is None)
     scenario = _make_nominal(nominal, used.rig, assembled.runs[0].table) if nominal else None
     found = [*assembled.doubts, *([] if scenario else doubt_runs(assembled))]
@@ -147,15 +131,15 @@ def _proposed(files: Sequence[DataFile], folder: Path) -> ImportMap:
 
 def _say_left_out(files: Sequence[DataFile], used: ImportMap) -> list[str]:
     """Return a sentence on the columns that a proposed map does not use, if there are any."""
-    axes = [axis.column for axis in (used.time, used.distance) if axis]
-    taken = {*axes, *(name for entry in used.channels.values() for name in (entry.column, entry.minus))}
+    taken = {used.time.column} if used.time else set[str | None]()
+    taken |= {name for entry in used.channels.values() for name in (entry.column, entry.minus)}
     groups = [group for file in files for group in file.groups]
     taken |= {clock.column for group in groups if (clock := find_clock(group))}
     columns = [signal.name for group in groups for signal in group.signals]
     left = [f"'{name}'" for name in dict.fromkeys(columns) if name not in taken]
     if not left:
         return []
-    channels = ", ".join(name for name in CHANNELS.get(used.rig, ()) if name not in used.channels)
+    channels = ", ".join(name for name in CHANNELS[used.rig] if name not in used.channels)
     return [
         f"left out, for want of a channel with such a name: {name_some(left, LISTED)}; to use one, state it"
         f" under channels of the map" + (f" as one of {channels}" if channels else "")
@@ -214,25 +198,6 @@ def _write_recording(folder: Path, assembled: Assembled, nominal: Mapping[str, o
     return write_documented(
         folder,
         lambda part: [*write_files(part, tables, nominal, header, "%.9g"), write_map(part / FILE, used)],
-    )
-
-
-def _write_road(folder: Path, road: Mapping[str, Array], stated: ImportMap) -> list[Path]:
-    """Write a road as a table over distance, and a scenario's `excitation` that drives on its middle track."""
-    import pandas as pd
-
-    frame = pd.DataFrame({str(disarm(name)): values for name, values in road.items()})
-    tracks = [name for name in frame if name != DISTANCE]
-    table = {"kind": "table", "path": _ROAD, "distance_column": DISTANCE}
-    excitation = {"excitation": {**table, "column": tracks[len(tracks) // 2], "speed": _SPEED}}
-    write_table = partial(frame.to_csv, mode="wb", index=False, float_format="%.9g")
-    return write_documented(
-        folder,
-        lambda part: [
-            write_packed(part / _ROAD, write_table),
-            write_map(part / FILE, stated),
-            write_text(part / _EXCITATION, dump(excitation)),
-        ],
     )
 
 

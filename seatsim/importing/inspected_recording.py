@@ -20,7 +20,6 @@ from seatsim.recordings.quality.relations import doubt_relations
 from seatsim.recordings.quality.sensors import list_unrepeated, measure_unrepeated
 from seatsim.recordings.recording import CHANNELS, COMMANDS, Recording, load_recording
 from seatsim.schema.arrays import Array
-from seatsim.schema.errors import InputError
 
 
 def inspect_recording(folder: Path) -> Inspection:
@@ -55,11 +54,9 @@ def inspect_mapped(path: Path, map_file: Path) -> Inspection:
     """Return what import would make of a file by a map: channels in SI units, with what is left to doubt.
 
     Raises:
-        InputError: the file or the map is wrong, or the map is that of a road.
+        InputError: the file or the map is wrong.
     """
     stated = read_map(map_file)
-    if stated.rig == "road":
-        raise InputError(f"{map_file}: is the map of a road; inspect {path.name} without --map")
     file = read_file(path, stated.csv)
     assembled = assemble([file], dataclasses.replace(stated, runs={}))
     units = CHANNELS[stated.rig]

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.importing.doubts import doubt_channel, doubt_distance, doubt_time
+from seatsim.importing.doubts import doubt_channel, doubt_time
 from seatsim.importing.import_map import Rig
 from seatsim.importing.matching import Column, channel_of, read_columns
 from seatsim.importing.names import SI_UNITS, is_of, read_name, without_unit
@@ -97,12 +97,6 @@ def _group(group: Group, rig: Rig) -> tuple[list[ChannelSummary], list[Issue]]:
     axis = clock.axis if clock else None
     rate = axis.rate if axis else group.rate
     found = list(_doubt_rows(group, clock))
-    found += [
-        issue
-        for c in columns
-        if c.meaning.quantity == "distance"
-        for issue in doubt_distance(_in_si(c)[0], c.signal.name)
-    ]
     known: dict[str, Array] = {}
     quantities: dict[str, str | None] = {}
     summaries = []
@@ -111,7 +105,7 @@ def _group(group: Group, rig: Rig) -> tuple[list[ChannelSummary], list[Issue]]:
             continue
         values, quantity = _in_si(column)
         if column.meaning.quantity != "mark":
-            found += doubt_channel(column.signal.name, values, None if group.is_road else rate, quantity)
+            found += doubt_channel(column.signal.name, values, rate, quantity)
         known[column.signal.name], quantities[column.signal.name] = values, quantity
         summaries.append(summarise(column.signal, column.meaning.unit, channel_of(column, rig), rate))
     parts = _longest_part(axis, known) if axis else known

@@ -18,7 +18,7 @@ from seatsim.recordings.recording import CHANNELS
 from seatsim.schema.text import name_some
 from seatsim.schema.units import USUAL
 
-_NEEDED = {"seat": ("floor_acceleration",), "damper_bench": ("displacement", "damper_force"), "road": ()}
+_NEEDED = {"seat": ("floor_acceleration",), "damper_bench": ("displacement", "damper_force")}
 _BENCH_ONLY = ("displacement", "velocity", "command_voltage")
 
 
@@ -47,8 +47,6 @@ def propose(files: Sequence[DataFile]) -> _Proposal:
     if all(is_spectrum(group) for group in groups):
         check_is_history(groups[0], str(files[0].path))
     columns = [column for group in groups for column in read_columns(group)]
-    if _is_road(columns):
-        return _propose_road(columns)
     chosen = _rig_of(columns)
     candidates = _candidates(columns, chosen)
     channels, open_ends = {}, []
@@ -98,13 +96,6 @@ def _rig_of(columns: Sequence[Column]) -> Rig:
     if placed & names or any(_seat_channel(column.meaning) in placed for column in columns):
         return "seat"
     return "damper_bench" if {"displacement", "force"} <= quantities else "seat"
-
-
-def _is_road(columns: Sequence[Column]) -> bool:
-    if any(column.group.is_road for column in columns):
-        return True
-    quantities = [column.meaning.quantity for column in columns]
-    return "distance" in quantities and "elevation" in quantities and "acceleration" not in quantities
 
 
 def channel_of(column: Column, rig: Rig) -> str | None:
@@ -197,15 +188,3 @@ def _time(columns: Sequence[Column], is_one_file: bool) -> tuple[AxisMap | None,
     gaps: Gaps | None = "split" if clock.axis is not None and len(clock.axis.breaks) and is_one_file else None
     problem = f"time: {clock.open}; write time: {{column: {clock.column}, unit: ms}} or s" if clock.open else ""
     return AxisMap(clock.column, clock.unit), problem, gaps
-
-
-def _propose_road(columns: Sequence[Column]) -> _Proposal:
-    along = next((c for c in columns if c.meaning.quantity == "distance"), None)
-    tracks = [c for c in columns if c is not along and (c.meaning.quantity == "elevation" or c.group.is_road)]
-    channels = {c.signal.name: ChannelMap(c.signal.name, c.meaning.unit or "m") for c in tracks}
-    if along is None or not tracks:
-        return _Proposal(
-            ImportMap(channels, "road"), ("distance: no column holds it; write distance: {column: ..., unit: m}",)
-        )
-    axis = AxisMap(along.signal.name, along.meaning.unit or "m")
-    return _Proposal(ImportMap(channels, "road", distance=axis), ())

@@ -30,14 +30,12 @@ class Group(NamedTuple):
     """Channels of equal length on one time base.
 
     `rate` in Hz and `start` in s are what the format itself states beside the channels, None where it states nothing.
-    `is_road` tells that rows follow each other in distance.
     """
 
     name: str
     signals: tuple[Signal, ...]
     rate: float | None = None
     start: float | None = None
-    is_road: bool = False
 
     @property
     def rows(self) -> int:

@@ -163,7 +163,7 @@ def find_clock(group: Group) -> Clock | None:
         best = min(named, key=lambda clock: _flaws(clock.axis))
         return best._replace(others=tuple(each.column for each in named if _differs(each, best)))
     first, meaning = meanings[0]
-    if group.rate is not None or group.is_road or first.unit or meaning.quantity is not None:
+    if group.rate is not None or first.unit or meaning.quantity is not None:
         return None
     clock = _clock(first, "")._replace(is_named=False)
     return clock if clock.unit and _is_exact(clock.axis) and not (np.diff(first.values) == 1.0).all() else None

@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from seatsim.provenance.manifest import CRATE, EXAMPLE
+from seatsim.provenance.manifest import EXAMPLE
 from seatsim.provenance.statement import (
     MANIFEST,
     REPEATABLE,
@@ -213,7 +213,7 @@ def _compare_versions(manifest: Manifest) -> Iterator[str]:
 
 def _list_unnamed(manifest: Manifest, folder: Path) -> list[str]:
     """Return the files of a folder, but for folders with a manifest of their own, of which nothing is known."""
-    known = {MANIFEST, CRATE, ANSWER, *(each.path for each in manifest.outputs)}
+    known = {MANIFEST, ANSWER, *(each.path for each in manifest.outputs)}
     others = [path.parent for path in folder.glob(f"*/**/{MANIFEST}")]
     found = [
         path.relative_to(folder).as_posix()

@@ -147,16 +147,22 @@ def read_manifest(folder: Path) -> Manifest:
 REPEATABLE: Mapping[str, frozenset[str]] = {
     name: frozenset(options.split())
     for name, options in {
-        "run": "--set", "compare": "--set --bracket", "synthesise": "--set --global", "gap": "--predict",
+        "run": "--set",
+        "compare": "--set --bracket",
+        "synthesise": "--set --global",
+        "gap": "--predict",
         "diagnose": "--without --budget --damper-forms --after",
         "characterise": "--model --parameters --currents --temperatures --amplitudes --frequencies --limits --beside"
-                        " --pattern --window",
+        " --pattern --window",
         "identify": "--model --test --test-fraction --fix --ignore-temperature --predict --moving-average --centred"
-                    " --seed",
-        "import": "--map --nominal", "comfort": "--channel --hours --run --block --rate --unit",
-        "seat-test": "--class --set", "sweep": "", "sweep-report": "",
+        " --seed",
+        "import": "--map --nominal",
+        "comfort": "--channel --hours --run --block --rate --unit",
+        "seat-test": "--class --set",
+        "sweep": "",
+        "sweep-report": "",
     }.items()
-}  # fmt: skip
+}
 """Commands that can be run again, with the options on which their answer hangs: none writes, loads code or connects."""
 
 

@@ -1,21 +1,145 @@
-"""The error of a scenario over the runs of a recording against its uncertainty, after ASME V&V 20-2009."""
+"""The error of a scenario against its uncertainty, after ASME V&V 20: on one run, and over the runs of a recording.
+
+For each channel the comparison error E = RMS of simulation less data is set against the validation uncertainty
+
+    u_val^2 = u_num^2 + u_input^2 + u_D^2,    model form = sqrt(max(E^2 - u_val^2, 0)),
+
+with u_num from halving the step of the integration, u_input from the noise of the recorded inputs carried through the
+simulation, and u_D the stated noise of the channel; all are RMS values over the run (ASME V&V 20-2009).
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from scipy.interpolate import CubicSpline, UnivariateSpline
 
 from seatsim.metrics.motion import rms
-from seatsim.recordings.error_budget import budget_errors
 from seatsim.recordings.nuisance import list_varied, vary
-from seatsim.recordings.recording import Recording
-from seatsim.recordings.replay import replay_table, select_compared
+from seatsim.recordings.recording import COMMANDS, Recording
+from seatsim.recordings.replay import COMPARED, recorded_inputs, replay_table, select_compared
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
 from seatsim.schema.content import written
+from seatsim.simulation.inputs import BenchInputs
+from seatsim.simulation.respond import respond
+
+_Table = Mapping[str, Array]
+
+_REPLICATES = 3
+"""Simulations with newly drawn noise of the inputs."""
+
+
+class ErrorBudget(NamedTuple):
+    """Comparison error of a channel and its parts as in ASME V&V 20, RMS over a run in `unit`."""
+
+    channel: str
+    unit: str
+    comparison_error: float
+    u_num: float
+    u_input: float
+    u_d: float
+    model_form: float
+
+
+def budget_errors(scenario: Scenario, recording: Recording, run: str, channels: Iterable[str]) -> list[ErrorBudget]:
+    """Return the error budget of channels of a run.
+
+    Raises:
+        RunError: a simulation could not be carried to its end.
+    """
+    scenario = recording.scenario_of(run, scenario)
+    table = recording.table(run)
+    simulated = replay_table(scenario, recording, table)
+    measured = select_compared(table, recording.header.rig, recording.header.sample_rate)
+    numerical = measure_step_error(scenario, recording, table)
+    carried = carry_input_noise(scenario, recording, table)
+    return [
+        _divide(
+            name,
+            recording.channels[name].unit,
+            rms(measured[name] - simulated[name]),
+            numerical[name],
+            carried[name],
+            recording.channels[name].noise_rms,
+        )
+        for name in channels
+    ]
+
+
+def _divide(channel: str, unit: str, error: float, numerical: float, inputs: float, data: float) -> ErrorBudget:
+    left = error**2 - numerical**2 - inputs**2 - data**2
+    return ErrorBudget(channel, unit, error, numerical, inputs, data, float(np.sqrt(max(left, 0.0))))
+
+
+def measure_step_error(scenario: Scenario, recording: Recording, table: _Table) -> dict[str, float]:
+    """Return the RMS change of each output as the step of the integration is halved.
+
+    A method of order p leaves 1 / (2^p - 1) of that; friction and stops make p one at worst, hence the whole change.
+    """
+    rig, rate = recording.header.rig, recording.header.sample_rate
+    inputs = recorded_inputs(recording, table, scenario.solver.step)
+    if isinstance(inputs, BenchInputs):
+        coarse, fine = _smooth_motion(inputs, 1), _smooth_motion(inputs, 2)
+        pair = respond(scenario, coarse), {name: values[::2] for name, values in respond(scenario, fine).items()}
+    else:
+        half = recorded_inputs(recording, table, 0.5 * inputs.floor.step)
+        pair = respond(scenario, inputs), respond(scenario, half)
+    first, second = (select_compared(outputs, rig, rate) for outputs in pair)
+    return {name: rms(first[name] - second[name]) for name in first}
+
+
+def _smooth_motion(inputs: BenchInputs, parts: int) -> BenchInputs:
+    """Return a bench's inputs with so many rows for one, on the motion that their noise lets see."""
+    rows = np.arange(len(inputs.displacement), dtype=np.float64)
+    finer = np.arange(parts * (len(rows) - 1) + 1, dtype=np.float64) / parts
+    motion = UnivariateSpline(rows, inputs.displacement, k=5, s=len(rows) * inputs.displacement_noise**2)
+
+    def held(values: Array | None) -> Array | None:
+        return None if values is None else values[finer.astype(int)]
+
+    def linear(values: Array | None) -> Array | None:
+        return None if values is None else np.interp(finer, rows, values)
+
+    return inputs._replace(
+        interval=inputs.interval / parts,
+        displacement=motion(finer),
+        displacement_noise=0.0,
+        velocity=None if inputs.velocity is None else CubicSpline(rows, inputs.velocity)(finer),
+        current_command=held(inputs.current_command),
+        command_voltage=held(inputs.command_voltage),
+        coil_current=linear(inputs.coil_current),
+        damper_temperature=linear(inputs.damper_temperature),
+    )
+
+
+def carry_input_noise(scenario: Scenario, recording: Recording, table: _Table) -> dict[str, float]:
+    """Return the RMS change of each output as newly drawn noise is added to the recorded inputs."""
+    # The same draws for every recording: equal input gives equal output.
+    rng = np.random.default_rng(0)
+    clean = replay_table(scenario, recording, table)
+    noisy = [replay_table(scenario, recording, _add_noise(recording, table, rng)) for _ in range(_REPLICATES)]
+    return {
+        name: float(np.sqrt(np.mean([np.mean((other[name] - values) ** 2) for other in noisy])))
+        for name, values in clean.items()
+    }
+
+
+def _add_noise(recording: Recording, table: _Table, rng: np.random.Generator) -> dict[str, Array]:
+    """Return a table with noise added to what drives the simulation: a coil current only in place of a command."""
+    outputs = set(COMPARED[recording.header.rig])
+    if not any(name in table for name in COMMANDS):
+        outputs -= {"coil_current"}
+    return {
+        name: values
+        if name in outputs
+        else values + recording.channels[name].noise_rms * rng.standard_normal(len(values))
+        for name, values in table.items()
+    }
+
 
 _STEP = 0.1
 """Share of its tolerance by which a parameter is moved; the change is linear that far."""
@@ -59,10 +183,12 @@ def validate(
     squares, rows = [], []
     for run in runs:
         tolerated = _carry_tolerances(scenario, recording, run)
-        squares.append([
-            (each.comparison_error**2, each.u_num**2, each.u_input**2 + tolerated[each.channel], each.u_d**2)
-            for each in budget_errors(scenario, recording, run, channels)
-        ])  # fmt: skip
+        squares.append(
+            [
+                (each.comparison_error**2, each.u_num**2, each.u_input**2 + tolerated[each.channel], each.u_d**2)
+                for each in budget_errors(scenario, recording, run, channels)
+            ]
+        )
         measured = select_compared(recording.table(run), recording.header.rig, recording.header.sample_rate)
         rows.append(len(measured[channels[0]]))
     pooled = np.sqrt(np.average(squares, axis=0, weights=rows))

@@ -18,9 +18,16 @@ if TYPE_CHECKING:
     import pint
 
 DIMENSIONS = {
-    "acceleration": "m/s^2", "length": "m", "velocity": "m/s", "force": "N", "current": "A", "voltage": "V",
-    "temperature": "degC", "time": "s", "angular_acceleration": "rad/s^2",
-}  # fmt: skip
+    "acceleration": "m/s^2",
+    "length": "m",
+    "velocity": "m/s",
+    "force": "N",
+    "current": "A",
+    "voltage": "V",
+    "temperature": "degC",
+    "time": "s",
+    "angular_acceleration": "rad/s^2",
+}
 """The unit of every kind of quantity that a measured channel may hold."""
 STANDARD_GRAVITY = 9.80665
 """m/s^2."""
@@ -56,21 +63,21 @@ CONVERSIONS = {
 USUAL = {si: tuple(CONVERSIONS[si]) for si in DIMENSIONS.values()}
 """Units in which a quantity is usually recorded, by its SI unit; errors list them, doubts compare with them."""
 OWN_SPELLINGS = {
-    "m/s^2": {"g": "standard_gravity", "gn": "standard_gravity", "g_n": "standard_gravity", "gal": "cm/s^2",
-              "mg": "millistandard_gravity", "g0": "standard_gravity", "ms2": "m/s^2", "ms-2": "m/s^2",
-              "ms^-2": "m/s^2", "ms⁻²": "m/s^2", "m.s-2": "m/s^2"},
-    "degC": {"c": "degC", "f": "degF", "celsius": "degC", "fahrenheit": "degF", "k": "kelvin", "deg c": "degC",
-             "deg f": "degF", "grad c": "degC"},
+    "m/s^2": dict.fromkeys(("g", "gn", "g_n", "g0"), "standard_gravity")
+    | dict.fromkeys(("ms2", "ms-2", "ms^-2", "ms⁻²", "m.s-2"), "m/s^2")
+    | {"gal": "cm/s^2", "mg": "millistandard_gravity"},
+    "degC": dict.fromkeys(("c", "celsius", "deg c", "grad c"), "degC")
+    | dict.fromkeys(("f", "fahrenheit", "deg f"), "degF")
+    | {"k": "kelvin"},
     "N": {"lb": "lbf", "lbs": "lbf", "kg": "kgf", "kp": "kgf", "newton": "N", "newtons": "N"},
     "A": {"amp": "A", "amps": "A", "ampere": "A", "amperes": "A"},
     "V": {"volt": "V", "volts": "V"},
     "s": {"sec": "s", "msec": "ms", "usec": "us", "sek": "s"},
     "m": {'"': "inch", "in": "inch", "zoll": "inch"},
-}  # fmt: skip
+}
 """Spellings that mean something else, or nothing, to pint, by the unit that is wanted: `g` of a mass is a gram."""
-_SIGNS = {
-    "⁻²": "^-2", "²": "^2", "³": "^3", "°": "deg", "℃": "degC", "℉": "degF", "µ": "u", "μ": "u", "·": "*", "⋅": "*",
-}  # fmt: skip
+_SIGNS = {"⁻²": "^-2", "²": "^2", "³": "^3", "°": "deg", "℃": "degC", "℉": "degF"}
+_SIGNS |= {"µ": "u", "μ": "u", "·": "*", "⋅": "*"}
 
 _NO_UNITS = ("links",)
 """Words in names that pint takes for units: `links` is German for left."""

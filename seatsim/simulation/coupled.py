@@ -19,8 +19,7 @@ import numpy as np
 
 from seatsim.compilation.cached import compiled
 from seatsim.cosimulation.damper import CoupledForce, FmuDamper
-from seatsim.cosimulation.running import RunningUnit
-from seatsim.cosimulation.unit import run_unit
+from seatsim.cosimulation.unit import RunningUnit, run_unit
 from seatsim.effects.base import ON_DAMPER, acts_on
 from seatsim.kernel.generic import wants_force
 from seatsim.kernel.inverse import CELLS

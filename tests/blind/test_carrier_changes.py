@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from seatsim.blind.carrier.make import DrawnCase, draw_amount, draw_changes
-from seatsim.blind.carrier.readings import draw_faster_coils
 from seatsim.blind.carrier.recorded import Carrier
 from seatsim.blind.carrier.replays import Ruler
 from seatsim.blind.sealed import EFFECTS
@@ -23,7 +22,7 @@ FIXED = {"sensor.clock_skew": {"hold": 1.0 / RATE}}
 
 def put_in(carrier: Carrier, effect: str, form: str = "", channel: str = "", seed: int = 0) -> DrawnCase:
     rng = np.random.default_rng(seed)
-    changes = draw_changes(carrier, rng) + draw_faster_coils(carrier, rng)
+    changes = draw_changes(carrier, rng)
     chosen = [c for c in changes if c.effect == effect and form in c.form and c.channel == channel]
     drawn = draw_amount(Ruler(carrier), chosen[0], SIZE)
     assert drawn is not None

@@ -1,4 +1,4 @@
-"""Sets on a measured recording, and the smallest size that a diagnosis finds on it."""
+"""Sets on a measured recording."""
 
 from __future__ import annotations
 
@@ -10,19 +10,15 @@ import pytest
 
 from seatsim import load_recording
 from seatsim.blind.carrier.make import UNTOUCHED, make_on_carrier
-from seatsim.blind.carrier.power import Power, measure_power
 from seatsim.blind.carrier.recorded import read_carrier
 from seatsim.blind.score.score import score_verdicts
 from seatsim.blind.score.verdicts import Verdict, is_right, is_wrong_name
 from seatsim.blind.sealed import EFFECTS, unseal
-from seatsim.cli.outputs.blind_tables import make_power_table, make_score_tables
+from seatsim.cli.outputs.blind_tables import make_score_tables
 from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
 
 from .carriers import bench_carrier, write_carrier
-
-FINEST = 0.16
-"""Smallest size that the diagnosis of these tests finds."""
 
 
 @pytest.fixture(scope="module")
@@ -61,48 +57,6 @@ def test_labels_beside_the_recordings_and_short_runs_are_refused(recording: Path
     short = write_carrier(type(carrier)(carrier.header, carrier.nominal, cut), tmp_path / "short")
     with pytest.raises(InputError, match="shorter than"):
         read_carrier(short)
-
-
-def find_from_finest(case: Path) -> None:
-    """Say what is put in, as the name of the folder has it, from a size on."""
-    effect, size, _ = case.name.rsplit("-", 2)
-    said = [{"effect": effect, "probability": 0.9, "parameters": {}}] if float(size) >= FINEST else []
-    (case / "diagnosis").mkdir()
-    (case / "diagnosis" / "diagnosis.json").write_text(
-        json.dumps({"verdict": "known", "causes": said, "selected": [c["effect"] for c in said]})
-    )
-
-
-def never(case: Path) -> None:
-    raise AssertionError(f"{case}: diagnosed again")
-
-
-def test_power_is_the_smallest_size_found_and_goes_on_where_it_stopped(recording: Path, tmp_path: Path) -> None:
-    told: list[tuple[str, int, int]] = []
-    out, effects = tmp_path / "power", ("sensor.bias", "coil.delay")
-
-    def measure(diagnose) -> list[Power]:
-        return measure_power(
-            recording,
-            out,
-            diagnose,
-            effects,
-            2,
-            processes=1,
-            progress=lambda power, done, total: told.append((power.effect, done, total)),
-        )
-
-    found = measure(find_from_finest)
-    assert told == [("sensor.bias", 1, 2), ("coil.delay", 2, 2)]
-    assert found[0].smallest == FINEST
-    assert sorted(found[0].trials) == [0.06, 0.1, 0.16]
-    assert [trial.found for trial in found[0].trials[0.06]] == [False, False]
-    assert measure(never) == found
-    assert make_power_table(found).row_count == 2
-    with pytest.raises(InputError, match="another recording or seed"):
-        measure_power(recording, out, never, effects, 2, seed=9)
-    with pytest.raises(InputError, match=r"'coil\.dely' cannot be put in.*coil\.delay"):
-        measure_power(recording, out, never, ["coil.dely"])
 
 
 CARRIED: dict[str, object] = {

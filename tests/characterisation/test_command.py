@@ -44,7 +44,7 @@ def test_a_bench_table_gives_files_and_a_table(record, sine, tmp_path):
     assert {path.name for path in (tmp_path / "out").iterdir()} == set(
         words("""
         cycles.csv characterisation.json characterisation.xlsx report.html loops.png energy.png asymmetry.png
-        manifest.json ro-crate-metadata.json
+        manifest.json
     """)
     )
     found = pd.read_csv(tmp_path / "out" / "cycles.csv")

@@ -108,7 +108,7 @@ def test_a_library_for_another_platform_is_named(pack):
         ("<fmiModel", "<!DOCTYPE a [<!ENTITY b 'c'>]><fmiModel", "declares a document type"),
         ("</ModelVariables>", "", "cannot be read"),
         ('fmiVersion="2.0"', 'fmiVersion="1.0"', "FMI 1.0"),
-        ("CoSimulation", "Simulation", "neither for co-simulation nor for model exchange"),
+        ("CoSimulation", "Simulation", "is not for co-simulation"),
     ],
 )
 def test_a_description_that_cannot_be_used_is_refused(pack, old, new, said):

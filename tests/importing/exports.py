@@ -1,7 +1,6 @@
 """One seat recording written in every format, as other programs export it."""
 
 import gzip
-import io
 import warnings
 
 import numpy as np
@@ -200,24 +199,3 @@ FORMATS = {
     "a.uff": uff, "a.rsp": rpc,
 }  # fmt: skip
 """Name of a file, and what writes it."""
-
-
-def opencrg(path, elevations, step=0.01, kind="KRBI"):
-    """A road of OpenCRG: elevations of shape (rows, tracks), 0.5 m apart."""
-    rows, tracks = elevations.shape
-    lines = ["$CT", "a road", "$", "$ROAD_CRG", "REFERENCE_LINE_START_U = 0.0",
-             f"REFERENCE_LINE_END_U = {(rows - 1) * step:.6f}", f"REFERENCE_LINE_INCREMENT = {step}   ! m",
-             "LONG_SECTION_V_RIGHT = -0.50", "LONG_SECTION_V_LEFT = 0.50", "$", "$KD_DEFINITION", f"#:{kind}",
-             "U:reference line u,m", "D:reference line phi,rad"]  # fmt: skip
-    lines += [f"D:long section {number + 1},m" for number in range(tracks)] + ["$", "$" * 72]
-    table = np.column_stack([np.zeros(rows), elevations])
-    head = ("\n".join(lines) + "\n").encode()
-    if kind == "KRBI":
-        values = table.astype(">f4").ravel()
-        path.write_bytes(head + np.append(values, np.full(-len(values) % 20, np.nan)).astype(">f4").tobytes())
-        return
-    body = io.StringIO()
-    for row in table:
-        cells = [" *missing*" if np.isnan(value) else f"{value:10.6f}" for value in row]
-        body.writelines("".join(cells[at : at + 8]) + "\n" for at in range(0, len(cells), 8))
-    path.write_bytes(head + body.getvalue().encode())

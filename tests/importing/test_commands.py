@@ -22,7 +22,7 @@ def test_import_shows_its_map_and_writes_a_recording(noisy_table, tmp_path, seat
     assert header["sample_rate"] == 500.0
     assert header["rig"] == "seat"
     assert {each.name for each in (tmp_path / "out").iterdir()} == set(
-        words("recording.yaml map.yaml run-a.csv.gz manifest.json ro-crate-metadata.json")
+        words("recording.yaml map.yaml run-a.csv.gz manifest.json")
     )
 
 
@@ -36,7 +36,7 @@ def test_import_prints_one_json_object(noisy_table, tmp_path, seatsim_command):
     assert told["channels"]["damper_force"]["unit"] == "N"
     assert set(told["doubts"][0]) == {"severity", "kind", "sentence", "channel", "run"}
     recording = {"run-a.csv.gz", "nominal.yaml", "map.yaml", "recording.yaml"}
-    assert set(told["written"]) == {*recording, "manifest.json", "ro-crate-metadata.json"}
+    assert set(told["written"]) == {*recording, "manifest.json"}
 
 
 def test_bad_input_is_one_line_and_exit_2(tmp_path, seatsim_command):

@@ -58,7 +58,6 @@ QUIRKS = {
         ("unsprung_displacement_m", "resolution"), ("force_cmd_N", "command"), ("road_displacement_m", "zeroed"),
     },
     "utfsm_mr_sine_raw/raw_2mm_5Hz": {("force_N", "relaxation"), ("displacement_m", "zeroed")},
-    "roads/profile_1": {("distance_m", "coarse"), ("elevation_m", "offset")},
     "utfsm_mr_chirp/chirp15Hz_0p5A": {
         ("current_A", "constant"), ("displacement_m", "late"), ("velocity_m_s", "derived"), ("force_N", "resolution"),
     },
@@ -76,7 +75,7 @@ QUIRKS = {
 
 @pytest.mark.slow
 def test_every_file_is_imported_with_a_short_map(shared, tmp_path):
-    files = sorted((shared / "data").glob("*/*.csv.gz"))
+    files = [path for path in sorted((shared / "data").glob("*/*.csv.gz")) if path.parent.name != "roads"]
     assert len(files) >= 20
     for path in files:
         text = MAPS.get(path.parent.name)
@@ -85,8 +84,8 @@ def test_every_file_is_imported_with_a_short_map(shared, tmp_path):
             assert len(text.splitlines()) <= 10
             stated.write_text(text)
         folder = tmp_path / path.name.partition(".")[0]
-        found = import_files([path], folder, stated)
-        assert (folder / ("road.csv.gz" if found.map.rig == "road" else "recording.yaml")).exists()
+        import_files([path], folder, stated)
+        assert (folder / "recording.yaml").exists()
 
 
 @pytest.mark.parametrize("name", QUIRKS)

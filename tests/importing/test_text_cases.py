@@ -1,6 +1,5 @@
 """Text tables of many writers: each is read right, or refused with one true sentence."""
 
-import gzip
 import re
 
 import numpy as np
@@ -109,17 +108,6 @@ def test_columns_with_times_of_their_own_are_put_on_one(tmp_path):
     assert found.rate == RATE and not any("t2" in note for note in found.notes)
     got = read_run(tmp_path / "out")
     np.testing.assert_allclose(1e3 * got["suspension_displacement"], np.sin(4.0 * np.pi * got["time"]), atol=0.01)
-
-
-def test_a_road_whose_track_is_a_formula_is_written_disarmed(tmp_path):
-    along = np.arange(0.0, 20.0, 0.05)
-    path = write(
-        tmp_path, table(along, 0.01 * np.sin(along), head=['distance [m];"=HYPERLINK(""x"") elevation [m]"'], sep=";")
-    )
-    import_files([path], tmp_path / "road")
-    with gzip.open(tmp_path / "road" / "road.csv.gz", "rt") as file:
-        assert "'=HYPERLINK" in file.readline()
-    assert "'=HYPERLINK" in (tmp_path / "road" / "excitation.yaml").read_text()
 
 
 def test_cells_without_a_value_are_missing_and_texts_are_named(tmp_path):

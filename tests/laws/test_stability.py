@@ -5,9 +5,9 @@ import pytest
 from scipy.linalg import expm
 from scipy.signal import cont2discrete
 
-from controllers.analysis.margins import compute_margins
 from controllers.laws.gaussian import EstimateFeedback, SwitchedFeedback
 from controllers.linear_systems import LinearSystem
+from controllers.margins import compute_margins
 from controllers.optimal.kalman import Noise, design_kalman_filter
 from controllers.optimal.regulator import QuadraticWeights
 from seatsim.rig.control import prepare_law

@@ -175,27 +175,6 @@ def test_a_file_that_was_changed_is_said(project, monkeypatch):
     assert found.unnamed == ["more/picture.png", "note.txt"]
 
 
-def test_the_crate_describes_every_file_and_refers_to_what_is_there(made):
-    crate = json.loads((made / "out" / "c" / "ro-crate-metadata.json").read_text())
-    entities = {each["@id"]: each for each in crate["@graph"]}
-    assert len(entities) == len(crate["@graph"])
-    assert entities["ro-crate-metadata.json"]["conformsTo"]["@id"] == "https://w3id.org/ro/crate/1.3"
-    root, run = entities["./"], entities["#run"]
-    assert {"name", "description", "datePublished", "license"} <= set(root)
-    assert {each["@id"] for each in root["hasPart"]} == {"comfort.json", "manifest.json"}
-    assert len(run["object"]) == 3 and run["instrument"]["@id"] == "#seatsim"
-
-    def references(value):
-        if isinstance(value, dict):
-            yield from [value["@id"]] if set(value) == {"@id"} else references(list(value.values()))
-        elif isinstance(value, list):
-            for each in value:
-                yield from references(each)
-
-    named = {name for name in references(crate["@graph"]) if not name.startswith("http")}
-    assert named <= set(entities)
-
-
 @pytest.mark.parametrize("name", ["/etc/passwd", "../comfort.json", "a/../../b"])
 def test_outputs_outside_the_folder_are_not_read(project, name):
     folder = project / "out" / "c"

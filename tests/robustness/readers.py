@@ -177,13 +177,10 @@ def make_formats(table: bytes) -> dict[str, bytes]:
 
     frame = pd.read_csv(io.BytesIO(table)).head(FEW_ROWS)
     columns = {"time": 0.002 * np.arange(FEW_ROWS)} | {name: frame[name].to_numpy() for name in exports.UNITS}
-    road = 0.01 * np.sin(np.arange(FEW_ROWS) / 9.0)[:, None] * np.ones(3)
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         for name, write in exports.FORMATS.items():
             write(folder / name, columns)
-        for kind in ("KRBI", "LRFI"):
-            exports.opencrg(folder / f"{kind}.crg", road, kind=kind)
         return {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
 
 

@@ -16,7 +16,7 @@ MUTANTS, LIMIT = 40, 60.0
 NAMES = (
     *("scenario", "variants", "recording", "table", "bench", "sweep", "design", "floor", "rows", "resumed", "unit"),
     *("import", "map", "synthesis", "diagnosis", "manifest", "sealed"),
-    *(f"format {name}" for name in (*FORMATS, "KRBI.crg", "LRFI.crg")),
+    *(f"format {name}" for name in FORMATS),
 )
 pytestmark = [
     pytest.mark.slow,

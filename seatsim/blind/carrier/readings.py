@@ -29,8 +29,6 @@ from seatsim.schema.arrays import Array
 _COMMANDS = ("current_command", "command_voltage")
 _LONGEST_DELAY = 0.04
 """s"""
-_FASTEST = 3000.0
-"""1/s; a coil that is faster follows at once."""
 _NEAR_TOP = 0.93
 """Share of the largest command from which on it counts as the limit."""
 _SENSORS = (
@@ -58,26 +56,6 @@ def draw_delays(carrier: Carrier, rng: Generator) -> list[Change]:
         return Altered(early, {"time": rows * carrier.step})
 
     return [Change("coil.delay", "command advanced", "", (0.0, _LONGEST_DELAY), alter)]
-
-
-def draw_faster_coils(carrier: Carrier, rng: Generator) -> list[Change]:
-    """Return a nominal that believes in a faster coil than was identified, so that the rig's lags behind it.
-
-    The recorded command cannot be sharpened in its stead: a switched one would leave the range of the supply. As the
-    nominal tells what was done, this is no change for a set whose labels are sealed.
-    """
-    command = commanded(carrier)
-    coil = section(carrier.nominal, "actuator")
-    rate = number(coil.get("rate", 130.0))
-    if command is None or not any(np.ptp(table[command]) > 0.0 for table in carrier.tables.values()):
-        return []
-    longest = 1.0 / rate - 1.0 / _FASTEST
-
-    def alter(amount: float) -> Altered:
-        faster = {**carrier.nominal, "actuator": {**coil, "rate": float(f"{1.0 / (1.0 / rate - amount):.6g}")}}
-        return Altered(dataclasses.replace(carrier, nominal=faster), {"time": amount})
-
-    return [Change("coil.lag", "coil of the nominal made faster", "", (0.0, longest), alter)] if longest > 0.0 else []
 
 
 def draw_limits(carrier: Carrier, rng: Generator) -> list[Change]:

@@ -1,4 +1,4 @@
-"""The commands that check diagnoses on recordings whose effects are sealed: blind make, blind score, blind power."""
+"""The commands that check diagnoses on recordings whose effects are sealed: blind make, blind score."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from seatsim.cli.options import Json, NewFolder, Out, OwnCode, check_out
+from seatsim.cli.options import Json, NewFolder, OwnCode, check_out
 from seatsim.cli.terminal import answer, count_progress, out, say, wrote_one
 from seatsim.schema.errors import InputError, SeatsimError
 
@@ -91,40 +91,6 @@ def blind_score(
     path = write_json((out_folder or folder) / "score.json", found)
     wrote_one(path)
     answer(found, [path])
-
-
-@blind.command("power")
-def blind_power(
-    recording: Annotated[Path, typer.Argument(help="A measured recording with an identified nominal.")],
-    effects: Annotated[
-        list[str] | None, typer.Option("--effect", help="Only this effect; may be given several times.")
-    ] = None,
-    draws: Annotated[int, typer.Option("--draws", min=1, help="Cases at each size.")] = 10,
-    seed: Annotated[int, typer.Option("--seed", help="Seed of the draws.")] = 0,
-    out_folder: Out = None,
-    own_code: OwnCode = None,
-    as_json: Json = False,
-) -> None:
-    """Put effects of ever smaller size into a recording, and print the smallest found in nine of ten draws."""
-    from seatsim.blind.carrier.power import SIZES, Power, Powers, measure_power
-    from seatsim.cli.outputs.blind_tables import make_power_table
-    from seatsim.cli.show_table import show_table
-    from seatsim.schema.files import write_json
-
-    folder = out_folder or Path("out") / f"{recording.resolve().name}-power"
-    with count_progress("diagnosing") as count:
-
-        def tell(power: Power, done: int, total: int) -> None:
-            count(done, total)
-            size = "not found" if power.smallest is None else f"{power.smallest:g} std"
-            say(f"{power.effect}: {size} (of {', '.join(f'{s:g}' for s in SIZES)})")
-
-        found = measure_power(recording, folder, _diagnose_one, tuple(effects or ()), draws, seed, progress=tell)
-    show_table(make_power_table(found))
-    powers = Powers(draws, found)
-    path = write_json(folder / "power.json", powers)
-    wrote_one(path)
-    answer(powers, [path])
 
 
 def _diagnose_all(folder: Path, count: Callable[[int, int], None]) -> None:

@@ -91,7 +91,7 @@ def import_data(
     own_code: OwnCode = None,
     as_json: Json = False,
 ) -> None:
-    """Make a recording of CSV, Parquet, Feather, XLSX, HDF5, MAT, MDF, TDMS, UFF58, RPC III or OpenCRG files.
+    """Make a recording of CSV, Parquet, Feather, XLSX, HDF5, MAT, MDF, TDMS, UFF58 or RPC III files.
 
     Options:
         files: Data files of one rig, or a folder of them.
@@ -110,7 +110,7 @@ def import_data(
         say(note)
     _doubt(found.doubts)
     wrote(folder, found.paths)
-    if nominal is None and found.map.rig != "road":
+    if nominal is None:
         say(f"before gap or diagnose: state the rig in {folder / 'nominal.yaml'}, or import with --nominal SCENARIO")
     answer(found, found.paths)
 

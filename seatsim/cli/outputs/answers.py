@@ -65,7 +65,6 @@ class _SynthesisAnswer(NamedTuple):
 
 def list_answers() -> Mapping[str, object]:
     """Return the type of what each command prints, by its name; `error` is what any of them prints where it fails."""
-    from seatsim.blind.carrier.power import Powers
     from seatsim.blind.score.score import Score
     from seatsim.characterisation.summary import Characterisation
     from seatsim.cli.check_files import CheckedFile
@@ -103,7 +102,6 @@ def list_answers() -> Mapping[str, object]:
         "export": ExportedBlock,
         "blind-make": BlindMakeAnswer,
         "blind-score": Score,
-        "blind-power": Powers,
         "explore": _ExploreAnswer,
         "reproduce": Reproduction,
         "error": _ErrorAnswer,

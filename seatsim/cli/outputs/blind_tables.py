@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 from rich.table import Table
 
-from seatsim.blind.carrier.power import SIZES, Power
 from seatsim.blind.score.cases import Failure, Rate
 from seatsim.blind.score.score import Score
 from seatsim.cli.show_table import make_table
@@ -82,24 +81,3 @@ def _describe(failure: Failure) -> tuple[str, ...]:
     sizes, missing = ", ".join(f"{size:.1f}" for size in failure.materialities), ", ".join(failure.missing)
     named = ", ".join(failure.selected or failure.named[:1])
     return failure.case, true, sizes, missing, failure.verdict, named, ", ".join(failure.where)
-
-
-def make_power_table(powers: Sequence[Power]) -> Table:
-    """Return for each effect the smallest size that is found, what that is, and how many draws were found by size."""
-    rows = [
-        (
-            power.effect,
-            "-" if power.smallest is None else f"{power.smallest:g}",
-            ", ".join(f"{name} {value:.3g}" for name, value in power.parameters.items()),
-            *(_count_found(power, f"{size:g}") for size in SIZES),
-        )
-        for power in powers
-    ]
-    headings = ("effect", "smallest", "which is", *(f"{size:g}" for size in SIZES))
-    title = "smallest size found in nine of ten draws, in std of a compared channel"
-    return make_table(title, headings, rows, left=(0, 2))
-
-
-def _count_found(power: Power, size: str) -> str:
-    found = power.found.get(size)
-    return "" if found is None else f"{sum(found)}/{len(found)}" if found else "too large"

@@ -15,11 +15,11 @@ from seatsim.schema.files import write_whole
 from seatsim.schema.guarded import temporary_folder
 
 _BROWSERS = (
-    "chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome", "msedge", "microsoft-edge",
+    *["chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome", "msedge", "microsoft-edge"],
     "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
     r"C:\Program Files\Google\Chrome\Application\chrome.exe",
     r"C:\Program Files (x86)\Microsoft\Edge\Application\msedge.exe",
-)  # fmt: skip
+)
 """Browsers that print without a window, by name or by where their installers put them."""
 _LONGEST = 120.0
 """s after which a browser that has not printed is given up."""
@@ -66,10 +66,9 @@ def _print_by_browser(browser: str, report: Path, target: Path) -> None:
     # Root, as in a container, has no sandbox; the page lets no script but its own run.
     as_root = ["--no-sandbox"] if getattr(os, "geteuid", lambda: 1)() == 0 else []
     with temporary_folder() as profile:
-        command = [
-            browser, "--headless", "--disable-gpu", *as_root, f"--user-data-dir={profile}", "--no-pdf-header-footer",
-            "--virtual-time-budget=20000", f"--print-to-pdf={target.resolve()}", report.resolve().as_uri(),
-        ]  # fmt: skip
+        plain = ["--headless", "--disable-gpu", *as_root, "--no-pdf-header-footer", "--virtual-time-budget=20000"]
+        places = [f"--user-data-dir={profile}", f"--print-to-pdf={target.resolve()}", report.resolve().as_uri()]
+        command = [browser, *plain, *places]
         try:
             done = subprocess.run(command, capture_output=True, text=True, timeout=_LONGEST, check=False)
         except (OSError, subprocess.TimeoutExpired) as error:

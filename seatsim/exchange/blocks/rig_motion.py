@@ -183,9 +183,14 @@ def _follow(
 
 @jit
 def _step_inputs(
-    p: RigParameters, u: RigInputs, commands: State, floor: float, rate: float, current: float,
+    p: RigParameters,
+    u: RigInputs,
+    commands: State,
+    floor: float,
+    rate: float,
+    current: float,
     kept: tuple[float, float],
-) -> StepInputs:  # fmt: skip
+) -> StepInputs:
     """Return what acts on the rig for one step: the commands of `late` and of one more step ago."""
     late = len(commands) - 2
     split = p.coil.delay - late * p.step

@@ -136,7 +136,7 @@ def arithmetic(op: ast.operator, left: Value, right: Value, node: ast.AST, scope
     sign, compute = _ARITHMETIC[type(op)]
     whole = not isinstance(op, ast.Div) and REAL not in {left.type, right.type}
     if is_known(left, right) and not (right.known == 0 and sign in "/%"):
-        return number(compute(left.known, right.known))  # type: ignore[arg-type]  # both are numbers
+        return number(compute(left.known, right.known))
     if sign in "/%" and isinstance(op, ast.FloorDiv | ast.Mod) and not whole:
         raise scope.refuse(node, "// and % are for whole numbers only")
     rank = SUM if sign in "+-" else PRODUCT
@@ -153,7 +153,7 @@ def _is_number(value: Value) -> bool:
 def _print_power(base: Value, exponent: Value, scope: Scope) -> Value:
     """Return a power; a small whole one is a product, as it is in compiled Python code."""
     if is_known(base, exponent):
-        return number(base.known**exponent.known)  # type: ignore[operator]  # both are numbers
+        return number(base.known**exponent.known)
     whole = int(exponent.known) if isinstance(exponent.known, int) else 0
     if 1 <= whole <= _UNROLLED:
         factor = scope.keep(base)
@@ -168,7 +168,7 @@ def _print_unary(op: ast.unaryop, value: Value, node: ast.AST, scope: Scope) -> 
     if not isinstance(op, ast.USub) or not _is_number(value):
         raise scope.refuse(node, "this operation has no counterpart")
     if is_known(value):
-        return number(-value.known)  # type: ignore[operator]  # a number
+        return number(-value.known)
     return Value(f"-{within(value, 0)}", value.type, plain=False, rank=UNARY)
 
 
@@ -178,7 +178,7 @@ def _print_comparison(node: ast.Compare, scope: Scope) -> Value:
         raise scope.refuse(node, "only numbers are compared")
     if is_known(*values):
         pairs = zip(node.ops, values, values[1:], strict=False)
-        return number(all(_COMPARED[type(op)][1](a.known, b.known) for op, a, b in pairs))  # type: ignore[arg-type]
+        return number(all(_COMPARED[type(op)][1](a.known, b.known) for op, a, b in pairs))
     values[1:-1] = map(scope.keep, values[1:-1])
     parts = [
         f"{within(a, SUM)} {_COMPARED[type(op)][0]} {within(b, SUM)}"
@@ -229,7 +229,7 @@ def _print_subscript(node: ast.Subscript, scope: Scope) -> Value:
         ends = [print_expression(end, scope).known if end else None for end in (node.slice.lower, node.slice.upper)]
         return part(scope, owner, slice(*ends))
     index = print_expression(node.slice, scope)
-    return element(scope, owner, int(index.known) if is_known(index) else index, node)  # type: ignore[call-overload]
+    return element(scope, owner, int(index.known) if is_known(index) else index, node)
 
 
 def _array_element(owner: Value, indices: list[Value], scope: Scope) -> Value:

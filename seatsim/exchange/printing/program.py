@@ -232,7 +232,7 @@ def _member(owner: Value) -> str:
 
 
 def _known_element(scope: Scope, owner: Value, index: int) -> Value:
-    found = owner.known[index]  # type: ignore[index]  # a tuple
+    found = owner.known[index]
     if not isinstance(found, tuple):
         return number(found)
     kinds = tuple(owner.type)[index]

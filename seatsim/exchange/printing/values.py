@@ -42,7 +42,7 @@ class Value(NamedTuple):
 
     code: str
     type: Any  # a numba type, or None
-    known: object = UNKNOWN
+    known: Any = UNKNOWN  # a number, a tuple, a function, a class or a module
     plain: bool = True
     shape: tuple[int, ...] = ()
     rank: int = 0
@@ -85,7 +85,7 @@ def as_real(value: Value) -> Value:
     if value.type == REAL:
         return value
     if is_known(value):
-        return number(float(value.known))  # type: ignore[arg-type]  # a number
+        return number(float(value.known))
     return Value(f"(real){within(value, UNARY)}", REAL, plain=False, rank=UNARY)
 
 

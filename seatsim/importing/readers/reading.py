@@ -67,7 +67,6 @@ FORMATS = (
     _Format("TDMS", "labview.read_tdms", (b"TDSm",), (".tdms",)),
     _Format("UFF", "time_histories.read_uff", (b"    -1",), (".uff", ".unv")),
     _Format("RPC III", "time_histories.read_rpc", (b"FORMAT\0", b"FORMAT "), (".rpc", ".rsp", ".tim")),
-    _Format("OpenCRG", "opencrg.read", (b"$CT", b"$ROAD_CRG", b"* "), (".crg",)),
     _Format("CSV", "text.read", (), (".csv", ".tsv", ".txt", ".asc", ".dat")),
 )
 """Formats in the order in which they are tried."""
@@ -151,12 +150,10 @@ def _recognise(path: Path, content: bytes) -> _Format:
     if head.startswith(_ZIP):
         _check_unpacked(path, content)
         return names["XLSX"]
-    if b"$ROAD_CRG" in head.upper() or b"$KD_DEFINITION" in head.upper():
-        return names["OpenCRG"]
     if head[USER_BLOCK:].startswith(HDF5):
         return names["MAT v7.3" if head.startswith(b"MATLAB") else "HDF5"]
     for each in FORMATS:
-        if head.startswith(each.begins) and each.name != "OpenCRG":
+        if head.startswith(each.begins):
             return each
     ending = next((each for each in FORMATS if path.name.lower().endswith(each.endings)), None)
     if ending is not None and ending.name != "CSV":

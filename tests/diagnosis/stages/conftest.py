@@ -7,7 +7,7 @@ from .toy import NOMINAL, respond_linearly
 
 SIMULATING = tuple(
     words("""
-    seatsim.recordings.replay seatsim.diagnosis.problem seatsim.recordings.error_budget
+    seatsim.recordings.replay seatsim.diagnosis.problem seatsim.recordings.validation
     seatsim.diagnosis.localise.reconstruction seatsim.diagnosis.design.experiment
 """)
 )
