@@ -59,16 +59,10 @@ class Plant:
         return K
 
     def _characterise(self, corner: tuple[Fraction, ...]) -> list[Fraction]:
-        """Return the characteristic polynomial of the loop at a corner, s^0 first, by Faddeev's recursion."""
-        A = self.A + self.B2 @ self.gain(corner) @ self.C2
-        n, found = len(A), [Fraction(1)]
-        identity = np.array([[Fraction(int(i == j)) for j in range(n)] for i in range(n)], dtype=object)
-        M = identity
-        for k in range(1, n + 1):
-            product = A @ M
-            found.append(-sum(product.diagonal(), Fraction(0)) / k)
-            M = product + found[-1] * identity
-        return found[::-1]
+        """Return the characteristic polynomial of the loop at a corner, s^0 first."""
+        A, over = to_whole(self.A + self.B2 @ self.gain(corner) @ self.C2)
+        coefficients, _ = expand((A, 0 * A))
+        return [Fraction(c, over**k) for k, (c, _) in enumerate([(1, 0), *coefficients])][::-1]
 
     def sign(self, s: Fraction) -> int:
         """Return the sign of det(s I - A) at a real s."""
@@ -81,7 +75,7 @@ class Plant:
         corner = np.full((len(self.C2), self.B2.shape[1]), Fraction(0), dtype=object)
         real, imaginary = np.block([[self.D11, self.D12], [self.D21, corner]]), 0 * C @ B
         if s is not None:
-            identity = np.array([[Fraction(int(i == j)) for j in range(n)] for i in range(n)], dtype=object)
+            identity = np.eye(n, dtype=object)
             M = np.block([[s[0] * identity - self.A, -s[1] * identity], [s[1] * identity, s[0] * identity - self.A]])
             X = solve(M, np.vstack([B, 0 * B]))
             real, imaginary = real + C @ X[:n], imaginary + C @ X[n:]
@@ -97,27 +91,17 @@ def to_whole(values: Exact) -> tuple[Exact, int]:
     return np.vectorize(int, otypes=[object])(values * over), over
 
 
-def complex_determinant(M: tuple[Exact, Exact]) -> Number:
-    """Return the determinant of a complex matrix by expansion; it has few rows."""
-    if len(M[0]) == 0:
-        return Fraction(1), Fraction(0)
-    total = Fraction(0), Fraction(0)
-    for j in range(len(M[0])):
-        rest = [np.delete(np.delete(part, 0, axis=0), j, axis=1) for part in M]
-        d, (a, b), sign = complex_determinant((rest[0], rest[1])), (M[0][0, j], M[1][0, j]), (-1) ** j
-        total = total[0] + sign * (a * d[0] - b * d[1]), total[1] + sign * (a * d[1] + b * d[0])
-    return total
-
-
-def adjugate(M: tuple[Exact, Exact]) -> tuple[Exact, Exact]:
-    """Return the adjugate of a complex matrix by its minors."""
-    n = len(M[0])
-    real, imaginary = np.empty((n, n), dtype=object), np.empty((n, n), dtype=object)
-    for i, j in itertools.product(range(n), repeat=2):
-        minor = [np.delete(np.delete(part, j, axis=0), i, axis=1) for part in M]
-        d = complex_determinant((minor[0], minor[1]))
-        real[i, j], imaginary[i, j] = (-1) ** (i + j) * d[0], (-1) ** (i + j) * d[1]
-    return real, imaginary
+def expand(L: tuple[Exact, Exact]) -> tuple[list[tuple[int, ...]], tuple[Exact, Exact]]:
+    """Return the coefficients of det(t I - L) from t^(n-1) on, and adj(L), by Faddeev's recursion in whole numbers."""
+    identity = np.eye(len(L[0]), dtype=object)
+    last = M = identity, 0 * identity
+    found: list[tuple[int, ...]] = []
+    for k in range(1, len(identity) + 1):
+        last, product = M, multiply(L, M)
+        found.append(tuple(-np.trace(part) // k for part in product))
+        M = product[0] + found[-1][0] * identity, product[1] + found[-1][1] * identity
+    sign = (-1) ** (len(identity) - 1)
+    return found, (sign * last[0], sign * last[1])
 
 
 def root_above(value: Fraction) -> Fraction:
@@ -146,8 +130,9 @@ def evaluate(
     for corner in corners:
         K, over_K = to_whole(plant.gain(corner))
         L = over_K * below * np.eye(len(K), dtype=object) - K @ P22[0], -(K @ P22[1])
-        d, over_d = complex_determinant(L), (over_K * below) ** len(K)
-        added = multiply(multiply(row, adjugate(L)), (K @ column[0], K @ column[1]))
+        coefficients, adjugate = expand(L)
+        d, over_d = [(-1) ** len(K) * part for part in coefficients[-1]], (over_K * below) ** len(K)
+        added = multiply(multiply(row, adjugate), (K @ column[0], K @ column[1]))
         along = (d[0] * direct[0] - d[1] * direct[1] + added[0])[0, 0]
         size = Fraction(sign * d[0], over_d)
         if sign == 0:
