@@ -138,8 +138,8 @@ class BoxView:
         return K
 
     def norm_at(self, values: Array) -> Peak:
-        """Return the norm of a gain, infinite where it is unstable, or a peak above the level."""
-        return hinf_norm(self.plant.close(self.gain(values[None])[0]), enough=self.level)
+        """Return the norm of a gain, infinite where it is unstable."""
+        return hinf_norm(self.plant.close(self.gain(values[None])[0]))
 
     def look(self, corners: Array, points: Complex) -> CornerView:
         """Return the view of the box with these corners, at the common points and some more."""
