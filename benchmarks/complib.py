@@ -11,7 +11,6 @@ the proofs stand beside the designs as `NAME.json`, for `exact_global_proofs.py`
 from __future__ import annotations
 
 import argparse
-import csv
 import json
 import time
 from pathlib import Path
@@ -60,13 +59,13 @@ def solve(path: Path, budget: float, designs: Path, box: float | None) -> Proble
     return found | {"wall": time.monotonic() - wall, "processor": time.process_time() - processor}
 
 
-def tabulate(found: list[ProblemResult], best: dict[str, float]) -> pd.DataFrame:
+def tabulate(found: list[ProblemResult], best: pd.Series) -> pd.DataFrame:
     """Return a row for each problem: its figures, the best value known, and gamma over that.
 
     The ratio is 1 where both are negligible, and infinite where there is no design.
     """
     frame = pd.DataFrame(found).set_index("name").reindex(columns=FIGURES).astype(float).sort_index()
-    known = pd.Series(best, dtype=float).reindex(frame.index)
+    known = best.reindex(frame.index)
     ratio = frame["gamma"] / known.clip(lower=NEGLIGIBLE)
     ratio = ratio.mask(np.maximum(frame["gamma"], known) < NEGLIGIBLE, 1.0).mask(frame["gamma"].isna(), np.inf)
     return frame.assign(best=known, ratio=ratio.where(known.notna()))
@@ -95,12 +94,11 @@ def main() -> None:
     chosen = options.only or list(boxes)
     designs = options.out.parent / "designs"
     designs.mkdir(parents=True, exist_ok=True)
-    lines = options.out.read_text().splitlines() if options.out.exists() else []
-    found = [json.loads(line) for line in lines]
-    done = {f["name"] for f in found}
+    options.out.touch()
+    found = [json.loads(line) for line in options.out.read_text().splitlines()]
     paths = sorted(options.folder.glob("*.json"), key=lambda path: (path.stat().st_size, path.stem))
     for path in paths:
-        if path.stem in done or (chosen and path.stem not in chosen):
+        if path.stem in {one["name"] for one in found} or (chosen and path.stem not in chosen):
             continue
         with threadpool_limits(1):
             result = solve(path, options.budget, designs, boxes.get(path.stem))
@@ -108,9 +106,7 @@ def main() -> None:
             stream.write(json.dumps(result) + "\n")
         print(json.dumps(result), flush=True)
         found.append(result)
-    with (options.folder / "best_known.csv").open() as stream:
-        known = {row["problem"]: row["best_measured_gamma"] for row in csv.DictReader(stream)}
-    best = {name: float(value) for name, value in known.items() if value}
+    best = pd.read_csv(options.folder / "best_known.csv", index_col="problem")["best_measured_gamma"]
     frame = tabulate(found, best)
     print(frame.to_string(float_format=lambda value: f"{value:.5g}"))
     print(summarise(frame))

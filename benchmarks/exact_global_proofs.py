@@ -28,18 +28,17 @@ def multiply(a: tuple[Exact, Exact], b: tuple[Exact, Exact]) -> tuple[Exact, Exa
     return a[0] @ b[0] - a[1] @ b[1], a[0] @ b[1] + a[1] @ b[0]
 
 
-def solve(M: Exact, right: Exact) -> Exact:
-    """Return the solution of M X = right by elimination with exchanges of rows."""
-    n, both = len(M), np.hstack([M, right]) * Fraction(1)
+def solve(M: tuple[Exact, Exact], right: tuple[Exact, Exact]) -> tuple[Exact, Exact]:
+    """Return the solution of M X = right, complex matrices, by elimination with exchanges of rows."""
+    both = np.block([[M[0], -M[1], right[0]], [M[1], M[0], right[1]]]) * Fraction(1)
+    n = len(both)
     for k in range(n):
         pivot = next(i for i in range(k, n) if both[i, k] != 0)
         both[[k, pivot]] = both[[pivot, k]]
         both[k] /= both[k, k]
-        for i in range(n):
-            if i != k:
-                both[i] -= both[i, k] * both[k]
-    solution: Exact = both[:, n:]
-    return solution
+        for i in {*range(n)} - {k}:
+            both[i] -= both[i, k] * both[k]
+    return both[: n // 2, n:], both[n // 2 :, n:]
 
 
 class Plant:
@@ -71,14 +70,12 @@ class Plant:
 
     def _respond(self, s: Number | None) -> tuple[list[tuple[Exact, Exact]], int]:
         """Return P11, P12, P21, P22 at s as whole numbers over a common one; None is infinity."""
-        n, B, C = len(self.A), np.hstack([self.B1, self.B2]), np.vstack([self.C1, self.C2])
-        corner = np.full((len(self.C2), self.B2.shape[1]), Fraction(0), dtype=object)
-        real, imaginary = np.block([[self.D11, self.D12], [self.D21, corner]]), 0 * C @ B
+        B, C = np.hstack([self.B1, self.B2]), np.vstack([self.C1, self.C2])
+        real, imaginary = np.block([[self.D11, self.D12], [self.D21, 0 * self.C2 @ self.B2]]), 0 * C @ B
         if s is not None:
-            identity = np.eye(n, dtype=object)
-            M = np.block([[s[0] * identity - self.A, -s[1] * identity], [s[1] * identity, s[0] * identity - self.A]])
-            X = solve(M, np.vstack([B, 0 * B]))
-            real, imaginary = real + C @ X[:n], imaginary + C @ X[n:]
+            identity = np.eye(len(self.A), dtype=object)
+            X = solve((s[0] * identity - self.A, s[1] * identity), (B, 0 * B))
+            real, imaginary = real + C @ X[0], imaginary + C @ X[1]
         whole, below = to_whole(np.array([real, imaginary]))
         z, w = len(self.C1), self.B1.shape[1]
         rows, columns = (slice(z), slice(z, None)), (slice(w), slice(w, None))
@@ -134,11 +131,10 @@ def evaluate(
         d, over_d = [(-1) ** len(K) * part for part in coefficients[-1]], (over_K * below) ** len(K)
         added = multiply(multiply(row, adjugate), (K @ column[0], K @ column[1]))
         along = (d[0] * direct[0] - d[1] * direct[1] + added[0])[0, 0]
-        size = Fraction(sign * d[0], over_d)
-        if sign == 0:
-            bound = root_above(Fraction(d[0] ** 2 + d[1] ** 2, over_d**2) * squares)
+        if sign * d[0] < 0:
+            bound = Fraction(sign * d[0], over_d) / root_above(1 / squares)
         else:
-            bound = size * (root_above(squares) if size > 0 else 1 / root_above(1 / squares))
+            bound = root_above(Fraction(d[0] ** 2 + d[1] ** 2, over_d**2) * squares)
         values.append(Fraction(along, over_d * below * over_p * over_q) - level * bound)
     return values
 
@@ -210,10 +206,7 @@ def is_out_of_reach(plant: Plant, step: Plain, level: Fraction) -> bool:
     (P11, P12, P21, _), below = plant.respond(point(step["s"]))
     path, T = (P12, P11) if step["at_output"] else (adjoint(P21), adjoint(P11))
     v, _ = vector(step["vector"])
-    gram, along = multiply(adjoint(path), path), multiply(adjoint(path), v)
-    M = np.block([[gram[0], -gram[1]], [gram[1], gram[0]]])
-    x = solve(M, np.vstack(along))
-    reached = multiply(path, (x[: len(x) // 2], x[len(x) // 2 :]))
+    reached = multiply(path, solve(multiply(adjoint(path), path), multiply(adjoint(path), v)))
     p = v[0] - reached[0], v[1] - reached[1]
     return square(multiply(adjoint(T), p)) >= (level * below) ** 2 * square(p) > 0
 
