@@ -28,18 +28,17 @@ def multiply(a: tuple[Exact, Exact], b: tuple[Exact, Exact]) -> tuple[Exact, Exa
     return a[0] @ b[0] - a[1] @ b[1], a[0] @ b[1] + a[1] @ b[0]
 
 
-def solve(M: Exact, right: Exact) -> Exact:
-    """Return the solution of M X = right by elimination with exchanges of rows."""
-    n, both = len(M), np.hstack([M, right])
+def solve(M: tuple[Exact, Exact], right: tuple[Exact, Exact]) -> tuple[Exact, Exact]:
+    """Return the solution of M X = right, complex matrices, by elimination with exchanges of rows."""
+    both = np.block([[M[0], -M[1], right[0]], [M[1], M[0], right[1]]]) * Fraction(1)
+    n = len(both)
     for k in range(n):
         pivot = next(i for i in range(k, n) if both[i, k] != 0)
         both[[k, pivot]] = both[[pivot, k]]
         both[k] /= both[k, k]
-        for i in range(n):
-            if i != k:
-                both[i] -= both[i, k] * both[k]
-    solution: Exact = both[:, n:]
-    return solution
+        for i in {*range(n)} - {k}:
+            both[i] -= both[i, k] * both[k]
+    return both[: n // 2, n:], both[n // 2 :, n:]
 
 
 class Plant:
@@ -59,58 +58,47 @@ class Plant:
         return K
 
     def _characterise(self, corner: tuple[Fraction, ...]) -> list[Fraction]:
-        """Return the characteristic polynomial of the loop at a corner, s^0 first, by Faddeev's recursion."""
-        A = self.A + self.B2 @ self.gain(corner) @ self.C2
-        n, found = len(A), [Fraction(1)]
-        identity = np.array([[Fraction(int(i == j)) for j in range(n)] for i in range(n)], dtype=object)
-        M = identity
-        for k in range(1, n + 1):
-            product = A @ M
-            found.append(-sum(product.diagonal(), Fraction(0)) / k)
-            M = product + found[-1] * identity
-        return found[::-1]
+        """Return the characteristic polynomial of the loop at a corner, s^0 first."""
+        A, over = to_whole(self.A + self.B2 @ self.gain(corner) @ self.C2)
+        coefficients, _ = expand((A, 0 * A))
+        return [Fraction(c, over**k) for k, (c, _) in enumerate([(1, 0), *coefficients])][::-1]
 
     def sign(self, s: Fraction) -> int:
         """Return the sign of det(s I - A) at a real s."""
         value = sum(c * s**k for k, c in enumerate(self.characterise((Fraction(0),) * int(self.free.sum()))))
         return 1 if value > 0 else -1
 
-    def _respond(self, s: Number | None) -> list[tuple[Exact, Exact]]:
-        """Return P11, P12, P21, P22 at s; None is infinity."""
-        n, B, C = len(self.A), np.hstack([self.B1, self.B2]), np.vstack([self.C1, self.C2])
-        corner = np.full((len(self.C2), self.B2.shape[1]), Fraction(0), dtype=object)
-        real, imaginary = np.block([[self.D11, self.D12], [self.D21, corner]]), 0 * C @ B
+    def _respond(self, s: Number | None) -> tuple[list[tuple[Exact, Exact]], int]:
+        """Return P11, P12, P21, P22 at s as whole numbers over a common one; None is infinity."""
+        B, C = np.hstack([self.B1, self.B2]), np.vstack([self.C1, self.C2])
+        real, imaginary = np.block([[self.D11, self.D12], [self.D21, 0 * self.C2 @ self.B2]]), 0 * C @ B
         if s is not None:
-            identity = np.array([[Fraction(int(i == j)) for j in range(n)] for i in range(n)], dtype=object)
-            M = np.block([[s[0] * identity - self.A, -s[1] * identity], [s[1] * identity, s[0] * identity - self.A]])
-            X = solve(M, np.vstack([B, 0 * B]))
-            real, imaginary = real + C @ X[:n], imaginary + C @ X[n:]
+            identity = np.eye(len(self.A), dtype=object)
+            X = solve((s[0] * identity - self.A, s[1] * identity), (B, 0 * B))
+            real, imaginary = real + C @ X[0], imaginary + C @ X[1]
+        whole, below = to_whole(np.array([real, imaginary]))
         z, w = len(self.C1), self.B1.shape[1]
         rows, columns = (slice(z), slice(z, None)), (slice(w), slice(w, None))
-        return [(real[part], imaginary[part]) for part in itertools.product(rows, columns)]
+        return [(whole[0][part], whole[1][part]) for part in itertools.product(rows, columns)], below
 
 
-def complex_determinant(M: tuple[Exact, Exact]) -> Number:
-    """Return the determinant of a complex matrix by expansion; it has few rows."""
-    if len(M[0]) == 0:
-        return Fraction(1), Fraction(0)
-    total = Fraction(0), Fraction(0)
-    for j in range(len(M[0])):
-        rest = [np.delete(np.delete(part, 0, axis=0), j, axis=1) for part in M]
-        d, (a, b), sign = complex_determinant((rest[0], rest[1])), (M[0][0, j], M[1][0, j]), (-1) ** j
-        total = total[0] + sign * (a * d[0] - b * d[1]), total[1] + sign * (a * d[1] + b * d[0])
-    return total
+def to_whole(values: Exact) -> tuple[Exact, int]:
+    """Return fractions as whole numbers over a common one."""
+    over = math.lcm(*(value.denominator for value in values.ravel()))
+    return np.vectorize(int, otypes=[object])(values * over), over
 
 
-def adjugate(M: tuple[Exact, Exact]) -> tuple[Exact, Exact]:
-    """Return the adjugate of a complex matrix by its minors."""
-    n = len(M[0])
-    real, imaginary = np.empty((n, n), dtype=object), np.empty((n, n), dtype=object)
-    for i, j in itertools.product(range(n), repeat=2):
-        minor = [np.delete(np.delete(part, j, axis=0), i, axis=1) for part in M]
-        d = complex_determinant((minor[0], minor[1]))
-        real[i, j], imaginary[i, j] = (-1) ** (i + j) * d[0], (-1) ** (i + j) * d[1]
-    return real, imaginary
+def expand(L: tuple[Exact, Exact]) -> tuple[list[tuple[int, ...]], tuple[Exact, Exact]]:
+    """Return the coefficients of det(t I - L) from t^(n-1) on, and adj(L), by Faddeev's recursion in whole numbers."""
+    identity = np.eye(len(L[0]), dtype=object)
+    last = M = identity, 0 * identity
+    found: list[tuple[int, ...]] = []
+    for k in range(1, len(identity) + 1):
+        last, product = M, multiply(L, M)
+        found.append(tuple(-np.trace(part) // k for part in product))
+        M = product[0] + found[-1][0] * identity, product[1] + found[-1][1] * identity
+    sign = (-1) ** (len(identity) - 1)
+    return found, (sign * last[0], sign * last[1])
 
 
 def root_above(value: Fraction) -> Fraction:
@@ -119,32 +107,36 @@ def root_above(value: Fraction) -> Fraction:
     return Fraction(math.isqrt(value.numerator * scale * scale // value.denominator) + 1, scale)
 
 
-def evaluate(plant: Plant, inequality: Plain, corner: tuple[Fraction, ...], level: Fraction | None) -> Fraction:
-    """Return a number not above the function of an inequality at a corner; without a level none of a norm counts."""
+def evaluate(
+    plant: Plant, inequality: Plain, corners: list[tuple[Fraction, ...]], level: Fraction | None
+) -> list[Fraction]:
+    """Return numbers not above the function of an inequality at the corners; without a level none of a norm counts."""
     if "power" in inequality:
-        return -plant.characterise(corner)[inequality["power"]]
+        return [-plant.characterise(corner)[inequality["power"]] for corner in corners]
     if level is None:
         raise SystemExit("that no gain is stable is concluded from a norm, for which the proof has no level")
     s = point(inequality["s"])
-    P11, P12, P21, P22 = plant.respond(s)
-    K = plant.gain(corner)
-    identity = np.array([[Fraction(int(i == j)) for j in range(len(K))] for i in range(len(K))], dtype=object)
-    L = identity - K @ P22[0], -(K @ P22[1])
-    d = complex_determinant(L)
-    added = multiply(multiply(P12, adjugate(L)), (K @ P21[0], K @ P21[1]))
-    N = d[0] * P11[0] - d[1] * P11[1] + added[0], d[0] * P11[1] + d[1] * P11[0] + added[1]
-    p, q = (
-        tuple(np.array([Fraction(z[part]) for z in inequality[name]], dtype=object) for part in (0, 1)) for name in "pq"
-    )
-    real, imaginary = multiply(N, (q[0][:, None], q[1][:, None]))
-    along: Fraction = p[0] @ real[:, 0] + p[1] @ imaginary[:, 0]
-    squares = [square((v[0], v[1])) for v in (p, q)]
-    if s is None or s[1] == 0:
-        # At a real s the characteristic polynomials of stable loops are positive, and so is d but for a sign.
-        size = d[0] if s is None else d[0] * plant.sign(s[0])
-        lengths = root_above(squares[0] * squares[1])
-        return along - level * size * (lengths if size > 0 else 1 / root_above(1 / (squares[0] * squares[1])))
-    return along - level * root_above((d[0] ** 2 + d[1] ** 2) * squares[0] * squares[1])
+    (p, over_p), (q, over_q) = vector(inequality["p"]), vector(inequality["q"])
+    squares = square(p) * square(q) / (over_p * over_q) ** 2
+    # At a real s the characteristic polynomials of stable loops are positive, and so is d but for a sign.
+    sign = 0 if s is not None and s[1] != 0 else 1 if s is None else plant.sign(s[0])
+    (P11, P12, P21, P22), below = plant.respond(s)
+    row, column = multiply(adjoint(p), P12), multiply(P21, q)
+    direct = multiply(multiply(adjoint(p), P11), q)
+    values = []
+    for corner in corners:
+        K, over_K = to_whole(plant.gain(corner))
+        L = over_K * below * np.eye(len(K), dtype=object) - K @ P22[0], -(K @ P22[1])
+        coefficients, adjugate = expand(L)
+        d, over_d = [(-1) ** len(K) * part for part in coefficients[-1]], (over_K * below) ** len(K)
+        added = multiply(multiply(row, adjugate), (K @ column[0], K @ column[1]))
+        along = (d[0] * direct[0] - d[1] * direct[1] + added[0])[0, 0]
+        if sign * d[0] < 0:
+            bound = Fraction(sign * d[0], over_d) / root_above(1 / squares)
+        else:
+            bound = root_above(Fraction(d[0] ** 2 + d[1] ** 2, over_d**2) * squares)
+        values.append(Fraction(along, over_d * below * over_p * over_q) - level * bound)
+    return values
 
 
 def shift_argument(polynomial: list[Fraction], shift: Fraction) -> list[Fraction]:
@@ -211,15 +203,18 @@ def point(plain: list[float] | None) -> Number | None:
 
 def is_out_of_reach(plant: Plant, step: Plain, level: Fraction) -> bool:
     """Whether a direction that no control reaches, or no measurement sees, keeps a response of at least the level."""
-    P11, P12, P21, _ = plant.respond(point(step["s"]))
+    (P11, P12, P21, _), below = plant.respond(point(step["s"]))
     path, T = (P12, P11) if step["at_output"] else (adjoint(P21), adjoint(P11))
-    v = tuple(np.array([[Fraction(z[part])] for z in step["vector"]], dtype=object) for part in (0, 1))
-    gram, along = multiply(adjoint(path), path), multiply(adjoint(path), (v[0], v[1]))
-    M = np.block([[gram[0], -gram[1]], [gram[1], gram[0]]])
-    x = solve(M, np.vstack(along))
-    reached = multiply(path, (x[: len(x) // 2], x[len(x) // 2 :]))
+    v, _ = vector(step["vector"])
+    reached = multiply(path, solve(multiply(adjoint(path), path), multiply(adjoint(path), v)))
     p = v[0] - reached[0], v[1] - reached[1]
-    return square(multiply(adjoint(T), p)) >= level**2 * square(p) > 0
+    return square(multiply(adjoint(T), p)) >= (level * below) ** 2 * square(p) > 0
+
+
+def vector(pairs: list[list[float]]) -> tuple[tuple[Exact, Exact], int]:
+    """Return a complex column as whole numbers over a common one."""
+    whole, over = to_whole(np.array([[[Fraction(x)] for x in part] for part in zip(*pairs, strict=True)]))
+    return (whole[0], whole[1]), over
 
 
 def adjoint(M: tuple[Exact, Exact]) -> tuple[Exact, Exact]:
@@ -229,7 +224,7 @@ def adjoint(M: tuple[Exact, Exact]) -> tuple[Exact, Exact]:
 
 def square(v: tuple[Exact, Exact]) -> Fraction:
     """Return the squared length of a complex vector."""
-    return sum((x * x for part in v for x in part.ravel()), Fraction(0))
+    return sum((Fraction(x * x) for part in v for x in part.ravel()), Fraction(0))
 
 
 def is_excluded(plants: list[Plant], step: Plain, corners: list[tuple[Fraction, ...]], level: Fraction | None) -> bool:
@@ -243,7 +238,8 @@ def is_excluded(plants: list[Plant], step: Plain, corners: list[tuple[Fraction, 
     named = [(Fraction(one["weight"]), plants[one["plant"]], one) for one in step["inequalities"]]
     if min(weight for weight, *_ in named) <= 0:
         return False
-    return all(sum(w * evaluate(plant, one, corner, level) for w, plant, one in named) >= 0 for corner in corners)
+    sums = sum(weight * np.array(evaluate(plant, one, corners, level), dtype=object) for weight, plant, one in named)
+    return all(value >= 0 for value in sums)
 
 
 def check(path: Path) -> str:

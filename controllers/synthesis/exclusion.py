@@ -138,8 +138,8 @@ class BoxView:
         return K
 
     def norm_at(self, values: Array) -> Peak:
-        """Return the norm of a gain, infinite where it is unstable, or a peak above the level."""
-        return hinf_norm(self.plant.close(self.gain(values[None])[0]), enough=self.level)
+        """Return the norm of a gain, infinite where it is unstable."""
+        return hinf_norm(self.plant.close(self.gain(values[None])[0]))
 
     def look(self, corners: Array, points: Complex) -> CornerView:
         """Return the view of the box with these corners, at the common points and some more."""
@@ -189,11 +189,10 @@ class CornerView:
         self._coefficient_sizes = terms.max(axis=1)
         self._coefficients = (-coefficients - _ROUNDING * terms) / self._coefficient_sizes[:, None]
         if np.isfinite(view.level):
-            self._N, d = _numerators(K, points)
+            self._N, d, self._terms = _numerators(K, points)
             # At a real s the characteristic polynomials of stable loops are positive.
             self._bound = view.level * np.where(points.signs[:, None], points.signs[:, None] * d.real, np.abs(d))
-            self._norms = np.linalg.norm(self._N, axis=(2, 3))
-            self._sizes = (np.abs(self._bound) + self._norms).max(axis=1)
+            self._sizes = (np.abs(self._bound) + np.linalg.norm(self._N, axis=(2, 3))).max(axis=1)
 
     def list_inequalities(self, mixture: Array) -> Inequalities:
         """Return the inequalities whose mean over the corners, weighted by `mixture`, is positive."""
@@ -204,7 +203,7 @@ class CornerView:
         if np.isinf(view.level):  # only instability counts, which no transfer matrix shows
             return listed
         N = np.einsum("c,fcij->fij", mixture, self._N)
-        bound = (self._bound + _ROUNDING * (np.abs(self._bound) + self._norms)) @ mixture
+        bound = (self._bound + _ROUNDING * (np.abs(self._bound) + self._terms)) @ mixture
         # The Frobenius norm is no less than the largest singular value.
         near = np.flatnonzero(np.linalg.norm(N, axis=(1, 2)) > bound)
         left, top, right = np.linalg.svd(N[near], full_matrices=False)
@@ -213,7 +212,7 @@ class CornerView:
         along = np.einsum("fi,fcij,fj->fc", p.conj(), self._N[near], q).real
         across = (np.linalg.norm(p, axis=1) * np.linalg.norm(q, axis=1))[:, None]
         bounds = self._bound[near]
-        values = along - across * (bounds + _ROUNDING * (np.abs(bounds) + self._norms[near]))
+        values = along - across * (bounds + _ROUNDING * (np.abs(bounds) + self._terms[near]))
         sizes = self._sizes[near]
         rows: list[_Inequality] = [
             AtPoint(view.number, *row) for row in zip(self._points.s[near].tolist(), p, q, strict=True)
@@ -310,10 +309,13 @@ def _respond(plant: GeneralisedPlant, points: Complex) -> _Points:
     return _Points(s, signs, P[:, :z, :w], P[:, :z, w:], P[:, z:, :w], P[:, z:, w:])
 
 
-def _numerators(K: Array, points: _Points) -> tuple[Complex, Complex]:
-    """Return N, shape (points, gains, nz, nw), and d, shape (points, gains)."""
+def _numerators(K: Array, points: _Points) -> tuple[Complex, Complex, Array]:
+    """Return N, shape (points, gains, nz, nw), d and the size of the terms of N, both of shape (points, gains)."""
     adjugate, d = adjugate_and_determinant(np.eye(K.shape[1]) - K[None] @ points.P22[:, None])
-    return d[..., None, None] * points.P11[:, None] + points.P12[:, None] @ (adjugate @ K) @ points.P21[:, None], d
+    direct = d[..., None, None] * points.P11[:, None]
+    fed_back = points.P12[:, None] @ (adjugate @ K) @ points.P21[:, None]
+    terms = np.linalg.norm(direct, axis=(2, 3)) + np.linalg.norm(fed_back, axis=(2, 3))
+    return direct + fed_back, d, terms
 
 
 def adjugate_and_determinant(L: Complex) -> tuple[Complex, Complex]:

@@ -136,6 +136,13 @@ def test_what_no_controller_changes_is_proven_at_once(check, tmp_path):
     assert check(tmp_path / "global.json").startswith("REFUTED")
 
 
+def test_nothing_is_claimed_where_rounding_decides():
+    # T = (0.3 + 0.1 k 3) / (s + 1) has the norm 2.8e-17 at k = -1, where doubles add up to 5.6e-17.
+    one = np.ones((1, 1))
+    plant = GeneralisedPlant(-one, 0.3 * one, 0.1 * one, one, 0 * one, 0 * one, 0 * one, 3 * one)
+    assert not prove_no_better([plant], 4e-17, [-1.0 - 2.0**-40], [-1.0], time_budget=5.0).is_proven
+
+
 @pytest.mark.filterwarnings("error")
 def test_a_norm_that_stands_at_infinite_frequency(check, tmp_path):
     # x' = -x + w + u, z = x + 2 w, y = x: T = 2 + 1 / (s + 1 - k), so that the norm is T(0), least 2.5 at k = -1.
