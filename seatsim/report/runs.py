@@ -22,6 +22,7 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.errors import RunError
 from seatsim.schema.text import join_names, name_some
 from seatsim.simulation.result import UNITS, Run
+from seatsim.simulation.runs import share_a_loop
 from seatsim.simulation.trials import STRETCH, try_changes
 
 if TYPE_CHECKING:
@@ -84,7 +85,7 @@ def advise_on_runs(runs: Sequence[Run]) -> list[str]:
     if amplifying:
         listed = [f"{name} (SEAT factor {format_number(read_metric(run, SEAT))})" for name, run in amplifying]
         feels = f"The driver feels more than the floor moves in {name_some(listed)}."
-        found.append(f"{feels}{_say_trials(*amplifying[0])}")
+        found.append(f"{feels}{_say_trials(*amplifying[0], share_a_loop(run.scenario for run in runs))}")
     if len(runs) == 1:
         found.append("Compare it with other laws or settings: seatsim compare takes several scenarios or a sweep.")
     elif len({condition_of(run.scenario) for run in runs}) == 1:
@@ -98,10 +99,10 @@ def _rank_above(named: Sequence[tuple[str, Run]], metric: str, limit: float) -> 
     return sorted(above, key=lambda pair: -read_metric(pair[1], metric))
 
 
-def _say_trials(name: str, run: Run) -> str:
+def _say_trials(name: str, run: Run, carry_all_effects: bool | None) -> str:
     """Return what halving and doubling the numbers of the worst run did to its SEAT factor."""
     try:
-        own, *trials = try_changes(run.scenario)
+        own, *trials = try_changes(run.scenario, carry_all_effects)
     except RunError:
         return ""
     known = [each for each in trials if np.isfinite(each.metrics[SEAT].value)] if SEAT in own.metrics else []

@@ -28,18 +28,23 @@ class _Trial(NamedTuple):
     metrics: dict[str, Metric]
 
 
-def try_changes(scenario: Scenario) -> list[_Trial]:
+def try_changes(scenario: Scenario, carry_all_effects: bool | None = False) -> list[_Trial]:
     """Return the first stretch of a run as it is, under no key, then with each change that is permitted and possible.
+
+    `carry_all_effects` is that of the run, whose compiled loop serves again.
 
     Raises:
         RunError: the run as it is cannot be carried to its end.
     """
     floor = _begin(scenario.excitation.floor(scenario.solver.step, scenario.seed))
-    found = [_Trial("", 0.0, measure_run(scenario, simulate(scenario, floor)))]
+
+    def measure(tried: Scenario) -> dict[str, Metric]:
+        return measure_run(tried, simulate(tried, floor, carry_all_effects=carry_all_effects))
+
+    found = [_Trial("", 0.0, measure(scenario))]
     for key, value in _list_changes(scenario):
         with suppress(InputError, RunError):
-            changed = set_number(scenario, key, value)
-            found.append(_Trial(key, value, measure_run(changed, simulate(changed, floor))))
+            found.append(_Trial(key, value, measure(set_number(scenario, key, value))))
     return found
 
 

@@ -57,6 +57,7 @@ def test_one_gain_beats_every_viscous_damper(seats):
 def test_skyhook_is_a_little_better_and_a_cold_inverse_needs_more_travel(seats):
     ours, skyhook, cold = (seats[name] for name in ("H-infinity", "hybrid skyhook", "cold inverse"))
     assert skyhook["weighted"] == pytest.approx(0.97 * ours["weighted"], rel=0.01)
+    assert skyhook["jerk"] == pytest.approx(1.6 * seats["passive, best"]["jerk"], rel=0.05)
     assert cold["weighted"] < ours["weighted"] and cold["travel"] > 1.1 * ours["travel"] and cold["hits"] > 0
 
 
