@@ -78,7 +78,7 @@ def format_number(value: float | None, digits: int = 3) -> str:
 
 
 def format_percent(share: float | None) -> str:
-    """Return a share (1 is all) in per cent with two significant digits or more; one that would be 0.0 % as `< 0.1 %`."""
+    """Return a share (1 is all) in per cent with two significant digits or more, `< 0.1 %` in place of 0.0."""
     if share is None or not math.isfinite(share):
         return UNKNOWN
     value = 100.0 * share
