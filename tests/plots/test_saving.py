@@ -17,3 +17,9 @@ def test_the_ending_chooses_the_format_and_equal_figures_give_equal_bytes(tmp_pa
         save_figure(figure, tmp_path / f"{name}{ending}")
         contents.append((tmp_path / f"{name}{ending}").read_bytes())
     assert contents[0].startswith(STARTS[ending]) and contents[0] == contents[1]
+
+
+def test_texts_of_an_inline_picture_keep_their_digits():
+    page = make_page("title", "note", Grid((1.0,)))
+    page.rows[0][0].text(0.5, 0.5, "mass: 0.00125 kg")
+    assert ">mass: 0.00125 kg<" in unquote(render_inline(page.figure).source)
