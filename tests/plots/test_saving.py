@@ -1,9 +1,12 @@
 """Figures as files: by their ending, and with equal bytes for equal figures."""
 
+from urllib.parse import unquote
+
 import pytest
 from matplotlib.figure import Figure
 
-from seatsim.plots.saving import OPTIONS, save_figure
+from seatsim.plots.saving import OPTIONS, render_inline, save_figure
+from seatsim.plots.style import Grid, make_page
 
 STARTS = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}
 
