@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import ctypes
 import re
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from pathlib import Path
-from threading import Lock
+from threading import Lock, get_ident
 from typing import TYPE_CHECKING, Any
 
 import jinja2
@@ -20,7 +21,7 @@ from starlette.types import ASGIApp
 
 from seatsim.page.guard import POLICY, Guard
 from seatsim.report.rendering import digest_of, make_environment, read_asset
-from seatsim.schema.errors import InputError, SeatsimError
+from seatsim.schema.errors import InputError, RunError, SeatsimError
 from seatsim.schema.files import write_text
 from seatsim.schema.guarded import temporary_folder
 from seatsim.schema.yaml_text import dump
@@ -48,9 +49,14 @@ def make_app(target: Future[ScenarioView | RecordingView], folder: Path, token: 
             Route("/", page.show, methods=["GET"]),
             Route("/view", page.compute, methods=["POST"]),
             Route("/save", page.save, methods=["POST"]),
+            Route("/stop", page.stop, methods=["POST"]),
         ]
     )
     return Guard(app, token, port)
+
+
+class Stopped(BaseException):
+    """Is raised in the thread that computes, wherever it is, as Ctrl-C is in a command."""
 
 
 class _Page:
@@ -58,6 +64,7 @@ class _Page:
 
     def __init__(self, target: Future[ScenarioView | RecordingView], folder: Path) -> None:
         self._target, self._folder, self._lock = target, folder, Lock()
+        self._thread: int | None = None
         script, style = read_asset(SCRIPTS), read_asset(STYLES)
         self._headers = HEADERS | {
             "Content-Security-Policy": POLICY.format(script=digest_of(script), style=digest_of(style))
@@ -88,6 +95,12 @@ class _Page:
         """Write a scenario of some values into the folder."""
         return await self._answer(request, self._save)
 
+    async def stop(self, _request: Request) -> Response:
+        """End what is being computed, after the step of compiled code that it is in."""
+        if self._thread is not None:
+            ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(self._thread), ctypes.py_object(Stopped))
+        return JSONResponse({}, headers=self._headers)
+
     async def _answer(self, request: Request, compute: Callable[[Mapping[str, Any]], object]) -> Response:
         """Return what follows from the values of a request, or what is wrong with them."""
         try:
@@ -103,7 +116,13 @@ class _Page:
 
     def _compute(self, values: Mapping[str, Any]) -> Any:
         with self._lock:
-            return self._target.result().show(values)
+            self._thread = get_ident()
+            try:
+                return self._target.result().show(values)
+            except Stopped:
+                raise RunError("stopped: what is shown belongs to the values before") from None
+            finally:
+                self._thread = None
 
     def _save(self, values: Mapping[str, Any]) -> object:
         # Loading these takes longer than everything that the first page needs.

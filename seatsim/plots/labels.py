@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 LONGEST = 44
 """Letters of a label; longer ones are cut in the middle, so that its ends stay legible."""
-_PRETTY = {"degC": "°C", "^1.75": "¹·⁷⁵", "^2": "²", "^3": "³", "ohm": "Ω", " s/m": "·s/m"}
+_PRETTY = {"degC": "°C", "^1.75": "¹·⁷⁵", "^2": "²", "^3": "³", "ohm": "Ω", " s/m": "·s/m", " s/(m A)": "·s/(m·A)"}
 """What stands in files and in print, in the order in which it is replaced."""
 FACTORS = {"m": (1e3, "mm")}
 """Factor and unit of quantities whose values are small in SI units."""
@@ -26,8 +26,8 @@ class Quantity(NamedTuple):
 
     @property
     def axis(self) -> str:
-        """The label of an axis."""
-        return f"{self.words} [{self.unit}]"
+        """The label of an axis, with the unit where there is one."""
+        return self.words if self.unit == "-" else f"{self.words} [{self.unit}]"
 
     @property
     def square(self) -> str:
@@ -78,9 +78,11 @@ def format_number(value: float | None, digits: int = 3) -> str:
 
 
 def format_percent(share: float | None) -> str:
-    """Return a share (1 is all) in per cent with two significant digits or more."""
+    """Return a share (1 is all) in per cent with two significant digits or more, `< 0.1 %` in place of 0.0."""
     if share is None or not math.isfinite(share):
         return UNKNOWN
     value = 100.0 * share
+    if 0 < abs(value) < 0.05:
+        return "< 0.1 %"
     text = f"{value:.0f} %" if abs(value) >= 9.95 or value == 0 else f"{value:.1f} %"
-    return text.replace("-0.0", "0.0").replace("-", MINUS)
+    return text.replace("-", MINUS)

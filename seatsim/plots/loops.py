@@ -26,7 +26,7 @@ def make_loop_page(title: str, note: str, families: Sequence[Family], more: int 
     """Return a page with a row of two panels for each family, filled, and further rows that are empty."""
     letters = [len(name) for family in families for name in (family.legend, *(name for name, _ in family.loops))]
     right = max(0.95, 0.55 + style.LETTER * max(letters, default=0))
-    grid = Grid((2.0,) * (len(families) + more), 2, right=right, top=0.3, gap=(0.2, 0.85))
+    grid = Grid((2.0,) * (len(families) + more), 2, right=right, top=0.3, gap=(0.3, 0.85))
     page = style.make_page(title, note, grid)
     for panels, family in zip(page.rows, families, strict=False):
         picked = style.sample_colours(family.colours, len(family.loops))

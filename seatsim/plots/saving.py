@@ -30,11 +30,11 @@ _INLINE: dict[Any, Any] = {"svg.hashsalt": "seatsim", "svg.fonttype": "none", "p
 _SHORTER = (
     (r"(?s)^.*?(?=<svg)|<metadata>.*?</metadata>|\s*\n\s*", " "),
     (r' id="[\w.]+_\d+"| transform="rotate\(-0 [^"]*"', ""),
-    (r"(\.\d)\d{2,}", r"\1"),
+    (r"(\.\d)\d{2,}(?=[^<>]*>)", r"\1"),
     (r"(px|font-family:)[^;:\"]*sans-serif", r"\1 sans-serif"),
-    (r"([:;]) ", r"\1"),
+    (r"([:;]) (?=[^<>]*>)", r"\1"),
 )
-"""What is left out of an SVG of matplotlib: all beside the drawing, names, digits that nobody sees, certain fonts."""
+"""What is left out of an SVG of matplotlib: all beside the drawing, names, digits of tags, certain fonts."""
 
 
 class Inline(NamedTuple):

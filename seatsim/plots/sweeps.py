@@ -105,7 +105,7 @@ def plot_comfort(rows: SweepRows, order: Sequence[str]) -> Figure | None:
     colour = next((key for key in order if key != road and few[key] <= _MOST_GROUPS), None)
     parts = [("", shown)]
     if road is not None:
-        parts = [(f"{road} {format_level(value)}", part) for value, part in shown.groupby(road)]
+        parts = [(f"{road.removeprefix(ROAD)} {format_level(value)}", part) for value, part in shown.groupby(road)]
     values = [] if colour is None else sorted(shown[colour].unique())
     looks = [Entry(format_level(value), COLOURS[k], "none", mark="o") for k, value in enumerate(values)]
     most = _MOST_POINTS // len(parts)

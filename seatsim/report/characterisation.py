@@ -56,7 +56,7 @@ def report_characterisation(
             "Response to steps of the current",
             [*show_pictures(figures, "steps"), *_tabulate_steps(found.responses)],
         ),
-        Section("sheet", "Tables of the bench day", _tabulate_sheet(found.sheet, [*_CAPTIONS])),
+        Section("sheet", "Tables of the bench sheet", _tabulate_sheet(found.sheet, [*_CAPTIONS])),
     ]
     about, closing = f"Characterisation: {found.name}", Closing(remarks, _judge(found), command, tested)
     return compose("characterisation", about, [_say_character(found)], _advise(found), sections, closing)
@@ -144,7 +144,7 @@ def _tabulate_sheet(sheet: BenchSheet, names: Sequence[str]) -> list[Block]:
 def _say(value: object) -> str:
     if isinstance(value, bool):
         return "pass" if value else "FAIL"
-    return format_number(value) if isinstance(value, int | float) else str(value)
+    return format_number(value) if isinstance(value, float) else str(value)
 
 
 def _tabulate_steps(answers: Sequence[Response]) -> list[Block]:

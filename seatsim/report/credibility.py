@@ -78,7 +78,11 @@ def say_doubt(factors: Sequence[Factor]) -> str:
     """Return in a sentence which factor falls the furthest behind what could be reached; empty where none does."""
     weakest = min(factors, key=lambda factor: factor.level / len(factor.holds))
     reached = weakest.level == len(weakest.holds)
-    return "" if reached else format_sentence(f"least certain is the {weakest.name}: {weakest.evidence}")
+    return (
+        ""
+        if reached
+        else format_sentence(f"the weakest factor of credibility is the {weakest.name}: {weakest.evidence}")
+    )
 
 
 def verify(words: str, errors: Iterable[float]) -> Factor:
@@ -130,7 +134,7 @@ def trace_inputs(
     sources = dict(sorted((name_of("damper", cls), find_confidence(cls)) for cls in set(dampers) & known))
     parts = [
         "inputs are not recorded" if inputs is None else f"hashes of {inputs} input file{'s' * (inputs != 1)} kept",
-        f"doubts: {len(doubts)}, in the notes" if doubts else "no doubt about ranges or values",
+        f"{len(doubts)} doubt{'s' * (len(doubts) > 1)} in the notes" if doubts else "no doubt about ranges or values",
         *(f"{name}: {word} ({CONFIDENCE[word]})" for name, word in sources.items()),
     ]
     if parameters_known:
@@ -146,7 +150,11 @@ def trace_inputs(
 
 def state_intervals(intervals: Sequence[str], *further: bool) -> Factor:
     """Return the factor of uncertainty: what has an interval, and which further conditions hold."""
-    said = f"stated for {join_names(intervals)}" if intervals else "no figure has an interval or a standard deviation"
+    said = (
+        f"intervals are stated for {join_names(intervals)}"
+        if intervals
+        else "no figure has an interval or a standard deviation"
+    )
     return Factor("uncertainty", said, (bool(intervals), *further))
 
 

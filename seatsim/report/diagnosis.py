@@ -155,7 +155,7 @@ def _say_probabilities(diagnosis: Diagnosis) -> str:
     """Return how sure the diagnosis is of its causes."""
     rest = [cause for cause in diagnosis.causes if cause.effect not in diagnosis.selected]
     named = [f"{cause.effect} {format_percent(cause.probability)}" for cause in _select(diagnosis) if cause.probability]
-    following = [f"next {cause.effect} {format_percent(cause.probability)}" for cause in rest[:1]]
+    following = [f"{'next ' * bool(named)}{cause.effect} {format_percent(cause.probability)}" for cause in rest[:1]]
     another = [f"another cause {format_percent(diagnosis.probability_unknown)}"]
     return f"Probability of being at work: {', '.join([*named, *following, *another])}."
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from seatsim.metrics.motion import rms
-from seatsim.plots.diagnosis.answer import plot_gap
+from seatsim.plots.diagnosis.answer import SMALLEST, plot_gap
 from seatsim.plots.diagnosis.signals import plot_pairs
 from seatsim.plots.labels import UNKNOWN, describe_channel, format_number, format_percent
 from seatsim.recordings.gap import Gap, ReplayedPair
@@ -69,19 +69,23 @@ def judge_gap(scenario: str, folder: Path, found: Gap) -> list[Factor]:
 
 def say_gap(found: Gap) -> str:
     """Return in a sentence how far a simulation is from its recording."""
-    floor = found.floor.overall
     worst = max(found.channels, key=lambda name: found.channels[name])
     size = f"The simulation is off by {format_percent(found.overall)} of the recorded signals' spread"
-    if found.overall <= NEAR_NOISE * floor:
-        return f"{size}; {say_noise(floor)}: there is nothing left to explain."
+    if _is_explained(found):
+        return f"{size}; {say_noise(found.floor.overall)}: there is nothing left to explain."
     return (
-        f"{size}; {say_noise(floor)}. It is furthest off in the"
+        f"{size}; {say_noise(found.floor.overall)}. It is furthest off in the"
         f" {worst.replace('_', ' ')}, by {format_percent(found.channels[worst])}."
     )
 
 
+def _is_explained(found: Gap) -> bool:
+    """Return whether a gap is of the size of the sensors' noise, or too small to be drawn."""
+    return found.overall <= max(NEAR_NOISE * found.floor.overall, SMALLEST)
+
+
 def _advise(found: Gap) -> list[str]:
-    if found.overall <= NEAR_NOISE * found.floor.overall:
+    if _is_explained(found):
         return ["Use the scenario as it is; test it on a recording of another road or driver."]
     return ["Find the cause with seatsim diagnose: it names the effect, and says how far the gap shrinks with it."]
 

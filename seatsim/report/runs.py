@@ -130,7 +130,8 @@ def show_signals(groups: Sequence[Shown], finest: int = FINEST) -> Signals:
     for channel in CHANNELS:
         values = {shown.scenario: _read(shown, channel, names, len(time[shown.scenario])) for shown in groups}
         known = [[each for each in part if each is not None] for part in values.values()]
-        if any(known):
+        # One that never changes, such as the temperature of most dampers, is a setting and no signal.
+        if any(float(np.nanmax(line)) > float(np.nanmin(line)) for part in known for line in part):
             panels.append(Panel(channel, UNITS[channel], _note_equal(known), values))
     caption = "The list above the pictures has every scenario." if len(groups) > 1 else "All runs over time."
     omitted = next((shown.omission for shown in groups if shown.omission), "")
@@ -181,7 +182,7 @@ def _tabulate_figures(runs: Sequence[Run]) -> list[Block]:
     best = find_best(runs)
     bold = f" The most comfortable run{' of each condition' * (len(best) > 1)} is in bold." if best else ""
     mark = f" {UNVERIFIED}" if any(run.unverified for run in runs) else ""
-    head = ["run", *(each.words if each.unit == "-" else each.axis for each in shown.values())]
+    head = ["run", *(each.axis for each in shown.values())]
     return tabulate(f"Figures of each run; summary.csv has more.{bold}{mark}", head, rows, 1, best)
 
 

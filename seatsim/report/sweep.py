@@ -62,24 +62,22 @@ def report_sweep(
         Section("quantiles", "Quantiles", _show_quantiles(quantiles, rows)),
         Section("states", "Failed and unverified runs", _show_states(rows)),
     ]
-    answer, factors = [state_importance(found, rows), _count_runs(rows)], _judge(rows, found, exceeded)
+    answer, factors = [*state_importance(found, rows), _count_runs(rows)], _judge(rows, found, exceeded)
     closing = Closing([], factors, f"seatsim sweep-report {rows.folder.name}", settings)
     return compose("sweep", f"Sweep: {rows.folder.name}", answer, _advise(found, exceeded, rows), sections, closing)
 
 
-def state_importance(found: Sensitivities, rows: SweepRows) -> str:
-    """Return in one sentence which key matters most to comfort, or to the first metric that varies."""
+def state_importance(found: Sensitivities, rows: SweepRows) -> list[str]:
+    """Return in a few sentences which key matters most to comfort, or to the first metric that varies."""
     here = found.of(_choose_metric(found)) if found.rows else []
     chosen = choose_key(here, rows)
     if chosen is None:
-        return f"Which key matters most cannot be said: {found.problem or 'no key but the variant varies'}."
+        return [f"Which key matters most cannot be said: {found.problem or 'no key but the variant varies'}."]
     words = describe_column(chosen.metric, rows.units).words
     what = "tolerances" if rows.drawn and not any(map(is_condition, rows.drawn)) else "varied keys"
     many = len(rows.drawn or [row for row in here if row.key != "variant"])
     first = max(here, key=lambda row: row.total)
-    lead = "" if first is chosen else (
-        f"{first.key} explains {format_percent(first.total)} of the variance of the {words}. "
-    )  # fmt: skip
+    lead = [f"{first.key} explains {format_percent(first.total)} of the variance of the {words}."]
     total = format_percent(chosen.total)
     interval = f"95 % interval {format_percent(chosen.total_low)} to {format_percent(chosen.total_high)}"
     if many > 1:
@@ -87,10 +85,11 @@ def state_importance(found: Sensitivities, rows: SweepRows) -> str:
     else:
         said = f"{chosen.key}, the only one of the {what}, explains {total} of the variance of the {words}"
     choice = choose_choice(here, rows) if is_condition(chosen.key) else None
-    rest = "" if choice is None else (
-        f" It is a condition; of the choices {choice.key} matters most and explains {format_percent(choice.total)}."
-    )  # fmt: skip
-    return f"{lead}{said} together with its interactions ({interval}).{rest}"
+    said += f" together with its interactions ({interval})."
+    rest = [] if choice is None else [
+        f"It is a condition; of the choices {choice.key} matters most and explains {format_percent(choice.total)}."
+    ]  # fmt: skip
+    return [*lead * (first is not chosen), said, *rest]
 
 
 def choose_choice(found: Sequence[Sensitivity], rows: SweepRows) -> Sensitivity | None:
@@ -103,13 +102,12 @@ def advise_on_keys(found: Sequence[Sensitivity], rows: SweepRows) -> list[str]:
     texts = []
     choice = choose_choice(found, rows)
     if choice is not None:
-        share = f"explains the most of the variance, {format_percent(choice.total)}"
-        what = "tolerance" if choice.key in rows.drawn else "key"
-        verb = "Tighten the tolerance of" if what == "tolerance" else "Settle"
+        share = f"of the choices it explains the most of the variance, {format_percent(choice.total)}"
+        verb = "Tighten the tolerance of" if choice.key in rows.drawn else "Settle"
         if choice.total < _MATTERS:
-            texts.append(f"No {what} that a designer chooses matters much: of them {choice.key} {share}.")
+            texts.append(f"Leave {choice.key} as it is, and the other varied choices: {share}.")
         else:
-            texts.append(f"{verb} {choice.key} first: of all choices it {share}.")
+            texts.append(f"{verb} {choice.key} first: {share}.")
     condition = choose_key([row for row in found if is_condition(row.key)], rows)
     if condition is not None:
         shown = describe_column(condition.metric, rows.units)

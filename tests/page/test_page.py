@@ -1,7 +1,7 @@
 """The local page: who may ask, what may be read, what is shown of values, what is saved."""
 
 import asyncio
-from concurrent.futures import Future
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 
 import httpx
@@ -40,6 +40,15 @@ class Plain:
 
     def encode(self, request):
         return plain(dict(load("road-b")[0].source.data))
+
+
+class Endless(Plain):
+    """A target that computes until it is stopped, as the design of a law may."""
+
+    def show(self, request):
+        while request.get("mass") == 95.0:
+            pass
+        return super().show(request)
 
 
 def loaded(target):
@@ -166,6 +175,16 @@ def test_values_are_shown_and_wrong_ones_are_said(app):
     assert ask(app, "POST", "/view", content=b"{", headers={"content-type": "application/json"}).status_code == 422
     assert ask(app, "POST", "/view", content=b"{}", headers={"content-type": "text/plain"}).status_code == 422
     assert ask(app, "GET", "/view").status_code == 405
+
+
+def test_what_takes_long_is_stopped_and_the_page_goes_on(tmp_path):
+    app = make_app(loaded(Endless()), tmp_path, TOKEN, PORT)
+    with ThreadPoolExecutor(1) as pool:
+        endless = pool.submit(ask, app, "POST", "/view", json={"mass": 95.0})
+        while not endless.done():
+            assert ask(app, "POST", "/stop").status_code == 200
+    assert endless.result().status_code == 422 and "stopped" in endless.result().json()["error"]
+    assert ask(app, "POST", "/view", json={"mass": 80.0}).json()["answer"] == "80 kg <b>"
 
 
 def test_a_scenario_is_saved_once_under_a_plain_name(tmp_path, app):

@@ -116,4 +116,4 @@ def write_sweep_report(folder: str | Path, out: str | Path | None = None) -> Swe
     paths = (
         print_reports(write_together(out, partial(write_each, contents))) if is_own else write_outputs(out, contents)
     )
-    return SweepReport(state_importance(found, rows), exceeded, found.rows, paths)
+    return SweepReport(" ".join(state_importance(found, rows)), exceeded, found.rows, paths)

@@ -66,7 +66,7 @@ def _draw_gaps(
     title: str, names: Sequence[str], stages: Sequence[Entry], rows: Sequence[Sequence[float]], where: str = ""
 ) -> Figure:
     """Return a figure with the gaps of each name, one for each stage."""
-    known = [100 * value for row in rows for value in row if np.isfinite(value) and value > SMALLEST] or [1.0]
+    known = [100 * value for row in rows for value in row if np.isfinite(value) and value > SMALLEST]
     # A noise floor that nobody stated has no mark, and none in the legend.
     legend = [
         stage for stage, values in zip(stages, zip(*rows, strict=True), strict=True) if max(np.nan_to_num(values)) > 0
@@ -75,7 +75,7 @@ def _draw_gaps(
     note = f"RMS of measured less simulated over the spread of the signal{where}; further left is better."
     figure, [[axes]] = make_page(title, note, Grid((ROW * len(names) + 0.15,), left=measure_names(shown)), legend)
     name_rows(axes, shown, [0])
-    style.scale_log(axes, "x", min(known) / 1.4, max(known) * 1.4)
+    style.scale_log(axes, "x", min(known, default=1.0) / 1.4, max(known, default=1.0) * 1.4)
     for row, values in enumerate(rows):
         seen = [(stage, 100 * value) for stage, value in zip(stages, values, strict=True) if value > SMALLEST]
         if seen:
@@ -87,6 +87,8 @@ def _draw_gaps(
                 [value], [row], linestyle="", marker=stage.mark, markeredgecolor=stage.colour, markerfacecolor=face,
                 markersize=13 if stage.mark == "|" else 7, markeredgewidth=2 if stage.mark in "|D" else 1, zorder=3,
             )  # fmt: skip
+    if not known:
+        axes.text(0.5, 0.5, f"every gap is below {100 * SMALLEST:g} %", transform=axes.transAxes, ha="center")
     axes.axhline(0.5, color="0.8", linewidth=0.8)
     axes.set_xlabel("gap [%]")
     return figure

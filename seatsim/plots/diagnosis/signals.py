@@ -17,7 +17,7 @@ from seatsim.metrics.motion import rms
 from seatsim.plots import style
 from seatsim.plots.densities import estimate_density
 from seatsim.plots.diagnosis.bins import group_by_channel, nominal_gap
-from seatsim.plots.labels import Quantity, describe_channel
+from seatsim.plots.labels import Quantity, describe_channel, format_number
 from seatsim.plots.style import COLOURS, DASHES, GREY, Entry, Grid
 from seatsim.plots.thinning import BINS, Window, find_loudest, thin_line
 from seatsim.recordings.gap import Gap, ReplayedPair
@@ -125,6 +125,7 @@ def _draw_time(
     upper.set_ylabel(f"{shown.words}\n[{shown.unit}]")
     lower.set_ylabel(f"difference\n[{shown.unit}]")
     lower.set_xlabel("time [s]", labelpad=1)
+    lower.yaxis.set_offset_position("right")
     for axes in (upper, lower):
         axes.set_xlim(*window)
         axes.yaxis.set_label_coords(-0.1, 0.5)
@@ -154,7 +155,8 @@ def _make_title(trace: Trace, shown: Quantity, lines: Sequence[Simulated]) -> st
     if sizes[0] <= _EXCESS * trace.noise_rms:
         return f"{words}: the {lines[0].look.label} one is already within noise"
     figures = [
-        f"{shown.factor * size:.3g} {shown.unit} {line.look.label}" for size, line in zip(sizes, lines, strict=True)
+        f"{format_number(shown.factor * size)} {shown.unit} {line.look.label}"
+        for size, line in zip(sizes, lines, strict=True)
     ]
-    noise = f"; noise {shown.factor * trace.noise_rms:.3g} {shown.unit}" if trace.noise_rms > 0 else ""
+    noise = f"; noise {format_number(shown.factor * trace.noise_rms)} {shown.unit}" if trace.noise_rms > 0 else ""
     return f"{words}: RMS difference {', '.join(figures)}{noise}"

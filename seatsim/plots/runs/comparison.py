@@ -172,8 +172,10 @@ def find_swept_number(runs: Sequence[Run]) -> str:
 
 def _plot_bars(title: str, runs: Sequence[Run]) -> Figure:
     names = naming.label_runs(runs, 32)
-    many = len(runs) > naming.MOST
-    colours = [COLOURS[0]] * len(runs) if many else [entry.colour for entry in style.make_entries(names)]
+    looks = {
+        id(run): look for shown in naming.show_runs(runs) for run, look in zip(shown.runs, shown.looks, strict=True)
+    }
+    colours = [looks[id(run)].colour if len(looks) == len(runs) else COLOURS[0] for run in runs]
     left = style.measure_names(names)
     grid = Grid((ROW * len(runs) + 0.1,) * 2, columns=2, left=left, bottom=0.65, gap=(0.2, 0.75))
     page = style.make_page(title, NOTE, grid)

@@ -66,9 +66,8 @@
   if (fit) fit.addEventListener("click", () => { extra = { fit: true }; update(); });
   form.addEventListener("submit", event => event.preventDefault());
   find("save").addEventListener("click", async () => {
-    try {
-      const found = await send("/save", { ...values(), name: find("name").value });
-      saved.textContent = `saved as ${found.saved}`;
-    } catch (error) { saved.textContent = error.message; }
+    const answer = send("/save", { ...values(), name: find("name").value });
+    saved.textContent = await answer.then(found => `saved as ${found.saved}`, error => error.message);
   });
+  find("stop").addEventListener("click", () => send("/stop", {}));
 })();
