@@ -59,14 +59,6 @@ def test_what_no_effect_explains_is_unknown(made):
     assert diagnosis.where[0].block in label["blocks"]
 
 
-@pytest.mark.slow
-def test_a_withheld_effect_is_not_named(made):
-    folder, labels = made
-    name, label = labels["one"]
-    diagnosis = seatsim.diagnose(folder / name, without=label["effects"])
-    assert not set(label["effects"]) & {cause.effect for cause in diagnosis.causes}
-
-
 def test_an_unknown_effect_cannot_be_withheld(tmp_path):
     done = CliRunner().invoke(app, ["diagnose", str(tmp_path), "--without", "suspension.frction"])
     assert "suspension.friction" in str(done.exception)

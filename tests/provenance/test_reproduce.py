@@ -120,9 +120,7 @@ def test_a_sweep_of_python_or_one_that_is_not_complete_is_not_run_again(project,
 
 @pytest.mark.slow
 def test_a_sweep_is_run_again(tmp_path, here, seatsim_command):
-    (tmp_path / "s.yaml").write_text(
-        "scenario: quickstart\nvary: {plant.driver_mass: [60, 70], excitation.duration: [1]}\n"
-    )
+    (tmp_path / "s.yaml").write_text("scenario: em5\nvary: {plant.driver_mass: [60, 70], excitation.duration: [1]}\n")
     seatsim_command("sweep", "s.yaml", "--jobs", "1", "--out", "s")
     found = reproduce(tmp_path / "s")
     assert found.identical and found.compared == ["runs/part-000000.parquet"]
