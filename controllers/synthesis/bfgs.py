@@ -19,8 +19,8 @@ Function = Callable[[Array, float], tuple[float, Array]]
 
 # The usual weak Wolfe constants. The curvature condition is loose on purpose: at a kink a strong one cannot be met.
 _ARMIJO, _CURVATURE = 1e-4, 0.5
-# A descent that at its present pace would take this many times its patience to reach its target is given up.
-_HOPE = 10.0
+HOPE = 10.0
+"""A descent is given up that at its present pace takes more than so many times the steps or turns that show it."""
 # Each step halves or doubles: 40 of them span twelve decades of step length.
 _LINE_STEPS = 40
 
@@ -77,7 +77,7 @@ def minimise(
         inverse = _update(inverse, here, following, fresh)
         here, fresh = following, False
         history.append(here.value)
-        needed = max(progress, (here.value - target) / _HOPE)
+        needed = max(progress, (here.value - target) / HOPE)
         if len(history) > patience and history[-1 - patience] - here.value < needed:
             break
     return here

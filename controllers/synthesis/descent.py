@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from controllers.synthesis.bfgs import minimise
+from controllers.synthesis.bfgs import HOPE, minimise
 from controllers.synthesis.objective import STABILITY_MARGIN, NormObjective
 from controllers.synthesis.polish import polish
 from controllers.synthesis.starts import StartingGain
@@ -32,8 +32,6 @@ _REFINED = 6
 _SAME = 2e-3
 # Most turns of BFGS and polish; they end earlier where both together gain nothing.
 _TURNS = 8
-# A candidate that at its present pace would not reach the best one in this many turns is given up.
-_HOPE = 10.0
 # Relative spread of the gains about the best one; rounds go on until this many in a row gain nothing.
 _ABOUT = (0.1, 0.5, 2.0, 10.0)
 _FRUITLESS = 2
@@ -143,7 +141,7 @@ def _lower(objective: NormObjective, candidate: StabilisingGain, target: float, 
         lower = StabilisingGain(objective.norm(entries), entries)
         gained = candidate.gamma - lower.gamma
         candidate = min(candidate, lower, key=_gamma)
-        hopeless = candidate.gamma - target > _HOPE * gained
+        hopeless = candidate.gamma - target > HOPE * gained
         if gained <= _FINE * candidate.gamma or hopeless or time.monotonic() > deadline:
             break
     return candidate

@@ -92,18 +92,18 @@ def select_steady_cycles(cycles: Sequence[Cycle]) -> list[Cycle]:
     return steady if enough and 2 * len(steady) >= len(cycles) else []
 
 
-def resample_loops(record: BenchRecord, cycles: Sequence[Cycle]) -> list[SineTest]:
+def resample_loops(record: BenchRecord, cycles: Sequence[Cycle], drift: float) -> list[SineTest]:
     """Return cycles of a record as loops of equally many samples, both ends included, by linear interpolation.
 
-    A sample is the mean of the rows that it stands for, and the slope of a drifting zero (`find_drift`) is taken from
-    the force of each loop about its middle, so that the loop closes.
+    A sample is the mean of the rows that it stands for, and the slope `drift` in N/s of the zero (see `find_drift`) is
+    taken from the force of each loop about its middle, so that the loop closes.
     """
     from scipy.ndimage import uniform_filter1d
 
     least, most = _SAMPLES
     length = float(np.median([cycle.length for cycle in cycles]))
     samples = min(most, max(least, 2 * round(0.5 * length)))
-    rows, drift = np.arange(len(record.force), dtype=float), find_drift(record, cycles)
+    rows = np.arange(len(record.force), dtype=float)
     width = 2 * int(0.5 * length / samples) + 1
     parts = [uniform_filter1d(y, width) for y in (record.displacement, record.velocity, record.force)]
     loops = []

@@ -160,8 +160,10 @@ def summarise_record(record: BenchRecord) -> Row:
     steady = select_steady_cycles(found)
     if not steady:
         return summarise_aperiodic_record(record, found)
-    loops = resample_loops(record, steady)
-    notes = [*_of_damage(record), *_of_current(record), *_of_loops(loops), *_of_zero(record, steady), *_of_sign(record)]
+    drift = find_drift(record, steady)
+    loops = resample_loops(record, steady, drift)
+    moved = drift * (steady[-1].first - steady[0].first) / record.rate
+    notes = [*_of_damage(record), *_of_current(record), *_of_loops(loops), *_of_zero(record, moved), *_of_sign(record)]
     if min(cycle.length for cycle in steady) < _COARSE:
         notes.append(f"fewer than {_COARSE} rows a cycle: peaks and areas are coarse")
     return summarise_loops(
@@ -210,8 +212,7 @@ def _of_damage(record: BenchRecord) -> Iterator[str]:
             yield issue.sentence
 
 
-def _of_zero(record: BenchRecord, cycles: Sequence[Cycle]) -> list[str]:
-    moved = find_drift(record, cycles) * (cycles[-1].first - cycles[0].first) / record.rate
+def _of_zero(record: BenchRecord, moved: float) -> list[str]:
     large = abs(moved) > _WANDERS * 0.5 * float(np.ptp(record.force))
     return [f"the mean force drifts by {moved:+.3g} N over the cycles: a drifting zero, or a gas that warms"] * large
 

@@ -96,9 +96,10 @@ class _Page:
         return await self._answer(request, self._save)
 
     async def stop(self, _request: Request) -> Response:
-        """End what is being computed, after the step of compiled code that it is in."""
-        if self._thread is not None:
-            ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(self._thread), ctypes.py_object(Stopped))
+        """End what is being computed, after the step of compiled code that it is in, once."""
+        thread, self._thread = self._thread, None
+        if thread is not None:
+            ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), ctypes.py_object(Stopped))
         return JSONResponse({}, headers=self._headers)
 
     async def _answer(self, request: Request, compute: Callable[[Mapping[str, Any]], object]) -> Response:

@@ -77,12 +77,9 @@ def show_card(factors: Sequence[Factor]) -> Section:
 def say_doubt(factors: Sequence[Factor]) -> str:
     """Return in a sentence which factor falls the furthest behind what could be reached; empty where none does."""
     weakest = min(factors, key=lambda factor: factor.level / len(factor.holds))
-    reached = weakest.level == len(weakest.holds)
-    return (
-        ""
-        if reached
-        else format_sentence(f"the weakest factor of credibility is the {weakest.name}: {weakest.evidence}")
-    )
+    if weakest.level == len(weakest.holds):
+        return ""
+    return format_sentence(f"the weakest factor of credibility is the {weakest.name}: {weakest.evidence}")
 
 
 def verify(words: str, errors: Iterable[float]) -> Factor:

@@ -76,8 +76,18 @@ OWN_SPELLINGS = {
     "m": {'"': "inch", "in": "inch", "zoll": "inch"},
 }
 """Spellings that mean something else, or nothing, to pint, by the unit that is wanted: `g` of a mass is a gram."""
-_SIGNS = {"⁻²": "^-2", "²": "^2", "³": "^3", "°": "deg", "℃": "degC", "℉": "degF"}
-_SIGNS |= {"µ": "u", "μ": "u", "·": "*", "⋅": "*"}
+_SIGNS = {
+    "⁻²": "^-2",
+    "²": "^2",
+    "³": "^3",
+    "°": "deg",
+    "℃": "degC",
+    "℉": "degF",
+    "µ": "u",
+    "μ": "u",
+    "·": "*",
+    "⋅": "*",
+}
 
 _NO_UNITS = ("links",)
 """Words in names that pint takes for units: `links` is German for left."""

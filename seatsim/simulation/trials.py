@@ -28,7 +28,7 @@ class _Trial(NamedTuple):
     metrics: dict[str, Metric]
 
 
-def try_changes(scenario: Scenario, carry_all_effects: bool | None = False) -> list[_Trial]:
+def try_changes(scenario: Scenario, carry_all_effects: bool | None) -> list[_Trial]:
     """Return the first stretch of a run as it is, under no key, then with each change that is permitted and possible.
 
     `carry_all_effects` is that of the run, whose compiled loop serves again.

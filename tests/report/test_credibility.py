@@ -61,10 +61,8 @@ def test_a_card_says_what_the_next_level_asks_for_and_the_doubt_is_of_the_weakes
     rows = {row[0]: row[1:] for row in show_card([best, weak]).blocks[1].rows}
     assert rows["verification"] == ["2\u00a0of\u00a02", "All balances.", "–"]
     assert rows["robustness"] == ["0\u00a0of\u00a01", "One run.", read_conditions()["robustness"][0]]
-    assert (
-        say_doubt([best, weak]) == "The weakest factor of credibility is the robustness: one run."
-        and say_doubt([best]) == ""
-    )
+    assert say_doubt([best, weak]) == "The weakest factor of credibility is the robustness: one run."
+    assert say_doubt([best]) == ""
 
 
 def test_evidence_of_a_run_is_measured_on_it_and_on_what_was_read():

@@ -97,9 +97,19 @@ def make_public(
     """
     if cases > PUBLIC_CASES:
         raise InputError(f"--cases {cases}: a public set has {PUBLIC_CASES} cases; give another name for others")
-    seed, kinds = int.from_bytes(hashlib.sha256(name.encode()).digest()), _PUBLIC_KINDS
-    places, order = (Path(out), Path(sealed)), lambda s: _order(PUBLIC_CASES, kinds, s)
-    return make_set(cases, seed, kinds, *places, order, draw_files, progress, processes, key_of(name))
+    seed = int.from_bytes(hashlib.sha256(name.encode()).digest())
+    return make_set(
+        cases,
+        seed,
+        _PUBLIC_KINDS,
+        Path(out),
+        Path(sealed),
+        lambda s: _order(PUBLIC_CASES, _PUBLIC_KINDS, s),
+        draw_files,
+        progress,
+        processes,
+        key_of(name),
+    )
 
 
 def _order(cases: int, kinds: str | Sequence[str], seed: int) -> Sequence[CaseSpecification]:

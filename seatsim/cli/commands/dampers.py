@@ -13,6 +13,7 @@ from seatsim.cli.terminal import answer, complain, conclude, show_progress, warn
 from seatsim.schema.errors import InputError
 
 if TYPE_CHECKING:
+    from seatsim.characterisation.summary import Characterisation
     from seatsim.identification.assessment import PredictionData
     from seatsim.identification.settings import IdentificationSettings
     from seatsim.recordings.bench_tables import BenchRecord
@@ -51,25 +52,16 @@ def characterise(
         window: Part of the stroke over which forces are averaged.
     """
     from seatsim.characterisation.limits import check_limits
-    from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen, model_peaks
-    from seatsim.characterisation.summary import characterise as of_records
+    from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
     from seatsim.cli.outputs.damper_tables import make_characterisation_tables
     from seatsim.cli.outputs.writing import write_characterisation
     from seatsim.cli.show_table import show_table
-    from seatsim.recordings.bench_tables import NAMED, load_bench
 
     grid = (currents, temperatures, amplitudes, frequencies)
     if (data is None) == (model is None and parameters is None) or (data is not None and any(grid)):
         raise InputError("characterise either DATA, or a model by --model or --parameters with its tests; see --help")
     if data is not None:
-        specimen = load_specimen(None, beside) if beside else None
-        with show_progress() as progress:
-            progress("reading the tables")
-            records = load_bench(data, pattern or NAMED)
-            progress(f"characterising {len(records)} records")
-            found = of_records(records, _title(data), data.resolve().name, window)
-        if specimen:
-            found = found.set_beside(model_peaks(specimen, found.rows, window))
+        found = _characterise_data(data, beside, pattern, window)
     elif beside or pattern:
         raise InputError("--beside and --pattern are of DATA; leave them out for a model")
     else:
@@ -82,6 +74,21 @@ def characterise(
     folder = out_folder or Path("out") / f"characterise-{found.name}"
     paths = write_characterisation(found, folder)
     conclude(found, folder, paths)
+
+
+def _characterise_data(data: Path, beside: Path | None, pattern: str, window: float) -> Characterisation:
+    """Return what bench tables show of a damper, with the forces of another one beside where it is named."""
+    from seatsim.characterisation.model_tests import load_specimen, model_peaks
+    from seatsim.characterisation.summary import characterise as of_records
+    from seatsim.recordings.bench_tables import NAMED, load_bench
+
+    specimen = load_specimen(None, beside) if beside else None
+    with show_progress() as progress:
+        progress("reading the tables")
+        records = load_bench(data, pattern or NAMED)
+        progress(f"characterising {len(records)} records")
+        found = of_records(records, _title(data), data.resolve().name, window)
+    return found.set_beside(model_peaks(specimen, found.rows, window)) if specimen else found
 
 
 def identify(
