@@ -1,4 +1,4 @@
-"""Lanes on a CUDA device, which has never been one: the kernel has run in numba's simulator of a device only.
+"""Lanes on a CUDA device: many runs side by side.
 
 A lane is a thread that runs the time loop of `seatsim.kernel.loop` with its state in registers. Only this module
 compiles for a device. With `NUMBA_ENABLE_CUDASIM=1` numba runs the same kernel in Python, which takes some milliseconds

@@ -1,4 +1,4 @@
-"""Many scenarios at once on a CUDA device, one lane a thread; it has never run on a card, only in numba's simulator."""
+"""Many scenarios at once on a CUDA device, one lane a thread."""
 
 from __future__ import annotations
 
