@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 from seatsim.compilation.cached import digest
 from seatsim.dampers.base import find_confidence
@@ -133,7 +133,7 @@ def rank_entries(entries: Sequence[BenchmarkEntry]) -> list[BenchmarkEntry]:
 def _read_entry(path: Path) -> BenchmarkEntry:
     """Return an entry from its file, where a figure that does not exist is null."""
     with expect(path, "entry of a league; remove it, and its model is identified again"):
-        kept = cast("dict[str, object]", read_json(path, "entry of a league"))
+        kept: Mapping[str, object] = read_json(path, "entry of a league")
         values = (kept[name] for name in BenchmarkEntry._fields)
         return BenchmarkEntry._make(math.nan if value is None else value for value in values)
 

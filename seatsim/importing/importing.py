@@ -196,8 +196,7 @@ def _write_recording(folder: Path, assembled: Assembled, nominal: Mapping[str, o
     header = state_header(used.rig, rate, {}, runs, noise)
     header |= {"actuator": used.actuator._asdict()} if used.actuator else {}
     return write_documented(
-        folder,
-        lambda part: [*write_files(part, tables, nominal, header, "%.9g"), write_map(part / FILE, used)],
+        folder, lambda part: [*write_files(part, tables, nominal, header, "%.9g"), write_map(part / FILE, used)]
     )
 
 

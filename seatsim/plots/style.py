@@ -203,10 +203,8 @@ def explain_empty(axes: Axes, text: str) -> None:
 
 def _dress(line: Line2D, look: Entry, longest: int) -> Line2D:
     """Return a line with the look of an entry, and its label in at most `longest` letters."""
-    line.set(
-        label=clean_text(look.label, longest), color=look.colour, linestyle=look.dashes, linewidth=look.width,
-        alpha=look.alpha, solid_capstyle="butt", marker=look.mark,
-    )  # fmt: skip
+    line.set(color=look.colour, linestyle=look.dashes, linewidth=look.width, alpha=look.alpha, marker=look.mark)
+    line.set(label=clean_text(look.label, longest), solid_capstyle="butt")
     return line
 
 

@@ -148,11 +148,11 @@ def _say(value: object) -> str:
 
 
 def _tabulate_steps(answers: Sequence[Response]) -> list[Block]:
-    rows = [
-        (each.record or "model", each.before, each.after, each.steps, 1e3 * each.t90, 1e3 * each.t95, 1e3 * each.t95_sd,
-         1e3 * each.delay, each.rate_95, each.method or each.note or "not determined")
-        for each in answers
-    ]  # fmt: skip
+    rows = []
+    for each in answers:
+        times = (1e3 * time for time in (each.t90, each.t95, each.t95_sd, each.delay))
+        how = each.method or each.note or "not determined"
+        rows.append((each.record or "model", each.before, each.after, each.steps, *times, each.rate_95, how))
     caption = "Time from the step of the current to 90 % and 95 % of the change of force"
     head = "record, from [A], to [A], steps, t90 [ms], t95 [ms], ± [ms], delay [ms], rate [1/s], how"
     return tabulate(caption, head, rows)

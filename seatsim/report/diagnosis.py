@@ -15,14 +15,7 @@ from seatsim.plots.labels import format_percent
 from seatsim.recordings.header import NOT_STATED
 from seatsim.report.blocks import Report, Section, show_pictures
 from seatsim.report.composing import Closing, compose
-from seatsim.report.credibility import (
-    Factor,
-    count_variations,
-    state_intervals,
-    trace_inputs,
-    validate,
-    verify,
-)
+from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs, validate, verify
 from seatsim.report.diagnosis_sections import (
     list_notes,
     show_budget,
@@ -146,8 +139,8 @@ def advise(diagnosis: Diagnosis) -> list[str]:
     if at_bound:
         found.append(f"Confirm {join_names(at_bound)} first: all of its size lies at the end of its range.")
     what = "the refitted parameters and the effects found" if diagnosis.selected else "the refitted parameters"
-    found.append(f"Check the result on another recording: seatsim gap augmented.yaml OTHER_RECORDING (the nominal"
-                 f" scenario with {what}).")  # fmt: skip
+    command = "seatsim gap augmented.yaml OTHER_RECORDING"
+    found.append(f"Check the result on another recording: {command} (the nominal scenario with {what}).")
     return found
 
 

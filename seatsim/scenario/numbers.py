@@ -53,7 +53,7 @@ def set_number(scenario: Scenario, key: str, value: float) -> Scenario:
         return dataclasses.replace(scenario, control=dataclasses.replace(scenario.control, law=record))
     if section == "damper.parameters":
         return dataclasses.replace(scenario, damper=dataclasses.replace(scenario.damper, record=record))
-    changed: dict[str, Any] = {SECTIONS[section].field or section: record}
+    changed = {SECTIONS[section].field or section: record}
     return dataclasses.replace(scenario, **changed)
 
 

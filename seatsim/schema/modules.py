@@ -23,13 +23,12 @@ from functools import cache
 from importlib.machinery import ModuleSpec
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import TYPE_CHECKING, NamedTuple
 
 from seatsim.schema.errors import InputError
 from seatsim.schema.guarded import read_bytes
 
 if TYPE_CHECKING:
-    from importlib.abc import Loader
     from importlib.metadata import EntryPoints
 
 
@@ -207,7 +206,8 @@ def _check_name_is_free(name: str, path: Path) -> None:
 
 def _load(name: str, shown: Path, path: Path) -> ModuleType:
     """Execute a file as a new module; the one that it replaces stays where that fails."""
-    spec = cast("ModuleSpec", importlib.util.spec_from_file_location(name, path))  # a .py file always has one
+    spec = importlib.util.spec_from_file_location(name, path)
+    assert spec is not None  # a .py file always has one
     previous = sys.modules.get(name)
     try:
         return _execute(spec)
@@ -227,11 +227,11 @@ def _import_installed(name: str) -> None:
 
 def _execute(spec: ModuleSpec) -> ModuleType:
     module = importlib.util.module_from_spec(spec)
-    loader = cast("Loader", spec.loader)  # `module_from_spec` has asked for it
+    assert spec.loader is not None  # `module_from_spec` has asked for it
     # Before its execution, because the decorators and numba look a class up by the name of its module.
     sys.modules[spec.name] = module
     try:
-        loader.exec_module(module)
+        spec.loader.exec_module(module)
     except BaseException:
         del sys.modules[spec.name]
         raise

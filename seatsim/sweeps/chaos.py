@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 
@@ -87,7 +87,7 @@ def fit_expansion(basis: Array, metrics: Array) -> Expansion | None:
     gram = basis.T @ basis
     if runs < RUNS_PER_TERM * terms or np.linalg.cond(gram) > 1 / _SINGULAR:
         return None
-    inverse = cast("Array", np.linalg.inv(gram))
+    inverse = np.asarray(np.linalg.inv(gram), dtype=np.float64)
     coefficients: Array = inverse @ (basis.T @ metrics)
     residuals = metrics - basis @ coefficients
     noise: Array = (residuals**2).sum(axis=0) / (runs - terms)

@@ -15,7 +15,7 @@ from collections.abc import Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from seatsim.provenance.statement import list_versions
 from seatsim.schema.errors import InputError, RunError
@@ -28,7 +28,7 @@ from seatsim.sweeps.parts import part_of
 from seatsim.sweeps.plan import Plan, Selection
 
 if TYPE_CHECKING:
-    from distributed import Client
+    from distributed import Client, Future
 
 _EXTRA = 'engine dask needs an extra; install it with: pip install "seatsim[cluster]"'
 _AHEAD = 4
@@ -70,7 +70,7 @@ class _ClusterEngine(NamedTuple):
 
         waiting = iter(work.tasks)
 
-        def submit(count: int) -> list[Any]:
+        def submit(count: int) -> list[Future]:
             return [
                 self.client.submit(_simulate, _make_task(work, task), pure=False) for task in islice(waiting, count)
             ]
@@ -125,7 +125,7 @@ def _await_workers(client: Client) -> None:
         ) from error
 
 
-def _await_outcomes(future: Any) -> list[Outcome]:
+def _await_outcomes(future: Future) -> list[Outcome]:
     """Return the outcomes of a task.
 
     Raises:

@@ -14,7 +14,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
 from seatsim.provenance.manifest import describe
 from seatsim.provenance.statement import current_invocation, list_versions
@@ -167,7 +167,7 @@ _FIELDS = {"identity": str, "versions": dict, "seed": int, "counts": dict, "limi
 
 def write_manifest(
     folder: Path, identity: _Identity, limits: Mapping[str, float], counts: Mapping[str, int]
-) -> dict[str, Any]:
+) -> dict[str, object]:
     """Write the manifest of a sweep, with what `seatsim reproduce` needs where a command is at work; return it."""
     invocation = current_invocation()
     parts = {path.relative_to(folder).as_posix(): path for path in sorted(folder.glob("runs/part-*.parquet"))}
@@ -195,7 +195,7 @@ def read_manifest(folder: Path) -> dict[str, Any]:
     """
     try:
         with expect(folder / _NAME, "manifest of a sweep"):
-            content = cast("dict[str, Any]", read_json(folder / _NAME, "manifest of a sweep"))
+            content: dict[str, Any] = read_json(folder / _NAME, "manifest of a sweep")
             for key, kind in _FIELDS.items():
                 if not isinstance(content[key], kind):
                     raise TypeError(f"{key} is {content[key]!r}")

@@ -68,7 +68,7 @@ def read_rows(folder: Path) -> SweepRows:
     )
 
 
-def is_number(column: pd.Series[Any]) -> bool:
+def is_number(column: pd.Series) -> bool:
     """Tell whether a column holds numbers, truth values not among them."""
     return column.dtype.kind in "if"
 

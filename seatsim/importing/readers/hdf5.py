@@ -7,7 +7,7 @@ from collections.abc import Hashable, Iterator, Mapping
 from contextlib import contextmanager
 from math import ceil, prod
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -135,7 +135,7 @@ def _part(item: Hashable, path: Path, size: int, follows: bool, sources: set[Pat
     return Part(made, tuple(referred))
 
 
-def _bytes_of(array: Any) -> int:
+def _bytes_of(array: h5py.Dataset) -> int:
     """Return how many bytes a data set or an attribute makes."""
     shape = array.shape or ()
     return prod(shape) * int(max(BYTES_OF_NUMBER, array.dtype.itemsize))

@@ -33,7 +33,8 @@ STAGES: dict[Key, Entry] = {
 
 def select_stages(diagnosis: Diagnosis) -> list[Key]:
     """Return the gaps that are shown, in the order of the diagnosis; without effects `after` is that of the refit."""
-    return ["before", "calibrated", *(["after"] if diagnosis.selected else []), "floor"]  # type: ignore[list-item]
+    after: list[Key] = ["after"] if diagnosis.selected else []
+    return ["before", "calibrated", *after, "floor"]
 
 
 def read_gap(gaps: Gaps, key: Key, channel: str) -> float | None:
@@ -83,10 +84,9 @@ def _draw_gaps(
         for stage, value in seen:
             # The refit is hollow, so that what lies behind it is seen.
             face = "1.0" if stage.mark == "D" else stage.colour
-            axes.plot(
-                [value], [row], linestyle="", marker=stage.mark, markeredgecolor=stage.colour, markerfacecolor=face,
-                markersize=13 if stage.mark == "|" else 7, markeredgewidth=2 if stage.mark in "|D" else 1, zorder=3,
-            )  # fmt: skip
+            size, edge = 13 if stage.mark == "|" else 7, 2 if stage.mark in "|D" else 1
+            [mark] = axes.plot([value], [row], linestyle="", marker=stage.mark, markersize=size, zorder=3)
+            mark.set(markeredgecolor=stage.colour, markerfacecolor=face, markeredgewidth=edge)
     if not known:
         axes.text(0.5, 0.5, f"every gap is below {100 * SMALLEST:g} %", transform=axes.transAxes, ha="center")
     axes.axhline(0.5, color="0.8", linewidth=0.8)
