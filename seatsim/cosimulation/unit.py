@@ -186,9 +186,8 @@ def _try_to_load(path: Path, folder: Path, library: Path) -> None:
     try:
         done = subprocess.run(words, capture_output=True, stdin=subprocess.DEVNULL, timeout=PATIENCE, check=False)
     except subprocess.TimeoutExpired:
-        raise InputError(
-            f"{path}: its library is not loaded after {PATIENCE:g} s; ask its supplier for another"
-        ) from None
+        problem = f"{path}: its library is not loaded after {PATIENCE:g} s; ask its supplier for another"
+        raise InputError(problem) from None
     if done.returncode < 0:
         raise InputError(f"{path}: its library crashes as it is loaded (signal {-done.returncode})")
     _tried.add(content)

@@ -143,9 +143,8 @@ def _check_fixed(fix: Mapping[str, float], models: Sequence[str]) -> None:
     known = sorted({name for model in models for name in numeric_fields(find_model(model))})
     for name in fix:
         if name not in known:
-            raise InputError(
-                f"--fix {name}: no model has this number{nearest(name, known)}; see seatsim describe MODEL"
-            )
+            problem = f"--fix {name}: no model has this number{nearest(name, known)}; see seatsim describe MODEL"
+            raise InputError(problem)
 
 
 def _keys(

@@ -228,9 +228,8 @@ def _choose_coordinates(
     fixed = (*find_specification(cls).fixed, *settings.fix)
     coordinates = Coordinates(start, scales, fixed, _count_levels(records))
     if not coordinates.components:
-        raise InputError(
-            f"--fix {', '.join(settings.fix)} leaves no parameter of {cls.__name__} to fit; leave one free"
-        )
+        problem = f"--fix {', '.join(settings.fix)} leaves no parameter of {cls.__name__} to fit; leave one free"
+        raise InputError(problem)
     return coordinates
 
 

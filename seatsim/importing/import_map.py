@@ -176,9 +176,8 @@ def check_files(runs: Mapping[str, Sequence[str]], files: Sequence[str], path: P
     for run, names in runs.items():
         for name in names:
             if name not in files:
-                raise InputError(
-                    f"{path}, runs.{run}: '{name}' was not given{nearest(name, files)}; given: {', '.join(files)}"
-                )
+                problem = f"{path}, runs.{run}: '{name}' was not given{nearest(name, files)}; given: {', '.join(files)}"
+                raise InputError(problem)
 
 
 def write_map(path: Path, stated: ImportMap) -> Path:

@@ -87,12 +87,11 @@ def import_files(
     notes = [f"{file.path.name}: {note}" for file in files for note in file.notes]
     if stated is None:
         used = _proposed(files, folder)
+        clocks = (find_clock(group) for file in files for group in file.groups)
+        notes += [said for clock in clocks if clock for said in clock.assumptions] + _say_left_out(files, used)
     else:
         used = stated
         check_files(used.runs, [file.path.name for file in files], map_file or Path(FILE))
-    if stated is None:
-        clocks = (find_clock(group) for file in files for group in file.groups)
-        notes += [said for clock in clocks if clock for said in clock.assumptions] + _say_left_out(files, used)
     assembled = _assembled(files, used, folder, stated is None)
     scenario = _make_nominal(nominal, used.rig, assembled.runs[0].table) if nominal else None
     found = [*assembled.doubts, *([] if scenario else doubt_runs(assembled))]
@@ -189,9 +188,8 @@ def _write_recording(folder: Path, assembled: Assembled, nominal: Mapping[str, o
     """Write tables, nominal scenario, map and header of a recording, all or none."""
     used, rate = assembled.map, assembled.rate
     tables = {run.name: {"time": np.arange(run.rows) / rate, **run.table} for run in assembled.runs}
-    runs = {
-        run.name: {"repeat_of": used.repeats[run.name]} if run.name in used.repeats else {} for run in assembled.runs
-    }
+    names = [run.name for run in assembled.runs]
+    runs = {name: {"repeat_of": used.repeats[name]} if name in used.repeats else {} for name in names}
     noise = {name: entry.noise_rms for name, entry in used.channels.items()}
     header = state_header(used.rig, rate, {}, runs, noise)
     header |= {"actuator": used.actuator._asdict()} if used.actuator else {}

@@ -65,9 +65,8 @@ _DAMPERS = ("damper", "dampfer", "daempfer", "amortisseur", "zuni", "load cell",
 """Words for commands, for axes, for what belongs to no seat, and for its damper."""
 SI_UNITS = dict.fromkeys(("displacement", "distance", "elevation"), "m") | DIMENSIONS
 """SI units of the quantities that have one."""
-_TIMES = dict.fromkeys(("ms", "msec", "millis", "milliseconds"), "ms") | dict.fromkeys(
-    ("sec", "secs", "seconds", "sekunden", "secondes"), "s"
-)
+_TIMES = dict.fromkeys(("ms", "msec", "millis", "milliseconds"), "ms")
+_TIMES |= dict.fromkeys(("sec", "secs", "seconds", "sekunden", "secondes"), "s")
 """Units of time that are names of a column by themselves."""
 BY_UNIT = ("acceleration", "velocity", "displacement", "force", "current", "voltage", "temperature")
 """Quantities that a unit alone tells, where no word does."""

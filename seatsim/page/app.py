@@ -44,15 +44,10 @@ def make_app(target: Future[ScenarioView | RecordingView], folder: Path, token: 
     Until its target is loaded, the page says so; every other request waits.
     """
     page = _Page(target, folder)
-    app = Starlette(
-        routes=[
-            Route("/", page.show, methods=["GET"]),
-            Route("/view", page.compute, methods=["POST"]),
-            Route("/save", page.save, methods=["POST"]),
-            Route("/stop", page.stop, methods=["POST"]),
-        ]
-    )
-    return Guard(app, token, port)
+    posted = {"/view": page.compute, "/save": page.save, "/stop": page.stop}
+    routes = [Route("/", page.show, methods=["GET"])]
+    routes += [Route(path, answer, methods=["POST"]) for path, answer in posted.items()]
+    return Guard(Starlette(routes=routes), token, port)
 
 
 class Stopped(BaseException):
@@ -66,12 +61,10 @@ class _Page:
         self._target, self._folder, self._lock = target, folder, Lock()
         self._thread: int | None = None
         script, style = read_asset(SCRIPTS), read_asset(STYLES)
-        self._headers = HEADERS | {
-            "Content-Security-Policy": POLICY.format(script=digest_of(script), style=digest_of(style))
-        }
-        environment = make_environment().overlay(
-            loader=jinja2.ChoiceLoader([jinja2.PackageLoader("seatsim.report"), jinja2.PackageLoader("seatsim.page")])
-        )
+        policy = POLICY.format(script=digest_of(script), style=digest_of(style))
+        self._headers = HEADERS | {"Content-Security-Policy": policy}
+        loaders = [jinja2.PackageLoader("seatsim.report"), jinja2.PackageLoader("seatsim.page")]
+        environment = make_environment().overlay(loader=jinja2.ChoiceLoader(loaders))
         self._page, self._parts = map(environment.get_template, ("page.html", "parts.html"))
         self._given = {"script": Markup(script), "style": Markup(style)}
         self._loading = environment.get_template("loading.html").render(style=Markup(style))

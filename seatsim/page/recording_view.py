@@ -81,9 +81,8 @@ class RecordingView:
         for name, values in wanted.items():
             if name not in switches or not isinstance(values, dict):
                 raise InputError(f"{name!r} is no effect that this recording can show")
-            found = found.add(
-                self.candidates[name], np.array([read_number(values, slider) for slider in switches[name].sliders])
-            )
+            numbers = [read_number(values, slider) for slider in switches[name].sliders]
+            found = found.add(self.candidates[name], np.array(numbers))
         return found
 
     def encode(self, request: Mapping[str, object]) -> dict[str, object]:

@@ -75,9 +75,8 @@ class ScenarioView:
             self.sliders.append(Slider("temperature", "Damper temperature", "°C", -20.0, 100.0, float(temperature)))
         self.choices = [Choice("road", "Road", roads), Choice("law", "Controller", laws)]
         if len(titles) > 1:
-            self.choices.insert(
-                0, Choice("run", "Run of the file", [(str(k), title) for k, title in enumerate(titles)])
-            )
+            numbered = [(str(k), title) for k, title in enumerate(titles)]
+            self.choices.insert(0, Choice("run", "Run of the file", numbered))
 
     def show(self, request: Mapping[str, object]) -> View:
         """Return the run of a request.

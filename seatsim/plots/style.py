@@ -7,6 +7,7 @@ as wide as a telephone shows it legibly; a screen shows two side by side.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import cycle
 from textwrap import wrap
 from typing import Literal, NamedTuple
 
@@ -88,9 +89,8 @@ class Grid(NamedTuple):
 
 def make_entries(labels: Sequence[str]) -> list[Entry]:
     """Return one distinct look for each of up to eight runs; further ones begin anew."""
-    return [
-        Entry(label, COLOURS[index % len(COLOURS)], DASHES[index % len(DASHES)]) for index, label in enumerate(labels)
-    ]
+    looks = zip(labels, cycle(COLOURS), cycle(DASHES), strict=False)
+    return [Entry(label, colour, dashes) for label, colour, dashes in looks]
 
 
 def sample_colours(name: str, count: int) -> list[str]:

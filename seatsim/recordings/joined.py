@@ -43,9 +43,8 @@ def _check_alike(first: Recording, second: Recording) -> None:
         raise InputError(f"{place}, actuator.gain: {gains} of {first.folder / HEADER}")
     for name in first.channels:
         if name in second.channels and first.conversions.get(name) != second.conversions.get(name):
-            raise InputError(
-                f"{place}, channels.{name}.unit: is another one than in {first.folder / HEADER}; use one unit"
-            )
+            problem = f"{place}, channels.{name}.unit: is another one than in {first.folder / HEADER}; use one unit"
+            raise InputError(problem)
     _check_nominals(first, second)
     driven = [{name for name in _CURRENTS if name in each.channels} for each in (first, second)]
     if any(driven) and not driven[0] & driven[1]:

@@ -115,9 +115,8 @@ class Recording:
         """
         if run not in self.runs:
             permitted = ", ".join(self.runs)
-            raise InputError(
-                f"{self.folder}: no run is called '{run}'{nearest(run, self.runs)}; permitted: {permitted}"
-            )
+            problem = f"{self.folder}: no run is called '{run}'{nearest(run, self.runs)}; permitted: {permitted}"
+            raise InputError(problem)
         path = self.folder / self.runs[run].file
         table = dict(_read_table(path, tuple(self.channels), _stamp(path)))
         table |= {name: table[name] * factor + zero for name, (factor, zero) in self.conversions.items()}

@@ -168,7 +168,6 @@ def _say_share(diagnosis: Diagnosis) -> str:
     subject = "That explains" if len(diagnosis.selected) == 1 else "Together that explains"
     if diagnosis.verdict == "unknown":
         return f"{subject} {format_percent(share)} of the gap; no known effect explains the rest."
-    rest = (
-        "" if share > _NEARLY_ALL else f"; what is left is {format_percent(gap.after.overall)} of the signals' spread"
-    )
+    left = f"; what is left is {format_percent(gap.after.overall)} of the signals' spread"
+    rest = "" if share > _NEARLY_ALL else left
     return f"{subject} {format_percent(share)} of the gap beyond noise{rest}."

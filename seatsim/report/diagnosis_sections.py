@@ -63,9 +63,8 @@ def show_confusions(diagnosis: Diagnosis) -> list[Block]:
         blocks += tabulate("Likeness: 1 is alike, 0 has nothing in common", head, [row], 2)
         blocks.append(Text(format_sentence(found.reason)))
     names, matrix = diagnosis.evidence.collinearity
-    pairs = sorted(
-        ((float(matrix[i][j]), names[i], names[j]) for i in range(len(names)) for j in range(i)), reverse=True
-    )
+    known = ((float(matrix[i][j]), names[i], names[j]) for i in range(len(names)) for j in range(i))
+    pairs = sorted(known, reverse=True)
     rows = [(one, other, format_number(value, 2)) for value, one, other in pairs[:_MOST_PAIRS] if value >= _ALIKE]
     caption = "Effects whose signs in these channels are alike: 1 cannot be told apart, 0 has nothing in common"
     return [*blocks, *tabulate(caption, "effect, and, likeness", rows, 2)]
@@ -187,9 +186,8 @@ def show_comfort(diagnosis: Diagnosis) -> list[Block]:
         measured, nominal, after = (format_quantity(x, each.unit) for x in (each.measured, each.nominal, each.after))
         errors = [_format_error(value, each.measured) for value in (each.nominal, each.after)]
         rows.append((each.quantity.replace("_", " "), measured, nominal, errors[0], after, errors[1]))
-    return tabulate(
-        "On the held-out run", f"figure, measured, nominal, error, {name_last(diagnosis)}, error of that", rows
-    )
+    head = f"figure, measured, nominal, error, {name_last(diagnosis)}, error of that"
+    return tabulate("On the held-out run", head, rows)
 
 
 def show_budget(diagnosis: Diagnosis) -> list[Block]:

@@ -112,9 +112,8 @@ def advise_on_keys(found: Sequence[Sensitivity], rows: SweepRows) -> list[str]:
     condition = choose_key([row for row in found if is_condition(row.key)], rows)
     if condition is not None:
         shown = describe_column(condition.metric, rows.units)
-        worst, level = max(
-            (condition.at_low, condition.low), (condition.at_high, condition.high), key=lambda end: end[0]
-        )
+        ends = ((condition.at_low, condition.low), (condition.at_high, condition.high))
+        worst, level = max(ends, key=lambda end: end[0])
         unit = describe_column(condition.key, rows.units).unit
         at = f"{format_level(level)} {unit}".removesuffix(" -")
         mean = format_quantity(worst, rows.units[condition.metric])

@@ -138,9 +138,8 @@ def check_published(source: Source, labels: Sequence[str]) -> None:
     check_keys(published, ("source", "rows"), source, ("published",))
     rows = published.get("rows")
     if not isinstance(rows, list) or not rows:
-        raise source.error(
-            ("published", "rows"), "a list of at least one row, such as '- {variant: I, seat_factor: 0.8}'"
-        )
+        problem = "a list of at least one row, such as '- {variant: I, seat_factor: 0.8}'"
+        raise source.error(("published", "rows"), problem)
     for index, row in enumerate(rows):
         keys = ("published", "rows", index)
         naming = [key for key in mapping(row, source, keys) if key in labels or "." in key]

@@ -183,9 +183,8 @@ def started_elsewhere() -> Iterator[None]:
 def _read(path: Path) -> bytes:
     """Return the content of a Python file whose name can be that of a module."""
     if path.suffix != ".py" or not path.stem.isidentifier():
-        raise InputError(
-            f"{path}: not a Python file that can be imported; its name has letters, digits and _, then .py"
-        )
+        problem = f"{path}: not a Python file that can be imported; its name has letters, digits and _, then .py"
+        raise InputError(problem)
     try:
         return path.read_bytes()
     except OSError as error:
@@ -256,9 +255,8 @@ def _find_installed(name: str) -> ModuleSpec | None:
 
 def _failure(error: Exception, shown: Path, path: Path) -> str:
     """Say in which line of the file its import failed, and how a module in its folder is named."""
-    lines = [
-        (frame.lineno, frame.line) for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path)
-    ]
+    frames = traceback.extract_tb(error.__traceback__)
+    lines = [(frame.lineno, frame.line) for frame in frames if frame.filename == str(path)]
     if isinstance(error, SyntaxError) and error.filename == str(path):
         lines = [(error.lineno, (error.text or "").strip())]
     place = f"{shown}, line {lines[-1][0]} ({lines[-1][1]})" if lines else str(shown)

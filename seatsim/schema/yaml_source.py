@@ -116,7 +116,7 @@ def _as_yaml(value: object) -> object:
     return [_as_yaml(each) for each in whole] if isinstance(whole, list | tuple) else whole
 
 
-def _find_key(node: object, name: str, dotted: str, place: str) -> str | int:
+def _find_key(node: object, name: str, dotted: str, place: str) -> Any:
     """Return what a part of a dotted key is in a mapping (itself) or in a list (the number of an entry)."""
     if not isinstance(node, list):
         return name

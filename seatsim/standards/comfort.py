@@ -161,9 +161,8 @@ def _chosen(records: list[AccelerationRecord], runs: Sequence[str], source: str 
     known = [record.name for record in records]
     for name in runs:
         if name not in known:
-            raise InputError(
-                f"{source}: no run is called '{name}'{nearest(name, known)}; permitted: {', '.join(known)}"
-            )
+            problem = f"{source}: no run is called '{name}'{nearest(name, known)}; permitted: {', '.join(known)}"
+            raise InputError(problem)
     return [record for record in records if not runs or record.name in runs]
 
 
@@ -191,9 +190,8 @@ def _cuts(record: AccelerationRecord, samples: int, blocks: _Blocks) -> list[sli
     for start, end in blocks:
         if not 0 <= start < end or round(end * record.sample_rate) > samples:
             lasts = samples / record.sample_rate
-            raise InputError(
-                f"block {start:g}:{end:g}: {record.name} lasts from 0 to {lasts:g} s; give FROM:TO within it"
-            )
+            problem = f"block {start:g}:{end:g}: {record.name} lasts from 0 to {lasts:g} s; give FROM:TO within it"
+            raise InputError(problem)
     ends = blocks or [(0.0, samples / record.sample_rate)]
     return [slice(round(start * record.sample_rate), round(end * record.sample_rate)) for start, end in ends]
 
@@ -212,9 +210,8 @@ def _motion_sickness(
     along = direction("z")._replace(weighting="Wf")
     parts = [(part, record.sample_rate) for record in records for part in _weighted(record, column, along, blocks)]
     energy = sum(motion_sickness_dose(part, rate) ** 2 for part, rate in parts)
-    return MotionSickness(
-        float(np.sqrt(energy / sum(len(part) / rate for part, rate in parts))), float(np.sqrt(energy))
-    )
+    duration = sum(len(part) / rate for part, rate in parts)
+    return MotionSickness(float(np.sqrt(energy / duration)), float(np.sqrt(energy)))
 
 
 def _notes(

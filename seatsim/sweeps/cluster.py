@@ -71,9 +71,8 @@ class _ClusterEngine(NamedTuple):
         waiting = iter(work.tasks)
 
         def submit(count: int) -> list[Future]:
-            return [
-                self.client.submit(_simulate, _make_task(work, task), pure=False) for task in islice(waiting, count)
-            ]
+            tasks = [_make_task(work, runs) for runs in islice(waiting, count)]
+            return [self.client.submit(_simulate, task, pure=False) for task in tasks]
 
         running = as_completed(submit(_AHEAD * len(self.client.scheduler_info()["workers"])))
         for future in running:
@@ -120,9 +119,8 @@ def _await_workers(client: Client) -> None:
     try:
         client.wait_for_workers(1, timeout=LONGEST_SEARCH)
     except TimeoutError as error:
-        raise InputError(
-            f"the dask scheduler has no worker; start some with 'dask worker {client.scheduler.address}'"
-        ) from error
+        problem = f"the dask scheduler has no worker; start some with 'dask worker {client.scheduler.address}'"
+        raise InputError(problem) from error
 
 
 def _await_outcomes(future: Future) -> list[Outcome]:

@@ -120,9 +120,8 @@ def is_sweep(data: Mapping[str, object]) -> bool:
 def _read_design(source: Source) -> str:
     name = source.data.get("design", "cross")
     if name not in _DESIGNS:
-        raise source.error(
-            ("design",), f"{name!r} is not permitted{nearest(name, _DESIGNS)}; permitted: {', '.join(_DESIGNS)}"
-        )
+        problem = f"{name!r} is not permitted{nearest(name, _DESIGNS)}; permitted: {', '.join(_DESIGNS)}"
+        raise source.error(("design",), problem)
     return str(name)
 
 

@@ -141,18 +141,16 @@ def hold_file(path: Path, alone: bool = True, wait: bool = False) -> Iterator[No
     try:
         import fcntl
     except ImportError as error:
-        raise InputError(
-            "a sweep locks its folder with flock, which this system has not; use Linux, macOS, or Windows' WSL"
-        ) from error
+        problem = "a sweep locks its folder with flock, which this system has not; use Linux, macOS, or Windows' WSL"
+        raise InputError(problem) from error
     with open_in_place(path) as file:
         how = (fcntl.LOCK_EX if alone else fcntl.LOCK_SH) | (0 if wait else fcntl.LOCK_NB)
         try:
             fcntl.flock(file, how)
         except BlockingIOError as error:
             owner = file.read().strip() or "another process"
-            raise InputError(
-                f"{path.parent}: {owner} works on this sweep; wait for it, end it, or choose another --out"
-            ) from error
+            problem = f"{path.parent}: {owner} works on this sweep; wait for it, end it, or choose another --out"
+            raise InputError(problem) from error
         file.truncate(0)
         with suppress(OSError):  # who holds a folder is told where the disk lets it
             file.write(f"process {os.getpid()} on {socket.gethostname()}" if alone else "a command for a share of it")

@@ -78,10 +78,9 @@ def floor_of(scenario: Scenario) -> Floor | None:
     if scenario.excitation is None:
         return None
     with scenario.placed("excitation"):
-        kind = type(scenario.excitation)
-        return _make_floor(
-            f"{kind.__module__}.{kind.__qualname__}", scenario.excitation, scenario.solver.step, scenario.seed
-        )
+        cls = type(scenario.excitation)
+        kind = f"{cls.__module__}.{cls.__qualname__}"
+        return _make_floor(kind, scenario.excitation, scenario.solver.step, scenario.seed)
 
 
 @lru_cache(maxsize=FLOORS_KEPT)

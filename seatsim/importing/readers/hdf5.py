@@ -176,9 +176,8 @@ def _sources(item: h5py.Dataset, place: str, path: Path, sources: set[Path]) -> 
             sources.add(beside)
             _check_source(beside, each.dset_name, needed, missing)
     if covered < item.size:
-        raise InputError(
-            f"{place}: {item.size - covered} of its {item.size} numbers have no source; HDF5 would give zeros"
-        )
+        problem = f"{place}: {item.size - covered} of its {item.size} numbers have no source; HDF5 would give zeros"
+        raise InputError(problem)
 
 
 def _check_source(path: Path, name: str, needed: int, missing: str) -> None:

@@ -126,9 +126,8 @@ def _check_kinds(content: bytes, kind: bytes, links: Sequence[int], before: int)
     """Raise ValueError where a link leads to a block of another kind, whose letters come after `before` others."""
     for link, wanted in zip(links, _LEADS_TO.get(kind, ()), strict=False):
         if link and content[link + before : link + before + 2] != wanted:
-            raise ValueError(
-                f"a block {kind.decode()} leads to address {link}, where no block {wanted.decode()} begins"
-            )
+            problem = f"a block {kind.decode()} leads to address {link}, where no block {wanted.decode()} begins"
+            raise ValueError(problem)
 
 
 def _unpacked(content: bytes, address: int) -> int:

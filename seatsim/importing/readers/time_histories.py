@@ -109,13 +109,11 @@ def read_rpc(path: Path, content: bytes, layout: TextLayout) -> DataFile:
         InputError: a keyword is missing, the numbers are of an unknown kind, or there are fewer than stated.
     """
     header = _header(path, content)
-    count, frames, per_frame, per_group = (
-        int(header[key]) for key in ("CHANNELS", "FRAMES", "PTS_PER_FRAME", "PTS_PER_GROUP")
-    )
+    keys = ("CHANNELS", "FRAMES", "PTS_PER_FRAME", "PTS_PER_GROUP")
+    count, frames, per_frame, per_group = (int(header[key]) for key in keys)
     if min(count, frames, per_frame, per_group) < 1:
-        raise InputError(
-            f"{path}: states {count} channels of {frames} frames of {per_frame} points; each is at least 1"
-        )
+        problem = f"{path}: states {count} channels of {frames} frames of {per_frame} points; each is at least 1"
+        raise InputError(problem)
     kind, order = header.get("DATA_TYPE", "SHORT_INTEGER"), header.get("FORMAT", "BINARY")
     if kind not in _TYPES or order not in _ORDERS:
         permitted = f"{', '.join(_TYPES)} in {', '.join(_ORDERS)}"
@@ -123,15 +121,12 @@ def read_rpc(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     values = np.frombuffer(content[int(header["NUM_HEADER_BLOCKS"]) * _BLOCK :], dtype="u1")
     table = _demultiplex(path, values, _ORDERS[order] + _TYPES[kind], (count, frames * per_frame, per_group))
     scales = [_scale(header, number, kind) for number in range(1, count + 1)]
-    signals = tuple(
-        Signal(
-            header.get(f"DESC.CHAN_{number}", f"channel {number}"), header.get(f"UNITS.CHAN_{number}", ""), scale * row
-        )
-        for number, (scale, row) in enumerate(zip(scales, table, strict=True), 1)
-    )
     kept, notes = _kept(table, per_frame)
-    signals = tuple(signal._replace(values=signal.values[:kept]) for signal in signals)
-    return DataFile(path, "", (Group("", signals, 1.0 / float(header["DELTA_T"])),), notes)
+    signals = []
+    for number, (scale, row) in enumerate(zip(scales, table, strict=True), 1):
+        name = header.get(f"DESC.CHAN_{number}", f"channel {number}")
+        signals.append(Signal(name, header.get(f"UNITS.CHAN_{number}", ""), scale * row[:kept]))
+    return DataFile(path, "", (Group("", tuple(signals), 1.0 / float(header["DELTA_T"])),), notes)
 
 
 def _kept(table: Array, per_frame: int) -> tuple[int, tuple[str, ...]]:

@@ -50,9 +50,8 @@ def plot_gaps(diagnosis: Diagnosis) -> Figure | None:
         return None
     names, keys = ["overall", *channels], select_stages(diagnosis)
     rows = [[read_gap(diagnosis.gap, key, name) or 0.0 for key in keys] for name in names]
-    return _draw_gaps(
-        "Gap of each channel, before and after", names, [STAGES[key] for key in keys], rows, " of held-out runs"
-    )
+    stages = [STAGES[key] for key in keys]
+    return _draw_gaps("Gap of each channel, before and after", names, stages, rows, " of held-out runs")
 
 
 def plot_gap(found: Gap) -> Figure:
@@ -69,9 +68,8 @@ def _draw_gaps(
     """Return a figure with the gaps of each name, one for each stage."""
     known = [100 * value for row in rows for value in row if np.isfinite(value) and value > SMALLEST]
     # A noise floor that nobody stated has no mark, and none in the legend.
-    legend = [
-        stage for stage, values in zip(stages, zip(*rows, strict=True), strict=True) if max(np.nan_to_num(values)) > 0
-    ]
+    columns = zip(stages, zip(*rows, strict=True), strict=True)
+    legend = [stage for stage, values in columns if max(np.nan_to_num(values)) > 0]
     shown = [name.replace("_", " ") for name in names]
     note = f"RMS of measured less simulated over the spread of the signal{where}; further left is better."
     figure, [[axes]] = make_page(title, note, Grid((ROW * len(names) + 0.15,), left=measure_names(shown)), legend)

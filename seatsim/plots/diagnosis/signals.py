@@ -100,9 +100,8 @@ def _plot_channel(trace: Trace, group: Sequence[Trace], lines: Sequence[Simulate
     for [axes] in page.rows[2:]:
         left_edge, bottom, width, height = axes.get_position().bounds
         axes.set_position((left_edge, bottom, width, height * (1 - OWN_AXIS / GRID.heights[2])))
-        _draw_density(
-            axes, density, [MEASURED._replace(colour=GREY, width=1.2), *legend[1:]], shown, 2 * noise**2 * step
-        )
+        looks = [MEASURED._replace(colour=GREY, width=1.2), *legend[1:]]
+        _draw_density(axes, density, looks, shown, 2 * noise**2 * step)
     return page.figure
 
 
