@@ -125,13 +125,8 @@ class IdentificationProblem(NamedTuple):
 
 def read_bench(bench: BenchModel) -> dict[str, float]:
     """Return what may be free of a bench beside its damper, by the key that it has in `parameters.yaml`."""
-    return dict(
-        zip(
-            (*_COIL, *_FACTORS, _OFFSET),
-            (bench.rise, bench.fall, *bench.factors[:3], bench.offset_per_kelvin),
-            strict=True,
-        )
-    )
+    numbers = (bench.rise, bench.fall, *bench.factors[:3], bench.offset_per_kelvin)
+    return dict(zip((*_COIL, *_FACTORS, _OFFSET), numbers, strict=True))
 
 
 def _list_beside(fits_coil: bool, fits_temperature: bool) -> list[Component]:

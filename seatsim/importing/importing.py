@@ -19,7 +19,7 @@ from seatsim.provenance.manifest import write_documented
 from seatsim.recordings.quality.damage import QUIET, noise_of
 from seatsim.recordings.quality.examination import examine, merge_issues
 from seatsim.recordings.quality.issue import Issue
-from seatsim.recordings.recording import CHANNELS, COMMANDS, load_recording
+from seatsim.recordings.recording import CHANNELS, COMMANDS, CURRENTS, load_recording
 from seatsim.recordings.writer import state_header, state_nominal, write_files
 from seatsim.scenario.loading import load
 from seatsim.schema.content import Form, Unwritten, written
@@ -30,7 +30,6 @@ from seatsim.schema.yaml_source import Source
 
 _OWN_FILES = (".yaml", ".yml", ".json", ".md", ".png", ".pdf", ".html")
 """Endings of files that lie beside data and hold none."""
-_CURRENTS = ("current_command", "command_voltage", "coil_current")
 
 
 class Import(NamedTuple):
@@ -213,7 +212,7 @@ def _make_nominal(scenario: str, rig: Rig, recorded: Collection[str]) -> Mapping
 
 
 def _law(source: Source, recorded: Collection[str]) -> dict[str, object]:
-    if any(name in recorded for name in _CURRENTS):
+    if any(name in recorded for name in CURRENTS):
         return {"law": "replay"}
     law = source.data.get("controller")
     current = law.get("current") if isinstance(law, Mapping) else None

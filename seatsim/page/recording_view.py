@@ -139,15 +139,10 @@ class RecordingView:
 
     def _tabulate(self, after: Mapping[str, Array]) -> Table:
         before, now, floor = self._measure(self.nominal), self._measure(after), self.problem.noise / self.problem.spread
-        rows = [
-            [
-                channel.replace("_", " "),
-                *map(format_percent, (old, new)),
-                format_noise(noise),
-                format_percent(1 - new / old),
-            ]
-            for channel, old, new, noise in zip(self.problem.channels, before, now, floor, strict=True)
-        ]
+        rows = []
+        for channel, old, new, noise in zip(self.problem.channels, before, now, floor, strict=True):
+            first, second, shrink = map(format_percent, (old, new, 1 - new / old))
+            rows.append([channel.replace("_", " "), first, second, format_noise(noise), shrink])
         return Table(
             "Gap of each channel, RMS of measured less simulated over the spread of the measured signal, over all runs",
             ["channel", "nominal", "with effects", "noise floor", "shrinks by"],

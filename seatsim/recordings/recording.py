@@ -49,6 +49,8 @@ MOTION = (*ACCELEROMETERS, "suspension_displacement", "displacement", "velocity"
 """Channels of motion and force, which swing about zero and are never at rest for long."""
 COMMANDS = ("current_command", "command_voltage")
 """Channels that are logged and not measured, so that they have no noise."""
+CURRENTS = (*COMMANDS, "coil_current")
+"""Channels of which one drives the coil or the damper."""
 
 
 HEADER = "recording.yaml"

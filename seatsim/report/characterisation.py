@@ -47,15 +47,12 @@ def report_characterisation(
 ) -> Report:
     """Return the report of a characterisation; `remarks` are sentences on it, `command` makes it again."""
     tested: list[Block] = [Text("What was tested:"), Code(found.source, "What was tested")]
+    steps = [*show_pictures(figures, "steps"), *_tabulate_steps(found.responses)]
     sections = [
         Section("loops", "Force, energy and damping", show_pictures(figures, "loops", "energy", "asymmetry")),
         Section("figures", "Figures of each record", _tabulate_rows(found)),
         Section("limits", "Limits", _tabulate_sheet(found.sheet, ["limits"])),
-        Section(
-            "steps",
-            "Response to steps of the current",
-            [*show_pictures(figures, "steps"), *_tabulate_steps(found.responses)],
-        ),
+        Section("steps", "Response to steps of the current", steps),
         Section("sheet", "Tables of the bench sheet", _tabulate_sheet(found.sheet, [*_CAPTIONS])),
     ]
     about, closing = f"Characterisation: {found.name}", Closing(remarks, _judge(found), command, tested)

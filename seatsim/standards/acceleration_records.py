@@ -240,9 +240,8 @@ def _recorded(folder: Path) -> list[AccelerationRecord]:
     if not units:
         raise InputError(f"{folder / HEADER}: records no acceleration; it has {', '.join(recording.channels)}")
     tables = {run: recording.table(run) for run in recording.runs}
-    return [
-        AccelerationRecord(
-            run, recording.header.sample_rate, {name: Signal(name, unit, table[name]) for name, unit in units.items()}
-        )
-        for run, table in tables.items()
-    ]
+    found = []
+    for run, table in tables.items():
+        signals = {name: Signal(name, unit, table[name]) for name, unit in units.items()}
+        found.append(AccelerationRecord(run, recording.header.sample_rate, signals))
+    return found

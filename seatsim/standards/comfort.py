@@ -128,6 +128,7 @@ def comfort(
     if not axes:
         raise InputError(f"{source}: no axis of the person is named; give one of {', '.join(DIRECTIONS)}")
     joined = {axis: found.dose for axis, found in axes.items()}
+    pairs = [(base, axis) for base, axis in _FLOOR.items() if {base, axis} <= {*named}]
     return Comfort(
         source=str(source),
         runs=tuple(record.name for record in records),
@@ -136,11 +137,7 @@ def comfort(
         axes=axes,
         totals=total_values(joined),
         exposure=assess_exposure(joined, hours),
-        seat={
-            axis: seat_transmission(doses[axis], doses[base])
-            for base, axis in _FLOOR.items()
-            if {base, axis} <= {*named}
-        },
+        seat={axis: seat_transmission(doses[axis], doses[base]) for base, axis in pairs},
         motion_sickness=_motion_sickness(records, named.get("z"), blocks),
         notes=tuple(_notes(records, named, axes)),
     )

@@ -270,14 +270,8 @@ def _seat_of(scenario: Scenario) -> _Seat:
 
 def _run_trial(seat: _Seat, spectral_class: SpectralClass, person: str, seed: int) -> Trial:
     change = SEATED_SHARE * PERSONS[person] - seat.plant.driver_mass
-    history = simulate(
-        dataclasses.replace(
-            seat.scenario,
-            excitation=Iso7096(spectral_class, _SETTLE + _DURATION),
-            seed=seed,
-            effects=(*seat.scenario.effects, Mass(change)),
-        )
-    )
+    excitation, effects = Iso7096(spectral_class, _SETTLE + _DURATION), (*seat.scenario.effects, Mass(change))
+    history = simulate(dataclasses.replace(seat.scenario, excitation=excitation, seed=seed, effects=effects))
     signals = {name: history[name] for name in (*_NEEDED, _TRAVEL)}
     return _evaluate(signals, 1 / history.step, seat.plant.end_stops)
 
