@@ -146,7 +146,7 @@ class Result:
     @property
     def rows(self) -> list[dict[str, object]]:
         """The metrics of every run by name, after what sets the runs apart, and why they are unverified; SI units."""
-        found = []
+        found: list[dict[str, object]] = []
         for run in self.runs:
             metrics, reasons = {name: each.value for name, each in run.metrics.items()}, "; ".join(run.unverified)
             found.append({"scenario": run.scenario.name, **run.scenario.label, **metrics, "unverified": reasons})
