@@ -50,7 +50,8 @@ def identify_sweep(definition: SweepDefinition, plan: Plan) -> _Identity:
     configuration = {"scenario": definition.scenario.data, **stated, "files": dict(_digest_files(plan))}
     versions, design = list_versions(LIBRARIES, used_files()), _digest_design(plan, plan.runs)
     whole = [configuration, design, versions, definition.seed]
-    return _Identity(_digest(whole), definition.seed, versions, _read_back(configuration), plan.runs, design)
+    digest = hashlib.sha256(_encode(whole)).hexdigest()
+    return _Identity(digest, definition.seed, versions, _read_back(configuration), plan.runs, design)
 
 
 def _digest_design(plan: Plan, runs: int) -> str:
@@ -89,10 +90,6 @@ def _texts(value: object) -> Iterator[str]:
             yield from _texts(item)
     elif isinstance(value, str):
         yield value
-
-
-def _digest(value: object) -> str:
-    return hashlib.sha256(_encode(value)).hexdigest()
 
 
 def _encode(value: object) -> bytes:

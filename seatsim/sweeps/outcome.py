@@ -53,7 +53,7 @@ def simulate_run(number: int, make_scenario: Callable[[], Scenario], histories: 
             history = simulate(scenario, floor_of(scenario))
             metrics = measure_run(scenario, history)
         if histories is not None:
-            write_histories([Run(scenario, history, metrics)], _history_path(histories, number))
+            write_histories([Run(scenario, history, metrics)], histories / f"run-{number:07d}.parquet")
         reason = "; ".join(list_reasons(scenario, history, metrics))
     except SeatsimError as error:
         return Outcome(number, FAILED, str(error), seed, (None,) * len(METRICS))
@@ -66,11 +66,6 @@ def outcome_of(number: int, seed: int, metrics: Mapping[str, Metric], reason: st
     """Return the outcome of a run that reached its end; `reason` is why its figures are unverified, mostly empty."""
     figures = tuple(metrics[name].value if name in metrics else None for name in METRICS)
     return Outcome(number, UNVERIFIED if reason else DONE, reason, seed, figures)
-
-
-def _history_path(folder: Path, number: int) -> Path:
-    """Return the file that keeps the channels of a run."""
-    return folder / f"run-{number:07d}.parquet"
 
 
 def floor_of(scenario: Scenario) -> Floor | None:
