@@ -38,12 +38,8 @@ def fit_envelope(damper: DamperChoice, max_current: float, temperature: float) -
     Raises:
         InputError: the damper is not dissipative there, or has no force to choose from.
     """
-    forces = np.array(
-        [
-            [_measure_steady_force(damper, speed, i, temperature) for i in np.linspace(0, max_current, CURRENTS)]
-            for speed in SPEEDS
-        ]
-    )
+    currents = np.linspace(0, max_current, CURRENTS)
+    forces = np.array([[_measure_steady_force(damper, v, i, temperature) for i in currents] for v in SPEEDS])
     least, most = forces.min(axis=1), forces.max(axis=1)
     driving = (least < 0).any(axis=1)
     if driving.any():

@@ -186,9 +186,8 @@ def _count_held_samples(step: float, hold: float) -> int:
     """Return over how many samples of `step` seconds a force is held for `hold` seconds."""
     every = round(hold / step)
     if every < 1 or abs(every * step - hold) > 1e-9:
-        raise InputError(
-            f"hold {hold:g} s is not a multiple of solver.step {step:g} s; choose {max(1, every) * step:g} s"
-        )
+        problem = f"hold {hold:g} s is not a multiple of solver.step {step:g} s; choose {max(1, every) * step:g} s"
+        raise InputError(problem)
     return every
 
 

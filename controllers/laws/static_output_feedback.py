@@ -116,9 +116,8 @@ class StaticOutputFeedback(NamedTuple):
             raise InputError(
                 f"{self.design or 'gain'}: a gain of shape {gain.shape}; {', '.join(self.measures)} take one entry each"
             )
-        return OutputFeedback(
-            **{"displacement": 0.0, "velocity": 0.0} | dict(zip(self.measures, gain[0].tolist(), strict=True))
-        )
+        gains = dict(zip(self.measures, gain[0].tolist(), strict=True))
+        return OutputFeedback(**{"displacement": 0.0, "velocity": 0.0} | gains)
 
     def synthesis(
         self, plant: Plant, floors: Floors = no_floors, progress: Callable[[str], object] = lambda text: None
@@ -171,9 +170,8 @@ class StaticOutputFeedback(NamedTuple):
         gain, loops = self._find_loops(plant, floors)
         proven = "certified" if all(loop.certificate for loop in loops) else "not certified"
         entries = zip(gain[0], self.measures, strict=True)
-        named = ", ".join(
-            f"{value:.4g} {unit_of_gain(measure)} on {measure.replace('_', ' ')}" for value, measure in entries
-        )
+        texts = (f"{value:.4g} {unit_of_gain(name)} on {name.replace('_', ' ')}" for value, name in entries)
+        named = ", ".join(texts)
         several = f" for {len(loops)} plants" if len(loops) > 1 else ""
         norm = f"gamma {max(loop.gamma for loop in loops):.4g}, {proven}{several}"
         return f"gain {named}; {norm}; margins: {self.margins(plant, coil, gain)}"

@@ -131,7 +131,6 @@ def _riccati(loop: Loop, level: float, delta: float) -> Array:
     # With the output sqrt(slack) x added, the squared norm grows by slack * reach^2 <= delta, and stays below 1.
     reach = hinf_norm(Loop(loop.A, B, np.eye(n), np.zeros((n, nw)))).value
     slack = delta / max(reach, 1.0) ** 2
-    P: Array = scipy.linalg.solve_continuous_are(
-        loop.A, B, C.T @ C + slack * np.eye(n), D.T @ D - np.eye(nw), s=C.T @ D
-    )
+    Q, R = C.T @ C + slack * np.eye(n), D.T @ D - np.eye(nw)
+    P: Array = scipy.linalg.solve_continuous_are(loop.A, B, Q, R, s=C.T @ D)
     return (P + P.T) / 2

@@ -112,9 +112,8 @@ def improve(objective: NormObjective, best: StabilisingGain, seed: int, deadline
     while fruitless < _FRUITLESS and time.monotonic() < deadline and best.gamma > 0:
         sizes = objective.sizes(best.entries)
         step = random.standard_normal((len(_ABOUT), objective.size)) * np.array(_ABOUT)[:, None]
-        scattered = [
-            StartingGain(objective.gain(entries), objective.gain(sizes)) for entries in best.entries + step * sizes
-        ]
+        places = best.entries + step * sizes
+        scattered = [StartingGain(objective.gain(entries), objective.gain(sizes)) for entries in places]
         found = explore(objective, scattered, deadline, best.gamma)
         lower = refine(objective, [best, *found.candidates], deadline)
         fruitless = 0 if lower.gamma < best.gamma * (1 - _COARSE) else fruitless + 1

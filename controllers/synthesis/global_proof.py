@@ -17,18 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from controllers.synthesis.exclusion import (
-    AtPoint,
-    BoxView,
-    Complex,
-    Inequalities,
-    OutOfReach,
-    Unstable,
-    WeightedSum,
-    corners_of,
-    state_sum,
-    weigh,
-)
+from controllers.synthesis import exclusion
 from controllers.synthesis.plant import MATRICES, GeneralisedPlant
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
@@ -55,7 +44,7 @@ class Split(NamedTuple):
     at: float
 
 
-_Reason = WeightedSum | Unstable | OutOfReach
+_Reason = exclusion.WeightedSum | exclusion.Unstable | exclusion.OutOfReach
 
 
 @dataclass(eq=False)
@@ -98,14 +87,14 @@ class GlobalProof:
 
 
 def _to_plain(step: Split | _Reason) -> dict[str, object]:
-    if isinstance(step, Split | Unstable):
+    if isinstance(step, Split | exclusion.Unstable):
         return step._asdict()
-    if isinstance(step, OutOfReach):
+    if isinstance(step, exclusion.OutOfReach):
         return step._asdict() | {"s": _pair_at(step.s), "vector": _pairs(step.vector)}
     named = []
     for weight, inequality in zip(*step, strict=True):
         plain = inequality._asdict() | {"weight": weight}
-        if isinstance(inequality, AtPoint):
+        if isinstance(inequality, exclusion.AtPoint):
             plain |= {"s": _pair_at(inequality.s), "p": _pairs(inequality.p), "q": _pairs(inequality.q)}
         named.append(plain)
     return {"inequalities": named}
@@ -116,7 +105,7 @@ def _pair_at(s: complex) -> list[float] | None:
     return [s.real, s.imag] if np.isfinite(s) else None
 
 
-def _pairs(vector: Complex) -> list[list[float]]:
+def _pairs(vector: exclusion.Complex) -> list[list[float]]:
     return [[z.real, z.imag] for z in vector.tolist()]
 
 
@@ -150,7 +139,7 @@ def prove_no_better(
     if not low.shape == high.shape == (count,) or not np.all(low < high):
         raise InputError(f"the box needs bounds low < high of {count} gains each")
     proof = GlobalProof(plants, low, high, level)
-    views = [BoxView(number, plant, level) for number, plant in enumerate(plants)]
+    views = [exclusion.BoxView(number, plant, level) for number, plant in enumerate(plants)]
     # Depth first, the lower half first: the order in which a checker walks through the steps again.
     known = (view.prove_out_of_reach() for view in views if np.isfinite(level))
     waiting = [_Box(low, high, 1.0, next((reason for reason in known if reason is not None), None))]
@@ -195,11 +184,11 @@ class _Division(NamedTuple):
     better: Array | None = None
 
 
-def _exclude_or_divide(views: Sequence[BoxView], box: _Box, whole: Array) -> _Reason | _Division:
+def _exclude_or_divide(views: Sequence[exclusion.BoxView], box: _Box, whole: Array) -> _Reason | _Division:
     """Return why no gain in a box is good enough, or its two parts; `whole` is the width of the whole."""
-    corners = corners_of(box.low, box.high)
+    corners = exclusion.corners_of(box.low, box.high)
     listed, weights = _weigh(views, corners, box.points)
-    reason, at_corners = state_sum(weights, listed)
+    reason, at_corners = exclusion.state_sum(weights, listed)
     if at_corners.min() > 0:
         return reason
     for view in views:
@@ -214,12 +203,12 @@ def _exclude_or_divide(views: Sequence[BoxView], box: _Box, whole: Array) -> _Re
         if all(peak.value < view.level for view, peak in zip(views, found, strict=True)):
             better = views[0].gain(values[None])[0]
             return _divide(box, _Slab(0, 0.5, 0, False), None)._replace(better=better)
-    points = {one.s for one in reason.inequalities if isinstance(one, AtPoint)}
+    points = {one.s for one in reason.inequalities if isinstance(one, exclusion.AtPoint)}
     points |= {1j * peak.frequency for peak in peaks if 0 < peak.frequency < np.inf}
     box = box._replace(points=tuple(points))
     slab = _largest_slab(np.vstack([listed.values, at_corners]))
     if slab.share > _LEAST_SHARE:
-        alone = WeightedSum((1.0,), (listed.rows[slab.row],)) if slab.row < len(listed.rows) else reason
+        alone = exclusion.WeightedSum((1.0,), (listed.rows[slab.row],)) if slab.row < len(listed.rows) else reason
         return _divide(box, slab, alone)
     # That gain is halved which changes most of what was weighed; of nothing, the widest.
     cube = (weights[:, None] * listed.values).reshape(len(weights), *(2,) * len(middle))
@@ -228,10 +217,12 @@ def _exclude_or_divide(views: Sequence[BoxView], box: _Box, whole: Array) -> _Re
     return _divide(box, _Slab(0, 0.5, int(np.argmax(changes if changes.any() else spans)), False), None)
 
 
-def _weigh(views: Sequence[BoxView], corners: Array, points: tuple[complex, ...]) -> tuple[Inequalities, Array]:
+def _weigh(
+    views: Sequence[exclusion.BoxView], corners: Array, points: tuple[complex, ...]
+) -> tuple[exclusion.Inequalities, Array]:
     """Return inequalities and weights whose sum comes as near as was found to holding at all corners of a box."""
     seen = [view.look(corners, np.array(points, dtype=complex)) for view in views]
-    listed, weights = Inequalities(np.zeros((0, len(corners))), np.zeros(0), []), np.zeros(0)
+    listed, weights = exclusion.Inequalities(np.zeros((0, len(corners))), np.zeros(0), []), np.zeros(0)
     mixture = np.ones(len(corners))
     for _ in range(_ROUNDS):
         more = [one.list_inequalities(mixture) for one in seen]
@@ -239,7 +230,7 @@ def _weigh(views: Sequence[BoxView], corners: Array, points: tuple[complex, ...]
         if not any(one.rows for one in more):
             break
         listed = listed.joined(more)
-        weights, mixture = weigh(listed.values)
+        weights, mixture = exclusion.weigh(listed.values)
         if mixture.max() < _MET:
             break
     return listed, weights

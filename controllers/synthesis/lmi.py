@@ -118,11 +118,7 @@ def _bounded_real(
     B1, D11 = plant.B1 / np.sqrt(gamma), plant.D11 / gamma
     flow, seen = plant.A @ X + plant.B2 @ Y, (plant.C1 @ X + plant.D12 @ Y) / np.sqrt(gamma)
     H = cp.bmat(
-        [
-            [flow + flow.T, B1, seen.T],
-            [B1.T, -g * np.eye(B1.shape[1]), D11.T],
-            [seen, D11, -g * np.eye(len(D11))],
-        ]
+        [[flow + flow.T, B1, seen.T], [B1.T, -g * np.eye(B1.shape[1]), D11.T], [seen, D11, -g * np.eye(len(D11))]]
     )
     return (H + H.T) / 2
 
@@ -131,11 +127,7 @@ def _project(plant: GeneralisedPlant, X: cp.Expression, g: cp.Expression) -> cp.
     """N' [A'X + X A, X B1, C1'; B1'X, -g I, D11'; C1, D11, -g I] N with N the kernel of [C2, D21, 0]."""
     A, B1, C1, D11 = plant.A, plant.B1, plant.C1, plant.D11
     full = cp.bmat(
-        [
-            [A.T @ X + X @ A, X @ B1, C1.T],
-            [B1.T @ X, -g * np.eye(B1.shape[1]), D11.T],
-            [C1, D11, -g * np.eye(len(C1))],
-        ]
+        [[A.T @ X + X @ A, X @ B1, C1.T], [B1.T @ X, -g * np.eye(B1.shape[1]), D11.T], [C1, D11, -g * np.eye(len(C1))]]
     )
     kernel = scipy.linalg.null_space(np.hstack([plant.C2, plant.D21]))
     N = scipy.linalg.block_diag(kernel, np.eye(len(C1)))

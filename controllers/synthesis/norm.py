@@ -77,9 +77,8 @@ def hinf_norm(
         if best.value > enough:
             break
         crossings = _find_crossings(loop, best.value * (1 + tolerance))
-        found = _find_highest_peak(
-            loop, np.concatenate([crossings, (crossings[1:] + crossings[:-1]) / 2, [best.frequency]])
-        )
+        middles = (crossings[1:] + crossings[:-1]) / 2
+        found = _find_highest_peak(loop, np.concatenate([crossings, middles, [best.frequency]]))
         if found.value <= best.value * (1 + tolerance):
             break
         best = found

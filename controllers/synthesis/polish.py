@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import time
 from functools import lru_cache
-from typing import cast
 
 import numpy as np
 from scipy.optimize import minimize
@@ -107,7 +106,7 @@ def _solve(
     except np.linalg.LinAlgError:
         # A trial loop has a pole at one of the frequencies: nothing to gain this way.
         return entries, level
-    step = np.clip(cast(Array, found.x)[:-1], low, high)
+    step = np.clip(np.asarray(found.x)[:-1], low, high)
     values, _ = _values(objective, entries + unit * step, frequencies)
     return entries + unit * step, float(values.max())
 

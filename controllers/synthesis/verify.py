@@ -19,15 +19,8 @@ def verify(plant: GeneralisedPlant, gain: Array, order: int = 0) -> ClosedLoop:
     """Return what is known of a plant under a stabilising gain (nu, ny); the last `order` controls are not physical."""
     loop = plant.close(gain)
     peak, agree = _compute_verified_norm(loop)
-    return ClosedLoop(
-        plant,
-        peak.value,
-        peak.frequency,
-        agree,
-        certify(plant, gain, peak.value),
-        disk_margin(plant, gain, plant.control_count - order),
-        loop.poles,
-    )
+    certificate, margin = certify(plant, gain, peak.value), disk_margin(plant, gain, plant.control_count - order)
+    return ClosedLoop(plant, peak.value, peak.frequency, agree, certificate, margin, loop.poles)
 
 
 def _compute_verified_norm(loop: Loop) -> tuple[Peak, bool]:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -58,7 +58,7 @@ def _try_class(kind: str, name: str, cls: type) -> list[str]:
 
 def _try_damper(name: str, cls: type) -> Iterator[str]:
     values = {field: _choose_value(cls, field) for field in field_names(cls)}
-    record: Any = cls(**values)
+    record = cls(**values)
     state = DAMPERS.specification_of(cls).initial
     scaling = TemperatureScaling()
     if not np.isfinite(float(record.force(*_TRIED, scaling, state))):

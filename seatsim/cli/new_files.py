@@ -64,9 +64,8 @@ def _recording(path: Path) -> Mapping[Path, bytes]:
 def _code(kind: str, path: Path) -> Mapping[Path, bytes]:
     name = path.name.removesuffix(".py")
     if not name.isidentifier():
-        raise InputError(
-            f"{path}: '{name}' cannot be the name of a module; letters, digits and _ can, such as my_{kind}"
-        )
+        problem = f"{path}: '{name}' cannot be the name of a module; letters, digits and _ can, such as my_{kind}"
+        raise InputError(problem)
     taken = [known.rpartition(".")[2] for known in names(REGISTERED[kind])]
     if name in taken:
         raise InputError(f"{path}: there is a {REGISTERED[kind]} called '{name}' already; give another name")

@@ -63,9 +63,8 @@ def _check_entries(path: Path, entries: list[zipfile.ZipInfo]) -> None:
         raise InputError(f"{path}: holds {len(entries)} files; permitted: at most {_MOST_FILES}")
     size = sum(entry.file_size for entry in entries)
     if size > _UNPACKED * LARGEST_UNIT:
-        raise InputError(
-            f"{path}: holds {in_mib(size)} unpacked; permitted: at most {in_mib(_UNPACKED * LARGEST_UNIT)}"
-        )
+        problem = f"{path}: holds {in_mib(size)} unpacked; permitted: at most {in_mib(_UNPACKED * LARGEST_UNIT)}"
+        raise InputError(problem)
     for entry in entries:
         name = entry.orig_filename
         parts = PurePosixPath(name).parts
@@ -110,9 +109,8 @@ def find_library(path: Path, archive: zipfile.ZipFile, version: int, identifier:
         return name
     found = sorted({entry.split("/")[1] for entry in archive.namelist() if entry.startswith("binaries/")} - {""})
     other = f"it has libraries for {', '.join(found)}" if found else "it has no library at all"
-    raise InputError(
-        f"{path}: has no {name}, the library for this machine; {other}; ask its supplier for this platform"
-    )
+    problem = f"{path}: has no {name}, the library for this machine; {other}; ask its supplier for this platform"
+    raise InputError(problem)
 
 
 @contextmanager

@@ -14,17 +14,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+from seatsim.cosimulation import description
 from seatsim.cosimulation.damper import FmuDamper
-from seatsim.cosimulation.description import (
-    FORCE,
-    REAL,
-    UnitDescription,
-    describe_unit,
-    find_conversion_of,
-    find_variable,
-    need_fmpy,
-    unpack,
-)
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.modules import check_in_use
 
@@ -37,17 +28,17 @@ _T = TypeVar("_T")
 class RunningUnit:
     """A unit between its start and its end; motion, current and temperature in, force out, all in SI units and degC."""
 
-    def __init__(self, damper: FmuDamper, unit: UnitDescription, instance: _FMU, told: list[str]) -> None:
+    def __init__(self, damper: FmuDamper, unit: description.UnitDescription, instance: _FMU, told: list[str]) -> None:
         self.repeats = unit.saves
         self.takes_acceleration = "acceleration" in dict(damper.inputs)
         self._file, self._unit, self._instance, self._told = damper.file, unit, instance, told
         self._inputs = [
-            (quantity, found.valueReference, find_conversion_of(found, quantity))
+            (quantity, found.valueReference, description.find_conversion_of(found, quantity))
             for quantity, name in damper.inputs
-            for found in [find_variable(unit, name, "input")]
+            for found in [description.find_variable(unit, name, "input")]
         ]
-        output = find_variable(unit, damper.output, "output")
-        self._output, self._force = output.valueReference, find_conversion_of(output, FORCE)
+        output = description.find_variable(unit, damper.output, "output")
+        self._output, self._force = output.valueReference, description.find_conversion_of(output, description.FORCE)
 
     def start(self, damper: FmuDamper, given: Mapping[str, float]) -> float:
         """Initialise the unit with its parameters and the inputs at time zero; return its force in N.
@@ -108,7 +99,7 @@ class RunningUnit:
 
     def _set_parameter(self, name: str, value: float) -> None:
         found = self._unit.variables[name]
-        word = "Real" if found.type in REAL and self._unit.version == 2 else found.type
+        word = "Real" if found.type in description.REAL and self._unit.version == 2 else found.type
         getattr(self._instance, f"set{word}")([found.valueReference], [value])
 
     def _call(self, what: Callable[[], _T], of: str) -> _T:
@@ -127,9 +118,9 @@ PATIENCE = 30.0
 _TRIAL = """
 import sys
 from pathlib import Path
-from seatsim.cosimulation.unit import describe_unit, load_unit
+from seatsim.cosimulation.unit import description, load_unit
 path, folder, library = map(Path, sys.argv[1:])
-load_unit(path, describe_unit(path), folder, library, [])
+load_unit(path, description.describe_unit(path), folder, library, [])
 """
 _tried: set[bytes] = set()
 """Libraries that were loaded in a process of their own."""
@@ -144,9 +135,9 @@ def run_unit(damper: FmuDamper) -> Iterator[RunningUnit]:
     """
     path = Path(damper.file)
     check_in_use(path)
-    unit = describe_unit(path)
+    unit = description.describe_unit(path)
     told: list[str] = []
-    with unpack(path, unit.version, unit.identifier) as (folder, library):
+    with description.unpack(path, unit.version, unit.identifier) as (folder, library):
         _try_to_load(path, folder, library)
         instance = load_unit(path, unit, folder, library, told)
         try:
@@ -158,14 +149,14 @@ def run_unit(damper: FmuDamper) -> Iterator[RunningUnit]:
             instance.freeLibrary()
 
 
-def load_unit(path: Path, unit: UnitDescription, folder: Path, library: Path, told: list[str]) -> _FMU:
+def load_unit(path: Path, unit: description.UnitDescription, folder: Path, library: Path, told: list[str]) -> _FMU:
     """Return the instance of a unit that is unpacked in a folder; what it tells is added to `told`.
 
     Raises:
         InputError: its library cannot be used.
     """
     try:
-        return need_fmpy().instantiate_fmu(
+        return description.need_fmpy().instantiate_fmu(
             str(folder), unit.described, "CoSimulation", logger=_logger(told), library_path=str(library)
         )
     except Exception as error:  # FMPy raises plain exceptions
@@ -186,9 +177,8 @@ def _try_to_load(path: Path, folder: Path, library: Path) -> None:
     try:
         done = subprocess.run(words, capture_output=True, stdin=subprocess.DEVNULL, timeout=PATIENCE, check=False)
     except subprocess.TimeoutExpired:
-        raise InputError(
-            f"{path}: its library is not loaded after {PATIENCE:g} s; ask its supplier for another"
-        ) from None
+        problem = f"{path}: its library is not loaded after {PATIENCE:g} s; ask its supplier for another"
+        raise InputError(problem) from None
     if done.returncode < 0:
         raise InputError(f"{path}: its library crashes as it is loaded (signal {-done.returncode})")
     _tried.add(content)

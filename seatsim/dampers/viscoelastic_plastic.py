@@ -6,16 +6,7 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.compilation.jit import jit
-from seatsim.dampers.pieces import (
-    SETTLING,
-    CurrentLaw,
-    cubic,
-    inertance,
-    inertance_rate,
-    limited,
-    slip,
-    utfsm_damper,
-)
+from seatsim.dampers.pieces import SETTLING, CurrentLaw, cubic, inertance, inertance_rate, limited, slip, utfsm_damper
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param

@@ -16,7 +16,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, Any, NamedTuple, cast
+from typing import Annotated, NamedTuple
 
 import numba
 from numba import types
@@ -49,9 +49,9 @@ class Block:
     parameters: Record
     inputs: Record
     rest: Record
-    start: Callable[..., Any]
-    observe: Callable[..., Any]
-    advance: Callable[..., Any]
+    start: Callable[..., object]
+    observe: Callable[..., object]
+    advance: Callable[..., tuple[object, object]]
     step: float
     fixed_step: bool
     parts: tuple[type, ...]
@@ -59,12 +59,12 @@ class Block:
     notes: tuple[str, ...] = ()
 
     @cached_property
-    def initial(self) -> Any:
+    def initial(self) -> object:
         """The state at time zero."""
         return self.start(self.parameters, self.inputs, self.rest)
 
     @cached_property
-    def outputs(self) -> Any:
+    def outputs(self) -> object:
         """The outputs at time zero."""
         return self.observe(self.parameters, self.inputs, self.initial, 0.0)
 
@@ -155,7 +155,7 @@ def _places(value: object) -> list[str]:
     """Return how C reaches the elements of a tuple or record."""
     kind: types.Type = numba.typeof(value)
     if is_empty(kind):
-        return [""] * len(cast("tuple[object, ...]", value))
+        return [""] * len(kind)
     if is_row(kind):
         return [f".at[{k}]" for k in range(len(kind))]
     return [f".{name}" for name in c_names(kind)]

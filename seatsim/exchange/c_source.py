@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from importlib.resources import files
-from typing import Any, cast
+from typing import SupportsFloat, SupportsInt
 
 import numba
 from numba import types
@@ -14,7 +14,7 @@ from numba import types
 from seatsim.exchange.block import RATES, Block, Variable, list_variables
 from seatsim.exchange.printing.functions import print_function
 from seatsim.exchange.printing.program import Program
-from seatsim.exchange.printing.values import BOOLEAN, REAL, Signature, is_empty, is_row, is_tuple, number
+from seatsim.exchange.printing.values import REAL, Signature, is_empty, is_row, is_tuple, number
 
 _SAMPLES = 200
 """Samples of the test vector."""
@@ -101,13 +101,12 @@ def _call(
 
 def _initialiser(value: object, kind: types.Type) -> str:
     """Return the value of a record or number as C initialises it."""
-    if kind == REAL:
-        return number(float(cast(float, value))).code
-    if kind == BOOLEAN or isinstance(kind, types.Integer):
-        return str(int(cast(int, value)))
-    pairs = zip(cast("tuple[object, ...]", value), kind, strict=True)
-    listed = ", ".join(_initialiser(item, inner) for item, inner in pairs if not is_empty(inner))
-    return f"{{{{{listed}}}}}" if is_row(kind) else f"{{{listed}}}"
+    if isinstance(value, tuple):
+        pairs = zip(value, kind, strict=True)
+        listed = ", ".join(_initialiser(item, inner) for item, inner in pairs if not is_empty(inner))
+        return f"{{{{{listed}}}}}" if is_row(kind) else f"{{{listed}}}"
+    assert isinstance(value, SupportsFloat) and isinstance(value, SupportsInt)
+    return number(float(value)).code if kind == REAL else str(int(value))
 
 
 def _limit(value: float) -> str:
@@ -158,7 +157,7 @@ def _test_vector(
         if k == 0:
             state = block.start(parameters, given, block.rest)
         state, _ = block.advance(parameters, given, state, 0.0, block.step)
-        seen: Any = block.observe(parameters, given, state, block.step)
+        seen = block.observe(parameters, given, state, block.step)
         yield [float(v) for v in values.values()], [float(getattr(seen, v.name)) for v in outputs]
 
 

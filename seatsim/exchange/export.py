@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -77,7 +77,7 @@ def write_mat(block: Block, scenario: Scenario, path: Path) -> None:
     write_whole(path, lambda part: savemat(str(part), content, appendmat=False, oned_as="row"))
 
 
-def _linear_plant(plant: Plant) -> dict[str, Any]:
+def _linear_plant(plant: Plant) -> Mapping[str, object]:
     system, exact = control_system(plant), state_space(plant)
     names = {"states": ["x [m]", "v [m/s]", "xc [m]", "vc [m/s]"]}
     names |= {"inputs": system.input_labels, "outputs": system.output_labels}
@@ -88,7 +88,7 @@ def _linear_plant(plant: Plant) -> dict[str, Any]:
     )
 
 
-def _as_struct(value: object) -> Any:
+def _as_struct(value: object) -> object:
     """Return a record as a struct, a tuple of numbers as a row or matrix, other tuples as a struct by position."""
     if hasattr(value, "_fields"):
         record: Record = value  # type: ignore[assignment]  # has the fields of one

@@ -150,9 +150,8 @@ def find_compiler() -> str:
         if found:
             return found
     if chosen:
-        raise InputError(
-            f"the variable CC names '{chosen[0]}', and there is no such program; name a C compiler, or none"
-        )
+        problem = f"the variable CC names '{chosen[0]}', and there is no such program; name a C compiler, or none"
+        raise InputError(problem)
     raise InputError(
         "an FMU is compiled, and this machine has no C compiler: install gcc or clang (Debian: apt install gcc),"
         " or name one by CC; '--to c' needs none"

@@ -79,9 +79,8 @@ def _checked(make: Callable[[Excitation, float, int], Floor]) -> Callable[[Excit
             raise RunError(f"{giver} gives {type(made).__name__}; its method floor must return a Floor")
         count = np.size(made.acceleration)
         if made.step != step or count < _FEWEST:
-            raise RunError(
-                f"{giver} gives {count} samples every {made.step} s; asked for: {_FEWEST} or more every {step} s"
-            )
+            problem = f"{giver} gives {count} samples every {made.step} s; asked for: {_FEWEST} or more every {step} s"
+            raise RunError(problem)
         read = {
             name: require_samples(values, f"the {name} of {giver}", count, step)
             for name, values in made._asdict().items()

@@ -7,19 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 
 import numpy as np
 
+from seatsim.excitations import motion
 from seatsim.excitations.base import DURATION, SPEED, Floor, Through, choice, excitation
-from seatsim.excitations.motion import (
-    Spectrum,
-    band,
-    check_step,
-    integrated_twice,
-    limited,
-    lines,
-    mirrored,
-    motion_of,
-    samples,
-    soft_start,
-)
 from seatsim.excitations.road import LONGEST, SHORTEST, TRUCK, Vehicle, floor_response
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest
@@ -91,25 +80,25 @@ class Table(NamedTuple):
             )
         scale = conversion(self.unit, "m/s^2").factor
         period = 2 * record.length
-        acceleration = mirrored(scale * (record.values - record.values.mean()))
+        acceleration = motion.mirrored(scale * (record.values - record.values.mean()))
         acceleration = acceleration[: int(highest * period) + 1]
-        acceleration *= band(lines(acceleration, period), self.high_pass, highest)
-        return self._play(integrated_twice(acceleration, period), record.length, highest, step)
+        acceleration *= motion.band(motion.lines(acceleration, period), self.high_pass, highest)
+        return self._play(motion.integrated_twice(acceleration, period), record.length, highest, step)
 
     def _driven(self, record: _EvenSeries, step: float) -> Floor:
         if self.speed is None:
             raise InputError(f"table {self.path}: a table over distance needs speed, in m/s")
         shortest = min(SHORTEST, _USABLE * 0.5 / record.interval)
         period = 2 * record.length
-        elevation = limited(record.values, record.interval, LONGEST, shortest)
-        road = mirrored(elevation)[: int(shortest * period) + 1]
-        wavenumber = lines(road, period)
+        elevation = motion.limited(record.values, record.interval, LONGEST, shortest)
+        road = motion.mirrored(elevation)[: int(shortest * period) + 1]
+        wavenumber = motion.lines(road, period)
         if self.through == "vehicle":
             road = road * floor_response(self.speed * wavenumber, self.vehicle)
         return self._play(road, record.length / self.speed, self.speed * shortest, step)
 
-    def _play(self, displacement: Spectrum, length: float, highest: float, step: float) -> Floor:
-        check_step("table", step, highest, per_period=5)
+    def _play(self, displacement: motion.Spectrum, length: float, highest: float, step: float) -> Floor:
+        motion.check_step("table", step, highest, per_period=5)
         duration = length if self.duration is None else self.duration
         if duration > length + step and self.repeat == "none":
             raise InputError(
@@ -117,7 +106,7 @@ class Table(NamedTuple):
                 "shorten it, or set repeat: mirror"
             )
         size = round(2 * length / step)
-        return soft_start(step, motion_of(displacement, step, size, samples(duration, step)))
+        return motion.soft_start(step, motion.motion_of(displacement, step, size, motion.samples(duration, step)))
 
 
 _LEAST_ROWS = 16

@@ -200,9 +200,8 @@ def note_limits(
         fitted = max(_largest(record, name) for record in train)
         tested = max((_largest(record, name) for record in test), default=0.0)
         if tested > _BEYOND * fitted:
-            notes.append(
-                f"held-out records reach {tested:.3g} {unit} of {name}, the fitted ones {fitted:.3g} {unit} only"
-            )
+            text = f"held-out records reach {tested:.3g} {unit} of {name}, the fitted ones {fitted:.3g} {unit} only"
+            notes.append(text)
     return notes
 
 

@@ -11,7 +11,7 @@ from typing import NamedTuple, Protocol, Self, TypeAlias, TypeVar, cast
 import numpy as np
 
 from seatsim.cosimulation.damper import PREFIX
-from seatsim.dampers.base import DAMPERS, DamperSpecification
+from seatsim.dampers.base import DAMPERS
 from seatsim.kernel.generic import DamperModel
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest
@@ -43,11 +43,6 @@ def find_model(name: str) -> type[DamperRecord]:
         )
     # A damper's record has fields of any type; those that a fit reads and replaces are numbers, words and laws.
     return cast("type[DamperRecord]", DAMPERS.find(name))
-
-
-def find_specification(cls: type) -> DamperSpecification:
-    """Return what is stated of a damper model's class."""
-    return DAMPERS.specification_of(cls)
 
 
 def law_range(fields: Mapping[str, FieldValue], default: float) -> float:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.dampers.base import find_confidence
+from seatsim.dampers.base import DAMPERS, find_confidence
 from seatsim.identification.assessment import (
     Agreement,
     Assessment,
@@ -24,7 +24,7 @@ from seatsim.identification.assessment import (
     measure_coverage,
     note_limits,
 )
-from seatsim.identification.damper_record import find_model, find_specification
+from seatsim.identification.damper_record import find_model
 from seatsim.identification.information import Information, compute_information
 from seatsim.identification.prediction import BenchModel, RecordInputs, predict_force
 from seatsim.identification.problem import IdentificationProblem, find_origin, state_problem
@@ -171,7 +171,7 @@ def identify_records(
     tests = [each.record for each in assessments if each.part == "test"]
     notes = [
         *_note_parameters(problem, vector, known),
-        *note_limits(find_specification(cls), parts.fitted, tests, origin),
+        *note_limits(DAMPERS.specification_of(cls), parts.fitted, tests, origin),
     ]
     return Identification(
         model=model,

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 from seatsim.compilation.cached import digest
 from seatsim.dampers.base import find_confidence
@@ -107,16 +107,9 @@ def _benchmark_model(
 def _summarise(found: Identification) -> BenchmarkEntry:
     """Return the entry of an identification."""
     train, test = found.mean("train"), found.mean("test")
-    return BenchmarkEntry(
-        found.model,
-        train.fit_percent if train else math.nan,
-        test.fit_percent if test else math.nan,
-        len(found.information.estimates),
-        found.ns_per_step,
-        found.bic,
-        found.seconds,
-        confidence=find_confidence(type(found.bench.damper)),
-    )
+    fits = (train.fit_percent if train else math.nan, test.fit_percent if test else math.nan)
+    figures = (len(found.information.estimates), found.ns_per_step, found.bic, found.seconds)
+    return BenchmarkEntry(found.model, *fits, *figures, confidence=find_confidence(type(found.bench.damper)))
 
 
 def rank_entries(entries: Sequence[BenchmarkEntry]) -> list[BenchmarkEntry]:
@@ -133,7 +126,7 @@ def rank_entries(entries: Sequence[BenchmarkEntry]) -> list[BenchmarkEntry]:
 def _read_entry(path: Path) -> BenchmarkEntry:
     """Return an entry from its file, where a figure that does not exist is null."""
     with expect(path, "entry of a league; remove it, and its model is identified again"):
-        kept = cast("dict[str, object]", read_json(path, "entry of a league"))
+        kept: Mapping[str, object] = read_json(path, "entry of a league")
         values = (kept[name] for name in BenchmarkEntry._fields)
         return BenchmarkEntry._make(math.nan if value is None else value for value in values)
 
@@ -143,9 +136,8 @@ def _check_fixed(fix: Mapping[str, float], models: Sequence[str]) -> None:
     known = sorted({name for model in models for name in numeric_fields(find_model(model))})
     for name in fix:
         if name not in known:
-            raise InputError(
-                f"--fix {name}: no model has this number{nearest(name, known)}; see seatsim describe MODEL"
-            )
+            problem = f"--fix {name}: no model has this number{nearest(name, known)}; see seatsim describe MODEL"
+            raise InputError(problem)
 
 
 def _keys(

@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.compilation.cached import compiled
-from seatsim.identification.damper_record import DamperRecord, find_specification
+from seatsim.dampers.base import DAMPERS
+from seatsim.identification.damper_record import DamperRecord
 from seatsim.kernel.augmented import classes_of
 from seatsim.kernel.bench import MOST_PARTS, TOLERANCE, run_bench, simulate_current
 from seatsim.recordings.bench_tables import BenchRecord
@@ -69,15 +70,8 @@ def prepare_inputs(record: BenchRecord, origin: float, every: bool) -> RecordInp
         return RecordInputs(x, v, current, record.commanded, warm, 2.0 / rate, record.force[odd][::2].copy())
     # A command holds until its next row; a current that was measured goes straight on to it.
     current = np.repeat(record.current, 2)[:-1] if record.commanded else _halve_linearly(record.current)
-    return RecordInputs(
-        _halve_cubically(x),
-        _halve_cubically(v),
-        current,
-        record.commanded,
-        _halve_linearly(warm),
-        1.0 / rate,
-        record.force.copy(),
-    )
+    motion, warmth = (_halve_cubically(x), _halve_cubically(v)), _halve_linearly(warm)
+    return RecordInputs(*motion, current, record.commanded, warmth, 1.0 / rate, record.force.copy())
 
 
 def _halve_cubically(y: Array) -> Array:
@@ -107,7 +101,7 @@ def predict_force(
         current = simulate_current(Coil(bench.rise, rate_fall=bench.fall), current, 0.5 * inputs.step, current[0])
     out = np.full(len(inputs.force), math.nan)
     run = compiled(run_bench, classes_of(bench.damper))
-    state = find_specification(type(bench.damper)).initial
+    state = DAMPERS.specification_of(type(bench.damper)).initial
     given = (inputs.x, inputs.v, current, inputs.temperature, state, inputs.step, most, tolerance, out)
     run(bench.damper, bench.factors, *given)
     return out + bench.offset_per_kelvin * (inputs.temperature[::2] - bench.factors.reference)

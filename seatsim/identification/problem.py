@@ -9,14 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from seatsim.dampers.base import DAMPERS
 from seatsim.identification.coordinates import Component, Coordinates
-from seatsim.identification.damper_record import (
-    DamperRecord,
-    Scales,
-    find_specification,
-    fix_parameters,
-    rescale_damper,
-)
+from seatsim.identification.damper_record import DamperRecord, Scales, fix_parameters, rescale_damper
 from seatsim.identification.prediction import BenchModel, RecordInputs, predict_force, prepare_inputs
 from seatsim.identification.settings import IdentificationSettings
 from seatsim.kernel.bench import TOLERANCE
@@ -125,13 +120,8 @@ class IdentificationProblem(NamedTuple):
 
 def read_bench(bench: BenchModel) -> dict[str, float]:
     """Return what may be free of a bench beside its damper, by the key that it has in `parameters.yaml`."""
-    return dict(
-        zip(
-            (*_COIL, *_FACTORS, _OFFSET),
-            (bench.rise, bench.fall, *bench.factors[:3], bench.offset_per_kelvin),
-            strict=True,
-        )
-    )
+    numbers = (bench.rise, bench.fall, *bench.factors[:3], bench.offset_per_kelvin)
+    return dict(zip((*_COIL, *_FACTORS, _OFFSET), numbers, strict=True))
 
 
 def _list_beside(fits_coil: bool, fits_temperature: bool) -> list[Component]:
@@ -225,12 +215,11 @@ def _choose_coordinates(
     """Return the free parameters, from defaults with their laws stretched to the largest current of the data."""
     scales = _measure_scales(records)
     start = fix_parameters(known or _default_record(cls, scales.current or 1.0), settings.fix)
-    fixed = (*find_specification(cls).fixed, *settings.fix)
+    fixed = (*DAMPERS.specification_of(cls).fixed, *settings.fix)
     coordinates = Coordinates(start, scales, fixed, _count_levels(records))
     if not coordinates.components:
-        raise InputError(
-            f"--fix {', '.join(settings.fix)} leaves no parameter of {cls.__name__} to fit; leave one free"
-        )
+        problem = f"--fix {', '.join(settings.fix)} leaves no parameter of {cls.__name__} to fit; leave one free"
+        raise InputError(problem)
     return coordinates
 
 

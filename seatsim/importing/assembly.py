@@ -68,18 +68,14 @@ def assemble(files: Sequence[DataFile], stated: ImportMap) -> Assembled:
     """
     if "command_voltage" in stated.channels and stated.actuator is None:
         raise InputError("channels.command_voltage: needs actuator: {gain: 1.0}, the commanded current per volt in A/V")
-    doubts: list[Issue] = []
-    notes: list[str] = []
-    parts: list[tuple[str, list[Clocked]]] = []
+    doubts, notes, parts = list[Issue](), list[str](), list[tuple[str, list[Clocked]]]()
     for name, members in _group_runs(files, stated):
         parts += split_at_gaps(name, clock_groups(members, stated, doubts), stated, notes)
     rate = stated.resample or max(each.axis.rate for _, clocked in parts for each in clocked)
     runs, align = [], dict(stated.align)
     for name, clocked in parts:
         used = _use_channels(name, clocked, stated, doubts, notes)
-        moved = _align(used, align, notes)
-        table = _tabulate(name, used, moved, stated, rate, notes)
-        runs.append(Run(name, table))
+        runs.append(Run(name, _tabulate(name, used, _align(used, align, notes), stated, rate, notes)))
     return Assembled(runs, rate, dataclasses.replace(stated, align=align), list(dict.fromkeys(notes)), doubts)
 
 

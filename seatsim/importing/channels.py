@@ -199,9 +199,8 @@ def _in_si(name: str, entry: ChannelMap, values: Array, clocked: Clocked, wanted
     signal = clocked.group.find(entry.column or "")
     unit = entry.unit or (signal.unit if signal else "") or (base if entry.column == name else "")
     if not unit:
-        raise InputError(
-            f"channels.{name}: neither the map nor the file states the unit of '{entry.column}'; write unit"
-        )
+        problem = f"channels.{name}: neither the map nor the file states the unit of '{entry.column}'; write unit"
+        raise InputError(problem)
     with placed(f"channels.{name}.unit"):
         found = conversion(unit, base)
     return found.factor * (entry.sign * entry.scale * values + entry.offset) + found.zero

@@ -58,9 +58,8 @@ def doubt_channel(channel: str, raw: Array, rate: float | None, quantity: str | 
     lengths, starts = plateaus(values)
     if len(np.unique(values[starts[:_MOST_CHANGES]])) <= _FEW_LEVELS:
         if len(lengths) < 0.2 * len(values):
-            text = (
-                f"has {len(np.unique(values[starts]))} levels and no noise; a command or a nominal value, not measured"
-            )
+            levels = len(np.unique(values[starts]))
+            text = f"has {levels} levels and no noise; a command or a nominal value, not measured"
             yield doubter.say("note", "levels", text)
         return
     for issue in doubt_shape(doubter, values, lengths):
@@ -115,9 +114,8 @@ def _constant_part(doubter: Doubter, values: Array, mean: float) -> Iterator[Iss
         text = f"its mean of {mean:.4g} is gravity in g, but m/s^2 is stated; state unit: g, and remove_mean: true"
         yield doubter.say("warning", "unit", text)
     elif abs(mean) > _OFFSET:
-        yield doubter.say(
-            "warning", "offset", f"its mean is {mean:.4g} m/s^2, an offset; remove_mean: true takes it out"
-        )
+        text = f"its mean is {mean:.4g} m/s^2, an offset; remove_mean: true takes it out"
+        yield doubter.say("warning", "offset", text)
 
 
 def _rest(doubter: Doubter, values: Array, mean: float, quantity: str) -> Iterator[Issue]:
@@ -151,9 +149,8 @@ def doubt_time(axis: Axis, channel: str) -> Iterator[Issue]:
     if axis.resolution:
         yield doubter.say("warning", "rounded", _say_rounded(axis))
     elif not axis.is_even:
-        yield doubter.say(
-            "warning", "uneven", f"rows are not evenly spaced; they are interpolated at {axis.rate:.5g} Hz"
-        )
+        text = f"rows are not evenly spaced; they are interpolated at {axis.rate:.5g} Hz"
+        yield doubter.say("warning", "uneven", text)
     if not _SLOWEST <= axis.rate <= _FASTEST:
         text = f"rows are {1.0 / axis.rate:.4g} s apart, {axis.rate:.4g} Hz; is its unit another one, such as ms?"
         yield doubter.say("warning", "rate", text)

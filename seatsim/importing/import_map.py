@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple, cast
+from typing import Annotated, Literal, NamedTuple
 
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.recordings.recording import CHANNELS, DRIVERS
@@ -75,10 +75,6 @@ class _Numbers(NamedTuple):
     gaps: Gaps | None = None
 
 
-_RECORDS: dict[str, type[Any]] = {"time": AxisMap, "csv": TextLayout, "actuator": _Actuator}
-"""Records of a map by their key."""
-
-
 @dataclass(frozen=True)
 class ImportMap:
     """The content of `map.yaml`.
@@ -114,17 +110,18 @@ def read_map(path: Path) -> ImportMap:
     channels = mapping(data.get("channels", {}), source, ("channels",))
     rig: Rig = numbers.rig if "rig" in data else "damper_bench" if "displacement" in channels else "seat"
     repeats = mapping(data.get("repeats", {}), source, ("repeats",))
-    records = {key: build(kind, data[key], source, (key,)) for key, kind in _RECORDS.items() if key in data}
     return ImportMap(
-        _channels(channels, rig, source),
-        rig,
+        time=build(AxisMap, data["time"], source, ("time",)) if "time" in data else None,
+        csv=build(TextLayout, data["csv"], source, ("csv",)) if "csv" in data else _AS_FOUND,
+        actuator=build(_Actuator, data["actuator"], source, ("actuator",)) if "actuator" in data else None,
+        channels=_channels(channels, rig, source),
+        rig=rig,
         sample_rate=numbers.sample_rate,
         resample=numbers.resample,
         gaps=numbers.gaps,
         runs=_runs(data, source),
         align=_align(data, source),
         repeats={run: str(repeated) for run, repeated in repeats.items()},
-        **records,
     )
 
 
@@ -154,22 +151,24 @@ def _check_unit(name: str, entry: ChannelMap, wanted: str, source: Source) -> No
 
 
 def _runs(data: Mapping[str, object], source: Source) -> dict[str, list[str]]:
-    runs = mapping(data.get("runs", {}), source, ("runs",))
-    for name, files in runs.items():
+    runs = {}
+    for name, files in mapping(data.get("runs", {}), source, ("runs",)).items():
         problem = explain_bad_name(name)
         if problem:
             raise source.error(("runs", name), f"{name!r} {problem}")
         if not isinstance(files, list) or not files or not all(isinstance(file, str) for file in files):
             raise source.error(("runs", name), "is no list of files; write run-a: [file1.csv, file2.csv]")
-    return cast("dict[str, list[str]]", dict(runs))
+        runs[name] = files
+    return runs
 
 
 def _align(data: Mapping[str, object], source: Source) -> dict[str, float]:
-    stated = mapping(data.get("align", {}), source, ("align",))
-    for name, value in stated.items():
+    shifts = {}
+    for name, value in mapping(data.get("align", {}), source, ("align",)).items():
         if not is_finite_number(value):
             raise source.error(("align", name), f"{value} is no finite number; write seconds, such as 0.25")
-    return {name: float(cast("float", value)) for name, value in stated.items()}
+        shifts[name] = float(value)
+    return shifts
 
 
 def check_files(runs: Mapping[str, Sequence[str]], files: Sequence[str], path: Path) -> None:
@@ -177,9 +176,8 @@ def check_files(runs: Mapping[str, Sequence[str]], files: Sequence[str], path: P
     for run, names in runs.items():
         for name in names:
             if name not in files:
-                raise InputError(
-                    f"{path}, runs.{run}: '{name}' was not given{nearest(name, files)}; given: {', '.join(files)}"
-                )
+                problem = f"{path}, runs.{run}: '{name}' was not given{nearest(name, files)}; given: {', '.join(files)}"
+                raise InputError(problem)
 
 
 def write_map(path: Path, stated: ImportMap) -> Path:

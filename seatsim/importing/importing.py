@@ -19,7 +19,7 @@ from seatsim.provenance.manifest import write_documented
 from seatsim.recordings.quality.damage import QUIET, noise_of
 from seatsim.recordings.quality.examination import examine, merge_issues
 from seatsim.recordings.quality.issue import Issue
-from seatsim.recordings.recording import CHANNELS, COMMANDS, load_recording
+from seatsim.recordings.recording import CHANNELS, COMMANDS, CURRENTS, load_recording
 from seatsim.recordings.writer import state_header, state_nominal, write_files
 from seatsim.scenario.loading import load
 from seatsim.schema.content import Form, Unwritten, written
@@ -30,7 +30,6 @@ from seatsim.schema.yaml_source import Source
 
 _OWN_FILES = (".yaml", ".yml", ".json", ".md", ".png", ".pdf", ".html")
 """Endings of files that lie beside data and hold none."""
-_CURRENTS = ("current_command", "command_voltage", "coil_current")
 
 
 class Import(NamedTuple):
@@ -87,12 +86,11 @@ def import_files(
     notes = [f"{file.path.name}: {note}" for file in files for note in file.notes]
     if stated is None:
         used = _proposed(files, folder)
+        clocks = (find_clock(group) for file in files for group in file.groups)
+        notes += [said for clock in clocks if clock for said in clock.assumptions] + _say_left_out(files, used)
     else:
         used = stated
         check_files(used.runs, [file.path.name for file in files], map_file or Path(FILE))
-    if stated is None:
-        clocks = (find_clock(group) for file in files for group in file.groups)
-        notes += [said for clock in clocks if clock for said in clock.assumptions] + _say_left_out(files, used)
     assembled = _assembled(files, used, folder, stated is None)
     scenario = _make_nominal(nominal, used.rig, assembled.runs[0].table) if nominal else None
     found = [*assembled.doubts, *([] if scenario else doubt_runs(assembled))]
@@ -189,15 +187,13 @@ def _write_recording(folder: Path, assembled: Assembled, nominal: Mapping[str, o
     """Write tables, nominal scenario, map and header of a recording, all or none."""
     used, rate = assembled.map, assembled.rate
     tables = {run.name: {"time": np.arange(run.rows) / rate, **run.table} for run in assembled.runs}
-    runs = {
-        run.name: {"repeat_of": used.repeats[run.name]} if run.name in used.repeats else {} for run in assembled.runs
-    }
+    names = [run.name for run in assembled.runs]
+    runs = {name: {"repeat_of": used.repeats[name]} if name in used.repeats else {} for name in names}
     noise = {name: entry.noise_rms for name, entry in used.channels.items()}
     header = state_header(used.rig, rate, {}, runs, noise)
     header |= {"actuator": used.actuator._asdict()} if used.actuator else {}
     return write_documented(
-        folder,
-        lambda part: [*write_files(part, tables, nominal, header, "%.9g"), write_map(part / FILE, used)],
+        folder, lambda part: [*write_files(part, tables, nominal, header, "%.9g"), write_map(part / FILE, used)]
     )
 
 
@@ -216,7 +212,7 @@ def _make_nominal(scenario: str, rig: Rig, recorded: Collection[str]) -> Mapping
 
 
 def _law(source: Source, recorded: Collection[str]) -> dict[str, object]:
-    if any(name in recorded for name in _CURRENTS):
+    if any(name in recorded for name in CURRENTS):
         return {"law": "replay"}
     law = source.data.get("controller")
     current = law.get("current") if isinstance(law, Mapping) else None

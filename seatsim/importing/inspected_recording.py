@@ -79,15 +79,12 @@ def _offered(
         if entry.noise_rms > 0.0 or name in COMMANDS:
             continue
         repeated = measure_unrepeated(list_unrepeated(recording.runs, tables, name))
-        floor = min(
-            (each.noise for held in channels.values() for each in held if each.name == name and each.noise), default=0.0
-        )
+        noises = (each.noise for held in channels.values() for each in held if each.name == name)
+        floor = min(filter(None, noises), default=0.0)
         is_quiet = any(issue.channel == name and issue.kind in QUIET for issue in doubts)
         if repeated > 0.0:
-            text = (
-                f"repeats of one excitation differ by noise_rms: {repeated:.2g}, with {floor:.2g} at high frequencies"
-            )
-            yield Issue("note", "noise", f"{name}: states no noise; {text}", name)
+            differ = f"differ by noise_rms: {repeated:.2g}, with {floor:.2g} at high frequencies"
+            yield Issue("note", "noise", f"{name}: states no noise; repeats of one excitation {differ}", name)
         elif floor and not is_quiet:
             text = f"states no noise; its floor at high frequencies shows noise_rms: {floor:.2g}"
             yield Issue("note", "noise", f"{name}: {text}", name)

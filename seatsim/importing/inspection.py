@@ -158,9 +158,8 @@ def summarise(signal: Signal, unit: str, channel: str | None, rate: float | None
     noise = noise_of(values, rate) if np.ptp(values) > 0.0 else None
     low, high, mean = float(np.min(values)), float(np.max(values)), float(np.mean(values))
     rms = float(np.sqrt(values @ values / len(values)))
-    return ChannelSummary(
-        signal.name, unit, channel, rate, len(signal.values), low, high, mean, rms, noise, _spark_of(values)
-    )
+    figures = (low, high, mean, rms, noise)
+    return ChannelSummary(signal.name, unit, channel, rate, len(signal.values), *figures, _spark_of(values))
 
 
 def _spark_of(values: Array) -> str:
@@ -182,7 +181,5 @@ def _repeated_rows(file: DataFile) -> Iterator[Issue]:
             continue
         rows = np.flatnonzero(np.all(steps, axis=0)) + 1
         if len(rows):
-            text = (
-                f"{len(rows)} rows repeat the row before in all channels, first row {rows[0]}; they were written twice"
-            )
-            yield Issue("warning", "repeated_rows", text)
+            repeat = f"repeat the row before in all channels, first row {rows[0]}; they were written twice"
+            yield Issue("warning", "repeated_rows", f"{len(rows)} rows {repeat}")

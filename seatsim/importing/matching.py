@@ -168,9 +168,8 @@ def _entry(name: str, candidates: Sequence[Column], unit: str) -> tuple[ChannelM
 
 def _missing(name: str, columns: Sequence[Column], channels: dict[str, ChannelMap]) -> str:
     taken = {entry.column for entry in channels.values()}
-    left = list(
-        dict.fromkeys(c.signal.name for c in columns if c.signal.name not in taken and c.meaning.quantity != "time")
-    )
+    names = dict.fromkeys(column.signal.name for column in columns if column.meaning.quantity != "time")
+    left = [name for name in names if name not in taken]
     listed = ", ".join(left[:LISTED]) + (", ..." if len(left) > LISTED else "") or "none"
     return f"{name}: no column is it by name; write channels: {{{name}: {{column: ..., unit: ...}}}}; left are {listed}"
 

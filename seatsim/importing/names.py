@@ -65,9 +65,8 @@ _DAMPERS = ("damper", "dampfer", "daempfer", "amortisseur", "zuni", "load cell",
 """Words for commands, for axes, for what belongs to no seat, and for its damper."""
 SI_UNITS = dict.fromkeys(("displacement", "distance", "elevation"), "m") | DIMENSIONS
 """SI units of the quantities that have one."""
-_TIMES = dict.fromkeys(("ms", "msec", "millis", "milliseconds"), "ms") | dict.fromkeys(
-    ("sec", "secs", "seconds", "sekunden", "secondes"), "s"
-)
+_TIMES = dict.fromkeys(("ms", "msec", "millis", "milliseconds"), "ms")
+_TIMES |= dict.fromkeys(("sec", "secs", "seconds", "sekunden", "secondes"), "s")
 """Units of time that are names of a column by themselves."""
 BY_UNIT = ("acceleration", "velocity", "displacement", "force", "current", "voltage", "temperature")
 """Quantities that a unit alone tells, where no word does."""
@@ -105,14 +104,9 @@ def read_name(name: str, unit: str = "") -> Meaning:
     if any(_has(word, plain, words) for word in _OTHERS):
         return Meaning(None)
     quantity, stated = _read_quantity(name, unit)
-    return Meaning(
-        quantity,
-        _first(_PLACES, plain, words),
-        any(_has(word, plain, words) for word in _COMMANDS),
-        next((axis for axis, known in _AXES.items() if words & {*known}), None),
-        stated,
-        any(_has(word, plain, words) for word in _DAMPERS),
-    )
+    axis = next((axis for axis, known in _AXES.items() if words & {*known}), None)
+    is_command, is_damper = (any(_has(word, plain, words) for word in known) for known in (_COMMANDS, _DAMPERS))
+    return Meaning(quantity, _first(_PLACES, plain, words), is_command, axis, stated, is_damper)
 
 
 def _read_quantity(name: str, unit: str) -> tuple[str | None, str]:

@@ -51,10 +51,8 @@ def _derived(part: Mapping[str, Array], rate: float, quantities: Mapping[str, st
         for name in (name for name in part if quantities.get(name) == "displacement"):
             gain, alike = regress(np.gradient(part[name], 1.0 / rate), part[velocity], rate)
             if alike > 0.98 and abs(gain - 1.0) < 0.1:
-                text = (
-                    f"{velocity}: is the derivative of {name} (gain {gain:.3f}); computed from it, no sensor of its own"
-                )
-                yield Issue("note", "derived", text, velocity)
+                text = f"is the derivative of {name} (gain {gain:.3f}); computed from it, no sensor of its own"
+                yield Issue("note", "derived", f"{velocity}: {text}", velocity)
                 break
             if alike > 0.98 and (said := read_gain(gain, "m/s")):
                 text = f"{velocity}: is {gain:.4g} times the derivative of {name}: {said}"
@@ -103,9 +101,5 @@ def _delayed(first: str, second: str, one: Array, other: Array, rate: float) -> 
     rows, alike = find_delay(other, one, round(0.2 * rate))
     if alike > _ALIKE and abs(rows) >= 2:
         late, early = (second, first) if rows > 0 else (first, second)
-        yield Issue(
-            "note",
-            "late",
-            f"{late}: follows {early} by {1e3 * abs(rows) / rate:.3g} ms (correlation {alike:.3f})",
-            late,
-        )
+        text = f"follows {early} by {1e3 * abs(rows) / rate:.3g} ms (correlation {alike:.3f})"
+        yield Issue("note", "late", f"{late}: {text}", late)

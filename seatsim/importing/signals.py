@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -195,10 +195,10 @@ def signals_of(
     name: str, array: NDArray[np.generic], unit: str = "", columns: Sequence[str] = (), units: Sequence[str] = ()
 ) -> list[Signal]:
     """Return the channels of an array of shape (N,), (N, k) or (k, N), k smaller; a matrix is `name#1`, `name#2`."""
-    values: NDArray[Any] = in_seconds(np.squeeze(np.asarray(array)))
-    if values.dtype.kind not in "fiub" or values.ndim not in (1, 2) or values.size < 2:
+    found = in_seconds(np.squeeze(np.asarray(array)))
+    if found.dtype.kind not in "fiub" or found.ndim not in (1, 2) or found.size < 2:
         return []
-    values = values.astype(np.float64)
+    values = found.astype(np.float64)
     if values.ndim == 1:
         return [Signal(name, unit, values)]
     if values.shape[0] < values.shape[1]:

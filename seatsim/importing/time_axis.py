@@ -145,9 +145,8 @@ class Clock(NamedTuple):
             seen = f"this one rises evenly and is taken for it, in s ({self.axis.rate:.6g} Hz)"
             said.append(f"{self.column}: no column is called time; {seen}")
         if self.others:
-            said.append(
-                f"{self.column}: is taken for the time of all columns; {', '.join(self.others)} has another rate"
-            )
+            text = f"{self.column}: is taken for the time of all columns; {', '.join(self.others)} has another rate"
+            said.append(text)
         return said
 
 

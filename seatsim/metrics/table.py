@@ -9,19 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from seatsim.metrics import motion
 from seatsim.metrics.comfort import crest_factor, mtvv, vdv
-from seatsim.metrics.motion import (
-    as_signal,
-    electrical_energy,
-    end_stop_hits,
-    energy_residual,
-    force_tracking_error,
-    peak,
-    ratio,
-    require_finite,
-    require_positive,
-    rms,
-)
 from seatsim.metrics.weighting import can_weight, weight
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
@@ -55,8 +44,8 @@ class RunRecord:
         travel: tuple[float, float] | None = None,
         coil_resistance: float | None = None,
     ) -> None:
-        self.rate = 1 / require_positive(step, "step")
-        self.channels = {name: as_signal(values, name) for name, values in channels.items()}
+        self.rate = 1 / motion.require_positive(step, "step")
+        self.channels = {name: motion.as_signal(values, name) for name, values in channels.items()}
         self.weighted_channels: dict[str, Array] = {}
         self.travel, self.coil_resistance = travel, coil_resistance
         lengths = {name: values.size for name, values in self.channels.items()}
@@ -85,7 +74,7 @@ class RunRecord:
         if name not in self.weighted_channels:
             if not can_weight(self.rate):
                 raise MissingInput(name)
-            self.weighted_channels[name] = weight(require_finite(self[name], name), self.rate)
+            self.weighted_channels[name] = weight(motion.require_finite(self[name], name), self.rate)
         return self.weighted_channels[name]
 
 
@@ -131,11 +120,11 @@ def summarise(
 
 
 def _rms_of(channel: str) -> Callable[[RunRecord], float]:
-    return lambda run: rms(run[channel])
+    return lambda run: motion.rms(run[channel])
 
 
 def _peak_of(channel: str) -> Callable[[RunRecord], float]:
-    return lambda run: peak(run[channel])
+    return lambda run: motion.peak(run[channel])
 
 
 def _of_weighted(compute: Callable[[Array, float], float]) -> Callable[[RunRecord], float]:
@@ -144,42 +133,42 @@ def _of_weighted(compute: Callable[[Array, float], float]) -> Callable[[RunRecor
 
 
 def _tracking(share: bool) -> Callable[[RunRecord], float]:
-    return lambda run: force_tracking_error(run["wanted_force"], run["damper_force"])[int(share)]
+    return lambda run: motion.force_tracking_error(run["wanted_force"], run["damper_force"])[int(share)]
 
 
 def _seat_factor(run: RunRecord) -> float:
-    return ratio(rms(run.weighted(_DRIVER)), rms(run.weighted("floor_acceleration")))
+    return motion.ratio(motion.rms(run.weighted(_DRIVER)), motion.rms(run.weighted("floor_acceleration")))
 
 
 def _jerk(run: RunRecord) -> float:
     acceleration = run["driver_acceleration"]
     if acceleration.size < 2:
         raise MissingInput("driver_acceleration")
-    return rms(np.diff(acceleration) * run.rate)
+    return motion.rms(np.diff(acceleration) * run.rate)
 
 
 def _end_stop_hits(run: RunRecord) -> float:
     if run.travel is None:
         raise MissingInput("travel")
-    return float(end_stop_hits(run["suspension_displacement"], run.travel))
+    return float(motion.end_stop_hits(run["suspension_displacement"], run.travel))
 
 
 def _served_share(run: RunRecord) -> float:
     served = run["force_served"]
     # NaN where the law wants no force: such samples are neither served nor missed.
     asked = served[~np.isnan(served)]
-    return ratio(float(asked.sum()), asked.size)
+    return motion.ratio(float(asked.sum()), asked.size)
 
 
 def _electrical_energy(run: RunRecord) -> float:
     if run.coil_resistance is None:
         raise MissingInput("coil_resistance")
-    return electrical_energy(run["coil_current"], run.coil_resistance, run.rate)
+    return motion.electrical_energy(run["coil_current"], run.coil_resistance, run.rate)
 
 
 def _energy_residual(run: RunRecord) -> float:
     sinks = ("energy_damper", "energy_suspension", "energy_cushion", "energy_stored")
-    return energy_residual(run["energy_floor"], [run[name] for name in sinks])
+    return motion.energy_residual(run["energy_floor"], [run[name] for name in sinks])
 
 
 _DRIVER = "driver_acceleration"
@@ -187,7 +176,7 @@ METRICS: Mapping[str, _Figure] = {
     "driver_acceleration_rms": _Figure("m/s^2", "RMS acceleration of the driver", _rms_of(_DRIVER)),
     "driver_acceleration_peak": _Figure("m/s^2", "largest driver acceleration", _peak_of(_DRIVER)),
     "driver_acceleration_weighted": _Figure(
-        "m/s^2", "RMS driver acceleration, Wk-weighted", _of_weighted(lambda x, _: rms(x))
+        "m/s^2", "RMS driver acceleration, Wk-weighted", _of_weighted(lambda x, _: motion.rms(x))
     ),
     "driver_vdv": _Figure("m/s^1.75", "vibration dose value of the driver, Wk-weighted", _of_weighted(vdv)),
     "driver_mtvv": _Figure("m/s^2", "largest Wk-weighted RMS of the driver in any second", _of_weighted(mtvv)),

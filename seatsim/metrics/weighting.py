@@ -130,9 +130,8 @@ def frequency_response(frequency: ArrayLike, weighting: str = "Wk") -> ComplexAr
 def _constants(weighting: str) -> Weighting:
     if weighting not in WEIGHTINGS:
         permitted = ", ".join(WEIGHTINGS)
-        raise InputError(
-            f"no weighting is called '{weighting}'{nearest(weighting, WEIGHTINGS)}; permitted: {permitted}"
-        )
+        problem = f"no weighting is called '{weighting}'{nearest(weighting, WEIGHTINGS)}; permitted: {permitted}"
+        raise InputError(problem)
     return WEIGHTINGS[weighting]
 
 

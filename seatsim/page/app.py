@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from pathlib import Path
 from threading import Lock, get_ident
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import jinja2
 from markupsafe import Markup
@@ -28,7 +28,7 @@ from seatsim.schema.yaml_text import dump
 
 if TYPE_CHECKING:
     from seatsim.page.recording_view import RecordingView
-    from seatsim.page.scenario_view import ScenarioView
+    from seatsim.page.scenario_view import ScenarioView, View
 
 SCRIPTS = ("uPlot.iife.min.js", "charts.js", "page.js")
 STYLES = ("uPlot.min.css", "report.css", "page.css")
@@ -44,15 +44,10 @@ def make_app(target: Future[ScenarioView | RecordingView], folder: Path, token: 
     Until its target is loaded, the page says so; every other request waits.
     """
     page = _Page(target, folder)
-    app = Starlette(
-        routes=[
-            Route("/", page.show, methods=["GET"]),
-            Route("/view", page.compute, methods=["POST"]),
-            Route("/save", page.save, methods=["POST"]),
-            Route("/stop", page.stop, methods=["POST"]),
-        ]
-    )
-    return Guard(app, token, port)
+    posted = {"/view": page.compute, "/save": page.save, "/stop": page.stop}
+    routes = [Route("/", page.show, methods=["GET"])]
+    routes += [Route(path, answer, methods=["POST"]) for path, answer in posted.items()]
+    return Guard(Starlette(routes=routes), token, port)
 
 
 class Stopped(BaseException):
@@ -66,12 +61,10 @@ class _Page:
         self._target, self._folder, self._lock = target, folder, Lock()
         self._thread: int | None = None
         script, style = read_asset(SCRIPTS), read_asset(STYLES)
-        self._headers = HEADERS | {
-            "Content-Security-Policy": POLICY.format(script=digest_of(script), style=digest_of(style))
-        }
-        environment = make_environment().overlay(
-            loader=jinja2.ChoiceLoader([jinja2.PackageLoader("seatsim.report"), jinja2.PackageLoader("seatsim.page")])
-        )
+        policy = POLICY.format(script=digest_of(script), style=digest_of(style))
+        self._headers = HEADERS | {"Content-Security-Policy": policy}
+        loaders = [jinja2.PackageLoader("seatsim.report"), jinja2.PackageLoader("seatsim.page")]
+        environment = make_environment().overlay(loader=jinja2.ChoiceLoader(loaders))
         self._page, self._parts = map(environment.get_template, ("page.html", "parts.html"))
         self._given = {"script": Markup(script), "style": Markup(style)}
         self._loading = environment.get_template("loading.html").render(style=Markup(style))
@@ -102,7 +95,7 @@ class _Page:
             ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), ctypes.py_object(Stopped))
         return JSONResponse({}, headers=self._headers)
 
-    async def _answer(self, request: Request, compute: Callable[[Mapping[str, Any]], object]) -> Response:
+    async def _answer(self, request: Request, compute: Callable[[Mapping[str, object]], object]) -> Response:
         """Return what follows from the values of a request, or what is wrong with them."""
         try:
             found = await run_in_threadpool(compute, await _read_values(request))
@@ -110,12 +103,12 @@ class _Page:
             return JSONResponse({"error": str(error)}, status_code=422, headers=self._headers)
         return JSONResponse(found, headers=self._headers)
 
-    def _show(self, values: Mapping[str, Any]) -> object:
+    def _show(self, values: Mapping[str, object]) -> object:
         view = self._compute(values)
         parts = {name: str(getattr(self._parts.module, name)(view)) for name in ("tables", "gains")}
         return {"answer": view.answer, "signals": view.signals.data, "fitted": view.fitted, **parts}
 
-    def _compute(self, values: Mapping[str, Any]) -> Any:
+    def _compute(self, values: Mapping[str, object]) -> View:
         with self._lock:
             self._thread = get_ident()
             try:
@@ -125,7 +118,7 @@ class _Page:
             finally:
                 self._thread = None
 
-    def _save(self, values: Mapping[str, Any]) -> object:
+    def _save(self, values: Mapping[str, object]) -> object:
         # Loading these takes longer than everything that the first page needs.
         from seatsim.scenario.loading import single
 
@@ -152,7 +145,7 @@ def name_new(folder: Path, name: str) -> Path:
     return path
 
 
-async def _read_values(request: Request) -> dict[str, Any]:
+async def _read_values(request: Request) -> dict[str, object]:
     if request.headers.get("content-type", "").partition(";")[0] != "application/json":
         raise InputError("a request holds JSON")
     try:

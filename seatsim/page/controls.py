@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from seatsim.schema.errors import InputError
 from seatsim.schema.validation import is_finite_number
@@ -41,7 +41,7 @@ class Switch(NamedTuple):
     sliders: Sequence[Slider]
 
 
-def read_number(request: Mapping[str, Any], slider: Slider) -> float:
+def read_number(request: Mapping[str, object], slider: Slider) -> float:
     """Return the value of a slider in a request in SI units, that at which it starts where the request has none.
 
     Raises:
@@ -53,7 +53,7 @@ def read_number(request: Mapping[str, Any], slider: Slider) -> float:
     return float(value) / slider.factor
 
 
-def read_choice(request: Mapping[str, Any], choice: Choice) -> str:
+def read_choice(request: Mapping[str, object], choice: Choice) -> str:
     """Return the chosen value of a request, the first one where the request has none.
 
     Raises:

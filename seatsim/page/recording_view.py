@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -20,13 +19,8 @@ from seatsim.page.scenario_view import View
 from seatsim.plots.labels import describe_channel, format_percent
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.recording import load_recording
-from seatsim.report.blocks import Table
-from seatsim.report.formatting import (
-    describe_effect,
-    format_noise,
-    format_sentence,
-    say_noise,
-)
+from seatsim.report.blocks import Signals, Table
+from seatsim.report.formatting import describe_effect, format_noise, format_sentence, say_noise
 from seatsim.report.packing import MEASURED, QUICK, Panel, pack_signals
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
@@ -63,7 +57,7 @@ class RecordingView:
         self.switches = [_make_switch(name, candidate) for name, candidate in first.items()]
         self.nominal = self._simulate(Parameters(self.problem.nominal))
 
-    def show(self, request: Mapping[str, Any]) -> View:
+    def show(self, request: Mapping[str, object]) -> View:
         """Return the gap with the effects of a request, at its values or, where it says so, fitted to the recording.
 
         Raises:
@@ -73,11 +67,11 @@ class RecordingView:
         parameters, fitted = self.choose(request), {}
         if request.get("fit") and parameters.terms:
             parameters = self._fit(parameters)
-            fitted = self._read_sliders(request["effects"], parameters)
+            fitted = self._read_sliders(parameters)
         after = self._simulate(parameters) if parameters.terms else self.nominal
         return View(self._say(parameters, after), [self._tabulate(after)], self._pack(after), fitted=fitted)
 
-    def choose(self, request: Mapping[str, Any]) -> Parameters:
+    def choose(self, request: Mapping[str, object]) -> Parameters:
         """Return the effects of a request with their values."""
         wanted = request.get("effects", {})
         if not isinstance(wanted, dict):
@@ -87,20 +81,19 @@ class RecordingView:
         for name, values in wanted.items():
             if name not in switches or not isinstance(values, dict):
                 raise InputError(f"{name!r} is no effect that this recording can show")
-            found = found.add(
-                self.candidates[name], np.array([read_number(values, slider) for slider in switches[name].sliders])
-            )
+            numbers = [read_number(values, slider) for slider in switches[name].sliders]
+            found = found.add(self.candidates[name], np.array(numbers))
         return found
 
-    def encode(self, request: Mapping[str, Any]) -> dict[str, object]:
+    def encode(self, request: Mapping[str, object]) -> dict[str, object]:
         """Return the nominal scenario with the effects of a request, as the content of a file."""
         return write_augmented(self.problem, self.choose(request))
 
     def _simulate(self, parameters: Parameters) -> dict[str, Array]:
         problem = self.problem
-        jobs = [problem.pool.submit(problem.simulated, run, parameters.deviations, parameters.effects)
-                for run in problem.runs]  # fmt: skip
-        return {run: job.result() for run, job in zip(problem.runs, jobs, strict=True)}
+        change = (parameters.deviations, parameters.effects)
+        jobs = {run: problem.pool.submit(problem.simulated, run, *change) for run in problem.runs}
+        return {run: job.result() for run, job in jobs.items()}
 
     def _fit(self, start: Parameters) -> Parameters:
         """Return the parameters of the effects with which the squared gap is least, found by least squares."""
@@ -118,16 +111,14 @@ class RecordingView:
         bounds = (low[own], high[own])
         return move_to(least_squares(subtract, start.vector[own], bounds=bounds, diff_step=[_DIFFERENCE]).x)
 
-    def _read_sliders(self, effects: Mapping[str, object], parameters: Parameters) -> dict[str, dict[str, float]]:
-        """Return where the sliders of some effects stand at these parameters."""
+    def _read_sliders(self, parameters: Parameters) -> dict[str, dict[str, float]]:
+        """Return where the sliders of the effects stand at these parameters."""
         switches = {switch.name: switch.sliders for switch in self.switches}
-        return {
-            name: {
-                slider.name: float(np.clip(slider.factor * value, slider.low, slider.high))
-                for slider, value in zip(switches[name], values, strict=True)
-            }
-            for name, values in zip(effects, parameters.values, strict=True)
-        }
+        found: dict[str, dict[str, float]] = {}
+        for name, values in zip(map(_name, parameters.terms), parameters.values, strict=True):
+            moved = zip(switches[name], values, strict=True)
+            found[name] = {own.name: float(np.clip(own.factor * value, own.low, own.high)) for own, value in moved}
+        return found
 
     def _measure(self, simulated: Mapping[str, Array]) -> Array:
         """Return the gap of each channel over all runs, shape (channels,)."""
@@ -148,28 +139,22 @@ class RecordingView:
 
     def _tabulate(self, after: Mapping[str, Array]) -> Table:
         before, now, floor = self._measure(self.nominal), self._measure(after), self.problem.noise / self.problem.spread
-        rows = [
-            [
-                channel.replace("_", " "),
-                *map(format_percent, (old, new)),
-                format_noise(noise),
-                format_percent(1 - new / old),
-            ]
-            for channel, old, new, noise in zip(self.problem.channels, before, now, floor, strict=True)
-        ]
+        rows = []
+        for channel, old, new, noise in zip(self.problem.channels, before, now, floor, strict=True):
+            first, second, shrink = map(format_percent, (old, new, 1 - new / old))
+            rows.append([channel.replace("_", " "), first, second, format_noise(noise), shrink])
         return Table(
             "Gap of each channel, RMS of measured less simulated over the spread of the measured signal, over all runs",
             ["channel", "nominal", "with effects", "noise floor", "shrinks by"],
             rows,
         )
 
-    def _pack(self, after: Mapping[str, Array]) -> Any:
+    def _pack(self, after: Mapping[str, Array]) -> Signals:
         problem = self.problem
-        panels = [
-            Panel(channel, problem.recording.channels[channel].unit, "",
-                  {run: [problem.measured[run][k], self.nominal[run][k], after[run][k]] for run in problem.runs})
-            for k, channel in enumerate(problem.channels)
-        ]  # fmt: skip
+        panels = []
+        for k, channel in enumerate(problem.channels):
+            shown = {run: [each[run][k] for each in (problem.measured, self.nominal, after)] for run in problem.runs}
+            panels.append(Panel(channel, problem.recording.channels[channel].unit, "", shown))
         time = {run: (problem.skip + np.arange(problem.measured[run].shape[1])) / problem.rate for run in problem.runs}
         lines = [("measured", MEASURED), ("nominal", 1), ("with effects", 0)]
         return pack_signals("Every run.", lines, time, panels, QUICK)

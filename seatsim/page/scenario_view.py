@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from seatsim.metrics.table import SHORT
 from seatsim.page.controls import Choice, Slider, read_choice, read_number
@@ -13,7 +13,7 @@ from seatsim.plots.labels import describe_channel
 from seatsim.plots.runs.naming import Shown
 from seatsim.plots.runs.spectra import plot_psd, plot_transmissibility
 from seatsim.plots.style import make_entries
-from seatsim.report.blocks import Block, Table, show_pictures
+from seatsim.report.blocks import Block, Signals, Table, show_pictures
 from seatsim.report.formatting import format_quantity
 from seatsim.report.headline import describe_run
 from seatsim.report.packing import QUICK
@@ -45,7 +45,7 @@ class View(NamedTuple):
 
     answer: str
     tables: list[Block]
-    signals: Any
+    signals: Signals
     gains: Sequence[Slider] = ()
     fitted: Mapping[str, Mapping[str, float]] = {}
 
@@ -75,11 +75,10 @@ class ScenarioView:
             self.sliders.append(Slider("temperature", "Damper temperature", "°C", -20.0, 100.0, float(temperature)))
         self.choices = [Choice("road", "Road", roads), Choice("law", "Controller", laws)]
         if len(titles) > 1:
-            self.choices.insert(
-                0, Choice("run", "Run of the file", [(str(k), title) for k, title in enumerate(titles)])
-            )
+            numbered = [(str(k), title) for k, title in enumerate(titles)]
+            self.choices.insert(0, Choice("run", "Run of the file", numbered))
 
-    def show(self, request: Mapping[str, Any]) -> View:
+    def show(self, request: Mapping[str, object]) -> View:
         """Return the run of a request.
 
         Raises:
@@ -94,7 +93,7 @@ class ScenarioView:
         blocks = [_compare(own, run), *show_pictures(figures, "transmissibility", "psd")]
         return View(describe_run(run), blocks, show_signals([shown], QUICK), gains)
 
-    def choose(self, request: Mapping[str, Any]) -> Scenario:
+    def choose(self, request: Mapping[str, object]) -> Scenario:
         """Return the scenario that a request describes."""
         chosen = {choice.name: read_choice(request, choice) for choice in self.choices}
         numbers = {slider.name: read_number(request, slider) for slider in self.sliders}
@@ -118,7 +117,7 @@ class ScenarioView:
         moved = {f"controller.{slider.name}": read_number(gains, slider) for slider in list_gains(found)}
         return self._reload(base, settings | moved, label)
 
-    def encode(self, request: Mapping[str, Any]) -> dict[str, object]:
+    def encode(self, request: Mapping[str, object]) -> dict[str, object]:
         """Return the scenario of a request as the content of a file."""
         source = self.choose(request).source
         assert source is not None

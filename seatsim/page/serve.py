@@ -102,9 +102,8 @@ def serve(path: Path, folder: Path, port: int, browser: bool, say: Callable[[str
     address = f"http://{_HOST}:{taken}/?token={token}"
     target = ThreadPoolExecutor(1).submit(open_target, path)
     app = make_app(target, folder.resolve(), token, taken)
-    server = uvicorn.Server(
-        uvicorn.Config(app, http=Impatient, log_level="warning", access_log=False, server_header=False)
-    )
+    settings = uvicorn.Config(app, http=Impatient, log_level="warning", access_log=False, server_header=False)
+    server = uvicorn.Server(settings)
 
     def end_where_failed(loaded: Future[ScenarioView | RecordingView]) -> None:
         server.should_exit = loaded.exception() is not None

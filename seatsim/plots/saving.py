@@ -18,7 +18,7 @@ DPI = 180
 """Dots per inch of a PNG: 1044 over the width of a page."""
 _COMPRESSION = 3
 """Level of zlib in a PNG, 0 to 9: fast rather than small."""
-_NO_DATE: dict[str, Any] = {"Creator": "seatsim", "Date": None}
+_NO_DATE: dict[str, str | None] = {"Creator": "seatsim", "Date": None}
 OPTIONS: dict[str, dict[str, Any]] = {
     # The stated software takes the place of matplotlib's own entry, which holds its version.
     ".png": {"dpi": DPI, "metadata": {"Software": "seatsim"}, "pil_kwargs": {"compress_level": _COMPRESSION}},
@@ -26,7 +26,6 @@ OPTIONS: dict[str, dict[str, Any]] = {
     ".pdf": {"metadata": {"Creator": "seatsim", "Producer": "seatsim", "CreationDate": None}},
 }
 """What each ending of a file needs so that the same figure gives the same bytes."""
-_INLINE: dict[Any, Any] = {"svg.hashsalt": "seatsim", "svg.fonttype": "none", "path.simplify_threshold": 0.3}
 _SHORTER = (
     (r"(?s)^.*?(?=<svg)|<metadata>.*?</metadata>|\s*\n\s*", " "),
     (r' id="[\w.]+_\d+"| transform="rotate\(-0 [^"]*"', ""),
@@ -61,7 +60,7 @@ def render_inline(figure: Figure) -> Inline:
     file = io.StringIO()
     for text in texts:
         text.set_visible(False)
-    with rc_context(_INLINE):
+    with rc_context({"svg.hashsalt": "seatsim", "svg.fonttype": "none", "path.simplify_threshold": 0.3}):
         part = Bbox.from_extents(0.0, 0.0, WIDTH, float(figure.get_figheight()) - head)
         figure.savefig(file, format="svg", metadata=_NO_DATE, transparent=True, dpi=110, bbox_inches=part)
     for text in texts:

@@ -7,6 +7,7 @@ as wide as a telephone shows it legibly; a screen shows two side by side.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import cycle
 from textwrap import wrap
 from typing import Literal, NamedTuple
 
@@ -88,9 +89,8 @@ class Grid(NamedTuple):
 
 def make_entries(labels: Sequence[str]) -> list[Entry]:
     """Return one distinct look for each of up to eight runs; further ones begin anew."""
-    return [
-        Entry(label, COLOURS[index % len(COLOURS)], DASHES[index % len(DASHES)]) for index, label in enumerate(labels)
-    ]
+    looks = zip(labels, cycle(COLOURS), cycle(DASHES), strict=False)
+    return [Entry(label, colour, dashes) for label, colour, dashes in looks]
 
 
 def sample_colours(name: str, count: int) -> list[str]:
@@ -203,10 +203,8 @@ def explain_empty(axes: Axes, text: str) -> None:
 
 def _dress(line: Line2D, look: Entry, longest: int) -> Line2D:
     """Return a line with the look of an entry, and its label in at most `longest` letters."""
-    line.set(
-        label=clean_text(look.label, longest), color=look.colour, linestyle=look.dashes, linewidth=look.width,
-        alpha=look.alpha, solid_capstyle="butt", marker=look.mark,
-    )  # fmt: skip
+    line.set(color=look.colour, linestyle=look.dashes, linewidth=look.width, alpha=look.alpha, marker=look.mark)
+    line.set(label=clean_text(look.label, longest), solid_capstyle="butt")
     return line
 
 

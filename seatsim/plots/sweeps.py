@@ -138,10 +138,8 @@ def find_front(travel: Array, comfort: Array) -> NDArray[np.intp]:
 def _draw_runs(axes: Axes, drawn: pd.DataFrame, colour: str | None, values: Sequence[object]) -> None:
     groups = [drawn] if colour is None else [drawn[drawn[colour] == value] for value in values]
     for k, part in enumerate(groups):
-        axes.scatter(
-            1e3 * part[TRAVEL].to_numpy(float), part[COMFORT].to_numpy(float), s=14, linewidths=0, alpha=0.7,
-            color=COLOURS[k], rasterized=True,
-        )  # fmt: skip
+        travel, comfort = (part[name].to_numpy(float) for name in (TRAVEL, COMFORT))
+        axes.scatter(1e3 * travel, comfort, s=14, linewidths=0, alpha=0.7, color=COLOURS[k], rasterized=True)
 
 
 def plot_means(rows: SweepRows, order: Sequence[str], metric: str) -> Figure | None:

@@ -9,16 +9,7 @@ import os
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
-from seatsim.provenance.statement import (
-    MANIFEST,
-    Invocation,
-    Manifest,
-    current_invocation,
-    list_platform,
-    list_versions,
-    relate,
-    state_file,
-)
+from seatsim.provenance import statement
 from seatsim.scenario.loading import EXAMPLES
 from seatsim.schema.files import write_json, write_together
 from seatsim.schema.modules import used_files
@@ -43,42 +34,42 @@ def write_documented(
 
     def write_all(part: Path) -> list[Path]:
         paths = list(write(part))
-        invocation = current_invocation()
+        invocation = statement.current_invocation()
         if invocation is None:
             return paths
         outputs = {path.relative_to(part).as_posix(): path for path in paths}
-        manifest = describe(invocation, folder, outputs, list_versions(), seed, measured or {})
-        return [*paths, write_json(part / MANIFEST, manifest)]
+        manifest = describe(invocation, folder, outputs, statement.list_versions(), seed, measured or {})
+        return [*paths, write_json(part / statement.MANIFEST, manifest)]
 
     return write_together(folder, write_all)
 
 
 def describe(
-    invocation: Invocation,
+    invocation: statement.Invocation,
     folder: Path,
     outputs: Mapping[str, Path],
     versions: Mapping[str, str],
     seed: int | None = None,
     measured: Measured | None = None,
-) -> Manifest:
+) -> statement.Manifest:
     """Return the manifest that a folder gets of the command at work, which wrote `outputs`, paths by name."""
     place = Path(os.path.abspath(folder))
-    return Manifest(
+    return statement.Manifest(
         command=invocation.command,
         arguments=invocation.arguments,
-        directory=relate(invocation.directory, place),
+        directory=statement.relate(invocation.directory, place),
         folder=place.name,
         versions=versions,
-        platform=list_platform(),
-        own_code=[state_file(relate(path, place), path.read_bytes()) for path in used_files()],
+        platform=statement.list_platform(),
+        own_code=[statement.state_file(statement.relate(path, place), path.read_bytes()) for path in used_files()],
         inputs=[
             stated._replace(path=_name(path, place))
             for path, stated in sorted(invocation.reads.items())
             # Drafts that were read back are gone; a sweep that is gone on with reads the manifest that this one
             # replaces.
-            if path.is_file() and path != place / MANIFEST
+            if path.is_file() and path != place / statement.MANIFEST
         ],
-        outputs=[state_file(name, path.read_bytes()) for name, path in outputs.items()],
+        outputs=[statement.state_file(name, path.read_bytes()) for name, path in outputs.items()],
         measured={name: fields for name, fields in (measured or {}).items() if name in outputs},
         seed=seed,
     )
@@ -89,4 +80,4 @@ def _name(path: Path, folder: Path) -> str:
     for examples in EXAMPLES:
         if path.is_relative_to(examples):
             return f"{EXAMPLE}{path.relative_to(examples).as_posix()}"
-    return relate(path, folder)
+    return statement.relate(path, folder)

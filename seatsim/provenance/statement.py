@@ -13,7 +13,7 @@ from contextvars import ContextVar
 from functools import cache
 from importlib.metadata import distribution
 from pathlib import Path
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 from pydantic import ValidationError
 
@@ -121,7 +121,7 @@ def read_manifest(folder: Path) -> Manifest:
     path = folder / MANIFEST
     if within := sorted(each.parent.as_posix() for each in folder.glob(f"*/{MANIFEST}")) if not is_there(path) else []:
         raise InputError(f"{path}: is not there; folders in it have one each: 'seatsim reproduce {within[0]}'")
-    content = cast("Mapping[str, object]", read_json(path, _KIND))
+    content: Mapping[str, object] = read_json(path, _KIND)
     with expect(path, _KIND):
         if "identity" in content and "command" not in content:
             raise InputError(

@@ -105,9 +105,7 @@ def columns_of(names: Iterable[str], file: Path) -> Columns:
     Raises:
         InputError: two columns hold the same, or the name of one is misspelt.
     """
-    found: dict[str, str] = {}
-    forces: dict[float | None, str] = {}
-    unused = []
+    found, forces, unused = dict[str, str](), dict[float | None, str](), list[str]()
     for name in names:
         known = meaning(name)
         if known is None:

@@ -98,9 +98,8 @@ def load_bench(path: str | Path, pattern: str = "") -> list[BenchRecord]:
     """
     path = Path(path)
     if not is_there(path):
-        raise InputError(
-            f"{path}: no such file or folder{nearest_beside(path)}; give a bench table, or a folder of them"
-        )
+        problem = f"{path}: no such file or folder{nearest_beside(path)}; give a bench table, or a folder of them"
+        raise InputError(problem)
     if (path / HEADER).exists():
         return _recorded(path)
     files = sorted(file for file in path.iterdir() if file.name.endswith(_SUFFIXES)) if path.is_dir() else [path]
@@ -119,9 +118,8 @@ def _compile(pattern: str) -> re.Pattern[str] | None:
     try:
         found = re.compile(pattern) if pattern else None
     except re.error as error:
-        raise InputError(
-            f"--pattern {pattern}: is no regular expression: {error}; write one such as {NAMED}"
-        ) from error
+        problem = f"--pattern {pattern}: is no regular expression: {error}; write one such as {NAMED}"
+        raise InputError(problem) from error
     if found and not set(found.groupindex) & set(_NAMED_GROUPS):
         raise InputError(f"--pattern {pattern}: has no group named current or temperature; write one such as {NAMED}")
     return found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Annotated, Literal, NamedTuple, cast
+from typing import Annotated, Literal, NamedTuple
 
 from seatsim.scenario.numbers import PARAMETERS, check_key, check_number, list_numbers
 from seatsim.scenario.scenario import Scenario
@@ -105,7 +105,8 @@ def _tolerance(value: object, source: Source, keys: tuple[str, ...]) -> Toleranc
         problem = f"'{value}' is not permitted{nearest(value, ['fitted'])}"
         raise source.error(keys, f"{problem}; permitted: a fraction from 0 to 1, fitted, or a mapping by dotted key")
     check_value(_Fraction(USUAL), "parameter_tolerance", value, source, keys)
-    return cast("float", value)
+    assert isinstance(value, int | float)
+    return value
 
 
 def read_runs(entries: object, source: Source) -> dict[str, RunEntry]:

@@ -6,11 +6,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from seatsim.recordings.header import RunEntry
-from seatsim.recordings.recording import HEADER, Recording
+from seatsim.recordings.recording import CURRENTS, HEADER, Recording
 from seatsim.schema.errors import InputError
-
-_CURRENTS = ("current_command", "command_voltage", "coil_current")
-"""Channels of which one drives the coil or the damper."""
 
 
 def join_recordings(first: Recording, second: Recording) -> tuple[Recording, list[str]]:
@@ -43,11 +40,10 @@ def _check_alike(first: Recording, second: Recording) -> None:
         raise InputError(f"{place}, actuator.gain: {gains} of {first.folder / HEADER}")
     for name in first.channels:
         if name in second.channels and first.conversions.get(name) != second.conversions.get(name):
-            raise InputError(
-                f"{place}, channels.{name}.unit: is another one than in {first.folder / HEADER}; use one unit"
-            )
+            problem = f"{place}, channels.{name}.unit: is another one than in {first.folder / HEADER}; use one unit"
+            raise InputError(problem)
     _check_nominals(first, second)
-    driven = [{name for name in _CURRENTS if name in each.channels} for each in (first, second)]
+    driven = [{name for name in CURRENTS if name in each.channels} for each in (first, second)]
     if any(driven) and not driven[0] & driven[1]:
         named = [" and ".join(sorted(each)) or "no current" for each in driven]
         problem = f"has {named[1]}, and {first.folder / HEADER} has {named[0]}; record one of them in both"

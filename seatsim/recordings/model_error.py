@@ -91,14 +91,11 @@ class ModelError:
     @written()
     def by_run(self) -> list[RunError]:
         """What was left of each run."""
-        return [
-            RunError(
-                run,
-                {name: values[k] for name, values in self.error.items()},
-                {name: float(np.sqrt(values[k])) for name, values in self.missed.items()},
-            )
-            for k, run in enumerate(self.runs)
-        ]
+        found = []
+        for k, run in enumerate(self.runs):
+            missed = {name: float(np.sqrt(values[k])) for name, values in self.missed.items()}
+            found.append(RunError(run, {name: values[k] for name, values in self.error.items()}, missed))
+        return found
 
     def predict_amplitude(self, channel: str, simulated: Array, rate: float) -> Array:
         """Return the mean square to be expected of a measured channel by band, in the first place that of all bands."""

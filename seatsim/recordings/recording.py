@@ -49,6 +49,8 @@ MOTION = (*ACCELEROMETERS, "suspension_displacement", "displacement", "velocity"
 """Channels of motion and force, which swing about zero and are never at rest for long."""
 COMMANDS = ("current_command", "command_voltage")
 """Channels that are logged and not measured, so that they have no noise."""
+CURRENTS = (*COMMANDS, "coil_current")
+"""Channels of which one drives the coil or the damper."""
 
 
 HEADER = "recording.yaml"
@@ -115,9 +117,8 @@ class Recording:
         """
         if run not in self.runs:
             permitted = ", ".join(self.runs)
-            raise InputError(
-                f"{self.folder}: no run is called '{run}'{nearest(run, self.runs)}; permitted: {permitted}"
-            )
+            problem = f"{self.folder}: no run is called '{run}'{nearest(run, self.runs)}; permitted: {permitted}"
+            raise InputError(problem)
         path = self.folder / self.runs[run].file
         table = dict(_read_table(path, tuple(self.channels), _stamp(path)))
         table |= {name: table[name] * factor + zero for name, (factor, zero) in self.conversions.items()}

@@ -57,17 +57,11 @@ def budget_errors(scenario: Scenario, recording: Recording, run: str, channels: 
     measured = select_compared(table, recording.header.rig, recording.header.sample_rate)
     numerical = measure_step_error(scenario, recording, table)
     carried = carry_input_noise(scenario, recording, table)
-    return [
-        _divide(
-            name,
-            recording.channels[name].unit,
-            rms(measured[name] - simulated[name]),
-            numerical[name],
-            carried[name],
-            recording.channels[name].noise_rms,
-        )
-        for name in channels
-    ]
+    budgets = []
+    for name in channels:
+        entry, error = recording.channels[name], rms(measured[name] - simulated[name])
+        budgets.append(_divide(name, entry.unit, error, numerical[name], carried[name], entry.noise_rms))
+    return budgets
 
 
 def _divide(channel: str, unit: str, error: float, numerical: float, inputs: float, data: float) -> ErrorBudget:
@@ -183,12 +177,10 @@ def validate(
     squares, rows = [], []
     for run in runs:
         tolerated = _carry_tolerances(scenario, recording, run)
-        squares.append(
-            [
-                (each.comparison_error**2, each.u_num**2, each.u_input**2 + tolerated[each.channel], each.u_d**2)
-                for each in budget_errors(scenario, recording, run, channels)
-            ]
-        )
+        budgets = budget_errors(scenario, recording, run, channels)
+        inputs = [each.u_input**2 + tolerated[each.channel] for each in budgets]
+        pairs = zip(budgets, inputs, strict=True)
+        squares.append([(each.comparison_error**2, each.u_num**2, of_inputs, each.u_d**2) for each, of_inputs in pairs])
         measured = select_compared(recording.table(run), recording.header.rig, recording.header.sample_rate)
         rows.append(len(measured[channels[0]]))
     pooled = np.sqrt(np.average(squares, axis=0, weights=rows))

@@ -46,9 +46,8 @@ def save_recording(
     folder = Path(folder)
     for name in channels:
         if name not in SEAT_CHANNELS:
-            raise InputError(
-                f"'{name}' is no channel of a seat{nearest(name, SEAT_CHANNELS)}: {', '.join(SEAT_CHANNELS)}"
-            )
+            problem = f"'{name}' is no channel of a seat{nearest(name, SEAT_CHANNELS)}: {', '.join(SEAT_CHANNELS)}"
+            raise InputError(problem)
     first = result.runs[0]
     if any(run.history.step != first.history.step for run in result.runs):
         raise InputError("the runs differ in solver.step; a recording has one sample rate")

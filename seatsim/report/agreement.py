@@ -38,11 +38,10 @@ def show_agreement(found: Gap) -> list[Block]:
 
 
 def _show_ratings(ratings: Mapping[str, ObjectiveRating]) -> Table:
-    rows = [
-        [name.replace("_", " "), rating.grade,
-         *(f"{each:.3f}" for each in (rating.overall, *rating[:4])), format_number(1e3 * rating.shift)]
-        for name, rating in ratings.items()
-    ]  # fmt: skip
+    rows = []
+    for name, rating in ratings.items():
+        shares = (f"{each:.3f}" for each in (rating.overall, *rating[:4]))
+        rows.append([name.replace("_", " "), rating.grade, *shares, format_number(1e3 * rating.shift)])
     caption = "Objective rating after ISO/TS 18571 against the measured signal, mean over the runs; 1 is identical"
     return Table(caption, ["channel", "grade", "overall", *ObjectiveRating._fields[:4], "late by [ms]"], rows, 2)
 

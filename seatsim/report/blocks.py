@@ -6,7 +6,7 @@ The template turns them into HTML. Every text is plain text, which it escapes, w
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from seatsim.plots.labels import format_number
 from seatsim.plots.saving import Inline, render_inline
@@ -60,7 +60,7 @@ class Signals(NamedTuple):
     runs: Sequence[str]
     lines: Sequence[tuple[str, int]]
     panels: Sequence[tuple[str, str]]
-    data: Mapping[str, Any]
+    data: Mapping[str, object]
     kind: str = "signals"
 
 

@@ -47,15 +47,12 @@ def report_characterisation(
 ) -> Report:
     """Return the report of a characterisation; `remarks` are sentences on it, `command` makes it again."""
     tested: list[Block] = [Text("What was tested:"), Code(found.source, "What was tested")]
+    steps = [*show_pictures(figures, "steps"), *_tabulate_steps(found.responses)]
     sections = [
         Section("loops", "Force, energy and damping", show_pictures(figures, "loops", "energy", "asymmetry")),
         Section("figures", "Figures of each record", _tabulate_rows(found)),
         Section("limits", "Limits", _tabulate_sheet(found.sheet, ["limits"])),
-        Section(
-            "steps",
-            "Response to steps of the current",
-            [*show_pictures(figures, "steps"), *_tabulate_steps(found.responses)],
-        ),
+        Section("steps", "Response to steps of the current", steps),
         Section("sheet", "Tables of the bench sheet", _tabulate_sheet(found.sheet, [*_CAPTIONS])),
     ]
     about, closing = f"Characterisation: {found.name}", Closing(remarks, _judge(found), command, tested)
@@ -148,11 +145,11 @@ def _say(value: object) -> str:
 
 
 def _tabulate_steps(answers: Sequence[Response]) -> list[Block]:
-    rows = [
-        (each.record or "model", each.before, each.after, each.steps, 1e3 * each.t90, 1e3 * each.t95, 1e3 * each.t95_sd,
-         1e3 * each.delay, each.rate_95, each.method or each.note or "not determined")
-        for each in answers
-    ]  # fmt: skip
+    rows = []
+    for each in answers:
+        times = (1e3 * time for time in (each.t90, each.t95, each.t95_sd, each.delay))
+        how = each.method or each.note or "not determined"
+        rows.append((each.record or "model", each.before, each.after, each.steps, *times, each.rate_95, how))
     caption = "Time from the step of the current to 90 % and 95 % of the change of force"
     head = "record, from [A], to [A], steps, t90 [ms], t95 [ms], ± [ms], delay [ms], rate [1/s], how"
     return tabulate(caption, head, rows)

@@ -57,10 +57,9 @@ class Factor(NamedTuple):
 @lru_cache(maxsize=1)
 def read_conditions() -> Mapping[str, Sequence[str]]:
     """Return what each level of a factor asks for beyond the one below."""
-    facts = {
-        "small": f"{_SMALL:.0%}", "negligible": f"{NEGLIGIBLE:.1%}", "fair": f"{FAIR:.0%}", "good": f"{GOOD:.0%}",
-        "near_noise": NEAR_NOISE, "explained": f"{EXPLAINED:.0%}", "enough_runs": ENOUGH_RUNS,
-    }  # fmt: skip
+    shares = {"small": _SMALL, "fair": FAIR, "good": GOOD, "explained": EXPLAINED}
+    facts = {name: f"{share:.0%}" for name, share in shares.items()}
+    facts |= {"negligible": f"{NEGLIGIBLE:.1%}", "near_noise": str(NEAR_NOISE), "enough_runs": str(ENOUGH_RUNS)}
     return {name: [text.format(**facts) for text in texts] for name, texts in read_words().conditions.items()}
 
 

@@ -13,27 +13,10 @@ from seatsim.diagnosis.result import Cause, Diagnosis
 from seatsim.plots.diagnosis.draw import plot_diagnosis
 from seatsim.plots.labels import format_percent
 from seatsim.recordings.header import NOT_STATED
+from seatsim.report import diagnosis_sections
 from seatsim.report.blocks import Report, Section, show_pictures
 from seatsim.report.composing import Closing, compose
-from seatsim.report.credibility import (
-    Factor,
-    count_variations,
-    state_intervals,
-    trace_inputs,
-    validate,
-    verify,
-)
-from seatsim.report.diagnosis_sections import (
-    list_notes,
-    show_budget,
-    show_causes,
-    show_comfort,
-    show_confusions,
-    show_discrepancy,
-    show_forms,
-    show_gaps,
-    show_signals,
-)
+from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs, validate, verify
 from seatsim.report.formatting import format_sentence, say_noise
 from seatsim.report.rendering import write_html
 from seatsim.report.words import read_words, say_action, say_cause
@@ -58,20 +41,24 @@ def report_diagnosis(diagnosis: Diagnosis) -> Report:
     """Return the report of a diagnosis; without a gap it has no evidence for causes."""
     figures = plot_diagnosis(diagnosis)
     sections = [
-        Section("causes", "Where it lies and what causes it", show_causes(diagnosis, figures)),
-        Section("gaps", "How far: gaps before and after", show_gaps(diagnosis, figures)),
-        Section("signals", "Measured and simulated, before and after", show_signals(diagnosis, figures)),
-        Section("missing", "The missing signal", show_discrepancy(diagnosis, figures)),
-        Section("forms", "Other forms of the damper", show_forms(diagnosis)),
-        Section("confusions", "Which effects look alike", show_confusions(diagnosis)),
+        Section("causes", "Where it lies and what causes it", diagnosis_sections.show_causes(diagnosis, figures)),
+        Section("gaps", "How far: gaps before and after", diagnosis_sections.show_gaps(diagnosis, figures)),
+        Section(
+            "signals", "Measured and simulated, before and after", diagnosis_sections.show_signals(diagnosis, figures)
+        ),
+        Section("missing", "The missing signal", diagnosis_sections.show_discrepancy(diagnosis, figures)),
+        Section("forms", "Other forms of the damper", diagnosis_sections.show_forms(diagnosis)),
+        Section("confusions", "Which effects look alike", diagnosis_sections.show_confusions(diagnosis)),
         Section("maps", "Where in the operating range the error is large", show_pictures(figures, "maps")),
-        Section("budget", "What the remaining error is made of", show_budget(diagnosis)),
-        Section("comfort", "Comfort and travel", show_comfort(diagnosis)),
+        Section("budget", "What the remaining error is made of", diagnosis_sections.show_budget(diagnosis)),
+        Section("comfort", "Comfort and travel", diagnosis_sections.show_comfort(diagnosis)),
     ]
     if diagnosis.verdict == "none":
         sections = [each for each in sections if each.anchor not in ("causes", "missing", "confusions", "maps")]
     answer = [say_diagnosis(diagnosis), format_sentence(diagnosis.sentence)]
-    closing = Closing(list_notes(diagnosis), judge_diagnosis(diagnosis), f"seatsim diagnose {diagnosis.name}")
+    closing = Closing(
+        diagnosis_sections.list_notes(diagnosis), judge_diagnosis(diagnosis), f"seatsim diagnose {diagnosis.name}"
+    )
     report = compose("diagnosis", f"Diagnosis: {diagnosis.name}", answer, advise(diagnosis), sections, closing)
     badge = (diagnosis.verdict, *read_words().verdicts[diagnosis.verdict])
     return report._replace(badge=badge, doubt=f"{_say_probabilities(diagnosis)} {report.doubt}".strip())
@@ -146,8 +133,8 @@ def advise(diagnosis: Diagnosis) -> list[str]:
     if at_bound:
         found.append(f"Confirm {join_names(at_bound)} first: all of its size lies at the end of its range.")
     what = "the refitted parameters and the effects found" if diagnosis.selected else "the refitted parameters"
-    found.append(f"Check the result on another recording: seatsim gap augmented.yaml OTHER_RECORDING (the nominal"
-                 f" scenario with {what}).")  # fmt: skip
+    command = "seatsim gap augmented.yaml OTHER_RECORDING"
+    found.append(f"Check the result on another recording: {command} (the nominal scenario with {what}).")
     return found
 
 
@@ -175,7 +162,6 @@ def _say_share(diagnosis: Diagnosis) -> str:
     subject = "That explains" if len(diagnosis.selected) == 1 else "Together that explains"
     if diagnosis.verdict == "unknown":
         return f"{subject} {format_percent(share)} of the gap; no known effect explains the rest."
-    rest = (
-        "" if share > _NEARLY_ALL else f"; what is left is {format_percent(gap.after.overall)} of the signals' spread"
-    )
+    left = f"; what is left is {format_percent(gap.after.overall)} of the signals' spread"
+    rest = "" if share > _NEARLY_ALL else left
     return f"{subject} {format_percent(share)} of the gap beyond noise{rest}."

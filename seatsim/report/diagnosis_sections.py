@@ -38,11 +38,11 @@ EXPLAINED = "Refitted is the nominal scenario with its parameters moved inside t
 def show_causes(diagnosis: Diagnosis, figures: Mapping[str, Figure]) -> list[Block]:
     """Return where the gap lies, which effects may cause it, and their parameters."""
     shown = [each for each in diagnosis.causes if each.probability >= LIKELY or each.effect in diagnosis.selected]
-    rows = [
-        [cause.effect, format_sentence(describe_effect(cause.effect)) or UNKNOWN, _list_parameters(cause),
-         format_percent(cause.probability), format_percent(cause.shrink)]
-        for cause in shown
-    ]  # fmt: skip
+    rows = []
+    for cause in shown:
+        meaning = format_sentence(describe_effect(cause.effect)) or UNKNOWN
+        figures = (format_percent(cause.probability), format_percent(cause.shrink))
+        rows.append((cause.effect, meaning, _list_parameters(cause), *figures))
     strong = [row for row, cause in enumerate(shown) if cause.effect in diagnosis.selected]
     head = "effect, what it is, parameters, probability, alone takes off the refitted gap"
     table = tabulate("The likely effects, their parameters ± one standard deviation", head, rows, 3, strong)
@@ -63,9 +63,8 @@ def show_confusions(diagnosis: Diagnosis) -> list[Block]:
         blocks += tabulate("Likeness: 1 is alike, 0 has nothing in common", head, [row], 2)
         blocks.append(Text(format_sentence(found.reason)))
     names, matrix = diagnosis.evidence.collinearity
-    pairs = sorted(
-        ((float(matrix[i][j]), names[i], names[j]) for i in range(len(names)) for j in range(i)), reverse=True
-    )
+    known = ((float(matrix[i][j]), names[i], names[j]) for i in range(len(names)) for j in range(i))
+    pairs = sorted(known, reverse=True)
     rows = [(one, other, format_number(value, 2)) for value, one, other in pairs[:_MOST_PAIRS] if value >= _ALIKE]
     caption = "Effects whose signs in these channels are alike: 1 cannot be told apart, 0 has nothing in common"
     return [*blocks, *tabulate(caption, "effect, and, likeness", rows, 2)]
@@ -81,11 +80,10 @@ def show_forms(diagnosis: Diagnosis) -> list[Block]:
         f"Other models of the damper in the place of {own}, fitted to the damper force without the held-out run, free"
         f" of the tolerance. Shares are of the refitted gap on that run; the last column is {own}, fitted as freely."
     )
-    rows = [
-        [form.model, join_names(form.beside or ["no effect"]), format_percent(form.shrink),
-         format_percent(form.refitted)]
-        for form in forms
-    ]  # fmt: skip
+    rows = []
+    for form in forms:
+        shares = (format_percent(form.shrink), format_percent(form.refitted))
+        rows.append((form.model, join_names(form.beside or ["no effect"]), *shares))
     return tabulate(lead, f"model, together with, shrinks the gap by, {own} fitted as freely", rows, 2, [0])
 
 
@@ -139,12 +137,11 @@ def _describe_shrink(diagnosis: Diagnosis) -> str:
 
 def _tabulate_parameters(parameters: Sequence[CalibratedParameter]) -> list[Block]:
     ranked = sorted(parameters, key=lambda each: not each.at_bound)
-    rows = [
-        [f"{each.name} (at its bound)" if each.at_bound else each.name, format_unit(each.unit),
-         format_setting(each.nominal), format_number(each.value, 4),
-         f"{format_setting(each.bound[0])} to {format_setting(each.bound[1])}"]
-        for each in ranked
-    ]  # fmt: skip
+    rows = []
+    for each in ranked:
+        nominal, low, high = map(format_setting, (each.nominal, *each.bound))
+        name = f"{each.name} (at its bound)" if each.at_bound else each.name
+        rows.append((name, format_unit(each.unit), nominal, format_number(each.value, 4), f"{low} to {high}"))
     strong = [k for k, each in enumerate(ranked) if each.at_bound]
     caption = "Parameters refitted within their tolerance"
     return tabulate(caption, "parameter, unit, nominal, refitted, bounds", rows, 2, strong)
@@ -184,15 +181,13 @@ def show_discrepancy(diagnosis: Diagnosis, figures: Mapping[str, Figure]) -> lis
 
 def show_comfort(diagnosis: Diagnosis) -> list[Block]:
     """Return comfort and travel on the held-out run, the figures by which seats are assessed."""
-    rows = [
-        (each.quantity.replace("_", " "), format_quantity(each.measured, each.unit),
-         format_quantity(each.nominal, each.unit), _format_error(each.nominal, each.measured),
-         format_quantity(each.after, each.unit), _format_error(each.after, each.measured))
-        for each in diagnosis.evidence.comfort
-    ]  # fmt: skip
-    return tabulate(
-        "On the held-out run", f"figure, measured, nominal, error, {name_last(diagnosis)}, error of that", rows
-    )
+    rows = []
+    for each in diagnosis.evidence.comfort:
+        measured, nominal, after = (format_quantity(x, each.unit) for x in (each.measured, each.nominal, each.after))
+        errors = [_format_error(value, each.measured) for value in (each.nominal, each.after)]
+        rows.append((each.quantity.replace("_", " "), measured, nominal, errors[0], after, errors[1]))
+    head = f"figure, measured, nominal, error, {name_last(diagnosis)}, error of that"
+    return tabulate("On the held-out run", head, rows)
 
 
 def show_budget(diagnosis: Diagnosis) -> list[Block]:

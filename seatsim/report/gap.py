@@ -16,14 +16,7 @@ from seatsim.recordings.recording import load_recording
 from seatsim.report.agreement import show_agreement
 from seatsim.report.blocks import Report, Section, Signals, Table, show_pictures
 from seatsim.report.composing import Closing, compose
-from seatsim.report.credibility import (
-    NEAR_NOISE,
-    Factor,
-    count_variations,
-    state_intervals,
-    trace_inputs,
-    validate,
-)
+from seatsim.report.credibility import NEAR_NOISE, Factor, count_variations, state_intervals, trace_inputs, validate
 from seatsim.report.formatting import format_noise, say_noise
 from seatsim.report.packing import MEASURED, Panel, pack_signals
 from seatsim.scenario.loading import single
@@ -93,11 +86,10 @@ def _advise(found: Gap) -> list[str]:
 def _show_pairs(found: Gap, pairs: Mapping[str, ReplayedPair]) -> Signals:
     """Return linked pictures of the measured and the simulated channels of every run."""
     units = next(iter(pairs.values())).units
-    panels = [
-        Panel(name, units[name], "",
-              {run: [pair.measured.get(name), pair.simulated.get(name)] for run, pair in pairs.items()})
-        for name in found.channels
-    ]  # fmt: skip
+    panels = []
+    for name in found.channels:
+        lines_of_runs = {run: [pair.measured.get(name), pair.simulated.get(name)] for run, pair in pairs.items()}
+        panels.append(Panel(name, units[name], "", lines_of_runs))
     lines = [("measured", MEASURED), ("simulated", 1)]
     time = {run: pair.time for run, pair in pairs.items()}
     return pack_signals("Every run is in the list above the pictures.", lines, time, panels)

@@ -79,8 +79,8 @@ def _advise(found: Identification) -> list[str]:
 
 
 def _tabulate_fit(found: Identification) -> list[Block]:
-    judged = [(each.record.name, PARTS[each.part], each.record.mean_current, each.agreement)
-              for each in found.assessments]  # fmt: skip
+    every = found.assessments
+    judged = [(each.record.name, PARTS[each.part], each.record.mean_current, each.agreement) for each in every]
     means = [(f"mean, {words}", words, "", mean) for part, words in PARTS.items() if (mean := found.mean(part))]
     rows = [
         (*name, agreement.fit_percent, format_number(agreement.r2, 5), agreement.rmse, agreement.md)
@@ -105,11 +105,10 @@ def _show_time(chosen: Sequence[Assessment]) -> Block:
 
 def _show_parameters(found: Identification) -> list[Block]:
     known = found.information
-    rows = [
-        (each.name + " (not determined)" * (not each.identified), format_unit(each.unit), format_number(each.value, 5),
-         format_number(1.96 * each.std, 2))
-        for each in known.estimates
-    ]  # fmt: skip
+    rows = []
+    for each in known.estimates:
+        figures = (format_number(each.value, 5), format_number(1.96 * each.std, 2))
+        rows.append((each.name + " (not determined)" * (not each.identified), format_unit(each.unit), *figures))
     strong = [k for k, each in enumerate(known.estimates) if not each.identified]
     caption = "Fitted values, ± 1.96 standard deviations; in bold those that the data do not determine"
     pairs = "Pairs of parameters that can replace each other"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import zlib
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -26,6 +26,8 @@ GAP = -32768
 """Stands for a value that is not known."""
 MEASURED = 8
 """Look of a measured signal; looks 0 to 7 are those of the figures' colours."""
+
+_Line: TypeAlias = dict[str, float | str]
 
 
 class Panel(NamedTuple):
@@ -58,25 +60,26 @@ def pack_signals(
     """
     longest = max(time.values(), key=len)
     bins = min(finest, -(-len(longest) // 2))
-    packed = [_pack_panel(panel, list(time), bins) for panel in panels]
+    shown = [describe_channel(panel.quantity, panel.unit) for panel in panels]
+    packed = _pack_panels(panels, list(time), bins)
     while bins > _COARSEST and _measure(packed) > BUDGET:
         # What noise there is takes the same bits in each value, whatever their number.
         bins = max(_COARSEST, int(0.95 * bins * BUDGET / _measure(packed)))
-        packed = [_pack_panel(panel, list(time), bins) for panel in panels]
+        packed = _pack_panels(panels, list(time), bins)
     if len(longest) > 2 * bins:
         interval = 1000.0 * float(longest[-1] - longest[0]) / bins
         caption += f" Drawn are the least and the largest value in every {interval:.3g} ms; figures use all samples."
-    data: dict[str, Any] = {
+    data = {
         "lines": [{"name": name, "look": look} for name, look in lines],
         "runs": [_pack_time(values, bins) for values in time.values()],
-        "panels": packed,
+        "panels": [{"unit": each.unit, "runs": runs} for each, runs in zip(shown, packed, strict=True)],
     }
-    shown = [describe_channel(panel.quantity, panel.unit).axis for panel in panels]
-    titles = [(f"{text[:1].upper()}{text[1:]}", panel.sentence) for text, panel in zip(shown, panels, strict=True)]
+    names = [f"{each.axis[:1].upper()}{each.axis[1:]}" for each in shown]
+    titles = [(name, panel.sentence) for name, panel in zip(names, panels, strict=True)]
     return Signals("signals-time", caption, list(time), lines, titles, data)
 
 
-def pack_line(values: Array) -> dict[str, Any]:
+def pack_line(values: Array) -> _Line:
     """Return values as integers of 16 bits, with the offset and the step that make numbers of them again.
 
     The integers are differences modulo 2^16, their low bytes before their high ones, deflated, in base 64.
@@ -90,12 +93,12 @@ def pack_line(values: Array) -> dict[str, Any]:
     return {"at": middle, "step": step, "bits": base64.b64encode(bits).decode("ascii")}
 
 
-def _measure(packed: Sequence[dict[str, Any]]) -> int:
+def _measure(packed: Sequence[Sequence[Sequence[_Line | None]]]) -> int:
     """Return the bytes of the lines of packed panels."""
-    return sum(len(line["bits"]) for panel in packed for run in panel["runs"] for line in run if line)
+    return sum(len(str(line["bits"])) for panel in packed for run in panel for line in run if line)
 
 
-def _pack_time(values: Array, bins: int) -> dict[str, Any]:
+def _pack_time(values: Array, bins: int) -> dict[str, float]:
     """Return the first place of the values of a run, and the distance of the next."""
     length = len(values)
     interval = float(values[-1] - values[0]) / max(1, length - 1)
@@ -105,13 +108,14 @@ def _pack_time(values: Array, bins: int) -> dict[str, Any]:
     return {"first": float(values[0]), "step": interval}
 
 
-def _pack_panel(panel: Panel, runs: Sequence[str], bins: int) -> dict[str, Any]:
-    shown = describe_channel(panel.quantity, panel.unit)
+def _pack_panels(panels: Sequence[Panel], runs: Sequence[str], bins: int) -> list[list[list[_Line | None]]]:
+    """Return the lines of each run of each panel."""
 
-    def pack(line: Array | None) -> dict[str, Any] | None:
+    def pack(line: Array | None, panel: Panel) -> _Line | None:
         if line is None:
             return None
         values = np.asarray(line, dtype=float)
-        return pack_line(shown.factor * thin_line(values, values, bins)[1])
+        factor = describe_channel(panel.quantity, panel.unit).factor
+        return pack_line(factor * thin_line(values, values, bins)[1])
 
-    return {"unit": shown.unit, "runs": [[pack(line) for line in panel.values[run]] for run in runs]}
+    return [[[pack(line, panel) for line in panel.values[run]] for run in runs] for panel in panels]

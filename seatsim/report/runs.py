@@ -169,16 +169,15 @@ def _list_gaps(runs: Sequence[Run], failures: Sequence[str]) -> list[str]:
 def _tabulate_figures(runs: Sequence[Run]) -> list[Block]:
     """Return every figure of one run, or the figures of several side by side."""
     if len(runs) == 1:
-        every = [(format_sentence(each.meaning).rstrip("."), format_quantity(each.value, each.unit))
-                 for each in runs[0].metrics.values()]  # fmt: skip
+        figures = runs[0].metrics.values()
+        every = [(format_sentence(x.meaning).rstrip("."), format_quantity(x.value, x.unit)) for x in figures]
         return tabulate("Every figure of the run", "figure, value", every)
     units = {name: each.unit for run in reversed(runs) for name, each in run.metrics.items()}
     shown = {name: describe_channel(words, units[name]) for name, words in SHORT.items() if name in units}
-    rows = [
-        (f"{name} *" if run.unverified else name,
-         *(_format_metric(metric, shown[metric].factor * read_metric(run, metric)) for metric in shown))
-        for name, run in zip(label_runs(runs), runs, strict=True)
-    ]  # fmt: skip
+    rows = []
+    for name, run in zip(label_runs(runs), runs, strict=True):
+        values = (_format_metric(metric, each.factor * read_metric(run, metric)) for metric, each in shown.items())
+        rows.append((f"{name} *" if run.unverified else name, *values))
     best = find_best(runs)
     bold = f" The most comfortable run{' of each condition' * (len(best) > 1)} is in bold." if best else ""
     mark = f" {UNVERIFIED}" if any(run.unverified for run in runs) else ""

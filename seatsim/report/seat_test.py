@@ -62,19 +62,20 @@ def _advise(found: SeatTest) -> list[str]:
     worst = max(found.rows, key=lambda row: row.seat / row.limit, default=None)
     texts = []
     if worst is not None and not worst.passed:
-        texts.append(f"Begin with {worst.run} on {worst.spectral_class} under a driver of {worst.mass:g} kg: its SEAT"
-                     f" factor is {format_percent(worst.seat / worst.limit)} of the limit.")  # fmt: skip
+        where = f"{worst.run} on {worst.spectral_class} under a driver of {worst.mass:g} kg"
+        share = format_percent(worst.seat / worst.limit)
+        texts.append(f"Begin with {where}: its SEAT factor is {share} of the limit.")
     if any(row.end_stop_hits for row in found.rows):
         texts.append("Look at the travel: the seat hits its end stops, for which the standard has no limit.")
     return [*texts, "Try other laws and settings on the floor of a class: excitation: {kind: iso7096} in a scenario."]
 
 
 def _tabulate_classes(rows: Sequence[SeatRow]) -> list[Block]:
-    lines = [
-        (row.run, row.spectral_class, LIMITS[row.spectral_class].machines, PASSED[row.passed], f"{row.mass:g}",
-         row.seat, row.limit, format_percent(row.spread), row.end_stop_hits)
-        for row in rows
-    ]  # fmt: skip
+    lines = []
+    for row in rows:
+        tested = (row.run, row.spectral_class, LIMITS[row.spectral_class].machines, PASSED[row.passed])
+        figures = (f"{row.mass:g}", row.seat, row.limit, format_percent(row.spread), row.end_stop_hits)
+        lines.append((*tested, *figures))
     caption = "Each class with a light and a heavy driver; in bold what is above its limit"
     head = "run, class, machine, passed, driver [kg], SEAT factor, limit, spread of runs, end-stop hits"
     return tabulate(caption, head, lines, 4, [k for k, row in enumerate(rows) if not row.passed])

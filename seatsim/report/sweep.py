@@ -86,10 +86,11 @@ def state_importance(found: Sensitivities, rows: SweepRows) -> list[str]:
         said = f"{chosen.key}, the only one of the {what}, explains {total} of the variance of the {words}"
     choice = choose_choice(here, rows) if is_condition(chosen.key) else None
     said += f" together with its interactions ({interval})."
-    rest = [] if choice is None else [
-        f"It is a condition; of the choices {choice.key} matters most and explains {format_percent(choice.total)}."
-    ]  # fmt: skip
-    return [*lead * (first is not chosen), said, *rest]
+    texts = [*lead * (first is not chosen), said]
+    if choice is not None:
+        share = format_percent(choice.total)
+        texts.append(f"It is a condition; of the choices {choice.key} matters most and explains {share}.")
+    return texts
 
 
 def choose_choice(found: Sequence[Sensitivity], rows: SweepRows) -> Sensitivity | None:
@@ -111,9 +112,8 @@ def advise_on_keys(found: Sequence[Sensitivity], rows: SweepRows) -> list[str]:
     condition = choose_key([row for row in found if is_condition(row.key)], rows)
     if condition is not None:
         shown = describe_column(condition.metric, rows.units)
-        worst, level = max(
-            (condition.at_low, condition.low), (condition.at_high, condition.high), key=lambda end: end[0]
-        )
+        ends = ((condition.at_low, condition.low), (condition.at_high, condition.high))
+        worst, level = max(ends, key=lambda end: end[0])
         unit = describe_column(condition.key, rows.units).unit
         at = f"{format_level(level)} {unit}".removesuffix(" -")
         mean = format_quantity(worst, rows.units[condition.metric])
@@ -155,16 +155,16 @@ def _judge(rows: SweepRows, found: Sensitivities, exceeded: Sequence[Exceedance]
     explained = next((row.explained for row in found.of(COMFORT) or found.rows), None)
     said = f", {len(rows.drawn)} of them drawn from distributions" if rows.drawn else ""
     said += "" if explained is None else f"; they explain {format_percent(max(0.0, explained))} of comfort"
-    many, intervals = len(rows.usable) >= ENOUGH_RUNS, ["shares of the variance"] * bool(found.rows)
+    intervals = ["shares of the variance"] * bool(found.rows) + ["shares above limits"] * bool(exceeded)
+    energy = rows.usable["energy_residual"].dropna() if "energy_residual" in rows.metrics else []
+    reasons = sorted({str(text) for text in rows.every.reason.dropna() if text})
+    explains, is_judged = (explained or 0.0) >= EXPLAINED, len(rows.usable) >= ENOUGH_RUNS and rows.drawn and exceeded
     return [
-        verify("up to {} of the energy is unaccounted for",
-               rows.usable["energy_residual"].dropna() if "energy_residual" in rows.metrics else []),
-        trace_inputs(sorted({str(text) for text in rows.every.reason.dropna() if text}), models,
-                     inputs=1 + len(stated.get("files", {}))),
-        state_intervals([*intervals, *["shares above limits"] * bool(exceeded)], bool(rows.drawn), bool(found.rows)),
-        count_variations(len(rows.usable), rows.keys, said, (explained or 0.0) >= EXPLAINED,
-                         many and bool(rows.drawn and exceeded)),
-    ]  # fmt: skip
+        verify("up to {} of the energy is unaccounted for", energy),
+        trace_inputs(reasons, models, inputs=1 + len(stated.get("files", {}))),
+        state_intervals(intervals, bool(rows.drawn), bool(found.rows)),
+        count_variations(len(rows.usable), rows.keys, said, explains, bool(is_judged)),
+    ]
 
 
 def _say_seeds(rows: SweepRows) -> str:
@@ -189,8 +189,9 @@ def _advise(found: Sensitivities, exceeded: Sequence[Exceedance], rows: SweepRow
     if worst is not None and worst.share > 0:
         where = ", ".join(str(value) for value in worst.group.values())
         words = describe_column(worst.metric, rows.units).words
-        texts.append(f"Begin with the {words}{f' of {where}' * bool(where)}: {worst.exceeding} of {worst.runs} runs are"
-                     f" above the limit of {format_quantity(worst.limit, rows.units[worst.metric])}.")  # fmt: skip
+        limit = format_quantity(worst.limit, rows.units[worst.metric])
+        above = f"{worst.exceeding} of {worst.runs} runs are above the limit of {limit}"
+        texts.append(f"Begin with the {words}{f' of {where}' * bool(where)}: {above}.")
     if found.rows:
         texts += advise_on_keys(found.of(_choose_metric(found)), rows)
     if len(rows.every) < rows.manifest["counts"]["runs"]:
@@ -233,9 +234,9 @@ def _show_sensitivity(found: Sensitivities, rows: SweepRows, figures: Mapping[st
         explained, words = found.of(metric)[0].explained, describe_column(metric, rows.units).words
         if explained < EXPLAINED:
             known = format_percent(max(0.0, explained))
-            blocks.append(Text(f"The shares rest on a polynomial that predicts {known} of the variance of the {words}"
-                               " in runs left out of its fit. The rest is the random road, sensor noise, or"
-                               " interactions that it has no terms for."))  # fmt: skip
+            rest = "The rest is the random road, sensor noise, or interactions that it has no terms for."
+            said = f"predicts {known} of the variance of the {words} in runs left out of its fit. {rest}"
+            blocks.append(Text(f"The shares rest on a polynomial that {said}"))
     return blocks
 
 
@@ -246,12 +247,13 @@ def _show_limits(exceeded: Sequence[Exceedance], rows: SweepRows) -> list[Block]
     if not rows.is_random:
         what = "share of the runs"
         lead = "No key is drawn from a distribution: these are shares of the runs of the design, no probabilities."
-    lines = [
-        (*map(format_level, row.group.values()), describe_column(row.metric, rows.units).words,
-         format_quantity(row.limit, rows.units[row.metric]), f"{row.exceeding} of {row.runs}",
-         format_percent(row.share), f"{format_percent(row.low)} to {format_percent(row.high)}")
-        for row in exceeded[:MOST_LINES]
-    ]  # fmt: skip
+    lines = []
+    for row in exceeded[:MOST_LINES]:
+        metric = describe_column(row.metric, rows.units).words
+        limit = format_quantity(row.limit, rows.units[row.metric])
+        share, low, high = map(format_percent, (row.share, row.low, row.high))
+        counted = (f"{row.exceeding} of {row.runs}", share, f"{low} to {high}")
+        lines.append((*map(format_level, row.group.values()), metric, limit, *counted))
     groups = list(exceeded[0].group)
     head = [*groups, "metric", "limit", "runs above", what, "95 % interval"]
     return [Text(lead), *tabulate("Runs above each limit", head, lines, len(groups) + 1)]
@@ -272,6 +274,6 @@ def _show_quantiles(quantiles: pd.DataFrame, rows: SweepRows) -> list[Block]:
 def _show_states(rows: SweepRows) -> list[Block]:
     doubtful = rows.every[rows.every.state.isin((FAILED, UNVERIFIED))]
     reasons = doubtful.groupby(["state", "reason"]).run.agg(["size", "first"]).sort_values("size", ascending=False)
-    lines = [(state, str(count), str(first), reason) for (state, reason), count, first in
-             reasons.head(_MOST_REASONS).itertuples(name=None)]  # fmt: skip
+    counted = reasons.head(_MOST_REASONS).itertuples(name=None)
+    lines = [(state, str(count), str(first), reason) for (state, reason), count, first in counted]
     return tabulate("Reasons, the most frequent first", "state, runs, first run, reason", lines, 4)

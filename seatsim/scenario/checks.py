@@ -21,6 +21,7 @@ from typing import NamedTuple, cast
 
 from seatsim.metrics.table import METRICS
 from seatsim.schema.errors import nearest
+from seatsim.schema.fields import validated
 from seatsim.schema.json_schema import TEXT, Schema, mapping_schema
 from seatsim.schema.validation import check_keys, is_finite_number, mapping
 from seatsim.schema.yaml_source import Source
@@ -126,8 +127,7 @@ def published_figures(source: Source) -> Published | None:
     if "published" not in source.data:
         return None
     stated = mapping(source.data["published"], source, ("published",))
-    rows = cast("list[Mapping[str, object]]", stated["rows"])  # as `check_published` has found
-    return Published(str(stated.get("source", "published figures")), rows)
+    return validated(Published, {"source": str(stated.get("source", "published figures")), "rows": stated["rows"]})
 
 
 def check_published(source: Source, labels: Sequence[str]) -> None:
@@ -138,9 +138,8 @@ def check_published(source: Source, labels: Sequence[str]) -> None:
     check_keys(published, ("source", "rows"), source, ("published",))
     rows = published.get("rows")
     if not isinstance(rows, list) or not rows:
-        raise source.error(
-            ("published", "rows"), "a list of at least one row, such as '- {variant: I, seat_factor: 0.8}'"
-        )
+        problem = "a list of at least one row, such as '- {variant: I, seat_factor: 0.8}'"
+        raise source.error(("published", "rows"), problem)
     for index, row in enumerate(rows):
         keys = ("published", "rows", index)
         naming = [key for key in mapping(row, source, keys) if key in labels or "." in key]

@@ -44,9 +44,8 @@ def expand(source: Source, settings: Mapping[str, object]) -> Iterator[tuple[Sou
     lists = {key: _swept_values(values, base, key) for key, values in sweep.items()}
     runs = math.prod(map(len, lists.values())) * max(len(variants), 1)
     if runs > _MOST_RUNS:
-        raise base.error(
-            ("sweep",), f"makes {runs} runs; a scenario has at most {_MOST_RUNS}, and 'seatsim sweep' takes more"
-        )
+        problem = f"makes {runs} runs; a scenario has at most {_MOST_RUNS}, and 'seatsim sweep' takes more"
+        raise base.error(("sweep",), problem)
     for name, changes in variants.items() or [(None, {})]:
         for chosen in itertools.product(*lists.values()):
             run = base.with_changes()

@@ -53,7 +53,7 @@ def set_number(scenario: Scenario, key: str, value: float) -> Scenario:
         return dataclasses.replace(scenario, control=dataclasses.replace(scenario.control, law=record))
     if section == "damper.parameters":
         return dataclasses.replace(scenario, damper=dataclasses.replace(scenario.damper, record=record))
-    changed: dict[str, Any] = {SECTIONS[section].field or section: record}
+    changed = {SECTIONS[section].field or section: record}
     return dataclasses.replace(scenario, **changed)
 
 
@@ -148,9 +148,8 @@ def list_doubts(scenario: Scenario) -> list[str]:
         for field in describe(type(record)):
             problem = doubt(field, getattr(record, field.name))
             if problem:
-                keys = (
-                    (*section.split("."), field.name) if section != TEMPERATURE or _is_thermal(scenario) else (section,)
-                )
+                is_number = section == TEMPERATURE and not _is_thermal(scenario)
+                keys = (section,) if is_number else (*section.split("."), field.name)
                 doubts.append(f"{scenario.place(*keys)}: {problem}")
     if TEMPERATURE in scenario.label and not _depends_on_temperature(scenario):
         doubts.append(

@@ -86,9 +86,8 @@ def list_written(record: type) -> tuple[_WrittenField, ...]:
             found.append(_WrittenField(name, key, form, str if form.file else hints[name]))
     for name, function in _list_properties(record):
         form = vars(function)["form"]
-        found.append(
-            _WrittenField(name, form.key or name, form, get_type_hints(function, include_extras=True)["return"])
-        )
+        hint = get_type_hints(function, include_extras=True)["return"]
+        found.append(_WrittenField(name, form.key or name, form, hint))
     return tuple(found)
 
 

@@ -16,7 +16,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from threading import RLock
-from typing import TextIO
+from typing import Any, TextIO
 
 from seatsim.schema.errors import InputError, OutputError, nearest
 
@@ -92,7 +92,7 @@ def in_mib(size: float) -> str:
     return f"{size / 2**10:.3g} KiB"
 
 
-def read_json(path: Path, what: str) -> object:
+def read_json(path: Path, what: str) -> Any:  # as its file states it
     """Return the content of a JSON file.
 
     Raises:
@@ -100,10 +100,9 @@ def read_json(path: Path, what: str) -> object:
     """
     content = read_bytes(path, _LARGEST_JSON, what)
     try:
-        value: object = json.loads(content)
+        return json.loads(content)
     except (ValueError, RecursionError) as error:
         raise InputError(f"{path}: is no {what}: {error}") from error
-    return value
 
 
 def check_no_link(folder: Path, inside: Path) -> None:

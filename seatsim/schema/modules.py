@@ -23,13 +23,12 @@ from functools import cache
 from importlib.machinery import ModuleSpec
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import TYPE_CHECKING, NamedTuple
 
 from seatsim.schema.errors import InputError
 from seatsim.schema.guarded import read_bytes
 
 if TYPE_CHECKING:
-    from importlib.abc import Loader
     from importlib.metadata import EntryPoints
 
 
@@ -184,9 +183,8 @@ def started_elsewhere() -> Iterator[None]:
 def _read(path: Path) -> bytes:
     """Return the content of a Python file whose name can be that of a module."""
     if path.suffix != ".py" or not path.stem.isidentifier():
-        raise InputError(
-            f"{path}: not a Python file that can be imported; its name has letters, digits and _, then .py"
-        )
+        problem = f"{path}: not a Python file that can be imported; its name has letters, digits and _, then .py"
+        raise InputError(problem)
     try:
         return path.read_bytes()
     except OSError as error:
@@ -207,7 +205,8 @@ def _check_name_is_free(name: str, path: Path) -> None:
 
 def _load(name: str, shown: Path, path: Path) -> ModuleType:
     """Execute a file as a new module; the one that it replaces stays where that fails."""
-    spec = cast("ModuleSpec", importlib.util.spec_from_file_location(name, path))  # a .py file always has one
+    spec = importlib.util.spec_from_file_location(name, path)
+    assert spec is not None  # a .py file always has one
     previous = sys.modules.get(name)
     try:
         return _execute(spec)
@@ -227,11 +226,11 @@ def _import_installed(name: str) -> None:
 
 def _execute(spec: ModuleSpec) -> ModuleType:
     module = importlib.util.module_from_spec(spec)
-    loader = cast("Loader", spec.loader)  # `module_from_spec` has asked for it
+    assert spec.loader is not None  # `module_from_spec` has asked for it
     # Before its execution, because the decorators and numba look a class up by the name of its module.
     sys.modules[spec.name] = module
     try:
-        loader.exec_module(module)
+        spec.loader.exec_module(module)
     except BaseException:
         del sys.modules[spec.name]
         raise
@@ -256,9 +255,8 @@ def _find_installed(name: str) -> ModuleSpec | None:
 
 def _failure(error: Exception, shown: Path, path: Path) -> str:
     """Say in which line of the file its import failed, and how a module in its folder is named."""
-    lines = [
-        (frame.lineno, frame.line) for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path)
-    ]
+    frames = traceback.extract_tb(error.__traceback__)
+    lines = [(frame.lineno, frame.line) for frame in frames if frame.filename == str(path)]
     if isinstance(error, SyntaxError) and error.filename == str(path):
         lines = [(error.lineno, (error.text or "").strip())]
     place = f"{shown}, line {lines[-1][0]} ({lines[-1][1]})" if lines else str(shown)

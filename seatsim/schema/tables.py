@@ -158,9 +158,8 @@ def _check_text(content: bytes, path: Path) -> None:
         content.isascii() or content.decode()
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
-        raise InputError(
-            f"{path}, line {line}: cannot be read as a table: is not UTF-8 text; save it as such"
-        ) from error
+        problem = f"{path}, line {line}: cannot be read as a table: is not UTF-8 text; save it as such"
+        raise InputError(problem) from error
 
 
 def _check_quotes(content: bytes, rows: int, path: Path) -> None:

@@ -70,9 +70,8 @@ def _read_sensor(effects: Sequence[object], values: Array, channel: str, step: f
 def sum_frame_forces(effects: Sequence[object], time: Array, seed: int) -> Array:
     """Return the force on the frame in N that effects add, shape (N,), or of length 0 where none does."""
     step = float(time[1]) if len(time) > 1 else 0.0
-    forces = [
-        _checked(effect, "frame_force", push(time, seed), time, step) for effect, push in _with(effects, "frame_force")
-    ]
+    pushing = _with(effects, "frame_force")
+    forces = [_checked(effect, "frame_force", push(time, seed), time, step) for effect, push in pushing]
     return np.asarray(np.sum(forces, axis=0)) if forces else _NONE
 
 
@@ -135,9 +134,8 @@ def seat_driver(driver: Driver, plant: Plant, effects: Sequence[object]) -> Effe
     if driver.model == SINGLE_MASS:
         return ()
     if any(acts_on(type(effect), ("inner_mass",)) for effect in effects):
-        raise InputError(
-            f"driver.model '{driver.model}' is a body, and so is 'driver.biodynamics'; leave one of them out"
-        )
+        problem = f"driver.model '{driver.model}' is a body, and so is 'driver.biodynamics'; leave one of them out"
+        raise InputError(problem)
     found = body_matrices(BODIES[driver.model], plant.driver_mass)
     room = (0, MASSES - len(found.masses))
     masses, stiffness, damping = (np.pad(each, room) for each in found)

@@ -51,9 +51,8 @@ def stand_in(scenario: Scenario) -> Scenario:
         if acts_on(type(effect), (*ON_DAMPER, "factors")):
             with scenario.placed("effects"):
                 name = name_of("effect", type(effect))
-                raise InputError(
-                    f"{name} acts within the damper, which is a unit that cannot be looked into; remove it"
-                )
+                problem = f"{name} acts within the damper, which is a unit that cannot be looked into; remove it"
+                raise InputError(problem)
     return replace(scenario, damper=DamperChoice(CoupledForce(), TemperatureFactors()))
 
 

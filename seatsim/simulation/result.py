@@ -146,15 +146,11 @@ class Result:
     @property
     def rows(self) -> list[dict[str, object]]:
         """The metrics of every run by name, after what sets the runs apart, and why they are unverified; SI units."""
-        return [
-            {
-                "scenario": run.scenario.name,
-                **run.scenario.label,
-                **{name: m.value for name, m in run.metrics.items()},
-                "unverified": "; ".join(run.unverified),
-            }
-            for run in self.runs
-        ]
+        found: list[dict[str, object]] = []
+        for run in self.runs:
+            metrics, reasons = {name: each.value for name, each in run.metrics.items()}, "; ".join(run.unverified)
+            found.append({"scenario": run.scenario.name, **run.scenario.label, **metrics, "unverified": reasons})
+        return found
 
     @property
     def table(self) -> pd.DataFrame:

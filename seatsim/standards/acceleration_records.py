@@ -56,9 +56,8 @@ def choose_axes(name: str, columns: Mapping[str, Signal], said: Sequence[str] = 
     fitting = _fit_axes(columns.values())
     for axis, names in fitting.items():
         if len(names) > 1 and axis in DIRECTIONS:
-            raise InputError(
-                f"{name}: {' and '.join(names)} may be axis {axis}; name every axis by --channel AXIS=COLUMN"
-            )
+            problem = f"{name}: {' and '.join(names)} may be axis {axis}; name every axis by --channel AXIS=COLUMN"
+            raise InputError(problem)
     found = {axis: names[0] for axis, names in fitting.items() if len(names) == 1}
     if not found:
         there = f"name them with --channel AXIS=COLUMN; columns: {', '.join(columns) or 'none'}"
@@ -223,9 +222,8 @@ def _rate(
 def _rate_of(clock: Clock, path: Path) -> tuple[float, list[str]]:
     """Return the sample rate of a column of time in Hz, and what is to be said of it."""
     if clock.axis is None or clock.open:
-        raise InputError(
-            f"{path}: {clock.open}; give --rate, or state its unit under time in the map of seatsim import"
-        )
+        problem = f"{path}: {clock.open}; give --rate, or state its unit under time in the map of seatsim import"
+        raise InputError(problem)
     said = [issue.sentence for issue in doubt_time(clock.axis, clock.column)]
     if len(clock.axis.breaks) or not clock.axis.is_even:
         raise InputError(
@@ -242,9 +240,8 @@ def _recorded(folder: Path) -> list[AccelerationRecord]:
     if not units:
         raise InputError(f"{folder / HEADER}: records no acceleration; it has {', '.join(recording.channels)}")
     tables = {run: recording.table(run) for run in recording.runs}
-    return [
-        AccelerationRecord(
-            run, recording.header.sample_rate, {name: Signal(name, unit, table[name]) for name, unit in units.items()}
-        )
-        for run, table in tables.items()
-    ]
+    found = []
+    for run, table in tables.items():
+        signals = {name: Signal(name, unit, table[name]) for name, unit in units.items()}
+        found.append(AccelerationRecord(run, recording.header.sample_rate, signals))
+    return found

@@ -128,6 +128,7 @@ def comfort(
     if not axes:
         raise InputError(f"{source}: no axis of the person is named; give one of {', '.join(DIRECTIONS)}")
     joined = {axis: found.dose for axis, found in axes.items()}
+    pairs = [(base, axis) for base, axis in _FLOOR.items() if {base, axis} <= {*named}]
     return Comfort(
         source=str(source),
         runs=tuple(record.name for record in records),
@@ -136,11 +137,7 @@ def comfort(
         axes=axes,
         totals=total_values(joined),
         exposure=assess_exposure(joined, hours),
-        seat={
-            axis: seat_transmission(doses[axis], doses[base])
-            for base, axis in _FLOOR.items()
-            if {base, axis} <= {*named}
-        },
+        seat={axis: seat_transmission(doses[axis], doses[base]) for base, axis in pairs},
         motion_sickness=_motion_sickness(records, named.get("z"), blocks),
         notes=tuple(_notes(records, named, axes)),
     )
@@ -161,9 +158,8 @@ def _chosen(records: list[AccelerationRecord], runs: Sequence[str], source: str 
     known = [record.name for record in records]
     for name in runs:
         if name not in known:
-            raise InputError(
-                f"{source}: no run is called '{name}'{nearest(name, known)}; permitted: {', '.join(known)}"
-            )
+            problem = f"{source}: no run is called '{name}'{nearest(name, known)}; permitted: {', '.join(known)}"
+            raise InputError(problem)
     return [record for record in records if not runs or record.name in runs]
 
 
@@ -191,9 +187,8 @@ def _cuts(record: AccelerationRecord, samples: int, blocks: _Blocks) -> list[sli
     for start, end in blocks:
         if not 0 <= start < end or round(end * record.sample_rate) > samples:
             lasts = samples / record.sample_rate
-            raise InputError(
-                f"block {start:g}:{end:g}: {record.name} lasts from 0 to {lasts:g} s; give FROM:TO within it"
-            )
+            problem = f"block {start:g}:{end:g}: {record.name} lasts from 0 to {lasts:g} s; give FROM:TO within it"
+            raise InputError(problem)
     ends = blocks or [(0.0, samples / record.sample_rate)]
     return [slice(round(start * record.sample_rate), round(end * record.sample_rate)) for start, end in ends]
 
@@ -212,9 +207,8 @@ def _motion_sickness(
     along = direction("z")._replace(weighting="Wf")
     parts = [(part, record.sample_rate) for record in records for part in _weighted(record, column, along, blocks)]
     energy = sum(motion_sickness_dose(part, rate) ** 2 for part, rate in parts)
-    return MotionSickness(
-        float(np.sqrt(energy / sum(len(part) / rate for part, rate in parts))), float(np.sqrt(energy))
-    )
+    duration = sum(len(part) / rate for part, rate in parts)
+    return MotionSickness(float(np.sqrt(energy / duration)), float(np.sqrt(energy)))
 
 
 def _notes(

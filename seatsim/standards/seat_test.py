@@ -130,9 +130,8 @@ def _assess_recorded_seat(recording: Recording, classes: Sequence[SpectralClass]
     nominal = recording.nominal
     plant = None if nominal.plant is None else augment_plant(nominal.effects, nominal.plant)
     if plant is None or any(name not in recording.channels for name in _NEEDED):
-        raise InputError(
-            f"{recording.folder / HEADER}: the test of a seat needs the channels {join_names(_NEEDED[::-1])}"
-        )
+        problem = f"{recording.folder / HEADER}: the test of a seat needs the channels {join_names(_NEEDED[::-1])}"
+        raise InputError(problem)
     groups: dict[tuple[SpectralClass, str], list[Trial]] = {}
     notes = [RECALLED, "the damping test needs tones under an inert mass, and is left out"]
     failures: list[SeatFailure] = []
@@ -146,9 +145,8 @@ def _assess_recorded_seat(recording: Recording, classes: Sequence[SpectralClass]
         mass = recording.runs[run].set.get("plant.driver_mass", plant.driver_mass) / SEATED_SHARE
         person = min(PERSONS, key=lambda name: abs(PERSONS[name] - mass))
         if off > _FARTHEST or abs(PERSONS[person] - mass) > _PERSON_TOLERANCE:
-            notes.append(
-                f"run {run} is left out: nearest is {found}, off by {1e2 * off:.0f} %; a person of {mass:.0f} kg"
-            )
+            text = f"run {run} is left out: nearest is {found}, off by {1e2 * off:.0f} %; a person of {mass:.0f} kg"
+            notes.append(text)
             continue
         swinging = table | {name: table[name] - table[name].mean() for name in _NEEDED}
         trial = _evaluate(swinging, recording.header.sample_rate, plant.end_stops if _TRAVEL in table else None)
@@ -263,9 +261,8 @@ def _seat_of(scenario: Scenario) -> _Seat:
     if scenario.plant is None or scenario.control is None:
         raise InputError(f"{scenario.title}: a damper bench has no seat to test; give the scenario of a seat")
     if specification_of(type(scenario.control.law)).replays:
-        raise InputError(
-            f"{scenario.title}: its law replays a recording; state the law of the seat, or test the recording"
-        )
+        problem = f"{scenario.title}: its law replays a recording; state the law of the seat, or test the recording"
+        raise InputError(problem)
     # The test has drivers of its own.
     effects = tuple(effect for effect in scenario.effects if not isinstance(effect, Mass))
     return _Seat(dataclasses.replace(scenario, effects=effects), augment_plant(effects, scenario.plant))
@@ -273,14 +270,8 @@ def _seat_of(scenario: Scenario) -> _Seat:
 
 def _run_trial(seat: _Seat, spectral_class: SpectralClass, person: str, seed: int) -> Trial:
     change = SEATED_SHARE * PERSONS[person] - seat.plant.driver_mass
-    history = simulate(
-        dataclasses.replace(
-            seat.scenario,
-            excitation=Iso7096(spectral_class, _SETTLE + _DURATION),
-            seed=seed,
-            effects=(*seat.scenario.effects, Mass(change)),
-        )
-    )
+    excitation, effects = Iso7096(spectral_class, _SETTLE + _DURATION), (*seat.scenario.effects, Mass(change))
+    history = simulate(dataclasses.replace(seat.scenario, excitation=excitation, seed=seed, effects=effects))
     signals = {name: history[name] for name in (*_NEEDED, _TRAVEL)}
     return _evaluate(signals, 1 / history.step, seat.plant.end_stops)
 

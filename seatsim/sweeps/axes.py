@@ -21,9 +21,8 @@ DISTRIBUTIONS = {
     "choice": "{value: probability, ...}",
 }
 """Names of distributions, and what each takes."""
-_FORMS = "a list, {from: A, to: B, steps: N}, or a distribution: " + ", ".join(
-    f"{name}: {takes}" for name, takes in DISTRIBUTIONS.items()
-)
+_TAKEN = ", ".join(f"{name}: {takes}" for name, takes in DISTRIBUTIONS.items())
+_FORMS = f"a list, {{from: A, to: B, steps: N}}, or a distribution: {_TAKEN}"
 _MOST_STEPS = 1_000_000
 """Of a range; more would be a slip of the keyboard."""
 _SLIGHTLY = 1e-9
@@ -76,14 +75,12 @@ def _read_range(stated: Mapping[str, object], source: Source, where: KeyPath) ->
     check_keys(stated, ("from", "to", "steps"), source, where)
     for name in ("from", "to", "steps"):
         if not is_finite_number(stated.get(name)):
-            raise source.error(
-                (*where, name), f"{stated.get(name)!r} is not a finite number; a range is {{from: A, to: B, steps: N}}"
-            )
+            problem = f"{stated.get(name)!r} is not a finite number; a range is {{from: A, to: B, steps: N}}"
+            raise source.error((*where, name), problem)
     steps, ends = stated["steps"], [stated["from"], stated["to"]]
     if not isinstance(steps, int) or not 2 <= steps <= _MOST_STEPS:
-        raise source.error(
-            (*where, "steps"), f"{steps!r} is not permitted; it must be a whole number from 2 to {_MOST_STEPS}"
-        )
+        problem = f"{steps!r} is not permitted; it must be a whole number from 2 to {_MOST_STEPS}"
+        raise source.error((*where, "steps"), problem)
     values = np.linspace(float(str(ends[0])), float(str(ends[1])), steps).tolist()
     whole = all(isinstance(end, int) for end in ends) and all(value.is_integer() for value in values)
     # Whole numbers stay what they are: keys such as `seed` take no others.
@@ -136,9 +133,8 @@ def _truncated_normal(u: Array, mean: float, deviation: float, low: float, high:
     # scipy.stats takes as long to load as many runs take, and most sweeps and all commands do without.
     from scipy.stats import truncnorm
 
-    drawn: Array = truncnorm.ppf(
-        np.clip(u, _EDGE, 1 - _EDGE), (low - mean) / deviation, (high - mean) / deviation, loc=mean, scale=deviation
-    )
+    ends, inside = ((low - mean) / deviation, (high - mean) / deviation), np.clip(u, _EDGE, 1 - _EDGE)
+    drawn: Array = truncnorm.ppf(inside, *ends, loc=mean, scale=deviation)
     return drawn
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 
@@ -71,12 +71,11 @@ def make_basis(columns: Sequence[Array | Sequence[object]], degree: _Degree) -> 
     single = [make_key_basis(column, degree.alone) for column in columns]
     parts: list[tuple[Array, tuple[int, ...]]] = [(np.ones((len(single[0]), 1)), ())]
     parts += [(functions, (key,)) for key, functions in enumerate(single)]
-    for (first, a), (second, b) in combinations(enumerate(single), 2) if degree.product else ():
-        short = [
-            functions[:, : degree.product] if _is_polynomial(columns[k]) else functions
-            for k, functions in ((first, a), (second, b))
-        ]
-        product = (short[0][:, :, None] * short[1][:, None, :]).reshape(len(a), -1)
+    kinds = [np.asarray(column).dtype.kind for column in columns]
+    pairs = zip(single, kinds, strict=True)
+    short = [functions[:, : degree.product] if kind in "if" else functions for functions, kind in pairs]
+    for (first, a), (second, b) in combinations(enumerate(short), 2) if degree.product else ():
+        product = (a[:, :, None] * b[:, None, :]).reshape(len(a), -1)
         parts.append((product, (first, second)))
     return Basis(np.hstack([values for values, _ in parts]), list(_name_columns(parts)))
 
@@ -87,7 +86,7 @@ def fit_expansion(basis: Array, metrics: Array) -> Expansion | None:
     gram = basis.T @ basis
     if runs < RUNS_PER_TERM * terms or np.linalg.cond(gram) > 1 / _SINGULAR:
         return None
-    inverse = cast("Array", np.linalg.inv(gram))
+    inverse = np.asarray(np.linalg.inv(gram), dtype=np.float64)
     coefficients: Array = inverse @ (basis.T @ metrics)
     residuals = metrics - basis @ coefficients
     noise: Array = (residuals**2).sum(axis=0) / (runs - terms)
@@ -105,10 +104,6 @@ def predict_left_out(basis: Array, metrics: Array, expansion: Expansion) -> Arra
         return None
     errors: Array = (metrics - basis @ expansion.coefficients) / (1 - leverage)[:, None]
     return errors
-
-
-def _is_polynomial(column: Array | Sequence[object]) -> bool:
-    return np.asarray(column).dtype.kind in "if"
 
 
 def _name_columns(parts: Sequence[tuple[Array, tuple[int, ...]]]) -> Iterator[tuple[int, ...]]:

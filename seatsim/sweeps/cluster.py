@@ -15,7 +15,7 @@ from collections.abc import Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from seatsim.provenance.statement import list_versions
 from seatsim.schema.errors import InputError, RunError
@@ -28,7 +28,7 @@ from seatsim.sweeps.parts import part_of
 from seatsim.sweeps.plan import Plan, Selection
 
 if TYPE_CHECKING:
-    from distributed import Client
+    from distributed import Client, Future
 
 _EXTRA = 'engine dask needs an extra; install it with: pip install "seatsim[cluster]"'
 _AHEAD = 4
@@ -70,10 +70,9 @@ class _ClusterEngine(NamedTuple):
 
         waiting = iter(work.tasks)
 
-        def submit(count: int) -> list[Any]:
-            return [
-                self.client.submit(_simulate, _make_task(work, task), pure=False) for task in islice(waiting, count)
-            ]
+        def submit(count: int) -> list[Future]:
+            tasks = [_make_task(work, runs) for runs in islice(waiting, count)]
+            return [self.client.submit(_simulate, task, pure=False) for task in tasks]
 
         running = as_completed(submit(_AHEAD * len(self.client.scheduler_info()["workers"])))
         for future in running:
@@ -120,12 +119,11 @@ def _await_workers(client: Client) -> None:
     try:
         client.wait_for_workers(1, timeout=LONGEST_SEARCH)
     except TimeoutError as error:
-        raise InputError(
-            f"the dask scheduler has no worker; start some with 'dask worker {client.scheduler.address}'"
-        ) from error
+        problem = f"the dask scheduler has no worker; start some with 'dask worker {client.scheduler.address}'"
+        raise InputError(problem) from error
 
 
-def _await_outcomes(future: Any) -> list[Outcome]:
+def _await_outcomes(future: Future) -> list[Outcome]:
     """Return the outcomes of a task.
 
     Raises:

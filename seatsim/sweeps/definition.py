@@ -13,7 +13,7 @@ from __future__ import annotations
 import csv
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, Literal, NamedTuple, cast, get_args
+from typing import NamedTuple
 
 from seatsim.metrics.table import METRICS
 from seatsim.scenario.loading import find_file
@@ -25,8 +25,7 @@ from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import YamlError, parse_value
 from seatsim.sweeps.axes import Axis, axis_schema, read_axis
 
-_DesignName = Literal["cross", "zip", "lhs", "sobol", "table"]
-_DESIGNS: tuple[str, ...] = get_args(_DesignName)
+_DESIGNS = ("cross", "zip", "lhs", "sobol", "table")
 _KEYS = ("scenario", "seed", "design", "runs", "replicates", "vary", "table", "limits")
 MOST_RUNS = 10_000_000
 """Runs of a sweep: their numbers have this many digits, and more would be a slip of the keyboard."""
@@ -50,7 +49,7 @@ class SweepDefinition(NamedTuple):
     source: Source
     scenario: Source
     seed: int
-    design: _DesignName
+    design: str
     runs: int | None
     replicates: int
     axes: tuple[Axis, ...]
@@ -71,24 +70,25 @@ def read_definition(path: Path) -> SweepDefinition:
     source = Source(path)
     if "scenario" not in source.data and {"plant", "damper"} & set(source.data):
         raise InputError(f"{path}: is a scenario; a sweep is a file that names one under scenario, and what varies")
-    readers: Mapping[str, Callable[[], object]] = {
-        "scenario": lambda: _read_scenario(source),
-        "seed": lambda: _read_whole(source, "seed", least=0) or 0,
-        "design": lambda: _read_design(source),
-        "runs": lambda: _read_whole(source, "runs", least=1),
-        "replicates": lambda: _read_whole(source, "replicates", least=1) or 1,
-        "axes": lambda: _read_axes(source),
-        "table": lambda: _read_table(source),
-        "limits": lambda: _read_limits(source),
-    }
-    found, errors = dict[str, Any](), list[InputError]()
+    # In the order of the fields.
+    readers: tuple[Callable[[], object], ...] = (
+        lambda: _read_scenario(source),
+        lambda: _read_whole(source, "seed", least=0) or 0,
+        lambda: _read_design(source),
+        lambda: _read_whole(source, "runs", least=1),
+        lambda: _read_whole(source, "replicates", least=1) or 1,
+        lambda: _read_axes(source),
+        lambda: _read_table(source),
+        lambda: _read_limits(source),
+    )
+    found, errors = list[object](), list[InputError]()
     with gathered(errors):
         check_keys(source.data, _KEYS, source, ())
-    for name, read in readers.items():
+    for read in readers:
         with gathered(errors):
-            found[name] = read()
+            found.append(read())
     raise_all(errors)
-    return SweepDefinition(source=source, **found)
+    return SweepDefinition._make([source, *found])
 
 
 def _is_table(source: Source) -> bool:
@@ -117,13 +117,12 @@ def is_sweep(data: Mapping[str, object]) -> bool:
     return "scenario" in data and bool({"vary", "table", "design"} & set(data))
 
 
-def _read_design(source: Source) -> _DesignName:
+def _read_design(source: Source) -> str:
     name = source.data.get("design", "cross")
     if name not in _DESIGNS:
-        raise source.error(
-            ("design",), f"{name!r} is not permitted{nearest(name, _DESIGNS)}; permitted: {', '.join(_DESIGNS)}"
-        )
-    return cast("_DesignName", name)
+        problem = f"{name!r} is not permitted{nearest(name, _DESIGNS)}; permitted: {', '.join(_DESIGNS)}"
+        raise source.error(("design",), problem)
+    return str(name)
 
 
 def _read_scenario(source: Source) -> Source:
@@ -151,12 +150,13 @@ def _read_whole(source: Source, key: str, least: int) -> int | None:
 def _read_limits(source: Source) -> Mapping[str, float]:
     stated = mapping(source.data.get("limits", {}), source, ("limits",))
     check_keys(stated, METRICS, source, ("limits",))
+    limits = {}
     for name, value in stated.items():
         if not is_finite_number(value):
-            raise source.error(
-                ("limits", name), f"{value!r} is not permitted; it must be a finite number in {METRICS[name].unit}"
-            )
-    return {name: float(str(value)) for name, value in stated.items()}
+            problem = f"{value!r} is not permitted; it must be a finite number in {METRICS[name].unit}"
+            raise source.error(("limits", name), problem)
+        limits[name] = float(value)
+    return limits
 
 
 def _read_table(source: Source) -> _Table | None:

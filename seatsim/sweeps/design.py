@@ -50,9 +50,8 @@ def _cross(definition: SweepDefinition) -> _Columns:
     listed = [axis for axis in definition.axes if axis.values is not None]
     drawn = [axis for axis in definition.axes if axis.values is None]
     draws = _draw(drawn, _count_draws(definition), definition.seed) if drawn else {}
-    points = itertools.product(
-        zip(*draws.values(), strict=True) if drawn else [()], *(axis.values or () for axis in listed)
-    )
+    firsts = zip(*draws.values(), strict=True) if drawn else [()]
+    points = itertools.product(firsts, *(axis.values or () for axis in listed))
     flat = [(*first, *rest) for first, *rest in points]
     columns = zip(*flat, strict=True)
     found = dict(zip([*draws, *(axis.key for axis in listed)], map(list, columns), strict=True))

@@ -15,7 +15,8 @@ from contextlib import ExitStack
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple, Protocol
+from types import TracebackType
+from typing import NamedTuple, Protocol
 
 from threadpoolctl import threadpool_limits
 
@@ -103,10 +104,12 @@ class _Crew:
         self._give()
         return self
 
-    def __exit__(self, *problem: Any) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         """End all, in the middle of a run too; nobody waits for the thread."""
         self._thread.shutdown(wait=False, cancel_futures=True)
-        self._ends.__exit__(*problem)
+        self._ends.__exit__(kind, error, trace)
 
     def receive(self) -> list[Outcome]:
         """Return the outcomes that are there, once there are some, and give out more runs."""

@@ -15,28 +15,11 @@ from seatsim.schema.content import Form, Joined, Unwritten
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.fields import validated
 from seatsim.schema.guarded import uncut
+from seatsim.sweeps import parts
 from seatsim.sweeps.definition import SweepDefinition, read_definition
 from seatsim.sweeps.engines import Engine, LocalEngine, Work
-from seatsim.sweeps.folder import (
-    check_resumable,
-    count_states,
-    hold_file,
-    hold_folder,
-    identify_sweep,
-    write_manifest,
-)
+from seatsim.sweeps.folder import check_resumable, count_states, hold_file, hold_folder, identify_sweep, write_manifest
 from seatsim.sweeps.outcome import FAILED, Outcome
-from seatsim.sweeps.parts import (
-    make_schema,
-    part_of,
-    read_outcomes,
-    read_states,
-    read_sweep,
-    remove_unfinished,
-    runs_of,
-    varied_keys,
-    write_outcomes,
-)
 from seatsim.sweeps.plan import Plan, check_plan, make_plan
 
 if TYPE_CHECKING:
@@ -149,12 +132,12 @@ def execute(
     definition, plan = prepared.definition, prepared.plan
     with hold_folder(folder, share.text if share else ""):
         if share is None:
-            remove_unfinished(folder)
+            parts.remove_unfinished(folder)
         identity = identify_sweep(definition, plan)
         # The first of several shares makes the manifest, which the others then find.
         with hold_file(folder / ".lock-manifest", wait=True):
             check_resumable(folder, identity, plan, resume)
-            states = [state for _, state, _ in read_states(folder, plan.runs)]
+            states = [state for _, state, _ in parts.read_states(folder, plan.runs)]
             write_manifest(folder, identity, definition.limits, count_states(states, plan.runs))
         rows = _Rows(folder, plan, share, progress)
         try:
@@ -167,7 +150,7 @@ def execute(
         finally:
             with uncut(), hold_file(folder / ".lock-manifest", wait=True):
                 rows.flush()
-                found = list(read_states(folder, plan.runs))
+                found = list(parts.read_states(folder, plan.runs))
                 counts = count_states((state for _, state, _ in found), plan.runs)
                 stated = write_manifest(folder, identity, definition.limits, counts)
     failures = [f"run {run}: {reason}" for run, state, reason in found if state == FAILED]
@@ -192,7 +175,7 @@ def sweep(file: str | Path, out: str | Path, jobs: int | None = None, resume: bo
         InputError: the file is wrong, or the folder holds a sweep and `resume` is not set, or another sweep.
     """
     execute(prepare(Path(file)), Path(out), LocalEngine(jobs or os.cpu_count() or 1), resume)
-    return read_sweep(out)
+    return parts.read_sweep(out)
 
 
 class _Rows:
@@ -200,13 +183,13 @@ class _Rows:
 
     def __init__(self, folder: Path, plan: Plan, share: Share | None, progress: _Progress) -> None:
         self._folder, self._plan, self._progress = folder, plan, progress
-        units = {key: find_unit(plan.scenario(0), key) for key in varied_keys(plan)}
-        self._schema = make_schema(plan, units)
+        units = {key: find_unit(plan.scenario(0), key) for key in parts.varied_keys(plan)}
+        self._schema = parts.make_schema(plan, units)
         self._open: dict[int, dict[int, Outcome]] = {}
         self._total = self._done = 0
-        every = range(part_of(plan.runs - 1) + 1)
+        every = range(parts.part_of(plan.runs - 1) + 1)
         for part in every if share is None else every[share.number - 1 :: share.of]:
-            found = {outcome.run: outcome for outcome in read_outcomes(folder, part)}
+            found = {outcome.run: outcome for outcome in parts.read_outcomes(folder, part)}
             self._total += len(self._runs(part))
             self._done += len(found)
             if len(found) < len(self._runs(part)):
@@ -215,7 +198,7 @@ class _Rows:
         self._flushed = time.monotonic()
 
     def _runs(self, part: int) -> range:
-        return runs_of(part, self._plan.runs)
+        return parts.runs_of(part, self._plan.runs)
 
     def missing(self) -> list[list[int]]:
         """Return the runs that have no row yet, by part."""
@@ -224,12 +207,12 @@ class _Rows:
     def add(self, outcomes: list[Outcome]) -> None:
         """Take outcomes in; a part that is complete is written, the others from time to time."""
         for outcome in outcomes:
-            part = part_of(outcome.run)
+            part = parts.part_of(outcome.run)
             self._open[part][outcome.run] = outcome
             self._changed.add(part)
         self._done += len(outcomes)
         self._progress(self._done, self._total)
-        for part in {part_of(outcome.run) for outcome in outcomes}:
+        for part in {parts.part_of(outcome.run) for outcome in outcomes}:
             if len(self._open[part]) == len(self._runs(part)):
                 self._write(part)
                 del self._open[part]
@@ -243,5 +226,5 @@ class _Rows:
         self._flushed = time.monotonic()
 
     def _write(self, part: int) -> None:
-        write_outcomes(self._folder, part, self._plan, self._schema, self._open[part].values())
+        parts.write_outcomes(self._folder, part, self._plan, self._schema, self._open[part].values())
         self._changed.discard(part)

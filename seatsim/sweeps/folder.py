@@ -14,7 +14,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
 from seatsim.provenance.manifest import describe
 from seatsim.provenance.statement import current_invocation, list_versions
@@ -50,7 +50,8 @@ def identify_sweep(definition: SweepDefinition, plan: Plan) -> _Identity:
     configuration = {"scenario": definition.scenario.data, **stated, "files": dict(_digest_files(plan))}
     versions, design = list_versions(LIBRARIES, used_files()), _digest_design(plan, plan.runs)
     whole = [configuration, design, versions, definition.seed]
-    return _Identity(_digest(whole), definition.seed, versions, _read_back(configuration), plan.runs, design)
+    digest = hashlib.sha256(_encode(whole)).hexdigest()
+    return _Identity(digest, definition.seed, versions, _read_back(configuration), plan.runs, design)
 
 
 def _digest_design(plan: Plan, runs: int) -> str:
@@ -89,10 +90,6 @@ def _texts(value: object) -> Iterator[str]:
             yield from _texts(item)
     elif isinstance(value, str):
         yield value
-
-
-def _digest(value: object) -> str:
-    return hashlib.sha256(_encode(value)).hexdigest()
 
 
 def _encode(value: object) -> bytes:
@@ -141,18 +138,16 @@ def hold_file(path: Path, alone: bool = True, wait: bool = False) -> Iterator[No
     try:
         import fcntl
     except ImportError as error:
-        raise InputError(
-            "a sweep locks its folder with flock, which this system has not; use Linux, macOS, or Windows' WSL"
-        ) from error
+        problem = "a sweep locks its folder with flock, which this system has not; use Linux, macOS, or Windows' WSL"
+        raise InputError(problem) from error
     with open_in_place(path) as file:
         how = (fcntl.LOCK_EX if alone else fcntl.LOCK_SH) | (0 if wait else fcntl.LOCK_NB)
         try:
             fcntl.flock(file, how)
         except BlockingIOError as error:
             owner = file.read().strip() or "another process"
-            raise InputError(
-                f"{path.parent}: {owner} works on this sweep; wait for it, end it, or choose another --out"
-            ) from error
+            problem = f"{path.parent}: {owner} works on this sweep; wait for it, end it, or choose another --out"
+            raise InputError(problem) from error
         file.truncate(0)
         with suppress(OSError):  # who holds a folder is told where the disk lets it
             file.write(f"process {os.getpid()} on {socket.gethostname()}" if alone else "a command for a share of it")
@@ -167,7 +162,7 @@ _FIELDS = {"identity": str, "versions": dict, "seed": int, "counts": dict, "limi
 
 def write_manifest(
     folder: Path, identity: _Identity, limits: Mapping[str, float], counts: Mapping[str, int]
-) -> dict[str, Any]:
+) -> dict[str, object]:
     """Write the manifest of a sweep, with what `seatsim reproduce` needs where a command is at work; return it."""
     invocation = current_invocation()
     parts = {path.relative_to(folder).as_posix(): path for path in sorted(folder.glob("runs/part-*.parquet"))}
@@ -195,7 +190,7 @@ def read_manifest(folder: Path) -> dict[str, Any]:
     """
     try:
         with expect(folder / _NAME, "manifest of a sweep"):
-            content = cast("dict[str, Any]", read_json(folder / _NAME, "manifest of a sweep"))
+            content: dict[str, Any] = read_json(folder / _NAME, "manifest of a sweep")
             for key, kind in _FIELDS.items():
                 if not isinstance(content[key], kind):
                     raise TypeError(f"{key} is {content[key]!r}")

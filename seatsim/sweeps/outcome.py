@@ -53,7 +53,7 @@ def simulate_run(number: int, make_scenario: Callable[[], Scenario], histories: 
             history = simulate(scenario, floor_of(scenario))
             metrics = measure_run(scenario, history)
         if histories is not None:
-            write_histories([Run(scenario, history, metrics)], _history_path(histories, number))
+            write_histories([Run(scenario, history, metrics)], histories / f"run-{number:07d}.parquet")
         reason = "; ".join(list_reasons(scenario, history, metrics))
     except SeatsimError as error:
         return Outcome(number, FAILED, str(error), seed, (None,) * len(METRICS))
@@ -68,20 +68,14 @@ def outcome_of(number: int, seed: int, metrics: Mapping[str, Metric], reason: st
     return Outcome(number, UNVERIFIED if reason else DONE, reason, seed, figures)
 
 
-def _history_path(folder: Path, number: int) -> Path:
-    """Return the file that keeps the channels of a run."""
-    return folder / f"run-{number:07d}.parquet"
-
-
 def floor_of(scenario: Scenario) -> Floor | None:
     """Return the floor of a scenario, from the floors kept where it is among them; None where it has none."""
     if scenario.excitation is None:
         return None
     with scenario.placed("excitation"):
-        kind = type(scenario.excitation)
-        return _make_floor(
-            f"{kind.__module__}.{kind.__qualname__}", scenario.excitation, scenario.solver.step, scenario.seed
-        )
+        cls = type(scenario.excitation)
+        kind = f"{cls.__module__}.{cls.__qualname__}"
+        return _make_floor(kind, scenario.excitation, scenario.solver.step, scenario.seed)
 
 
 @lru_cache(maxsize=FLOORS_KEPT)

@@ -68,7 +68,7 @@ def read_rows(folder: Path) -> SweepRows:
     )
 
 
-def is_number(column: pd.Series[Any]) -> bool:
+def is_number(column: pd.Series) -> bool:
     """Tell whether a column holds numbers, truth values not among them."""
     return column.dtype.kind in "if"
 
@@ -103,19 +103,9 @@ def tabulate_quantiles(rows: SweepRows) -> pd.DataFrame:
             if values.empty:
                 continue
             quantiles = dict(zip(NAMES, values.quantile(list(_SHARES)), strict=True))
-            found.append(
-                {
-                    **group,
-                    "metric": metric,
-                    "unit": rows.units[metric],
-                    "runs": len(values),
-                    "mean": values.mean(),
-                    "std": values.std(),
-                    "min": values.min(),
-                    **quantiles,
-                    "max": values.max(),
-                }
-            )
+            figures = {"mean": values.mean(), "std": values.std(), "min": values.min()}
+            figures |= {**quantiles, "max": values.max()}
+            found.append({**group, "metric": metric, "unit": rows.units[metric], "runs": len(values), **figures})
     return pd.DataFrame(found)
 
 

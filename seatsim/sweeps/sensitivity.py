@@ -17,16 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.schema.arrays import Array
-from seatsim.sweeps.chaos import (
-    DEGREES,
-    RUNS_PER_TERM,
-    Basis,
-    Expansion,
-    fit_expansion,
-    make_basis,
-    make_key_basis,
-    predict_left_out,
-)
+from seatsim.sweeps import chaos
 from seatsim.sweeps.rows import SweepRows, is_number
 
 if TYPE_CHECKING:
@@ -119,7 +110,7 @@ def _varies(values: Array) -> bool:
 
 
 def _find_dependent(columns: Sequence[Array]) -> tuple[int, int] | None:
-    bases = [make_key_basis(column, 1) for column in columns]
+    bases = [chaos.make_key_basis(column, 1) for column in columns]
     for a in range(len(bases)):
         for b in range(a + 1, len(bases)):
             pairs = len(set(zip(columns[a].tolist(), columns[b].tolist(), strict=True)))
@@ -130,19 +121,21 @@ def _find_dependent(columns: Sequence[Array]) -> tuple[int, int] | None:
     return None
 
 
-def _expand(columns: Sequence[Array], metrics: Array, draws: int, drawn: int) -> tuple[Basis, Expansion, Array] | None:
+def _expand(
+    columns: Sequence[Array], metrics: Array, draws: int, drawn: int
+) -> tuple[chaos.Basis, chaos.Expansion, Array] | None:
     """Return the expansion that predicts runs left out best, over all metrics, with its errors there, shape (N, M).
 
     So many keys are `drawn` together so many times: these `draws` determine their terms, however many runs there are.
     """
-    best: tuple[float, Basis, Expansion, Array] | None = None
+    best: tuple[float, chaos.Basis, chaos.Expansion, Array] | None = None
     scale = metrics.var(axis=0)
-    for degree in DEGREES:
-        if draws < RUNS_PER_TERM * (1 + drawn * degree.alone):
+    for degree in chaos.DEGREES:
+        if draws < chaos.RUNS_PER_TERM * (1 + drawn * degree.alone):
             continue
-        basis = make_basis(columns, degree)
-        expansion = fit_expansion(basis.values, metrics)
-        errors = None if expansion is None else predict_left_out(basis.values, metrics, expansion)
+        basis = chaos.make_basis(columns, degree)
+        expansion = chaos.fit_expansion(basis.values, metrics)
+        errors = None if expansion is None else chaos.predict_left_out(basis.values, metrics, expansion)
         if expansion is None or errors is None:
             continue
         error = float((np.mean(errors**2, axis=0) / scale).mean())
@@ -151,13 +144,13 @@ def _expand(columns: Sequence[Array], metrics: Array, draws: int, drawn: int) ->
     return None if best is None else best[1:]
 
 
-def _resample(basis: Basis, metrics: Array, draw: NDArray[np.intp]) -> Iterator[Expansion]:
+def _resample(basis: chaos.Basis, metrics: Array, draw: NDArray[np.intp]) -> Iterator[chaos.Expansion]:
     """Yield expansions of the runs with the draws taken anew, as often as chance has it; `draw` is that of each run."""
     rng = np.random.default_rng(0)
     draws = int(draw.max()) + 1
     for _ in range(_RESAMPLES):
         weights = np.sqrt(rng.multinomial(draws, np.full(draws, 1 / draws)))[draw, None]
-        expansion = fit_expansion(weights * basis.values, weights * metrics)
+        expansion = chaos.fit_expansion(weights * basis.values, weights * metrics)
         if expansion is not None:
             yield expansion
 
@@ -167,9 +160,9 @@ def _make_row(
     metric: str,
     key: str,
     number: int,
-    basis: Basis,
-    expansion: Expansion,
-    resampled: Sequence[Expansion],
+    basis: chaos.Basis,
+    expansion: chaos.Expansion,
+    resampled: Sequence[chaos.Expansion],
     column: int,
     explained: float,
 ) -> Sensitivity:
@@ -182,7 +175,7 @@ def _make_row(
     )
 
 
-def _indices(basis: Basis, expansion: Expansion, key: int, metric: int) -> tuple[float, float]:
+def _indices(basis: chaos.Basis, expansion: chaos.Expansion, key: int, metric: int) -> tuple[float, float]:
     """Return first-order and total index; what noise adds to the square of a coefficient is taken out."""
     squares = expansion.coefficients[:, metric] ** 2 - expansion.noise[metric] * np.diag(expansion.inverse)
     whole = float(squares[1:].sum() + expansion.noise[metric])
@@ -194,7 +187,13 @@ def _indices(basis: Basis, expansion: Expansion, key: int, metric: int) -> tuple
 
 
 def _swing(
-    usable: pd.DataFrame, metric: str, key: str, number: int, basis: Basis, expansion: Expansion, column: int
+    usable: pd.DataFrame,
+    metric: str,
+    key: str,
+    number: int,
+    basis: chaos.Basis,
+    expansion: chaos.Expansion,
+    column: int,
 ) -> tuple[object, object, float, float]:
     """Return two values of a key and the mean of a metric at each, by the terms of the expansion in that key alone."""
     mine = [k for k, keys in enumerate(basis.keys) if keys in ((), (number,))]

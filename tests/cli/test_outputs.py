@@ -12,12 +12,12 @@ import pytest
 from matplotlib.figure import Figure
 
 from seatsim.cli.commands.recordings import diagnose as diagnose_command
-from seatsim.cli.outputs import damper_tables
 from seatsim.cli.outputs.simulated import Brackets
 from seatsim.cli.outputs.writing import write_diagnosis, write_outputs
 from seatsim.cli.show_table import format_number
 from seatsim.diagnosis.diagnose import BUDGET
 from seatsim.metrics.table import Metric
+from seatsim.plots.labels import shorten
 from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
 from seatsim.schema.yaml_source import Source
@@ -102,8 +102,8 @@ def test_numbers_of_a_table(value, form, text):
 
 
 def test_names_of_a_table_are_short():
-    assert damper_tables._shorten("sixteen letters!") == "sixteen letters!"
-    assert damper_tables._shorten("a name of a long record") == "a name …g record"
+    assert shorten("sixteen letters!", 16) == "sixteen letters!"
+    assert shorten("a name of a long record", 16) == "a name …g record"
 
 
 @pytest.mark.parametrize("wrong", ["augmented", "experiment"])

@@ -4,12 +4,13 @@ import math
 
 import pytest
 
+from seatsim.dampers.base import DAMPERS
 from seatsim.identification.assessment import measure_coverage, note_limits
-from seatsim.identification.damper_record import find_model, find_specification
+from seatsim.identification.damper_record import find_model
 
 from .benches import made
 
-PLAIN = find_specification(find_model("bingham"))
+PLAIN = DAMPERS.specification_of(find_model("bingham"))
 SPEED = 2.0 * math.pi * 2.0 * 0.01
 
 

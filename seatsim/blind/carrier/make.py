@@ -29,14 +29,7 @@ _MOST_RUNS = 6
 _CLOSE = 0.1
 """Relative difference of a size from the one drawn that is close enough."""
 _EVALUATIONS = 12
-_DRAWERS = (
-    draw_damper_changes,
-    draw_sensor_changes,
-    draw_skewed_logs,
-    draw_delays,
-    draw_limits,
-    draw_seat_changes,
-)
+_DRAWERS = (draw_damper_changes, draw_sensor_changes, draw_skewed_logs, draw_delays, draw_limits, draw_seat_changes)
 UNTOUCHED = "untouched"
 """In place of an effect: the carrier as it was measured, which shows what is named without any effect put in."""
 _LEAST_RUNS = 3

@@ -158,13 +158,7 @@ def case_name(k: int) -> str:
 
 
 def _begin_or_resume(
-    cases: int,
-    seed: int | None,
-    kinds: str | list[str],
-    folder: Path,
-    target: Path,
-    partial: Path,
-    key: str | None,
+    cases: int, seed: int | None, kinds: str | list[str], folder: Path, target: Path, partial: Path, key: str | None
 ) -> _Plan:
     """Return the plan of an unfinished set, or begin one."""
     if cases < 1:

@@ -159,6 +159,5 @@ def is_isolable_group_first(label: Label, verdict: Verdict) -> bool:
     """Tell whether it is, with blocks that the channels cannot tell apart taken for one."""
     if is_block_first(label, verdict):
         return True
-    return any(
-        verdict.blocks[0] in group and set(label["blocks"]) & set(group) for group in verdict.isolable if verdict.blocks
-    )
+    alike = [group for group in verdict.isolable if verdict.blocks and verdict.blocks[0] in group]
+    return any(set(label["blocks"]) & set(group) for group in alike)

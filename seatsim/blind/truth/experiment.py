@@ -11,14 +11,7 @@ from scipy.signal import bilinear, lfilter, lfilter_zi
 
 from seatsim.blind.truth.excitation import NoiseColour, coloured_noise, frame_force
 from seatsim.blind.truth.faults import NEIGHBOUR, Changes, FrameForce, SensorFault
-from seatsim.blind.truth.rig import (
-    EXCITATION_RATE,
-    INTEGRATION_STEP,
-    SAMPLE_RATE,
-    Inputs,
-    RigMotion,
-    simulate,
-)
+from seatsim.blind.truth.rig import EXCITATION_RATE, INTEGRATION_STEP, SAMPLE_RATE, Inputs, RigMotion, simulate
 from seatsim.blind.truth.state import parameter_record
 from seatsim.schema.arrays import Array
 

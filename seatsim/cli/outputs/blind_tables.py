@@ -18,9 +18,8 @@ _LISTED = 12
 def make_score_tables(score: Score) -> list[Table]:
     """Return the tables of a score, the summary first."""
     named = [(truth, _count(named)) for truth, named in score.confusion.items()]
-    bins = [
-        (f"{b.low:.4f} - {b.high:.4f}", f"{b.stated:.4f}", f"{b.true:.4f}", str(b.count)) for b in score.reliability
-    ]
+    every = score.reliability
+    bins = [(f"{b.low:.4f} - {b.high:.4f}", f"{b.stated:.4f}", f"{b.true:.4f}", str(b.count)) for b in every]
     sizes = [(s.case, s.effect, s.parameter, f"{s.true:.4g}", f"{s.found:.4g}") for s in score.found_sizes]
     found = [make_table("sizes of effects that were found", ("case", "effect", "parameter", "true", "found"), sizes)]
     failures = [_describe(failure) for failure in score.failures[:_LISTED]]

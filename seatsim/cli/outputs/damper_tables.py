@@ -17,6 +17,7 @@ from seatsim.dampers.base import OWN
 from seatsim.identification.assessment import Agreement
 from seatsim.identification.identify import Identification
 from seatsim.identification.model_benchmark import BenchmarkEntry
+from seatsim.plots.labels import shorten
 
 _ROWS_LISTED = 45
 """Most rows of the table of cycles."""
@@ -96,13 +97,7 @@ def _make_row_table(found: Characterisation) -> Table:
 
 def _name_record(row: Row) -> str:
     """Return a record's name, cut in the middle, without the current that has a column of its own."""
-    return _shorten(row.record.replace(f", {row.current:g} A", ""))
-
-
-def _shorten(name: str) -> str:
-    """Return a name of at most `_WIDEST` letters, cut in the middle, since names of a series differ at their ends."""
-    half = _WIDEST // 2
-    return name if len(name) <= _WIDEST else f"{name[: half - 1]}…{name[-half:]}"
+    return shorten(row.record.replace(f", {row.current:g} A", ""), _WIDEST)
 
 
 def _make_step_table(answers: Sequence[Response]) -> Table:
@@ -112,7 +107,7 @@ def _make_step_table(answers: Sequence[Response]) -> Table:
         ends = [format_number(a.rate_95, ".0f"), format_number(a.rate, ".0f")]
         ends += [format_number(1e3 * t, ".1f") for t in (a.delay, a.current_t95)]
         steps = (f"{a.before:.2f}", f"{a.after:.2f}", str(a.steps))
-        rows.append([escape(_shorten(a.record)), *steps, *times, *ends, a.method or "not determined"])
+        rows.append([escape(shorten(a.record, _WIDEST)), *steps, *times, *ends, a.method or "not determined"])
     first = int(not any(answer.record for answer in answers))
     title = "response of the force to steps of current; rates ln 20 / t95, and behind a delay ln 19 / (t95 - t5)"
     left = [k - first for k in (0, len(_STEP) - 1)]

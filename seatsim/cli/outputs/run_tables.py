@@ -88,32 +88,25 @@ def make_overall_table(runs: Sequence[Run]) -> list[Table]:
     keys = [key for key in _label_keys(runs) if not is_condition(key)]
     for run in runs:
         choices.setdefault(tuple(_labels(run, keys)), []).append(run)
-    complete = all(
-        len({condition_of(run.scenario) for run in of}) == len(of) == len(conditions) for of in choices.values()
-    )
+    tried = [(len({condition_of(run.scenario) for run in of}), len(of)) for of in choices.values()]
+    complete = all(counts == (len(conditions), len(conditions)) for counts in tried)
     if len(conditions) < 2 or len(choices) < 2 or not complete or any(run.unverified for run in runs):
         return []
     columns = [column for column in _COLUMNS if _is_shown(runs, column)]
-    totals = {
-        labels: [
-            _summarise([run.metrics[each.metric].value for run in of if each.metric in run.metrics], each)
-            for each in columns
-        ]
-        for labels, of in choices.items()
-    }
+    totals = {labels: [_summarise(of, each) for each in columns] for labels, of in choices.items()}
     least = [min(filter(math.isfinite, column), default=math.nan) for column in zip(*totals.values(), strict=True)]
     rows = []
     for labels, values in totals.items():
-        marked = zip(columns, values, least, strict=True)
-        rows.append(
-            [*labels, *(_write(value, each, each in _COMPARED and value == low) for each, value, low in marked)]
-        )
+        judged = zip(columns, values, least, strict=True)
+        marked = [_write(value, each, each in _COMPARED and value == low) for each, value, low in judged]
+        rows.append([*labels, *marked])
     title = f"Over all {len(conditions)} conditions: geometric means, the largest peak, all hits"
     headings = [*map(_head_label, keys), *(each.heading for each in columns)]
     return [make_table(title, headings, rows, range(len(keys)))]
 
 
-def _summarise(values: Sequence[float], column: _Column) -> float:
+def _summarise(runs: Sequence[Run], column: _Column) -> float:
+    values = [run.metrics[column.metric].value for run in runs if column.metric in run.metrics]
     return column.summarise(values) if values else math.nan
 
 

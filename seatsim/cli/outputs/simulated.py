@@ -113,7 +113,6 @@ def write_sweep_report(folder: str | Path, out: str | Path | None = None) -> Swe
     }
     # In the folder of the sweep the manifest is that of the sweep.
     is_own = out.resolve() == folder.resolve()
-    paths = (
-        print_reports(write_together(out, partial(write_each, contents))) if is_own else write_outputs(out, contents)
-    )
+    write = partial(write_each, contents)
+    paths = print_reports(write_together(out, write)) if is_own else write_outputs(out, contents)
     return SweepReport(" ".join(state_importance(found, rows)), exceeded, found.rows, paths)

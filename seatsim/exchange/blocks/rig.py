@@ -81,9 +81,8 @@ def _left_out(scenario: Scenario) -> list[str]:
     acting = {type(effect).__name__ for effect in scenario.effects if acts_on(type(effect), hooks)}
     notes = []
     if acting:
-        notes.append(
-            f"of the effects {', '.join(sorted(acting))} what acts on inputs and readings is not part of the rig"
-        )
+        text = f"of the effects {', '.join(sorted(acting))} what acts on inputs and readings is not part of the rig"
+        notes.append(text)
     if scenario.control and scenario.control.sensors:
         notes.append("the noise of the sensors is an input, zero where it is not given")
     return notes

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import ast
+import builtins
 import inspect
 import math
 from collections.abc import Callable, Mapping
 from types import FunctionType
-from typing import Any
 
 import numpy as np
 from numba import types
@@ -39,7 +39,7 @@ def print_call(
     """Return the value of a call."""
     if callee.type is not None or callee.known is None:
         raise scope.refuse(node, "what is called must be a function, a class of records or a method")
-    thing: Any = callee.known
+    thing = callee.known
     if isinstance(thing, tuple):
         thing, owner = thing
         if getattr(thing, "__name__", "") == "_replace":
@@ -140,7 +140,7 @@ def _print_library(  # noqa: PLR0911 - one return per function
         scope.write(f"real {code}[{math.prod(shape)}];")
         return Value(code, types.Array(REAL, len(shape), "C"), shape=shape)
     if is_known(*values):
-        compute: Any = {"abs": abs, "min": min, "max": max, "float": float}.get(name) or getattr(math, name)
+        compute = getattr(math, name, None) or getattr(builtins, name)
         return number(compute(*[value.known for value in values]))
     if name in ("min", "max"):
         first, *rest = values if whole else map(as_real, values)

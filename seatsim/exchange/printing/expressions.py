@@ -7,7 +7,6 @@ import math
 import operator
 from collections.abc import Callable
 from types import ModuleType
-from typing import Any
 
 import numpy as np
 from numba import types
@@ -235,8 +234,7 @@ def _print_subscript(node: ast.Subscript, scope: Scope) -> Value:
 def _array_element(owner: Value, indices: list[Value], scope: Scope) -> Value:
     """Return an element of an array, or the part of it that fewer indices name."""
     if isinstance(owner.known, np.ndarray) and is_known(*indices):
-        place: Any = tuple(index.known for index in indices)
-        found = owner.known[place]
+        found = owner.known[tuple(index.known for index in indices)]
         return number(float(found)) if np.ndim(found) == 0 else scope.program.table(found)
     terms = []
     for position, index in enumerate(indices):

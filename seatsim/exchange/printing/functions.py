@@ -6,8 +6,6 @@ import ast
 import re
 from collections import Counter
 from collections.abc import Callable
-from types import FunctionType
-from typing import cast
 
 from numba import types
 
@@ -36,7 +34,7 @@ def print_function(
     Raises:
         NotPrintableError: it uses what has no counterpart in C.
     """
-    definition = source_of(cast(FunctionType, function), ast.FunctionDef)
+    definition = source_of(function, ast.FunctionDef)
     names = [argument.arg for argument in definition.args.args]
     scope = Scope(program, function, _count_assignments(definition, names))
     parameters = [_parameter(scope, *pair) for pair in zip(names, arguments, strict=True)]

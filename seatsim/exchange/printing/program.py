@@ -7,7 +7,6 @@ import builtins
 import inspect
 import textwrap
 from collections.abc import Callable
-from types import FunctionType
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -113,7 +112,7 @@ def origin(function: Callable[..., object]) -> str:
     return f"{function.__module__}.{function.__qualname__}" + (f": {words}" if words else "")
 
 
-def source_of(function: FunctionType, kind: type[_N]) -> _N:
+def source_of(function: Callable[..., object], kind: type[_N]) -> _N:
     """Return the definition of a function, or of a lambda, the only one of its line.
 
     Raises:

@@ -41,7 +41,7 @@ class Value(NamedTuple):
     """
 
     code: str
-    type: Any  # a numba type, or None
+    type: types.Type  # or None
     known: Any = UNKNOWN  # a number, a tuple, a function, a class or a module
     plain: bool = True
     shape: tuple[int, ...] = ()
@@ -94,7 +94,7 @@ def is_tuple(kind: object) -> bool:
     return isinstance(kind, types.BaseTuple)
 
 
-def is_empty(kind: Any) -> bool:
+def is_empty(kind: types.Type) -> bool:
     """Whether a type holds no number, so that it has no counterpart in C."""
     return kind is NOTHING or (is_tuple(kind) and all(map(is_empty, kind)))
 

@@ -7,7 +7,7 @@ from collections.abc import Hashable, Iterator, Mapping
 from contextlib import contextmanager
 from math import ceil, prod
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -135,7 +135,7 @@ def _part(item: Hashable, path: Path, size: int, follows: bool, sources: set[Pat
     return Part(made, tuple(referred))
 
 
-def _bytes_of(array: Any) -> int:
+def _bytes_of(array: h5py.Dataset) -> int:
     """Return how many bytes a data set or an attribute makes."""
     shape = array.shape or ()
     return prod(shape) * int(max(BYTES_OF_NUMBER, array.dtype.itemsize))
@@ -176,9 +176,8 @@ def _sources(item: h5py.Dataset, place: str, path: Path, sources: set[Path]) -> 
             sources.add(beside)
             _check_source(beside, each.dset_name, needed, missing)
     if covered < item.size:
-        raise InputError(
-            f"{place}: {item.size - covered} of its {item.size} numbers have no source; HDF5 would give zeros"
-        )
+        problem = f"{place}: {item.size - covered} of its {item.size} numbers have no source; HDF5 would give zeros"
+        raise InputError(problem)
 
 
 def _check_source(path: Path, name: str, needed: int, missing: str) -> None:

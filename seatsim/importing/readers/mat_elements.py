@@ -11,7 +11,7 @@ import struct
 import zlib
 from collections.abc import Callable, Iterator
 from math import prod
-from typing import Any, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -110,10 +110,11 @@ class _Elements:
             return self._letters(parts[0], shape) if parts else np.empty(0, dtype=np.str_)
         if kind in _NUMERIC and parts:
             self.count(8 * prod(shape))
-            values: list[NDArray[Any]] = [self.numbers(part) for part in parts[: 2 if state & _COMPLEX else 1]]
+            values = [self.numbers(part) for part in parts[: 2 if state & _COMPLEX else 1]]
             if any(prod(shape) != len(each) for each in values):
                 raise ValueError(f"an array of {shape} has {len(values[0])} numbers")
-            return (values[0] if len(values) == 1 else values[0] + 1j * values[1]).reshape(shape, order="F")
+            whole = values[0] if len(values) == 1 else np.add(values[0], np.multiply(1j, values[1]))
+            return np.reshape(whole, shape, order="F")
         if kind == _CELLS:
             return self._arrays(parts, shape, depth)
         if kind in (_STRUCTURE, _OBJECT):

@@ -6,19 +6,21 @@ Objects of MATLAB, such as tables, are resolved by mat-io, which reads files of 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.importing.readers.hdf5 import open_checked
 from seatsim.importing.readers.mat_elements import AnyArray, Resolve, read_variables
 from seatsim.importing.readers.reading import HDF5, USER_BLOCK, need
 from seatsim.importing.signals import TIME, in_seconds
 from seatsim.schema.bounds import BYTES_OF_PART, LEAST, check_made
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Value: TypeAlias = "AnyArray | str | dict[str, Value] | list[Value] | None"
 """Numbers, a text, a structure, cells or structures of many; None for what is none of these."""
@@ -82,7 +84,7 @@ def _subsystem(held: AnyArray, order: str) -> Any:
     class Bounded(base):  # type: ignore[misc, valid-type]
         left = _MOST_OBJECTS
 
-        def load_opaque_object(self, metadata: Any, type_system: Any, classname: Any = None) -> object:
+        def load_opaque_object(self, metadata: object, type_system: object, classname: object = None) -> object:
             self.left -= 1
             if self.left < 0:
                 raise ValueError(f"its objects hold each other more than {_MOST_OBJECTS} times")
@@ -96,7 +98,7 @@ def _subsystem(held: AnyArray, order: str) -> Any:
     return subsystem
 
 
-def _check_reference(numbers: Any) -> None:
+def _check_reference(numbers: object) -> None:
     """Raise ValueError where an array states more objects than it has numbers."""
     if isinstance(numbers, np.ndarray) and numbers.dtype.kind == "u" and numbers.size > 2:
         flat = numbers.ravel()
@@ -127,7 +129,7 @@ class _Plain:
         properties = getattr(value, "properties", None)  # of an object of a class that mat-io does not know
         return self.of(properties) if isinstance(properties, dict) else value if isinstance(value, str) else None
 
-    def _of_array(self, array: NDArray[Any]) -> Value:
+    def _of_array(self, array: AnyArray) -> Value:
         """Return numbers as an array, and what is one text or structure as it is, not as a list."""
         check_made(array.nbytes, self.size)  # an empty array may state any dimensions
         flat, kind = array.ravel(order="F"), array.dtype.kind
@@ -144,12 +146,11 @@ class _Plain:
             return None
         return several[0] if len(several) == 1 else several
 
-    def _of_table(self, frame: Any) -> dict[str, Value]:
+    def _of_table(self, frame: pd.DataFrame) -> dict[str, Value]:
         """Return the columns of a table, with its times in s if it has such, and its units by column."""
         columns: dict[str, Value] = {TIME: in_seconds(frame.index.to_numpy())} if frame.index.dtype.kind in "Mm" else {}
         columns |= {str(name): self.of(frame[name].to_numpy()) for name in frame}
-        stated: Mapping[str, Any] = frame.attrs
-        units: list[Any] = next((stated[key] for key in _UNITS_OF_TABLE if key in stated), [])
+        units: Sequence[object] = next((frame.attrs[key] for key in _UNITS_OF_TABLE if key in frame.attrs), ())
         if len(units) == len(frame.columns):
             columns["units"] = {str(name): str(unit) for name, unit in zip(frame, units, strict=True)}
         return columns

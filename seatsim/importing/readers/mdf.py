@@ -9,13 +9,17 @@ import zlib
 from collections.abc import Hashable, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from seatsim.importing.readers.reading import TextLayout, need
 from seatsim.importing.signals import Channels, DataFile, Signal, note_left_out
 from seatsim.schema.bounds import Part, check_made, check_parts
+
+if TYPE_CHECKING:
+    from asammdf import MDF
+    from asammdf.blocks.mdf_common import Group
 
 _BEGIN = 64
 """Address of the first block."""
@@ -60,14 +64,14 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     return DataFile(path, "", gathered.groups(), note_left_out("channels that hold no single numbers", left_out))
 
 
-def _bytes_of(group: Any) -> int:
+def _bytes_of(group: Group) -> int:
     """Return how many bytes the rows of a group make, as they stand and as numbers."""
     stated = group.channel_group
     size = stated.samples_byte_nr + getattr(stated, "invalidation_bytes_nr", 0)
     return int(stated.cycles_nr) * max(int(size), 8 * len(group.channels))
 
 
-def _check_places(group: Any, size: int) -> None:
+def _check_places(group: Group, size: int) -> None:
     """Raise ValueError where rows lie beyond the file, or a channel beyond its rows: asammdf would read on there."""
     stated = group.channel_group
     rows, held = stated.cycles_nr * stated.samples_byte_nr, sum(block.original_size for block in group.data_blocks)
@@ -86,7 +90,7 @@ def _check_places(group: Any, size: int) -> None:
             raise ValueError(f"channel {channel.name} has its marks of invalid values beyond the end of its rows")
 
 
-def _close(file: Any) -> None:
+def _close(file: MDF) -> None:
     """Close what there is of a file."""
     with suppress(AttributeError):
         file.close()
@@ -122,9 +126,8 @@ def _check_kinds(content: bytes, kind: bytes, links: Sequence[int], before: int)
     """Raise ValueError where a link leads to a block of another kind, whose letters come after `before` others."""
     for link, wanted in zip(links, _LEADS_TO.get(kind, ()), strict=False):
         if link and content[link + before : link + before + 2] != wanted:
-            raise ValueError(
-                f"a block {kind.decode()} leads to address {link}, where no block {wanted.decode()} begins"
-            )
+            problem = f"a block {kind.decode()} leads to address {link}, where no block {wanted.decode()} begins"
+            raise ValueError(problem)
 
 
 def _unpacked(content: bytes, address: int) -> int:

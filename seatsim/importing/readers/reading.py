@@ -121,9 +121,8 @@ def need(module: str, kind: str) -> ModuleType:
     try:
         return import_module(module)
     except ImportError as error:
-        raise InputError(
-            f'{kind} is read by {module.partition(".")[0]}; install it with: pip install "seatsim[formats]"'
-        ) from error
+        problem = f'{kind} is read by {module.partition(".")[0]}; install it with: pip install "seatsim[formats]"'
+        raise InputError(problem) from error
 
 
 def _content(path: Path) -> bytes:

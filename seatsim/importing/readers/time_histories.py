@@ -11,7 +11,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
-from typing import cast
+from typing import TypeAlias
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.units import DIMENSIONS, conversion
 
+_DataSet: TypeAlias = Mapping[str, "float | str | Array"]
 _FUNCTION = 58
 """Type of a data set that is a function."""
 _FUNCTIONS = """a general function, a time response, an auto spectrum, a cross spectrum, a frequency response,
@@ -53,7 +54,7 @@ def read_uff(path: Path, content: bytes, layout: TextLayout) -> DataFile:
         sets = pyuff.UFF(file.name)
         kinds = [int(kind) for kind in sets.get_set_types()]
         for index, kind in enumerate(kinds):
-            held = cast("Mapping[str, object]", sets.read_sets(index)) if kind == _FUNCTION else {}
+            held = sets.read_sets(index) if kind == _FUNCTION else {}
             reason = _why_not(kind, held)
             if reason:
                 others.append(f"data set {index + 1} is {reason}")
@@ -67,20 +68,20 @@ def read_uff(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     return DataFile(path, "", gathered.groups(), note_left_out("left out, as they are no responses over time", others))
 
 
-def _why_not(kind: int, held: Mapping[str, object]) -> str:
+def _why_not(kind: int, held: _DataSet) -> str:
     """Return what a data set is if it is no response over time, else an empty text."""
     if kind != _FUNCTION:
         return f"no function, but of type {kind}"
-    function, axis = (int(cast("int", held[key]) or 0) for key in ("func_type", "abscissa_spec_data_type"))
+    function, axis = (int(held[key] or 0) for key in ("func_type", "abscissa_spec_data_type"))
     if function not in _OVER_TIME:
         return _FUNCTIONS[function] if 0 < function < len(_FUNCTIONS) else f"a function of type {function}"
     return "" if axis in _TIME_AXIS else f"a function over {str(held['abscissa_axis_lab']).strip() or axis}"
 
 
-def _signal(place: str, held: Mapping[str, object]) -> tuple[Signal, Array]:
+def _signal(place: str, held: _DataSet) -> tuple[Signal, Array]:
     """Return a channel and its times in s."""
     values, times = _array(held, "data"), _array(held, "x")
-    stated = int(cast("int", held["num_pts"]))
+    stated = int(held["num_pts"])
     if min(len(values), len(times)) < stated:
         raise InputError(f"{place}: has {len(values)} of {stated} values; the file is truncated: export it again")
     if len(values) >= stated + _OF_LINE:
@@ -92,12 +93,12 @@ def _signal(place: str, held: Mapping[str, object]) -> tuple[Signal, Array]:
     return Signal(name or node, unit, values[:stated]), of_time * times[:stated]
 
 
-def _unit(held: Mapping[str, object], key: str) -> str:
+def _unit(held: _DataSet, key: str) -> str:
     unit = str(held.get(key, "")).strip()
     return "" if unit.lower() in _NONE else unit
 
 
-def _array(held: Mapping[str, object], key: str) -> Array:
+def _array(held: _DataSet, key: str) -> Array:
     return np.real(np.asarray(held[key])).astype(np.float64)
 
 
@@ -108,13 +109,11 @@ def read_rpc(path: Path, content: bytes, layout: TextLayout) -> DataFile:
         InputError: a keyword is missing, the numbers are of an unknown kind, or there are fewer than stated.
     """
     header = _header(path, content)
-    count, frames, per_frame, per_group = (
-        int(header[key]) for key in ("CHANNELS", "FRAMES", "PTS_PER_FRAME", "PTS_PER_GROUP")
-    )
+    keys = ("CHANNELS", "FRAMES", "PTS_PER_FRAME", "PTS_PER_GROUP")
+    count, frames, per_frame, per_group = (int(header[key]) for key in keys)
     if min(count, frames, per_frame, per_group) < 1:
-        raise InputError(
-            f"{path}: states {count} channels of {frames} frames of {per_frame} points; each is at least 1"
-        )
+        problem = f"{path}: states {count} channels of {frames} frames of {per_frame} points; each is at least 1"
+        raise InputError(problem)
     kind, order = header.get("DATA_TYPE", "SHORT_INTEGER"), header.get("FORMAT", "BINARY")
     if kind not in _TYPES or order not in _ORDERS:
         permitted = f"{', '.join(_TYPES)} in {', '.join(_ORDERS)}"
@@ -122,15 +121,12 @@ def read_rpc(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     values = np.frombuffer(content[int(header["NUM_HEADER_BLOCKS"]) * _BLOCK :], dtype="u1")
     table = _demultiplex(path, values, _ORDERS[order] + _TYPES[kind], (count, frames * per_frame, per_group))
     scales = [_scale(header, number, kind) for number in range(1, count + 1)]
-    signals = tuple(
-        Signal(
-            header.get(f"DESC.CHAN_{number}", f"channel {number}"), header.get(f"UNITS.CHAN_{number}", ""), scale * row
-        )
-        for number, (scale, row) in enumerate(zip(scales, table, strict=True), 1)
-    )
     kept, notes = _kept(table, per_frame)
-    signals = tuple(signal._replace(values=signal.values[:kept]) for signal in signals)
-    return DataFile(path, "", (Group("", signals, 1.0 / float(header["DELTA_T"])),), notes)
+    signals = []
+    for number, (scale, row) in enumerate(zip(scales, table, strict=True), 1):
+        name = header.get(f"DESC.CHAN_{number}", f"channel {number}")
+        signals.append(Signal(name, header.get(f"UNITS.CHAN_{number}", ""), scale * row[:kept]))
+    return DataFile(path, "", (Group("", tuple(signals), 1.0 / float(header["DELTA_T"])),), notes)
 
 
 def _kept(table: Array, per_frame: int) -> tuple[int, tuple[str, ...]]:

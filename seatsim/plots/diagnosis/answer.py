@@ -33,7 +33,8 @@ STAGES: dict[Key, Entry] = {
 
 def select_stages(diagnosis: Diagnosis) -> list[Key]:
     """Return the gaps that are shown, in the order of the diagnosis; without effects `after` is that of the refit."""
-    return ["before", "calibrated", *(["after"] if diagnosis.selected else []), "floor"]  # type: ignore[list-item]
+    after: list[Key] = ["after"] if diagnosis.selected else []
+    return ["before", "calibrated", *after, "floor"]
 
 
 def read_gap(gaps: Gaps, key: Key, channel: str) -> float | None:
@@ -49,9 +50,8 @@ def plot_gaps(diagnosis: Diagnosis) -> Figure | None:
         return None
     names, keys = ["overall", *channels], select_stages(diagnosis)
     rows = [[read_gap(diagnosis.gap, key, name) or 0.0 for key in keys] for name in names]
-    return _draw_gaps(
-        "Gap of each channel, before and after", names, [STAGES[key] for key in keys], rows, " of held-out runs"
-    )
+    stages = [STAGES[key] for key in keys]
+    return _draw_gaps("Gap of each channel, before and after", names, stages, rows, " of held-out runs")
 
 
 def plot_gap(found: Gap) -> Figure:
@@ -68,9 +68,8 @@ def _draw_gaps(
     """Return a figure with the gaps of each name, one for each stage."""
     known = [100 * value for row in rows for value in row if np.isfinite(value) and value > SMALLEST]
     # A noise floor that nobody stated has no mark, and none in the legend.
-    legend = [
-        stage for stage, values in zip(stages, zip(*rows, strict=True), strict=True) if max(np.nan_to_num(values)) > 0
-    ]
+    columns = zip(stages, zip(*rows, strict=True), strict=True)
+    legend = [stage for stage, values in columns if max(np.nan_to_num(values)) > 0]
     shown = [name.replace("_", " ") for name in names]
     note = f"RMS of measured less simulated over the spread of the signal{where}; further left is better."
     figure, [[axes]] = make_page(title, note, Grid((ROW * len(names) + 0.15,), left=measure_names(shown)), legend)
@@ -83,10 +82,9 @@ def _draw_gaps(
         for stage, value in seen:
             # The refit is hollow, so that what lies behind it is seen.
             face = "1.0" if stage.mark == "D" else stage.colour
-            axes.plot(
-                [value], [row], linestyle="", marker=stage.mark, markeredgecolor=stage.colour, markerfacecolor=face,
-                markersize=13 if stage.mark == "|" else 7, markeredgewidth=2 if stage.mark in "|D" else 1, zorder=3,
-            )  # fmt: skip
+            size, edge = 13 if stage.mark == "|" else 7, 2 if stage.mark in "|D" else 1
+            [mark] = axes.plot([value], [row], linestyle="", marker=stage.mark, markersize=size, zorder=3)
+            mark.set(markeredgecolor=stage.colour, markerfacecolor=face, markeredgewidth=edge)
     if not known:
         axes.text(0.5, 0.5, f"every gap is below {100 * SMALLEST:g} %", transform=axes.transAxes, ha="center")
     axes.axhline(0.5, color="0.8", linewidth=0.8)

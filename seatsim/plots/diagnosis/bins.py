@@ -28,11 +28,9 @@ def group_by_channel(traces: Sequence[Trace]) -> dict[str, list[Trace]]:
 
 def drop_start(trace: Trace) -> Trace:
     """Return a signal without the first second of its run, which no gap counts."""
-    part = slice(_first_row(trace.time), None)
-    return replace(
-        trace, time=trace.time[part], measured=trace.measured[part], nominal=trace.nominal[part],
-        calibrated=trace.calibrated[part], after=trace.after[part],
-    )  # fmt: skip
+    first = _first_row(trace.time)
+    signals = ("time", "measured", "nominal", "calibrated", "after")
+    return replace(trace, **{name: getattr(trace, name)[first:] for name in signals})
 
 
 def find_worst(diagnosis: Diagnosis) -> tuple[Trace, dict[str, Array]] | None:

@@ -69,14 +69,11 @@ def plot_discrepancy(diagnosis: Diagnosis) -> Figure | None:
     if found is None or len(found.values) < 2:
         return None
     shown = describe_channel(found.quantity, found.unit)
-    motion = {
-        name: values for name, values in diagnosis.evidence.motion.items()
-        if name in MOTIONS and len(values) == len(found.values) and varies(values)
-    }  # fmt: skip
-    page = style.make_page(
-        f"The missing {shown.words} of the {found.block}", "On the held-out run: over time, then over its motion.",
-        Grid((1.5,) * (1 + -(-len(motion) // 2)), columns=2, gap=(0.75, 0.6)),
-    )  # fmt: skip
+    known = {name: values for name, values in diagnosis.evidence.motion.items() if name in MOTIONS and varies(values)}
+    motion = {name: values for name, values in known.items() if len(values) == len(found.values)}
+    grid = Grid((1.5,) * (1 + -(-len(motion) // 2)), columns=2, gap=(0.75, 0.6))
+    title = f"The missing {shown.words} of the {found.block}"
+    page = style.make_page(title, "On the held-out run: over time, then over its motion.", grid)
     first, second, *panels = page.list_panels(2 + len(motion))
     second.remove()
     box = first.get_position()

@@ -61,17 +61,15 @@ def plot_signals(diagnosis: Diagnosis) -> dict[str, Figure]:
 
 def plot_pairs(found: Gap, pairs: Mapping[str, ReplayedPair]) -> dict[str, Figure]:
     """Return a picture of each channel of a gap, the channel with the largest gap first."""
-    spreads = {
-        name: float(np.std(np.concatenate([pair.measured[name] for pair in pairs.values() if name in pair.measured])))
-        for name in found.channels
-    }
-    traces = [
-        Trace(run, name, pair.units[name], found.floor.channels[name] * spreads[name], pair.time, pair.measured[name],
-              *[pair.simulated[name]] * 3)
-        for run, pair in pairs.items() for name in found.channels if name in pair.measured
-    ]  # fmt: skip
-    simulated = NOMINAL._replace(label="simulated", dashes="-")
-    return _plot_channels(traces, [Simulated(simulated, lambda trace: trace.nominal)])
+    traces = []
+    for name in found.channels:
+        recorded = {run: pair for run, pair in pairs.items() if name in pair.measured}
+        spread = float(np.std(np.concatenate([pair.measured[name] for pair in recorded.values()])))
+        for run, pair in recorded.items():
+            noise, simulated = found.floor.channels[name] * spread, [pair.simulated[name]] * 3
+            traces.append(Trace(run, name, pair.units[name], noise, pair.time, pair.measured[name], *simulated))
+    look = NOMINAL._replace(label="simulated", dashes="-")
+    return _plot_channels(traces, [Simulated(look, lambda trace: trace.nominal)])
 
 
 def _plot_channels(traces: Sequence[Trace], lines: Sequence[Simulated]) -> dict[str, Figure]:
@@ -102,9 +100,8 @@ def _plot_channel(trace: Trace, group: Sequence[Trace], lines: Sequence[Simulate
     for [axes] in page.rows[2:]:
         left_edge, bottom, width, height = axes.get_position().bounds
         axes.set_position((left_edge, bottom, width, height * (1 - OWN_AXIS / GRID.heights[2])))
-        _draw_density(
-            axes, density, [MEASURED._replace(colour=GREY, width=1.2), *legend[1:]], shown, 2 * noise**2 * step
-        )
+        looks = [MEASURED._replace(colour=GREY, width=1.2), *legend[1:]]
+        _draw_density(axes, density, looks, shown, 2 * noise**2 * step)
     return page.figure
 
 

@@ -125,10 +125,8 @@ def _draw_panel(axes: Axes, panel: Panel, ranked: Sequence[str], colours: Mappin
     # The most comfortable one on top of those that it meets.
     for point in sorted(panel.points, key=lambda point: -point.comfort):
         axes.scatter(point.travel, point.comfort, s=150, color=colours[point.name], edgecolors="1.0", zorder=4)
-        axes.annotate(
-            str(ranked.index(point.name) + 1), (point.travel, point.comfort), color="1.0", fontsize=9, zorder=5,
-            fontweight="bold", ha="center", va="center_baseline",
-        )  # fmt: skip
+        number = axes.annotate(str(ranked.index(point.name) + 1), (point.travel, point.comfort), fontsize=9, zorder=5)
+        number.set(color="1.0", fontweight="bold", ha="center", va="center_baseline")
     style.set_title(axes, panel.title)
 
 

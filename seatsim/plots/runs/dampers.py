@@ -165,10 +165,8 @@ def _draw_samples(axes: Axes, velocity: np.ndarray, run: Run) -> None:
     every = -(-len(velocity) // _MOST_SAMPLES)
     force, current = run.history["damper_force"][::every], run.history["coil_current"][::every]
     changes = float(np.ptp(current)) > 0
-    dots = axes.scatter(
-        velocity[::every], force, s=7, linewidths=0, rasterized=True,
-        **({"c": current, "cmap": colormaps["viridis"]} if changes else {"color": style.COLOURS[0]}),
-    )  # fmt: skip
+    scale, colours = colormaps["viridis"] if changes else None, current if changes else style.COLOURS[0]
+    dots = axes.scatter(velocity[::every], force, s=7, c=colours, cmap=scale, linewidths=0, rasterized=True)
     if changes:
         axes.figure.colorbar(dots, cax=style.add_axes_beside(axes, 0.03, 0.025), label="coil current [A]")
 

@@ -42,13 +42,12 @@ def show_runs(runs: Sequence[Run]) -> list[Shown]:
     chosen = [_select_shown(part) for part in parts]
     names = [label_runs(part) for part in chosen]
     looks = {look.label: look for look in make_entries(list(dict.fromkeys(name for part in names for name in part)))}
-    return [
-        Shown(
-            scenarios[k] if len(parts) > 1 else "", make_title(part), shown, [looks[name] for name in names[k]],
-            f" {len(shown)} of {len(part)} runs are shown." if len(shown) < len(part) else "",
-        )
-        for k, (part, shown) in enumerate(zip(parts, chosen, strict=True))
-    ]  # fmt: skip
+    found = []
+    for part, shown, called in zip(parts, chosen, names, strict=True):
+        scenario = part[0].scenario.name if len(parts) > 1 else ""
+        omission = f" {len(shown)} of {len(part)} runs are shown." if len(shown) < len(part) else ""
+        found.append(Shown(scenario, make_title(part), shown, [looks[name] for name in called], omission))
+    return found
 
 
 def label_runs(runs: Sequence[Run], longest: int = LONGEST, without: str = "") -> list[str]:

@@ -6,17 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from seatsim.recordings.quality.damage import (
-    NOTABLE,
-    REGULAR,
-    Doubter,
-    doubt_dropouts,
-    doubt_spikes,
-    flat_tops,
-    is_fine,
-    plateaus,
-    quantum,
-)
+from seatsim.recordings.quality import damage
 from seatsim.recordings.quality.issue import Issue, RunUnderTest, is_at_rest, place_in_run
 from seatsim.recordings.recording import ACCELEROMETERS, MOTION
 from seatsim.schema.arrays import Array
@@ -127,13 +117,13 @@ def check_shapes(run: RunUnderTest) -> Iterator[Issue]:
     for channel, values in run.table.items():
         if channel in ("current_command", "command_voltage", "damper_temperature") or np.ptp(values) == 0.0:
             continue
-        is_sure = channel in MOTION and is_fine(run, channel)
-        for extreme, rows in flat_tops(values):
+        is_sure = channel in MOTION and damage.is_fine(run, channel)
+        for extreme, rows in damage.flat_tops(values):
             is_error = is_sure and rows > _CLIPPED * len(values)
             text = f"{rows} rows stand at its extreme {extreme:.4g}"
             cause = "it is clipped: widen its range" if is_sure else "it rests there, or is clipped: look at its range"
             yield run.issue("error" if is_error else "warning", "clipped", f"{text}; {cause}", channel)
-        if run.noise(channel) > quantum(values):
+        if run.noise(channel) > damage.quantum(values):
             yield from _held(run, channel, is_sure)
 
 
@@ -148,20 +138,20 @@ def check_damage(run: RunUnderTest) -> Iterator[Issue]:
     """Report dropouts of the channels that move, and spikes beyond what a switched current makes of them."""
     for channel in MOTION:
         if channel in run.table and np.ptp(run.table[channel]) > 0.0:
-            doubter, values = Doubter(channel, run.rate), run.table[channel]
-            found = [*doubt_dropouts(doubter, values, *plateaus(values))]
-            found += doubt_spikes(doubter, values, NOTABLE if channel in _STEADY else _BEYOND_SWITCHES)
+            doubter, values = damage.Doubter(channel, run.rate), run.table[channel]
+            found = [*damage.doubt_dropouts(doubter, values, *damage.plateaus(values))]
+            found += damage.doubt_spikes(doubter, values, damage.NOTABLE if channel in _STEADY else _BEYOND_SWITCHES)
             yield from place_in_run(run.name, found)
 
 
 def _held(run: RunUnderTest, channel: str, is_sure: bool) -> Iterator[Issue]:
-    lengths, starts = plateaus(run.table[channel])
+    lengths, starts = damage.plateaus(run.table[channel])
     longest, usual = int(np.argmax(lengths)), int(np.median(lengths))
     rows = slice(starts[longest], starts[longest] + lengths[longest])
     if is_sure and lengths[longest] > max(_STUCK * run.rate, 20) and _moves_beside(run, channel, rows):
         text = f"is stuck from {rows.start / run.rate:.3g} to {rows.stop / run.rate:.3g} s"
         yield run.issue("error", "stuck", f"{text}; cut the run there or repair the sensor", channel)
-    elif usual >= 2 and np.mean(lengths == usual) > REGULAR:
+    elif usual >= 2 and np.mean(lengths == usual) > damage.REGULAR:
         text = f"holds each value for {usual} rows; its own rate is lower: interpolate it"
         yield run.issue("warning", "held", text, channel)
 

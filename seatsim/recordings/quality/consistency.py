@@ -13,12 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.recordings.quality.issue import LATE, Issue, RunUnderTest, Severity, Table
-from seatsim.recordings.quality.relations import (
-    consistency_residuals,
-    filter_band,
-    find_delay,
-    is_within_reach,
-)
+from seatsim.recordings.quality.relations import consistency_residuals, filter_band, find_delay, is_within_reach
 from seatsim.recordings.recording import BENCH_CHANNELS, MOTION, SEAT_CHANNELS
 from seatsim.recordings.replay import LEFT_OUT, replay_table
 from seatsim.schema.arrays import Array
