@@ -41,8 +41,8 @@ def show_causes(diagnosis: Diagnosis, figures: Mapping[str, Figure]) -> list[Blo
     rows = []
     for cause in shown:
         meaning = format_sentence(describe_effect(cause.effect)) or UNKNOWN
-        figures = (format_percent(cause.probability), format_percent(cause.shrink))
-        rows.append((cause.effect, meaning, _list_parameters(cause), *figures))
+        shares = (format_percent(cause.probability), format_percent(cause.shrink))
+        rows.append((cause.effect, meaning, _list_parameters(cause), *shares))
     strong = [row for row, cause in enumerate(shown) if cause.effect in diagnosis.selected]
     head = "effect, what it is, parameters, probability, alone takes off the refitted gap"
     table = tabulate("The likely effects, their parameters ± one standard deviation", head, rows, 3, strong)
