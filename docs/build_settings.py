@@ -12,7 +12,6 @@ from pathlib import Path
 from seatsim.diagnosis.settings import DiagnosisSettings
 
 PAGE = Path(__file__).with_name("settings.md")
-BAR = r"\|"
 HEAD = """# Settings of a diagnosis
 
 Every threshold on which a [diagnosis](diagnosis_theory.md) rests. What is lost where it is raised or lowered, and how
@@ -32,7 +31,7 @@ diagnosis = seatsim.diagnose("recording_folder", settings=stricter)
 
 
 def show(value: object) -> str:
-    """Return a value as a table shows it: numbers short, several of them in a row."""
+    """Return a value as the page shows it: numbers short, several of them in a row."""
     if isinstance(value, tuple):
         return ", ".join(show(each) for each in value)
     return f"{value:g}" if isinstance(value, float) else str(value)
@@ -47,7 +46,7 @@ def stated(cls: type) -> dict[str, list[str]]:
             said = " ".join(ast.literal_eval(text.value).split())
             parts = re.fullmatch(r"(.+?)(?: \[(.+?)\])?\.(?: Trades off: (.+)\.)? Chosen: (.+)\.", said)
             assert parts, f"{cls.__name__}: {said}"
-            meaning, unit, *_ = parts.groups(default="-")
+            meaning, unit, *_ = parts.groups(default="")
             found[ast.unparse(field.target)] = [unit, meaning]
     return found
 
@@ -57,10 +56,8 @@ def tables() -> Iterator[str]:
     for group, settings in DiagnosisSettings()._asdict().items():
         cls = type(settings)
         yield f"\n## `{group}`\n\n{inspect.getdoc(cls)}\n"
-        yield "| name | value | unit | meaning |\n|---|---|---|---|"
-        for name, texts in stated(cls).items():
-            cells = [f"`{name}`", show(getattr(settings, name)), *texts]
-            yield f"| {' | '.join(cell.replace('|', BAR) for cell in cells)} |"
+        for name, (unit, meaning) in stated(cls).items():
+            yield f"- `{name}` = {show(getattr(settings, name))}{unit and f' {unit}'}: {meaning}"
 
 
 def pages() -> dict[str, str]:
