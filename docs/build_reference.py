@@ -33,11 +33,18 @@ describe NAME` prints in a terminal. Built from the code by `python docs/build_r
 
 DAMPERS = """
 The pictures show the force in a sine test with the default parameters, at no current, half and the whole current of the
-model's range. Defaults of UTFSM are fitted to measured sine tests of the damper in the public repository
-DanielMaurelE/vRTHS_AMBC_MRdamper (MIT). The word in brackets says how far a model's equation is that of its source:
+model's range. Defaults of UTFSM are fitted to measured sine tests, steady cycles of 2-25 mm and 0.5-5 Hz at 0-1 A with
+the offset removed, of the damper in the public repository DanielMaurelE/vRTHS_AMBC_MRdamper (MIT). The word in brackets
+says how far a model's equation is that of its source:
 """
 SHOWN = "\nPictures, defaults of UTFSM, and how well each equation is known: [dampers](../reference.md#dampers).\n"
-FITTED = re.compile(r"defaults fitted by us to measured sine tests of the damper of UTFSM \(Chile, [^)]*\)")
+ONCE = (
+    (r"defaults fitted by us to measured sine tests of the damper of UTFSM \(Chile, [^)]*\)", "defaults of UTFSM"),
+    (r"derived by us \(see\s+`pieces.UTFSM`\)", "of UTFSM"),
+    (r"derived by us from measurement, steady cycles of 2-25 mm and 0.5-5 Hz at 0-1 A, offset\s+removed", "UTFSM"),
+    (r"\s*Valid\s+to [\d.]+ m/s(\s+and\s+[\d.]+\s+A)?\.", ""),
+)
+"""What the texts of many dampers say alike, and what a page says of it: `DAMPERS`, and each range of the data."""
 SEVERAL = 4
 """Number of entries of a page from which a parameter that they have alike is described once, at its head."""
 
@@ -84,16 +91,14 @@ def list_chapters(kind: str) -> Iterator[Chapter]:
 
 
 def write_index(kind: str, chapters: list[Chapter]) -> str:
-    """Return the section of a kind: of dampers a list for each family, of the other kinds the links to their page."""
+    """Return the section of a kind: the links to its names, those of dampers by family and with their confidence."""
     lines = [f"\n## {kind.capitalize()}s\n"]
     if kind != "damper":
         return "\n".join([*lines, *(", ".join(map(chapter.link, chapter.names)) for chapter in chapters)]) + "\n"
     lines += [DAMPERS.lstrip(), *(f"- {word}: {meaning}" for word, meaning in CONFIDENCE.items())]
     for chapter in chapters:
-        lines += [f"\n### {chapter.title}\n"]
-        for name in chapter.names:
-            confidence = find_confidence(registry.find(kind, name))
-            lines.append(f"- {chapter.link(name)} ({confidence}): {escape(find_page(name).title)}")
+        known = [f"{chapter.link(name)} ({find_confidence(registry.find(kind, name))})" for name in chapter.names]
+        lines += [f"\n### {chapter.title}\n", ", ".join(known)]
     return "\n".join(lines) + "\n"
 
 
@@ -117,11 +122,18 @@ def write_entry(page: Page, common: Set[str]) -> str:
     parts += [line for line in parameters.values() if line not in common] or ["No parameters.\n"] * (not parameters)
     if shared := [f"`{name}`" for name, line in parameters.items() if line in common]:
         parts.append(f"- {', '.join(shared)}: see above")
-    facts = [f"Source: {FITTED.sub('defaults of UTFSM', page.source)}"] * bool(page.source)
+    facts = [f"Source: {say_once(page.source)}"] * bool(page.source)
     # The index states the confidence of all, for comparison.
     facts += [shorten(fact) for fact in page.facts if not fact.startswith("Confidence")]
     parts += ["", f"{'. '.join(map(escape, facts))}."] * bool(facts)
     return "\n".join([*parts, ""])
+
+
+def say_once(text: str) -> str:
+    """Return a text without what the pages say once for all dampers."""
+    for said, instead in ONCE:
+        text = re.sub(said, instead, text)
+    return text
 
 
 def shorten(fact: str) -> str:
@@ -133,7 +145,7 @@ def shorten(fact: str) -> str:
 
 def write_text(page: Page) -> Iterator[str]:
     """Yield the paragraphs of a docstring; those that are indented are equations of a damper, or stay as they are."""
-    for paragraph in page.text.split("\n\n"):
+    for paragraph in say_once(page.text).split("\n\n"):
         if not paragraph.startswith("    "):
             yield escape(paragraph) + "\n"
         elif page.kind == "damper":
