@@ -39,14 +39,15 @@ says how far a model's equation is that of its source:
 """
 SHOWN = "\nPictures, defaults of UTFSM, and how well each equation is known: [dampers](../reference.md#dampers).\n"
 ONCE = (
-    (r"defaults fitted by us to measured sine tests of the damper of UTFSM \(Chile, [^)]*\)", "defaults of UTFSM"),
+    (r"; defaults fitted by us to measured sine tests of the damper of UTFSM \(Chile, [^)]*\)", ""),
     (r"derived by us \(see\s+`pieces.UTFSM`\)", "of UTFSM"),
     (r"derived by us from measurement, steady cycles of 2-25 mm and 0.5-5 Hz at 0-1 A, offset\s+removed", "UTFSM"),
     (r"\s*Valid\s+to [\d.]+ m/s(\s+and\s+[\d.]+\s+A)?\.", ""),
 )
 """What the texts of many dampers say alike, and what a page says of it: `DAMPERS`, and each range of the data."""
+RANGE = "Range of the data"
 SEVERAL = 4
-"""Number of entries of a page from which a parameter that they have alike is described once, at its head."""
+"""Number of entries of a page from which a parameter or range that they have alike is stated once, at its head."""
 
 
 class Chapter(NamedTuple):
@@ -103,18 +104,21 @@ def write_index(kind: str, chapters: list[Chapter]) -> str:
 
 
 def write_chapter(chapter: Chapter) -> str:
-    """Return the text of one page; a parameter that several names have alike is described once, before them."""
+    """Return the text of one page; what several names have alike, parameters and a range, is stated before them."""
     entries = [find_page(name) for name in chapter.names]
     counted = Counter(line for page in entries for line in list_parameters(page).values())
     common = {line for line, count in counted.items() if count >= SEVERAL}
+    ranges = Counter(fact for page in entries for fact in page.facts if fact.startswith(RANGE))
+    usual = {fact for fact, count in ranges.most_common(1) if count >= SEVERAL}
     head = f"# {chapter.title}\n" + SHOWN * chapter.file.startswith("reference/dampers")
     if common:
         head += "\n" + "\n".join(["Parameters of several of them:\n", *sorted(common), ""])
-    return head + "".join(write_entry(page, common) for page in entries)
+    head += "".join(f"\n{shorten(fact)}, where none is stated.\n" for fact in usual)
+    return head + "".join(write_entry(page, common, usual) for page in entries)
 
 
-def write_entry(page: Page, common: Set[str]) -> str:
-    """Return the section of one name: words and equations, parameters, source and range."""
+def write_entry(page: Page, common: Set[str], usual: Set[str]) -> str:
+    """Return the section of one name: words and equations, parameters, source, and facts that are not the usual."""
     parts = [f"\n## {page.name}\n", *write_text(page)]
     if page.kind == "damper":
         parts.append(f"![loops of {page.name}](../{LOOPS}/{page.name}.svg)\n")
@@ -124,7 +128,7 @@ def write_entry(page: Page, common: Set[str]) -> str:
         parts.append(f"- {', '.join(shared)}: see above")
     facts = [f"Source: {say_once(page.source)}"] * bool(page.source)
     # The index states the confidence of all, for comparison.
-    facts += [shorten(fact) for fact in page.facts if not fact.startswith("Confidence")]
+    facts += [shorten(fact) for fact in page.facts if fact not in usual and not fact.startswith("Confidence")]
     parts += ["", f"{'. '.join(map(escape, facts))}."] * bool(facts)
     return "\n".join([*parts, ""])
 
@@ -138,7 +142,7 @@ def say_once(text: str) -> str:
 
 def shorten(fact: str) -> str:
     """Return a fact in fewer words: ranges by dots, a range of one value by this value."""
-    if not fact.startswith("Range of the data"):
+    if not fact.startswith(RANGE):
         return fact
     return re.sub(r"\b(\d+)\.\.\1\b", r"\1", re.sub(r"(?<=\d) to (?=-?\d)", "..", fact))
 
