@@ -112,7 +112,7 @@ def write_chapter(chapter: Chapter) -> str:
     usual = {fact for fact, count in ranges.most_common(1) if count >= SEVERAL}
     head = f"# {chapter.title}\n" + SHOWN * chapter.file.startswith("reference/dampers")
     if common:
-        head += "\n" + "\n".join(["Parameters of several of them:\n", *sorted(common), ""])
+        head += "\n" + "\n".join(["Parameters of several of them, which there stand by name:\n", *sorted(common), ""])
     head += "".join(f"\n{shorten(fact)}, where none is stated.\n" for fact in usual)
     return head + "".join(write_entry(page, common, usual) for page in entries)
 
@@ -125,7 +125,7 @@ def write_entry(page: Page, common: Set[str], usual: Set[str]) -> str:
     parameters = list_parameters(page)
     parts += [line for line in parameters.values() if line not in common] or ["No parameters.\n"] * (not parameters)
     if shared := [f"`{name}`" for name, line in parameters.items() if line in common]:
-        parts.append(f"- {', '.join(shared)}: see above")
+        parts.append(f"- {', '.join(shared)}")
     facts = [f"Source: {say_once(page.source)}"] * bool(page.source)
     # The index states the confidence of all, for comparison.
     facts += [shorten(fact) for fact in page.facts if fact not in usual and not fact.startswith("Confidence")]
