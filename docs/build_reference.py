@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections import Counter
+from collections.abc import Iterator, Mapping, Set
 from pathlib import Path
 from typing import NamedTuple
 
@@ -30,12 +31,23 @@ describe NAME` prints in a terminal. Built from the code by `python docs/build_r
 [Which damper, which law, which file?](choose.md)
 """
 
-SHOWN = """
+DAMPERS = """
 The pictures show the force in a sine test with the default parameters, at no current, half and the whole current of the
-model's range. Defaults of UTFSM are fitted to measured sine tests of the damper in the public repository
-DanielMaurelE/vRTHS_AMBC_MRdamper (MIT).
+model's range. Defaults of UTFSM are fitted to measured sine tests, steady cycles of 2-25 mm and 0.5-5 Hz at 0-1 A with
+the offset removed, of the damper in the public repository DanielMaurelE/vRTHS_AMBC_MRdamper (MIT). The word in brackets
+says how far a model's equation is that of its source:
 """
-FITTED = re.compile(r"defaults fitted by us to measured sine tests of the damper of UTFSM \(Chile, [^)]*\)")
+SHOWN = "\nPictures, defaults of UTFSM, and how well each equation is known: [dampers](../reference.md#dampers).\n"
+ONCE = (
+    (r"; defaults fitted by us to measured sine tests of the damper of UTFSM \(Chile, [^)]*\)", ""),
+    (r"derived by us \(see\s+`pieces.UTFSM`\)", "of UTFSM"),
+    (r"derived by us from measurement, steady cycles of 2-25 mm and 0.5-5 Hz at 0-1 A, offset\s+removed", "UTFSM"),
+    (r"\s*Valid\s+to [\d.]+ m/s(\s+and\s+[\d.]+\s+A)?\.", ""),
+)
+"""What the texts of many dampers say alike, and what a page says of it: `DAMPERS`, and each range of the data."""
+RANGE = "Range of the data"
+SEVERAL = 4
+"""Number of entries of a page from which a parameter or range that they have alike is stated once, at its head."""
 
 
 class Chapter(NamedTuple):
@@ -80,48 +92,64 @@ def list_chapters(kind: str) -> Iterator[Chapter]:
 
 
 def write_index(kind: str, chapters: list[Chapter]) -> str:
-    """Return the section of a kind: of dampers a table for each family, of the other kinds the links to their page."""
+    """Return the section of a kind: the links to its names, those of dampers by family and with their confidence."""
     lines = [f"\n## {kind.capitalize()}s\n"]
     if kind != "damper":
         return "\n".join([*lines, *(", ".join(map(chapter.link, chapter.names)) for chapter in chapters)]) + "\n"
-    lines += ["Confidence says how far a model's equation is that of its source:\n"]
-    lines += [f"- {word}: {meaning}" for word, meaning in CONFIDENCE.items()]
+    lines += [DAMPERS.lstrip(), *(f"- {word}: {meaning}" for word, meaning in CONFIDENCE.items())]
     for chapter in chapters:
-        lines += [f"\n### {chapter.title}\n", "| name | is | confidence |", "|---|---|---|"]
-        for name in chapter.names:
-            confidence = find_confidence(registry.find(kind, name))
-            lines.append(f"| {chapter.link(name)} | {cell(find_page(name).title)} | {confidence} |")
+        known = [f"{chapter.link(name)} ({find_confidence(registry.find(kind, name))})" for name in chapter.names]
+        lines += [f"\n### {chapter.title}\n", ", ".join(known)]
     return "\n".join(lines) + "\n"
 
 
 def write_chapter(chapter: Chapter) -> str:
-    """Return the text of one page."""
-    head = f"# {chapter.title}\n"
-    if chapter.file.startswith("reference/dampers"):
-        head += SHOWN
-    return head + "".join(write_entry(find_page(name)) for name in chapter.names)
+    """Return the text of one page; what several names have alike, parameters and a range, is stated before them."""
+    entries = [find_page(name) for name in chapter.names]
+    counted = Counter(line for page in entries for line in list_parameters(page).values())
+    common = {line for line, count in counted.items() if count >= SEVERAL}
+    ranges = Counter(fact for page in entries for fact in page.facts if fact.startswith(RANGE))
+    usual = {fact for fact, count in ranges.most_common(1) if count >= SEVERAL}
+    head = f"# {chapter.title}\n" + SHOWN * chapter.file.startswith("reference/dampers")
+    if common:
+        head += "\n" + "\n".join(["Parameters of several of them, which there stand by name:\n", *sorted(common), ""])
+    head += "".join(f"\n{shorten(fact)}, where none is stated.\n" for fact in usual)
+    return head + "".join(write_entry(page, common, usual) for page in entries)
 
 
-def write_entry(page: Page) -> str:
-    """Return the section of one name: words and equations, parameters, source and range."""
+def write_entry(page: Page, common: Set[str], usual: Set[str]) -> str:
+    """Return the section of one name: words and equations, parameters, source, and facts that are not the usual."""
     parts = [f"\n## {page.name}\n", *write_text(page)]
     if page.kind == "damper":
         parts.append(f"![loops of {page.name}](../{LOOPS}/{page.name}.svg)\n")
-    cls = RECORDS[page.name] if page.kind == "section" else registry.find(page.kind, page.name)
-    parts.append("\n".join(write_parameters(cls, page.keys)) if page.keys else "No parameters.\n")
-    facts = [f"Source: {FITTED.sub('defaults of UTFSM', page.source)}"] * bool(page.source) + page.facts
-    return "\n".join([*parts, *(f"- {shorten(escape(fact))}" for fact in facts), ""])
+    parameters = list_parameters(page)
+    parts += [line for line in parameters.values() if line not in common] or ["No parameters.\n"] * (not parameters)
+    if shared := [f"`{name}`" for name, line in parameters.items() if line in common]:
+        parts.append(f"- {', '.join(shared)}")
+    facts = [f"Source: {say_once(page.source)}"] * bool(page.source)
+    # The index states the confidence of all, for comparison.
+    facts += [shorten(fact) for fact in page.facts if fact not in usual and not fact.startswith("Confidence")]
+    parts += ["", f"{'. '.join(map(escape, facts))}."] * bool(facts)
+    return "\n".join([*parts, ""])
+
+
+def say_once(text: str) -> str:
+    """Return a text without what the pages say once for all dampers."""
+    for said, instead in ONCE:
+        text = re.sub(said, instead, text)
+    return text
 
 
 def shorten(fact: str) -> str:
-    """Return a fact in fewer words: a link in place of what a word for confidence means, ranges by dots."""
-    fact = re.sub(r"^(Confidence: )(\w+);.*", r"\1[\2](../reference.md#dampers)", fact)
-    return re.sub(r"(?<=\d) to (?=-?\d)", "..", fact) if fact.startswith("Range of the data") else fact
+    """Return a fact in fewer words: ranges by dots, a range of one value by this value."""
+    if not fact.startswith(RANGE):
+        return fact
+    return re.sub(r"\b(\d+)\.\.\1\b", r"\1", re.sub(r"(?<=\d) to (?=-?\d)", "..", fact))
 
 
 def write_text(page: Page) -> Iterator[str]:
     """Yield the paragraphs of a docstring; those that are indented are equations of a damper, or stay as they are."""
-    for paragraph in page.text.split("\n\n"):
+    for paragraph in say_once(page.text).split("\n\n"):
         if not paragraph.startswith("    "):
             yield escape(paragraph) + "\n"
         elif page.kind == "damper":
@@ -130,44 +158,47 @@ def write_text(page: Page) -> Iterator[str]:
             yield f"```text\n{paragraph}\n```\n"
 
 
-def write_parameters(cls: type, keys: list[FieldSpecification]) -> Iterator[str]:
-    """Yield the lines of the table of parameters."""
-    yield "| parameter | unit | default (a fit's start) | range | meaning |\n|---|---|---|---|---|"
-    for key in keys:
-        default = show(key.default)
-        if key.required:
-            default = "required" if key.default is None else f"required ({default})"
-        yield f"| {' | '.join([f'`{key.name}`', key.unit, default, show_range(cls, key.name), cell(key.meaning)])} |"
-    yield ""
+def list_parameters(page: Page) -> dict[str, str]:
+    """Return a line on each parameter: its name with its unit and default, what is permitted, and its meaning."""
+    cls = RECORDS[page.name] if page.kind == "section" else registry.find(page.kind, page.name)
+    return {key.name: write_parameter(cls, key) for key in page.keys}
+
+
+def write_parameter(cls: type, key: FieldSpecification) -> str:
+    """Return a line such as `- gap [m] = 0.01 (0..0.02): travel without force after a reversal`."""
+    unit = f" [{key.unit}]" * (key.unit not in {"", "-"})
+    default = show(key.default)
+    if not key.required:
+        value = f" = {default}" * bool(default)
+    else:
+        value = ", required" + f", a fit starts from {default}" * (key.default is not None)
+    permitted = show_range(cls, key)
+    said = escape(f" ({permitted})" * bool(permitted) + f": {key.meaning}" * bool(key.meaning))
+    return f"- `{key.name}`{unit}{value}{said}"
 
 
 def show(value: object) -> str:
-    """Return a default as a table shows it."""
+    """Return a default as a page shows it."""
     if isinstance(value, float):
         return f"{value:g}"
     if isinstance(value, tuple):
         return ", ".join(map(show, value))
-    return f"{len(value)} keys" if isinstance(value, Mapping) else cell(str(value))
+    return f"{len(value)} keys" if isinstance(value, Mapping) else str(value)
 
 
-def show_range(cls: type, name: str) -> str:
-    """Return what is permitted: words, or the bounds of a number."""
-    words = choices(cls, name)
+def show_range(cls: type, key: FieldSpecification) -> str:
+    """Return what is permitted: words that the meaning does not state, or the bounds of a number; else nothing."""
+    words = choices(cls, key.name)
     if words and all(isinstance(word, str) for word in words):
-        return ", ".join(words)
-    low, high = bounds(cls, name)
+        return ", ".join(words) * any(word not in key.meaning for word in words)
+    low, high = bounds(cls, key.name)
     if math.isinf(low):
-        return "any" if math.isinf(high) else f"<= {high:g}"
+        return "" if math.isinf(high) else f"<= {high:g}"
     open_below = low - round(low, 8) == SLIGHTLY
     least = f"> {round(low, 8):g}" if open_below else f">= {low:g}"
     if math.isinf(high):
         return least
     return f"{least}, <= {high:g}" if open_below else f"{low:g}..{high:g}"
-
-
-def cell(text: str) -> str:
-    """Return a text as a cell of a table."""
-    return escape(" ".join(text.split())).replace("|", r"\|")
 
 
 def escape(text: str) -> str:

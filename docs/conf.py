@@ -11,6 +11,7 @@ from docutils.nodes import SkipNode, math, math_block
 from docutils.utils.math import MathError
 from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.application import Sphinx
+from sphinx.pycode import ModuleAnalyzer
 from sphinx.util.logging import getLogger
 from sphinx.writers.html5 import HTML5Translator
 
@@ -72,13 +73,19 @@ def write_docstring_as_text(
 
 
 def skip_plain_field(app: Sphinx, kind: str, name: str, value: object, skip: bool, options: object) -> bool | None:
-    """Leave out fields of named tuples that say no more than their type, which stands in the signature."""
-    return True if (value.__doc__ or "").startswith("Alias for field number") else None
+    """Leave out fields of named tuples without a text of their own: their types stand in the signature."""
+    if not (value.__doc__ or "").startswith("Alias for field number"):
+        return None
+    described = ModuleAnalyzer.for_module(app.env.temp_data["autodoc:module"]).find_attr_docs()
+    return None if any(field == name for _, field in described) else True
 
 
 def name_fields(app: Sphinx, kind: str, name: str, value: type, *_: object) -> tuple[str, None] | None:
-    """Show of a class the names of its fields; their types and meanings are long, and stand in its docstring."""
-    return (f"({', '.join(inspect.signature(value).parameters)})", None) if kind == "class" else None
+    """Show of a class the names and defaults of its fields; their types are long, and stand in its docstring."""
+    if kind != "class":
+        return None
+    fields = inspect.signature(value).parameters.values()
+    return f"({', '.join(str(field.replace(annotation=field.empty)) for field in fields)})", None
 
 
 def write_llms_file(app: Sphinx, error: Exception | None) -> None:
