@@ -55,7 +55,8 @@ def find_cycles(displacement: Array) -> list[Cycle]:
     centre, amplitude = 0.5 * (low + high), 0.5 * (high - low)
     if amplitude <= 0.0:
         return []
-    side = (displacement > centre + _BAND * amplitude).astype(int) - (displacement < centre - _BAND * amplitude)
+    above, below = displacement > centre + _BAND * amplitude, displacement < centre - _BAND * amplitude
+    side = above.astype(np.int8) - below
     outside = np.flatnonzero(side)
     upward = np.flatnonzero((side[outside][:-1] < 0) & (side[outside][1:] > 0))
     instants = [_passage(displacement, outside[k], outside[k + 1], centre) for k in upward]
@@ -63,9 +64,10 @@ def find_cycles(displacement: Array) -> list[Cycle]:
 
 
 def _passage(x: Array, first: int, last: int, centre: float) -> float:
-    rows = np.arange(first, last + 1)
-    slope, start = np.polyfit(rows - first, x[first : last + 1], 1)
-    return float(np.clip(first + (centre - start) / slope, first, last)) if slope > 0.0 else 0.5 * (first + last)
+    part, middle = x[first : last + 1], 0.5 * (first + last)
+    rows = np.arange(first, last + 1) - middle
+    slope = float(rows @ part) / float(rows @ rows)
+    return float(np.clip(middle + (centre - np.mean(part)) / slope, first, last)) if slope > 0.0 else middle
 
 
 def _cycle(x: Array, first: float, last: float) -> Cycle:
@@ -105,14 +107,12 @@ def resample_loops(record: BenchRecord, cycles: Sequence[Cycle], drift: float) -
     samples = min(most, max(least, 2 * round(0.5 * length)))
     rows = np.arange(len(record.force), dtype=float)
     width = 2 * int(0.5 * length / samples) + 1
-    parts = [uniform_filter1d(y, width) for y in (record.displacement, record.velocity, record.force)]
-    loops = []
-    for cycle in cycles:
-        at = np.linspace(cycle.first, cycle.last, samples + 1)
-        x, v, force = (np.interp(at, rows, y) for y in parts)
-        time = (at - cycle.first) / record.rate
-        loops.append(SineTest(time, x, v, force - drift * (time - 0.5 * time[-1])))
-    return loops
+    at = np.linspace([cycle.first for cycle in cycles], [cycle.last for cycle in cycles], samples + 1, axis=1)
+    time = (at - at[:, :1]) / record.rate
+    measured = (record.displacement, record.velocity, record.force)
+    x, v, force = (np.interp(at, rows, uniform_filter1d(y, width)) for y in measured)
+    force -= drift * (time - 0.5 * time[:, -1:])
+    return [SineTest(*parts) for parts in zip(time, x, v, force, strict=True)]
 
 
 def find_drift(record: BenchRecord, cycles: Sequence[Cycle]) -> float:

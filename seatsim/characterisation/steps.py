@@ -68,7 +68,8 @@ def find_plateaus(current: Array, rate: float) -> list[_Plateau]:
     window = max(5, round(_WINDOW * rate))
     if span < _LEAST_RANGE or len(current) < 4 * window:
         return []
-    spread = np.std(np.lib.stride_tricks.sliding_window_view(current, window), axis=1)
+    mean, square = (_average_windows((current - current[0]) ** power, window) for power in (1, 2))
+    spread = np.sqrt(np.maximum(square - mean**2, 0.0))
     noise = float(np.median(np.abs(np.diff(current, 2)))) / _TO_DEVIATION
     flat = spread <= _FLAT * span + 2.0 * noise
     edges = np.flatnonzero(np.diff(np.concatenate([[0], flat.astype(int), [0]])))
@@ -81,6 +82,12 @@ def find_plateaus(current: Array, rate: float) -> list[_Plateau]:
             begin = found.pop().first
         found.append(_Plateau(begin, last, level))
     return found
+
+
+def _average_windows(values: Array, window: int) -> Array:
+    """Return the mean of every window of so many rows."""
+    total = np.concatenate([[0.0], np.cumsum(values)])
+    return np.asarray((total[window:] - total[:-window]) / window, dtype=float)
 
 
 def _onset(current: Array, before: _Plateau, after: _Plateau, commanded: bool) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
@@ -11,7 +11,7 @@ from seatsim.characterisation.rows import Row, group_rows, has_same_motion, summ
 from seatsim.characterisation.sheet import BenchSheet, LimitCheck, PeakForce
 from seatsim.characterisation.steps import find_plateaus, measure_responses
 from seatsim.characterisation.tabulate import WINDOW, make_sheet
-from seatsim.recordings.bench_tables import BenchRecord, load_bench, unused_columns
+from seatsim.recordings.bench_tables import BenchRecord, map_bench, note_unused
 from seatsim.schema.content import Form, Joined, show_record
 
 _SETTLED = 0.2
@@ -63,21 +63,47 @@ def _list_names(names: Sequence[str]) -> str:
 
 
 def characterise(
-    data: str | Path | Sequence[BenchRecord], name: str = "", source: str = "", window: float = WINDOW
+    data: str | Path | Sequence[BenchRecord],
+    name: str = "",
+    source: str = "",
+    window: float = WINDOW,
+    pattern: str = "",
+    progress: Callable[[str], object] = str,
 ) -> Characterisation:
     """Return what bench records, or the tables of a folder, show before anything is modelled.
 
-    `window` is the part of the stroke over which the force at the peak speed is averaged.
+    `window` is the part of the stroke over which the force at the peak speed is averaged; `pattern` is that of
+    `seatsim.recordings.bench_tables.map_bench`; `progress` is called with what is done.
 
     A record whose current rests at several levels, with steady cycles at one of them, has a row for each such stretch;
     any other record has one row.
     """
-    records = load_bench(data) if isinstance(data, str | Path) else data
-    name = name or (Path(data).stem if isinstance(data, str | Path) else records[0].name)
-    rows = [row for record in records for row in _rows(record)]
-    answers = [answer for record in records for answer in measure_responses(record)]
-    sheet = make_sheet(rows, answers, window)
-    return Characterisation(name, source or name, True, rows, answers, unused_columns(records), sheet)
+    is_read = isinstance(data, str | Path)
+    name = name or (Path(data).stem if is_read else data[0].name)
+    found = _Findings([], [], [])
+    for number, part in enumerate(map_bench(data, _examine, pattern) if is_read else [_examine(data)], 1):
+        for all_of, more in zip(found, part, strict=True):
+            all_of += more
+        progress(f"characterised {number} tables")
+    sheet = make_sheet(found.rows, found.responses, window)
+    return Characterisation(name, source or name, True, found.rows, found.responses, note_unused(found.unused), sheet)
+
+
+class _Findings(NamedTuple):
+    """What some records show, without their samples: rows, responses, columns that are not used."""
+
+    rows: list[Row]
+    responses: list[Response]
+    unused: list[str]
+
+
+def _examine(records: Iterable[BenchRecord]) -> _Findings:
+    found = _Findings([], [], [])
+    for record in records:
+        found.rows.extend(_rows(record))
+        found.responses.extend(measure_responses(record))
+        found.unused.extend(record.unused)
+    return found
 
 
 def _rows(record: BenchRecord) -> list[Row]:

@@ -80,14 +80,11 @@ def _characterise_data(data: Path, beside: Path | None, pattern: str, window: fl
     """Return what bench tables show of a damper, with the forces of another one beside where it is named."""
     from seatsim.characterisation.model_tests import load_specimen, model_peaks
     from seatsim.characterisation.summary import characterise as of_records
-    from seatsim.recordings.bench_tables import NAMED, load_bench
+    from seatsim.recordings.bench_tables import NAMED
 
     specimen = load_specimen(None, beside) if beside else None
     with show_progress() as progress:
-        progress("reading the tables")
-        records = load_bench(data, pattern or NAMED)
-        progress(f"characterising {len(records)} records")
-        found = of_records(records, _title(data), data.resolve().name, window)
+        found = of_records(data, _title(data), data.resolve().name, window, pattern or NAMED, progress)
     return found.set_beside(model_peaks(specimen, found.rows, window)) if specimen else found
 
 
