@@ -154,7 +154,7 @@ class Response(NamedTuple):
     t95_sd: standard deviation of t95 by resampling the steps. current_t95: of the current itself, where it was measured
     or is simulated. speed: in m/s, where it is constant. method: how the motion was taken out of the force, or empty
     where the response cannot be determined; then `note` says why. time, share: the curve, shape (N,). direction: of the
-    motion, rebound, compression or both. current_t10: as current_t95, of 10 %.
+    motion, rebound, compression or both. current_t10: as current_t95, of 10 %. current_overshoot: over its change.
     """
 
     record: str
@@ -177,6 +177,7 @@ class Response(NamedTuple):
     share: Unwritten[Array | None] = None
     direction: Unwritten[str] = "both"
     current_t10: Unwritten[float] = math.nan
+    current_overshoot: Unwritten[float] = math.nan
 
     @property
     def rises(self) -> bool:

@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
 from seatsim.characterisation.response import Response, find_cycles
-from seatsim.characterisation.rows import Row, group_rows, has_same_motion, summarise_aperiodic_record, summarise_record
+from seatsim.characterisation.rows import (
+    WINDOW,
+    Row,
+    group_rows,
+    has_same_motion,
+    summarise_aperiodic_record,
+    summarise_record,
+)
 from seatsim.characterisation.sheet import BenchSheet, LimitCheck, PeakForce
 from seatsim.characterisation.steps import find_plateaus, measure_responses
-from seatsim.characterisation.tabulate import WINDOW, make_sheet
+from seatsim.characterisation.tabulate import make_sheet
 from seatsim.recordings.bench_tables import BenchRecord, map_bench, note_unused
 from seatsim.schema.content import Form, Joined, show_record
 
@@ -81,9 +89,10 @@ def characterise(
     is_read = isinstance(data, str | Path)
     name = name or (Path(data).stem if is_read else data[0].name)
     found = _Findings([], [], [])
-    for number, part in enumerate(map_bench(data, _examine, pattern) if is_read else [_examine(data)], 1):
-        for all_of, more in zip(found, part, strict=True):
-            all_of += more
+    examine = partial(_examine, window)
+    for number, part in enumerate(map_bench(data, examine, pattern) if is_read else [examine(data)], 1):
+        for every, more in zip(found, part, strict=True):
+            every.extend(more)
         progress(f"characterised {number} tables")
     sheet = make_sheet(found.rows, found.responses, window)
     return Characterisation(name, source or name, True, found.rows, found.responses, note_unused(found.unused), sheet)
@@ -97,23 +106,23 @@ class _Findings(NamedTuple):
     unused: list[str]
 
 
-def _examine(records: Iterable[BenchRecord]) -> _Findings:
+def _examine(window: float, records: Iterable[BenchRecord]) -> _Findings:
     found = _Findings([], [], [])
     for record in records:
-        found.rows.extend(_rows(record))
+        found.rows.extend(_rows(record, window))
         found.responses.extend(measure_responses(record))
         found.unused.extend(record.unused)
     return found
 
 
-def _rows(record: BenchRecord) -> list[Row]:
+def _rows(record: BenchRecord, window: float) -> list[Row]:
     rests = find_plateaus(record.current, record.rate)
     if len(rests) < 2:
-        return [summarise_record(record)]
+        return [summarise_record(record, window)]
     skipped = round(_SETTLED * record.rate)
     parts = [(rest, record.part(rest.first + skipped, rest.last)) for rest in rests if rest.last > rest.first + skipped]
     rows = [
-        summarise_record(part)._replace(record=f"{record.name}, {rest.first / record.rate:.1f} s")
+        summarise_record(part, window)._replace(record=f"{record.name}, {rest.first / record.rate:.1f} s")
         for rest, part in parts
     ]
     cyclic = [row for row in rows if row.loop is not None]
