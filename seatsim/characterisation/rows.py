@@ -154,8 +154,8 @@ def summarise_loops(
     sd = {name: float(np.std(v, ddof=1)) if len(v) > 1 else math.nan for name, v in each.items()}
     force, part = loop.force[:-1], loop.asymmetric_part[:-1]
     offset = float(np.mean(force))
-    forces = [0.5 * (rebound - compression) for rebound, compression in (measure_forces(one, window) for one in loops)]
-    values = {"current": flowing, "temperature": warmth, **each, "force": forces}
+    ways = np.array([measure_forces(one, window) for one in loops])
+    values = {"current": flowing, "temperature": warmth, **each, "force": 0.5 * (ways[:, 0] - ways[:, 1])}
     return Row(
         record=record, file=file, cycles=len(loops), left_out=left_out, current=round(float(np.mean(flowing)), 6),
         temperature=float(np.mean(warmth)), temperature_range=float(np.ptp(warmth)),

@@ -86,13 +86,16 @@ def characterise(
     A record whose current rests at several levels, with steady cycles at one of them, has a row for each such stretch;
     any other record has one row.
     """
-    is_read = isinstance(data, str | Path)
-    name = name or (Path(data).stem if is_read else data[0].name)
-    found = _Findings([], [], [])
-    examine = partial(_examine, window)
-    for number, part in enumerate(map_bench(data, examine, pattern) if is_read else [examine(data)], 1):
-        for every, more in zip(found, part, strict=True):
-            every.extend(more)
+    found, examine = _Findings([], [], []), partial(_examine, window)
+    parts: Iterable[_Findings]
+    if isinstance(data, str | Path):
+        name, parts = name or Path(data).stem, map_bench(data, examine, pattern)
+    else:
+        name, parts = name or data[0].name, [examine(data)]
+    for number, part in enumerate(parts, 1):
+        found.rows.extend(part.rows)
+        found.responses.extend(part.responses)
+        found.unused.extend(part.unused)
         progress(f"characterised {number} tables")
     sheet = make_sheet(found.rows, found.responses, window)
     return Characterisation(name, source or name, True, found.rows, found.responses, note_unused(found.unused), sheet)

@@ -12,6 +12,7 @@ from seatsim.characterisation.summary import characterise
 from seatsim.dampers.bingham import Bingham
 from seatsim.recordings.bench_tables import NAMED, BenchRecord, load_bench
 from seatsim.rig.coil import Coil, relax
+from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
 from seatsim.simulation.damper_bench import bench_force
 
@@ -56,6 +57,12 @@ def test_forces_are_within_half_a_per_cent_and_repeats_are_averaged(sheet):
         assert row.rebound == pytest.approx(GAS + true, abs=0.005 * true + 0.5)
         assert row.compression == pytest.approx(GAS - true, abs=0.005 * true + 0.5)
         assert row.repeats == 2 and 0.0 <= row.spread < NOISE
+
+
+def test_tables_that_are_read_side_by_side_give_what_their_records_give(folder, sheet):
+    told = []
+    found = characterise(folder, pattern=NAMED, progress=told.append)
+    assert to_content(found.sheet) == to_content(sheet) and len(told) == len(list(folder.iterdir())) == 24
 
 
 def test_gas_and_friction_are_told_apart(sheet):

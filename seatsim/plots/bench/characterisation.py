@@ -19,7 +19,7 @@ from seatsim.plots.style import GREY, Entry, Grid
 
 MOST = 6
 """Most responses in a panel."""
-SHOWN = 2.2
+SHOWN = 3.6
 """Length of a panel over the longest time to 90 %."""
 _TIMES = (("t10", 0.1), ("t63", 1.0 - math.exp(-1.0)), ("t90", 0.9))
 """Times that are marked, with the shares of the change that they are of."""
@@ -44,7 +44,7 @@ def plot_steps(found: Characterisation) -> Figure:
     known = list(zip(answers, found.sheet.response, strict=True))
     speeds = {f"{answer.speed:.3g} m/s" for answer in answers if math.isfinite(answer.speed)}
     at = f" at {speeds.pop()}" if len(speeds) == 1 else ""
-    note = f"Force{at}, from its level before to that after the step. Time from the current's own 10 % (command: step)."
+    note = f"Force{at}; t10, t63, t90: 10, 63 and 90 % of its change, from the current's own 10 % or a command's step."
     title = f"Response to steps of current: {found.name}"
     page = style.make_page(title, note, Grid((3.0,), columns=2, top=0.3, gap=(0.3, 0.0)))
     for axes, words in zip(page.rows[0], ("rises", "falls"), strict=True):
@@ -70,15 +70,15 @@ def _draw_responses(axes: Axes, shown: list[tuple[Response, StepResponse]]) -> N
         top = max(top, float(np.max(answer.share)) + 0.05)
     for time, share in _TIMES:
         axes.axhline(share, color=GREY, linewidth=0.7, linestyle=(0.0, (1.0, 2.0)))
-        words, upright = _say_time(time, share, [row for _, row in shown]), "bottom" if share < 0.5 else "top"
+        words, upright = _say_time(time, [row for _, row in shown]), "bottom" if share < 0.5 else "top"
         axes.text(0.99e3 * end, share, words, fontsize=9, horizontalalignment="right", verticalalignment=upright)
     axes.set(xlabel="time [ms]", xlim=(-0.08e3 * end, 1e3 * end), ylim=(-0.25 - 0.17 * len(shown), top))
-    axes.set_yticks([0, 0.5, 1])
+    axes.set_yticks([0, *(share for _, share in _TIMES)], ["0", *(f"{share:.2g}" for _, share in _TIMES)])
     axes.legend(title="step", loc="lower right", fontsize=9, framealpha=0.9, alignment="left", handlelength=1.2)
 
 
-def _say_time(time: str, share: float, rows: Sequence[StepResponse]) -> str:
-    """Return the time to a share of the change in words, of all responses of a panel together."""
+def _say_time(time: str, rows: Sequence[StepResponse]) -> str:
+    """Return a time in words, of all responses of a panel together."""
     known = sorted(round(1e3 * value, 1) + 0.0 for row in rows if math.isfinite(value := getattr(row, time)))
-    reached = f"after {' to '.join(f'{each:g}' for each in sorted({*known[:1], *known[-1:]}))} ms" if known else "never"
-    return f"{time}: {share:.0%} {reached}"
+    ends = " to ".join(f"{each:g}" for each in sorted({*known[:1], *known[-1:]}))
+    return f"{time} = {ends} ms" if known else f"{time} is not reached"
