@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from seatsim.characterisation.rows import LEAST_RANGE, Row, group_rows, has_same_motion
+from seatsim.characterisation.response import LEAST_RANGE
+from seatsim.characterisation.rows import Row, group_rows, has_same_motion
 from seatsim.characterisation.sheet import CurrentHysteresis
 from seatsim.schema.arrays import Array
 

@@ -14,6 +14,8 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.content import Form, Unwritten
 from seatsim.simulation.damper_bench import SineTest
 
+LEAST_RANGE = 0.02
+"""A; a current that varies less is constant."""
 _BAND = 0.2
 """Half the width, over the amplitude, of the band about mid-stroke that a passage has to cross from side to side."""
 _ALIKE = 0.03

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from seatsim.characterisation.response import (
+    LEAST_RANGE,
     Cycle,
     average_loops,
     find_cycles,
@@ -37,8 +38,6 @@ _WANDERS = 0.02
 """Change of the mean force over the cycles from which on a note says so, over half the range of the force."""
 _VARIES = 0.05
 """Range of a current, over its largest, from which on a note says so."""
-LEAST_RANGE = 0.02
-"""A; a current that varies less is constant."""
 WARMER = 4.0
 """degC; least difference of temperatures that are different settings."""
 _ALIKE = 0.05

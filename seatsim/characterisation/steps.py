@@ -9,8 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.characterisation.response import Response, StepEnsemble, estimate_response, find_crossing
-from seatsim.characterisation.rows import LEAST_RANGE
+from seatsim.characterisation.response import LEAST_RANGE, Response, StepEnsemble, estimate_response, find_crossing
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.schema.arrays import Array
 
