@@ -273,7 +273,8 @@ def _of_current(record: BenchRecord, steps: Sequence[_CurrentStep]) -> tuple[flo
     rows = min(int(usual), round(_LONGEST * record.rate))
     before, after = (np.array([[rest.level] for rest in rests]) for rests in zip(*(s[1:] for s in chosen), strict=True))
     share = np.mean((_about(record.current, chosen, 0, rows) - before) / (after - before), axis=0)
-    time = (np.arange(rows) + np.mean([round(step.row) - step.row for step in chosen])) / record.rate
+    late = float(np.mean([round(step.row) - step.row for step in chosen]))
+    time = np.asarray((np.arange(rows) + late) / record.rate, dtype=float)
     t10, t95 = (find_crossing(time, share, level) for level in (0.1, 0.95))
     return t10, t95, max(float(np.max(share)) - 1.0, 0.0)
 
