@@ -107,9 +107,7 @@ def test_specimens_of_another_damper_or_a_key_twice_are_refused(write_sweep, tmp
     with pytest.raises(InputError, match="is a key of the specimens, too"):
         plan_of(write_sweep(vary={"from": "specimens.yaml", "actuator.rate": [100.0]}, runs=None))
     (tmp_path / "specimens.yaml").write_text(SPECIMENS.replace("c_a: 410.0, ", "k: 410.0, "))
-    with pytest.raises(
-        InputError, match=r"yaml, line 2, specimens: states no 'model', or not the same keys"
-    ):
+    with pytest.raises(InputError, match=r"yaml, line 2, specimens: states no 'model', or not the same keys"):
         plan_of(path)
 
 
