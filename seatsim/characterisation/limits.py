@@ -11,7 +11,7 @@ from seatsim.schema.errors import nearest
 from seatsim.schema.validation import check_keys, mapping
 from seatsim.schema.yaml_source import Source
 
-_TIMES = ("start", "t10", "t63", "t90", "settling", "recovery", "overshoot")
+_TIMES = ("start", "t10", "t63", "t90", "settling", "recovery", "overshoot", "dip", "current_overshoot")
 _FIGURES = {
     "rebound": ("peak_forces", "rebound"),
     "compression": ("peak_forces", "compression"),
@@ -21,7 +21,9 @@ _FIGURES = {
     "dynamic_range": ("dynamic_range", "both"),
     "hysteresis": ("hysteresis", "width"),
     "energy": ("energy", "energy"),
+    "current_hysteresis": ("current_hysteresis", "width"),
     "fade": ("fade", "per_kelvin"),
+    "fade_by_energy": ("fade", "per_kilojoule"),
 }
 """Table and column of each figure that may have a limit, beside the times of responses."""
 
@@ -60,9 +62,7 @@ def _check(sheet: BenchSheet, source: Source, name: str, bounds: object) -> Iter
 
 def _list_figures(sheet: BenchSheet) -> Mapping[str, list[float]]:
     """Return the values of every figure that may have a limit."""
-    found = {
-        name: [getattr(row, column) for row in getattr(sheet, table)] for name, (table, column) in _FIGURES.items()
-    }
+    found = {name: _list_column(getattr(sheet, table), column) for name, (table, column) in _FIGURES.items()}
     for name in _TIMES:
         for way, sign in (("up", 1.0), ("down", -1.0)):
             rows = [each for each in sheet.response if sign * (each.after - each.before) > 0.0]

@@ -11,10 +11,10 @@ from typing import NamedTuple, cast
 import numpy as np
 
 from seatsim.characterisation.response import Response, StepEnsemble, estimate_response, find_crossing
-from seatsim.characterisation.rows import Row, summarise_loops
+from seatsim.characterisation.rows import WINDOW, Row, summarise_loops
 from seatsim.characterisation.sheet import PeakForce
 from seatsim.characterisation.summary import Characterisation
-from seatsim.characterisation.tabulate import WINDOW, make_sheet
+from seatsim.characterisation.tabulate import make_sheet
 from seatsim.dampers.base import DAMPERS, Damper, DamperSpecification
 from seatsim.rig.coil import Coil, relax
 from seatsim.rig.temperature import TemperatureFactors
@@ -240,7 +240,7 @@ def step_response(tested: DamperSpecimen, before: float, after: float, speed: fl
     t10, t95 = (find_crossing(time[::2], share, level) for level in (0.1, 0.95))
     blank = Response(
         "", before, after, 1, "simulated", speed=speed, current_t10=t10, current_t95=t95,
-        direction="rebound" if speed > 0.0 else "compression",
+        current_overshoot=max(float(np.max(share)) - 1.0, 0.0), direction="rebound" if speed > 0.0 else "compression",
     )  # fmt: skip
     # The first half of the lead only brings the damper's state to this speed.
     kept = slice(lead // 2, None)

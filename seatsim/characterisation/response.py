@@ -14,6 +14,8 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.content import Form, Unwritten
 from seatsim.simulation.damper_bench import SineTest
 
+LEAST_RANGE = 0.02
+"""A; a current that varies less is constant."""
 _BAND = 0.2
 """Half the width, over the amplitude, of the band about mid-stroke that a passage has to cross from side to side."""
 _ALIKE = 0.03
@@ -55,7 +57,8 @@ def find_cycles(displacement: Array) -> list[Cycle]:
     centre, amplitude = 0.5 * (low + high), 0.5 * (high - low)
     if amplitude <= 0.0:
         return []
-    side = (displacement > centre + _BAND * amplitude).astype(int) - (displacement < centre - _BAND * amplitude)
+    above, below = displacement > centre + _BAND * amplitude, displacement < centre - _BAND * amplitude
+    side = above.astype(np.int8) - below
     outside = np.flatnonzero(side)
     upward = np.flatnonzero((side[outside][:-1] < 0) & (side[outside][1:] > 0))
     instants = [_passage(displacement, outside[k], outside[k + 1], centre) for k in upward]
@@ -63,9 +66,10 @@ def find_cycles(displacement: Array) -> list[Cycle]:
 
 
 def _passage(x: Array, first: int, last: int, centre: float) -> float:
-    rows = np.arange(first, last + 1)
-    slope, start = np.polyfit(rows - first, x[first : last + 1], 1)
-    return float(np.clip(first + (centre - start) / slope, first, last)) if slope > 0.0 else 0.5 * (first + last)
+    part, middle = x[first : last + 1], 0.5 * (first + last)
+    rows = np.arange(first, last + 1) - middle
+    slope = float(rows @ part) / float(rows @ rows)
+    return float(np.clip(middle + (centre - np.mean(part)) / slope, first, last)) if slope > 0.0 else middle
 
 
 def _cycle(x: Array, first: float, last: float) -> Cycle:
@@ -105,14 +109,12 @@ def resample_loops(record: BenchRecord, cycles: Sequence[Cycle], drift: float) -
     samples = min(most, max(least, 2 * round(0.5 * length)))
     rows = np.arange(len(record.force), dtype=float)
     width = 2 * int(0.5 * length / samples) + 1
-    parts = [uniform_filter1d(y, width) for y in (record.displacement, record.velocity, record.force)]
-    loops = []
-    for cycle in cycles:
-        at = np.linspace(cycle.first, cycle.last, samples + 1)
-        x, v, force = (np.interp(at, rows, y) for y in parts)
-        time = (at - cycle.first) / record.rate
-        loops.append(SineTest(time, x, v, force - drift * (time - 0.5 * time[-1])))
-    return loops
+    at = np.linspace([cycle.first for cycle in cycles], [cycle.last for cycle in cycles], samples + 1, axis=1)
+    time = (at - at[:, :1]) / record.rate
+    measured = (record.displacement, record.velocity, record.force)
+    x, v, force = (np.interp(at, rows, uniform_filter1d(y, width)) for y in measured)
+    force -= drift * (time - 0.5 * time[:, -1:])
+    return [SineTest(*parts) for parts in zip(time, x, v, force, strict=True)]
 
 
 def find_drift(record: BenchRecord, cycles: Sequence[Cycle]) -> float:
@@ -154,7 +156,7 @@ class Response(NamedTuple):
     t95_sd: standard deviation of t95 by resampling the steps. current_t95: of the current itself, where it was measured
     or is simulated. speed: in m/s, where it is constant. method: how the motion was taken out of the force, or empty
     where the response cannot be determined; then `note` says why. time, share: the curve, shape (N,). direction: of the
-    motion, rebound, compression or both. current_t10: as current_t95, of 10 %.
+    motion, rebound, compression or both. current_t10: as current_t95, of 10 %. current_overshoot: over its change.
     """
 
     record: str
@@ -177,6 +179,7 @@ class Response(NamedTuple):
     share: Unwritten[Array | None] = None
     direction: Unwritten[str] = "both"
     current_t10: Unwritten[float] = math.nan
+    current_overshoot: Unwritten[float] = math.nan
 
     @property
     def rises(self) -> bool:

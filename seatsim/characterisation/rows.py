@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from seatsim.characterisation.response import (
+    LEAST_RANGE,
     Cycle,
     average_loops,
     find_cycles,
@@ -41,6 +42,8 @@ WARMER = 4.0
 """degC; least difference of temperatures that are different settings."""
 _ALIKE = 0.05
 """Relative difference of amplitudes, frequencies and speeds that are the same setting."""
+WINDOW = 0.1
+"""Part of the stroke about its middle over which the force at the peak speed is averaged."""
 _MOST_POINTS = 3000
 """Points of the cloud of a record without cycles."""
 
@@ -72,7 +75,8 @@ class Row(NamedTuple):
     X^2)`. offset: mean force of a cycle. centre: middle between the peaks. asymmetry: RMS of the asymmetric part
     (difference from the centrosymmetric loop, `(F(t) + F(t + T/2)) / 2`) over that of the force; `asymmetry_peak` is
     its largest magnitude, `asymmetry_of_shape` the same ratio with the offset taken from both. `loop` is the mean of
-    the steady cycles; `cycle_values` holds temperature, peaks, energy and offset of each.
+    the steady cycles; `cycle_values` holds current, temperature, peaks, energy and offset of each, and its force at the
+    peak speed (half the difference of both directions). `test` is the name of the record that the row is a part of.
     """
 
     record: str
@@ -104,6 +108,13 @@ class Row(NamedTuple):
     loop: Unwritten[SineTest | None] = None
     cloud: Unwritten[Cloud | None] = None
     cycle_values: IfAny[dict[str, list[float]] | None] = None
+    test: Unwritten[str] = ""
+
+    @property
+    def ramps(self) -> bool:
+        """Whether the current differs from cycle to cycle."""
+        current = (self.cycle_values or {}).get("current", [0.0])
+        return max(current) - min(current) > max(_VARIES * max(current), LEAST_RANGE)
 
 
 _FIGURES: dict[str, Callable[[SineTest], float]] = {
@@ -125,22 +136,27 @@ def summarise_loops(
     loops: Sequence[SineTest],
     record: str,
     file: str,
-    current: float,
+    current: ArrayLike,
     temperature: ArrayLike,
     left_out: int = 0,
     notes: Sequence[str] = (),
+    window: float = WINDOW,
 ) -> Row:
-    """Return the row of a test: loops of equally many samples, and the temperature in degC of each (or one, or NaN)."""
+    """Return the row of a test: loops of equally many samples, current in A and temperature in degC of each (or one).
+
+    `window` is the part of the stroke over which the force at the peak speed is averaged.
+    """
     loop = average_loops(loops)
-    warmth = np.broadcast_to(np.asarray(temperature, dtype=float), len(loops))
+    flowing, warmth = (np.broadcast_to(np.asarray(y, dtype=float), len(loops)) for y in (current, temperature))
     each = {name: np.array([figure(one) for one in loops]) for name, figure in _FIGURES.items()}
     mean = {name: float(np.mean(values)) for name, values in each.items()}
     sd = {name: float(np.std(v, ddof=1)) if len(v) > 1 else math.nan for name, v in each.items()}
     force, part = loop.force[:-1], loop.asymmetric_part[:-1]
     offset = float(np.mean(force))
-    values = {"temperature": warmth, **each}
+    ways = np.array([measure_forces(one, window) for one in loops])
+    values = {"current": flowing, "temperature": warmth, **each, "force": 0.5 * (ways[:, 0] - ways[:, 1])}
     return Row(
-        record=record, file=file, cycles=len(loops), left_out=left_out, current=current,
+        record=record, file=file, cycles=len(loops), left_out=left_out, current=round(float(np.mean(flowing)), 6),
         temperature=float(np.mean(warmth)), temperature_range=float(np.ptp(warmth)),
         amplitude=0.5 * float(np.ptp(loop.displacement)), frequency=1.0 / float(loop.time[-1]),
         peak_speed=float(np.max(np.abs(loop.velocity))), centre=0.5 * (mean["peak_rebound"] + mean["peak_compression"]),
@@ -154,8 +170,19 @@ def summarise_loops(
     )  # fmt: skip
 
 
-def summarise_record(record: BenchRecord) -> Row:
-    """Return the row of a measured record at one current: of its steady cycles, or as a record without cycles."""
+def measure_forces(loop: SineTest, window: float) -> tuple[float, float]:
+    """Return the mean force in rebound and in compression over a part of the stroke about its middle."""
+    x = loop.displacement - 0.5 * (np.max(loop.displacement) + np.min(loop.displacement))
+    near = np.abs(x) <= 0.5 * window * np.ptp(x)
+    rebound, compression = (float(np.mean(loop.force[near & (sign * loop.velocity > 0.0)])) for sign in (1.0, -1.0))
+    return rebound, compression
+
+
+def summarise_record(record: BenchRecord, window: float = WINDOW) -> Row:
+    """Return the row of a measured record at one current: of its steady cycles, or as a record without cycles.
+
+    `window` is the part of the stroke over which the force at the peak speed is averaged.
+    """
     found = find_cycles(record.displacement)
     steady = select_steady_cycles(found)
     if not steady:
@@ -166,15 +193,11 @@ def summarise_record(record: BenchRecord) -> Row:
     notes = [*_of_damage(record), *_of_current(record), *_of_loops(loops), *_of_zero(record, moved), *_of_sign(record)]
     if min(cycle.length for cycle in steady) < _COARSE:
         notes.append(f"fewer than {_COARSE} rows a cycle: peaks and areas are coarse")
-    return summarise_loops(
-        loops,
-        record.name,
-        record.file,
-        round(record.mean_current, 6),
-        _temperatures(record, steady),
-        len(found) - len(steady),
-        notes,
-    )
+    current = _average_cycles(record.current, steady)
+    warmth = math.nan if record.temperature is None else _average_cycles(record.temperature, steady)
+    left_out = len(found) - len(steady)
+    row = summarise_loops(loops, record.name, record.file, current, warmth, left_out, notes, window)
+    return row._replace(test=record.name)
 
 
 def summarise_aperiodic_record(record: BenchRecord, found: Sequence[Cycle]) -> Row:
@@ -246,10 +269,8 @@ def _of_loops(loops: Sequence[SineTest]) -> list[str]:
     return notes
 
 
-def _temperatures(record: BenchRecord, cycles: Sequence[Cycle]) -> Array:
-    if record.temperature is None:
-        return np.full(len(cycles), math.nan)
-    return np.array([float(np.mean(record.temperature[cycle.rows])) for cycle in cycles])
+def _average_cycles(values: Array, cycles: Sequence[Cycle]) -> Array:
+    return np.array([float(np.mean(values[cycle.rows])) for cycle in cycles])
 
 
 def _ratio(part: float, whole: float) -> float:

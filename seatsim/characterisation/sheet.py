@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Annotated, NamedTuple, get_args, get_type_hints
 
@@ -15,9 +16,10 @@ _Force = Annotated[float, param("N", "force")]
 _Stiffness = Annotated[float, param("N/m", "stiffness")]
 _Length = Annotated[float, param("m", "amplitude")]
 _Frequency = Annotated[float, param("Hz", "frequency")]
-_Energy = Annotated[float, param("J", "energy of a cycle")]
+_Energy = Annotated[float, param("J", "energy")]
 _Damping = Annotated[float, param("N s/m", "equivalent damping")]
 _PerKelvin = Annotated[float, param("1/K", "relative change")]
+_PerKilojoule = Annotated[float, param("1/kJ", "relative change")]
 _Time = Annotated[float, param("s", "time")]
 
 
@@ -34,10 +36,11 @@ class PeakForce(NamedTuple):
 
 
 class StepResponse(NamedTuple):
-    """Times in s from the current's own 10 % (a command's step) on, of the force; overshoot over the change.
+    """Times in s from the current's own 10 % (a command's step) on, of the force; overshoot and dip over the change.
 
     start, t10, t63, t90: the force has covered 5, 10, 63.2 and 90 % of its change. settling: from then on it keeps
-    within 5 % of its end. recovery: from first reaching 90 % until it no longer falls below; 0 without a dip.
+    within 5 % of its end. recovery: from first reaching 90 % until it no longer falls below; 0 without a dip. dip: how
+    far it falls below 90 % in that time. current_overshoot: of a measured or simulated current, over its own change.
     """
 
     before: Annotated[_Current, Form(key="from")]
@@ -51,6 +54,8 @@ class StepResponse(NamedTuple):
     settling: _Time
     recovery: _Time
     overshoot: float
+    dip: float
+    current_overshoot: float
 
 
 class SlowForce(NamedTuple):
@@ -107,13 +112,43 @@ class CycleEnergy(NamedTuple):
 
 
 class Fade(NamedTuple):
-    """Change of the force at the peak speed in 1/K, over that at the lowest temperature, between two temperatures."""
+    """Change of the force at the peak speed in 1/K, over that at the lowest temperature, between two temperatures.
+
+    A row that names a record is of its cycles, others of several records. per_kilojoule: change over the energy that
+    the record absorbs, over the force at its start. absorbed: that energy in J, before the last cycle.
+    """
 
     current: _Current
     speed: _Speed
     coldest: _Warmth
     warmest: _Warmth
     per_kelvin: _PerKelvin
+    record: str = ""
+    absorbed: _Energy = math.nan
+    per_kilojoule: _PerKilojoule = math.nan
+
+
+class WarmUp(NamedTuple):
+    """A cycle of a record of many: energy absorbed before it, its force at the peak speed, and that over the first."""
+
+    record: str
+    current: _Current
+    speed: _Speed
+    absorbed: _Energy
+    temperature: _Warmth
+    force: _Force
+    relative_force: float
+
+
+class CurrentHysteresis(NamedTuple):
+    """Force at the peak speed at one current where it rises and where it falls, and the difference, the width."""
+
+    record: str
+    current: _Current
+    speed: _Speed
+    rising: _Force
+    falling: _Force
+    width: _Force
 
 
 class LimitCheck(NamedTuple):
@@ -141,6 +176,8 @@ class BenchSheet(NamedTuple):
     hysteresis: list[Hysteresis]
     energy: list[CycleEnergy]
     fade: list[Fade]
+    warm_up: list[WarmUp]
+    current_hysteresis: list[CurrentHysteresis]
     limits: Sequence[LimitCheck] = ()
     beside: Sequence[PeakForce] = ()
 

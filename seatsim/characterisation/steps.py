@@ -9,12 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.characterisation.response import Response, StepEnsemble, estimate_response, find_crossing
+from seatsim.characterisation.response import LEAST_RANGE, Response, StepEnsemble, estimate_response, find_crossing
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.schema.arrays import Array
 
-_LEAST_RANGE = 0.02
-"""A; a current that varies less has no steps."""
 _FLAT = 0.02
 """Standard deviation, over the range of the current, within a window at rest."""
 _WINDOW = 0.004
@@ -61,14 +59,15 @@ def find_steps(current: Array, rate: float, commanded: bool) -> list[_CurrentSte
 def find_plateaus(current: Array, rate: float) -> list[_Plateau]:
     """Return the stretches over which a current in A, shape (N,), at `rate` Hz rests, in their order.
 
-    None where it varies by less than `_LEAST_RANGE` in all. A current rests where its standard deviation within
+    None where it varies by less than `LEAST_RANGE` in all. A current rests where its standard deviation within
     `_WINDOW` is small; the level is the median of the later half, neighbours of the same level are one.
     """
     span = float(np.ptp(current))
     window = max(5, round(_WINDOW * rate))
-    if span < _LEAST_RANGE or len(current) < 4 * window:
+    if span < LEAST_RANGE or len(current) < 4 * window:
         return []
-    spread = np.std(np.lib.stride_tricks.sliding_window_view(current, window), axis=1)
+    mean, square = (_average_windows((current - current[0]) ** power, window) for power in (1, 2))
+    spread = np.sqrt(np.maximum(square - mean**2, 0.0))
     noise = float(np.median(np.abs(np.diff(current, 2)))) / _TO_DEVIATION
     flat = spread <= _FLAT * span + 2.0 * noise
     edges = np.flatnonzero(np.diff(np.concatenate([[0], flat.astype(int), [0]])))
@@ -81,6 +80,12 @@ def find_plateaus(current: Array, rate: float) -> list[_Plateau]:
             begin = found.pop().first
         found.append(_Plateau(begin, last, level))
     return found
+
+
+def _average_windows(values: Array, window: int) -> Array:
+    """Return the mean of every window of so many rows."""
+    total = np.concatenate([[0.0], np.cumsum(values)])
+    return np.asarray((total[window:] - total[:-window]) / window, dtype=float)
 
 
 def _onset(current: Array, before: _Plateau, after: _Plateau, commanded: bool) -> float:
@@ -156,8 +161,8 @@ def _of_pair(record: BenchRecord, steps: Sequence[_CurrentStep], every: Sequence
         answer = _at_constant_speed(record, even, blank)
     if record.commanded:
         return answer
-    t10, t95 = (_of_current(record, steps, level) for level in (0.1, 0.95))
-    return answer._replace(current_t10=t10, current_t95=t95)
+    t10, t95, overshoot = _of_current(record, steps)
+    return answer._replace(current_t10=t10, current_t95=t95, current_overshoot=overshoot)
 
 
 def _constant_speed_rows(record: BenchRecord, step: _CurrentStep) -> tuple[_CurrentStep, int, int] | None:
@@ -261,15 +266,17 @@ def _steady(
     return force, math.sqrt(float(np.mean((record.force - force)[settled] ** 2)))
 
 
-def _of_current(record: BenchRecord, steps: Sequence[_CurrentStep], level: float) -> float:
-    """Return the median time in which the steps of a measured current cover a share."""
-    times = []
-    for step in steps:
-        rows = np.arange(int(step.row), step.after.last)
-        share = (record.current[rows] - step.before.level) / (step.after.level - step.before.level)
-        times.append(find_crossing(np.asarray((rows - step.row) / record.rate, dtype=float), share, level))
-    reached = [time for time in times if math.isfinite(time)]
-    return float(np.median(reached)) if reached else math.nan
+def _of_current(record: BenchRecord, steps: Sequence[_CurrentStep]) -> tuple[float, float, float]:
+    """Return the times in which the mean of the steps of a measured current covers 10 and 95 %, and its overshoot."""
+    usual = np.median([step.after.last - round(step.row) for step in steps])
+    chosen = [step for step in steps if step.after.last - round(step.row) >= usual]
+    rows = min(int(usual), round(_LONGEST * record.rate))
+    before, after = (np.array([[rest.level] for rest in rests]) for rests in zip(*(s[1:] for s in chosen), strict=True))
+    share = np.mean((_about(record.current, chosen, 0, rows) - before) / (after - before), axis=0)
+    late = float(np.mean([round(step.row) - step.row for step in chosen]))
+    time = np.asarray((np.arange(rows) + late) / record.rate, dtype=float)
+    t10, t95 = (find_crossing(time, share, level) for level in (0.1, 0.95))
+    return t10, t95, max(float(np.max(share)) - 1.0, 0.0)
 
 
 def _about(values: Array, steps: Sequence[_CurrentStep], before: int, after: int) -> Array:

@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
 from seatsim.characterisation.response import Response, find_cycles
-from seatsim.characterisation.rows import Row, group_rows, has_same_motion, summarise_aperiodic_record, summarise_record
+from seatsim.characterisation.rows import (
+    WINDOW,
+    Row,
+    group_rows,
+    has_same_motion,
+    summarise_aperiodic_record,
+    summarise_record,
+)
 from seatsim.characterisation.sheet import BenchSheet, LimitCheck, PeakForce
 from seatsim.characterisation.steps import find_plateaus, measure_responses
-from seatsim.characterisation.tabulate import WINDOW, make_sheet
-from seatsim.recordings.bench_tables import BenchRecord, load_bench, unused_columns
+from seatsim.characterisation.tabulate import make_sheet
+from seatsim.recordings.bench_tables import BenchRecord, map_bench, note_unused
 from seatsim.schema.content import Form, Joined, show_record
 
 _SETTLED = 0.2
@@ -63,31 +71,61 @@ def _list_names(names: Sequence[str]) -> str:
 
 
 def characterise(
-    data: str | Path | Sequence[BenchRecord], name: str = "", source: str = "", window: float = WINDOW
+    data: str | Path | Sequence[BenchRecord],
+    name: str = "",
+    source: str = "",
+    window: float = WINDOW,
+    pattern: str = "",
+    progress: Callable[[str], object] = str,
 ) -> Characterisation:
     """Return what bench records, or the tables of a folder, show before anything is modelled.
 
-    `window` is the part of the stroke over which the force at the peak speed is averaged.
+    `window` is the part of the stroke over which the force at the peak speed is averaged; `pattern` is that of
+    `seatsim.recordings.bench_tables.map_bench`; `progress` is called with what is done.
 
     A record whose current rests at several levels, with steady cycles at one of them, has a row for each such stretch;
     any other record has one row.
     """
-    records = load_bench(data) if isinstance(data, str | Path) else data
-    name = name or (Path(data).stem if isinstance(data, str | Path) else records[0].name)
-    rows = [row for record in records for row in _rows(record)]
-    answers = [answer for record in records for answer in measure_responses(record)]
-    sheet = make_sheet(rows, answers, window)
-    return Characterisation(name, source or name, True, rows, answers, unused_columns(records), sheet)
+    found, examine = _Findings([], [], []), partial(_examine, window)
+    parts: Iterable[_Findings]
+    if isinstance(data, str | Path):
+        name, parts = name or Path(data).stem, map_bench(data, examine, pattern)
+    else:
+        name, parts = name or data[0].name, [examine(data)]
+    for number, part in enumerate(parts, 1):
+        found.rows.extend(part.rows)
+        found.responses.extend(part.responses)
+        found.unused.extend(part.unused)
+        progress(f"characterised {number} tables")
+    sheet = make_sheet(found.rows, found.responses, window)
+    return Characterisation(name, source or name, True, found.rows, found.responses, note_unused(found.unused), sheet)
 
 
-def _rows(record: BenchRecord) -> list[Row]:
+class _Findings(NamedTuple):
+    """What some records show, without their samples: rows, responses, columns that are not used."""
+
+    rows: list[Row]
+    responses: list[Response]
+    unused: list[str]
+
+
+def _examine(window: float, records: Iterable[BenchRecord]) -> _Findings:
+    found = _Findings([], [], [])
+    for record in records:
+        found.rows.extend(_rows(record, window))
+        found.responses.extend(measure_responses(record))
+        found.unused.extend(record.unused)
+    return found
+
+
+def _rows(record: BenchRecord, window: float) -> list[Row]:
     rests = find_plateaus(record.current, record.rate)
     if len(rests) < 2:
-        return [summarise_record(record)]
+        return [summarise_record(record, window)]
     skipped = round(_SETTLED * record.rate)
     parts = [(rest, record.part(rest.first + skipped, rest.last)) for rest in rests if rest.last > rest.first + skipped]
     rows = [
-        summarise_record(part)._replace(record=f"{record.name}, {rest.first / record.rate:.1f} s")
+        summarise_record(part, window)._replace(record=f"{record.name}, {rest.first / record.rate:.1f} s")
         for rest, part in parts
     ]
     cyclic = [row for row in rows if row.loop is not None]

@@ -8,8 +8,9 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.characterisation.branches import measure_current_hysteresis
 from seatsim.characterisation.response import Response, find_crossing
-from seatsim.characterisation.rows import WARMER, Row, group_rows, has_same_motion, is_alike
+from seatsim.characterisation.rows import WARMER, WINDOW, Row, group_rows, has_same_motion, is_alike, measure_forces
 from seatsim.characterisation.sheet import (
     BenchSheet,
     CycleEnergy,
@@ -20,17 +21,18 @@ from seatsim.characterisation.sheet import (
     Share,
     SlowForce,
     StepResponse,
+    WarmUp,
 )
 from seatsim.metrics.motion import ratio
 from seatsim.schema.arrays import Array
 from seatsim.simulation.damper_bench import SineTest
 
-WINDOW = 0.1
-"""Part of the stroke about its middle over which the force at the peak speed is averaged."""
 _SAME_CURRENT, _SMALLEST_CURRENT = 0.02, 0.005
 """Relative difference, and difference in A, of currents that are the same."""
 _FAR = 0.4
 """Largest distance from mid-stroke, over the stroke, at which reversals are far."""
+_MANY = 20
+"""Least cycles of a record that shows a fade over the energy."""
 _SETTLED = 0.05
 """Half width of the band, over the change of force, within which a response has settled."""
 
@@ -43,10 +45,13 @@ def make_sheet(rows: Sequence[Row], responses: Iterable[Response], window: float
         gas force = (F+ + F-) / 2,         friction = (F+ - F-) / 2                         of the slowest test,
         dynamic range = F_hard / F_soft,   linearity = (F - F_soft) / (F_hard - F_soft)     at one speed
 
-    Rows of one current, temperature, amplitude and frequency are repeats. A fade is a straight line over temperatures.
+    Rows of one current, temperature, amplitude and frequency are repeats. A fade is a straight line over temperatures,
+    or over the energy that a record of many cycles has absorbed.
     """
+    steady = [row for row in rows if row.loop is not None and not row.ramps]
+    warming = [(row, _list_warm_up(row)) for row in steady if len((row.cycle_values or {}).get("force", [])) >= _MANY]
     groups = sorted(
-        group_rows([row for row in rows if row.loop is not None], _is_repeat),
+        group_rows(steady, _is_repeat),
         key=lambda group: (group[0].temperature, round(group[0].peak_speed, 3), group[0].current),
     )
     peaks = [measure_peak(group, window) for group in groups]
@@ -62,25 +67,19 @@ def make_sheet(rows: Sequence[Row], responses: Iterable[Response], window: float
         linearity=[_place(peak, ladder[0], ladder[-1]) for ladder in ladders for peak in ladder],
         hysteresis=[_measure_hysteresis(group, peak) for group, peak in zip(groups, peaks, strict=True)],
         energy=[_measure_energy(group) for group in groups],
-        fade=_measure_fade(peaks),
+        fade=[*_measure_fade(peaks), *(_measure_warm_up(row, cycles) for row, cycles in warming)],
+        warm_up=[cycle for _, cycles in warming for cycle in cycles],
+        current_hysteresis=measure_current_hysteresis(rows),
     )
 
 
 def measure_peak(rows: Sequence[Row], window: float) -> PeakForce:
     """Return the force at the peak speed of rows that are repeats, each with a loop."""
-    forces = np.array([_average(row.loop, window) for row in rows if row.loop is not None])
+    forces = np.array([measure_forces(row.loop, window) for row in rows if row.loop is not None])
     rebound, compression = map(float, np.mean(forces, axis=0))
     spread = float(np.max(np.std(forces, axis=0, ddof=1))) if len(rows) > 1 else math.nan
     current, temperature, speed = (_average_of(rows, name) for name in ("current", "temperature", "peak_speed"))
     return PeakForce(current, temperature, speed, rebound, compression, len(rows), spread)
-
-
-def _average(loop: SineTest, window: float) -> tuple[float, float]:
-    """Return the mean force in rebound and in compression about mid-stroke."""
-    x = loop.displacement - 0.5 * (np.max(loop.displacement) + np.min(loop.displacement))
-    near = np.abs(x) <= 0.5 * window * np.ptp(x)
-    rebound, compression = (float(np.mean(loop.force[near & (sign * loop.velocity > 0.0)])) for sign in (1.0, -1.0))
-    return rebound, compression
 
 
 def _measure_gas(rows: Sequence[Row], peak: PeakForce) -> SlowForce:
@@ -142,10 +141,36 @@ def _measure_fade(peaks: Sequence[PeakForce]) -> list[Fade]:
     for family in group_rows(peaks, lambda a, b: is_alike(a.speed, b.speed) and _same_current(a.current, b.current)):
         warmth, force = (np.array(part) for part in zip(*((p.temperature, _size(p)) for p in family), strict=True))
         if len(family) > 1 and np.ptp(warmth) >= WARMER:
-            slope, coldest = np.polyfit(warmth - np.min(warmth), force, 1)
             low, high = float(np.min(warmth)), float(np.max(warmth))
-            found.append(Fade(family[0].current, family[0].speed, low, high, float(slope / coldest)))
+            found.append(Fade(family[0].current, family[0].speed, low, high, _find_slope(warmth, force)))
     return found
+
+
+def _list_warm_up(row: Row) -> list[WarmUp]:
+    """Return the cycles of a record with the energy that was absorbed before each."""
+    values = row.cycle_values or {}
+    absorbed = np.cumsum([0.0, *values["energy"][:-1]])
+    cycles = zip(map(float, absorbed), values["temperature"], values["force"], strict=True)
+    return [
+        WarmUp(row.record, row.current, row.peak_speed, energy, warmth, force, force / values["force"][0])
+        for energy, warmth, force in cycles
+    ]
+
+
+def _measure_warm_up(row: Row, cycles: Sequence[WarmUp]) -> Fade:
+    absorbed, warmth, force = (
+        np.array([getattr(cycle, name) for cycle in cycles]) for name in ("absorbed", "temperature", "force")
+    )
+    low, high = float(np.min(warmth)), float(np.max(warmth))
+    per_kelvin = _find_slope(warmth, force) if high - low >= WARMER else math.nan
+    slope = 1e3 * _find_slope(absorbed, force)
+    return Fade(row.current, row.peak_speed, low, high, per_kelvin, row.record, float(absorbed[-1]), slope)
+
+
+def _find_slope(cause: Array, force: Array) -> float:
+    """Return the slope of a straight line over its value at the least cause."""
+    slope, start = np.polyfit(cause - np.min(cause), force, 1)
+    return float(slope / start)
 
 
 def _size(peak: PeakForce) -> float:
@@ -161,10 +186,12 @@ def _describe_step(found: Response) -> StepResponse:
         find_crossing(found.time, share, level) - start for level in (0.05, 0.1, 1.0 - math.exp(-1.0), 0.9)
     )
     again = _find_last(found.time, share < 0.9) - start
+    lowest = float(np.min(share[found.time - start >= t90], initial=1.0))
     return StepResponse(
         found.before, found.after, found.speed, found.direction, t5, t10, t63, t90,
         settling=_find_last(found.time, np.abs(share - 1.0) > _SETTLED) - start,
         recovery=max(again - t90, 0.0), overshoot=max(float(np.max(share)) - 1.0, 0.0),
+        dip=max(0.9 - lowest, 0.0), current_overshoot=found.current_overshoot,
     )  # fmt: skip
 
 

@@ -30,7 +30,7 @@ from seatsim.identification.prediction import BenchModel, RecordInputs, predict_
 from seatsim.identification.problem import IdentificationProblem, find_origin, state_problem
 from seatsim.identification.search import Progress, ignore_progress, search_parameters
 from seatsim.identification.settings import IdentificationSettings, split_records
-from seatsim.recordings.bench_tables import BenchRecord, load_bench, unused_columns
+from seatsim.recordings.bench_tables import BenchRecord, load_bench, note_unused
 from seatsim.schema.arrays import Array
 from seatsim.schema.content import Joined, Unwritten, plain, show_record, written
 from seatsim.schema.errors import RunError
@@ -185,7 +185,7 @@ def identify_records(
         warm=problem.reference is not None,
         commanded=any(record.commanded for record in parts.fitted),
         coverage=measure_coverage(parts.fitted),
-        notes=[*notes, *_note_divergence(assessments), *unused_columns(records)],
+        notes=[*notes, *_note_divergence(assessments), *note_unused(n for each in records for n in each.unused)],
     )
 
 

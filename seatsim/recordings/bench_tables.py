@@ -8,11 +8,13 @@ where the time jumps and where the column `segment` changes; rows whose `valid` 
 
 from __future__ import annotations
 
+import os
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +28,7 @@ from seatsim.schema.tables import read_table
 from seatsim.schema.yaml_source import Source
 
 _Table = dict[str, Array]
+_T = TypeVar("_T")
 
 NAMED = r"(?P<current>\d+(?:[.,]\d+)?) ?A(?![a-zA-Z])|(?P<temperature>\d+(?:[.,]\d+)?) ?(?:deg)?C(?![a-zA-Z])"
 """Current and temperature as they usually stand in the names of files."""
@@ -88,7 +91,15 @@ class BenchRecord(NamedTuple):
 
 
 def load_bench(path: str | Path, pattern: str = "") -> list[BenchRecord]:
-    """Return the records of a table or of every table of a folder, in the order of their names.
+    """Return the records of a table or of every table of a folder, in the order of their names; see `map_bench`."""
+    return [record for records in map_bench(path, list, pattern) for record in records]
+
+
+def map_bench(path: str | Path, look: Callable[[Iterable[BenchRecord]], _T], pattern: str = "") -> Iterator[_T]:
+    """Yield what `look` returns of the records of a table, or of each table of a folder in the order of their names.
+
+    As many tables as there are processors are read and looked at side by side. No more of them are in memory, unless
+    `look` keeps their records.
 
     `pattern` is a regular expression for the names of the files, whose groups `current` in A and `temperature` in degC
     count where neither a column nor a sidecar states these; `NAMED` reads `0.3A-2.csv` and `1.5A_80C.csv`.
@@ -101,12 +112,15 @@ def load_bench(path: str | Path, pattern: str = "") -> list[BenchRecord]:
         problem = f"{path}: no such file or folder{nearest_beside(path)}; give a bench table, or a folder of them"
         raise InputError(problem)
     if (path / HEADER).exists():
-        return _recorded(path)
+        yield look(_recorded(path))
+        return
     files = sorted(file for file in path.iterdir() if file.name.endswith(_SUFFIXES)) if path.is_dir() else [path]
     if not files:
         raise InputError(f"{path}: holds no table; give a folder with files that end in {', '.join(_SUFFIXES)}")
     named = _compile(pattern)
-    return [record for file in files for record in _records(file, named)]
+    # Threads suffice: most of the time goes into pyarrow and numpy, which leave the interpreter free.
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        yield from pool.map(lambda file: look(_records(file, named)), files)
 
 
 def _compile(pattern: str) -> re.Pattern[str] | None:
@@ -141,10 +155,10 @@ def stem(file: str) -> str:
     return file.partition(".csv")[0]
 
 
-def unused_columns(records: Sequence[BenchRecord]) -> list[str]:
+def note_unused(names: Iterable[str]) -> list[str]:
     """Return a sentence on the columns that hold no known quantity, none where there are no such columns."""
-    names = dict.fromkeys(name for record in records for name in record.unused)
-    return [f"columns that are not used: {', '.join(names)}"] if names else []
+    each = dict.fromkeys(names)
+    return [f"columns that are not used: {', '.join(each)}"] if each else []
 
 
 def _records(file: Path, pattern: re.Pattern[str] | None) -> Iterator[BenchRecord]:

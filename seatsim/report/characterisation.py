@@ -36,8 +36,9 @@ _CAPTIONS = {
     "linearity": "Linearity in current: 0 is the softest force, 1 the hardest",
     "hysteresis": "Hysteresis: difference of the forces at which a cycle passes a speed of 0, and half its peak speed",
     "energy": "Energy of a cycle and equivalent damping",
-    "fade": "Fade: change of the force with temperature, over that at the lowest temperature",
-    "response": "Response from the current's own 10 % on; recovery after a dip, overshoot over the change",
+    "current_hysteresis": "Hysteresis in the current: force at one current where it rises, and where it falls",
+    "fade": "Fade: relative change of the force with temperature, and with the energy that a record absorbs",
+    "response": "Response from the current's own 10 % on; recovery after a dip below 90 %; shares of the change",
 }
 """Captions of the tables, in their order."""
 

@@ -1,4 +1,4 @@
-"""The values that one key takes: a list, a range, or a distribution that is drawn from."""
+"""The values that one key takes: a list, a range, or a distribution that is drawn from; specimens of a damper."""
 
 from __future__ import annotations
 
@@ -31,16 +31,22 @@ _EDGE = 2.0**-53
 """Probability in either tail that no draw reaches: a quantile at 0 or 1 may be infinite."""
 
 
+SPECIMENS = "from"
+"""Key under `vary` of a file with specimens of a damper."""
+
+
 class Axis(NamedTuple):
     """A varied key: its values where these are listed, and in any case its quantile function.
 
     `values` are the stated ones in order, None of a distribution. `quantile` maps probabilities, shape (N,), to values;
-    those of a list are equally likely.
+    those of a list are equally likely. The key of specimens is `SPECIMENS`; each value is a mapping of keys to values,
+    and `model` that of their damper.
     """
 
     key: str
     values: tuple[object, ...] | None
     quantile: Callable[[Array], list[object]]
+    model: str = ""
 
 
 def read_axis(key: str, source: Source) -> Axis:
@@ -51,6 +57,8 @@ def read_axis(key: str, source: Source) -> Axis:
     """
     where: KeyPath = ("vary", key)
     stated = mapping(source.data["vary"], source, ("vary",))[key]
+    if key == SPECIMENS:
+        return _read_specimens(stated, source, where)
     if isinstance(stated, list):
         if not stated:
             raise source.error(where, "the list is empty; state at least one value")
@@ -60,6 +68,19 @@ def read_axis(key: str, source: Source) -> Axis:
     if {"from", "to", "steps"} & set(stated):
         return _listed(key, _read_range(stated, source, where))
     return Axis(key, None, _read_distribution(stated, source, where))
+
+
+def _read_specimens(stated: object, source: Source, where: KeyPath) -> Axis:
+    if not isinstance(stated, str):
+        raise source.error(where, "state the file that 'seatsim identify' writes of several specimens")
+    file = Source(source.path.parent / stated)
+    each = mapping(file.data.get("specimens"), file, ("specimens",))
+    values = [mapping(of, file, ("specimens", name)) for name, of in each.items()]
+    if "model" not in file.data or not values or any(set(of) != set(values[0]) for of in values):
+        raise file.error(
+            ("specimens",), "states no 'model', or not the same keys of every specimen; identify them anew"
+        )
+    return _listed(SPECIMENS, values)._replace(model=str(file.data["model"]))
 
 
 def _listed(key: str, values: Sequence[object]) -> Axis:

@@ -23,7 +23,7 @@ from seatsim.schema.json_schema import BY_KEY, TEXT, Schema, head_schema, mappin
 from seatsim.schema.validation import check_keys, is_finite_number, mapping
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import YamlError, parse_value
-from seatsim.sweeps.axes import Axis, axis_schema, read_axis
+from seatsim.sweeps.axes import SPECIMENS, Axis, axis_schema, read_axis
 
 _DESIGNS = ("cross", "zip", "lhs", "sobol", "table")
 _KEYS = ("scenario", "seed", "design", "runs", "replicates", "vary", "table", "limits")
@@ -200,7 +200,7 @@ def sweep_schema() -> Schema:
         "design": {"enum": list(_DESIGNS)},
         "runs": {**whole, "description": "points of lhs and sobol; draws of cross and zip"},
         "replicates": {**whole, "description": "runs of each point with other seeds of the scenario"},
-        "vary": {"type": "object", "additionalProperties": axis_schema()},
+        "vary": {"type": "object", "properties": {SPECIMENS: TEXT}, "additionalProperties": axis_schema()},
         "table": {**TEXT, "description": "CSV file whose columns are keys, for design table"},
         "limits": mapping_schema({name: {"type": "number", "unit": m.unit} for name, m in METRICS.items()}),
     }

@@ -9,11 +9,12 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping, Sequence
+from typing import cast
 
 import numpy as np
 
 from seatsim.schema.arrays import Array
-from seatsim.sweeps.axes import Axis
+from seatsim.sweeps.axes import SPECIMENS, Axis
 from seatsim.sweeps.definition import SweepDefinition
 
 _Columns = Mapping[str, list[object]]
@@ -39,7 +40,11 @@ def resolve_design(definition: SweepDefinition) -> _Columns:
     if definition.table is not None:
         return definition.table.columns
     resolve = {"cross": _cross, "zip": _pair, "lhs": _fill_hypercube, "sobol": _follow_sobol}[definition.design]
-    return resolve(definition)
+    columns = {**resolve(definition)}
+    for specimen in cast("list[Mapping[str, object]]", columns.pop(SPECIMENS, [])):
+        for key, value in specimen.items():
+            columns.setdefault(key, []).append(value)
+    return columns
 
 
 def _cross(definition: SweepDefinition) -> _Columns:

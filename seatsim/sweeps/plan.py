@@ -12,7 +12,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 from seatsim.excitations.base import Excitation
 from seatsim.scenario.loading import expand, read_scenario, reread
@@ -20,6 +20,7 @@ from seatsim.scenario.numbers import list_doubts
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError, list_sentences, raise_all
 from seatsim.schema.yaml_source import Source
+from seatsim.sweeps.axes import Axis
 from seatsim.sweeps.definition import MOST_RUNS, SweepDefinition
 from seatsim.sweeps.design import count_points, resolve_design
 
@@ -140,6 +141,8 @@ def make_plan(definition: SweepDefinition, foresee: Callable[[int], None] = lamb
             f"makes {runs} runs ({shown}); permitted: at most {MOST_RUNS}. Vary fewer"
             " keys, or draw 'runs' points with design: sobol",
         )
+    for axis in definition.axes:
+        _check_specimens(axis, definition, bases)
     foresee(runs)
     columns = resolve_design(definition)
     for key in columns:
@@ -147,6 +150,20 @@ def make_plan(definition: SweepDefinition, foresee: Callable[[int], None] = lamb
             raise definition.source.error(("vary", key), "the scenario itself varies this key; leave it out of one")
     places = {key: definition.place(key) for key in columns}
     return Plan(bases, columns, places, len(next(iter(columns.values()))), definition.replicates)
+
+
+def _check_specimens(axis: Axis, definition: SweepDefinition, bases: Sequence[_Base]) -> None:
+    """Raise InputError where specimens are of another damper than the scenario's, or a key of theirs varies anyway."""
+    for base in bases if axis.model else ():
+        damper = base.source.data.get("damper")
+        named = damper.get("model") if isinstance(damper, Mapping) else damper
+        if named != axis.model:
+            problem = f"holds specimens of '{axis.model}', and the scenario's damper is '{named}'"
+            raise definition.source.error(("vary", axis.key), f"{problem}; take the damper of 'damper.yaml' beside it")
+    specimens = cast("tuple[Mapping[str, object], ...]", axis.values) if axis.model else ()
+    twice = {other.key for other in definition.axes}.intersection(*specimens[:1])
+    if specimens and twice:
+        raise definition.source.error(("vary", min(twice)), "is a key of the specimens, too; leave it out")
 
 
 _MOST_FLOORS = 40

@@ -10,8 +10,9 @@ import pytest
 
 from seatsim.characterisation.summary import characterise
 from seatsim.dampers.bingham import Bingham
-from seatsim.recordings.bench_tables import NAMED, load_bench
+from seatsim.recordings.bench_tables import NAMED, BenchRecord, load_bench
 from seatsim.rig.coil import Coil, relax
+from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
 from seatsim.simulation.damper_bench import bench_force
 
@@ -56,6 +57,12 @@ def test_forces_are_within_half_a_per_cent_and_repeats_are_averaged(sheet):
         assert row.rebound == pytest.approx(GAS + true, abs=0.005 * true + 0.5)
         assert row.compression == pytest.approx(GAS - true, abs=0.005 * true + 0.5)
         assert row.repeats == 2 and 0.0 <= row.spread < NOISE
+
+
+def test_tables_that_are_read_side_by_side_give_what_their_records_give(folder, sheet):
+    told = []
+    found = characterise(folder, pattern=NAMED, progress=told.append)
+    assert to_content(found.sheet) == to_content(sheet) and len(told) == len(list(folder.iterdir())) == 24
 
 
 def test_gas_and_friction_are_told_apart(sheet):
@@ -176,3 +183,73 @@ def test_a_pattern_reads_the_names_of_files(folder):
         load_bench(folder, r"(\d)A")
     with pytest.raises(InputError, match="finds no number in"):
         load_bench(folder, r"(?P<current>Hz)")
+
+
+def cycle_at(rate, seconds, force, current):
+    """A record of ±10 mm at 2 Hz; `force` is a function of velocity and time, `current` one of time."""
+    time = np.arange(round(rate * seconds)) / rate
+    x, v = 0.01 * np.sin(4 * np.pi * time), 0.04 * np.pi * np.cos(4 * np.pi * time)
+    return BenchRecord("test", "test.csv", rate, x, v, force(v, time) + GAS, current(time), False, None)
+
+
+def test_a_force_that_fades_has_its_slope_over_the_absorbed_energy():
+    # A dashpot c (1 - t / T) at a peak speed v absorbs (c v^2 / 2) t (1 - t / 2T).
+    c, lasts = 1000.0, 1000.0
+    made = cycle_at(500.0, 40.0, lambda v, t: c * (1.0 - t / lasts) * v, lambda t: 0.5 + 0.0 * t)
+    sheet = characterise([made]).sheet
+    power = 0.5 * c * (0.04 * np.pi) ** 2
+    (fade,) = sheet.fade
+    assert fade.record == "test" and len(sheet.warm_up) >= 78
+    for k, cycle in enumerate(sheet.warm_up):
+        share = 1.0 - 0.5 * k / lasts
+        assert cycle.relative_force == pytest.approx(share, abs=1e-3)
+        assert cycle.absorbed == pytest.approx(power * 0.5 * k * (1.0 - 0.25 * k / lasts), rel=2e-3, abs=0.01)
+    assert fade.absorbed == pytest.approx(sheet.warm_up[-1].absorbed)
+    assert fade.per_kilojoule == pytest.approx(-1e3 / (lasts * power), rel=0.03)
+    assert math.isnan(fade.per_kelvin) and not math.isfinite(fade.coldest)
+
+
+@pytest.mark.parametrize("kind", ["ramp", "steps"])
+def test_rising_and_falling_current_stand_apart(kind):
+    width, slope = 30.0, 400.0
+
+    def current(t):
+        up = np.minimum(t, 80.0 - t) / 40.0
+        return up if kind == "ramp" else np.round(4.0 * up) / 4.0
+
+    def force(v, t):
+        # The remanent field of a falling current adds `width` where the current is neither least nor largest.
+        level = current(t)
+        falling = (t > 40.0) & (level < 1.0)
+        return (100.0 + slope * level + width * falling) * np.tanh(v / 0.005)
+
+    sheet = characterise([cycle_at(500.0, 80.0, force, current)]).sheet
+    rows = sheet.current_hysteresis
+    assert len(rows) >= (18 if kind == "ramp" else 4) and bool(sheet.peak_forces) == (kind == "steps")
+    for row in rows:
+        assert row.rising == pytest.approx(100.0 + slope * row.current, abs=3.0)
+        assert row.width == pytest.approx(width, abs=3.0) and row.speed == pytest.approx(0.04 * np.pi, rel=0.01)
+
+
+def test_overshoots_of_current_and_force_and_a_dip_stand_apart(tmp_path):
+    rate, share = 2000.0, np.zeros(0)
+    time = np.arange(round(8.0 * rate)) / rate
+    phase = (time / 0.4) % 2
+    x, v = 0.04 * (np.where(phase < 1, phase, 2 - phase) - 0.5), np.where(phase < 1, 0.1, -0.1)
+    since = (time + 0.2) % 0.4
+    raised = (time + 0.2) % 0.8 >= 0.4
+    # An oscillation of the coil's controller: peak exp(-pi d / sqrt(1 - d^2)) with a damping d of 0.5 at 40 Hz.
+    w, d = 80.0 * np.pi, 0.5
+    wd = w * math.sqrt(1.0 - d * d)
+    share = 1.0 - np.exp(-d * w * since) * (np.cos(wd * since) + d * w / wd * np.sin(wd * since))
+    # The force follows a current that dips: 95 % after 10 ms, 80 % from 30 to 50 ms, all from 60 ms on.
+    shape = np.interp(since, [0.0, 0.01, 0.02, 0.03, 0.05, 0.06], [0.0, 0.95, 0.95, 0.8, 0.8, 1.0])
+    current, follows = np.where(raised, share, 1.0 - share), np.where(raised, shape, 1.0 - shape)
+    force = (100.0 + 500.0 * follows) * np.sign(v) + GAS
+    record = BenchRecord("steps", "steps.csv", rate, x, v, force, current, False, None)
+    rows = characterise([record]).sheet.response
+    assert len(rows) == 2
+    for row in rows:
+        assert row.current_overshoot == pytest.approx(math.exp(-math.pi * d / math.sqrt(1.0 - d * d)), abs=0.005)
+        assert row.overshoot < 0.01 and row.dip == pytest.approx(0.1, abs=0.01)
+        assert row.recovery == pytest.approx(0.055 - 0.01 * 90 / 95, abs=1e-3)

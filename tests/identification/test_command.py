@@ -3,6 +3,7 @@
 import json
 import math
 
+import numpy as np
 import pandas as pd
 import pytest
 from ruamel.yaml import YAML
@@ -18,8 +19,10 @@ from seatsim.identification.search import ignore_progress
 from seatsim.identification.settings import IdentificationSettings as Settings
 from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
+from seatsim.sweeps.definition import read_definition
+from seatsim.sweeps.plan import make_plan
 
-from .benches import BINGHAM, made, sines
+from .benches import BINGHAM, made, sines, write
 
 FILES = {"parameters.yaml", "fit.json", "report.html", "loops.png"}
 DOCUMENTED = {*FILES, "manifest.json"}
@@ -201,3 +204,35 @@ def test_bad_input_is_refused_and_nothing_written(options, problem, bench, tmp_p
     done = command("identify", bench, *options)
     assert isinstance(done.exception, InputError) and problem in str(done.exception)
     assert not list(tmp_path.iterdir())
+
+
+def test_several_specimens_give_a_damper_and_values_that_a_sweep_takes(tmp_path):
+    true = {"one": 380.0, "two": 400.0, "three": 450.0}
+    for name, c_a in true.items():
+        write(sines(BINGHAM._replace(c_a=c_a), noise=0.0), tmp_path / name)
+    kept = [f"{name}={value}" for name, value in BINGHAM._asdict().items() if name not in ("c_a", "c_b")]
+    options = [part for each in kept for part in ("--fix", each)]
+    done = command("identify", *(tmp_path / name for name in true), "--model", "bingham", *options,
+                   "--out", tmp_path / "out")  # fmt: skip
+    assert done.exit_code == 0, done.output
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {
+        "damper.yaml", "specimens.yaml", "manifest.json", *true,
+    }  # fmt: skip
+    found = YAML(typ="safe").load((tmp_path / "out" / "specimens.yaml").read_text())
+    key, values = "damper.parameters.c_a", np.array(list(true.values()))
+    assert [found["specimens"][name][key] for name in true] == pytest.approx(values, rel=0.005)
+    assert found["mean"][key] == pytest.approx(values.mean(), rel=0.005)
+    assert found["standard_deviation"][key] == pytest.approx(values.std(ddof=1), rel=0.05)
+    damper = YAML(typ="safe").load((tmp_path / "out" / "damper.yaml").read_text())
+    assert damper["damper"]["parameters"]["c_a"] == found["mean"][key] and damper["damper"]["model"] == "bingham"
+    scenario = YAML(typ="safe").load(SCENARIO) | damper
+    (tmp_path / "out" / "sweep.yaml").write_text(json.dumps({"scenario": scenario, "vary": {"from": "specimens.yaml"}}))
+    plan = make_plan(read_definition(tmp_path / "out" / "sweep.yaml"))
+    assert [plan.values(run)[key] for run in range(plan.runs)] == [each[key] for each in found["specimens"].values()]
+
+
+def test_specimens_need_names_of_their_own_and_one_model(bench, tmp_path):
+    for models in (["bingham", "biviscous"], ["bingham"]):
+        options = [part for model in models for part in ("--model", model)]
+        done = command("identify", bench, bench, *options, "--out", tmp_path / "out")
+        assert isinstance(done.exception, InputError) and "a single --model" in str(done.exception)

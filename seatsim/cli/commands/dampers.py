@@ -80,19 +80,16 @@ def _characterise_data(data: Path, beside: Path | None, pattern: str, window: fl
     """Return what bench tables show of a damper, with the forces of another one beside where it is named."""
     from seatsim.characterisation.model_tests import load_specimen, model_peaks
     from seatsim.characterisation.summary import characterise as of_records
-    from seatsim.recordings.bench_tables import NAMED, load_bench
+    from seatsim.recordings.bench_tables import NAMED
 
     specimen = load_specimen(None, beside) if beside else None
     with show_progress() as progress:
-        progress("reading the tables")
-        records = load_bench(data, pattern or NAMED)
-        progress(f"characterising {len(records)} records")
-        found = of_records(records, _title(data), data.resolve().name, window)
+        found = of_records(data, _title(data), data.resolve().name, window, pattern or NAMED, progress)
     return found.set_beside(model_peaks(specimen, found.rows, window)) if specimen else found
 
 
 def identify(
-    data: Annotated[Path, typer.Argument(show_default=False)],
+    data: Annotated[list[Path], typer.Argument(show_default=False)],
     models: Annotated[list[str], typer.Option("--model", show_default=False, autocompletion=complete_kind("damper"))],
     test: Annotated[list[str] | None, typer.Option("--test", metavar="GLOB")] = None,
     test_fraction: Annotated[float, typer.Option("--test-fraction")] = 0.0,
@@ -110,7 +107,7 @@ def identify(
     """Fit a damper model, or every model, to bench records and assess it on records held out.
 
     Options:
-        data: A bench table, or a folder of them.
+        data: A bench table, or a folder of them; several are specimens.
         models: A damper model, several, or all, to compare them.
         test: Hold out the files whose names match.
         test_fraction: Hold out this share of each record, its last part.
@@ -130,8 +127,14 @@ def identify(
     request = IdentificationSettings(tuple(test or ()), test_fraction, fixed, ignore_temperature, seed)
     several = len(models) > 1 or models == ["all"]
     name = "league" if len(models) > 1 else models[0].rpartition(":")[2]
-    folder = out_folder or Path("out") / f"identify-{_title(data)}-{name}"
-    records, beside = load_bench(data), load_prediction_data(more or [], moving_average, centred)
+    folder = out_folder or Path("out") / f"identify-{_title(data[0])}-{name}"
+    beside = load_prediction_data(more or [], moving_average, centred)
+    if len(data) > 1:
+        if several or len({_title(each) for each in data}) < len(data):
+            raise InputError("several DATA are specimens: give them names of their own, and a single --model")
+        _identify_specimens({_title(each): load_bench(each) for each in data}, models[0], request, beside, folder)
+        return
+    records = load_bench(data[0])
     if several:
         _benchmark_models(records, models, request, beside, folder)
     else:
@@ -152,6 +155,34 @@ def _identify(
     show_table(*make_identification_tables(found))
     warn(found.notes)
     conclude(found, folder, paths)
+
+
+def _identify_specimens(
+    specimens: Mapping[str, list[BenchRecord]],
+    model: str,
+    request: IdentificationSettings,
+    beside: PredictionData,
+    folder: Path,
+) -> None:
+    """Identify a model of each specimen; write each fit in a folder of its name, their mean and their values."""
+    from seatsim.cli.outputs.damper_tables import make_specimen_table
+    from seatsim.cli.outputs.writing import write_member, write_specimens
+    from seatsim.cli.show_table import show_table
+    from seatsim.identification.identify import identify_records, predict_records
+    from seatsim.identification.specimens import gather_specimens
+
+    found = {}
+    with show_progress() as progress:
+        for name, records in specimens.items():
+            fit = identify_records(records, model, request, lambda text, name=name: progress(f"{name}: {text}"))
+            found[name] = predict_records(fit, beside)
+        gathered = gather_specimens(found)
+        for name, each in found.items():
+            write_member(each, folder / name)
+        paths = write_specimens(gathered, folder, request.seed)
+    show_table(make_specimen_table(gathered))
+    warn(f"{name}: {note}" for name, each in found.items() for note in each.notes)
+    conclude(gathered, folder, paths)
 
 
 def _benchmark_models(

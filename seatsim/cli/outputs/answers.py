@@ -73,6 +73,7 @@ def list_answers() -> Mapping[str, object]:
     from seatsim.exchange.block import ExportedBlock
     from seatsim.identification.identify import Identification
     from seatsim.identification.model_benchmark import League
+    from seatsim.identification.specimens import Specimens
     from seatsim.importing.importing import Import
     from seatsim.importing.inspection import Inspection
     from seatsim.provenance.reproduce import Reproduction
@@ -91,7 +92,7 @@ def list_answers() -> Mapping[str, object]:
         "gap": Gap | Forecast,
         "diagnose": Diagnosis,
         "characterise": Characterisation,
-        "identify": Identification | League,
+        "identify": Identification | League | Specimens,
         "describe": Pages,
         "new": NewAnswer,
         "check": CheckedFile,

@@ -17,6 +17,7 @@ from seatsim.dampers.base import OWN
 from seatsim.identification.assessment import Agreement
 from seatsim.identification.identify import Identification
 from seatsim.identification.model_benchmark import BenchmarkEntry
+from seatsim.identification.specimens import Specimens
 from seatsim.plots.labels import shorten
 
 _ROWS_LISTED = 45
@@ -128,6 +129,13 @@ def make_identification_tables(found: Identification) -> list[Table]:
     table, of_values = make_table(title, headings, [*figures, (), *means]), ("", "value", "±", "unit", "")
     title = f"{found.model}: parameters, ±1.96 standard deviations"
     return [table, make_table(title, of_values, values, left=(0, 3, 4))]
+
+
+def make_specimen_table(found: Specimens) -> Table:
+    """Return mean and standard deviation of every value in which specimens differ, and the value of each."""
+    columns = (found.mean, found.standard_deviation, *found.specimens.values())
+    rows = [(escape(key), *(f"{values[key]:.4g}" for values in columns)) for key in found.mean]
+    return make_table(f"{found.model}: specimens", ("", "mean", "sd", *map(escape, found.specimens)), rows)
 
 
 def _format_figures(figures: Agreement) -> tuple[str, ...]:

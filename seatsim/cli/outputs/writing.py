@@ -13,6 +13,7 @@ from seatsim.cli.outputs.printing import print_reports
 from seatsim.cli.outputs.workbook import write_workbook
 from seatsim.provenance.manifest import Measured, write_documented
 from seatsim.report.rendering import write_html
+from seatsim.schema.content import to_content
 from seatsim.schema.files import write_json, write_text, write_together, write_whole
 from seatsim.schema.guarded import temporary_folder
 from seatsim.schema.text import disarm
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from seatsim.diagnosis.result import Diagnosis
     from seatsim.identification.identify import Identification
     from seatsim.identification.model_benchmark import BenchmarkEntry
+    from seatsim.identification.specimens import Specimens
     from seatsim.recordings.gap import Gap
     from seatsim.standards.seat_rows import SeatTest
 
@@ -102,6 +104,9 @@ _TIMES = ("seconds", "ns_per_step")
 _HEAD = """\
 # Found by `seatsim identify`. `damper` and `actuator` are as a scenario has them; under `bench`: the displacement [m]
 # that counts as zero, and the growth of the offset with temperature [N/K].
+"""
+_MEAN = """\
+# Mean of the specimens that `seatsim identify` found, as a scenario has it; those of `specimens.yaml` vary about it.
 """
 _NO_COIL = "# No command that changes was recorded: the rates of the actuator are defaults.\n"
 
@@ -185,6 +190,12 @@ def _contents_of_fit(found: Identification) -> dict[str, object]:
         "report.html": report_identification(found, figures, f"seatsim identify DATA --model {found.model}"),
         **name_pictures(figures),
     }
+
+
+def write_specimens(found: Specimens, folder: Path, seed: int) -> list[Path]:
+    """Write `damper.yaml`, the mean damper, and `specimens.yaml`, the values of each specimen."""
+    contents = {"damper.yaml": _MEAN + dump(found.damper, line_each=True), "specimens.yaml": dump(to_content(found))}
+    return write_outputs(folder, contents, seed)
 
 
 def write_league(places: Sequence[BenchmarkEntry], folder: Path, seed: int) -> list[Path]:

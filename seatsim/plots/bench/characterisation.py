@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from seatsim.characterisation.response import SHARES, Response
+from seatsim.characterisation.response import Response
+from seatsim.characterisation.sheet import StepResponse
 from seatsim.characterisation.summary import Characterisation
 from seatsim.plots import style
 from seatsim.plots.bench.loops import plot_loops
@@ -17,8 +19,10 @@ from seatsim.plots.style import GREY, Entry, Grid
 
 MOST = 6
 """Most responses in a panel."""
-SHOWN = 2.2
-"""Length of a panel over the longest time to 95 %."""
+SHOWN = 3.6
+"""Length of a panel over the longest time to 90 %."""
+_TIMES = (("t10", 0.1), ("t63", 1.0 - math.exp(-1.0)), ("t90", 0.9))
+"""Times that are marked, with the shares of the change that they are of."""
 
 
 def plot_characterisation(found: Characterisation) -> dict[str, Figure]:
@@ -35,37 +39,46 @@ def plot_characterisation(found: Characterisation) -> dict[str, Figure]:
 
 
 def plot_steps(found: Characterisation) -> Figure:
-    """Return the share of the change that the force has covered over time, rise and fall of the current apart.
-
-    Beside each the first-order lag of the same time to 95 %.
-    """
-    known = [answer for answer in found.responses if answer.share is not None]
-    speeds = {f"{answer.speed:.3g} m/s" for answer in known if math.isfinite(answer.speed)}
+    """Return the share of the change that the force has covered over time, rise and fall of the current apart."""
+    answers = [answer for answer in found.responses if answer.share is not None]
+    known = list(zip(answers, found.sheet.response, strict=True))
+    speeds = {f"{answer.speed:.3g} m/s" for answer in answers if math.isfinite(answer.speed)}
     at = f" at {speeds.pop()}" if len(speeds) == 1 else ""
-    note = f"Force{at}, from its level before to that after the step; dots: 5, 90, 95 %. Thin: first order, same t95."
+    note = f"Force{at}; t10, t63, t90: 10, 63 and 90 % of its change, from the current's own 10 % or a command's step."
     title = f"Response to steps of current: {found.name}"
     page = style.make_page(title, note, Grid((3.0,), columns=2, top=0.3, gap=(0.3, 0.0)))
     for axes, words in zip(page.rows[0], ("rises", "falls"), strict=True):
-        _draw_responses(axes, [answer for answer in known if answer.rises == (words == "rises")][:MOST])
+        _draw_responses(axes, [pair for pair in known if pair[0].rises == (words == "rises")][:MOST])
         style.set_title(axes, f"current {words}")
     page.rows[0][0].set_ylabel("share of the change [-]")
     page.rows[0][1].tick_params(labelleft=False)
     return page.figure
 
 
-def _draw_responses(axes: Axes, shown: list[Response]) -> None:
+def _draw_responses(axes: Axes, shown: list[tuple[Response, StepResponse]]) -> None:
     if not shown:
         return style.explain_empty(axes, "none determined")
-    for level in SHARES:
-        axes.axhline(level, color=GREY, linewidth=0.7, linestyle=(0.0, (1.0, 2.0)))
-    end = SHOWN * max((a.t95 for a in shown if math.isfinite(a.t95)), default=0.05)
-    lag = np.linspace(0.0, end, 200)
-    for answer, colour in zip(shown, style.sample_colours("viridis", len(shown)), strict=True):
+    end = SHOWN * max((row.t90 for _, row in shown if math.isfinite(row.t90)), default=0.05)
+    top = 1.2
+    for (answer, row), colour in zip(shown, style.sample_colours("viridis", len(shown)), strict=True):
         assert answer.time is not None and answer.share is not None
-        name = f"{round(answer.before, 2):g} to {round(answer.after, 2):g} A, {1e3 * answer.t95:.3g} ms"
-        style.draw_line(axes, 1e3 * answer.time, answer.share, Entry(name, colour, width=1.7))
-        axes.plot([1e3 * t for t in (answer.t5, answer.t90, answer.t95)], SHARES, "o", color=colour, markersize=4)
-        axes.plot(1e3 * lag, 1.0 - np.exp(-answer.rate_95 * lag), color=colour, linewidth=0.8, alpha=0.8)
-    axes.set(xlabel="time from the step [ms]", xlim=(-0.08e3 * end, 1e3 * end), ylim=(-0.25 - 0.17 * len(shown), 1.2))
-    axes.set_yticks([0, 0.5, 1])
-    axes.legend(title="step, t95", loc="lower right", fontsize=9, framealpha=0.9, alignment="left", handlelength=1.2)
+        start = answer.current_t10 if math.isfinite(answer.current_t10) else 0.0
+        name = f"{round(answer.before, 2):g} to {round(answer.after, 2):g} A"
+        style.draw_line(axes, 1e3 * (answer.time - start), answer.share, Entry(name, colour, width=1.7))
+        for time, share in _TIMES:
+            axes.plot(1e3 * getattr(row, time), share, "o", color=colour, markersize=4)
+        top = max(top, float(np.max(answer.share)) + 0.05)
+    for time, share in _TIMES:
+        axes.axhline(share, color=GREY, linewidth=0.7, linestyle=(0.0, (1.0, 2.0)))
+        words, upright = _say_time(time, [row for _, row in shown]), "bottom" if share < 0.5 else "top"
+        axes.text(0.99e3 * end, share, words, fontsize=9, horizontalalignment="right", verticalalignment=upright)
+    axes.set(xlabel="time [ms]", xlim=(-0.08e3 * end, 1e3 * end), ylim=(-0.25 - 0.17 * len(shown), top))
+    axes.set_yticks([0, *(share for _, share in _TIMES)], ["0", *(f"{share:.2g}" for _, share in _TIMES)])
+    axes.legend(title="step", loc="lower right", fontsize=9, framealpha=0.9, alignment="left", handlelength=1.2)
+
+
+def _say_time(time: str, rows: Sequence[StepResponse]) -> str:
+    """Return a time in words, of all responses of a panel together."""
+    known = sorted(round(1e3 * value, 1) + 0.0 for row in rows if math.isfinite(value := getattr(row, time)))
+    ends = " to ".join(f"{each:g}" for each in sorted({*known[:1], *known[-1:]}))
+    return f"{time} = {ends} ms" if known else f"{time} is not reached"

@@ -63,7 +63,6 @@ def flat_tops(values: Array) -> Iterator[tuple[float, int]]:
 
     Coarse values are compared with the next level: a sine has 2.4 times as many rows at the last one.
     """
-    near = max(0.02 * float(np.ptp(values)), 1.5 * quantum(values))
     lengths, starts = plateaus(values)
     # With so many stretches most are one row long, and their median need not be sought.
     usual = 1.0 if 3 * len(starts) > 2 * len(values) else float(np.median(lengths))
@@ -72,6 +71,7 @@ def flat_tops(values: Array) -> Iterator[tuple[float, int]]:
         rows = int(np.sum(at))
         if rows < 5 * usual:
             continue
+        near = max(0.02 * float(np.ptp(values)), 1.5 * quantum(values))
         beside = int(np.sum(np.abs(values - extreme) <= near)) - rows
         if extreme != 0.0 and rows >= _PILED * beside and np.max(lengths[at[starts]]) >= 3 * usual:
             yield extreme, rows
@@ -158,6 +158,8 @@ def doubt_dropouts(
     """Yield stretches in which a channel stands still that it came to, or left, by a jump."""
     usual = float(np.quantile(lengths[:: max(1, len(lengths) // MOST_ROWS)], 0.999))
     long = np.flatnonzero(lengths >= max(_DROPOUT, 3.0 * usual))
+    if not long.size:
+        return
     jumps = np.abs(np.diff(values))
     least = _JUMP * float(np.median(jumps[jumps > 0.0][:MOST_ROWS]))
     found = [k for k in long if max(_jump(jumps, starts[k] - 1), _jump(jumps, starts[k] + lengths[k] - 1)) > least]
