@@ -242,7 +242,11 @@ def _of_zero(record: BenchRecord, moved: float) -> list[str]:
 
 def _of_current(record: BenchRecord) -> list[str]:
     low, high = (float(q) for q in np.percentile(record.current, (1, 99)))
-    return [f"the current varies from {low:.2f} to {high:.2f} A"] if high - low > _VARIES * max(high, 1e-9) else []
+    drive, unit = ("voltage", "V") if record.in_volts else ("current", "A")
+    notes = ["driven by a voltage without a stated gain: volts stand in place of amperes"] * record.in_volts
+    if high - low > _VARIES * max(high, 1e-9):
+        notes.append(f"the {drive} varies from {low:.2f} to {high:.2f} {unit}")
+    return notes
 
 
 def _of_sign(record: BenchRecord) -> list[str]:

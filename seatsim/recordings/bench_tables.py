@@ -48,9 +48,9 @@ _SLOPE_WINDOW = 0.02
 class BenchRecord(NamedTuple):
     """One uninterrupted record of a damper on a bench; arrays of shape (N,) at `rate` Hz, SI units.
 
-    `current` is in A, zero where it was negative. Where `commanded`, it is the command to the driver (1 V counts as
-    1 A), which the coil follows with a lag. `temperature` is in degC, None where it was not recorded. `unused` are the
-    columns of its file that hold no known quantity.
+    `current` is in A, zero where it was negative. Where `commanded`, it is the command to the driver, which the coil
+    follows with a lag; where `in_volts`, that is a voltage, of which 1 V counts as 1 A. `temperature` is in degC, None
+    where it was not recorded. `unused` are the columns of its file that hold no known quantity.
     """
 
     name: str
@@ -63,6 +63,7 @@ class BenchRecord(NamedTuple):
     commanded: bool
     temperature: Array | None
     unused: tuple[str, ...] = ()
+    in_volts: bool = False
 
     @property
     def time(self) -> Array:
@@ -221,7 +222,8 @@ def _record(table: Mapping[str, Array], file: Path) -> BenchRecord:
     velocity = table["velocity"] if "velocity" in table else _slope(x, rate)
     commanded = drive in ("command", "voltage") and bool(np.ptp(current) > 0.0)
     name, warmth = stem(file.name), table.get("temperature")
-    return BenchRecord(name, file.name, rate, x, velocity, table["force"], current, commanded, warmth)
+    measured = x, velocity, table["force"], current
+    return BenchRecord(name, file.name, rate, *measured, commanded, warmth, in_volts=drive == "voltage")
 
 
 def _slope(x: Array, rate: float) -> Array:
@@ -247,7 +249,7 @@ def _recorded(folder: Path) -> list[BenchRecord]:
             raise InputError(f"{folder / HEADER}: {problem}: leave this one out")
         table = {KNOWN[channel].quantity: values for channel, values in recording.table(name).items()}
         if recording.voltage_gain is not None and "voltage" in table:
-            table["voltage"] = table["voltage"] * recording.voltage_gain
+            table.setdefault("command", table.pop("voltage") * recording.voltage_gain)
         table["time"] = np.arange(len(table["force"])) / recording.header.sample_rate
         records.append(_record(table, folder / name)._replace(name=name))
     return records

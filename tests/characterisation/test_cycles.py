@@ -100,6 +100,7 @@ def test_a_damaged_record_is_named_and_a_drifting_zero_bends_no_loop(record, sin
     lost = made.force.copy()
     lost[3000:3100] = 0.0
     assert "a dropout" in summarise_record(made._replace(force=lost)).notes[0]
+    assert "volts stand in place of amperes" in summarise_record(made._replace(in_volts=True)).notes[0]
     drifting = summarise_record(made._replace(force=made.force + 10.0 * made.time))
     assert "the mean force drifts by +" in drifting.notes[0]
     assert drifting.energy == pytest.approx(clean.energy, rel=1e-3)

@@ -73,6 +73,7 @@ def test_a_sidecar_states_what_is_constant(tmp_path):
     assert np.all(found.temperature == 45.0)
     (driven,) = loaded(tmp_path, plain(voltage_V=np.where(TIME > 0.1, 2.0, 0.0)), sidecar=text)
     assert driven.commanded and np.ptp(driven.current) == 2.0, "a column counts before the sidecar"
+    assert driven.in_volts and not found.in_volts
 
 
 def test_forces_that_name_their_current_are_records_of_one_motion(tmp_path):
@@ -125,7 +126,7 @@ def test_a_recording_of_a_bench_is_read_as_it_says(tmp_path):
     table = pd.DataFrame({"displacement": 0.01 * TIME, "damper_force": 5.0 + TIME, "command_voltage": voltage})
     table.to_csv(tmp_path / "run-a.csv", index=False)
     (found,) = load_bench(tmp_path)
-    assert found.name == "run-a" and found.commanded and found.current.max() == 1.0
+    assert found.name == "run-a" and found.commanded and found.current.max() == 1.0 and not found.in_volts
     assert found.velocity[50] == pytest.approx(0.01)
     text = (tmp_path / "recording.yaml").read_text()
     (tmp_path / "nominal.yaml").write_text(
