@@ -136,8 +136,9 @@ class _Plain:
         if kind in "fiubMm":
             return in_seconds(array)
         several: list[Value] = []
-        if array.dtype.names:
-            several = [{name: self.of(each[name]) for name in array.dtype.names} for each in flat]
+        if names := array.dtype.names:
+            rows = zip(*(flat[name] for name in names), strict=True)
+            several = [dict(zip(names, map(self.of, row), strict=True)) for row in rows]
         elif kind in "UT":
             several = [str(each) for each in flat]
         elif kind == "O":
