@@ -156,7 +156,7 @@ def _judge(rows: SweepRows, found: Sensitivities, exceeded: Sequence[Exceedance]
     said = f", {len(rows.drawn)} of them drawn from distributions" if rows.drawn else ""
     said += "" if explained is None else f"; they explain {format_percent(max(0.0, explained))} of comfort"
     intervals = ["shares of the variance"] * bool(found.rows) + ["shares above limits"] * bool(exceeded)
-    energy = rows.usable["energy_residual"].dropna() if "energy_residual" in rows.metrics else []
+    energy = list(rows.usable["energy_residual"].dropna()) if "energy_residual" in rows.metrics else list[float]()
     reasons = sorted({str(text) for text in rows.every.reason.dropna() if text})
     explains, is_judged = (explained or 0.0) >= EXPLAINED, len(rows.usable) >= ENOUGH_RUNS and rows.drawn and exceeded
     return [

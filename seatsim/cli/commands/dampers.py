@@ -174,8 +174,8 @@ def _identify_specimens(
     found = {}
     with show_progress() as progress:
         for name, records in specimens.items():
-            fit = identify_records(records, model, request, lambda text, name=name: progress(f"{name}: {text}"))
-            found[name] = predict_records(fit, beside)
+            progress(name)
+            found[name] = predict_records(identify_records(records, model, request, progress), beside)
         gathered = gather_specimens(found)
         for name, each in found.items():
             write_member(each, folder / name)
