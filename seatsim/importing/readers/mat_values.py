@@ -137,8 +137,7 @@ class _Plain:
             return in_seconds(array)
         several: list[Value] = []
         if names := array.dtype.names:
-            rows = zip(*(flat[name] for name in names), strict=True)
-            several = [dict(zip(names, map(self.of, row), strict=True)) for row in rows]
+            several = [dict(zip(names, map(self.of, row), strict=True)) for row in flat.tolist()]
         elif kind in "UT":
             several = [str(each) for each in flat]
         elif kind == "O":
