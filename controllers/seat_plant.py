@@ -103,9 +103,17 @@ def build_generalised_plant(
         seat = connect_in_series(seat, connect_in_parallel(pass_through(1), weighting, pass_through(len(measures))))
     scale = np.diag([weights.travel, weights.acceleration, *[1.0] * len(measures)])
     A, B, C = seat.A, seat.B * [1.0, force_factor], scale @ seat.C
-    direct = (np.zeros((2, 1)), np.zeros((2, 1)), np.zeros((len(measures), 1)))
-    structure = None if displacement_gain else np.array([[measure != "displacement" for measure in measures]])
-    return GeneralisedPlant(A, B[:, :1], B[:, 1:], C[:2], C[2:], *direct, structure)
+    return GeneralisedPlant(
+        A,
+        B[:, :1],
+        B[:, 1:],
+        C[:2],
+        C[2:],
+        np.zeros((2, 1)),
+        np.zeros((2, 1)),
+        np.zeros((len(measures), 1)),
+        None if displacement_gain else np.array([[measure != "displacement" for measure in measures]]),
+    )
 
 
 def _seat(plant: Plant, measures: Sequence[Measure]) -> LinearSystem:

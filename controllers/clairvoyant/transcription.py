@@ -71,9 +71,15 @@ def transcribe(plant: Plant, floor: Array, sample: float, every: int, start: tup
     ratio = plant.damper_ratio / (every * sample)
     aw = weight(acceleration, 1 / sample)
     total = len(floor)
-    stroke = (ratio * (last[0] - np.eye(len(A) + 1)[0]), ratio * np.diff(travel[::every]))
-    criteria = (_criterion(aw, rows[:, 1], total), _criterion(travel, rows[:, 0], total))
-    return Transcription(every * sample, last[:, :-1], last[:, -1], *stroke, *criteria)
+    return Transcription(
+        every * sample,
+        last[:, :-1],
+        last[:, -1],
+        ratio * (last[0] - np.eye(len(A) + 1)[0]),
+        ratio * np.diff(travel[::every]),
+        _criterion(aw, rows[:, 1], total),
+        _criterion(travel, rows[:, 0], total),
+    )
 
 
 def _criterion(free: Array, rows: Array, total: int) -> _Criterion:

@@ -54,7 +54,12 @@ class SlidingMode(NamedTuple):
     def sampled(self, plant: Plant, coil: Coil, sample_time: float) -> SampledSlidingMode:
         """Return the compiled form for a plant and a sample time."""
         mass = plant.frame_mass + plant.driver_mass
-        spring = (plant.suspension_stiffness, plant.suspension_damping)
-        decay = math.exp(-self.damping * sample_time / mass)
-        surface = (self.damping, mass * self.reaching, self.boundary)
-        return SampledSlidingMode(*spring, *surface, plant.damper_ratio, decay)
+        return SampledSlidingMode(
+            plant.suspension_stiffness,
+            plant.suspension_damping,
+            self.damping,
+            mass * self.reaching,
+            self.boundary,
+            plant.damper_ratio,
+            math.exp(-self.damping * sample_time / mass),
+        )

@@ -6,7 +6,7 @@ import itertools
 import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from seatsim.rig.coil import Coil, relax
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.scenario.damper import read_damper
 from seatsim.schema.errors import InputError
-from seatsim.schema.registry import name_of, specification_of
+from seatsim.schema.registry import name_of
 from seatsim.schema.validation import build, mapping
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import KeyPath
@@ -43,7 +43,7 @@ class DamperSpecimen(NamedTuple):
     @property
     def specification(self) -> DamperSpecification:
         """What is stated of the model."""
-        return _find_specification(type(self.damper))
+        return DAMPERS.specification_of(type(self.damper))
 
 
 def load_specimen(model: str | None, parameters: Path | None) -> DamperSpecimen:
@@ -57,7 +57,7 @@ def load_specimen(model: str | None, parameters: Path | None) -> DamperSpecimen:
     """
     if parameters is None:
         cls = DAMPERS.find(model or "")
-        specification = _find_specification(cls)
+        specification = DAMPERS.specification_of(cls)
         return DamperSpecimen(cls(), specification.factors, Coil(max_current=specification.max_current), False)
     source = Source(Path(parameters))
     whole = "damper" in source.data
@@ -68,14 +68,10 @@ def load_specimen(model: str | None, parameters: Path | None) -> DamperSpecimen:
     if model not in (None, named):
         problem = f"is '{named}', not the '{model}' of --model; leave --model out"
         raise source.error((*keys, "model"), problem)
-    coil = Coil(max_current=_find_specification(type(choice.record)).max_current)
+    coil = Coil(max_current=DAMPERS.specification_of(type(choice.record)).max_current)
     if whole and "actuator" in source.data:
         coil = build(Coil, source.data["actuator"], source, ("actuator",), ("rate", "max_current"))
     return DamperSpecimen(choice.record, choice.factors, coil)
-
-
-def _find_specification(cls: type) -> DamperSpecification:
-    return cast("DamperSpecification", specification_of(cls))
 
 
 _FASTEST = (2.0, 1.0, 0.5, 0.2, 0.1)

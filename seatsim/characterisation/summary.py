@@ -76,7 +76,7 @@ def characterise(
     source: str = "",
     window: float = WINDOW,
     pattern: str = "",
-    progress: Callable[[str], object] = str,
+    progress: Callable[[str], object] = lambda _: None,
 ) -> Characterisation:
     """Return what bench records, or the tables of a folder, show before anything is modelled.
 
@@ -96,7 +96,7 @@ def characterise(
         found.rows.extend(part.rows)
         found.responses.extend(part.responses)
         found.unused.extend(part.unused)
-        progress(f"characterised {number} tables")
+        progress(f"tables characterised: {number}")
     sheet = make_sheet(found.rows, found.responses, window)
     return Characterisation(name, source or name, True, found.rows, found.responses, note_unused(found.unused), sheet)
 

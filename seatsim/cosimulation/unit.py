@@ -118,7 +118,8 @@ PATIENCE = 30.0
 _TRIAL = """
 import sys
 from pathlib import Path
-from seatsim.cosimulation.unit import description, load_unit
+from seatsim.cosimulation import description
+from seatsim.cosimulation.unit import load_unit
 path, folder, library = map(Path, sys.argv[1:])
 load_unit(path, description.describe_unit(path), folder, library, [])
 """

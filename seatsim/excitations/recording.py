@@ -59,9 +59,15 @@ def interpolate_floor(table: Mapping[str, Array], parts: int, step: float) -> Fl
     floor, command = _linear(table["floor_acceleration"], parts), table.get("current_command")
     velocity = _leaky_integral(floor, step)
     finer = {name: _linear(table[name], parts) for name in ("coil_current", "damper_temperature") if name in table}
-    held = None if command is None else np.append(np.repeat(command[:-1], parts), command[-1])
-    logged = (held, finer.get("coil_current"), finer.get("damper_temperature"))
-    return Floor(step, floor, velocity, _leaky_integral(velocity, step), *logged)
+    return Floor(
+        step,
+        floor,
+        velocity,
+        _leaky_integral(velocity, step),
+        None if command is None else np.append(np.repeat(command[:-1], parts), command[-1]),
+        finer.get("coil_current"),
+        finer.get("damper_temperature"),
+    )
 
 
 def _linear(values: Array, parts: int) -> Array:

@@ -107,9 +107,16 @@ def _benchmark_model(
 def _summarise(found: Identification) -> BenchmarkEntry:
     """Return the entry of an identification."""
     train, test = found.mean("train"), found.mean("test")
-    fits = (train.fit_percent if train else math.nan, test.fit_percent if test else math.nan)
-    free, measured = len(found.information.estimates), (found.ns_per_step, found.bic, found.seconds)
-    return BenchmarkEntry(found.model, *fits, free, *measured, confidence=find_confidence(type(found.bench.damper)))
+    return BenchmarkEntry(
+        found.model,
+        train.fit_percent if train else math.nan,
+        test.fit_percent if test else math.nan,
+        len(found.information.estimates),
+        found.ns_per_step,
+        found.bic,
+        found.seconds,
+        confidence=find_confidence(type(found.bench.damper)),
+    )
 
 
 def rank_entries(entries: Sequence[BenchmarkEntry]) -> list[BenchmarkEntry]:

@@ -70,8 +70,8 @@ def prepare_inputs(record: BenchRecord, origin: float, every: bool) -> RecordInp
         return RecordInputs(x, v, current, record.commanded, warm, 2.0 / rate, record.force[odd][::2].copy())
     # A command holds until its next row; a current that was measured goes straight on to it.
     current = np.repeat(record.current, 2)[:-1] if record.commanded else _halve_linearly(record.current)
-    motion, warmth = (_halve_cubically(x), _halve_cubically(v)), _halve_linearly(warm)
-    return RecordInputs(*motion, current, record.commanded, warmth, 1.0 / rate, record.force.copy())
+    x, v, warm = _halve_cubically(x), _halve_cubically(v), _halve_linearly(warm)
+    return RecordInputs(x, v, current, record.commanded, warm, 1.0 / rate, record.force.copy())
 
 
 def _halve_cubically(y: Array) -> Array:

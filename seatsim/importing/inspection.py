@@ -158,8 +158,9 @@ def summarise(signal: Signal, unit: str, channel: str | None, rate: float | None
     noise = noise_of(values, rate) if np.ptp(values) > 0.0 else None
     low, high, mean = float(np.min(values)), float(np.max(values)), float(np.mean(values))
     rms = float(np.sqrt(values @ values / len(values)))
-    figures = (low, high, mean, rms, noise)
-    return ChannelSummary(signal.name, unit, channel, rate, len(signal.values), *figures, _spark_of(values))
+    return ChannelSummary(
+        signal.name, unit, channel, rate, len(signal.values), low, high, mean, rms, noise, _spark_of(values)
+    )
 
 
 def _spark_of(values: Array) -> str:

@@ -222,8 +222,8 @@ def _record(table: Mapping[str, Array], file: Path) -> BenchRecord:
     velocity = table["velocity"] if "velocity" in table else _slope(x, rate)
     commanded = drive in ("command", "voltage") and bool(np.ptp(current) > 0.0)
     name, warmth = stem(file.name), table.get("temperature")
-    measured = x, velocity, table["force"], current
-    return BenchRecord(name, file.name, rate, *measured, commanded, warmth, in_volts=drive == "voltage")
+    record = BenchRecord(name, file.name, rate, x, velocity, table["force"], current, commanded, warmth)
+    return record._replace(in_volts=drive == "voltage")
 
 
 def _slope(x: Array, rate: float) -> Array:

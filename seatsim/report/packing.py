@@ -61,11 +61,12 @@ def pack_signals(
     longest = max(time.values(), key=len)
     bins = min(finest, -(-len(longest) // 2))
     shown = [describe_channel(panel.quantity, panel.unit) for panel in panels]
-    packed = _pack_panels(panels, list(time), bins)
+    factors = [each.factor for each in shown]
+    packed = _pack_panels(panels, factors, list(time), bins)
     while bins > _COARSEST and _measure(packed) > BUDGET:
         # What noise there is takes the same bits in each value, whatever their number.
         bins = max(_COARSEST, int(0.95 * bins * BUDGET / _measure(packed)))
-        packed = _pack_panels(panels, list(time), bins)
+        packed = _pack_panels(panels, factors, list(time), bins)
     if len(longest) > 2 * bins:
         interval = 1000.0 * float(longest[-1] - longest[0]) / bins
         caption += f" Drawn are the least and the largest value in every {interval:.3g} ms; figures use all samples."
@@ -108,14 +109,16 @@ def _pack_time(values: Array, bins: int) -> dict[str, float]:
     return {"first": float(values[0]), "step": interval}
 
 
-def _pack_panels(panels: Sequence[Panel], runs: Sequence[str], bins: int) -> list[list[list[_Line | None]]]:
-    """Return the lines of each run of each panel."""
+def _pack_panels(
+    panels: Sequence[Panel], factors: Sequence[float], runs: Sequence[str], bins: int
+) -> list[list[list[_Line | None]]]:
+    """Return the lines of each run of each panel, times the factor of the panel."""
 
-    def pack(line: Array | None, panel: Panel) -> _Line | None:
+    def pack(line: Array | None, factor: float) -> _Line | None:
         if line is None:
             return None
         values = np.asarray(line, dtype=float)
-        factor = describe_channel(panel.quantity, panel.unit).factor
         return pack_line(factor * thin_line(values, values, bins)[1])
 
-    return [[[pack(line, panel) for line in panel.values[run]] for run in runs] for panel in panels]
+    scaled = zip(panels, factors, strict=True)
+    return [[[pack(line, factor) for line in panel.values[run]] for run in runs] for panel, factor in scaled]

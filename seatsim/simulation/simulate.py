@@ -181,8 +181,17 @@ def _prepare_inputs(scenario: Scenario, control: Control, floor: Floor, forces: 
     frame_force = sum_frame_forces(effects, floor.time, scenario.seed)
     if len(forces.frame):
         frame_force = frame_force + forces.frame if len(frame_force) else forces.frame
-    driven = (acceleration, floor.velocity, temperature, command, prescribed)
-    return LoopInputs(*driven, frame_force, forces.driver, start, *scenario.start)
+    return LoopInputs(
+        acceleration,
+        floor.velocity,
+        temperature,
+        command,
+        prescribed,
+        frame_force,
+        forces.driver,
+        start,
+        *scenario.start,
+    )
 
 
 def read_history(scenario: Scenario, setup: LoopSetup, out: Array) -> History:

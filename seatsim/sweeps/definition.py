@@ -70,25 +70,24 @@ def read_definition(path: Path) -> SweepDefinition:
     source = Source(path)
     if "scenario" not in source.data and {"plant", "damper"} & set(source.data):
         raise InputError(f"{path}: is a scenario; a sweep is a file that names one under scenario, and what varies")
-    # In the order of the fields.
-    readers: tuple[Callable[[], object], ...] = (
-        lambda: _read_scenario(source),
-        lambda: _read_whole(source, "seed", least=0) or 0,
-        lambda: _read_design(source),
-        lambda: _read_whole(source, "runs", least=1),
-        lambda: _read_whole(source, "replicates", least=1) or 1,
-        lambda: _read_axes(source),
-        lambda: _read_table(source),
-        lambda: _read_limits(source),
-    )
-    found, errors = list[object](), list[InputError]()
+    readers: Mapping[str, Callable[[], object]] = {
+        "scenario": lambda: _read_scenario(source),
+        "seed": lambda: _read_whole(source, "seed", least=0) or 0,
+        "design": lambda: _read_design(source),
+        "runs": lambda: _read_whole(source, "runs", least=1),
+        "replicates": lambda: _read_whole(source, "replicates", least=1) or 1,
+        "axes": lambda: _read_axes(source),
+        "table": lambda: _read_table(source),
+        "limits": lambda: _read_limits(source),
+    }
+    found, errors = dict[str, object](source=source), list[InputError]()
     with gathered(errors):
         check_keys(source.data, _KEYS, source, ())
-    for read in readers:
+    for name, read in readers.items():
         with gathered(errors):
-            found.append(read())
+            found[name] = read()
     raise_all(errors)
-    return SweepDefinition._make([source, *found])
+    return SweepDefinition._make(found[name] for name in SweepDefinition._fields)
 
 
 def _is_table(source: Source) -> bool:

@@ -142,7 +142,8 @@ def make_plan(definition: SweepDefinition, foresee: Callable[[int], None] = lamb
             " keys, or draw 'runs' points with design: sobol",
         )
     for axis in definition.axes:
-        _check_specimens(axis, definition, bases)
+        if axis.model:
+            _check_specimens(axis, definition, bases)
     foresee(runs)
     columns = resolve_design(definition)
     for key in columns:
@@ -154,15 +155,14 @@ def make_plan(definition: SweepDefinition, foresee: Callable[[int], None] = lamb
 
 def _check_specimens(axis: Axis, definition: SweepDefinition, bases: Sequence[_Base]) -> None:
     """Raise InputError where specimens are of another damper than the scenario's, or a key of theirs varies anyway."""
-    for base in bases if axis.model else ():
+    for base in bases:
         damper = base.source.data.get("damper")
         named = damper.get("model") if isinstance(damper, Mapping) else damper
         if named != axis.model:
             problem = f"holds specimens of '{axis.model}', and the scenario's damper is '{named}'"
             raise definition.source.error(("vary", axis.key), f"{problem}; take the damper of 'damper.yaml' beside it")
-    specimens = cast("tuple[Mapping[str, object], ...]", axis.values) if axis.model else ()
-    twice = {other.key for other in definition.axes}.intersection(*specimens[:1])
-    if specimens and twice:
+    specimens = cast("Sequence[Mapping[str, object]]", axis.values)
+    if twice := {other.key for other in definition.axes}.intersection(specimens[0]):
         raise definition.source.error(("vary", min(twice)), "is a key of the specimens, too; leave it out")
 
 

@@ -88,8 +88,9 @@ def make_overall_table(runs: Sequence[Run]) -> list[Table]:
     keys = [key for key in _label_keys(runs) if not is_condition(key)]
     for run in runs:
         choices.setdefault(tuple(_labels(run, keys)), []).append(run)
-    tried = [(len({condition_of(run.scenario) for run in of}), len(of)) for of in choices.values()]
-    complete = all(counts == (len(conditions), len(conditions)) for counts in tried)
+    complete = all(
+        len({condition_of(run.scenario) for run in of}) == len(of) == len(conditions) for of in choices.values()
+    )
     if len(conditions) < 2 or len(choices) < 2 or not complete or any(run.unverified for run in runs):
         return []
     columns = [column for column in _COLUMNS if _is_shown(runs, column)]

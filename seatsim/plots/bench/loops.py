@@ -127,8 +127,10 @@ def _draw_clouds(panels: Sequence[Axes], group: Sequence[Row]) -> None:
         assert row.cloud is not None
         x, v, force, current = (values[:: max(1, len(row.cloud.force) // DOTS)] for values in row.cloud)
         for axes, across in ((panels[0], v), (panels[1], 1e3 * x)):
-            dots = axes.scatter(across, force, c=current, s=5, norm=norm, linewidths=0, rasterized=True)
-            dots.set(cmap=colormaps["viridis"], alpha=0.6)
+            dots = axes.scatter(
+                across, force, c=current, s=5, alpha=0.6, cmap=colormaps["viridis"], norm=norm, linewidths=0,
+                rasterized=True,
+            )  # fmt: skip
     names = list(dict.fromkeys(row.record.split(",")[0] for row in group))
     label_panels(panels, f"{names[0]}{f' and {len(names) - 1} more' * (len(names) > 1)}, not cyclic")
     if most > 0:

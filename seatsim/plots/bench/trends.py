@@ -124,8 +124,10 @@ def _draw_trend(
         places = [across.value(row) for row in ordered]
         values, spreads, cycles = zip(*map(figure.read, ordered), strict=True)
         apart = bool(np.all(np.diff(places) > (WARMER if across is BY_TEMPERATURE else 0.0)))
-        bars = axes.errorbar(places, values, np.nan_to_num(spreads), color=look.colour, capsize=2.5, elinewidth=0.9)
-        bars.lines[0].set(linestyle=look.dashes if apart else "none", linewidth=1.4, marker="o", markersize=4.5)
+        axes.errorbar(
+            places, values, np.nan_to_num(spreads), color=look.colour, linestyle=look.dashes if apart else "none",
+            linewidth=1.4, marker="o", markersize=4.5, capsize=2.5, elinewidth=0.9,
+        )  # fmt: skip
         for row, each in zip(ordered, cycles, strict=True):
             if across is BY_TEMPERATURE and row.temperature_range > WARMER and len(each):
                 warmth = (row.cycle_values or {})["temperature"]
