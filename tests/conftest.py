@@ -61,7 +61,7 @@ def pytest_xdist_make_scheduler(config, log):
 
 def pytest_addoption(parser):
     """Add the option that writes the ledger of conformance."""
-    parser.addoption("--ledger", action="store_true", help="run the tests that enter rows, and write the ledger")
+    parser.addoption("--ledger", action="store_true", help="write the ledger, of all rows that the tests enter")
 
 
 def pytest_configure(config):

@@ -1,7 +1,7 @@
 """The ledger of conformance: figures of seatsim beside references, entered by the tests that hold them together.
 
-`pytest --ledger` runs the tests that use the fixture `conform` and writes their rows to `docs/conformance.csv`. It
-fails where a row came, went, or moved by more than a tenth of its tolerance: look at the differences, then commit them.
+`pytest --ledger` writes the rows of the tests that use the fixture `conform` to `docs/conformance.csv`. It fails where a
+row came, went, or moved by more than a tenth of its tolerance: look at the differences, then commit them.
 """
 
 import csv
@@ -55,15 +55,6 @@ class Ledger:
         if session.config.args_source is pytest.Config.ArgsSource.ARGS and not hasattr(session.config, "workerinput"):
             raise pytest.UsageError("--ledger writes the rows of all tests: give it no path")
 
-    def pytest_ignore_collect(self, collection_path):
-        """Leave out files without such a test unread: to import them all takes as long as the tests."""
-        return True if collection_path.is_file() and b"conform" not in collection_path.read_bytes() else None
-
-    def pytest_collection_modifyitems(self, config, items):
-        """Run the tests that enter rows alone."""
-        config.hook.pytest_deselected(items=[item for item in items if not _enters_rows(item)])
-        items[:] = filter(_enters_rows, items)
-
     def pytest_runtest_logreport(self, report):
         """Take the rows of a test that passed."""
         if report.when == "call" and report.passed:
@@ -91,10 +82,6 @@ class Ledger:
         """Say how many rows there are, and which differ."""
         for line in (f"{len(self.rows)} rows in {self.path}, {len(self.differences)} differences", *self.differences):
             terminalreporter.line(line)
-
-
-def _enters_rows(item):
-    return "conform" in getattr(item, "fixturenames", ())
 
 
 def _keep(row, old):

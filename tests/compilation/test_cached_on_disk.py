@@ -167,5 +167,6 @@ def test_tests_and_commands_share_what_is_compiled(tmp_path):
     file.write_text(f"def test_key():\n    exec({KEY!r}, {{}})\n")
     command = subprocess.run([sys.executable, "-c", KEY], capture_output=True, text=True, check=True)
     tests = [sys.executable, "-m", "pytest", "-q", "-s", "-n", "0", "-c", os.devnull, "--rootdir", tmp_path, file]
-    found = subprocess.run(tests, capture_output=True, text=True, check=True, cwd=tmp_path)
+    plain = os.environ | {"PYTEST_ADDOPTS": ""}
+    found = subprocess.run(tests, capture_output=True, text=True, check=True, cwd=tmp_path, env=plain)
     assert command.stdout.strip() in found.stdout

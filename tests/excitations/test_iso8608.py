@@ -1,6 +1,5 @@
 """Random roads carry the spectrum of ISO 8608."""
 
-import time
 
 import numpy as np
 import pytest
@@ -79,12 +78,3 @@ def test_profile_carries_the_same_spectrum(conform):
         band = (n > 0.05) & (n < 1.5)
         mean += np.sum(density[band] * n[band] ** 2) / np.sum(displacement_density(n[band], "C") * n[band] ** 2) / 8
     conform("profile of class C, power over that of the class, 8 seeds", "ISO 8608", mean, 1.0, tolerance=0.03)
-
-
-def test_a_minute_at_a_millisecond_is_quick():
-    def once():
-        start = time.perf_counter()
-        Road("D", 15.0, 60.0).floor(0.001, 1)
-        return time.perf_counter() - start
-
-    assert min(once() for _ in range(5)) < 0.1
