@@ -1,7 +1,7 @@
 """The ledger of conformance: figures of seatsim beside references, entered by the tests that hold them together.
 
-`pytest --ledger` writes the rows of the tests that use the fixture `conform` to `docs/conformance.csv`. It fails where a
-row came, went, or moved by more than a tenth of its tolerance: look at the differences, then commit them.
+`pytest --ledger` writes the rows of the tests that use the fixture `conform` to `docs/conformance.csv`. It fails where
+a row came, went, or moved by more than a tenth of its tolerance: look at the differences, then commit them.
 """
 
 import csv

@@ -164,6 +164,15 @@ def join_doses(doses: Sequence[Dose]) -> Dose:
     return _dose(duration, a_w, value, max(dose.mtvv for dose in doses), highest)
 
 
+def prolong(dose: Dose, exposure: float) -> Dose:
+    """Return the dose where the vibration goes on for `exposure` s: doses grow, a_w and all ratios stay."""
+    return dose._replace(
+        duration=exposure,
+        vdv=daily_vdv(dose.vdv, dose.duration, exposure),
+        estimated_vdv=estimated_vdv(dose.rms, exposure),
+    )
+
+
 def find_shocks(dose: Dose) -> list[str]:
     """Return why the basic method, a_w alone, does not suffice for a record; empty where it does.
 
@@ -182,13 +191,16 @@ def find_shocks(dose: Dose) -> list[str]:
     ]
 
 
-def motion_sickness_dose(weighted: ArrayLike, sample_rate: float) -> float:
-    """Return MSDV_z = sqrt(integral a_w(t)^2 dt) in m/s^1.5 of vertical motion weighted with Wf.
+def motion_sickness_dose(rms_weighted: float, duration: float) -> float:
+    """Return MSDV_z = sqrt(integral a_w(t)^2 dt) = a_w sqrt(T) in m/s^1.5.
+
+    Args:
+        rms_weighted: a_w in m/s^2 of vertical motion weighted with Wf.
+        duration: T in s.
 
     Source: ISO 2631-1:1997, clause 9 and annex D (recalled).
     """
-    x = as_signal(weighted, "weighted")
-    return rms(x) * math.sqrt(x.size / require_positive(sample_rate, "sample_rate"))
+    return rms_weighted * math.sqrt(require_positive(duration, "duration"))
 
 
 def daily_exposure(rms_weighted: float, exposure: float) -> float:

@@ -74,10 +74,13 @@ def _tabulate_classes(rows: Sequence[SeatRow]) -> list[Block]:
     lines = []
     for row in rows:
         tested = (row.run, row.spectral_class, LIMITS[row.spectral_class].machines, PASSED[row.passed])
-        figures = (f"{row.mass:g}", row.seat, row.limit, format_percent(row.spread), row.end_stop_hits)
+        figures = (f"{row.mass:g}", row.seat, row.limit, row.corrected, format_percent(row.spread), row.end_stop_hits)
         lines.append((*tested, *figures))
     caption = "Each class with a light and a heavy driver; in bold what is above its limit"
-    head = "run, class, machine, passed, driver [kg], SEAT factor, limit, spread of runs, end-stop hits"
+    head = (
+        "run, class, machine, passed, driver [kg], SEAT factor, limit, a_w at the intended input [m/s²], spread of"
+        " runs, end-stop hits"
+    )
     return tabulate(caption, head, lines, 4, [k for k, row in enumerate(rows) if not row.passed])
 
 

@@ -15,9 +15,21 @@ from seatsim.metrics.comfort import (
     find_shocks,
     join_doses,
     motion_sickness_dose,
+    prolong,
     seat_transmission,
 )
-from seatsim.metrics.exposure import DIRECTIONS, POINTS, Direction, Exposure, assess_exposure, direction, point_of
+from seatsim.metrics.exposure import (
+    DIRECTIONS,
+    HOUR,
+    POINTS,
+    Direction,
+    Exposure,
+    Operation,
+    assess_exposure,
+    direction,
+    point_of,
+    split_exposure,
+)
 from seatsim.metrics.weighting import weight
 from seatsim.recordings.quality.channels import say_implausible
 from seatsim.schema.arrays import Array
@@ -37,8 +49,22 @@ _SHORTEST = 108.0
 _Blocks = Sequence[tuple[float, float]]
 
 
+class Stretch(NamedTuple):
+    """A block of a run along one axis: acceleration less its mean, as recorded and weighted, shape (N,) each."""
+
+    run: str
+    sample_rate: float
+    acceleration: Array
+    weighted: Array
+
+    @property
+    def duration(self) -> float:
+        """Seconds that it lasts."""
+        return len(self.weighted) / self.sample_rate
+
+
 class AxisAssessment(NamedTuple):
-    """Figures of one axis, weighted but without multiplying factors."""
+    """Figures of one axis, weighted but without multiplying factors; of operations, over their hours of the day."""
 
     column: str
     direction: Joined[Direction]
@@ -65,7 +91,7 @@ class MotionSickness(NamedTuple):
 class Comfort(NamedTuple):
     """What ISO 2631-1 says of a record, or of chosen blocks of its runs taken together: the content of `comfort.json`.
 
-    `duration` is in s, `sample_rate` in Hz.
+    `duration` in s is what was recorded, `sample_rate` is in Hz.
     """
 
     source: Unwritten[str]
@@ -77,10 +103,14 @@ class Comfort(NamedTuple):
     """Vibration total value a_v in m/s^2 by point of contact, and `overall` (ISO 2631-1:1997, 8.2.2 and 8.2.3)."""
     exposure: Joined[Exposure | None]
     """None where neither x, y nor z on the seat was recorded."""
+    operations: tuple[Operation, ...]
+    """Parts of the day, where its runs have hours of their own."""
     seat: Mapping[str, SeatTransmission]
     """SEAT factors by axis, where seat and floor were recorded."""
     motion_sickness: MotionSickness | None
     notes: tuple[str, ...]
+    stretches: Unwritten[Mapping[str, Sequence[Stretch]]]
+    """What was assessed, by axis."""
 
     @property
     @written("source")
@@ -96,7 +126,7 @@ def comfort(
     source: str | Path,
     channels: Mapping[str, str] | None = None,
     *,
-    hours: float = 8.0,
+    hours: float | Mapping[str, float] = 8.0,
     runs: Sequence[str] = (),
     blocks: _Blocks = (),
     rate: float | None = None,
@@ -110,36 +140,43 @@ def comfort(
         source: a file of any format that `seatsim import` reads, or the folder of a recording.
         channels: column by axis: `x`, `y`, `z`, `rx`, `ry`, `rz` on the seat, `back.x` .. `feet.z`, and `floor.x` ..
             `floor.z` at its base; None takes columns with usual names.
-        hours: duration of such vibration in a day.
+        hours: duration of such vibration in a day; or by name of a run, each of which is then an operation of the day.
         runs: names of the runs of a recording, all of them where empty; they count as one vibration.
         blocks: stretches (from, to) in s of every run, the whole run where empty.
         rate: sample rate in Hz of a file without times.
         unit: of the columns for which none is stated, m/s^2 (rad/s^2) where it is None.
 
     Raises:
-        InputError: a file, column, axis, run or block is not there, or the record cannot be weighted.
+        InputError: a file, column, axis, run or block is not there, the record cannot be weighted, or `hours` do not
+            fit into a day or name runs beside `runs`.
     """
     named = {axis.lower(): column for axis, column in (channels or {}).items()}
     _check_axes(named)
-    records = _chosen(load_accelerations(source, rate, unit, [*named.values()]), runs, source)
+    day = _check_hours(hours, runs) if isinstance(hours, Mapping) else {}
+    records = _chosen(load_accelerations(source, rate, unit, [*named.values()]), [*day] or runs, source)
     named = named or choose_axes(records[0].name, records[0].columns, records[0].notes)
-    doses = {axis: _doses(records, axis, column, blocks) for axis, column in named.items()}
-    axes = {axis: _assess(axis, named[axis], doses[axis], records) for axis in DIRECTIONS if axis in named}
-    if not axes:
+    cut = {axis: _cut(records, name, direction(_FLOOR.get(axis, axis)), blocks) for axis, name in named.items()}
+    stretches = {axis: cut[axis] for axis in DIRECTIONS if axis in named}
+    if not stretches:
         raise InputError(f"{source}: no axis of the person is named; give one of {', '.join(DIRECTIONS)}")
+    by_axis = {axis: _join_runs(parts, day) for axis, parts in stretches.items()}
+    axes = {axis: _assess(named[axis], direction(axis), doses, records) for axis, doses in by_axis.items()}
     joined = {axis: found.dose for axis, found in axes.items()}
-    pairs = [(base, axis) for base, axis in _FLOOR.items() if {base, axis} <= {*named}]
+    exposure = assess_exposure(joined, sum(day.values()) if isinstance(hours, Mapping) else hours)
+    operations = {run: {axis: doses[run] for axis, doses in by_axis.items()} for run in day}
     return Comfort(
         source=str(source),
         runs=tuple(record.name for record in records),
-        duration=next(iter(joined.values())).duration,
+        duration=sum(part.duration for part in next(iter(stretches.values()))),
         sample_rate=records[0].sample_rate,
         axes=axes,
         totals=total_values(joined),
-        exposure=assess_exposure(joined, hours),
-        seat={axis: seat_transmission(doses[axis], doses[base]) for base, axis in pairs},
-        motion_sickness=_motion_sickness(records, named.get("z"), blocks),
-        notes=tuple(_notes(records, named, axes)),
+        exposure=exposure,
+        operations=split_exposure(exposure, operations) if exposure else (),
+        seat={axis: _compare(cut[axis], cut[base], day) for base, axis in _FLOOR.items() if {base, axis} <= {*named}},
+        motion_sickness=_motion_sickness(records, named["z"], blocks, day) if "z" in named else None,
+        notes=tuple(_notes(records, named, axes, stretches, day)),
+        stretches=stretches,
     )
 
 
@@ -169,18 +206,43 @@ def _check_axes(named: Mapping[str, str]) -> None:
             raise InputError(f"no axis is called '{axis}'{nearest(axis, _AXES)}; permitted: {', '.join(_AXES)}")
 
 
-def _doses(records: Sequence[AccelerationRecord], axis: str, column: str, blocks: _Blocks) -> list[Dose]:
-    """Return the dose of each block of each record."""
-    along = direction(_FLOOR.get(axis, axis))
-    return [dose(part, record.sample_rate) for record in records for part in _weighted(record, column, along, blocks)]
+def _check_hours(hours: Mapping[str, float], runs: Sequence[str]) -> Mapping[str, float]:
+    if runs:
+        raise InputError("runs: each run that has hours of its own counts; leave the others, and --run, out")
+    for name, lasts in hours.items():
+        if not lasts > 0:
+            raise InputError(f"hours: {name} lasts {lasts:g} h; a part of a day is longer than 0")
+    return hours
 
 
-def _weighted(record: AccelerationRecord, column: str, along: Direction, blocks: _Blocks) -> list[Array]:
-    # The high-pass would take seconds to forget a constant, and gravity in a sensor would be the largest "vibration".
-    x = record.values(column, along.unit)
-    with placed(f"{record.name}, {column}"):
-        whole = weight(x - x.mean(), record.sample_rate, along.weighting)
-    return [whole[cut] for cut in _cuts(record, len(whole), blocks)]
+def _cut(records: Sequence[AccelerationRecord], column: str, along: Direction, blocks: _Blocks) -> list[Stretch]:
+    """Return each block of each record."""
+    found = []
+    for record in records:
+        # The high-pass would take seconds to forget a constant, and gravity in a sensor would be the largest vibration.
+        recorded = record.values(column, along.unit)
+        x = recorded - recorded.mean()
+        with placed(f"{record.name}, {column}"):
+            whole = weight(x, record.sample_rate, along.weighting)
+        parts = _cuts(record, len(whole), blocks)
+        found += [Stretch(record.name, record.sample_rate, x[part], whole[part]) for part in parts]
+    return found
+
+
+def _join_runs(stretches: Sequence[Stretch], day: Mapping[str, float]) -> dict[str, Dose]:
+    """Return the dose of each run, over its hours of the day where it has some."""
+    found = dict[str, list[Dose]]()
+    for part in stretches:
+        found.setdefault(part.run, []).append(dose(part.weighted, part.sample_rate))
+    joined = {run: join_doses(doses) for run, doses in found.items()}
+    return {run: prolong(whole, HOUR * day[run]) if day else whole for run, whole in joined.items()}
+
+
+def _compare(seat: Sequence[Stretch], base: Sequence[Stretch], day: Mapping[str, float]) -> SeatTransmission:
+    """Return the SEAT factors; operations are no repeats of each other, of which the rule of three runs speaks."""
+    doses = ([dose(part.weighted, part.sample_rate) for part in parts] for parts in (seat, base))
+    found = seat_transmission(*doses)
+    return found._replace(within_spread=None) if day else found
 
 
 def _cuts(record: AccelerationRecord, samples: int, blocks: _Blocks) -> list[slice]:
@@ -193,29 +255,31 @@ def _cuts(record: AccelerationRecord, samples: int, blocks: _Blocks) -> list[sli
     return [slice(round(start * record.sample_rate), round(end * record.sample_rate)) for start, end in ends]
 
 
-def _assess(axis: str, column: str, doses: Sequence[Dose], records: Sequence[AccelerationRecord]) -> AxisAssessment:
-    joined, along = join_doses(doses), direction(axis)
+def _assess(
+    column: str, along: Direction, doses: Mapping[str, Dose], records: Sequence[AccelerationRecord]
+) -> AxisAssessment:
+    joined = join_doses([*doses.values()])
     means = [float(np.mean(record.values(column, along.unit))) for record in records]
     return AxisAssessment(column, along, joined, tuple(find_shocks(joined)), max(means, key=abs))
 
 
 def _motion_sickness(
-    records: Sequence[AccelerationRecord], column: str | None, blocks: _Blocks
-) -> MotionSickness | None:
-    if column is None:
-        return None
-    along = direction("z")._replace(weighting="Wf")
-    parts = [(part, record.sample_rate) for record in records for part in _weighted(record, column, along, blocks)]
-    energy = sum(motion_sickness_dose(part, rate) ** 2 for part, rate in parts)
-    duration = sum(len(part) / rate for part, rate in parts)
-    return MotionSickness(float(np.sqrt(energy / duration)), float(np.sqrt(energy)))
+    records: Sequence[AccelerationRecord], column: str, blocks: _Blocks, day: Mapping[str, float]
+) -> MotionSickness:
+    stretches = _cut(records, column, direction("z")._replace(weighting="Wf"), blocks)
+    found = join_doses([*_join_runs(stretches, day).values()])
+    return MotionSickness(found.rms, motion_sickness_dose(found.rms, found.duration))
 
 
 def _notes(
-    records: Sequence[AccelerationRecord], named: Mapping[str, str], axes: Mapping[str, AxisAssessment]
+    records: Sequence[AccelerationRecord],
+    named: Mapping[str, str],
+    axes: Mapping[str, AxisAssessment],
+    stretches: Mapping[str, Sequence[Stretch]],
+    day: Mapping[str, float],
 ) -> Iterator[str]:
     yield from (note for record in records for note in record.notes)
-    if len(records) > 1:
+    if len(records) > 1 and not day:
         yield f"{len(records)} runs count as one vibration: {', '.join(record.name for record in records)}"
     for axis, found in axes.items():
         size = abs(found.removed)
@@ -231,9 +295,13 @@ def _notes(
     for found in axes.values():
         if found.column in unitless and abs(abs(found.removed) - 1.0) < 0.05:
             yield f"{found.column} has a mean of {found.removed:.3g}, as gravity has in g: then give --unit g"
-    duration = next(iter(axes.values())).dose.duration
-    if duration < _SHORTEST:
-        yield (
-            f"the record lasts {duration:.3g} s; ISO 2631-1:1997, 5.5, takes {_SHORTEST:g} s for random vibration from"
-            " 1 Hz on (recalled)"
-        )
+    durations = dict[str, float]()
+    for part in next(iter(stretches.values())):
+        vibration = part.run if day else "the record"
+        durations[vibration] = durations.get(vibration, 0.0) + part.duration
+    for vibration, duration in durations.items():
+        if duration < _SHORTEST:
+            yield (
+                f"{vibration} lasts {duration:.3g} s; ISO 2631-1:1997, 5.5, takes {_SHORTEST:g} s for random vibration"
+                " from 1 Hz on (recalled)"
+            )

@@ -20,7 +20,7 @@ from seatsim.excitations.periodic import SteppedSine
 from seatsim.metrics.comfort import RUNS, dose
 from seatsim.metrics.motion import end_stop_hits, rms
 from seatsim.metrics.spectra import power_spectral_density
-from seatsim.metrics.weighting import frequency_response, weight
+from seatsim.metrics.weighting import weight
 from seatsim.recordings.recording import HEADER, Recording, load_recording
 from seatsim.rig.drivers import SINGLE_MASS, Driver
 from seatsim.rig.plant import Plant, natural_frequencies
@@ -38,6 +38,7 @@ from seatsim.standards.seat_rows import (
     PERSONS,
     RECALLED,
     SEATED_SHARE,
+    UNKNOWN_EDITION,
     DampingTest,
     SeatFailure,
     SeatTest,
@@ -45,6 +46,7 @@ from seatsim.standards.seat_rows import (
     doubt_runs,
     state_damping_row,
     state_row,
+    weighted_input,
 )
 
 INERT_MASS = 75.0
@@ -180,13 +182,6 @@ def _nearest_class(floor: Array, rate: float, classes: Sequence[SpectralClass]) 
     return found, distances[found]
 
 
-def weighted_input(spectral_class: SpectralClass) -> float:
-    """Return the Wk-weighted RMS acceleration of a class in m/s^2, sqrt(integral G |Wk|^2 df)."""
-    frequency = np.linspace(0.0, 20.0, 20001)
-    power = acceleration_density(frequency, spectral_class) * np.abs(frequency_response(frequency)) ** 2
-    return float(np.sqrt(np.trapezoid(power, frequency)))
-
-
 def _evaluate(signals: Mapping[str, Array], rate: float, stops: tuple[float, float] | None) -> Trial:
     """Return the doses of a run at a rate in Hz, without its beginning, and its hits of the end stops."""
     settled = round(_SETTLE * rate)
@@ -283,6 +278,7 @@ def _count(futures: Sequence[Future[Trial] | Future[DampingTest]], progress: _Pr
 
 def _notes(seats: Mapping[str, _Seat]) -> Iterator[str]:
     yield RECALLED
+    yield UNKNOWN_EDITION
     without = [title for title, seat in seats.items() if seat.plant.end_stops is None]
     if without:
         yield f"no end stops are stated for {join_names(without)}, and none are checked; state plant.travel"

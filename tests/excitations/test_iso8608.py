@@ -1,6 +1,5 @@
 """Random roads carry the spectrum of ISO 8608."""
 
-
 import numpy as np
 import pytest
 from scipy.signal import welch

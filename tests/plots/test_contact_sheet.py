@@ -21,6 +21,7 @@ from seatsim.identification.assessment import Agreement, Assessment
 from seatsim.plots.bench.characterisation import plot_characterisation
 from seatsim.plots.bench.identification import plot_predictions
 from seatsim.plots.bench.resonance import plot_damping
+from seatsim.plots.bench.vibration import plot_vibration
 from seatsim.plots.diagnosis.answer import plot_gap, select_stages
 from seatsim.plots.diagnosis.bins import drop_start, find_worst
 from seatsim.plots.diagnosis.draw import plot_diagnosis
@@ -95,7 +96,7 @@ def draw_sweep():
 OTHERS = {
     **{f"diagnosis, {name}": lambda make=make: plot_diagnosis(make()) for name, make in diagnoses.CASES.items()},
     "gap": draw_gap, "identification": draw_identification, "bench": draw_bench, "seat test": draw_seat_test,
-    "sweep": draw_sweep,
+    "sweep": draw_sweep, "comfort": lambda: plot_vibration(kinds.working_day()),
 }  # fmt: skip
 DRAWN: dict[str, dict] = {}
 

@@ -16,10 +16,12 @@ from seatsim.identification.information import Information, ParameterEstimate
 from seatsim.metrics.table import METRICS
 from seatsim.plots.bench.characterisation import plot_characterisation
 from seatsim.plots.bench.identification import plot_predictions
+from seatsim.plots.bench.vibration import plot_vibration
 from seatsim.plots.runs.draw import plot_result
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.recordings.gap import Gap, GapFigures, ReplayedPair
 from seatsim.report.characterisation import report_characterisation
+from seatsim.report.comfort import report_comfort
 from seatsim.report.credibility import count_variations
 from seatsim.report.diagnosis import report_diagnosis
 from seatsim.report.gap import report_gap
@@ -31,6 +33,7 @@ from seatsim.scenario.loading import load
 from seatsim.simulation.damper_bench import SineTest
 from seatsim.simulation.result import Result
 from seatsim.simulation.runs import run_one
+from seatsim.standards.comfort import comfort
 from seatsim.standards.seat_rows import DampingRow, DampingTest, SeatRow, SeatTest
 from seatsim.sweeps.rows import SweepRows, count_exceedances, tabulate_quantiles
 from seatsim.sweeps.sensitivity import analyse_sensitivity
@@ -117,12 +120,22 @@ def sweep():
 
 def seat_test():
     rows = [
-        SeatRow("seat", name, "light", 55.0, seat, 0.7, seat < 0.7, "5.3.2", 1.2, 0.02, True, hits)
+        SeatRow("seat", name, "light", 55.0, seat, 0.7, seat < 0.7, "5.3.2", 1.2, 1.2 * seat, 0.02, True, hits)
         for name, seat, hits in (("EM5", 0.81, 3), ("EM6", 0.6, 0))
     ]
     test = DampingTest(1.7, 2.0, 0.03, (1.0, 1.5, 2.0), (1.2, 1.9, 1.6))
     damping = [DampingRow("seat", "EM5", 2.0, 1.7, 2.0, True, "5.3.3")]
     return SeatTest(tuple(rows), tuple(damping), {"seat": test}, ("a note",))
+
+
+@cache
+def working_day():
+    """Return the assessment of two runs that are operations of one day."""
+    return comfort("scenarios/data/recording", hours={"run-1": 3.0, "run-2": 1.5})
+
+
+def _report_comfort():
+    return report_comfort(working_day(), plot_vibration(working_day()), "seatsim comfort recording")
 
 
 def _report_sweep():
@@ -147,5 +160,6 @@ KINDS = {
     "diagnosis": lambda: report_diagnosis(with_every_run()),
     "identification": _report_identification,
     "characterisation": _report_characterisation,
+    "comfort": _report_comfort,
     "seat test": lambda: report_seat_test(seat_test(), "seat", False, "seatsim seat-test seat"),
 }

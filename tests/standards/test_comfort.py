@@ -76,6 +76,40 @@ def test_seat_factors_come_from_pairs_of_axes():
     assert one.seat["z"].rms == pytest.approx(found.seat["z"].runs[1])
 
 
+def test_operations_of_a_day_add_by_squares_and_fourth_powers():
+    hours = {"run-1": 3.0, "run-2": 1.5}
+    parts = {run: comfort("scenarios/data/recording", runs=[run], hours=lasts) for run, lasts in hours.items()}
+    day = comfort("scenarios/data/recording", hours=hours)
+    alone = {run: part.exposure for run, part in parts.items()}
+    assert day.exposure.hours == 4.5 and [each.name for each in day.operations] == [*hours]
+    assert day.exposure.a8 == pytest.approx(math.hypot(*(part.a8 for part in alone.values())))
+    assert day.exposure.vdv8**4 == pytest.approx(sum(part.vdv8**4 for part in alone.values()))
+    for each in day.operations:
+        assert each.a8["z"] == pytest.approx(alone[each.name].a8) and each.vdv8["z"] == pytest.approx(
+            alone[each.name].vdv8
+        )
+        assert each.share == pytest.approx((each.a8["z"] / day.exposure.a8) ** 2)
+    squares = [lasts * parts[run].axes["z"].dose.rms ** 2 for run, lasts in hours.items()]
+    assert day.axes["z"].dose.rms ** 2 == pytest.approx(sum(squares) / 4.5)
+    assert day.motion_sickness.msdv == pytest.approx(day.motion_sickness.rms * math.sqrt(4.5 * 3600))
+    # Work of two kinds is no repeat, whose spread would have to be small.
+    assert day.seat["z"].within_spread is None and day.duration == pytest.approx(2 * parts["run-1"].duration)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"hours": {"run-3": 2.0}}, r"no run is called 'run-3'.*permitted: run-1, run-2"),
+        ({"hours": {"run-1": 0.0}}, "run-1 lasts 0 h; a part of a day is longer than 0"),
+        ({"hours": {"run-1": 20.0, "run-2": 6.0}}, "is 26; a day of vibration must be above 0 and at most 24"),
+        ({"hours": {"run-1": 2.0}, "runs": ["run-2"]}, "each run that has hours of its own counts"),
+    ],
+)
+def test_hours_that_make_no_day_are_refused(options, message):
+    with pytest.raises(InputError, match=message):
+        comfort("scenarios/data/recording", **options)
+
+
 @pytest.mark.parametrize(
     ("channels", "message"),
     [
@@ -146,7 +180,10 @@ def test_the_command_prints_one_object_and_writes_only_where_asked(tmp_path):
     path = write(tmp_path, acc_z=tone())
     done = CliRunner().invoke(app, ["comfort", str(path), "--json", "--hours", "4"])
     found = json.loads(done.stdout)
-    assert done.exit_code == 0 and found["hours"] == 4.0
+    assert done.exit_code == 0 and found["hours"] == 4.0 and found["operations"] == []
+    for wrong in (["--hours", "much"], ["--hours", "4", "--hours", "5"], ["--hours", "a=b"]):
+        refused = CliRunner().invoke(app, ["comfort", str(path), *wrong])
+        assert refused.exit_code != 0 and "--hours" in str(refused.exception)
     assert {"weighting", "rms", "vdv", "mtvv", "crest_factor", "method"} <= set(found["axes"]["z"])
     assert found["a8"] == pytest.approx(math.sqrt(0.5), rel=5e-3)
     assert found["action_value"]["exceeded_by_a8"] and not found["limit_value"]["exceeded_by_a8"]

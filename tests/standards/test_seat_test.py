@@ -14,8 +14,8 @@ from seatsim.recordings.writer import save_recording
 from seatsim.rig.plant import control_system
 from seatsim.schema.errors import InputError, RunError
 from seatsim.simulation.simulate import simulate
-from seatsim.standards.seat_rows import LIMITS, SEATED_SHARE
-from seatsim.standards.seat_test import INERT_MASS, weighted_input
+from seatsim.standards.seat_rows import LIMITS, SEATED_SHARE, weighted_input
+from seatsim.standards.seat_test import INERT_MASS
 
 from ..answers import check_answer
 
@@ -60,6 +60,7 @@ def test_seat_factors_are_those_of_the_frequency_response(scenario, conform):
         conform(claim, "density of the class times Wk^2", row.platform, base, tolerance=0.02 * base)
         assert row.limit == 0.7 and row.passed == (row.seat <= 0.7) and "recalled" in row.clause
         assert row.within_spread and row.end_stop_hits == 0
+        assert row.corrected == pytest.approx(row.seat * base)
     assert [row.person for row in found.rows] == ["light", "heavy"]
 
 

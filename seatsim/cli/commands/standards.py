@@ -15,12 +15,13 @@ from seatsim.schema.errors import InputError
 def comfort(
     file: Annotated[Path, typer.Argument(show_default=False)],
     channel: Annotated[list[str] | None, typer.Option("--channel", metavar="AXIS=COLUMN")] = None,
-    hours: Annotated[float, typer.Option("--hours")] = 8.0,
+    hours: Annotated[list[str] | None, typer.Option("--hours", metavar="H or RUN=H")] = None,
     run: Annotated[list[str] | None, typer.Option("--run")] = None,
     block: Annotated[list[str] | None, typer.Option("--block", metavar="FROM:TO")] = None,
     rate: Annotated[float | None, typer.Option("--rate")] = None,
     unit: Annotated[str | None, typer.Option("--unit")] = None,
     out_folder: Out = None,
+    pdf: Pdf = False,
     as_json: Json = False,
 ) -> None:
     """Work out the ISO 2631-1 figures of measured accelerations, a day's exposure and SEAT factors.
@@ -28,27 +29,40 @@ def comfort(
     Options:
         file: A CSV table of accelerations, or a recording.
         channel: x, y, z, rx .. on the seat, back.x .. feet.z, floor.z.
-        hours: Hours of such vibration in a day.
+        hours: Hours of such vibration in a day (8), or of each run: RUN=H.
         run: A run of a recording; all together where none is named.
         block: Only this stretch, in s; several count as one.
         rate: Sample rate in Hz of a table without times.
         unit: Of columns whose names state none, such as g.
     """
-    from seatsim.cli.outputs.seat_tables import list_comfort_sentences, make_comfort_tables
-    from seatsim.cli.outputs.writing import write_outputs
+    from seatsim.cli.outputs.seat_tables import make_comfort_tables
+    from seatsim.cli.outputs.writing import write_comfort
     from seatsim.cli.show_table import show_table
+    from seatsim.report.comfort import list_comfort_sentences
     from seatsim.standards.comfort import comfort as assess
 
     channels = dict(_split(text, "=", "--channel", "z=acc_z") for text in channel or [])
     blocks = [_stretch(text) for text in block or []]
-    found = assess(file, channels, hours=hours, runs=run or (), blocks=blocks, rate=rate, unit=unit)
+    day = _read_hours(hours or [])
+    found = assess(file, channels, hours=day, runs=run or (), blocks=blocks, rate=rate, unit=unit)
     show_table(*make_comfort_tables(found))
     for sentence in list_comfort_sentences(found):
         say(sentence)
     warn(found.notes)
     folder = out_folder or Path("out") / f"comfort-{file.resolve().name.partition('.')[0]}"
-    paths = write_outputs(folder, {"comfort.json": found})
+    paths = write_comfort(found, file, folder)
     conclude(found, folder, paths)
+
+
+def _read_hours(texts: list[str]) -> float | dict[str, float]:
+    """Return the hours of a day, or of each run by its name."""
+    by_run = dict(_split(text, "=", "--hours", "loading=3") for text in texts) if len(texts) > 1 else {}
+    if len(texts) == 1 and "=" in texts[0]:
+        by_run = dict([_split(texts[0], "=", "--hours", "loading=3")])
+    try:
+        return {run: float(text) for run, text in by_run.items()} or float(texts[0] if texts else 8.0)
+    except ValueError as error:
+        raise InputError(f"--hours {' '.join(texts)}: write hours, like --hours 6 or --hours loading=3") from error
 
 
 def _split(text: str, sign: str, option: str, example: str) -> tuple[str, str]:

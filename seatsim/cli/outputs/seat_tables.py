@@ -1,16 +1,11 @@
-"""What `seatsim comfort` and `seatsim seat-test` print: tables, and sentences below them."""
+"""What `seatsim comfort` and `seatsim seat-test` print: tables, and a sentence below those of a seat test."""
 
 from __future__ import annotations
-
-import math
-from collections.abc import Iterator
 
 from rich.markup import escape
 from rich.table import Table
 
 from seatsim.cli.show_table import make_table
-from seatsim.metrics.exposure import DAY, Exposure, ValueReached
-from seatsim.schema.text import join_names
 from seatsim.standards.comfort import Comfort
 from seatsim.standards.seat_rows import ACCEPTANCE, DAMPING, LIMITS, SeatTest
 
@@ -30,55 +25,34 @@ _SEAT = ["axis", "SEAT\n(RMS)", "SEAT\n(VDV)", "of each run", "spread", "three r
 
 
 def make_comfort_tables(found: Comfort) -> list[Table]:
-    """Return the table of the axes, and that of the SEAT factors where there are any."""
+    """Return the table of the axes, and those of operations and SEAT factors where there are any."""
     axes = []
     for axis, each in found.axes.items():
         k, dose = each.direction, each.dose
         factors = (f"{k.comfort:g}", "-" if k.health is None else f"{k.health:g}")
         figures = (f"{dose.rms:.3f}", f"{dose.vdv:.2f}", f"{dose.estimated_vdv:.2f}", f"{dose.mtvv:.3f}")
         axes.append((axis, k.weighting, *factors, *figures, f"{dose.crest_factor:.1f}", each.method))
-    verdicts, seats = {True: "yes", False: "no", None: "fewer runs"}, []
+    verdicts, seats = {True: "yes", False: "no", None: "-"}, []
     for axis, seat in found.seat.items():
         runs = ", ".join(f"{value:.3f}" for value in seat.runs)
         spread = (f"{1e2 * seat.spread:.1f} %", verdicts[seat.within_spread])
         seats.append((axis, f"{seat.rms:.3f}", f"{seat.vdv:.3f}", runs, *spread))
-    tables = [make_table(f"ISO 2631-1 figures of {found.source}, {found.duration:g} s", _AXIS, axes, left=(0, 1))]
+    over = "the hours of a day" if found.operations else f"{found.duration:g} s"
+    tables = [make_table(f"ISO 2631-1 figures of {found.source} over {over}", _AXIS, axes, left=(0, 1))]
+    if found.operations:
+        tables.append(make_table("Partial exposures", *_list_operations(found)))
     return [*tables, *([make_table("SEAT factors (ISO 10326-1)", _SEAT, seats, left=())] if seats else [])]
 
 
-def list_comfort_sentences(found: Comfort) -> Iterator[str]:
-    """Yield what is said below the tables: sums, the day's exposure, the zones, and what the basic method lacks."""
-    totals = ", ".join(f"{point} {value:.3f}" for point, value in found.totals.items())
-    yield f"vibration total value a_v [m/s²]: {totals}"
-    for axis, assessed in found.axes.items():
-        if assessed.shocks:
-            reasons = join_names(assessed.shocks)
-            yield f"{axis}: report MTVV or VDV beside a_w, as {reasons} (ISO 2631-1, 6.2.2 and 6.3.3)"
-    if found.motion_sickness:
-        sickness = found.motion_sickness
-        yield f"motion sickness (Wf): a_w {sickness.rms:.3f} m/s², MSDV {sickness.msdv:.2f} m/s¹·⁵"
-    if found.exposure:
-        yield from _say_exposure(found.exposure)
-
-
-def _say_exposure(day: Exposure) -> Iterator[str]:
-    vdv8 = f"VDV(8) {day.vdv8:.2f} m/s¹·⁷⁵ ({day.vdv8_axis})"
-    yield f"{day.hours:g} h a day: A(8) {day.a8:.3f} m/s² ({day.a8_axis}), {vdv8}"
-    yield _say_value("action value", day.action_value)
-    yield _say_value("limit value", day.limit_value)
-    yield f"ISO 2631-1, annex B, by A(8): {day.zone_a8_text}; by estimated VDV: {day.zone_vdv}"
-
-
-def _say_value(name: str, value: ValueReached) -> str:
-    by_a8 = _say_reach(f"A(8) {value.a8:g} m/s²", value.exceeded_by_a8, value.hours_to_a8)
-    by_vdv = _say_reach(f"VDV {value.vdv:g} m/s¹·⁷⁵", value.exceeded_by_vdv, value.hours_to_vdv)
-    return f"{name} of 2002/44/EC: {by_a8}; {by_vdv}"
-
-
-def _say_reach(value: str, exceeded: bool, hours: float) -> str:
-    if not math.isfinite(hours) or hours > DAY:
-        return f"{value} not reached in a day"
-    return f"{value} {'exceeded' if exceeded else 'not exceeded'}, reached after {hours:.2g} h"
+def _list_operations(found: Comfort) -> tuple[list[str], list[tuple[str, ...]]]:
+    """Return headings and rows of the operations of a day."""
+    axes = list(found.operations[0].a8)
+    headings = ["operation", "hours", *(f"A(8) {axis}\n[m/s²]" for axis in axes), "share of\nA(8)²"]
+    rows = [
+        (escape(each.name), f"{each.hours:g}", *(f"{each.a8[axis]:.3f}" for axis in axes), f"{1e2 * each.share:.0f} %")
+        for each in found.operations
+    ]
+    return headings, rows
 
 
 def make_seat_test_tables(found: SeatTest) -> list[Table]:

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from seatsim.identification.model_benchmark import BenchmarkEntry
     from seatsim.identification.specimens import Specimens
     from seatsim.recordings.gap import Gap
+    from seatsim.standards.comfort import Comfort
     from seatsim.standards.seat_rows import SeatTest
 
 
@@ -201,6 +202,16 @@ def write_specimens(found: Specimens, folder: Path, seed: int) -> list[Path]:
 def write_league(places: Sequence[BenchmarkEntry], folder: Path, seed: int) -> list[Path]:
     """Write `league.csv`, the best model first."""
     return write_outputs(folder, {"league.csv": [place._asdict() for place in places]}, seed, {"league.csv": _TIMES})
+
+
+def write_comfort(found: Comfort, source: Path, folder: Path) -> list[Path]:
+    """Write `comfort.json`, `report.html` and the pictures; return their paths."""
+    from seatsim.plots.bench.vibration import plot_vibration
+    from seatsim.report.comfort import report_comfort
+
+    figures = plot_vibration(found)
+    report = report_comfort(found, figures, f"seatsim comfort {source.name}")
+    return write_outputs(folder, {"comfort.json": found, "report.html": report, **name_pictures(figures)})
 
 
 def write_seat_test(found: SeatTest, source: Path, folder: Path) -> list[Path]:

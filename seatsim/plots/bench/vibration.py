@@ -1,0 +1,105 @@
+"""Measured vibration of a person: its course, its spectrum, and what each operation adds to a day."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from seatsim.metrics.comfort import running_rms
+from seatsim.metrics.exposure import Exposure, Operation
+from seatsim.plots import style
+from seatsim.plots.densities import LOWEST, METHOD, estimate_density
+from seatsim.plots.style import GREY, Entry, Grid
+from seatsim.plots.thinning import spread_evenly
+from seatsim.schema.arrays import Array
+from seatsim.standards.comfort import Comfort, Stretch
+
+MOST = 4
+"""Stretches, and axes, that have a panel of their own; more are chosen evenly."""
+RASTER = 0.1
+"""s between the drawn values of a running RMS, whose window is ten times as long."""
+HIGHEST = 100.0
+"""Hz up to which a spectrum is drawn: above it no weighting of the body lets much through."""
+DECADES = 5.0
+"""Decades below the highest density that are shown."""
+
+
+def plot_vibration(found: Comfort) -> dict[str, Figure]:
+    """Return the running RMS, the spectra, and the operations of a day where there are some."""
+    axes = [axis for axis, each in found.axes.items() if each.direction.unit == "m/s^2"]
+    figures = {"running_rms": _plot_running_rms(found, axes), "spectra": _plot_spectra(found, axes)} if axes else {}
+    if found.exposure and found.operations:
+        figures["operations"] = _plot_operations(found.exposure, found.operations)
+    return figures
+
+
+def _plot_running_rms(found: Comfort, axes: Sequence[str]) -> Figure:
+    """Return the running RMS of each axis, a panel for each stretch."""
+    looks = style.make_entries(axes)
+    chosen = spread_evenly(range(len(found.stretches[axes[0]])), MOST)
+    note = "RMS of the weighted acceleration over the last second, without multiplying factor; its peak is the MTVV."
+    page = style.make_page("Vibration over time", note, Grid((1.5,) * len(chosen)), looks)
+    for panel, k in zip(page.list_panels(), chosen, strict=True):
+        for axis, look in zip(axes, looks, strict=True):
+            part = found.stretches[axis][k]
+            stride = max(1, round(RASTER * part.sample_rate))
+            values = running_rms(part.weighted, part.sample_rate)[::stride]
+            style.draw_line(panel, np.arange(len(values)) * stride / part.sample_rate, values, look)
+        style.set_title(panel, found.stretches[axes[0]][k].run)
+        panel.set_ylim(bottom=0.0)
+        panel.set_xlabel("time [s]")
+        panel.set_ylabel("a_w over 1 s [m/s²]")
+    return page.figure
+
+
+def _plot_spectra(found: Comfort, axes: Sequence[str]) -> Figure:
+    """Return the power spectral densities, as recorded and weighted, a panel for each axis."""
+    looks = [Entry("as recorded", GREY, width=2.0), Entry("weighted", style.COLOURS[0])]
+    chosen = spread_evenly(axes, MOST)
+    page = style.make_page("Vibration over frequency", METHOD, Grid((1.7,) * len(chosen)), looks)
+    for panel, axis in zip(page.list_panels(), chosen, strict=True):
+        stretches = found.stretches[axis]
+        signals = [part.acceleration for part in stretches], [part.weighted for part in stretches]
+        lines = [_estimate(stretches, each) for each in signals]
+        style.scale_frequency_axis(panel, LOWEST, HIGHEST)
+        panel.set_ylabel("density [m²/s³]")
+        style.set_title(panel, f"{axis}, {found.axes[axis].direction.weighting}")
+        _draw_densities(panel, lines, looks)
+    return page.figure
+
+
+def _estimate(stretches: Sequence[Stretch], signals: Sequence[Array]) -> tuple[Array, Array]:
+    frequency, power = estimate_density(1.0 / stretches[0].sample_rate, signals)
+    return frequency[frequency <= HIGHEST], power[frequency <= HIGHEST]
+
+
+def _draw_densities(panel: Axes, lines: Sequence[tuple[Array, Array]], looks: Sequence[Entry]) -> None:
+    highest = max(float(np.max(power, initial=0.0)) for _, power in lines)
+    if highest == 0.0:
+        style.explain_empty(panel, "at rest, or too short a record for a spectrum")
+        return
+    for (frequency, power), look in zip(lines, looks, strict=True):
+        style.draw_line(panel, frequency, np.where(power > 0, power, np.nan), look)
+    style.scale_log(panel, "y", highest / 10**DECADES, 2.0 * highest)
+
+
+def _plot_operations(day: Exposure, operations: Sequence[Operation]) -> Figure:
+    """Return the partial exposure of each operation, and that of the day, along the axis that decides."""
+    axis, names = day.a8_axis, [*(each.name for each in operations), "the whole day"]
+    values = [*(each.a8[axis] for each in operations), day.a8]
+    levels = [("action value", day.action_value.a8), ("limit value", day.limit_value.a8)]
+    looks = [Entry(f"{name}, {level:g} m/s²", style.DARK, style.DASHES[k]) for k, (name, level) in enumerate(levels)]
+    note = f"A(8) along {axis}, where the day's is largest; the squares of the parts add up to that of the day."
+    grid = Grid((style.ROW * len(names),), left=style.measure_names(names), right=0.7)
+    page = style.make_page("What each operation adds to the day", note, grid, looks)
+    panel = page.rows[0][0]
+    colours = [*(style.COLOURS[0] for _ in operations), style.COLOURS[1]]
+    style.draw_bars(panel, values, colours, [f"{value:.2f}" for value in values])
+    style.name_rows(panel, names, [len(names) - 1])
+    for (_, level), look in zip(levels, looks, strict=True):
+        panel.axvline(level, color=look.colour, linestyle=look.dashes, linewidth=1.2, zorder=1)
+    panel.set_xlabel("A(8) [m/s²]")
+    return page.figure

@@ -1,0 +1,146 @@
+"""The report of a measured vibration: what ISO 2631-1 and directive 2002/44/EC say of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from seatsim.metrics.exposure import DAY, Exposure, ValueReached
+from seatsim.plots.labels import format_percent
+from seatsim.report.blocks import Block, Report, Section, show_pictures, tabulate
+from seatsim.report.composing import Closing, compose
+from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs
+from seatsim.report.formatting import format_sentence
+from seatsim.schema.text import join_names
+from seatsim.standards.comfort import Comfort
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def report_comfort(found: Comfort, figures: Mapping[str, Figure], command: str) -> Report:
+    """Return the report of a measured vibration.
+
+    Args:
+        found: its assessment.
+        figures: pictures by name (`seatsim.plots.bench.vibration`).
+        command: what makes the report again.
+    """
+    answer = [_say_comfort(found), *map(format_sentence, list_comfort_sentences(found))]
+    sections = [
+        Section("day", "A working day", [*_tabulate_operations(found), *show_pictures(figures, "operations")]),
+        Section("axes", "Axis by axis", [*_tabulate_axes(found), *show_pictures(figures, "running_rms", "spectra")]),
+        Section("seat", "What the seat passes on", _tabulate_seat(found)),
+    ]
+    closing = Closing(found.notes, _judge(found), command)
+    return compose("comfort", f"Vibration of {found.name}", answer, [*_advise(found)], sections, closing)
+
+
+def list_comfort_sentences(found: Comfort) -> Iterator[str]:
+    """Yield what is said of all axes: sums, the day's exposure, the zones, and what the basic method lacks."""
+    totals = ", ".join(f"{point} {value:.3f}" for point, value in found.totals.items())
+    yield f"vibration total value a_v [m/s²]: {totals}"
+    for axis, assessed in found.axes.items():
+        if assessed.shocks:
+            reasons = join_names(assessed.shocks)
+            yield f"{axis}: report MTVV or VDV beside a_w, as {reasons} (ISO 2631-1, 6.2.2 and 6.3.3)"
+    if found.motion_sickness:
+        sickness = found.motion_sickness
+        yield f"motion sickness (Wf): a_w {sickness.rms:.3f} m/s², MSDV {sickness.msdv:.2f} m/s¹·⁵"
+    if found.exposure:
+        yield from _say_exposure(found.exposure)
+
+
+def _say_exposure(day: Exposure) -> Iterator[str]:
+    vdv8 = f"VDV(8) {day.vdv8:.2f} m/s¹·⁷⁵ ({day.vdv8_axis})"
+    yield f"{day.hours:g} h a day: A(8) {day.a8:.3f} m/s² ({day.a8_axis}), {vdv8}"
+    yield _say_value("action value", day.action_value)
+    yield _say_value("limit value", day.limit_value)
+    yield f"ISO 2631-1, annex B, by A(8): {day.zone_a8_text}; by estimated VDV: {day.zone_vdv}"
+
+
+def _say_value(name: str, value: ValueReached) -> str:
+    by_a8 = _say_reach(f"A(8) {value.a8:g} m/s²", value.exceeded_by_a8, value.hours_to_a8)
+    by_vdv = _say_reach(f"VDV {value.vdv:g} m/s¹·⁷⁵", value.exceeded_by_vdv, value.hours_to_vdv)
+    return f"{name} of 2002/44/EC: {by_a8}; {by_vdv}"
+
+
+def _say_reach(value: str, exceeded: bool, hours: float) -> str:
+    if not math.isfinite(hours) or hours > DAY:
+        return f"{value} not reached in a day"
+    return f"{value} {'exceeded' if exceeded else 'not exceeded'}, reached after {hours:.2g} h"
+
+
+def _say_comfort(found: Comfort) -> str:
+    """Return in a sentence how a day compares with directive 2002/44/EC, or how strong the vibration is."""
+    day = found.exposure
+    if day is None:
+        return f"The vibration total value is {found.totals['overall']:.2f} m/s²."
+    action, limit = day.action_value, day.limit_value
+    judged = f"below the action value of {action.a8:g} m/s²"
+    if action.exceeded_by_a8:
+        judged = f"above the action value of {action.a8:g} m/s² and below the limit value of {limit.a8:g} m/s²"
+    if limit.exceeded_by_a8:
+        judged = f"above the limit value of {limit.a8:g} m/s²"
+    return f"{day.hours:g} h a day of this vibration give A(8) = {day.a8:.2f} m/s² along {day.a8_axis}, {judged}."
+
+
+def _advise(found: Comfort) -> Iterator[str]:
+    day = found.exposure
+    if day and len(found.operations) > 1:
+        most = max(found.operations, key=lambda each: each.share)
+        yield f"Begin with {most.name}: it makes {format_percent(most.share)} of the day's A(8)²."
+    if day and day.action_value.exceeded_by_a8:
+        until = f"{day.action_value.hours_to_a8:.2g} h a day"
+        yield f"Shorten the work to {until}, or lower its vibration: then A(8) keeps to the action value."
+    if found.seat:
+        yield "Try other seats on the measured floor: excitation: {kind: table} in a scenario."
+    else:
+        yield "Measure the floor beside the seat: then the SEAT factor says what the seat itself takes away."
+
+
+def _judge(found: Comfort) -> list[Factor]:
+    """Return how far the figures may be trusted."""
+    repeated = any(each.within_spread is not None for each in found.seat.values())
+    return [
+        trace_inputs(found.notes, is_measured=True),
+        state_intervals(["the SEAT factors, by the spread of their runs"] * repeated),
+        count_variations(len(found.runs)),
+    ]
+
+
+def _tabulate_operations(found: Comfort) -> list[Block]:
+    axes = [*found.operations[0].a8] if found.operations else []
+    rows = [
+        (each.name, each.hours, *each.a8.values(), *each.vdv8.values(), format_percent(each.share))
+        for each in found.operations
+    ]
+    units = {"A(8)": "m/s²", "VDV": "m/s¹·⁷⁵"}
+    exposures = [f"{name} {axis} [{unit}]" for name, unit in units.items() for axis in axes]
+    return tabulate("Partial exposure of each operation", ["operation", "hours", *exposures, "share of A(8)²"], rows)
+
+
+def _tabulate_axes(found: Comfort) -> list[Block]:
+    rows = []
+    for axis, each in found.axes.items():
+        k, dose = each.direction, each.dose
+        figures = (dose.rms, dose.vdv, dose.estimated_vdv, dose.mtvv, dose.crest_factor)
+        rows.append((axis, each.column, k.weighting, each.method, k.comfort, k.health, *figures))
+    head = (
+        "axis, column, weighting, method, k for comfort, k for health, a_w [m/s²], VDV [m/s¹·⁷⁵], estimated VDV"
+        " [m/s¹·⁷⁵], MTVV [m/s²], crest factor"
+    )
+    over = "over the hours of the day" if found.operations else f"over {found.duration:.3g} s"
+    return tabulate(f"Weighted vibration of each axis, {over}; rotation in rad/s²", head, rows, 4)
+
+
+def _tabulate_seat(found: Comfort) -> list[Block]:
+    said = {True: "yes", False: "no", None: "no three repeats"}
+    rows = [
+        (axis, ", ".join(f"{run:.3f}" for run in each.runs), said[each.within_spread], each.rms, each.vdv,
+         format_percent(each.spread))
+        for axis, each in found.seat.items()
+    ]  # fmt: skip
+    head = "axis, SEAT of each run, three runs within 5 %, SEAT by RMS, SEAT by VDV, spread of runs"
+    return tabulate("SEAT factor: weighted vibration on the seat over that at its base (ISO 10326-1)", head, rows, 3)
