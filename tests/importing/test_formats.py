@@ -4,6 +4,7 @@ import sys
 
 import numpy as np
 import pytest
+from scipy.io import wavfile
 
 from seatsim.importing.importing import import_files
 from seatsim.importing.inspection import inspect_file
@@ -71,6 +72,24 @@ def test_a_file_of_another_kind_is_one_clear_error(tmp_path, name, content, expe
     path.write_bytes(content)
     with pytest.raises(InputError, match=expected):
         read_file(path)
+
+
+@pytest.mark.parametrize(
+    ("kind", "full_scale", "zero"),
+    [(np.uint8, 128, 128), (np.int16, 2**15, 0), (np.int32, 2**31, 0), (np.float32, 1, 0), (np.float64, 1, 0)],
+)
+def test_samples_of_a_wav_are_shares_of_the_full_scale(tmp_path, kind, full_scale, zero):
+    shares = np.array([[0.0, -1.0], [0.5, 0.25], [-0.5, 0.0]])
+    wavfile.write(tmp_path / "a.wav", 1000, (zero + full_scale * shares).astype(kind))
+    file = read_file(tmp_path / "a.wav")
+    [group] = file.groups
+    assert group.rate == 1000.0 and [signal.name for signal in group.signals] == ["channel_1", "channel_2"]
+    np.testing.assert_array_equal(np.column_stack([signal.values for signal in group.signals]), shares)
+    assert "state unit and scale" in file.notes[0]
+    cut = tmp_path / "cut.wav"
+    cut.write_bytes((tmp_path / "a.wav").read_bytes()[:-1])
+    with pytest.raises(InputError, match="truncated"):
+        read_file(cut)
 
 
 def test_a_file_that_is_not_there_names_its_neighbour(tmp_path):

@@ -91,7 +91,7 @@ def import_data(
     own_code: OwnCode = None,
     as_json: Json = False,
 ) -> None:
-    """Make a recording of CSV, Parquet, Feather, XLSX, HDF5, MAT, MDF, TDMS, UFF58 or RPC III files.
+    """Make a recording of CSV, Parquet, Feather, XLSX, HDF5, MAT, MDF, TDMS, UFF58, RPC III or WAV files.
 
     Options:
         files: Data files of one rig, or a folder of them.

@@ -67,6 +67,7 @@ FORMATS = (
     _Format("TDMS", "labview.read_tdms", (b"TDSm",), (".tdms",)),
     _Format("UFF", "time_histories.read_uff", (b"    -1",), (".uff", ".unv")),
     _Format("RPC III", "time_histories.read_rpc", (b"FORMAT\0", b"FORMAT "), (".rpc", ".rsp", ".tim")),
+    _Format("WAV", "wav.read", (b"RIFF", b"RF64", b"RIFX"), (".wav",)),
     _Format("CSV", "text.read", (), (".csv", ".tsv", ".txt", ".asc", ".dat")),
 )
 """Formats in the order in which they are tried."""

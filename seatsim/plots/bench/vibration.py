@@ -41,7 +41,8 @@ def _plot_running_rms(found: Comfort, axes: Sequence[str]) -> Figure:
     looks = style.make_entries(axes)
     chosen = spread_evenly(range(len(found.stretches[axes[0]])), MOST)
     note = "RMS of the weighted acceleration over the last second, without multiplying factor; its peak is the MTVV."
-    page = style.make_page("Vibration over time", note, Grid((1.5,) * len(chosen)), looks)
+    page = style.make_page("Vibration over time", note, Grid((1.5,) * len(chosen), top=0.3), looks)
+    highest = max(found.axes[axis].dose.mtvv for axis in axes)
     for panel, k in zip(page.list_panels(), chosen, strict=True):
         for axis, look in zip(axes, looks, strict=True):
             part = found.stretches[axis][k]
@@ -49,7 +50,7 @@ def _plot_running_rms(found: Comfort, axes: Sequence[str]) -> Figure:
             values = running_rms(part.weighted, part.sample_rate)[::stride]
             style.draw_line(panel, np.arange(len(values)) * stride / part.sample_rate, values, look)
         style.set_title(panel, found.stretches[axes[0]][k].run)
-        panel.set_ylim(bottom=0.0)
+        panel.set_ylim(0.0, 1.05 * highest or 1.0)
         panel.set_xlabel("time [s]")
         panel.set_ylabel("a_w over 1 s [m/s²]")
     return page.figure
@@ -59,7 +60,7 @@ def _plot_spectra(found: Comfort, axes: Sequence[str]) -> Figure:
     """Return the power spectral densities, as recorded and weighted, a panel for each axis."""
     looks = [Entry("as recorded", GREY, width=2.0), Entry("weighted", style.COLOURS[0])]
     chosen = spread_evenly(axes, MOST)
-    page = style.make_page("Vibration over frequency", METHOD, Grid((1.7,) * len(chosen)), looks)
+    page = style.make_page("Vibration over frequency", METHOD, Grid((1.7,) * len(chosen), top=0.3), looks)
     for panel, axis in zip(page.list_panels(), chosen, strict=True):
         stretches = found.stretches[axis]
         signals = [part.acceleration for part in stretches], [part.weighted for part in stretches]
@@ -88,16 +89,18 @@ def _draw_densities(panel: Axes, lines: Sequence[tuple[Array, Array]], looks: Se
 
 def _plot_operations(day: Exposure, operations: Sequence[Operation]) -> Figure:
     """Return the partial exposure of each operation, and that of the day, along the axis that decides."""
-    axis, names = day.a8_axis, [*(each.name for each in operations), "the whole day"]
+    axis, hours = day.a8_axis, [*((each.name, each.hours) for each in operations), ("the whole day", day.hours)]
     values = [*(each.a8[axis] for each in operations), day.a8]
+    # A text at the end of a bar would stand in the way of the two values.
+    names = [f"{name}, {lasts:g} h: {value:.2f}" for (name, lasts), value in zip(hours, values, strict=True)]
     levels = [("action value", day.action_value.a8), ("limit value", day.limit_value.a8)]
     looks = [Entry(f"{name}, {level:g} m/s²", style.DARK, style.DASHES[k]) for k, (name, level) in enumerate(levels)]
     note = f"A(8) along {axis}, where the day's is largest; the squares of the parts add up to that of the day."
-    grid = Grid((style.ROW * len(names),), left=style.measure_names(names), right=0.7)
+    grid = Grid((style.ROW * len(names),), left=style.measure_names(names))
     page = style.make_page("What each operation adds to the day", note, grid, looks)
     panel = page.rows[0][0]
     colours = [*(style.COLOURS[0] for _ in operations), style.COLOURS[1]]
-    style.draw_bars(panel, values, colours, [f"{value:.2f}" for value in values])
+    style.draw_bars(panel, values, colours, [""] * len(values))
     style.name_rows(panel, names, [len(names) - 1])
     for (_, level), look in zip(levels, looks, strict=True):
         panel.axvline(level, color=look.colour, linestyle=look.dashes, linewidth=1.2, zorder=1)
