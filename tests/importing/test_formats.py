@@ -74,6 +74,24 @@ def test_a_file_of_another_kind_is_one_clear_error(tmp_path, name, content, expe
         read_file(path)
 
 
+def test_acquisitions_below_each_other_are_one_table(tmp_path):
+    """As a testing machine writes them: headings that differ, then names and units again."""
+    names = "Time\tAxial Displacement\tAxial Force\nSec\tmm\tkN\n"
+    heading = "Data Acquisition: Timed {0}\tStation: A\tTime: {0}.5 Sec\n\n"
+    rows = [[f"{0.1 * (5 * block + k):.1f}\t{k}\t-{k}.5\n" for k in range(5)] for block in range(3)]
+    path = tmp_path / "machine.dat"
+    text = "".join(heading.format(block) + names + "".join(part) + "\n" for block, part in enumerate(rows))
+    path.write_text(f"MTS793|MPT|ENU|1|2|.|/|:|1|0|0|A\n{text}")
+    file = read_file(path)
+    [group] = file.groups
+    np.testing.assert_allclose(group.signals[0].values, 0.1 * np.arange(15))
+    np.testing.assert_allclose(
+        group.signals[2].values, np.tile([0.0, -1.5, -2.5, -3.5, -4.5], 3) - [0.5, 0, 0, 0, 0] * 3
+    )
+    assert [signal.unit for signal in group.signals[1:]] == ["mm", "kN"]
+    assert any("names again" in note for note in file.notes)
+
+
 @pytest.mark.parametrize(
     ("kind", "full_scale", "zero"),
     [(np.uint8, 128, 128), (np.int16, 2**15, 0), (np.int32, 2**31, 0), (np.float32, 1, 0), (np.float64, 1, 0)],

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -143,13 +144,30 @@ def _clean(body: bytes, head: _Head) -> tuple[bytes, list[str]]:
     if not (names or marks or is_parted_by_blanks):
         return body, []
     lines = body.splitlines()
-    kept = [line for line in lines if not (line.strip() in names or (marks and line.startswith(marks)))]
+    headings = _find_headings(lines, names, head.dialect)
+    kept = [line for k, line in enumerate(lines) if not (k in headings or (marks and line.startswith(marks)))]
     left_out = len(lines) - len(kept)
     if is_parted_by_blanks:
         part = _cells_of_blanks if b'"' in body or _SIGN_APART.search(body) else bytes.split
         kept = [b" ".join(part(line)) for line in kept]
     notes = [f"lines among the rows that hold remarks or the names again are left out: {left_out}"] if left_out else []
     return b"\n".join(kept) + b"\n", notes
+
+
+def _find_headings(lines: Sequence[bytes], names: set[bytes], dialect: Dialect) -> set[int]:
+    """Return which lines hold the names again, with the lines of text above these: a new acquisition begins there."""
+    found = set[int]()
+    for index, line in enumerate(lines):
+        if line.strip() in names:
+            above = takewhile(lambda k: not _is_row(lines[k], dialect), range(index - 1, -1, -1))
+            found |= {index, *above}
+    return found
+
+
+def _is_row(line: bytes, dialect: Dialect) -> bool:
+    """Say whether the first cell of a line that is not empty holds a number, or what stands for a missing one."""
+    cells = [cell for cell in split_line(line.decode(errors="replace"), dialect.delimiter) if cell.strip()]
+    return bool(cells) and kind_of(cells[0], dialect.decimal) is not False
 
 
 def _cells_of_blanks(line: bytes) -> list[bytes]:
