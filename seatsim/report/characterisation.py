@@ -50,7 +50,9 @@ def report_characterisation(
     tested: list[Block] = [Text("What was tested:"), Code(found.source, "What was tested")]
     steps = [*show_pictures(figures, "steps"), *_tabulate_steps(found.responses)]
     sections = [
-        Section("loops", "Force, energy and damping", show_pictures(figures, "loops", "energy", "asymmetry")),
+        Section(
+            "loops", "Force, energy and damping", show_pictures(figures, "loops", "energy", "asymmetry", "warm_up")
+        ),
         Section("figures", "Figures of each record", _tabulate_rows(found)),
         Section("limits", "Limits", _tabulate_sheet(found.sheet, ["limits"])),
         Section("steps", "Response to steps of the current", steps),

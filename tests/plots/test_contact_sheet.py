@@ -16,11 +16,13 @@ from matplotlib.text import Text
 from PIL import Image
 
 from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
+from seatsim.characterisation.sheet import WarmUp
 from seatsim.diagnosis.result import Trace
 from seatsim.identification.assessment import Agreement, Assessment
 from seatsim.plots.bench.characterisation import plot_characterisation
 from seatsim.plots.bench.identification import plot_predictions
 from seatsim.plots.bench.resonance import plot_damping
+from seatsim.plots.bench.trends import plot_warm_up
 from seatsim.plots.bench.vibration import plot_vibration
 from seatsim.plots.diagnosis.answer import plot_gap, select_stages
 from seatsim.plots.diagnosis.bins import drop_start, find_worst
@@ -80,7 +82,13 @@ def draw_identification():
 
 def draw_bench():
     tested = load_specimen("bouc_wen", None)
-    return plot_characterisation(characterise_model(tested, choose_settings(tested)))
+    heated = [
+        WarmUp(f"a {current} A", current, 0.1, 800.0 * k, 20.0 + k, 900.0, 1.0 - k / (200 + 90 * current))
+        for current in (0.5, 1.0)
+        for k in range(40)
+    ]
+    warm_up = plot_warm_up(SimpleNamespace(name="rig", sheet=SimpleNamespace(warm_up=heated)))
+    return plot_characterisation(characterise_model(tested, choose_settings(tested))) | {"warm_up": warm_up}
 
 
 def draw_seat_test():

@@ -14,7 +14,7 @@ from seatsim.characterisation.sheet import StepResponse
 from seatsim.characterisation.summary import Characterisation
 from seatsim.plots import style
 from seatsim.plots.bench.loops import plot_loops
-from seatsim.plots.bench.trends import plot_asymmetry, plot_energy
+from seatsim.plots.bench.trends import plot_asymmetry, plot_energy, plot_warm_up
 from seatsim.plots.style import GREY, Entry, Grid
 
 MOST = 6
@@ -28,13 +28,16 @@ _TIMES = (("t10", 0.1), ("t63", 1.0 - math.exp(-1.0)), ("t90", 0.9))
 def plot_characterisation(found: Characterisation) -> dict[str, Figure]:
     """Return the figures of a characterisation by name.
 
-    `loops` is always there, `energy` and `asymmetry` where there are cycles, `steps` where a response was determined.
+    `loops` is always there, `energy` and `asymmetry` where there are cycles, `steps` where a response was determined,
+    `warm_up` where a record has many cycles.
     """
     figures = {"loops": plot_loops(found)}
     if any(row.loop is not None for row in found.rows):
         figures |= {"energy": plot_energy(found), "asymmetry": plot_asymmetry(found)}
     if any(answer.share is not None for answer in found.responses):
         figures["steps"] = plot_steps(found)
+    if found.sheet.warm_up:
+        figures["warm_up"] = plot_warm_up(found)
     return figures
 
 

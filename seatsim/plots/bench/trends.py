@@ -1,4 +1,4 @@
-"""Peak force, energy, damping and asymmetry of a characterisation against current and temperature."""
+"""Peak force, energy, damping and asymmetry of a characterisation against current and temperature; its warm-up."""
 
 from __future__ import annotations
 
@@ -10,10 +10,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from seatsim.characterisation.rows import WARMER, Row
+from seatsim.characterisation.sheet import WarmUp
 from seatsim.characterisation.summary import Characterisation, group_by_setting
 from seatsim.plots import style
 from seatsim.plots.bench.loops import describe_setting, select_largest_current, select_lowest_temperature
 from seatsim.plots.style import Entry, Grid
+from seatsim.plots.thinning import spread_evenly
 from seatsim.schema.arrays import Array
 
 MOST = 8
@@ -67,6 +69,32 @@ def plot_asymmetry(found: Characterisation) -> Figure:
     """Return the asymmetric part of the loops over the same."""
     note = "Asymmetric part: difference from the centrosymmetric loop, (F(t) + F(t + T/2)) / 2; RMS over a cycle. "
     return _plot_trends(f"Asymmetry: {found.name}", note, found, _ASYMMETRY)
+
+
+def plot_warm_up(found: Characterisation) -> Figure:
+    """Return the force of each cycle, over that of the first, against the energy that the damper absorbed before it."""
+    records = dict[str, list[WarmUp]]()
+    for cycle in found.sheet.warm_up:
+        records.setdefault(cycle.record, []).append(cycle)
+    shown = spread_evenly([*records.values()], MOST)
+    looks = style.make_entries([_name_warm_up(cycles) for cycles in shown])
+    note = "Force at the peak speed of each cycle; where the damper's temperature is known, the last one is at the end."
+    page = style.make_page(f"Fade as the damper warms up: {found.name}", note, Grid((2.8,), right=0.6), looks)
+    panel = page.rows[0][0]
+    for cycles, look in zip(shown, looks, strict=True):
+        energy, share = [1e-3 * each.absorbed for each in cycles], [each.relative_force for each in cycles]
+        style.draw_line(panel, energy, share, look)
+        if np.isfinite(cycles[-1].temperature):
+            panel.text(energy[-1], share[-1], f" {cycles[-1].temperature:.0f} °C", fontsize=style.FONT, va="center")
+    panel.set_xlabel("absorbed energy [kJ]")
+    panel.set_ylabel("force / that of the first cycle [-]")
+    return page.figure
+
+
+def _name_warm_up(cycles: Sequence[WarmUp]) -> str:
+    first = cycles[0]
+    since = f", from {first.temperature:.0f} °C" if np.isfinite(first.temperature) else ""
+    return f"{first.record}, {first.current:.3g} A{since}"
 
 
 def _plot_trends(title: str, note: str, found: Characterisation, figures: Sequence[_Figure]) -> Figure:
