@@ -176,9 +176,8 @@ def _identify_specimens(
         for name, records in specimens.items():
             progress(name)
             found[name] = predict_records(identify_records(records, model, request, progress), beside)
+            write_member(found[name], folder / name)  # at once, so that an interrupt keeps it
         gathered = gather_specimens(found)
-        for name, each in found.items():
-            write_member(each, folder / name)
         paths = write_specimens(gathered, folder, request.seed)
     show_table(make_specimen_table(gathered))
     warn(f"{name}: {note}" for name, each in found.items() for note in each.notes)
