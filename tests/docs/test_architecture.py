@@ -1,7 +1,9 @@
 """The page on the architecture draws the layers that the import contracts hold, and names what exists."""
 
+import ast
 import itertools
 import re
+import sys
 import tomllib
 from importlib import import_module
 from pathlib import Path
@@ -20,6 +22,8 @@ DIAGRAMS = dict(re.findall(r"<!-- contract: (.+?) -->\n```text\n(.*?)```", PAGE,
 HOUSE = "values flow one way through the house"
 DIAGNOSIS = "a recording passes the stages of the diagnosis one way"
 MOST_ROOMS = 12
+FURTHER = {"yaml", "pydantic_core", "annotated_types"}
+"""What dependencies of the core install under another name, or with them."""
 ENTRY_POINTS = "seatsim.plugins"
 DOTTED = re.compile(r"`((?:seatsim|controllers)(?:\.\w+)+)[`(]")
 # The changelog names what was, too.
@@ -86,6 +90,33 @@ def test_no_walk_climbs_back_between_layers():
         assert heights == sorted(heights, reverse=True)
         for caller, called in itertools.pairwise(modules):
             assert f"from {called} import" in ROOT.joinpath(*caller.split(".")).with_suffix(".py").read_text()
+
+
+def test_modules_begin_with_what_the_core_installs():
+    """Libraries of an extra are imported where they are used: without them everything else runs."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    core = {re.match(r"[\w.-]+", each)[0] for each in project["dependencies"]} | FURTHER
+    others = {
+        (name, path.relative_to(ROOT).parts[1])
+        for package in ("seatsim", "controllers")
+        for path in (ROOT / package).rglob("*.py")
+        for name in imported_first(ast.parse(path.read_text(encoding="utf-8")).body)
+        if name not in {*sys.stdlib_module_names, *core, "seatsim", "controllers"}
+    }
+    assert others == {("pytest", "pytest_plugin.py"), ("starlette", "page"), ("uvicorn", "page")}
+
+
+def imported_first(nodes):
+    """Yield the packages that a module imports when it is loaded, outside functions."""
+    for node in nodes:
+        if isinstance(node, ast.Import):
+            yield from (alias.name.partition(".")[0] for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            yield from [node.module.partition(".")[0]] * (node.level == 0)
+        elif isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
+            yield from imported_first(node.orelse)
+        elif not isinstance(node, ast.FunctionDef):
+            yield from imported_first(ast.iter_child_nodes(node))
 
 
 def height_of(room):
