@@ -6,19 +6,10 @@ import numpy as np
 import pytest
 
 from seatsim.diagnosis.noise import carry_force, weigh_noise
+from seatsim.diagnosis.spectra import smooth_spectrum
 
 from .noisy import RUNS, draw, mean_squares, pose
 from .toy import NOISE, RATE
-
-
-def averaged(power, half_width=0.15):
-    """Return the average over at least 4 bins and `half_width` of the frequency to either side, bin by bin."""
-    return np.array(
-        [
-            power[:, max(0, k - max(4, int(half_width * k))) : k + max(4, int(half_width * k)) + 1].mean(axis=1)
-            for k in range(power.shape[1])
-        ]
-    ).T
 
 
 def test_stated_noise_is_whitened_to_mean_square_1_in_every_channel():
@@ -49,7 +40,7 @@ def test_noise_of_the_floor_is_carried_through_the_rig_and_counts():
 def test_a_small_share_of_the_signal_counts_as_noise():
     problem = pose({"model_error": 0.1, "smoothing": 0.2}, {"first": 300})
     measured = problem.measured["first"]
-    signal = averaged(np.abs(np.fft.rfft(measured - measured.mean(axis=1, keepdims=True))) ** 2, 0.2)
+    signal = smooth_spectrum(np.abs(np.fft.rfft(measured - measured.mean(axis=1, keepdims=True))) ** 2, 0.2)
     expected = NOISE[:, None] ** 2 * 300 + 0.1**2 * signal
     np.testing.assert_allclose(2.0 / weigh_noise(problem).weights["first"] ** 2, expected[:, :150], rtol=1e-9)
 
