@@ -195,8 +195,7 @@ def test_what_forms_explain_is_one_sentence(forms, said):
 
 
 def test_a_diagnosis_lists_the_forms_that_were_tried(wrong_form, tmp_path):
-    forms = wrong_form.settings.damper_forms._replace(models=("biviscous", "bouc_wen"))
-    settings = wrong_form.settings._replace(damper_forms=forms)
+    settings = try_only(wrong_form, "bouc_wen").settings
     found = seatsim.diagnose(wrong_form.recording, OTHERS, settings=settings, damper_forms=True)
     best = found.alternatives[0]
     content = to_content(found)

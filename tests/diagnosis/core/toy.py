@@ -86,17 +86,6 @@ class Limited(NamedTuple):
         return max(0.0, 2.0 - self.limit) * signals[self.signal]
 
 
-@toy_effect("toy.wild")
-class Wild(NamedTuple):
-    """Makes the rig leave all bounds."""
-
-    signal: str
-    amount: float = 0.0
-
-    def outputs(self, signals):
-        return np.full_like(signals["nominal"], np.inf)
-
-
 @toy_effect("toy.edge")
 class Edge(NamedTuple):
     """Adds a signal up to an amount of 1, beyond which the rig leaves all bounds."""
