@@ -77,10 +77,10 @@ def test_a_classifier_of_all_but_the_signals_stays_at_chance(kinds, cases, monke
 def test_the_same_draw_gives_the_same_folder_whatever_the_effect():
     for seed, varied in ((0, False), (3, True)):
         found = []
-        for effect in ("damper.thermal_fade", "sensor.gain", "damper.free_play"):
+        for effect in ("damper.thermal_fade", "damper.free_play"):
             case = draw_case(CaseSpecification("one", (effect,), varied=varied), np.random.default_rng(seed))
             found.append(told(case.experiment))
-        assert found[0] == found[1] == found[2]
+        assert found[0] == found[1]
 
 
 def test_an_effect_that_the_damper_cannot_have_gives_way_to_another():
