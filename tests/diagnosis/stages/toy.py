@@ -210,9 +210,10 @@ def whiten(objective, cause):
     """Return the whitened numbers of one unit of a cause, of all runs on end."""
     problem, parts = objective.problem, []
     rows = [CHANNELS.index(name) for name in problem.channels]
-    for run, values in problem.measured.items():
-        added = add_taps(cause, problem.recording.table(run)["floor_acceleration"])[rows]
-        parts.append(objective.weights(added[:, problem.skip : problem.skip + values.shape[1]], run).ravel())
+    for run in problem.runs:
+        kept = slice(problem.skip, problem.skip + problem.measured[run].shape[1])
+        added = add_taps(cause, problem.recording.table(run)["floor_acceleration"])[rows][:, kept]
+        parts.append(objective.weights(added, run).ravel())
     return np.concatenate(parts)
 
 
