@@ -28,7 +28,7 @@ def drawn(seed, bingham=False):
 @pytest.fixture(scope="module")
 def rigs():
     """Rigs of every kind, at every rate."""
-    return [drawn(seed, bingham) for seed in range(40) for bingham in (False, True)]
+    return [drawn(seed, bingham) for seed in range(24) for bingham in (False, True)]
 
 
 def test_every_rig_is_another_and_inside_what_is_built():
