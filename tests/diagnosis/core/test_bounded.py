@@ -9,7 +9,7 @@ from seatsim.diagnosis.fit import minimise_bounded
 def pose(count, collinear=0.0):
     """Yield random problems of a unit diagonal, with bounds on both sides of 0 or at it."""
     draw = np.random.default_rng(count)
-    for _ in range(50):
+    for _ in range(10):
         rows = draw.normal(size=(40, count))
         if collinear:
             rows = rows[:, :1] + collinear * rows
