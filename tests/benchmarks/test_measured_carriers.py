@@ -7,7 +7,7 @@ import pytest
 
 from seatsim.blind.score.verdicts import Verdict
 
-from ..blind.carriers import bench_carrier, write_carrier
+from ..blind.carriers import bench_carrier, offset, write_carrier
 
 CARRIED = {"kind": "carried", "effects": ["sensor.gain"], "blocks": ["sensor"]}
 
@@ -39,11 +39,10 @@ def test_cases_that_a_method_has_not_done_and_untouched_ones_are_not_counted(ben
 
 def test_a_nominal_holds_the_mechanism_that_the_records_show(benchmark, tmp_path):
     nominals, records = benchmark("carrier_nominals"), benchmark("rig_records")
-    carrier = bench_carrier()
-    tables = {r: {**t, "damper_force": t["damper_force"] + 60.0} for r, t in list(carrier.tables.items())[:1]}
-    runs = {**carrier.header, "runs": carrier.header["runs"][:1]}
-    folder = write_carrier(dataclasses.replace(carrier, header=runs, tables=tables), tmp_path / "rig")
-    recording = nominals.quick(nominals.load_recording(folder))
+    carrier = offset(bench_carrier(), 60.0)
+    header = {**carrier.header, "runs": carrier.header["runs"][:1]}
+    one = dataclasses.replace(carrier, header=header, tables={"run-0": carrier.tables["run-0"]})
+    recording = nominals.quick(nominals.load_recording(write_carrier(one, tmp_path / "rig")))
     trials = (records.SATURATION, ("damper.gas_spring", {}, {"preload": 50.0}))
     found, kept = nominals.identify(recording, carrier.nominal, ("damper.c_a",), trials)
     assert kept == ["damper.gas_spring"]
@@ -52,11 +51,8 @@ def test_a_nominal_holds_the_mechanism_that_the_records_show(benchmark, tmp_path
 
 
 def test_the_joint_fit_names_the_offset_that_moved_most(benchmark, tmp_path):
-    carrier = bench_carrier()
-    tables = {r: {**t, "damper_force": t["damper_force"] + 60.0} for r, t in carrier.tables.items()}
-    said = benchmark("joint_fit").diagnose_by_joint_fit(
-        write_carrier(dataclasses.replace(carrier, tables=tables), tmp_path / "rig")
-    )
+    diagnose = benchmark("joint_fit").diagnose_by_joint_fit
+    said = diagnose(write_carrier(offset(bench_carrier(), 60.0), tmp_path / "rig"))
     assert said["selected"] == ["sensor.bias"]
-    nothing = benchmark("joint_fit").diagnose_by_joint_fit(write_carrier(carrier, tmp_path / "sound"))
+    nothing = diagnose(write_carrier(bench_carrier(), tmp_path / "sound"))
     assert (nothing["verdict"], nothing["causes"]) == ("none", [])

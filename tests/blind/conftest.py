@@ -1,14 +1,10 @@
-from __future__ import annotations
-
-from collections.abc import Iterator
-
 import pytest
 
 from seatsim.blind.make import draw_experiment
 
 
 @pytest.fixture(scope="package", autouse=True)
-def short() -> Iterator[None]:
+def short():
     """Runs of a few seconds."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(draw_experiment, "SECONDS", 2.6)

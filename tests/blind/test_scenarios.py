@@ -1,7 +1,5 @@
 """The fault scenarios: complete, the same in every version, material when drawn."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 
@@ -10,13 +8,13 @@ import pytest
 
 from seatsim.blind.make.compose import find_severity
 from seatsim.blind.sealed import BLOCKS, EFFECTS
-from seatsim.blind.truth.experiment import Readings, read_channels, simulate_run
+from seatsim.blind.truth.experiment import read_channels, simulate_run
 from seatsim.blind.truth.faults import SCENARIOS, Changes, scenarios_of
 
 from .experiments import small_experiment
 
 
-def test_every_effect_has_two_forms_and_every_block_something_outside() -> None:
+def test_every_effect_has_two_forms_and_every_block_something_outside():
     assert all(len(scenarios_of(effect)) >= 2 for effect in EFFECTS)
     outside = scenarios_of("outside")
     assert len(outside) >= 14
@@ -27,12 +25,12 @@ def test_every_effect_has_two_forms_and_every_block_something_outside() -> None:
 
 
 @pytest.mark.parametrize("bingham", [False, True])
-def test_every_form_moves_the_channels_as_it_always_did(bingham: bool) -> None:
+def test_every_form_moves_the_channels_as_it_always_did(bingham):
     """A seed means the same set in every version, so what a form does to the channels is pinned, by its name."""
     experiment, context, runs = small_experiment(bingham)
     known = json.loads(Path(__file__).with_name("known_forms.json").read_text(encoding="utf-8"))
 
-    def read(changes: Changes) -> Readings:
+    def read(changes):
         return read_channels(experiment, changes, 2, simulate_run(experiment, changes, 2, runs.commands[2]))
 
     base, found = read(Changes()), {}
@@ -47,8 +45,8 @@ def test_every_form_moves_the_channels_as_it_always_did(bingham: bool) -> None:
     assert found == pytest.approx({name: known[name] for name in found}, rel=1e-5)
 
 
-@pytest.mark.parametrize("name", ["friction-lugre", "skew-fixed", "gain-scale", "remanence-relays"])
-def test_a_drawn_severity_is_material(name: str) -> None:
+@pytest.mark.parametrize("name", ["friction-lugre", "gain-scale"])
+def test_a_drawn_severity_is_material(name):
     _, context, runs = small_experiment()
     scenario = SCENARIOS[name]
     rng = np.random.default_rng(2)
@@ -62,7 +60,7 @@ def test_a_drawn_severity_is_material(name: str) -> None:
     assert runs.materiality(scenario.build(severity, shape, context), Changes())[0] == pytest.approx(size)
 
 
-def test_a_shifted_log_counts_by_what_the_replay_misses() -> None:
+def test_a_shifted_log_counts_by_what_the_replay_misses():
     _, context, runs = small_experiment()
     scenario = SCENARIOS["skew-fixed"]
     shape = {"channel": 0.0, "sign": 1.0, "detail": 0.5, "seed": 1.0}

@@ -1,11 +1,8 @@
 """Rigs of the preset `varied`: their ranges, their noise and floors, and that a faultless one replays."""
 
-from __future__ import annotations
-
 import dataclasses
 import gzip
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,27 +12,26 @@ import seatsim
 from seatsim.blind.make import draw_varied
 from seatsim.blind.make.compose import compose
 from seatsim.blind.make.folder import encode_recording, recording_header, write_folder
-from seatsim.blind.make.make import make
 from seatsim.blind.make.materiality import CommandedRuns
-from seatsim.blind.sealed import KINDS, unseal
+from seatsim.blind.sealed import KINDS
 from seatsim.blind.truth import excitation
 from seatsim.blind.truth.excitation import NoiseColour, colour_noise
-from seatsim.blind.truth.experiment import CHANNELS, Experiment, read_channels, simulate_run
+from seatsim.blind.truth.experiment import CHANNELS, read_channels, simulate_run
 from seatsim.blind.truth.faults import Changes
 from seatsim.blind.truth.rig import EXCITATION_RATE, INTEGRATION_STEP
 
 
-def drawn(seed: int, bingham: bool = False) -> Experiment:
+def drawn(seed, bingham=False):
     return draw_varied.draw_varied_experiment(np.random.default_rng(seed), bingham, CHANNELS)
 
 
 @pytest.fixture(scope="module")
-def rigs() -> list[Experiment]:
+def rigs():
     """Rigs of every kind, at every rate."""
-    return [drawn(seed, bingham) for seed in range(40) for bingham in (False, True)]
+    return [drawn(seed, bingham) for seed in range(24) for bingham in (False, True)]
 
 
-def test_every_rig_is_another_and_inside_what_is_built() -> None:
+def test_every_rig_is_another_and_inside_what_is_built():
     rng = np.random.default_rng(0)
     rigs = [draw_varied.draw_nominal(rng, k % 2 == 0) for k in range(300)]
     assert len({tuple(sorted(rig.items())) for rig in rigs}) == 300
@@ -55,7 +51,7 @@ def test_every_rig_is_another_and_inside_what_is_built() -> None:
     )
 
 
-def test_parameters_lie_inside_the_stated_tolerance(rigs: list[Experiment]) -> None:
+def test_parameters_lie_inside_the_stated_tolerance(rigs):
     assert {rig.sample_rate for rig in rigs} == set(draw_varied.SAMPLE_RATES)
     assert 0.2 < np.mean([bool(rig.background) for rig in rigs]) < 0.5
     for rig in rigs:
@@ -67,7 +63,7 @@ def test_parameters_lie_inside_the_stated_tolerance(rigs: list[Experiment]) -> N
         assert [run.name for run in rig.runs] == names
 
 
-def test_a_background_is_shown_by_a_repeat_and_is_not_material(rigs: list[Experiment]) -> None:
+def test_a_background_is_shown_by_a_repeat_and_is_not_material(rigs):
     experiment = next(rig for rig in rigs if rig.background)
     assert [run.repeat_of for run in experiment.runs] == [None, None, None, "run-a", None]
     still = dataclasses.replace(experiment, background=())
@@ -81,9 +77,7 @@ def test_a_background_is_shown_by_a_repeat_and_is_not_material(rigs: list[Experi
 
 
 @pytest.mark.parametrize(("rate", "n"), [(256.0, 1.0), (512.0, 2.0), (800.0, 0.0)])
-def test_a_faultless_rig_of_any_kind_replays_to_within_its_noise(
-    rigs: list[Experiment], rate: float, n: float, tmp_path: Path
-) -> None:
+def test_a_faultless_rig_of_any_kind_replays_to_within_its_noise(rigs, rate, n, tmp_path):
     found = (rig for rig in rigs if rig.sample_rate == rate and rig.nominal.get("n", 0.0) == n and not rig.background)
     experiment = next(found)
     experiment = dataclasses.replace(experiment, true=dict(experiment.nominal))
@@ -95,7 +89,7 @@ def test_a_faultless_rig_of_any_kind_replays_to_within_its_noise(
 
 
 @pytest.mark.parametrize("rate", draw_varied.SAMPLE_RATES)
-def test_a_row_is_a_whole_number_of_steps(rigs: list[Experiment], rate: float) -> None:
+def test_a_row_is_a_whole_number_of_steps(rigs, rate):
     experiment = next(rig for rig in rigs if rig.sample_rate == rate)
     motion = simulate_run(experiment, Changes(), 0)
     per_row = motion.fine_current.size / motion.frame.size
@@ -109,7 +103,7 @@ def test_a_row_is_a_whole_number_of_steps(rigs: list[Experiment], rate: float) -
     assert (header["sample_rate"], header["parameter_tolerance"]) == (rate, experiment.tolerance)
 
 
-def test_the_colour_of_a_noise() -> None:
+def test_the_colour_of_a_noise():
     white = np.random.default_rng(0).standard_normal(400_000)
     colour = NoiseColour(flicker=0.2, corner=2.0, slow=0.4, bandwidth=20.0)
     noise = colour_noise(white, colour, 500.0)
@@ -122,7 +116,7 @@ def test_the_colour_of_a_noise() -> None:
     np.testing.assert_allclose(plain, white, atol=1e-9)
 
 
-def test_floors_of_vehicles_are_broad_and_not_stationary() -> None:
+def test_floors_of_vehicles_are_broad_and_not_stationary():
     rng = np.random.default_rng(4)
     for _ in range(6):
         floor = excitation.draw_vehicle_floor(rng, excitation.draw_vehicle(rng), 24.0, 0.3)
@@ -135,13 +129,7 @@ def test_floors_of_vehicles_are_broad_and_not_stationary() -> None:
         assert share[0] < 0.05 * total and share[120] < 0.02 * total
 
 
-def test_a_varied_set_has_the_mix_of_kinds_and_is_scored_as_any_other(tmp_path: Path) -> None:
+def test_a_varied_set_has_the_mix_of_kinds():
     orders = compose(100, "varied", np.random.default_rng(0))
     assert [sum(order.kind == kind for order in orders) for kind in KINDS] == [20, 40, 20, 20]
     assert all(order.varied for order in orders)
-    key = make(1, 2, tmp_path / "set", tmp_path / "sealed", kinds="varied", processes=1)
-    opened = unseal(tmp_path / "sealed", key, tmp_path / "set")
-    label = opened.labels["case-0001"]
-    recording = seatsim.load_recording(tmp_path / "set" / "case-0001")
-    assert recording.header.sample_rate == label["sample_rate"]
-    assert label["rig"]["damper_ratio"] <= 1.0 and label["order"]["varied"]

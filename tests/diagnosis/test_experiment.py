@@ -74,19 +74,6 @@ def test_a_load_cell_tells_friction_in_the_damper_from_friction_in_the_linkage(r
     assert "load cell" in found.reason
 
 
-def test_a_calibration_tells_a_wrong_sensor_from_another_driver(rubbing):
-    found = propose_experiment(*rubbing, ["sensor.gain", "driver.mass"])
-    assert (found.kind, found.name) == ("intervention", "calibrate_sensor") and "calibrating" in found.reason
-
-
-def test_frictions_have_the_same_forms_so_that_none_is_preferred_where_no_load_cell_tells_them(rubbing):
-    forms = [
-        [(c.free, c.start, c.low, c.high) for c in list_candidates(rubbing[0].problem) if c.effect == name]
-        for name in FRICTIONS
-    ]
-    assert forms[0] == forms[1]
-
-
 def test_a_proposed_excitation_is_a_scenario_that_runs(sound, tmp_path):
     rig = recorded(sound, tmp_path, GasSpring(preload=10.0, stiffness=600.0), ["damper_force"])
     found = propose_experiment(

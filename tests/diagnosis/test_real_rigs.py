@@ -54,7 +54,6 @@ def test_the_quarter_car_maps_onto_the_seat_with_its_resonance(real_rigs, record
 @pytest.mark.parametrize(
     "name, known",
     [
-        ("utfsm", [{"damper.gas_spring"}]),
         # The force follows the voltage faster one way than the other, by which the standard lag, too, is passed.
         ("dyke", [{"coil.asymmetric_lag"}, {"damper.gas_spring"}]),
         ("quanser-travel", [{"suspension.friction"}]),

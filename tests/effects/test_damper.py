@@ -8,13 +8,6 @@ import pytest
 from .rigs import BINGHAM, INERT, STEP, bench, cycles, record, strokes
 
 
-def steady(effects, current, v=0.1, **options):
-    """Force at the end of a second at one speed, less the viscous force."""
-    speed = np.full(2001, v)
-    force = bench(effects, 0.5 * STEP * v * np.arange(2001), speed, current, **options)[-1]
-    return force - (BINGHAM.c_a + BINGHAM.c_b * current) * v
-
-
 @pytest.mark.parametrize("lift", [0.0, 1.0])
 def test_remanence_leaves_force_after_a_drop_and_none_before_current_flowed(lift):
     effects = [record("damper.remanence", width=0.05, lift=lift)]

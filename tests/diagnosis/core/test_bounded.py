@@ -9,7 +9,7 @@ from seatsim.diagnosis.fit import minimise_bounded
 def pose(count, collinear=0.0):
     """Yield random problems of a unit diagonal, with bounds on both sides of 0 or at it."""
     draw = np.random.default_rng(count)
-    for _ in range(50):
+    for _ in range(10):
         rows = draw.normal(size=(40, count))
         if collinear:
             rows = rows[:, :1] + collinear * rows
@@ -20,7 +20,7 @@ def pose(count, collinear=0.0):
         yield matrix, right, low, high
 
 
-@pytest.mark.parametrize("count", [1, 3, 12, 24])
+@pytest.mark.parametrize("count", [1, 24])
 @pytest.mark.parametrize("collinear", [0.0, 1e-4])
 def test_the_gradient_points_outwards_at_each_bound_and_vanishes_between(count, collinear):
     for matrix, right, low, high in pose(count, collinear):
@@ -38,9 +38,3 @@ def test_the_minimum_is_the_same_in_every_unit(unit):
     for matrix, right, low, high in pose(12):
         found = minimise_bounded(matrix, unit * right, unit * low, unit * high)
         np.testing.assert_allclose(found / unit, minimise_bounded(matrix, right, low, high), rtol=1e-6, atol=1e-6)
-
-
-def test_without_active_bounds_it_is_the_solution_of_the_normal_equations():
-    matrix, right = np.array([[1.0, 0.5], [0.5, 1.0]]), np.array([0.3, -0.2])
-    wide = np.full(2, 9.0)
-    np.testing.assert_allclose(minimise_bounded(matrix, right, -wide, wide), np.linalg.solve(matrix, right))

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.decide import decide_verdict, explain_after_all
+from seatsim.diagnosis.decide import Evidence, decide_verdict, explain_after_all, weigh_effects
 from seatsim.diagnosis.result import Cause
 from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.solution import decide_beside_unknown, decide_without, doubt_single
@@ -251,3 +251,13 @@ def test_a_set_of_another_search_that_explains_the_gap_is_no_longer_beside_an_un
     found = explain_after_all(rig.problem, calibrated, chosen, beside)
     assert (beside.verdict, found.verdict) == ("unknown", verdict) and found.chosen is chosen
     assert found.unknown == (0.02 if verdict == "known" else beside.unknown)
+
+
+def test_a_sensor_has_a_prior_of_its_own():
+    evidence, names = Evidence(0.1, 0.02, 2.0), ["sensor.gain", "rig.one"]
+    sets = [(frozenset(), 1.0), (frozenset({"sensor.gain"}), 0.2), (frozenset(names), 0.1)]
+    found = weigh_effects([(each, evidence.weigh(each, left)) for each, left in sets], names, (0.01, 0.9))
+    total = 1.0 + 0.02 / 0.04 + 0.1 * 0.02 / 0.01
+    assert found == pytest.approx({"sensor.gain": (0.5 + 0.2) / total, "rig.one": 0.2 / total})
+    # Without any set nothing is known of any effect.
+    assert weigh_effects([], names, (0.01, 0.9)) == dict.fromkeys(names, 0.01)

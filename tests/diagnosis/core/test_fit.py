@@ -7,7 +7,7 @@ from scipy.optimize import lsq_linear
 from seatsim.diagnosis.fit import fit, solve_step
 from seatsim.diagnosis.settings import DiagnosisSettings
 
-from .toy import Cubed, Wild, add_up, draw_signals, make_problem, offer, offer_two, place, stack, weigh_stated
+from .toy import Cubed, Edge, add_up, draw_signals, make_problem, offer, offer_two, place, stack, weigh_stated
 
 NAMES = ["nominal", "nuisance 0", "nuisance 1", "a.one", "a.one beside", "b.two"]
 PAIR = offer_two("a.one", (-2.0, 0.5), (-9.0, -9.0), (9.0, 9.0))
@@ -33,7 +33,7 @@ def bounded(jacobian, residual, count, vector, low, high, prior_std):
     return lsq_linear(rows, target, (low - vector, high - vector), method="bvls", tol=1e-14).x
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("reach", [0.05, 0.4, 50.0])
 def test_a_step_is_that_of_bounded_least_squares_with_the_prior(seed, reach):
     rng = np.random.default_rng(seed)
@@ -107,7 +107,7 @@ def test_more_steps_never_cost_more_and_end_at_the_minimum():
 
 def test_a_rig_that_leaves_all_bounds_is_no_better_than_the_start():
     objective = pose({"b.two": 1.2})
-    start, nuisances = starting(objective, (offer("b.two", cls=Wild), 1.0))
+    start, nuisances = starting(objective, (offer("b.two", start=2.0, cls=Edge), 2.0))
     assert fit(objective, start, nuisances, steps=2).cost == np.inf
 
 

@@ -12,7 +12,7 @@ from seatsim.recordings.recording import load_recording
 from seatsim.simulation.inputs import BenchInputs
 from seatsim.simulation.respond import respond
 
-from ..serial import SerialExecutor
+from ..builders import SerialExecutor
 from .toy import add_up, draw_signals, make_problem
 
 RATE, ROWS, NOISE = 200.0, 1500, 2e-5

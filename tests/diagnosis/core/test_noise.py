@@ -6,19 +6,10 @@ import numpy as np
 import pytest
 
 from seatsim.diagnosis.noise import carry_force, weigh_noise
+from seatsim.diagnosis.spectra import smooth_spectrum
 
 from .noisy import RUNS, draw, mean_squares, pose
 from .toy import NOISE, RATE
-
-
-def averaged(power, half_width=0.15):
-    """Return the average over at least 4 bins and `half_width` of the frequency to either side, bin by bin."""
-    return np.array(
-        [
-            power[:, max(0, k - max(4, int(half_width * k))) : k + max(4, int(half_width * k)) + 1].mean(axis=1)
-            for k in range(power.shape[1])
-        ]
-    ).T
 
 
 def test_stated_noise_is_whitened_to_mean_square_1_in_every_channel():
@@ -49,7 +40,7 @@ def test_noise_of_the_floor_is_carried_through_the_rig_and_counts():
 def test_a_small_share_of_the_signal_counts_as_noise():
     problem = pose({"model_error": 0.1, "smoothing": 0.2}, {"first": 300})
     measured = problem.measured["first"]
-    signal = averaged(np.abs(np.fft.rfft(measured - measured.mean(axis=1, keepdims=True))) ** 2, 0.2)
+    signal = smooth_spectrum(np.abs(np.fft.rfft(measured - measured.mean(axis=1, keepdims=True))) ** 2, 0.2)
     expected = NOISE[:, None] ** 2 * 300 + 0.1**2 * signal
     np.testing.assert_allclose(2.0 / weigh_noise(problem).weights["first"] ** 2, expected[:, :150], rtol=1e-9)
 
@@ -65,19 +56,7 @@ def test_a_random_force_counts_with_its_spectrum_wherever_it_comes_from():
     np.testing.assert_array_equal(found.weights["second"][0], without.weights["second"][0])
 
 
-def test_what_repeats_differ_by_counts_where_it_is_more_than_the_noise():
-    problem = pose({"model_error": 0.0}, runs={"first": 4000, "again": 4000}, repeats={"again": "first"})
-    rng = np.random.default_rng(8)
-    level = np.array([5.0 * NOISE[0], 0.2 * NOISE[1]])
-    own = problem.signals["first"]["a"]
-    measured = {run: own + level[:, None] * rng.standard_normal(own.shape) for run in problem.runs}
-    weights = weigh_noise(dataclasses.replace(problem, measured=measured))
-    for run in problem.runs:
-        power = np.mean(2.0 / weights.weights[run] ** 2, axis=1) / 4000
-        np.testing.assert_allclose(power, [level[0] ** 2, NOISE[1] ** 2], rtol=0.1)
-
-
-def test_repeats_that_differ_at_one_frequency_count_there_alone():
+def test_what_repeats_differ_by_counts_where_it_is_more_than_the_noise_and_there_alone():
     runs = {"first": 400, "again": 300, "other": 600}
     problem = pose({"model_error": 0.0}, runs=runs, repeats={"again": "first"})
     time = np.arange(600) / RATE

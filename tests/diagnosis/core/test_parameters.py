@@ -65,18 +65,11 @@ def test_effects_are_added_and_removed_with_their_values(rig):
 
 
 @pytest.mark.parametrize("component", range(5))
-def test_a_shift_moves_one_component_by_the_step(rig, component):
-    moved, step = rig.shift(component, 0.02)
-    assert step == 0.02
-    np.testing.assert_allclose(moved.vector - rig.vector, 0.02 * (np.arange(5) == component), atol=1e-12)
-
-
-@pytest.mark.parametrize("component", range(5))
-def test_a_shift_goes_down_where_no_room_is_above(rig, component):
-    top = rig.move_to(rig.limits[1])
-    moved, step = top.shift(component, 0.02)
-    assert step == -0.02
-    np.testing.assert_allclose(moved.vector - top.vector, -0.02 * (np.arange(5) == component), atol=1e-12)
+def test_a_shift_moves_one_component_by_the_step_and_down_where_no_room_is_above(rig, component):
+    for place, signed in ((rig, 0.02), (rig.move_to(rig.limits[1]), -0.02)):
+        moved, step = place.shift(component, 0.02)
+        assert step == signed
+        np.testing.assert_allclose(moved.vector - place.vector, signed * (np.arange(5) == component), atol=1e-12)
 
 
 @pytest.mark.parametrize("start, size", [(1.2, 1.2), (0.2, 0.8), (-0.2, 1.2)])

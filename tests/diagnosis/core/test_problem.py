@@ -11,7 +11,7 @@ from seatsim.recordings.recording import load_recording
 from seatsim.scenario.scenario import Start
 from seatsim.schema.errors import InputError, RunError
 
-from ..serial import SerialExecutor
+from ..builders import SerialExecutor
 from .toy import Added, add_up, draw_signals, make_problem
 
 HEADER = """\

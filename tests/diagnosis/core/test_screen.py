@@ -8,7 +8,7 @@ from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.objective import Parameters
 from seatsim.diagnosis.screen import measure_sensitivities, name_unstable, screen_candidates
 
-from .toy import Limited, Stated, Wild, add_up, draw_signals, make_problem, offer, offer_two, place, stack, weigh_stated
+from .toy import Edge, Limited, Stated, add_up, draw_signals, make_problem, offer, offer_two, place, stack, weigh_stated
 
 NAMES = ["nominal", "nuisance 0", "a.one", "a.one beside", "b.two", "c.three", "d.limit"]
 INFINITE = float("inf")
@@ -40,7 +40,7 @@ def least_cost(objective, names, last=(-6.0, 6.0)):
 
 
 def test_effects_that_cannot_be_simulated_are_named_with_the_number_of_their_starts():
-    offered = [offer("b.two"), offer("c.three", cls=Wild), offer("c.three"), offer("c.three", cls=Wild)]
+    offered = [offer("b.two"), offer("c.three", cls=Edge), offer("c.three"), offer("c.three", cls=Edge)]
     said = name_unstable(offered, [offered[0], offered[2]])
     assert said == ("c.three could not be simulated from 2 of 3 starts, which were dropped",)
     assert name_unstable(offered[:1], offered[:1]) == ()

@@ -12,7 +12,7 @@ import numpy as np
 from seatsim.dampers.bingham import Bingham
 from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.noise import weigh_uniformly
-from seatsim.diagnosis.objective import Objective, Parameters
+from seatsim.diagnosis.objective import Objective
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.effects.base import EffectSpecification
@@ -25,7 +25,9 @@ from seatsim.scenario.scenario import DamperChoice, Scenario, Solver
 from seatsim.schema.registry import register
 from seatsim.simulation.inputs import SeatInputs
 
-from ..serial import SerialExecutor
+from ..builders import SerialExecutor
+from ..builders import place as place
+from ..builders import weigh_stated as weigh_stated
 
 RATE = 200.0
 CHANNELS = ("frame_acceleration", "driver_acceleration")
@@ -82,17 +84,6 @@ class Limited(NamedTuple):
 
     def outputs(self, signals):
         return max(0.0, 2.0 - self.limit) * signals[self.signal]
-
-
-@toy_effect("toy.wild")
-class Wild(NamedTuple):
-    """Makes the rig leave all bounds."""
-
-    signal: str
-    amount: float = 0.0
-
-    def outputs(self, signals):
-        return np.full_like(signals["nominal"], np.inf)
 
 
 @toy_effect("toy.edge")
@@ -183,12 +174,6 @@ def add_up(signals, amounts, noise=NOISE, seed=1):
     }
 
 
-def weigh_stated(problem):
-    """Return an objective that weighs by the stated white noise alone."""
-    power = {run: problem.noise[:, None] ** 2 * values.shape[1] for run, values in problem.measured.items()}
-    return Objective(problem, weigh_uniformly(problem, power))
-
-
 def offer(effect, signal=None, start=1.0, low=-10.0, high=10.0, cls=Added):
     """Return a candidate with one free parameter, that adds the signal of its name where none is given."""
     free = "limit" if cls is Limited else "amount"
@@ -245,11 +230,3 @@ def stack(objective, names):
     ]
     rows = np.hstack([prior * np.eye(count), np.zeros((count, len(names)))])
     return np.vstack([np.array(columns).T, rows]), np.concatenate([*gap, np.zeros(count)])
-
-
-def place(problem, *terms, deviations=None):
-    """Return parameters with candidates, each given as (candidate, values)."""
-    parameters = Parameters(problem.nominal if deviations is None else np.asarray(deviations, dtype=float))
-    for candidate, *values in terms:
-        parameters = parameters.add(candidate, np.array(values, dtype=float))
-    return parameters

@@ -45,13 +45,6 @@ def test_fitted_effects_are_as_collinear_as_what_nuisances_leave_of_their_signal
     assert np.allclose(matrix, [[cosine(a, b) for b in left] for a in left], atol=1e-6)
 
 
-def test_identical_effects_have_one_and_those_that_share_nothing_have_zero(folder):
-    objective = make_objective(folder, nuisances=0)
-    terms = [(offer("a", "frame alone"), 1.0), (offer("b", "frame alone"), -3.0), (offer("c", "driver alone"), 1.0)]
-    matrix = compare(objective, linearise(objective, *terms), "a", "b", "c").matrix
-    assert np.allclose(matrix, [[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 1.0]], atol=1e-9)
-
-
 def test_names_that_cannot_act_here_are_left_out_and_repeated_ones_said_once(folder):
     objective = make_objective(folder)
     nuisances = linearise(objective, (offer("a", "one"), 1.0))

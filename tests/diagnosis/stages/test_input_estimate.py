@@ -12,10 +12,9 @@ from seatsim.diagnosis.localise.input_estimate import (
     respond_to_error,
 )
 from seatsim.diagnosis.localise.reconstruction import PORTS, Port, reconstruct
-from seatsim.diagnosis.objective import Parameters
 from seatsim.diagnosis.spectra import measure_power
 
-from .toy import CHANNELS, RATE, SKIP, add_taps, place, pose, record, weigh_stated
+from .toy import CHANNELS, RATE, SKIP, evaluate_nominal, place, plant, pose, record, slow_signal, weigh_stated
 
 SAMPLES = 400
 LOUD = 1e-3
@@ -27,44 +26,26 @@ def make_objective(folder, noise=0.05, channels=CHANNELS[:3], **kept):
     return weigh_stated(pose(record(folder, runs=runs, channels=channels, noise=noise, **kept)))
 
 
-def slow_force(samples, rms, seed=1):
-    """Return a smooth signal, such as is plausible."""
-    spectrum = np.fft.rfft(np.random.default_rng(seed).standard_normal(samples))
-    frequency = np.fft.rfftfreq(samples, 1.0 / RATE)
-    signal = np.fft.irfft(spectrum / (1.0 + (frequency / 3.0) ** 2), samples)
-    return rms * signal / np.std(signal)
-
-
-def plant(objective, port, signal, run="first"):
-    """Return the objective with what a signal at a port adds to the measured channels of a run, and the nominal rig."""
-    problem = objective.problem
-    rig = reconstruct(objective, place(problem), run, port)
-    added = rig.simulate_with(signal) - rig.simulate_with(np.zeros(rig.samples))
-    measured = problem.measured | {run: problem.measured[run] + added}
-    planted = dataclasses.replace(objective, problem=dataclasses.replace(problem, measured=measured))
-    return planted, planted.evaluate([Parameters(problem.nominal)])[0]
-
-
-@pytest.mark.parametrize("block", ["suspension", "driver", "cushion", "floor"])
+@pytest.mark.parametrize("block", ["suspension", "floor"])
 def test_a_planted_signal_is_recovered_to_within_the_noise(folder, block):
-    signal = slow_force(SAMPLES, 0.5 if block == "floor" else 40.0)
-    objective, nominal = plant(make_objective(folder, LOUD), PORTS[block], signal)
-    found = estimate_input(objective, nominal, "first", PORTS[block])
+    signal = slow_signal(SAMPLES, 0.5 if block == "floor" else 40.0)
+    objective = plant(make_objective(folder, LOUD), PORTS[block], {"first": signal})
+    found = estimate_input(objective, evaluate_nominal(objective), "first", PORTS[block])
     assert found.signal.shape == (SAMPLES,)
     assert np.sqrt(np.mean((found.signal - signal) ** 2)) < 0.03 * np.std(signal)
 
 
 def test_what_is_noise_alone_needs_no_input(folder):
-    objective = make_objective(folder)
-    nominal = objective.evaluate([Parameters(objective.problem.nominal)])[0]
-    found = estimate_input(objective, nominal, "first", PORTS["suspension"])
-    strong, rig = plant(objective, PORTS["suspension"], slow_force(SAMPLES, 40.0))
-    assert np.std(found.signal) < 0.03 * np.std(estimate_input(strong, rig, "first", PORTS["suspension"]).signal)
+    objective, port = make_objective(folder), PORTS["suspension"]
+    strong = plant(objective, port, {"first": slow_signal(SAMPLES, 40.0)})
+    none, some = (estimate_input(each, evaluate_nominal(each), "first", port).signal for each in (objective, strong))
+    assert np.std(none) < 0.03 * np.std(some)
 
 
 def test_an_input_below_a_highest_frequency_has_nothing_above(folder):
-    objective, nominal = plant(make_objective(folder, LOUD), PORTS["floor"], slow_force(SAMPLES, 0.5))
-    power = np.abs(np.fft.rfft(estimate_input(objective, nominal, "first", PORTS["floor"], 2.0).signal)) ** 2
+    objective = plant(make_objective(folder, LOUD), PORTS["floor"], {"first": slow_signal(SAMPLES, 0.5)})
+    found = estimate_input(objective, evaluate_nominal(objective), "first", PORTS["floor"], 2.0)
+    power = np.abs(np.fft.rfft(found.signal)) ** 2
     frequency = np.fft.rfftfreq(SAMPLES, 1.0 / RATE)
     assert np.sum(power[frequency > 2.0]) < 1e-12 * np.sum(power)
     assert power[frequency == 2.0][0] > 0.0 and np.sum(power[frequency <= 0.5]) > 0.0
@@ -80,9 +61,9 @@ def with_current(folder, logged_more):
 
 
 def test_a_current_is_what_was_logged_beyond_that_of_the_simulated_coil(folder):
-    logged = slow_force(SAMPLES, 0.05)
+    logged = slow_signal(SAMPLES, 0.05)
     objective = with_current(folder, logged)
-    nominal = objective.evaluate([Parameters(objective.problem.nominal)])[0]
+    nominal = evaluate_nominal(objective)
     found = estimate_current(objective, nominal, "first")
     assert np.std(found.signal - logged) < 0.1 * np.std(logged)
     weights, half = objective.weights.weights["first"], objective.weights.bins["first"]
@@ -105,18 +86,17 @@ def test_what_a_repeat_answers_to_a_floor_of_its_own_is_no_disturbance(folder):
     objective = weigh_stated(
         pose(record(folder, runs=runs, channels=CHANNELS[:3], noise=LOUD, repeats={"again": "first"}))
     )
-    nominal = objective.evaluate([Parameters(objective.problem.nominal)])[0]
+    nominal = evaluate_nominal(objective)
     assert np.std(objective.problem.measured["first"] - objective.problem.measured["again"]) > 0.5
     assert np.std(estimate_nonrepeatable_force(objective, nominal)["again"]) < 0.01
 
 
 def test_without_repeats_of_the_same_length_there_is_no_such_force(folder):
     objective = make_objective(folder)
-    nominal = objective.evaluate([Parameters(objective.problem.nominal)])[0]
+    nominal = evaluate_nominal(objective)
     assert estimate_nonrepeatable_force(objective, nominal) is None
     unequal = make_objective(folder, repeats={"second": "first"})
     assert estimate_nonrepeatable_force(unequal, nominal) is None
-    assert add_taps("floor", np.zeros(3)).shape == (5, 3)
 
 
 def repeat(folder, forces, noise=LOUD):
@@ -126,13 +106,12 @@ def repeat(folder, forces, noise=LOUD):
     objective = weigh_stated(
         pose(record(folder, runs=runs, channels=CHANNELS[:3], noise=noise, repeats={"again": "first"}))
     )
-    for run, force in forces.items():
-        objective = plant(objective, PORTS["suspension"], force, run)[0]
-    return objective, objective.evaluate([Parameters(objective.problem.nominal)])[0]
+    objective = plant(objective, PORTS["suspension"], forces)
+    return objective, evaluate_nominal(objective)
 
 
 def test_a_force_by_which_a_run_and_its_repeat_differ_is_half_of_the_difference_in_power(folder):
-    forces = {"first": slow_force(SAMPLES, 5.0, 1), "again": slow_force(SAMPLES, 5.0, 2)}
+    forces = {"first": slow_signal(SAMPLES, 5.0, 1), "again": slow_signal(SAMPLES, 5.0, 2)}
     found = estimate_nonrepeatable_force(*repeat(folder, forces))["first"]
     expected = (forces["first"] - forces["again"]) / np.sqrt(2.0)
     assert np.corrcoef(found, expected)[0, 1] > 0.99

@@ -1,30 +1,9 @@
-"""Projected changes against ridge regressions, and cosines and likenesses of vectors that are worked out by hand."""
+"""Cosines and likenesses of vectors that are worked out by hand."""
 
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.design.separability import measure_cosines, measure_likeness, project
-
-
-def regress(change, sensitivities, deviations):
-    """Return the residual of `change = S' u + e` with `u / d = 0 + e`, solved as one stacked least-squares problem."""
-    rows = np.vstack([sensitivities.T, np.diag(1.0 / deviations)])
-    target = np.concatenate([change, np.zeros(len(deviations))])
-    return target - rows @ np.linalg.lstsq(rows, target, rcond=None)[0]
-
-
-@pytest.fixture
-def drawn():
-    rng = np.random.default_rng(1)
-    return rng.standard_normal((3, 12)), 2.0 * rng.standard_normal((4, 12)), np.array([0.1, 0.5, 1.0, 3.0])
-
-
-def test_a_projection_is_what_a_ridge_regression_leaves(drawn):
-    changes, sensitivities, deviations = drawn
-    projected = project(*drawn)
-    assert projected.shape == (3, 16)
-    for change, found in zip(changes, projected, strict=True):
-        assert np.allclose(found, regress(change, sensitivities, deviations), atol=1e-10)
+from seatsim.diagnosis.design.separability import measure_cosines, measure_likeness
 
 
 def test_cosines_are_those_of_the_angles_between_vectors():

@@ -11,8 +11,6 @@ import numpy as np
 
 from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.localise.reconstruction import PORTS, reconstruct
-from seatsim.diagnosis.noise import weigh_uniformly
-from seatsim.diagnosis.objective import Objective, Parameters
 from seatsim.diagnosis.problem import pose_problem
 from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.effects.base import EffectSpecification
@@ -28,7 +26,8 @@ from seatsim.schema.registry import register
 from seatsim.simulation.augment import augment_plant, read_sensors
 from seatsim.simulation.respond import SEAT_OUTPUTS
 
-from ..serial import SerialExecutor
+from ..builders import SerialExecutor, place
+from ..builders import weigh_stated as weigh_stated
 
 RATE, SKIP = 200.0, 200
 CHANNELS = SEAT_OUTPUTS
@@ -56,7 +55,6 @@ TAPS = {
     "three": [[-0.2, 0.1], [0.3, 0.0], [0.0, 0.1], [0.1, 0.2], [0.0, 0.0]],
     "frame alone": [[0.4, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0]],
     "driver alone": [[0.0, 0.0], [0.4, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0]],
-    "force alone": [[0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.4, 0.0], [0.0, 0.0]],
     # On a slow floor these two are the same; where it is fast, the second has the other sign.
     "slow": [[0.4, 0.4], [0.2, 0.2], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0]],
     "fast": [[0.8, 0.0], [0.4, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0]],
@@ -203,36 +201,20 @@ def pose(recording, nuisances=2, **changed):
     return replace(pose_problem(recording, SerialExecutor(), settings), parameters=NUISANCES[:nuisances])
 
 
-def weigh_stated(problem):
-    """Return an objective that weighs by the stated white noise alone."""
-    power = {run: problem.noise[:, None] ** 2 * values.shape[1] for run, values in problem.measured.items()}
-    return Objective(problem, weigh_uniformly(problem, power))
-
-
 def offer(effect, cause, start=1.0, low=-20.0, high=20.0):
     """Return a candidate that adds the signal of a cause."""
     return Candidate(effect, Added, {"cause": cause}, ("amount",), (start,), (low,), (high,))
 
 
-def place(problem, *terms, deviations=None):
-    """Return parameters with candidates, each given as (candidate, values)."""
-    parameters = Parameters(problem.nominal if deviations is None else np.asarray(deviations, dtype=float))
-    for candidate, *values in terms:
-        parameters = parameters.add(candidate, np.array(values, dtype=float))
-    return parameters
-
-
-def signal_of(problem, run, cause):
-    """Return what one unit of an effect by a cause adds to the compared channels, shape (channels, samples)."""
-    rows = [CHANNELS.index(name) for name in problem.channels]
-    floor = problem.recording.table(run)["floor_acceleration"]
-    return add_taps(cause, floor)[rows, problem.skip : problem.skip + problem.measured[run].shape[1]]
-
-
 def whiten(objective, cause):
     """Return the whitened numbers of one unit of a cause, of all runs on end."""
-    problem = objective.problem
-    return np.concatenate([objective.weights(signal_of(problem, run, cause), run).ravel() for run in problem.runs])
+    problem, parts = objective.problem, []
+    rows = [CHANNELS.index(name) for name in problem.channels]
+    for run in problem.runs:
+        kept = slice(problem.skip, problem.skip + problem.measured[run].shape[1])
+        added = add_taps(cause, problem.recording.table(run)["floor_acceleration"])[rows][:, kept]
+        parts.append(objective.weights(added, run).ravel())
+    return np.concatenate(parts)
 
 
 @dataclass(frozen=True)
@@ -243,6 +225,30 @@ class _Unweighed:
     weights: object = None
 
 
+def drive(problem, run, port, signal):
+    """Return what a signal at a port adds to the channels of a run, shape (channels, samples)."""
+    rig = reconstruct(_Unweighed(problem), place(problem), run, port)
+    return rig.simulate_with(signal) - rig.simulate_with(np.zeros(rig.samples))
+
+
+def slow_signal(samples, rms, seed=1, corner=3.0):
+    """Return a smooth random signal, such as is plausible of a force; `corner` in Hz."""
+    spectrum = np.fft.rfft(np.random.default_rng(seed).standard_normal(samples))
+    signal = np.fft.irfft(spectrum / (1.0 + (np.fft.rfftfreq(samples, 1.0 / RATE) / corner) ** 2), samples)
+    return rms * signal / np.std(signal)
+
+
+def plant(objective, port, signals):
+    """Return the objective with what signals by run, at a port, add to the measured channels."""
+    problem = objective.problem
+    added = {run: problem.measured[run] + drive(problem, run, port, signal) for run, signal in signals.items()}
+    return replace(objective, problem=replace(problem, measured=problem.measured | added))
+
+
+def evaluate_nominal(objective):
+    return objective.evaluate([place(objective.problem)])[0]
+
+
 def push(problem, newtons, port):
     """Return what a random force at a port adds by run and channel, another one in each run."""
     added = {}
@@ -250,8 +256,7 @@ def push(problem, newtons, port):
         samples = values.shape[1]
         drawn = np.fft.rfft(np.random.default_rng(seed).standard_normal(samples))
         force = np.fft.irfft(drawn / (1.0 + np.arange(len(drawn)) / 20.0), samples)
-        rig = reconstruct(_Unweighed(problem), place(problem), run, PORTS[port])
-        change = rig.simulate_with(newtons * force / np.std(force)) - rig.simulate_with(np.zeros(samples))
+        change = drive(problem, run, PORTS[port], newtons * force / np.std(force))
         added[run] = dict(zip(problem.channels, change, strict=True))
     return added
 

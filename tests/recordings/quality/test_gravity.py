@@ -10,7 +10,7 @@ from seatsim.recordings.gap import gap
 from seatsim.recordings.quality.sensors import without_gravity
 from seatsim.recordings.recording import load_recording
 
-from ...diagnosis.serial import SerialExecutor
+from ...diagnosis.builders import SerialExecutor
 from ...faulty_recordings import rewrite
 
 
