@@ -22,16 +22,14 @@ LARGE = parse("""
     damper.preyield_hysteresis: [{travel: 0.01}, {travel: 0.0, lag: 0.05}, {travel: 0.0, behind: 0.05}]
     damper.magnetic_saturation: [{bend: 10.0}]
     damper.remanence: [{width: 0.5}, {width: 1.0}]
-    damper.free_play: [{gap: 0.002, stiffness: 100000.0}, {gap: 0.005, stiffness: 100000.0}, {gap: 0.005},
-        {gap: 0.01, turning: 0.02}]
+    damper.free_play: [{gap: 0.005, stiffness: 100000.0}, {gap: 0.005}, {gap: 0.01, turning: 0.02}]
     damper.seal_friction: [{force: 500.0}, {force: 500.0, presliding: 0.001}]
     coil.lag: [{time: 0.2}]
     coil.asymmetric_lag: [{time: 0.2}]
     coil.delay: [{time: 0.2}]
     coil.current_limit: [{limit: 0.1}]
     suspension.friction: [{force: 300.0}, {force: 100.0, presliding: 0.001}]
-    suspension.end_stop: [{low: -0.005, high: 0.005}, {low: -0.005, high: 0.005, power: 2.0}, {low: -0.018,
-        high: 0.018}, {low: -0.018, high: 0.018, power: 2.0}]
+    suspension.end_stop: [{low: -0.005, high: 0.005}, {low: -0.018, high: 0.018, power: 2.0}]
     suspension.progressive_spring: [{rise: 5000.0}, {helper: 20.0, reach: 0.01}]
     cushion.hardening: [{rise: 2000.0}]
     cushion.separation: [{limit: 20.0}]
@@ -44,7 +42,7 @@ LARGE = parse("""
 ON_A_CHANNEL = {
     "sensor.gain": ({"error": 1.0}, {"error": -0.5}),
     "sensor.bias": ({"share": 5.0}, {"share": -5.0}),
-    "sensor.lag": ({"time": 0.03}, {"time": 0.1}),
+    "sensor.lag": ({"time": 0.1},),
 }
 OF_A_SEAT = ("suspension.", "cushion.", "driver.", "floor.")
 CHANNELS = parse("""
