@@ -1,5 +1,6 @@
 """The same recording in every format becomes the same numbers, and a damaged file one clear error."""
 
+import shutil
 import sys
 
 import numpy as np
@@ -30,8 +31,8 @@ def exported(request, tmp_path_factory, table):
     return path
 
 
-def test_every_format_gives_the_same_numbers(exported, tmp_path, table):
-    found = import_files([exported], tmp_path / "out")
+def test_every_format_gives_the_same_numbers_whatever_the_file_is_called(exported, tmp_path, table):
+    found = import_files([shutil.copy(exported, tmp_path / "data.bin")], tmp_path / "out")
     assert found.rate == 500.0
     assert set(found.map.channels) == set(exports.UNITS)
     got = read_run(tmp_path / "out")
@@ -52,13 +53,6 @@ def test_a_truncated_file_is_one_clear_error(exported, tmp_path):
         read_file(cut)
     assert str(cut) in str(raised.value)
     assert "\n" not in str(raised.value)
-
-
-def test_a_wrong_ending_does_not_matter_where_the_content_is_clear(exported, tmp_path):
-    renamed = tmp_path / "data.bin"
-    renamed.write_bytes(exported.read_bytes())
-    file = read_file(renamed)
-    assert sum(len(group.signals) for group in file.groups) >= len(exports.UNITS)
 
 
 @pytest.mark.parametrize(
