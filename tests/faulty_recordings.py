@@ -169,6 +169,7 @@ FAULTS = {f"sign of {c}": (scaled(c, -1.0), c, "sign is swapped") for c in SIGNS
     "half a second": (lambda frame: frame.iloc[:125], None, "its first second is left out"),
     "two seconds": (lambda frame: frame.iloc[:500], None, "2 s remain to compare"),
     "clipped force": (clipped("damper_force", 0.7), "damper_force", "is clipped"),
+    "dead": (constant("driver_acceleration"), "driver_acceleration", "throughout"),
     "dead floor": (constant("floor_acceleration"), "floor_acceleration", "does not move while"),
     "stuck": (stuck("suspension_displacement", 4.0, 5.0), "suspension_displacement", "is stuck from 4 to 5"),
     "at rest": (at_rest, None, "nothing moves"),
@@ -186,6 +187,7 @@ FAULTS = {f"sign of {c}": (scaled(c, -1.0), c, "sign is swapped") for c in SIGNS
 """Faults for which diagnosis and gap must refuse: what is done, the channel named, and words of the sentence."""
 WARNINGS = {
     "noisier than stated": (louder("driver_acceleration", 0.1), "driver_acceleration", "noise_rms is stated as 0.015"),
+    "too large a current": (shifted("coil_current", 0.8), "coil_current", "outside 0 to 1 A"),
     "floor with play": (blurred(with_play), "floor_acceleration", "steps or play"),
     "gravity upside down": (shifted("driver_acceleration", -9.7), "driver_acceleration", "is gravity"),
     "half a metre per square second": (shifted("floor_acceleration", 0.5), "floor_acceleration", "an offset"),

@@ -93,6 +93,7 @@ def test_degrees_fahrenheit_are_told_by_the_nominal_temperature(runs):
         warm = [run._replace(table={**run.table, "damper_temperature": low + np.arange(3000) / 100}) for run in runs]
         units = [issue for issue in check_all_runs(warm) if issue.kind == "unit"]
         assert [issue.channel for issue in units] == ["damper_temperature"] * is_said
+        assert all("degF" in issue.sentence for issue in units)
 
 
 @pytest.mark.parametrize(
