@@ -9,14 +9,17 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from typer.testing import CliRunner
 
-from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
+from seatsim.characterisation.model_tests import DamperSpecimen, characterise_model, choose_settings, load_specimen
 from seatsim.characterisation.summary import characterise
 from seatsim.cli.app import app
 from seatsim.cli.outputs.damper_tables import make_characterisation_tables
 from seatsim.plots.bench.characterisation import plot_characterisation
+from seatsim.rig.coil import Coil
+from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.errors import InputError
 
 from ..text import words
+from .conftest import DAMPER
 
 
 def command(*arguments):
@@ -55,7 +58,7 @@ def test_a_bench_table_gives_files_and_a_table(record, sine, tmp_path):
 
 
 def test_a_model_is_characterised_at_the_settings_given(tmp_path):
-    done = command("--model", "modified_bouc_wen", "--currents", "0,1", "--amplitudes", "0.005", "--frequencies",
+    done = command("--model", "bouc_wen", "--currents", "0,1", "--amplitudes", "0.005", "--frequencies",
                    "1,2", "--out", tmp_path / "out")  # fmt: skip
     assert done.exit_code == 0, done.output
     found = pd.read_csv(tmp_path / "out" / "cycles.csv")
@@ -67,11 +70,8 @@ def test_a_model_is_characterised_at_the_settings_given(tmp_path):
 
 
 def test_parameters_of_a_file_and_its_coil(tmp_path):
-    path = tmp_path / "damper.yaml"
-    path.write_text("""\
-damper: {model: original_bingham, parameters: {f0: 25.0}}
-actuator: {rate: 50, max_current: 0.8}
-""")
+    path, stated = tmp_path / "damper.yaml", f"model: bouc_wen, parameters: {DAMPER._replace(f0=25.0)._asdict()}"
+    path.write_text(f"damper: {{{stated}}}\nactuator: {{rate: 50, max_current: 0.8}}\n")
     tested = load_specimen(None, path)
     assert tested.damper.f0 == 25.0 and tested.coil.rate == 50
     found = characterise_model(tested, choose_settings(tested, "0,0.8", "", "0.005", "1"))
@@ -138,7 +138,7 @@ def cases(record, sine):
     yield characterise([switched], "_switched $a$ b$")
     yield characterise(warm, "warm")
     yield characterise([record(lambda t: 0.0 * t, 2.0)], "still")
-    tested = load_specimen("yu2019", None)
+    tested = DamperSpecimen(DAMPER, TemperatureFactors(viscous=-0.004), Coil(max_current=1.2))
     yield characterise_model(tested, choose_settings(tested, "0,0.6,1.2", "20,80", "0.008", "0.5,0.7"))
 
 

@@ -34,12 +34,16 @@ def test_energy_damping_and_offset_of_a_bingham_damper(record, sine):
 
 def test_the_figures_of_a_record_are_those_of_a_sine_test(record, sine, damper):
     motion, seconds = sine(0.008, 1.5)
-    row = summarise_record(record(motion, seconds, lambda t: 1.0 + 0.0 * t))
+    made = record(motion, seconds, lambda t: 1.0 + 0.0 * t)
+    row = summarise_record(made)
     test = sine_test(damper, 0.008, 1.5, 1.0, 20.0)
     assert row.energy == pytest.approx(test.dissipated_energy, rel=2e-3)
     assert row.damping == pytest.approx(test.equivalent_damping, rel=2e-3)
     assert [row.peak_rebound, -row.peak_compression] == pytest.approx([test.peak_force] * 2, rel=2e-3)
     assert row.asymmetry < 0.01
+    ends = test.force[[np.argmax(test.displacement), np.argmin(test.displacement)]]
+    [hysteresis] = characterise([made]).sheet.hysteresis
+    assert hysteresis.width == pytest.approx(np.ptp(ends), abs=0.01 * test.peak_force)
 
 
 def test_an_offset_stroke_noise_and_rests_are_no_matter(record, sine):

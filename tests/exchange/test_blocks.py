@@ -32,8 +32,8 @@ def run_vector(path, *flags):
     """Compile a file with its test vector, run it, and return what it prints."""
     program = path.with_suffix(".out")
     command = [find_compiler(), "-std=c99", *STRICT, "-O1", "-ffp-contract=off", "-DSEATSIM_TEST", *flags]
-    subprocess.run([*command, "-o", str(program), str(path), "-lm"], check=True, timeout=60)
-    return subprocess.run([str(program)], capture_output=True, text=True, timeout=60, check=False)
+    subprocess.run([*command, "-o", str(program), str(path), "-lm"], check=True, timeout=120)
+    return subprocess.run([str(program)], capture_output=True, text=True, timeout=120, check=False)
 
 
 def test_every_damper_is_printed(seat_file):
@@ -87,8 +87,10 @@ def test_a_controller_passes_its_test_vector_in_double_and_float(name, settings,
     assert run_vector(tmp_path / "controller.c", "-DSEATSIM_FLOAT").returncode == 0
 
 
-@pytest.mark.parametrize("make", [controller_block, damper_block, rig_block])
-@pytest.mark.parametrize("name", ["quickstart", "hot-damper-cold-inverse"])
+@pytest.mark.parametrize(
+    ("make", "name"),
+    [(controller_block, "hot-damper-cold-inverse"), (damper_block, "quickstart"), (rig_block, "quickstart")],
+)
 def test_sources_compile_without_a_warning(make, name, tmp_path):
     block = make(load(name)[0])
     for version in (2, 3):
@@ -98,7 +100,7 @@ def test_sources_compile_without_a_warning(make, name, tmp_path):
     files = [str(tmp_path / file) for file in ("alone.c", "fmi2.c", "fmi3.c")]
     command = [find_compiler(), "-std=c99", *STRICT, "-fsyntax-only", "-DSEATSIM_TEST", *files]
     for precision in ((), ("-DSEATSIM_FLOAT",)):
-        done = subprocess.run([*command, *precision], capture_output=True, text=True, timeout=60, check=False)
+        done = subprocess.run([*command, *precision], capture_output=True, text=True, timeout=120, check=False)
         assert done.returncode == 0, done.stderr
 
 
@@ -128,7 +130,7 @@ def test_what_a_rig_holds_follows_a_parameter_that_is_tuned(seat_file, part, cha
     assert held == computed and held[0].held != state.held
 
 
-@pytest.mark.parametrize("name", ["@MODEL@", "a */ int evil; /* @FED@", "2 seats", "ä" * 300, "\\"])
+@pytest.mark.parametrize("name", ["2 seats @MODEL@ */ int evil; /* @FED@ \\", "ä" * 300])
 def test_a_name_stays_out_of_the_code(name, seat_file, tmp_path):
     block = damper_block(dataclasses.replace(load(seat_file)[0], name=name))
     (tmp_path / "damper.c").write_text(print_c(block))

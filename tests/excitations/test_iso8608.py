@@ -31,12 +31,10 @@ def test_density_falls_with_the_square_of_the_wavenumber(conform):
     conform("class A, density at 0.2 cycle/m, m^3", "ISO 8608, exponent 2", density, 4e-6, tolerance=4e-15)
 
 
-def test_octave_bands_of_one_realisation():
-    np.testing.assert_allclose(octave_ratios(5), 1.0, atol=0.12)
-
-
 def test_octave_bands_of_the_mean_over_seeds(conform):
-    for (low, high), ratio in zip(OCTAVES, np.mean([octave_ratios(seed) for seed in range(12)], axis=0), strict=True):
+    ratios = np.array([octave_ratios(seed) for seed in range(12)])
+    np.testing.assert_allclose(ratios[5], 1.0, atol=0.12)
+    for (low, high), ratio in zip(OCTAVES, np.mean(ratios, axis=0), strict=True):
         claim = f"road of class C, power from {low:g} to {high:g} Hz over that of the class, mean of 12 seeds"
         conform(claim, "ISO 8608", ratio, 1.0, tolerance=0.03)
 

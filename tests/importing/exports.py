@@ -92,36 +92,32 @@ def mat_timetable(path, table):
         matio.save_to_mat(str(path), {"run": frame}, version=version, do_compression=False)
 
 
-def simulink(path, table):
-    """A scope that logs a structure with time."""
-    from scipy.io import savemat
+LVM_HEAD = "LabVIEW Measurement\nSeparator\tTab\nDecimal_Separator\t{decimal}\nX_Columns\t{x}\n***End_of_Header***\n"
 
-    signals = [{"values": values, "label": name} for name, values in table.items() if name != "time"]
-    fields = np.array([tuple(each.values()) for each in signals], dtype=[("values", object), ("label", object)])
-    savemat(path, {"ScopeData": {"time": table["time"][:, None], "signals": fields}})
+
+def print_lvm(x_columns, segments, units, decimal=".", step=0.01, starts=("09:51:40.5",)):
+    """Return what LabVIEW writes of channels with their units: a segment for each table of rows of cells.
+
+    There is no column of x, one (`One`) or one for each channel (`Multi`).
+    """
+    names, is_multi = list(units), x_columns == "Multi"
+    between = "\t\t" if is_multi else "\t"
+    lines = []
+    for start, rows in zip(starts, segments, strict=True):
+        cells = {"Samples": len(rows), "Date": "2026/03/01", "Time": start, "X_Dimension": "Time", "X0": 0}
+        cells["Delta_X"] = str(step).replace(".", decimal)
+        of_channels = {key: [str(value)] * len(names) for key, value in cells.items()}
+        of_channels |= {"Channels": [str(len(names))], "Y_Unit_Label": units.values()}
+        lines += ["\t", *(f"{key}\t{between.join(row)}\t" for key, row in of_channels.items())]
+        named = "\tX_Value\t".join(names) if is_multi else "\t".join(names)
+        lines += ["***End_of_Header***\t\t", f"X_Value\t{named}\tComment"]
+        lines += ["\t".join("" if np.isnan(c) else f"{c:.15g}".replace(".", decimal) for c in row) for row in rows]
+    return LVM_HEAD.format(decimal=decimal, x=x_columns) + "\n".join([*lines, ""])
 
 
 def lvm(path, table):
-    """What LabVIEW writes with one column of x."""
-    names = [name for name in table if name != "time"]
-    cells = {
-        "Channels": [len(names)],
-        "Samples": [len(table["time"])] * len(names),
-        "Date": ["2026/03/01"] * len(names),
-        "Time": ["09:51:40,5"] * len(names),
-        "Y_Unit_Label": [UNITS[name] for name in names],
-        "X_Dimension": ["Time"] * len(names),
-        "X0": ["0,0"] * len(names),
-        "Delta_X": ["0,002"] * len(names),
-    }
-    head = parse(r"""
-        ["LabVIEW Measurement\t", "Separator\tTab", "Decimal_Separator\t,", "X_Columns\tOne",
-         "***End_of_Header***", "\t"]
-    """)
-    lines = ["\t".join([key, *map(str, row), ""]) for key, row in cells.items()]
-    rows = ["\t".join(f"{value:.15g}" for value in row).replace(".", ",") for row in zip(*table.values(), strict=True)]
-    names_of_columns = "\t".join(["X_Value", *names, "Comment"])
-    path.write_text("\n".join([*head, *lines, "***End_of_Header***\t", names_of_columns, *rows, ""]))
+    rows = np.column_stack(list(table.values()))
+    path.write_text(print_lvm("One", [rows], {name: UNITS[name] for name in table if name != "time"}, ",", 0.002))
 
 
 def mdf(path, table):
@@ -195,7 +191,7 @@ def rpc(path, table):
 FORMATS = {
     "a.csv": csv, "a.csv.gz": csv_gz, "german.csv": german_csv, "a.parquet": parquet, "a.feather": feather,
     "a.xlsx": xlsx, "a.h5": hdf5, "a.mat": mat5, "v73.mat": mat73, "table.mat": mat_timetable,
-    "table73.mat": mat_timetable, "simulink.mat": simulink, "a.lvm": lvm, "a.mdf": mdf, "a.mf4": mdf, "a.tdms": tdms,
+    "table73.mat": mat_timetable, "a.lvm": lvm, "a.mdf": mdf, "a.mf4": mdf, "a.tdms": tdms,
     "a.uff": uff, "a.rsp": rpc,
 }  # fmt: skip
 """Name of a file, and what writes it."""

@@ -1,5 +1,6 @@
 """The same recording in every format becomes the same numbers, and a damaged file one clear error."""
 
+import shutil
 import sys
 
 import numpy as np
@@ -17,21 +18,27 @@ from .helpers import LET_LIBRARIES_WARN, read_run
 pytestmark = LET_LIBRARIES_WARN
 
 
+@pytest.fixture(scope="module")
+def table(seat_table):
+    """The beginning of the recorded seat."""
+    return {name: values[:1501] for name, values in seat_table.items()}
+
+
 @pytest.fixture(params=exports.FORMATS, scope="module")
-def exported(request, tmp_path_factory, seat_table):
+def exported(request, tmp_path_factory, table):
     path = tmp_path_factory.mktemp("formats") / request.param
-    exports.FORMATS[request.param](path, seat_table)
+    exports.FORMATS[request.param](path, table)
     return path
 
 
-def test_every_format_gives_the_same_numbers(exported, tmp_path, seat_table):
-    found = import_files([exported], tmp_path / "out")
+def test_every_format_gives_the_same_numbers_whatever_the_file_is_called(exported, tmp_path, table):
+    found = import_files([shutil.copy(exported, tmp_path / "data.bin")], tmp_path / "out")
     assert found.rate == 500.0
     assert set(found.map.channels) == set(exports.UNITS)
     got = read_run(tmp_path / "out")
-    assert len(got) == len(seat_table["time"])
+    assert len(got) == len(table["time"])
     for name in exports.UNITS:
-        assert np.max(np.abs(got[name] - seat_table[name])) <= 1e-6 * np.std(seat_table[name]), name
+        assert np.max(np.abs(got[name] - table[name])) <= 1e-6 * np.std(table[name]), name
 
 
 def test_a_truncated_file_is_one_clear_error(exported, tmp_path):
@@ -46,13 +53,6 @@ def test_a_truncated_file_is_one_clear_error(exported, tmp_path):
         read_file(cut)
     assert str(cut) in str(raised.value)
     assert "\n" not in str(raised.value)
-
-
-def test_a_wrong_ending_does_not_matter_where_the_content_is_clear(exported, tmp_path, seat_table):
-    renamed = tmp_path / "data.bin"
-    renamed.write_bytes(exported.read_bytes())
-    file = read_file(renamed)
-    assert sum(len(group.signals) for group in file.groups) >= len(exports.UNITS)
 
 
 @pytest.mark.parametrize(

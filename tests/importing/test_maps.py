@@ -1,5 +1,7 @@
 """Maps: proposed from names in several languages, read with clear errors, and written to be read again."""
 
+import shutil
+
 import numpy as np
 import pytest
 
@@ -148,17 +150,17 @@ def test_a_wrong_map_is_one_clear_error(tmp_path, text, expected):
         ("{column: floor_acceleration, group: other}", "of group 'other'"),
     ],
 )
-def test_a_map_that_contradicts_the_file_is_one_clear_error(noisy_table, tmp_path, entry, expected):
+def test_a_map_that_contradicts_the_file_is_one_clear_error(tmp_path, entry, expected):
     stated = tmp_path / "map.yaml"
     stated.write_text(f"time: {{column: time, unit: s}}\nchannels: {{floor_acceleration: {entry}}}\n")
     with pytest.raises(InputError, match=expected):
-        import_files([write_csv(tmp_path / "a.csv", noisy_table)], tmp_path / "out", stated)
+        import_files([file_of(tmp_path, ["floor_acceleration"], "time")], tmp_path / "out", stated)
     assert not (tmp_path / "out").exists()
 
 
-def test_a_map_names_the_files_of_runs_and_what_repeats_what(noisy_table, tmp_path):
-    paths = [write_csv(tmp_path / f"{name}.csv", noisy_table) for name in ("a", "b")]
-    stated = tmp_path / "map.yaml"
+def test_a_map_names_the_files_of_runs_and_what_repeats_what(tmp_path):
+    first = file_of(tmp_path, ["floor_acceleration"], "time")
+    paths, stated = [first, shutil.copy(first, tmp_path / "b.csv")], tmp_path / "map.yaml"
     channels = "channels: {floor_acceleration: {column: floor_acceleration}}\n"
     stated.write_text(f"time: {{column: time, unit: s}}\n{channels}runs: {{x: [a.csv], y: [c.csv]}}\n")
     with pytest.raises(InputError, match=r"runs\.y: 'c\.csv' was not given"):

@@ -49,10 +49,6 @@ channels:
 """Maps by folder; the files of the others need none."""
 QUIRKS = {
     "bus_floor/L3_Pionierska_RacianskeMyto": {("acc_z_m_s2", "gravity")},
-    "dyke_nees_2012_1158/ranran_50": {
-        ("displacement_m", "centred"), ("force_N", "offset"), ("velocity_m_s", "derived"),
-    },
-    "fsae_damper_temperature/t1_1_1_18_18_s1_n10_150psi": {("force_N", "offset"), ("velocity_m_s", "derived")},
     "fsae_damper_temperature/t2_3_3_24_24_s5_n100_100psi_with_heat_gun": {("temperature_C", "warming")},
     "quanser_active_suspension/chirp_A_rep1": {
         ("unsprung_displacement_m", "resolution"), ("force_cmd_N", "command"), ("road_displacement_m", "zeroed"),
@@ -61,7 +57,6 @@ QUIRKS = {
     "utfsm_mr_chirp/chirp15Hz_0p5A": {
         ("current_A", "constant"), ("displacement_m", "late"), ("velocity_m_s", "derived"), ("force_N", "resolution"),
     },
-    "utfsm_mr_earthquake/earthquake_validation": {("displacement_m", "smooth"), ("force_0p6A_N", "centred")},
     "utfsm_mr_sine_preprocessed/pre_10mm_1Hz": {
         ("time_s", "restart"), ("force_N", "centred"), ("force_N", "smooth"), ("current_A", "levels"),
     },
@@ -70,7 +65,7 @@ QUIRKS = {
         ("velocity_m_s", "derived"),
     },
 }  # fmt: skip
-"""What the descriptions of the data say of them, by channel."""
+"""What the descriptions of the data say of them, by channel; every kind of quirk is in one of them."""
 
 
 @pytest.mark.slow

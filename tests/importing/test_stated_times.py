@@ -8,6 +8,8 @@ from seatsim.importing.importing import import_files
 from seatsim.importing.readers.reading import read_file
 from seatsim.schema.errors import InputError
 
+from ..text import words
+from .exports import print_lvm
 from .helpers import LET_LIBRARIES_WARN, read_run
 from .test_alignment import band_limited
 
@@ -62,58 +64,30 @@ def test_a_rate_that_no_logger_has_is_refused(tmp_path, step):
         assert read_file(tmp_path / "a.tdms").groups[0].rate is None
 
 
-def lvm(x_columns, tables, decimal=".", steps=(0.01, 0.01), starts=("09:51:40.5",)):
-    """Return a file of two channels: a segment for each of `tables`, which hold rows of cells."""
-    blank = "\t" if x_columns == "Multi" else ""
-    lines = [
-        "LabVIEW Measurement",
-        "Separator\tTab",
-        f"Decimal_Separator\t{decimal}",
-        f"X_Columns\t{x_columns}",
-        "***End_of_Header***",
-    ]
-    for start, table in zip(starts, tables, strict=True):
-        of_channels = {
-            "Channels": ["2", ""],
-            "Samples": [str(len(table))] * 2,
-            "Date": ["2026/03/01"] * 2,
-            "Time": [start] * 2,
-            "Y_Unit_Label": ["Newtons", "m/s^2"],
-            "X_Dimension": ["Time"] * 2,
-            "X0": ["0"] * 2,
-            "Delta_X": [str(step).replace(".", decimal) for step in steps],
-        }
-        lines += ["\t", *(f"{key}\t{one}\t{blank}{two}\t" for key, (one, two) in of_channels.items())]
-        names = ["X_Value", "force", *(["X_Value"] if x_columns == "Multi" else []), "acc", "Comment"]
-        lines += ["***End_of_Header***\t\t", "\t".join(names)]
-        lines += [
-            "\t".join("" if np.isnan(cell) else f"{cell:.6f}".replace(".", decimal) for cell in row) for row in table
-        ]
-    return "\n".join([*lines, ""])
-
-
 T = 0.01 * np.arange(50)
 F, A = np.sin(20.0 * T), np.cos(20.0 * T)
 NOTHING = np.full(50, np.nan)
+ROWS = np.column_stack([T, F, A])
+
+
+def lvm(x_columns, tables, *options):
+    """Return a file of two channels: a segment for each of `tables`, which hold rows of cells."""
+    return print_lvm(x_columns, tables, {"force": "Newtons", "acc": "m/s^2"}, *options)
 
 
 @pytest.mark.parametrize(
     ("content", "times"),
     [
-        (lvm("One", [np.column_stack([T, F, A])]), T),
-        (lvm("One", [np.column_stack([T, F, A])], decimal=","), T),
+        (lvm("One", [ROWS]), T),
+        (lvm("One", [ROWS], ","), T),
         (lvm("No", [np.column_stack([NOTHING, F, A])]), T),
         (lvm("Multi", [np.column_stack([T, F, T, A])]), T),
-        (lvm("One", [np.column_stack([T, F, A])[:25], np.column_stack([T, F, A])[25:]], starts=("09:51:40.5",) * 2), T),
+        (lvm("One", [ROWS[:25], ROWS[25:]], ".", 0.01, ("09:51:40.5",) * 2), T),
         (
-            lvm(
-                "One",
-                [np.column_stack([T, F, A])[:25], np.column_stack([T[:25], F[25:], A[25:]])],
-                starts=("09:51:40.5", "09:51:42,5"),
-            ),
+            lvm("One", [ROWS[:25], np.column_stack([T[:25], F[25:], A[25:]])], ".", 0.01, ("09:51:40.5", "09:51:42,5")),
             np.concatenate([T[:25], 2.0 + T[:25]]),
         ),
-        (lvm("One", [np.column_stack([T, F, A])]).replace("0.198669\t0.980067", "0.198669\t0.980067\ta remark"), T),
+        (lvm("One", [ROWS]).replace(f"{A[1]:.15g}", f"{A[1]:.15g}\ta remark"), T),
     ],
     ids=["one x", "decimal commas", "no x", "an x for each", "two segments", "two segments, 2 s apart", "a remark"],
 )
@@ -130,28 +104,32 @@ def test_lvm_states_times_units_and_segments(tmp_path, content, times):
 
 @pytest.mark.parametrize(
     ("old", "new", "said"),
-    [("X_Dimension\tTime", "X_Dimension\tFrequency", "X_Dimension is Frequency"), ("0.020000", "oops", "oops")],
+    [("X_Dimension\tTime", "X_Dimension\tFrequency", "X_Dimension is Frequency"), ("\n0.02\t", "\noops\t", "oops")],
 )
 def test_an_lvm_file_of_another_kind_is_refused_with_its_reason(tmp_path, old, new, said):
-    (tmp_path / "a.lvm").write_text(lvm("One", [np.column_stack([T, F, A])]).replace(old, new, 1))
+    (tmp_path / "a.lvm").write_text(lvm("One", [ROWS]).replace(old, new, 1))
     with pytest.raises(InputError, match=said):
         read_file(tmp_path / "a.lvm")
 
 
-@pytest.mark.parametrize("kind", ["parquet", "feather"])
-@pytest.mark.parametrize("index", ["dates", "durations", "named", "zone", "column"])
+@pytest.mark.parametrize(
+    ("kind", "index"),
+    [("parquet", "dates"), ("feather", "dates"), *(("parquet", each) for each in words("durations named zone column"))],
+)
 def test_a_column_of_dates_is_the_time(tmp_path, kind, index):
-    dates = pd.Timestamp("2026-03-01") + pd.to_timedelta(TIME, unit="s")
-    frame = pd.DataFrame({"floor_acceleration": band_limited(1, TIME), "driver_acceleration": band_limited(2, TIME)})
+    times = pd.to_timedelta(TIME[:1000], unit="s")
+    dates = pd.Timestamp("2026-03-01") + times
+    floor, driver = (band_limited(seed, TIME[:1000]) for seed in (1, 2))
+    frame = pd.DataFrame({"floor_acceleration": floor, "driver_acceleration": driver})
     frame.index = {
-        "durations": pd.to_timedelta(TIME, unit="s"),
+        "durations": times,
         "named": dates.rename("Datum"),
         "zone": dates.tz_localize("Europe/Berlin"),
     }.get(index, dates)
     frame = frame.reset_index(names="Datum") if index == "column" else frame
     getattr(frame, f"to_{kind}")(tmp_path / f"a.{kind}")
     assert import_files([tmp_path / f"a.{kind}"], tmp_path / "out").rate == 500.0
-    assert read_run(tmp_path / "out")["floor_acceleration"].to_numpy() == pytest.approx(band_limited(1, TIME), rel=1e-6)
+    assert read_run(tmp_path / "out")["floor_acceleration"].to_numpy() == pytest.approx(floor, rel=1e-6)
 
 
 HEAD = """\

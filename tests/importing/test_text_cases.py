@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from seatsim.importing.importing import import_files
-from seatsim.importing.inspection import inspect_file
 from seatsim.importing.readers.reading import read_file
+from seatsim.importing.time_axis import find_clock
 from seatsim.schema.errors import InputError
 from seatsim.standards.comfort import comfort
 
@@ -25,11 +25,13 @@ def write(folder, content):
 def test_a_table_is_read_right(tmp_path, name):
     content, columns, rate = READ[name]
     path = write(tmp_path, content)
-    found = {signal.name: signal for group in read_file(path).groups for signal in group.signals}
+    groups = read_file(path).groups
+    found = {signal.name: signal for group in groups for signal in group.signals}
     for column, (unit, values) in (columns or {}).items():
         assert found[column].unit == unit
         np.testing.assert_allclose(found[column].values, values, rtol=1e-6, atol=1e-9)
-    rates = [held[0].rate for held in inspect_file(path).channels.values()]
+    axes = [(group, clock.axis if (clock := find_clock(group)) else None) for group in groups]
+    rates = [axis.rate if axis else group.rate for group, axis in axes]
     if rate is None:
         assert rates == [None]
     else:

@@ -169,8 +169,8 @@ READ = {
     **{
         f"time called {name}": (table(T * factor, X, Z, head=[f"{name};acc_x;acc_z"], sep=";"), ACC, RATE)
         for name, factor in {
-            "Temps (s)": 1, "Time (in ms)": 1e3, "t/s": 1, "Zeit / ms": 1e3, "Zeit in s": 1, "Time, s": 1, "time{s}": 1,
-            "ms": 1e3, "seconds": 1, "Elapsed Time (sec)": 1, "Uhrzeit (hh:mm:ss)": 1, "time_us": 1e6,
+            "Temps (s)": 1, "Time (in ms)": 1e3, "Zeit / ms": 1e3, "Time, s": 1, "time{s}": 1, "ms": 1e3, "seconds": 1,
+            "Uhrzeit (hh:mm:ss)": 1, "time_us": 1e6,
         }.items()
     },
     **{
@@ -178,8 +178,7 @@ READ = {
         for pattern, start in {
             "%d.%m.%Y %H:%M:%S,MS": START, "%d.%m.%Y %H:%M:%S.MS": MIDNIGHT,
             "%m/%d/%Y %I:%M:%S.MS %p": datetime.datetime(2020, 1, 12, 11, 59, 59, 500000), "%M:%S.MS": START,
-            "%H:%M:%S:MS": START, "%H:%M:%S,MS": START, "%Y-%m-%dT%H:%M:%S.MSZ": START, "%d-%b-%Y %H:%M:%S.MS": START,
-            "%Y-%m-%d %H:%M:%S.MS": START,
+            "%H:%M:%S:MS": START, "%Y-%m-%dT%H:%M:%S.MSZ": START, "%d-%b-%Y %H:%M:%S.MS": START,
             "%Y/%m/%d %H:%M:%S.MS": START,
         }.items()
     },

@@ -101,7 +101,7 @@ def test_a_connection_without_a_whole_request_is_closed(sent, answered):
         async with await asyncio.get_running_loop().create_server(make, "127.0.0.1", 0) as server:
             reader, writer = await asyncio.open_connection(*server.sockets[0].getsockname())
             writer.write(sent)
-            answer = await asyncio.wait_for(reader.read(), 5.0)
+            answer = await asyncio.wait_for(reader.read(), 120.0)
             writer.close()
             return answer
 
@@ -129,14 +129,11 @@ def test_a_token_opens_the_page_and_leaves_the_address(app):
     assert "<script>alert" not in page.text and "80 kg &lt;b&gt;" in page.text
 
 
-@pytest.mark.parametrize("host", ["evil.example", f"evil.example:{PORT}", "127.0.0.1:1", f"[::1]:{PORT}", ""])
-def test_a_foreign_host_is_refused(app, host):
-    assert ask(app, "GET", "/", headers={"host": host}).status_code == 403
-
-
-@pytest.mark.parametrize("origin", ["http://evil.example", "null", f"https://127.0.0.1:{PORT}", "http://127.0.0.1"])
-def test_a_foreign_origin_is_refused(app, origin):
-    assert ask(app, "POST", "/view", json={}, headers={"origin": origin}).status_code == 403
+def test_a_foreign_host_or_origin_is_refused(app):
+    for host in ("evil.example", f"evil.example:{PORT}", "127.0.0.1:1", f"[::1]:{PORT}", ""):
+        assert ask(app, "GET", "/", headers={"host": host}).status_code == 403, host
+    for origin in ("http://evil.example", "null", f"https://127.0.0.1:{PORT}", "http://127.0.0.1"):
+        assert ask(app, "POST", "/view", json={}, headers={"origin": origin}).status_code == 403, origin
     assert ask(app, "POST", "/view", json={}, headers={"origin": HOME}).status_code == 200
 
 
@@ -206,53 +203,59 @@ def test_numbers_and_choices_are_checked():
         read_choice({"law": "none"}, choice)
 
 
-def test_a_scenario_follows_what_is_moved():
-    view = open_target(find_target(Path("road-b")))
-    changed = view.choose({"mass": 95.0, "road": "C", "law": "off"})
+@pytest.fixture(scope="module")
+def road():
+    """The page's view of a scenario, which keeps nothing of what is asked."""
+    return open_target(find_target(Path("road-b")))
+
+
+@pytest.fixture(scope="module")
+def recorded():
+    """That of a recording."""
+    return open_target(next(path for path in EXAMPLES if path.is_dir()) / "data" / "recording")
+
+
+def test_a_scenario_follows_what_is_moved(road):
+    changed = road.choose({"mass": 95.0, "road": "C", "law": "off"})
     assert changed.plant.driver_mass == 95.0 and changed.excitation.road_class == "C"
     assert changed.excitation.duration == 20.0 and changed.title.endswith("(off)")
-    assert view.encode({"mass": 95.0})["plant"]["driver_mass"] == 95.0
+    assert road.encode({"mass": 95.0})["plant"]["driver_mass"] == 95.0
 
 
-def test_the_numbers_of_the_law_at_work_can_be_moved():
-    view = open_target(find_target(Path("road-b")))
+def test_the_numbers_of_the_law_at_work_can_be_moved(road):
     request = {"road": "C", "law": "skyhook"}
-    [damping] = view.show(request).gains
+    [damping] = road.show(request).gains
     assert (damping.name, damping.unit, damping.value, damping.high) == ("damping", "N·s/m", 2000.0, 6000.0)
-    moved = view.choose({**request, "gains": {"damping": 500.0}})
+    moved = road.choose({**request, "gains": {"damping": 500.0}})
     assert moved.control.law.damping == 500.0 and moved.excitation.road_class == "C"
-    assert view.encode({**request, "gains": {"damping": 500.0}})["controller"]["damping"] == 500.0
+    assert road.encode({**request, "gains": {"damping": 500.0}})["controller"]["damping"] == 500.0
     with pytest.raises(InputError, match="0 to 6000"):
-        view.choose({**request, "gains": {"damping": 1e9}})
+        road.choose({**request, "gains": {"damping": 1e9}})
 
 
-def test_a_temperature_without_effect_has_no_slider():
-    assert [slider.name for slider in open_target(find_target(Path("road-b"))).sliders] == ["mass"]
+def test_a_temperature_without_effect_has_no_slider(road):
+    assert [slider.name for slider in road.sliders] == ["mass"]
     names = [slider.name for slider in open_target(find_target(Path("temperature-sweep"))).sliders]
     assert names == ["mass", "temperature"]
 
 
-def test_a_fit_finds_the_effect_that_the_recording_holds():
-    folder = next(path for path in EXAMPLES if path.is_dir()) / "data" / "recording"
-    view = open_target(folder)
-    first = view.show({"effects": {"damper.seal_friction": {"force": 60.0}}, "fit": True})
-    before, after = (each.tables[0].rows for each in (view.show({}), first))
+def test_a_fit_finds_the_effect_that_the_recording_holds(recorded):
+    first = recorded.show({"effects": {"damper.seal_friction": {"force": 60.0}}, "fit": True})
+    before, after = (each.tables[0].rows for each in (recorded.show({}), first))
     assert first.fitted["damper.seal_friction"]["force"] < 60.0
-    shown = view.show({"effects": first.fitted}).tables[0].rows
+    shown = recorded.show({"effects": first.fitted}).tables[0].rows
     assert [row[1] for row in after] == [row[1] for row in before] and shown == after
 
 
-def test_an_effect_that_is_not_there_makes_the_gap_grow():
-    folder = next(path for path in EXAMPLES if path.is_dir()) / "data" / "recording"
-    view = open_target(folder)
-    name = next(switch.name for switch in view.switches if switch.name == "damper.seal_friction")
-    before, after = view.show({}), view.show({"effects": {name: {"force": 60.0}}})
+def test_an_effect_that_is_not_there_makes_the_gap_grow(recorded):
+    name = next(switch.name for switch in recorded.switches if switch.name == "damper.seal_friction")
+    before, after = recorded.show({}), recorded.show({"effects": {name: {"force": 60.0}}})
     assert before.answer.startswith("The nominal simulation is off by") and "grows" in after.answer
     # What a slider shows in millimetres is stated in metres.
-    assert {slider.unit for switch in view.switches for slider in switch.sliders} & {"m", "mm"} == {"mm"}
-    saved = view.encode({"effects": {name: {"force": 60.0, "presliding": 0.5}}})
+    assert {slider.unit for switch in recorded.switches for slider in switch.sliders} & {"m", "mm"} == {"mm"}
+    saved = recorded.encode({"effects": {name: {"force": 60.0, "presliding": 0.5}}})
     assert saved["effects"][-1]["parameters"]["presliding"] == pytest.approx(5e-4)
-    saved = view.encode({"effects": {name: {"force": 60.0}}})
+    saved = recorded.encode({"effects": {name: {"force": 60.0}}})
     assert saved["effects"][-1]["effect"] == name and saved["effects"][-1]["parameters"]["force"] == 60.0
     with pytest.raises(InputError, match="no effect"):
-        view.show({"effects": {"damper.none": {}}})
+        recorded.show({"effects": {"damper.none": {}}})

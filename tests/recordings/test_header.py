@@ -63,6 +63,12 @@ def test_what_is_left_out_has_its_usual_value(folder):
 
 
 CASES = cases(r"""
+rig: seat => rig: chair => line 1, rig: 'chair' | permitted: seat, damper_bench
+sample_rate => sample_rat => did you mean 'sample_rate'
+driver_acceleration: {unit => driver_accel: {unit => did you mean 'driver_acceleration'
+floor_acceleration: {unit: m/s^2} => floor_acceleration: {unit: mm} => 'mm' is no unit of a value in m/s^2
+nominal: nominal.yaml => nominal: 3 => nominal: 3
+name: b => name: a => name of two runs
 model_error: 0.05 => model_eror: 0.05 => line 5 | model_eror | did you mean 'model_error'
 model_error: 0.05 => model_error: 1.5 => line 5, model_error: 1.5 | at most 1
 model_error: 0.05 => model_error: -0.1 => line 5, model_error: -0.1 | at least 0

@@ -25,7 +25,7 @@ VARIANTS = {"feedback": {}, "switched": {"controller": {"law": "on_off_skyhook",
 
 @pytest.fixture(scope="module")
 def result(kept_seat_file):
-    return seatsim.run(kept_seat_file, {"variants": VARIANTS})
+    return seatsim.run(kept_seat_file, {"variants": VARIANTS, "excitation.duration": 4.0})
 
 
 @pytest.fixture(scope="module")
@@ -73,44 +73,9 @@ def test_the_command_writes_the_gap(recorded, tmp_path, seatsim_command):
     assert set(written["floor"]) == {"overall", "channels"}
 
 
-def break_header(folder, old, new):
-    header = folder / "recording.yaml"
-    assert old in header.read_text()
-    header.write_text(header.read_text().replace(old, new, 1))
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "expected"),
-    [
-        ("rig: seat", "rig: chair", "permitted: seat, damper_bench"),
-        ("sample_rate", "sample_rat", "did you mean 'sample_rate'"),
-        ("driver_acceleration:", "driver_accel:", "did you mean 'driver_acceleration'"),
-        ("unit: N", "unit: mm", "'mm' is no unit of a value in N"),
-        ("file: run-1.csv.gz", "file: run-9.csv.gz", "run-9.csv.gz: cannot be read: No such file"),
-        ("nominal: nominal.yaml", "nominal: 3", "nominal"),
-        ("name: run-2", "name: run-1", "name of two runs"),
-        ("name: run-2", "name: run-2, repeat_of: run-7", "no run is called 'run-7'"),
-    ],
-)
-def test_a_wrong_header_is_one_clear_error(recorded, old, new, expected):
-    break_header(recorded, old, new)
-    with pytest.raises(seatsim.InputError, match=expected):
-        seatsim.gap(recorded / "nominal.yaml", recorded)
-
-
-@pytest.mark.parametrize(
-    ("damage", "expected"),
-    [
-        (lambda frame: frame.drop(columns="driver_acceleration"), "column 'driver_acceleration' is missing"),
-        (lambda frame: frame.assign(driver_acceleration=frame.driver_acceleration.where(frame.index != 7)), "line 9"),
-        (lambda frame: frame.iloc[:0], "holds 0 rows"),
-        (lambda frame: frame.iloc[:500], "its first second is left out"),
-    ],
-)
-def test_a_damaged_table_is_one_clear_error(recorded, damage, expected):
-    table = recorded / "run-1.csv.gz"
-    damage(pd.read_csv(table)).to_csv(table, index=False)
-    with pytest.raises(seatsim.InputError, match=expected):
+def test_a_table_that_is_not_there_is_named(recorded):
+    (recorded / "run-1.csv.gz").unlink()
+    with pytest.raises(seatsim.InputError, match=r"run-1\.csv\.gz: cannot be read: No such file"):
         seatsim.gap(recorded / "nominal.yaml", recorded)
 
 

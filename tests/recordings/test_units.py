@@ -1,7 +1,6 @@
 """Recordings whose tables are in other units than SI."""
 
 import shutil
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -13,29 +12,29 @@ from seatsim.recordings.recording import load_recording
 from seatsim.schema.errors import InputError
 from seatsim.schema.units import STANDARD_GRAVITY
 
-RECORDING = Path(__file__).resolve().parents[2] / "scenarios" / "data" / "recording"
+from ..faulty_recordings import edit
 
 
-@pytest.fixture
-def in_other_units(tmp_path):
-    """Copy a recording whose driver's acceleration is in g, and its travel in mm."""
-    folder = tmp_path / "recorded"
-    shutil.copytree(RECORDING, folder)
+@pytest.fixture(scope="module")
+def in_other_units(sound, tmp_path_factory):
+    """A copy of the sound recording whose driver's acceleration is in g, and its travel in mm."""
+    folder = shutil.copytree(sound, tmp_path_factory.mktemp("units") / "recorded")
     for path in folder.glob("*.csv.gz"):
         frame = pd.read_csv(path)
         frame["driver_acceleration"] /= STANDARD_GRAVITY
         frame["suspension_displacement"] *= 1e3
         frame.to_csv(path, index=False, float_format="%.12g")
-    header = folder / "recording.yaml"
-    text = header.read_text().replace(
-        "driver_acceleration: {unit: m/s^2}", "driver_acceleration: {unit: g, noise_rms: 0.01}"
-    )
-    header.write_text(text.replace("suspension_displacement: {unit: m}", "suspension_displacement: {unit: mm}"))
+
+    def change(header):
+        header["channels"]["driver_acceleration"] = {"unit": "g", "noise_rms": 0.01}
+        header["channels"]["suspension_displacement"] = {"unit": "mm", "noise_rms": 0.05}
+
+    edit(folder, change)
     return folder
 
 
-def test_tables_and_noise_are_converted_on_reading(in_other_units):
-    found, expected = load_recording(in_other_units), load_recording(RECORDING)
+def test_tables_and_noise_are_converted_on_reading(in_other_units, sound):
+    found, expected = load_recording(in_other_units), load_recording(sound)
     for run in expected.runs:
         for name, values in expected.table(run).items():
             np.testing.assert_allclose(found.table(run)[name], values, rtol=1e-9, atol=1e-12)
@@ -44,11 +43,11 @@ def test_tables_and_noise_are_converted_on_reading(in_other_units):
     assert entry.noise_rms == pytest.approx(0.01 * STANDARD_GRAVITY)
 
 
-def test_the_gap_is_the_same_in_any_unit(in_other_units):
-    gaps = [seatsim.gap(RECORDING / "nominal.yaml", folder).overall for folder in (RECORDING, in_other_units)]
-    assert gaps[1] == pytest.approx(gaps[0], rel=1e-6, abs=1e-9)
+def test_the_gap_is_the_same_in_any_unit(in_other_units, sound, sound_gap):
+    found = seatsim.gap(sound / "nominal.yaml", in_other_units).overall
+    assert found == pytest.approx(sound_gap.overall, rel=1e-6, abs=1e-9)
 
 
-def test_recordings_in_other_units_are_not_joined(in_other_units):
+def test_recordings_in_other_units_are_not_joined(in_other_units, sound):
     with pytest.raises(InputError, match=r"driver_acceleration\.unit: is another one"):
-        join_recordings(load_recording(RECORDING), load_recording(in_other_units))
+        join_recordings(load_recording(sound), load_recording(in_other_units))

@@ -62,9 +62,8 @@ def test_what_was_fitted_adds_nothing(bench):
     assert bench("fitted").u_input == 0.0
 
 
-def test_a_gap_holds_the_means_of_the_ratings_over_the_runs(sound):
-    found = seatsim.gap(sound / "nominal.yaml", sound)
-    recording = load_recording(sound)
+def test_a_gap_holds_the_means_of_the_ratings_over_the_runs(sound, sound_gap):
+    found, recording = sound_gap, load_recording(sound)
     assert list(found.iso18571) == list(found.v_and_v) == list(found.channels)
     for name, rating in found.iso18571.items():
         each = [
@@ -77,12 +76,12 @@ def test_a_gap_holds_the_means_of_the_ratings_over_the_runs(sound):
     assert set(content["v_and_v"]["damper_force"]) == {"unit", "error", "u_num", "u_input", "u_d", "u_val"}
 
 
-def test_the_error_of_a_right_scenario_is_its_uncertainty(sound):
-    for each in seatsim.gap(sound / "nominal.yaml", sound).v_and_v.values():
+def test_the_error_of_a_right_scenario_is_its_uncertainty(sound_gap):
+    for each in sound_gap.v_and_v.values():
         assert 0.98 * each.u_d < each.error < 1.1 * each.u_val
 
 
-def test_a_run_at_rest_is_not_rated(sound, copy):
+def test_a_run_at_rest_is_not_rated(copy):
     rewritten = pd.read_csv(copy / "run-2.csv.gz")
     rewritten.assign(coil_current=0.0, current_command=0.0).to_csv(copy / "run-2.csv.gz", index=False)
     found, alone = (seatsim.gap(copy / "nominal.yaml", copy, runs) for runs in ((), ("run-1",)))

@@ -7,7 +7,6 @@ import io
 import tempfile
 import zipfile
 from collections.abc import Callable, Generator, Mapping
-from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -41,6 +40,28 @@ SHORT_ROWS, FEW_ROWS = 600, 200
 ROWS = "runs/part-000000.parquet"
 KEY = "c2VhdHNpbS1mdXp6LXJlYWRlcnMtMzItYnl0ZXMhISE="
 """A key for the sealed file."""
+DIAGNOSIS = (
+    b'{"verdict": "known", "where": [{"block": "damper", "share": 0.9}], "causes": [{"effect": "damper.remanence",'
+    b' "probability": 0.97, "shrink": 0.87, "parameters": {"width": {"value": 0.08, "std": 0.004, "unit": "A"}}}],'
+    b' "selected": ["damper.remanence"], "indistinguishable": [], "experiment": null, "held_out": ["run-c"],'
+    b' "gap": {"before": {"overall": 0.31, "channels": {"damper_force": 0.4}}, "shrink": 0.87,'
+    b' "shrink_interval": [0.82, 0.9]}, "augmented": "augmented.yaml"}'
+)
+"""A `diagnosis.json`."""
+MANIFEST = (
+    b'{"seed": 1, "versions": {"seatsim": "0.1.0"}, "platform": {"system": "Linux"}, "command": "comfort",'
+    b' "arguments": ["--hours=6.0", "--", "rec"], "directory": "../..", "folder": "c", "own_code": [],'
+    b' "inputs": [{"path": "../../rec/recording.yaml", "sha256": "00", "bytes": 4}],'
+    b' "outputs": [{"path": "comfort.json", "sha256": "00", "bytes": 4}], "measured": {}}'
+)
+"""The manifest of a command."""
+MAP = (
+    b"rig: seat\nsample_rate: 500.0\ncsv: {decimal: '.'}\nruns: {first: [a.csv]}\nalign: {a.csv: 0.25}\nchannels:\n"
+    b"  floor_acceleration: {column: floor_acceleration, unit: m/s^2, scale: 1.0, remove_mean: true}\n"
+    b"  driver_acceleration: {column: driver_acceleration, unit: m/s^2, sign: -1, delay: 0.002, noise_rms: 0.05}\n"
+    b"  suspension_displacement: {column: suspension_displacement, unit: m, offset: 0.001, despike: true}\n"
+)
+"""A map for the import of a table."""
 
 
 class Reader(NamedTuple):
@@ -64,58 +85,41 @@ def make_readers() -> dict[str, Reader]:
     sidecar = b"sample_rate_Hz: 500\ntemperature_degC: 20\nnote: a sine of 1 Hz\n"
     sweep = b"scenario: quickstart.yaml\nseed: 1\ndesign: lhs\nruns: 10\n"
     sweep += b"vary:\n  plant.driver_mass: {normal: [80, 12], low: 50}\n"
-    design = b"plant.driver_mass,temperature\n55,20\n75,40\n98,60\n"
-    formats = make_formats(table)
-    rows_of_sweep = make_sweep(scenario, sweep)
+    points = b"plant.driver_mass,temperature\n55,20\n75,40\n98,60\n"
     floor = b"time,up\n" + b"".join(b"%.3f,%d\n" % (0.005 * row, row * 37 % 11 - 5) for row in range(SHORT_ROWS))
     measured = scenario[: scenario.index(b"excitation:")]
     measured += b"excitation: {kind: table, path: floor.csv, column: up, time_column: time, duration: 1.0}\n"
     designed = b"scenario: quickstart.yaml\ndesign: table\ntable: points.csv\nlimits: {driver_acceleration_rms: 2}\n"
-    return {
-        "scenario": Reader({"a.yaml": scenario}, ("a.yaml",), _read_scenario),
-        "variants": Reader({"a.yaml": seat}, ("a.yaml",), _read_scenario),
-        "recording": Reader(recorded, ("recording.yaml", "nominal.yaml"), _read_recording),
-        "table": Reader(recorded, ("run-1.csv.gz",), _read_recording),
-        "bench": Reader({"a.csv": rows, "a.yaml": sidecar}, ("a.csv", "a.yaml"), _read_bench),
-        "sweep": Reader({"a.yaml": sweep, "quickstart.yaml": scenario}, ("a.yaml",), _read_sweep),
-        "design": Reader(
-            {"a.yaml": designed, "points.csv": design, "quickstart.yaml": scenario},
-            ("a.yaml", "points.csv"),
-            _read_sweep,
-        ),
-        "floor": Reader({"a.yaml": measured, "floor.csv": floor}, ("a.yaml", "floor.csv"), _read_floor),
-        "rows": Reader(rows_of_sweep, ("manifest.json", ROWS), _read_rows),
-        "resumed": Reader(rows_of_sweep, ("manifest.json", ROWS), _read_resumed),
-        "unit": Reader({"a.fmu": make_unit()}, ("a.fmu",), _read_unit),
-        "import": Reader({"a.csv": table}, ("a.csv",), _read_import),
-        "map": Reader({"a.csv": table, "map.yaml": make_map()}, ("map.yaml",), _read_map),
-        **{
-            f"format {name}": Reader({name: content}, (name,), partial(_read_format, name))
-            for name, content in formats.items()
-        },
-        "synthesis": Reader({"design.yaml": make_design()}, ("design.yaml",), _read_design),
-        "diagnosis": Reader({"diagnosis.json": make_diagnosis()}, ("diagnosis.json",), _read_diagnosis),
-        "manifest": Reader({"manifest.json": make_manifest()}, ("manifest.json",), _read_manifest),
-        "sealed": Reader(make_sealed(), ("sealed", "folder-seal.txt"), _read_sealed),
+    beside = {"quickstart.yaml": scenario}
+    swept = make_sweep(sweep, beside)
+    of_table = {"a.yaml": designed, "points.csv": points} | beside
+    readers = {
+        "scenario": ({"a.yaml": scenario}, "a.yaml", lambda folder: load(folder / "a.yaml")),
+        "variants": ({"a.yaml": seat}, "a.yaml", lambda folder: load(folder / "a.yaml")),
+        "recording": (recorded, "recording.yaml nominal.yaml", _read_recording),
+        "table": (recorded, "run-1.csv.gz", _read_recording),
+        "bench": ({"a.csv": rows, "a.yaml": sidecar}, "a.csv a.yaml", lambda folder: load_bench(folder / "a.csv")),
+        "sweep": ({"a.yaml": sweep} | beside, "a.yaml", lambda folder: prepare(folder / "a.yaml")),
+        "design": (of_table, "a.yaml points.csv", lambda folder: prepare(folder / "a.yaml")),
+        "floor": ({"a.yaml": measured, "floor.csv": floor}, "a.yaml floor.csv", _read_floor),
+        "rows": (swept, f"manifest.json {ROWS}", _read_rows),
+        "resumed": (swept, f"manifest.json {ROWS}", _resume),
+        "unit": ({"a.fmu": make_unit()}, "a.fmu", _read_unit),
+        "map": ({"a.csv": table, "map.yaml": MAP}, "map.yaml", _import_by_map),
+        "synthesis": ({"a.yaml": make_design()}, "a.yaml", lambda folder: Design.load(folder / "a.yaml").gamma),
+        "diagnosis": ({"a.json": DIAGNOSIS}, "a.json", lambda folder: read_verdict(folder / "a.json")),
+        "manifest": ({"manifest.json": MANIFEST}, "manifest.json", read_manifest),
+        "sealed": (make_sealed(), "sealed folder-seal.txt", _read_sealed),
+    } | {
+        f"format {name}": ({name: content}, name, lambda folder, name=name: inspect_file(folder / name))
+        for name, content in make_formats(table).items()
     }
-
-
-def _read_scenario(folder: Path) -> object:
-    return load(folder / "a.yaml")
+    return {name: Reader(files, tuple(changed.split()), read) for name, (files, changed, read) in readers.items()}
 
 
 def _read_recording(folder: Path) -> object:
     recording = load_recording(folder)
-    tables = [recording.table(run) for run in recording.runs]
-    return tables, recording.nominal
-
-
-def _read_bench(folder: Path) -> object:
-    return load_bench(folder / "a.csv")
-
-
-def _read_sweep(folder: Path) -> object:
-    return prepare(folder / "a.yaml")
+    return [recording.table(run) for run in recording.runs], recording.nominal
 
 
 def _read_floor(folder: Path) -> object:
@@ -128,38 +132,17 @@ def _read_rows(folder: Path) -> object:
     return report_sweep(rows, tabulate_quantiles(rows), analyse_sensitivity(rows), count_exceedances(rows))
 
 
-def _read_resumed(folder: Path) -> object:
+def _resume(folder: Path) -> object:
     return execute(prepare(folder / "a.yaml"), folder, make_up, resume=True)
 
 
 def _read_unit(folder: Path) -> object:
     unit = describe_unit(folder / "a.fmu")
-    variables = find_variable(unit, "v", "input"), find_variable(unit, "F", "output")
-    return variables, check_parameter(unit, "c", 2.0)
+    return find_variable(unit, "v", "input"), find_variable(unit, "F", "output"), check_parameter(unit, "c", 2.0)
 
 
-def _read_map(folder: Path) -> object:
+def _import_by_map(folder: Path) -> object:
     return import_files([folder / "a.csv"], folder / "imported", folder / "map.yaml")
-
-
-def _read_import(folder: Path) -> object:
-    return inspect_file(folder / "a.csv")
-
-
-def _read_format(name: str, folder: Path) -> object:
-    return inspect_file(folder / name)
-
-
-def _read_design(folder: Path) -> object:
-    return Design.load(folder / "design.yaml").gamma
-
-
-def _read_diagnosis(folder: Path) -> object:
-    return read_verdict(folder / "diagnosis.json")
-
-
-def _read_manifest(folder: Path) -> object:
-    return read_manifest(folder)
 
 
 def _read_sealed(folder: Path) -> object:
@@ -204,27 +187,6 @@ def make_design() -> bytes:
         return (Path(place) / "design.yaml").read_bytes()
 
 
-def make_diagnosis() -> bytes:
-    """Return a `diagnosis.json`."""
-    return (
-        b'{"verdict": "known", "where": [{"block": "damper", "share": 0.9}], "causes": [{"effect": "damper.remanence",'
-        b' "probability": 0.97, "shrink": 0.87, "parameters": {"width": {"value": 0.08, "std": 0.004, "unit": "A"}}}],'
-        b' "selected": ["damper.remanence"], "indistinguishable": [], "experiment": null, "held_out": ["run-c"],'
-        b' "gap": {"before": {"overall": 0.31, "channels": {"damper_force": 0.4}}, "shrink": 0.87,'
-        b' "shrink_interval": [0.82, 0.9]}, "augmented": "augmented.yaml"}'
-    )
-
-
-def make_manifest() -> bytes:
-    """Return the manifest of a command."""
-    return (
-        b'{"seed": 1, "versions": {"seatsim": "0.1.0"}, "platform": {"system": "Linux"}, "command": "comfort",'
-        b' "arguments": ["--hours=6.0", "--", "rec"], "directory": "../..", "folder": "c", "own_code": [],'
-        b' "inputs": [{"path": "../../rec/recording.yaml", "sha256": "00", "bytes": 4}],'
-        b' "outputs": [{"path": "comfort.json", "sha256": "00", "bytes": 4}], "measured": {}}'
-    )
-
-
 def make_sealed() -> dict[str, bytes]:
     """Return a sealed file and the seal of its set."""
 
@@ -233,16 +195,6 @@ def make_sealed() -> dict[str, bytes]:
         folder.mkdir()
         seal(Path(place) / "sealed", folder, KEY, Sealed({}, {"case-0001": {"run.csv": b"a\n1\n"}}, {"seed": 1}))
         return {"sealed": (Path(place) / "sealed").read_bytes(), "folder-seal.txt": (folder / SEAL).read_bytes()}
-
-
-def make_map() -> bytes:
-    """Return a map for the import of a table."""
-    return (
-        b"rig: seat\nsample_rate: 500.0\ncsv: {decimal: '.'}\nruns: {first: [a.csv]}\nalign: {a.csv: 0.25}\nchannels:\n"
-        b"  floor_acceleration: {column: floor_acceleration, unit: m/s^2, scale: 1.0, remove_mean: true}\n"
-        b"  driver_acceleration: {column: driver_acceleration, unit: m/s^2, sign: -1, delay: 0.002, noise_rms: 0.05}\n"
-        b"  suspension_displacement: {column: suspension_displacement, unit: m, offset: 0.001, despike: true}\n"
-    )
 
 
 def make_unit() -> bytes:
@@ -270,13 +222,13 @@ def make_unit() -> bytes:
     return packed.getvalue()
 
 
-def make_sweep(scenario: bytes, definition: bytes) -> dict[str, bytes]:
+def make_sweep(definition: bytes, beside: Mapping[str, bytes]) -> dict[str, bytes]:
     """Return the files of a sweep and of the folder that holds its rows, whose figures are made up."""
 
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
-        (folder / "quickstart.yaml").write_bytes(scenario)
-        (folder / "a.yaml").write_bytes(definition)
+        for name, content in {"a.yaml": definition, **beside}.items():
+            (folder / name).write_bytes(content)
         execute(prepare(folder / "a.yaml"), folder, make_up)
         paths = [path for path in sorted(folder.rglob("*")) if path.is_file()]
         return {path.relative_to(folder).as_posix(): path.read_bytes() for path in paths}

@@ -1,13 +1,12 @@
 """The seat test against the response of a linear seat, on recordings, and what it refuses."""
 
 import json
+import shutil
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 from seatsim import load, run, seat_test
-from seatsim.cli.app import app
 from seatsim.excitations.iso7096 import Iso7096, acceleration_density
 from seatsim.metrics.weighting import frequency_response
 from seatsim.recordings.writer import save_recording
@@ -40,6 +39,20 @@ def scenario(tmp_path_factory):
     return path
 
 
+@pytest.fixture(scope="module")
+def tested(scenario):
+    """The test of the seat in every class."""
+    return seat_test(scenario)
+
+
+@pytest.fixture(scope="module")
+def recorded(scenario, tmp_path_factory):
+    """Three runs of the seat with the heavy person in class EM5, which no test edits."""
+    channels = ["floor_acceleration", "driver_acceleration", "suspension_displacement"]
+    settings = {"plant.driver_mass": SEATED_SHARE * 98, "sweep": {"seed": [1, 2, 3]}, "solver": {"step": 0.004}}
+    return save_recording(run(scenario, settings), tmp_path_factory.mktemp("recorded") / "heavy", channels)
+
+
 def gain(scenario, mass, frequency):
     """Transmissibility of the linear seat, its damper as a part of the suspension's damping."""
     plant = load(scenario)[0].plant
@@ -47,11 +60,11 @@ def gain(scenario, mass, frequency):
     return np.abs(system(2j * np.pi * frequency)[3, 0])
 
 
-def test_seat_factors_are_those_of_the_frequency_response(scenario, conform):
-    found = seat_test(scenario, ["em5"])
+def test_seat_factors_are_those_of_the_frequency_response(scenario, tested, conform):
+    rows = [row for row in tested.rows if row.spectral_class == "EM5"]
     frequency = np.linspace(0.01, 20, 4000)
     power = acceleration_density(frequency, "EM5") * np.abs(frequency_response(frequency)) ** 2
-    for row in found.rows:
+    for row in rows:
         expected = np.sqrt(np.sum(power * gain(scenario, SEATED_SHARE * row.mass, frequency) ** 2) / np.sum(power))
         claim = f"seat test, EM5, {row.person} person: SEAT factor of a linear seat"
         conform(claim, "frequency response of the linear seat", row.seat, expected, tolerance=0.01 * expected)
@@ -61,44 +74,35 @@ def test_seat_factors_are_those_of_the_frequency_response(scenario, conform):
         assert row.limit == 0.7 and row.passed == (row.seat <= 0.7) and "recalled" in row.clause
         assert row.within_spread and row.end_stop_hits == 0
         assert row.corrected == pytest.approx(row.seat * base)
-    assert [row.person for row in found.rows] == ["light", "heavy"]
+    assert [row.person for row in rows] == ["light", "heavy"]
 
 
-def test_damping_test_finds_the_resonance_under_the_inert_mass(scenario, conform):
-    found = seat_test(scenario, ["EM1", "EM5"])
-    [test] = found.damping.values()
+def test_damping_test_finds_the_resonance_under_the_inert_mass(scenario, tested, conform):
+    [test] = tested.damping.values()
     analytic = gain(scenario, INERT_MASS, np.array(test.frequencies))
     for frequency, measured, expected in zip(test.frequencies, test.transmissibilities, analytic, strict=True):
         claim = f"damping test, transmissibility at {frequency:.3g} Hz"
         conform(claim, "frequency response of the linear seat", measured, expected, tolerance=5e-3 * expected)
     assert test.transmissibility == max(test.transmissibilities)
     assert test.stroke == pytest.approx(0.04)
-    assert [(row.limit, row.passed) for row in found.damping_rows] == [
+    assert [(row.limit, row.passed) for row in tested.damping_rows] == [
         (limit, test.transmissibility <= limit) for limit in (1.5, 2.0)
     ]
 
 
-def test_every_class_and_driver_has_a_line(scenario, tmp_path):
-    done = CliRunner().invoke(app, ["seat-test", str(scenario), "--out", str(tmp_path), "--json"])
-    found = check_answer("seat-test", done.stdout)
-    assert [(row["class"], row["mass"]) for row in found["classes"]] == [
+def test_every_class_and_driver_has_a_line(tested):
+    assert [(row.spectral_class, row.mass) for row in tested.rows] == [
         (each, m) for each in LIMITS for m in (55.0, 98.0)
     ]
-    assert all({"seat", "limit", "pass", "clause"} <= set(row) for row in found["classes"])
-    path = tmp_path / "seat_test.json"
-    assert {**found, "files": found["files"][:1]} == json.loads(path.read_text()) | {"files": [str(path)]}
 
 
-def test_measured_runs_are_put_to_their_class(scenario, tmp_path):
-    channels = ["floor_acceleration", "driver_acceleration", "suspension_displacement"]
-    settings = {"plant.driver_mass": SEATED_SHARE * 98, "sweep": {"seed": [1, 2, 3]}}
-    folder = save_recording(run(scenario, settings), tmp_path / "recorded", channels)
-    [row] = seat_test(folder).rows
+def test_measured_runs_are_put_to_their_class(recorded, tested):
+    [row] = seat_test(recorded).rows
     assert (row.spectral_class, row.person, row.within_spread) == ("EM5", "heavy", True)
-    simulated = next(each for each in seat_test(scenario, ["EM5"]).rows if each.person == "heavy")
+    [simulated] = [each for each in tested.rows if (each.spectral_class, each.person) == ("EM5", "heavy")]
     assert row.seat == pytest.approx(simulated.seat, rel=0.02)
     with pytest.raises(InputError, match="no run is of a class"):
-        seat_test(folder, ["EM6"])
+        seat_test(recorded, ["EM6"])
 
 
 @pytest.mark.parametrize(
@@ -121,24 +125,29 @@ def test_a_travel_that_is_not_stated_is_said(scenario):
     assert any("no end stops are stated" in note and "state plant.travel" in note for note in found.notes)
 
 
-def test_a_run_that_breaks_off_leaves_the_others_and_is_a_line_with_its_reason(scenario, tmp_path, monkeypatch):
+def test_a_run_that_breaks_off_leaves_the_others_and_is_a_line_with_its_reason(
+    scenario, tmp_path, monkeypatch, seatsim_command
+):
     def broken(case):
         if isinstance(case.excitation, Iso7096) and case.seed == 1:
             raise RunError("a state ran away at 3 s")
         return simulate(case)
 
     monkeypatch.setattr("seatsim.standards.seat_test.simulate", broken)
-    done = CliRunner().invoke(app, ["seat-test", str(scenario), "--class", "EM5", "--out", str(tmp_path), "--json"])
-    found = check_answer("seat-test", done.stdout)
-    assert done.exit_code == 1 and "failed: seat, EM5, light: a state ran away" in done.stderr
+    status, printed, said = seatsim_command(
+        "seat-test", scenario, "--class", "em5", "--out", tmp_path / "out", "--json"
+    )
+    found, path = check_answer("seat-test", printed), tmp_path / "out" / "seat_test.json"
+    assert {**found, "files": found["files"][:1]} == json.loads(path.read_text()) | {"files": [str(path)]}
+    assert all({"class", "mass", "seat", "limit", "pass", "clause"} <= set(row) for row in found["classes"])
+    assert status == 1 and "failed: seat, EM5, light: a state ran away" in said
     assert [(each["class"], each["person"]) for each in found["failed"]] == [("EM5", "light"), ("EM5", "heavy")]
     assert len(found["classes"]) == 2 and not any(row["pass"] for row in found["classes"]) and found["damping"]
 
 
-def test_a_damaged_run_of_a_recording_leaves_the_others(tmp_path):
-    settings = {"variants": {}, "plant.driver_mass": 72.0, "sweep": {"seed": [1, 2]}}
-    save_recording(run("em5", settings), tmp_path, ["floor_acceleration", "driver_acceleration", "current_command"])
-    (tmp_path / "run-2.csv.gz").write_bytes(b"torn")
-    found = seat_test(tmp_path)
+def test_a_damaged_run_of_a_recording_leaves_the_others(recorded, tmp_path):
+    folder = shutil.copytree(recorded, tmp_path / "damaged")
+    (folder / "run-2.csv.gz").write_bytes(b"torn")
+    found = seat_test(folder)
     assert len(found.rows) == 1 and [failure.run for failure in found.failures] == ["run-2"]
     assert "cannot be read" in found.failures[0].reason

@@ -19,7 +19,7 @@ def test_coverage_says_what_was_visited_and_what_was_not(copy):
     assert "no run is warmer than 20 degC: thermal fade cannot be assessed" in seen.missing
     rewrite(copy, lambda f: f.assign(coil_current=0.4 + 0.01 * np.sin(f.time), damper_temperature=60.0))
     missing = " ".join(measure_coverage(load_recording(copy)).missing)
-    assert "remanence" in missing
+    assert "current stays at 0.39 to 0.41 A: coil, remanence" in missing
     assert "thermal fade" not in missing
 
 

@@ -3,17 +3,13 @@
 import dataclasses
 
 import numpy as np
-import pandas as pd
 import pytest
-from ruamel.yaml import YAML
 
-from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.effects.base import EFFECTS
 from seatsim.recordings.quality.examination import examine
 from seatsim.recordings.recording import Recording, load_recording
 from seatsim.recordings.replay import recorded_inputs
 from seatsim.simulation.augment import read_sensors
-from seatsim.simulation.damper_bench import bench_force
 from seatsim.simulation.respond import respond
 
 from ...faulty_recordings import late, rewrite, scaled, without_time
@@ -26,16 +22,14 @@ LARGE = parse("""
     damper.preyield_hysteresis: [{travel: 0.01}, {travel: 0.0, lag: 0.05}, {travel: 0.0, behind: 0.05}]
     damper.magnetic_saturation: [{bend: 10.0}]
     damper.remanence: [{width: 0.5}, {width: 1.0}]
-    damper.free_play: [{gap: 0.002, stiffness: 100000.0}, {gap: 0.005, stiffness: 100000.0}, {gap: 0.005},
-        {gap: 0.01, turning: 0.02}]
+    damper.free_play: [{gap: 0.005, stiffness: 100000.0}, {gap: 0.005}, {gap: 0.01, turning: 0.02}]
     damper.seal_friction: [{force: 500.0}, {force: 500.0, presliding: 0.001}]
     coil.lag: [{time: 0.2}]
     coil.asymmetric_lag: [{time: 0.2}]
     coil.delay: [{time: 0.2}]
     coil.current_limit: [{limit: 0.1}]
     suspension.friction: [{force: 300.0}, {force: 100.0, presliding: 0.001}]
-    suspension.end_stop: [{low: -0.005, high: 0.005}, {low: -0.005, high: 0.005, power: 2.0}, {low: -0.018,
-        high: 0.018}, {low: -0.018, high: 0.018, power: 2.0}]
+    suspension.end_stop: [{low: -0.005, high: 0.005}, {low: -0.018, high: 0.018, power: 2.0}]
     suspension.progressive_spring: [{rise: 5000.0}, {helper: 20.0, reach: 0.01}]
     cushion.hardening: [{rise: 2000.0}]
     cushion.separation: [{limit: 20.0}]
@@ -48,7 +42,7 @@ LARGE = parse("""
 ON_A_CHANNEL = {
     "sensor.gain": ({"error": 1.0}, {"error": -0.5}),
     "sensor.bias": ({"share": 5.0}, {"share": -5.0}),
-    "sensor.lag": ({"time": 0.03}, {"time": 0.1}),
+    "sensor.lag": ({"time": 0.1},),
 }
 OF_A_SEAT = ("suspension.", "cushion.", "driver.", "floor.")
 CHANNELS = parse("""
@@ -70,52 +64,6 @@ CASES = [
     for k, values in enumerate(several)
 ]
 """Every form and sign; the first of each is in the fast suite."""
-DAMPER = BoucWen(
-    c_a=500.0, c_b=800.0, alpha_a=60.0, alpha_b=500.0, k0=900.0, f0=30.0, A=2000.0, beta=1300.0, gamma=900.0, n=2.0
-)
-RATE = 250.0
-
-
-def multisine(time, seed):
-    phases = np.random.default_rng(seed).uniform(0.0, 6.0, 8)
-    tones = sum(0.006 / k * np.sin(2 * np.pi * 0.6 * k * time + phases[k - 1]) for k in range(1, 9))
-    return (1.0 - np.exp(-(time**2))) * tones
-
-
-MOTIONS = {
-    "slow": (lambda t: 0.02 * np.sin(np.pi * t), 0.5),
-    "fast": (lambda t: 0.01 * np.sin(4 * np.pi * t), 1.0),
-    "random": (lambda t: multisine(t, 1), 0.7),
-}
-
-
-@pytest.fixture(scope="module")
-def bench(tmp_path_factory):
-    """The folder of a bench: two sines and a random motion, each at its current."""
-    folder, generator = tmp_path_factory.mktemp("bench"), np.random.default_rng(1)
-    for name, (motion, current) in MOTIONS.items():
-        time = 0.5 / RATE * np.arange(2 * round(12.0 * RATE) - 1)
-        stroke = motion(time)
-        force = bench_force(DAMPER, stroke, np.gradient(stroke, 0.5 / RATE), current, 20.0, 1.0 / RATE)
-        noise = generator.standard_normal((2, len(force)))
-        columns = {"displacement": stroke[::2] + 2e-5 * noise[0], "damper_force": force + 3.0 * noise[1]}
-        pd.DataFrame(columns | {"coil_current": current}).to_csv(folder / f"{name}.csv", index=False)
-    units = {"displacement": ("m", 2e-5), "damper_force": ("N", 3.0), "coil_current": ("A", 0.0)}
-    header = {
-        "rig": "damper_bench",
-        "sample_rate": RATE,
-        "nominal": "nominal.yaml",
-        "runs": [{"name": name, "file": f"{name}.csv"} for name in MOTIONS],
-        "channels": {c: {"unit": u, "noise_rms": n} for c, (u, n) in units.items()},
-    }
-    nominal = {
-        "damper": {"model": "bouc_wen", "parameters": DAMPER._asdict()},
-        "temperature": 20.0,
-        "actuator": {"rate": 130.0, "max_current": 1.0},
-    }
-    YAML(typ="safe").dump(header, folder / "recording.yaml")
-    YAML(typ="safe").dump(nominal, folder / "nominal.yaml")
-    return folder
 
 
 def with_effect(recording, name, values):
@@ -160,7 +108,7 @@ def test_an_effect_is_no_fault(sound, bench, rig, name, values):
     assert refusals(recording, with_effect(recording, name, values)) == []
 
 
-@pytest.mark.parametrize("steps", [0.5, 1.5, 5.0])
+@pytest.mark.parametrize("steps", [0.5, 5.0])
 @pytest.mark.parametrize("rig", ["seat", "bench"])
 def test_coarse_converters_are_no_fault_though_more_noise_is_stated(sound, bench, rig, steps):
     recording = load_recording(sound if rig == "seat" else bench)

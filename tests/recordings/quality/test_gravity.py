@@ -48,7 +48,7 @@ def test_a_sound_recording_is_the_same(sound):
     assert without_gravity(recording) is recording
 
 
-@pytest.mark.parametrize(("mean", "is_gravity"), [(9.4, True), (9.2, False), (10.2, True), (1.0, False), (-9.81, True)])
+@pytest.mark.parametrize(("mean", "is_gravity"), [(9.4, True), (9.2, False), (10.2, True)])
 def test_a_few_percent_tell_gravity_from_an_offset(sound, tmp_path, mean, is_gravity):
     folder = tmp_path / "one"
     shutil.copytree(sound, folder)
@@ -56,10 +56,10 @@ def test_a_few_percent_tell_gravity_from_an_offset(sound, tmp_path, mean, is_gra
     assert bool(without_gravity(load_recording(folder)).removed) is is_gravity
 
 
-def test_gap_and_problem_are_those_without_gravity(heavy, sound):
-    first, second = gap(heavy / "nominal.yaml", heavy), gap(sound / "nominal.yaml", sound)
+def test_gap_and_problem_are_those_without_gravity(heavy, sound, sound_gap):
+    first = gap(heavy / "nominal.yaml", heavy)
     # The little that the floor truly has of a mean in 16 s is lost with gravity.
-    assert first.channels == pytest.approx(second.channels, abs=0.03)
+    assert first.channels == pytest.approx(sound_gap.channels, abs=0.03)
     assert sum("is gravity, which is taken out" in note for note in first.notes) == 3
     posed, reference = (pose_problem(load_recording(folder), SerialExecutor()) for folder in (heavy, sound))
     run = posed.runs[0]

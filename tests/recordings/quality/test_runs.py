@@ -19,6 +19,10 @@ def found(*runs):
     return [(issue.severity, issue.kind, issue.run) for issue in check_all_runs(runs)]
 
 
+def said(*runs):
+    return " ".join(issue.sentence for issue in check_all_runs(runs))
+
+
 @pytest.fixture
 def runs(under_test):
     """Two runs of white motion, whose noise is stated as it is."""
@@ -49,15 +53,16 @@ def test_runs_that_are_too_short_together_are_errors_or_warnings(runs):
 
 
 def test_a_single_run_and_a_duplicate_are_named(runs):
-    assert found(runs[0]) == [("warning", "single", "a")]
-    assert ("error", "duplicate", "b") in found(runs[0], runs[1]._replace(table=runs[0].table))
+    assert found(runs[0]) == [("warning", "single", "a")] and "is the only run" in said(runs[0])
+    twice = runs[0], runs[1]._replace(table=runs[0].table)
+    assert ("error", "duplicate", "b") in found(*twice) and "b: holds the same rows as a" in said(*twice)
 
 
 def test_a_repeat_may_be_shifted_but_not_another_motion(runs):
     first, second = runs
     named = {"b": second.recording.runs["b"]._replace(repeat_of="a")}
     second = second._replace(recording=dataclasses.replace(second.recording, runs=named))
-    assert ("error", "repeat", "b") in found(first, second)
+    assert ("error", "repeat", "b") in found(first, second) and "b: is no repeat of a" in said(first, second)
     shifted = {name: np.roll(values, 100) + 0.1 * motion(9) for name, values in first.table.items()}
     assert found(first, second._replace(table=shifted)) == []
 
@@ -66,6 +71,7 @@ def test_a_run_at_rest_is_a_warning_all_at_rest_an_error_and_a_dead_floor_an_err
     first, second = runs
     still = {name: motion(7 + k) for k, name in enumerate(first.table)}
     assert found(first, second._replace(table=still)) == [("warning", "still", "b")]
+    assert "nothing moves" in said(first, second._replace(table=still))
     other = {name: motion(17 + k) for k, name in enumerate(first.table)}
     resting = found(first._replace(table=other), second._replace(table=still))
     assert resting == [("error", "still", "a"), ("error", "still", "b")]
@@ -87,6 +93,7 @@ def test_degrees_fahrenheit_are_told_by_the_nominal_temperature(runs):
         warm = [run._replace(table={**run.table, "damper_temperature": low + np.arange(3000) / 100}) for run in runs]
         units = [issue for issue in check_all_runs(warm) if issue.kind == "unit"]
         assert [issue.channel for issue in units] == ["damper_temperature"] * is_said
+        assert all("degF" in issue.sentence for issue in units)
 
 
 @pytest.mark.parametrize(
