@@ -23,12 +23,13 @@ from functools import cache
 from importlib.machinery import ModuleSpec
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 from seatsim.schema.errors import InputError
 from seatsim.schema.guarded import read_bytes
 
 if TYPE_CHECKING:
+    from importlib.abc import Loader
     from importlib.metadata import EntryPoints
 
 
@@ -205,8 +206,8 @@ def _check_name_is_free(name: str, path: Path) -> None:
 
 def _load(name: str, shown: Path, path: Path) -> ModuleType:
     """Execute a file as a new module; the one that it replaces stays where that fails."""
-    spec = importlib.util.spec_from_file_location(name, path)
-    assert spec is not None  # a .py file always has one
+    # A .py file always has one. An `assert` here, which pytest rewrites, would change the key of what is compiled.
+    spec = cast("ModuleSpec", importlib.util.spec_from_file_location(name, path))
     previous = sys.modules.get(name)
     try:
         return _execute(spec)
@@ -226,11 +227,11 @@ def _import_installed(name: str) -> None:
 
 def _execute(spec: ModuleSpec) -> ModuleType:
     module = importlib.util.module_from_spec(spec)
-    assert spec.loader is not None  # `module_from_spec` has asked for it
+    loader = cast("Loader", spec.loader)  # `module_from_spec` has asked for it
     # Before its execution, because the decorators and numba look a class up by the name of its module.
     sys.modules[spec.name] = module
     try:
-        spec.loader.exec_module(module)
+        loader.exec_module(module)
     except BaseException:
         del sys.modules[spec.name]
         raise
