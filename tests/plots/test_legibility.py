@@ -129,7 +129,8 @@ def test_every_axis_that_is_numbered_has_a_unit_and_lines_have_a_legend(figures)
 
 
 def test_a_picture_inside_a_page_is_a_drawing_of_its_own(figures):
-    assert render_inline(figure := next(iter(figures.values()))) == render_inline(figure)
+    first = next(iter(figures.values()))
+    assert render_inline(first) == render_inline(first)
     for name, figure in figures.items():
         shown = render_inline(figure)
         assert len(shown.source) < 200_000, (name, len(shown.source))

@@ -102,7 +102,7 @@ PAIRS = pytest.mark.parametrize(("law", "damper"), [("BadCurrent", "BadDamper"),
 
 
 def test_own_damper_and_law_run_like_built_in_ones(bad, seat_file):
-    own = seatsim.run(seat_file, rig("BadCurrent", "BadDamper"))
+    own = seatsim.run(seat_file, rig("BadCurrent", "BadDamper", duration=3.0))
     np.testing.assert_array_equal(own["current_command"], 0.5)
     expected = 1000.0 * own["coil_current"] * own["suspension_velocity"]
     np.testing.assert_allclose(own["damper_force"], expected, atol=1e-9)
