@@ -74,11 +74,12 @@ def check(tmp_path, seatsim_command, forget_own_code):
             "(self, plant, x, v, z)",
             "Tried.cushion_force(self, plant, x, v, z) is called with other arguments: too many positional arguments",
         ),
-        (EFFECT, "plant.cushion_stiffness", "plant.kc", "line 10: cannot be compiled: unknown attribute 'kc'"),
+        (EFFECT, "plant.cushion_stiffness", "plant.kc", "10: cannot be compiled: unknown attribute 'kc' of type Plant"),
         (EFFECT, "return force - plant", "return 5.0 + force - plant", "tried: changes the rig where it is off"),
         pytest.param(EFFECT, '{"gap": 2e-4}', '{"gab": 2e-4}', "gab", marks=pytest.mark.slow),
         pytest.param(EFFECT, '{"gap": 2e-4}', '{"gap": 2.0}', "0.01", marks=pytest.mark.slow),
         (LAW, "y.velocity", "y.speed", "law tried: tried.py, line 9: cannot be compiled: unknown attribute 'speed'"),
+        (LAW, "self.on if", "self.on + 'x' if", "line 9: cannot be compiled: add takes no (float64, Literal[str](x))"),
     ],
 )
 def test_a_mistake_is_said_before_a_run(text, old, new, said, check):

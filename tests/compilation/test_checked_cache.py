@@ -2,6 +2,8 @@
 
 import errno
 import os
+import shutil
+from functools import partial
 
 import numba
 import pytest
@@ -25,23 +27,35 @@ DAMAGES = {
 }
 
 
-@pytest.fixture
-def start(tmp_path, monkeypatch):
-    """Return a function that compiles `double`, or takes it from the cache, as a new process does."""
-    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
-
-    def begin():
+def load(folder):
+    """Compile `double`, or take it from the cache, as a new process does; return how often it was taken."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(numba.config, "CACHE_DIR", str(folder))
         dispatcher = numba.njit(double)
         dispatcher._cache = CheckedCache(double)
         assert dispatcher(3.0) == 6.0
-        return sum(dispatcher.stats.cache_hits.values())
-
-    assert (begin(), begin()) == (0, 1)
-    return begin
+    return sum(dispatcher.stats.cache_hits.values())
 
 
-@pytest.mark.parametrize("ending", ["nbi", "nbc"])
-@pytest.mark.parametrize("damage", DAMAGES)
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory):
+    """A cache that holds `double`, which no test edits."""
+    folder = tmp_path_factory.mktemp("kept")
+    assert (load(folder), load(folder)) == (0, 1)
+    return folder
+
+
+@pytest.fixture
+def start(kept, tmp_path):
+    """Return a function that loads `double` from a copy of that cache in `tmp_path`."""
+    shutil.copytree(kept, tmp_path, dirs_exist_ok=True)
+    return partial(load, tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("damage", "ending"),
+    [*((damage, "nbc") for damage in DAMAGES), ("empty", "nbi"), ("truncated", "nbi"), ("one bit", "nbi")],
+)
 def test_a_damaged_entry_is_discarded_and_made_again(start, tmp_path, ending, damage):
     (entry,) = tmp_path.rglob(f"*.{ending}")
     entry.write_bytes(DAMAGES[damage](entry.read_bytes()))

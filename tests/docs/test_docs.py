@@ -6,33 +6,44 @@ import re
 import subprocess
 import sys
 import tomllib
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
+from typer.main import get_command
 
+import seatsim
 from seatsim.cli.app import app
+from seatsim.diagnosis.candidates import list_candidates
+from seatsim.diagnosis.problem import pose_problem
 from seatsim.diagnosis.settings import DiagnosisSettings
-
-from ..text import words
+from seatsim.effects.base import off
+from seatsim.kernel.rig import Disturbance, Rig, derivative
+from seatsim.rig.state import MECHANICAL
+from seatsim.rig.temperature import TemperatureScaling
 
 ROOT = Path(__file__).resolve().parents[2]
-BENCH = tuple(
-    words("""
-    --model --parameters --currents --temperatures --amplitudes --frequencies --test --test-fraction --fix
-    --ignore-temperature --predict --moving-average --centred
-""")
-)
+sys.path.insert(0, str(ROOT / "docs"))
+from run_examples import read_blocks  # noqa: E402
+
+SHARED = {"--json", "--pdf", "--set", "--with"}
+"""Options of many commands, of which one example is enough."""
+NOT_RUN = {"compare": {"--bracket"}, "sweep": {"--engine", "--address"}}
+"""Options whose examples would take minutes or a cluster."""
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
+BUILT = """
+import json, sys
+import build_reference, build_schemas
+pages = {f"docs/{file}": text for file, text in build_reference.pages().items()}
+json.dump(pages | build_schemas.schemas(), sys.stdout)
+"""
 
 
-def test_built_pages_are_up_to_date():
+def test_built_pages_and_schemas_are_up_to_date():
     # In a process of its own: other tests register models that are none of the package's.
-    code = "import build_reference as built, json, sys; json.dump(built.pages(), sys.stdout)"
-    done = subprocess.run(
-        [sys.executable, "-c", code], cwd=ROOT / "docs", capture_output=True, encoding="utf-8", check=True
-    )
+    done = subprocess.run([sys.executable, "-c", BUILT], cwd=ROOT / "docs", stdout=subprocess.PIPE, check=True)
     for file, text in json.loads(done.stdout).items():
-        assert (ROOT / "docs" / file).read_text(encoding="utf-8") == text, "run python docs/build_reference.py"
+        assert (ROOT / file).read_text(encoding="utf-8") == text, f"{file}: run docs/build_reference.py or _schemas.py"
 
 
 def test_every_setting_of_a_diagnosis_says_how_it_was_chosen():
@@ -52,93 +63,53 @@ def test_links_lead_somewhere(page):
         assert (page.parent / target).exists(), target
 
 
-def test_every_command_and_option_has_an_example():
-    text = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
-    examples = "\n".join(re.findall(r"```sh\n(.*?)```", text, re.DOTALL))
-    for command in app.registered_commands:
-        assert f"seatsim {command.name or command.callback.__name__.replace('_', '-')} " in examples
-    for command in ("make", "score"):
-        assert f"seatsim blind {command} " in examples
-    for option in (
-        "--out",
-        "--set",
-        "--without",
-        "--cases",
-        "--seed",
-        "--sealed",
-        "--kinds",
-        "--carrier",
-        "--key",
-        "--bracket",
-        "--with",
-        "--map",
-        "--nominal",
-        "--json",
-        "--picture",
-        "--engine",
-        "--address",
-        "--jobs",
-        "--resume",
-        "--keep",
-        "--part",
-        "--slurm",
-        "--version",
-        "--show-completion",
-        *BENCH,
-    ):
-        assert option in examples
+def options_of(examples):
+    """Return the options that shell code gives to each command."""
+    found = {}
+    for line in examples.replace("\\\n", " ").splitlines():
+        for command, rest in re.findall(r"\bseatsim ((?:blind )?[a-z][a-z-]*)(.*)", line):
+            found.setdefault(command, set()).update(re.findall(r"(?<=\s)--[a-z-]+", rest))
+    return found
 
 
-# In a process of its own, where what the examples register stays.
-CODE = """
-from concurrent.futures import ThreadPoolExecutor
-
-import numpy as np
-from seatsim import load, load_recording, use
-from seatsim.diagnosis.candidates import list_candidates
-from seatsim.diagnosis.problem import pose_problem
-from seatsim.effects.base import off
-from seatsim.kernel.rig import Disturbance, Rig, derivative
-from seatsim.rig.state import MECHANICAL
-from seatsim.rig.temperature import TemperatureScaling
-
-use("power_law.py")
-use("fast_strokes.py")
-AirDrag = use("bellows.py").AirDrag
-
-effects = [{"effect": "bellows:AirDrag", "parameters": {"drag": 350.0}}]
-scenario, = load("quickstart", {"effects": effects, "variants": {}, "sweep": {}})
-assert scenario.effects == (AirDrag(350.0),)
+def test_every_command_and_option_has_an_example_that_is_run():
+    commands = dict(get_command(app).commands)
+    commands |= {f"blind {name}": command for name, command in commands.pop("blind").commands.items()}
+    known = {name: {word for each in command.params for word in each.opts} for name, command in commands.items()}
+    pages = sorted((ROOT / "docs").glob("*.md"))
+    blocks = [block.content for page in pages for block in read_blocks(page) if block.language == "sh"]
+    run = options_of("\n".join(blocks))
+    for name, options in known.items():
+        own = {word for word in options if word.startswith("--")} - SHARED
+        assert own - NOT_RUN.get(name, set()) <= run[name], name
+    assert set.union(*run.values()) >= SHARED - {"--pdf"}
+    text = "\n".join(re.findall(r"```sh\n(.*?)```", "".join(page.read_text() for page in pages), re.DOTALL))
+    for name, options in options_of(text).items():
+        assert options <= known[name] and NOT_RUN.get(name, set()) <= options, name
 
 
-def rates(*effects):
-    rig = Rig(scenario.plant, scenario.damper.record, effects)
-    state = (0.0, 0.3) + (0.0,) * (MECHANICAL - 2) + (0.0,)
-    return derivative(rig, state, Disturbance(0.0, 0.0, 0.0), 0.5, TemperatureScaling(), 0.0)[0]
-
-
-change = rates(*scenario.effects)[1] - rates()[1]
-assert np.isclose(change, -350.0 * 0.3**2 / scenario.plant.frame_mass)
-assert rates(off(AirDrag)) == rates()
-with ThreadPoolExecutor() as pool:
-    candidates = list_candidates(pose_problem(load_recording(RECORDING), pool))
-found = [candidate for candidate in candidates if candidate.cls is AirDrag]
-assert [(candidate.effect, candidate.start, candidate.high) for candidate in found] == [
-    ("suspension.air_drag", (200.0,), (1e5,))
-]
-"""
-
-
-def test_the_examples_of_own_parts_work(tmp_path):
+def test_the_examples_of_own_parts_work(tmp_path, forget_own_code):
     for page in ("damper", "controller", "effect"):
         text = (ROOT / "docs" / f"howto_{page}.md").read_text(encoding="utf-8")
         ((name, block),) = re.findall(r"^cat > (\w+\.py) <<'PY'\n(.*?)^PY$", text, re.DOTALL | re.MULTILINE)
         (tmp_path / name).write_text(block, encoding="utf-8")
-    recording = f"RECORDING = {str(ROOT / 'scenarios' / 'data' / 'recording')!r}"
-    done = subprocess.run(
-        [sys.executable, "-c", recording + CODE], cwd=tmp_path, capture_output=True, encoding="utf-8", check=False
-    )
-    assert done.returncode == 0, done.stderr
+        cls = vars(seatsim.use(tmp_path / name))[re.search(r"^class (\w+)", block, re.MULTILINE)[1]]
+    effects = [{"effect": "bellows:AirDrag", "parameters": {"drag": 350.0}}]
+    (scenario,) = seatsim.load("quickstart", {"effects": effects, "variants": {}, "sweep": {}})
+    assert scenario.effects == (cls(350.0),)
+
+    def rates(*effects):
+        rig = Rig(scenario.plant, scenario.damper.record, effects)
+        state = (0.0, 0.3) + (0.0,) * (MECHANICAL - 2) + (0.0,)
+        return derivative(rig, state, Disturbance(0.0, 0.0, 0.0), 0.5, TemperatureScaling(), 0.0)[0]
+
+    change = rates(*scenario.effects)[1] - rates()[1]
+    assert change == pytest.approx(-350.0 * 0.3**2 / scenario.plant.frame_mass)
+    assert rates(off(cls)) == rates()
+    with ThreadPoolExecutor() as pool:
+        problem = pose_problem(seatsim.load_recording(ROOT / "scenarios" / "data" / "recording"), pool)
+        found = [candidate for candidate in list_candidates(problem) if candidate.cls is cls]
+    assert [(each.effect, each.start, each.high) for each in found] == [("suspension.air_drag", (200.0,), (1e5,))]
 
 
 def test_the_citation_names_this_version():

@@ -20,53 +20,44 @@ def test_factor(conform):
 
 
 @pytest.fixture
-def written(pytester):
-    """Write the ledger of a test once, and return what to write it again with."""
+def write(pytester):
+    """Write the ledger of a test, and return its outcome and its lines."""
     pytester.makeconftest(CONFTEST)
+    (pytester.path / "kept.csv").touch()
 
-    def write(moved=0.0, expected=1.036):
-        pytester.makepyfile(TEST.format(moved=moved, expected=expected))
+    def write(text=TEST, moved=0.0, expected=1.036):
+        pytester.makepyfile(test_own=text.format(moved=moved, expected=expected))
         outcome = pytester.runpytest_inprocess("-p", "no:cacheprovider", "-n", "0")
         return outcome, (pytester.path / "kept.csv").read_text().splitlines()
 
-    (pytester.path / "kept.csv").touch()
-    write()
     return write
 
 
-def test_a_figure_that_rounding_moves_is_no_difference(written):
-    outcome, rows = written(moved=0.0003)
-    assert outcome.ret == 0
-    assert rows == [
-        "claim,reference,expected,figure,tolerance,test",
-        "Wk at 8 Hz,ISO 2631-1,1.036,1.0364,0.004,test_a_figure_that_rounding_moves_is_no_difference.py::test_factor",
-    ]
-
-
-@pytest.mark.parametrize("change", [{"moved": 0.0006}, {"expected": 1.037}])
-def test_a_row_that_moved_or_changed_fails_and_is_written(written, change):
-    _, before = written()
-    outcome, rows = written(**change)
-    assert outcome.ret == 1 and len(rows) == 2
-    outcome.stdout.fnmatch_lines([f"- {before[1].replace(',', ' | ')}", f"+ {rows[1].replace(',', ' | ')}"])
-    assert written(**change)[0].ret == 0
-
-
-def test_a_row_that_went_fails(written, pytester):
-    pytester.makepyfile(test_other=TEST.format(moved=0.0, expected=1.036).replace("8", "10").replace("1.036", "0.988"))
-    assert written()[0].ret == 1
+def test_a_row_that_moved_changed_or_went_fails_and_is_written(write, pytester):
+    write()
+    # What rounding moves is no difference.
+    outcome, rows = write(moved=0.0003)
+    first = "Wk at 8 Hz,ISO 2631-1,1.036,1.0364,0.004,test_own.py::test_factor"
+    assert outcome.ret == 0 and rows == ["claim,reference,expected,figure,tolerance,test", first]
+    for change in ({"moved": 0.0006}, {"expected": 1.037}):
+        outcome, changed = write(**change)
+        assert outcome.ret == 1 and len(changed) == 2
+        outcome.stdout.fnmatch_lines([f"- {rows[1].replace(',', ' | ')}", f"+ {changed[1].replace(',', ' | ')}"])
+        rows = changed
+    assert write(expected=1.037)[0].ret == 0
+    other = TEST.format(moved=0.0, expected=0.988).replace("8.0", "10.0").replace("8 Hz", "10 Hz")
+    pytester.makepyfile(test_other=other)
+    outcome, both = write(expected=1.037)
+    assert outcome.ret == 1 and len(both) == 3
     pytester.path.joinpath("test_other.py").unlink()
-    outcome, rows = written()
-    assert outcome.ret == 1 and len(rows) == 2
+    outcome, left = write(expected=1.037)
+    assert outcome.ret == 1 and left == rows
 
 
-def test_a_figure_beyond_its_tolerance_fails_and_leaves_the_ledger(written):
-    _, before = written()
-    outcome, rows = written(moved=0.005)
-    outcome.assert_outcomes(failed=1)
-    assert rows == before
-
-
-def test_a_figure_without_the_product_is_refused(written, pytester):
-    pytester.makepyfile(WITHOUT_PRODUCT)
-    pytester.runpytest_inprocess("-n", "0").stdout.fnmatch_lines(["*no function of seatsim was called*"])
+def test_a_figure_beyond_its_tolerance_or_without_the_product_fails_and_leaves_the_ledger(write):
+    _, before = write()
+    for text, moved, said in ((TEST, 0.005, "*is not 1.036 within*"), (WITHOUT_PRODUCT, 0.0, "*no function of seats*")):
+        outcome, rows = write(text, moved)
+        outcome.assert_outcomes(failed=1)
+        outcome.stdout.fnmatch_lines([said])
+        assert rows == before

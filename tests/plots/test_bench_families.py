@@ -21,17 +21,8 @@ def row(current=0.0, temperature=math.nan, amplitude=0.01, frequency=1.0, record
 
 
 def cloud(current, amplitude, peak_speed):
-    values = np.linspace(-1.0, 1.0, 5)
-    return Row(
-        record="chirp",
-        file="",
-        cycles=0,
-        left_out=0,
-        current=current,
-        amplitude=amplitude,
-        peak_speed=peak_speed,
-        cloud=Cloud(values, values, values, values),
-    )
+    values = Cloud(*[np.linspace(-1.0, 1.0, 5)] * 4)
+    return Row("chirp", "", 0, 0, current, amplitude=amplitude, peak_speed=peak_speed, cloud=values)
 
 
 def names_of(family):

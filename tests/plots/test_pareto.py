@@ -65,15 +65,9 @@ def test_without_weighted_accelerations_it_says_so(runs):
 
 @pytest.mark.parametrize(("factor", "lines"), [(0.9, 1), (0.2, 0)])
 def test_the_floor_is_a_line_where_the_seat_factor_is_one_unless_it_is_far_above(factor, lines, runs):
-    found = [
-        dataclasses.replace(
-            run,
-            metrics={
-                **run.metrics,
-                "seat_factor": Metric(run.metrics["driver_acceleration_weighted"].value * factor, "-", ""),
-            },
-        )
-        for run in runs(["soft", "hard"])
-    ]
+    found = runs(["soft", "hard"])
+    for run in found:
+        seat_factor = factor * run.metrics["driver_acceleration_weighted"].value
+        run.metrics["seat_factor"] = Metric(seat_factor, "-", "")
     axes = plot_pareto(found, {}).axes[0]
     assert [line.get_ydata()[0] for line in axes.lines] == pytest.approx([1 / factor] * lines)

@@ -11,7 +11,7 @@ from seatsim.plots.runs import histories, naming, spectra
 from seatsim.plots.runs.comparison import find_swept_number, plot_comparison
 from seatsim.plots.runs.dampers import choose_amplitude, find_dampers, plot_damper_loops, plot_force_velocity
 from seatsim.plots.runs.histories import CLOSE_UP
-from seatsim.plots.thinning import BINS, Window, find_loudest, thin_line
+from seatsim.plots.thinning import BINS, thin_line
 from seatsim.rig.coil import Coil
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.simulation.damper_bench import sine_test
@@ -54,15 +54,6 @@ def test_thinning_keeps_extremes_and_order():
     assert len(thin_x) <= 2 * BINS and np.all(np.diff(thin_x) >= 0)
     assert thin_y.max() == 50 and thin_y.min() == -60 and thin_y[0] == 40
     np.testing.assert_array_equal(thin_y, y[thin_x.astype(int)])
-
-
-def test_the_eventful_window_holds_the_burst():
-    values = np.full(30_000, 0.1)
-    values[17_000:19_000] = 2.0
-    window = find_loudest(values, 0.001, CLOSE_UP, 0.1)
-    assert window.end - window.start == pytest.approx(CLOSE_UP)
-    assert window.start <= 17.0 and window.end >= 19.0
-    assert find_loudest(values[:100], 0.001, CLOSE_UP, 0.1) == Window(0.0, pytest.approx(0.099))
 
 
 def test_the_close_up_is_stated_and_shared(made_up):

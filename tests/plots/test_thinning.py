@@ -11,6 +11,7 @@ def test_the_loudest_samples_are_those_of_the_largest_energy():
     # Energies of pairs: 1, 10, 9, 4, 8, 4, and the last pair is never reached.
     assert [find_loudest(values, 1.0, 2.0, raster).start for raster in (1.0, 2.0, 4.0)] == [1.0, 2.0, 4.0]
     assert find_loudest(np.ones(9), 1.0, 3.0, 1.0) == Window(0.0, 3.0)
+    assert find_loudest(np.ones(3), 1.0, 5.0, 1.0) == Window(0.0, 2.0)
 
 
 def test_the_loudest_samples_agree_with_a_sum_over_every_window():

@@ -26,6 +26,7 @@ from seatsim.report.credibility import count_variations
 from seatsim.report.diagnosis import report_diagnosis
 from seatsim.report.gap import report_gap
 from seatsim.report.identification import report_identification
+from seatsim.report.rendering import render_report
 from seatsim.report.runs import report_runs
 from seatsim.report.seat_test import report_seat_test
 from seatsim.report.sweep import report_sweep
@@ -38,20 +39,41 @@ from seatsim.standards.seat_rows import DampingRow, DampingTest, SeatRow, SeatTe
 from seatsim.sweeps.rows import SweepRows, count_exceedances, tabulate_quantiles
 from seatsim.sweeps.sensitivity import analyse_sensitivity
 
+from ..text import parse
 from .diagnoses import with_every_run
 
 JUDGED = [count_variations(1)]
 COMFORT, TRAVEL = "driver_acceleration_weighted", "suspension_displacement_rms"
 
 
+SEAT = parse("""
+    name: seat
+    plant: {frame_mass: 20.0, driver_mass: 60.0, suspension_stiffness: 4600.0, suspension_damping: 100.0,
+            cushion_stiffness: 60000.0, cushion_damping: 1500.0}
+    damper:
+      model: bouc_wen
+      parameters: {c_a: 120.0, c_b: 350.0, alpha_a: 25.0, alpha_b: 620.0, k0: 0.0, x0: 0.0, f0: 0.0, A: 2000.0,
+                   beta: 1000.0, gamma: 1000.0, n: 2}
+      temperature_factors: {viscous: -0.01, yield_force: -0.01}
+    actuator: {rate: 130.0, max_current: 1.0}
+    temperature: 20.0
+    controller: {law: skyhook, damping: 1000.0, sample_time: 0.005}
+    excitation: {kind: iso7096, spectral_class: EM2, duration: 10.0}
+    effects: [{effect: suspension.end_stop, parameters: {low: -0.045, high: 0.045}}]
+""")
+"""A rig for short runs, all of which take the same two compiled loops."""
+
+
+def passive(current):
+    """Return settings that drive the coil with a constant current."""
+    return {"controller": {"law": "constant", "current": current}}
+
+
 @cache
 def runs():
     """Four runs under one condition; the first is the most comfortable."""
-    chosen = ("hybrid skyhook", "no current", "passive, best", "passive, firm")
-    by_variant = {
-        each.label["variant"]: each for each in load("quickstart", {"excitation.duration": 20.0, "sweep": {}})
-    }
-    return [run_one(by_variant[name]) for name in chosen]
+    variants = {"skyhook": {}, "0 A": passive(0.0), "0.1 A": passive(0.1), "0.3 A": passive(0.3)}
+    return [run_one(scenario) for scenario in load(SEAT, {"variants": variants})]
 
 
 @cache
@@ -153,8 +175,14 @@ def _report_characterisation():
     return report_characterisation(found, plot_characterisation(found), ["a remark"], "seatsim characterise data")
 
 
+@cache
+def render(kind):
+    """Return the page of a kind."""
+    return render_report(KINDS[kind]())
+
+
 KINDS = {
-    "runs": lambda: report_runs(runs(), pictures(), "seatsim compare quickstart.yaml", "quickstart"),
+    "runs": lambda: report_runs(runs(), pictures(), "seatsim compare seat.yaml", "seat"),
     "sweep": _report_sweep,
     "gap": lambda: report_gap("a against b", gap(0.3), {"a": pair(20.0), "b": pair(5.0)}, JUDGED, "seatsim gap a b"),
     "diagnosis": lambda: report_diagnosis(with_every_run()),

@@ -7,9 +7,9 @@ from xml.etree.ElementTree import TreeBuilder
 
 import pytest
 
-from seatsim.report.rendering import STYLES, read_asset, render_report
+from seatsim.report.rendering import STYLES, read_asset
 
-from .kinds import KINDS
+from .kinds import KINDS, render
 from .outline import VOID
 
 NAMED = ("a", "button", "summary", "caption", "h1", "h2", "h3", "th", "legend")
@@ -37,7 +37,7 @@ class Parser(HTMLParser):
 
 @pytest.fixture(scope="module", params=KINDS)
 def page(request):
-    text = render_report(KINDS[request.param]())
+    text = render(request.param)
     parser = Parser()
     parser.feed(text)
     return text, parser.builder.close()

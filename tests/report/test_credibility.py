@@ -15,9 +15,9 @@ from seatsim.report.diagnosis import judge_diagnosis
 from seatsim.report.gap import judge_gap
 from seatsim.report.runs import judge_runs
 from seatsim.scenario.loading import load
-from seatsim.simulation.runs import run_one
 
 from .diagnoses import with_every_run
+from .kinds import runs
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "reports.md"
 PUBLISHED = [DAMPERS.find("bouc_wen")]
@@ -66,8 +66,7 @@ def test_a_card_says_what_the_next_level_asks_for_and_the_doubt_is_of_the_weakes
 
 
 def test_evidence_of_a_run_is_measured_on_it_and_on_what_was_read():
-    scenario = load("quickstart", {"excitation.duration": 2.0})[2]
-    run = run_one(scenario)
+    run = runs()[0]
     assert level_of("verification", judge_runs([run])) == 3 and level_of("input pedigree", judge_runs([run])) == 0
     with at_work("run", [], ["quickstart"]):
         load("quickstart")

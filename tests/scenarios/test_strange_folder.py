@@ -83,24 +83,41 @@ def test_commands_that_are_started_in_the_folder_run_nothing_of_it(strange, mark
     assert not list(marks.iterdir())
 
 
-def test_worker_processes_run_nothing_of_the_folder_they_are_started_in(strange, marks, tmp_path):
-    script = tmp_path / "script" / "start.py"
-    script.parent.mkdir()
-    script.write_text(
-        "from seatsim.schema.processes import run_jobs\nfrom seatsim.scenario.describe import describe\n"
-        "if __name__ == '__main__':\n    print(len(run_jobs(describe, [('road',), ('table',)], 2)))\n"
-    )
-    done = started([sys.executable, str(script)], strange)
-    assert done.stdout == "2\n", done.stderr
+OWN = """
+from typing import NamedTuple
+from seatsim.rig.control import law
+@law("own_law")
+class OwnLaw(NamedTuple):
+    'A law of the user.'
+    def wanted_current(self, y, state):
+        return 0.5
+"""
+SCRIPT = """
+from pathlib import Path
+import seatsim
+from seatsim.scenario.describe import describe
+from seatsim.schema.processes import run_jobs
+if __name__ == '__main__':
+    seatsim.use(Path(__file__).with_name('own.py'))
+    print(*run_jobs(describe, [('own_law',), ('road',)], 2))
+"""
+
+
+def test_worker_processes_run_the_files_in_use_and_nothing_of_the_folder_they_are_started_in(strange, marks, tmp_path):
+    folder = tmp_path / "script"
+    folder.mkdir()
+    for name, text in {"own": OWN, "start": SCRIPT}.items():
+        (folder / f"{name}.py").write_text(text)
+    done = started([sys.executable, str(folder / "start.py")], strange)
+    assert "A law of the user." in done.stdout and "road (excitation)" in done.stdout, done.stderr
     assert not list(marks.iterdir())
 
 
 @pytest.mark.parametrize("name", [".numba_config.yaml", "matplotlibrc"])
-def test_settings_of_libraries_in_the_folder_are_not_obeyed(strange, name):
-    (strange / name).write_text("cache_dir: .\n")
-    done = started([sys.executable, "-m", "seatsim", "describe", "road"], strange)
-    assert done.returncode == 2
-    assert done.stderr.startswith(f"error: {name}: changes how libraries work")
+def test_settings_of_libraries_in_the_folder_are_not_obeyed(here, name, seatsim_command):
+    (here / name).write_text("cache_dir: .\n")
+    status, _, said = seatsim_command("describe", "road")
+    assert status == 2 and said.startswith(f"error: {name}: changes how libraries work")
 
 
 @pytest.mark.parametrize(

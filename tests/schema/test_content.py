@@ -60,17 +60,8 @@ WRITTEN = {
 
 def test_a_record_is_written_as_its_fields_say():
     assert to_content(FULL) == WRITTEN
-    bare = {
-        "kind": "b",
-        "pass": False,
-        "force_N": 2.0,
-        "rms": None,
-        "curve": [],
-        "place": "a/b",
-        "pair": ["x", 1.0],
-        "count": 0,
-    }
-    assert to_content(BARE) == bare | {"inner": WRITTEN}
+    other = {"kind": "b", "pass": False, "force_N": 2.0, "rms": None, "curve": [], "count": 0, "inner": WRITTEN}
+    assert to_content(BARE) == {key: WRITTEN[key] for key in ("place", "pair")} | other
 
 
 def test_the_schema_is_of_what_is_written_and_says_what_the_source_says():
@@ -83,21 +74,11 @@ def test_the_schema_is_of_what_is_written_and_says_what_the_source_says():
     assert schema["properties"]["rms"] == {"type": ["number", "null"], "description": "In m/s^2."}
 
 
-@pytest.mark.parametrize(
-    ("key", "wrong"),
-    [
-        ("kind", "c"),
-        ("pass", 1),
-        ("rms", "x"),
-        ("curve", 1.0),
-        ("inner", {"kind": "a"}),
-        ("count", 0.5),
-        ("pair", ["x"]),
-    ],
-)
-def test_the_schema_refuses_what_is_never_written(key, wrong):
-    with pytest.raises(jsonschema.ValidationError):
-        jsonschema.validate(WRITTEN | {key: wrong}, answer_schema(Line))
+def test_the_schema_refuses_what_is_never_written():
+    never = {"kind": "c", "pass": 1, "rms": "x", "curve": 1.0, "inner": {"kind": "a"}, "count": 0.5, "pair": ["x"]}
+    for key, wrong in never.items():
+        with pytest.raises(jsonschema.ValidationError):
+            jsonschema.validate(WRITTEN | {key: wrong}, answer_schema(Line))
 
 
 def test_a_notebook_shows_values_and_records_in_lists_as_tables():

@@ -18,12 +18,9 @@ def test_other_cells_stay_as_they_are(cell):
 @pytest.mark.parametrize(
     ("text", "shown"),
     [
-        ("a\x1b[2Jb", "a\\x1b[2Jb"),
-        ("a\u202egnp.exe", "a\\u202egnp.exe"),
-        ("bell\x07", "bell\\x07"),
-        ("\udc80", "\\udc80"),
-        ("Dämpferkraft [N] :smile:\n", "Dämpferkraft [N] :smile:\n"),
+        ("a\x1b[2Jb", "a\\x1b[2Jb"), ("a\u202egnp.exe", "a\\u202egnp.exe"), ("bell\x07", "bell\\x07"),
+        ("\udc80", "\\udc80"), ("Dämpferkraft [N] :smile:\n", "Dämpferkraft [N] :smile:\n"),
     ],
-)
+)  # fmt: skip
 def test_a_terminal_obeys_no_sign_of_a_text(text, shown):
     assert make_printable(text) == shown

@@ -27,9 +27,9 @@ def write_sweep(tmp_path):
 
 @pytest.fixture
 def carry_out(tmp_path):
-    """Return a function that carries out a sweep file on this machine in a folder of `tmp_path`."""
+    """Return a function that carries out a sweep file in this process alone, in a folder of `tmp_path`."""
 
-    def carry(path, name="out", engine=LocalEngine(2), **options):  # noqa: B008  # a frozen value
+    def carry(path, name="out", engine=LocalEngine(1), **options):  # noqa: B008  # a frozen value
         return execute(prepare(path), tmp_path / name, engine, **options)
 
     return carry

@@ -10,6 +10,7 @@ import sys
 import pytest
 
 import seatsim
+from seatsim.sweeps import parts
 
 from ..answers import check_answer
 from .conftest import MASSES, bytes_of
@@ -24,7 +25,7 @@ def test_a_sweep_and_its_report(write_sweep, tmp_path, seatsim_command):
     path, out = write_sweep(vary=vary, runs=12, limits={"driver_acceleration_weighted": 0.1}), tmp_path / "out"
     status, text, _ = seatsim_command("check", path)
     assert status == 0 and "sweep, no errors; 24 runs over plant.driver_mass" in text
-    status, text, _ = seatsim_command("sweep", path, "--out", out, "--json")
+    status, text, _ = seatsim_command("sweep", path, "--jobs", "1", "--out", out, "--json")
     found = check_answer("sweep", text)
     assert status == 0 and found["counts"]["done"] == 24 and found["failed"] == []
     assert json.loads((out / "manifest.json").read_text()).items() <= found.items()
@@ -55,6 +56,9 @@ def test_what_is_wrong_is_one_sentence(write_sweep, tmp_path, seatsim_command, m
     assert status == 2 and "holds no sweep" in err
     status, _, err = seatsim_command("run", path)
     assert status == 2 and f"seatsim sweep {path}" in err
+    monkeypatch.setitem(sys.modules, "fcntl", None)
+    status, _, err = seatsim_command("sweep", path, "--out", out)
+    assert status == 2 and "flock, which this system has not" in err
 
 
 def test_failed_runs_end_with_status_1(write_sweep, tmp_path, seatsim_command):
@@ -87,21 +91,30 @@ def test_a_line_break_in_a_name_is_refused_for_slurm(bad, write_sweep, tmp_path,
     assert status == 2 and "line break" in err and sorted(tmp_path.iterdir()) == before
 
 
-def test_the_tasks_of_a_script_make_the_sweep(write_sweep, tmp_path, seatsim_command):
-    path, script = write_sweep(runs=203), tmp_path / "array.sh"
+PROGRAM = """\
+#!/bin/sh
+exec "{python}" -c 'from seatsim.sweeps import parts; parts.RUNS_OF_PART = 4
+from seatsim.cli.begin import begin; begin()' "$@"
+"""
+"""A command `seatsim` that makes small parts."""
+
+
+def test_the_tasks_of_a_script_make_the_sweep(write_sweep, tmp_path, seatsim_command, monkeypatch):
+    monkeypatch.setattr(parts, "RUNS_OF_PART", 4)
+    path, script = write_sweep(runs=7), tmp_path / "array.sh"
     status, _, _ = seatsim_command("sweep", path, "--out", tmp_path / "array", "--slurm", script)
     assert status == 0 and "#SBATCH --array=1-2\n" in script.read_text()
     command = tmp_path / "bin" / "seatsim"
     command.parent.mkdir()
-    command.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m seatsim "$@"\n')
+    command.write_text(PROGRAM.format(python=sys.executable))
     command.chmod(0o755)
     environment = {**os.environ, "SLURM_ARRAY_TASK_ID": "2", "PATH": f"{command.parent}:{os.environ['PATH']}"}
     subprocess.run(["bash", script], env=environment, check=True)
     assert seatsim_command("sweep", path, "--out", tmp_path / "array", "--part", "1/2", "--resume")[0] == 0
-    assert seatsim_command("sweep", path, "--out", tmp_path / "alone")[0] == 0
+    assert seatsim_command("sweep", path, "--jobs", "1", "--out", tmp_path / "alone")[0] == 0
     assert bytes_of(tmp_path / "array") == bytes_of(tmp_path / "alone")
-    assert json.loads((tmp_path / "array" / "manifest.json").read_text())["counts"]["done"] == 203
-    assert len(seatsim.read_sweep(tmp_path / "array")) == 203
+    assert json.loads((tmp_path / "array" / "manifest.json").read_text())["counts"]["done"] == 7
+    assert len(seatsim.read_sweep(tmp_path / "array")) == 7
 
 
 def test_an_engine_that_cannot_be_reached_leaves_nothing(write_sweep, tmp_path, seatsim_command, monkeypatch):
@@ -112,9 +125,3 @@ def test_an_engine_that_cannot_be_reached_leaves_nothing(write_sweep, tmp_path, 
     options = ["--engine", "dask", "--address", "tcp://127.0.0.1:9"]
     status, _, err = seatsim_command("sweep", write_sweep(), "--out", tmp_path / "out", *options)
     assert status == 2 and "no dask scheduler answers there" in err and not (tmp_path / "out").exists()
-
-
-def test_a_system_without_flock_is_named(write_sweep, tmp_path, seatsim_command, monkeypatch):
-    monkeypatch.setitem(sys.modules, "fcntl", None)
-    status, _, err = seatsim_command("sweep", write_sweep(), "--out", tmp_path / "out")
-    assert status == 2 and "flock, which this system has not" in err

@@ -30,7 +30,9 @@ def small_parts(monkeypatch):
 
 def test_rows_hold_state_keys_metrics_and_units(write_sweep, carry_out, tmp_path):
     path = write_sweep(vary={**MASSES, "excitation.spectral_class": ["EM1", "EM5"]}, runs=2)
-    result = carry_out(path)
+    result = carry_out(path, keep_histories=True)
+    kept = sorted(file.name for file in (tmp_path / "out" / "histories").iterdir())
+    assert kept == [f"run-000000{number}.parquet" for number in range(4)]
     frame = seatsim.read_sweep(tmp_path / "out")
     assert list(frame.columns) == ["run", "state", "reason", "seed", MASS, "excitation.spectral_class", *METRICS]
     assert list(frame.run) == [0, 1, 2, 3] and set(frame.state) == {"done"}
@@ -40,26 +42,22 @@ def test_rows_hold_state_keys_metrics_and_units(write_sweep, carry_out, tmp_path
     assert set(manifest) >= {"identity", "versions", "seed", "counts"} and manifest["seed"] == 3
 
 
-@pytest.mark.parametrize("content", [b"PAR1 and no rows", b""])
-def test_a_damaged_part_is_named(write_sweep, carry_out, tmp_path, content):
+def test_damaged_parts_those_of_different_sweeps_and_foreign_tables_are_named(write_sweep, carry_out, tmp_path):
     carry_out(write_sweep(vary=MASSES, runs=2))
     (part,) = (tmp_path / "out" / "runs").iterdir()
-    part.write_bytes(content)
-    with pytest.raises(InputError, match=r"part-000000\.parquet: is no part of a sweep"):
-        seatsim.read_sweep(tmp_path / "out")
-
-
-def test_parts_of_different_sweeps_and_foreign_tables_are_named(write_sweep, carry_out, tmp_path):
-    carry_out(write_sweep(vary=MASSES, runs=2))
-    (part,) = (tmp_path / "out" / "runs").iterdir()
-    other = pd.read_parquet(part)
-    other.drop(columns=MASS).to_parquet(part.with_name("part-000001.parquet"))
-    with pytest.raises(InputError, match="holds parts of different sweeps"):
-        seatsim.read_sweep(tmp_path / "out")
+    content, other = part.read_bytes(), pd.read_parquet(part)
+    for damaged in (b"PAR1 and no rows", b""):
+        part.write_bytes(damaged)
+        with pytest.raises(InputError, match=r"part-000000\.parquet: is no part of a sweep"):
+            seatsim.read_sweep(tmp_path / "out")
     for missing in ("state", "driver_vdv"):
         other.drop(columns=missing).to_parquet(part)
         with pytest.raises(InputError, match=f"is no part of a sweep: .*{missing}"):
             seatsim.read_sweep(tmp_path / "out")
+    part.write_bytes(content)
+    other.drop(columns=MASS).to_parquet(part.with_name("part-000001.parquet"))
+    with pytest.raises(InputError, match="holds parts of different sweeps"):
+        seatsim.read_sweep(tmp_path / "out")
 
 
 def test_a_row_is_what_the_run_alone_gives(write_sweep, carry_out, tmp_path, seat_file):
@@ -102,6 +100,7 @@ def test_a_failed_run_is_a_row_with_its_reason(write_sweep, carry_out, tmp_path)
     result = carry_out(write_sweep(vary={"damper.parameters": [sound, lost]}, runs=None))
     frame = seatsim.read_sweep(tmp_path / "out")
     assert list(frame.state) == ["done", "failed"] and "no solution beyond" in frame.reason[1]
+    assert frame.seed[0] == frame.seed[1]
     assert frame.loc[1, list(METRICS)].isna().all() and result.failures == [f"run 1: {frame.reason[1]}"]
 
 
@@ -111,35 +110,23 @@ def test_runs_that_nothing_confirms_are_unverified(write_sweep, carry_out, tmp_p
     assert list(frame.state) == ["done", "unverified"] and "beyond the data behind the model" in frame.reason[1]
 
 
-def test_histories_are_kept_where_asked(write_sweep, carry_out, tmp_path):
-    carry_out(write_sweep(runs=2), keep_histories=True)
-    assert [path.name for path in sorted((tmp_path / "out" / "histories").iterdir())] == [
-        "run-0000000.parquet",
-        "run-0000001.parquet",
-    ]
+CHANGES = [
+    ({"seed": 4}, "seed was 3 and is 4"),
+    ({"vary": {MASS: {"normal": [81, 12]}}}, "driver_mass.normal was [80, 12] and is [81, 12]"),
+    ({"runs": 3}, "runs was 5 and is 3"),
+    ({"design": "lhs"}, 'design was "cross" and is "lhs"'),
+]
 
 
-@pytest.mark.parametrize(
-    ("change", "named"),
-    [
-        ({"seed": 4}, "seed was 3 and is 4"),
-        ({"vary": {MASS: {"normal": [81, 12]}}}, "driver_mass.normal was [80, 12] and is [81, 12]"),
-        ({"runs": 3}, "runs was 5 and is 3"),
-        ({"design": "lhs"}, 'design was "cross" and is "lhs"'),
-    ],
-)
-def test_another_sweep_is_refused_by_name(change, named, write_sweep, carry_out):
-    carry_out(write_sweep())
-    with pytest.raises(seatsim.InputError, match="holds a sweep already, 5 of 5 runs"):
-        carry_out(write_sweep())
-    with pytest.raises(seatsim.InputError) as caught:
-        carry_out(write_sweep(**change), resume=True)
-    assert named in str(caught.value)
-
-
-def test_a_changed_scenario_is_named_and_more_runs_are_added(write_sweep, carry_out, tmp_path):
+def test_a_change_of_the_sweep_is_refused_by_name_and_more_runs_are_added(write_sweep, carry_out, tmp_path):
     path = write_sweep()
     carry_out(path)
+    with pytest.raises(seatsim.InputError, match="holds a sweep already, 5 of 5 runs"):
+        carry_out(path)
+    for change, named in CHANGES:
+        with pytest.raises(seatsim.InputError) as caught:
+            carry_out(write_sweep(**change), resume=True)
+        assert named in str(caught.value)
     before = seatsim.read_sweep(tmp_path / "out")
     carry_out(write_sweep(runs=8), resume=True)
     after = seatsim.read_sweep(tmp_path / "out")
@@ -188,14 +175,14 @@ def test_shares_hold_a_folder_together_but_none_twice(tmp_path):
 
 @pytest.mark.slow
 def test_a_sweep_that_is_killed_goes_on_as_if_nothing_had_happened(write_sweep, carry_out, tmp_path):
-    path = write_sweep(runs=800)
+    path = write_sweep(runs=400)
     command = [sys.executable, "-m", "seatsim", "sweep", str(path), "--out", str(tmp_path / "killed"), "--jobs", "1"]
     with subprocess.Popen(command) as process:
         while process.poll() is None and not list(tmp_path.glob("killed/runs/part-*.parquet")):
             time.sleep(0.01)
         process.kill()
     before = seatsim.read_sweep(tmp_path / "killed")
-    assert 0 < len(before) < 800
-    assert carry_out(path, "killed", resume=True).counts["done"] == 800
+    assert 0 < len(before) < 400
+    assert carry_out(path, "killed", resume=True).counts["done"] == 400
     carry_out(path, "whole")
     assert bytes_of(tmp_path / "killed") == bytes_of(tmp_path / "whole")

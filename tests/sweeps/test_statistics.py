@@ -106,7 +106,7 @@ def test_a_condition_is_never_advised_on_as_a_choice():
 
 
 @pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize("runs", range(8, 17))
+@pytest.mark.parametrize("runs", [8, 11, 16])
 def test_a_value_of_a_single_run_is_predicted_from_no_other(runs):
     seen = set()
     for seed in range(20):

@@ -1,7 +1,4 @@
-"""Every picture of every kind of result: legible, inside its page, free of collisions, fit for a page of HTML.
-
-`contact_sheet.png`, in the folder of pytest's temporary files, shows all of them.
-"""
+"""Every picture of every kind of result: legible, inside its page, free of collisions, fit for a page of HTML."""
 
 import re
 from dataclasses import replace
@@ -13,12 +10,9 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
-from PIL import Image
 
 from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
 from seatsim.characterisation.sheet import WarmUp
-from seatsim.diagnosis.result import Trace
-from seatsim.identification.assessment import Agreement, Assessment
 from seatsim.plots.bench.characterisation import plot_characterisation
 from seatsim.plots.bench.identification import plot_predictions
 from seatsim.plots.bench.resonance import plot_damping
@@ -31,7 +25,6 @@ from seatsim.plots.diagnosis.signals import plot_pairs
 from seatsim.plots.runs.draw import plot_result
 from seatsim.plots.saving import render_inline
 from seatsim.plots.style import WIDTH
-from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.recordings.gap import Gap, GapFigures, ReplayedPair
 from seatsim.report.sweep import draw_figures
 from seatsim.simulation.result import Result
@@ -41,7 +34,6 @@ from ..report import diagnoses, kinds
 
 LONG = "a variant whose name goes on and on, beyond all use"
 RUNS = {
-    "single": lambda make: [make()],
     "warming": lambda make: [make(wanted=False, warming=15.0)],
     "at rest": lambda make: [make(motion=0.0, wanted=False)],
     "short": lambda make: [make(seconds=0.5)],
@@ -54,30 +46,15 @@ RUNS = {
 
 
 def draw_gap():
-    traces = {trace.channel: trace for trace in diagnoses.known().evidence.traces}
-    first: Trace = next(iter(traces.values()))
-    found = diagnoses.known().gap
-    pair = ReplayedPair(
-        first.time,
-        {name: each.measured for name, each in traces.items()},
-        {name: each.nominal for name, each in traces.items()},
-        {name: each.unit for name, each in traces.items()},
-    )
-    gap = Gap(found.before.overall, found.before.channels, GapFigures(0.0, dict.fromkeys(traces, 0.0)), ())
-    return {"gap": plot_gap(gap), **plot_pairs(gap, {"run-c": pair})}
+    traces, found = diagnoses.known().evidence.traces, diagnoses.known().gap.before
+    names, units, measured, nominal = zip(*((t.channel, t.unit, t.measured, t.nominal) for t in traces), strict=True)
+    signals = (dict(zip(names, each, strict=True)) for each in (measured, nominal, units))
+    gap = Gap(found.overall, found.channels, GapFigures(0.0, dict.fromkeys(names, 0.0)), ())
+    return {"gap": plot_gap(gap), **plot_pairs(gap, {"run-c": ReplayedPair(traces[0].time, *signals)})}
 
 
 def draw_identification():
-    phase = np.arange(900) / 30
-    x, v = 0.01 * np.sin(phase), 0.01 / 30 * 500 * np.cos(phase)
-    force = 500 * v + 80 * np.tanh(v / 0.01)
-    record = BenchRecord("sine, 1 A", "sine.csv", 500.0, x, v, force, np.ones(900), False, None)
-    judged = [Assessment(record, part, 0.97 * force, Agreement(0.99, 0.02, 5.0, 93.2)) for part in ("test", "test")]
-    return {
-        "loops": plot_predictions(
-            SimpleNamespace(model="bouc_wen", assessments=judged, mean=lambda part: judged[0].agreement)
-        )
-    }
+    return {"loops": plot_predictions(kinds.identification(["test", "test"]))}
 
 
 def draw_bench():
@@ -92,9 +69,7 @@ def draw_bench():
 
 
 def draw_seat_test():
-    frequencies = np.linspace(1.0, 3.0, 9)
-    test = SimpleNamespace(frequencies=frequencies, transmissibilities=2.0 - (frequencies - 1.7) ** 2)
-    return plot_damping(SimpleNamespace(damping={"em1": test, "em5": test}))
+    return plot_damping(SimpleNamespace(damping=dict.fromkeys(("em1", "em5"), kinds.seat_test().damping["seat"])))
 
 
 def draw_sweep():
@@ -106,16 +81,15 @@ OTHERS = {
     "gap": draw_gap, "identification": draw_identification, "bench": draw_bench, "seat test": draw_seat_test,
     "sweep": draw_sweep, "comfort": lambda: plot_vibration(kinds.working_day()),
 }  # fmt: skip
-DRAWN: dict[str, dict] = {}
 
 
 @pytest.fixture(scope="module", params=[*RUNS, *OTHERS])
 def figures(request, made_up):
     kind = request.param
-    DRAWN[kind] = plot_result(Result(RUNS[kind](made_up))) if kind in RUNS else OTHERS[kind]()
-    for figure in DRAWN[kind].values():
+    drawn = plot_result(Result(RUNS[kind](made_up))) if kind in RUNS else OTHERS[kind]()
+    for figure in drawn.values():
         FigureCanvasAgg(figure).draw()
-    return DRAWN[kind]
+    return drawn
 
 
 def test_everything_is_legible_and_inside_the_page(figures):
@@ -155,9 +129,11 @@ def test_every_axis_that_is_numbered_has_a_unit_and_lines_have_a_legend(figures)
 
 
 def test_a_picture_inside_a_page_is_a_drawing_of_its_own(figures):
+    first = next(iter(figures.values()))
+    assert render_inline(first) == render_inline(first)
     for name, figure in figures.items():
         shown = render_inline(figure)
-        assert shown == render_inline(figure) and len(shown.source) < 200_000, (name, len(shown.source))
+        assert len(shown.source) < 200_000, (name, len(shown.source))
         assert shown.title and shown.title in figure.texts[0].get_text().replace("\n", " ").replace(r"\$", "$")
         drawing = ElementTree.fromstring(unquote(shown.source.removeprefix("data:image/svg+xml,")))
         texts = [each.text for each in drawing.iter("{http://www.w3.org/2000/svg}text")]
@@ -197,19 +173,3 @@ def test_a_run_is_not_changed_by_drawing_it(made_up):
     plot_result(Result([run]))
     for name, values in run.history.channels.items():
         np.testing.assert_array_equal(values, before[name])
-
-
-def test_the_contact_sheet(tmp_path_factory):
-    """All pictures that were drawn, in columns of one picture each; to be looked at."""
-    pictures = [figure for found in DRAWN.values() for figure in found.values()]
-    images = [Image.fromarray(np.asarray(figure.canvas.buffer_rgba())) for figure in pictures]
-    columns = 8
-    heights, places = [0] * columns, []
-    for image in images:
-        column = heights.index(min(heights))
-        places.append((column * (image.width + 20), heights[column]))
-        heights[column] += image.height + 20
-    sheet = Image.new("RGB", (columns * 600, max(heights, default=0) or 1), "#999")
-    for image, place in zip(images, places, strict=True):
-        sheet.paste(image, place)
-    sheet.save(tmp_path_factory.getbasetemp() / "contact_sheet.png")
