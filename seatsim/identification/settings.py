@@ -13,7 +13,7 @@ from seatsim.schema.errors import InputError, nearest
 class IdentificationSettings(NamedTuple):
     """What is asked of an identification.
 
-    test: globs of the files to hold out. test_fraction: share of every other record, its last part, to hold out.
+    test: globs of the files to hold out. test_fraction: share of each of the other records, its last part, to hold out.
     fix: numbers of the model that keep a value, by name. ignore_temperature: whether the recorded temperature is no
     input. seed: of the global search.
     """

@@ -7,6 +7,7 @@ import warnings
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.io import wavfile
 
 from seatsim.importing.readers.reading import TextLayout
@@ -29,10 +30,9 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     return DataFile(path, "", (Group(path.stem, signals, float(rate)),), (note,))
 
 
-def _scale(samples: Array) -> Array:
+def _scale(samples: NDArray[np.generic]) -> Array:
     """Return samples as shares of the full scale; those of 24 bits fill the upper part of 32."""
-    if samples.dtype.kind == "f":
-        return samples.astype(np.float64)
+    values = samples.astype(np.float64)
     if samples.dtype.kind == "u":
-        return (samples - _UNSIGNED_ZERO) / _UNSIGNED_ZERO
-    return samples / -float(np.iinfo(samples.dtype).min)
+        return (values - _UNSIGNED_ZERO) / _UNSIGNED_ZERO
+    return values / 2.0 ** (8 * samples.dtype.itemsize - 1) if samples.dtype.kind == "i" else values
