@@ -159,8 +159,9 @@ def _find_headings(lines: Sequence[bytes], names: set[bytes], dialect: Dialect) 
     found = set[int]()
     for index, line in enumerate(lines):
         if line.strip() in names:
-            above = takewhile(lambda k: not _is_row(lines[k], dialect), range(index - 1, -1, -1))
-            found |= {index, *above}
+            # Only to the heading before: a table of nothing but names would take the square of its lines.
+            above = takewhile(lambda k: k not in found and not _is_row(lines[k], dialect), range(index - 1, -1, -1))
+            found.update([index, *above])
     return found
 
 
