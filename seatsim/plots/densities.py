@@ -5,14 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from seatsim.metrics.spectra import AVERAGES, LONGEST, power_spectral_density
+from seatsim.plots import style
 from seatsim.schema.arrays import Array
 
 LOWEST = 0.1
 """Hz from which on a density is drawn: the distance of the lines of the longest segment."""
 PER_OCTAVE = 12
 """Bands in an octave, finer than the resonance of a seat is wide."""
+DECADES = 5.0
+"""Decades below the highest density that are shown."""
 SHORTEST = 64
 """Samples from which on a signal has a spectrum."""
 METHOD = f"Welch's method in segments of at most {LONGEST:g} s, averaged over 1/{PER_OCTAVE} octave."
@@ -29,6 +33,22 @@ def estimate_density(step: float, signals: Sequence[Array]) -> tuple[Array, Arra
     length = min(round(LONGEST / step), 2 * (shortest // (AVERAGES + 1)))
     found = [power_spectral_density(values, 1 / step, length) for values in signals]
     return average_bands(found[0][0], np.mean([power for _, power in found], axis=0))
+
+
+def draw_densities(
+    axes: Axes, densities: Sequence[tuple[Array, Array]], looks: Sequence[style.Entry], highest: float
+) -> None:
+    """Draw densities, as frequency and power, up to a highest frequency in Hz; say so where nothing has power."""
+    inside = [(frequency[frequency <= highest], power[frequency <= highest]) for frequency, power in densities]
+    largest = max(float(np.max(power, initial=0.0)) for _, power in inside)
+    if largest == 0.0:
+        style.explain_empty(axes, "at rest, or too short a record for a spectrum")
+        return
+    axes.set_yscale("log")
+    for (frequency, power), look in zip(inside, looks, strict=True):
+        style.draw_line(axes, frequency, np.where(power > 0, power, np.nan), look)
+    low, high = axes.get_ylim()
+    style.scale_log(axes, "y", max(low, largest / 10**DECADES), high)
 
 
 def average_bands(frequency: Array, power: Array, lowest: float = LOWEST) -> tuple[Array, Array]:

@@ -56,11 +56,7 @@ class Stretch(NamedTuple):
     sample_rate: float
     acceleration: Array
     weighted: Array
-
-    @property
-    def duration(self) -> float:
-        """Seconds that it lasts."""
-        return len(self.weighted) / self.sample_rate
+    dose: Dose
 
 
 class AxisAssessment(NamedTuple):
@@ -167,7 +163,7 @@ def comfort(
     return Comfort(
         source=str(source),
         runs=tuple(record.name for record in records),
-        duration=sum(part.duration for part in next(iter(stretches.values()))),
+        duration=sum(part.dose.duration for part in next(iter(stretches.values()))),
         sample_rate=records[0].sample_rate,
         axes=axes,
         totals=total_values(joined),
@@ -224,8 +220,9 @@ def _cut(records: Sequence[AccelerationRecord], column: str, along: Direction, b
         x = recorded - recorded.mean()
         with placed(f"{record.name}, {column}"):
             whole = weight(x, record.sample_rate, along.weighting)
-        parts = _cuts(record, len(whole), blocks)
-        found += [Stretch(record.name, record.sample_rate, x[part], whole[part]) for part in parts]
+        for part in _cuts(record, len(whole), blocks):
+            doses = dose(whole[part], record.sample_rate)
+            found.append(Stretch(record.name, record.sample_rate, x[part], whole[part], doses))
     return found
 
 
@@ -233,15 +230,14 @@ def _join_runs(stretches: Sequence[Stretch], day: Mapping[str, float]) -> dict[s
     """Return the dose of each run, over its hours of the day where it has some."""
     found = dict[str, list[Dose]]()
     for part in stretches:
-        found.setdefault(part.run, []).append(dose(part.weighted, part.sample_rate))
+        found.setdefault(part.run, []).append(part.dose)
     joined = {run: join_doses(doses) for run, doses in found.items()}
     return {run: prolong(whole, HOUR * day[run]) if day else whole for run, whole in joined.items()}
 
 
 def _compare(seat: Sequence[Stretch], base: Sequence[Stretch], day: Mapping[str, float]) -> SeatTransmission:
     """Return the SEAT factors; operations are no repeats of each other, of which the rule of three runs speaks."""
-    doses = ([dose(part.weighted, part.sample_rate) for part in parts] for parts in (seat, base))
-    found = seat_transmission(*doses)
+    found = seat_transmission([part.dose for part in seat], [part.dose for part in base])
     return found._replace(within_spread=None) if day else found
 
 
@@ -298,7 +294,7 @@ def _notes(
     durations = dict[str, float]()
     for part in next(iter(stretches.values())):
         vibration = part.run if day else "the record"
-        durations[vibration] = durations.get(vibration, 0.0) + part.duration
+        durations[vibration] = durations.get(vibration, 0.0) + part.dose.duration
     for vibration, duration in durations.items():
         if duration < _SHORTEST:
             yield (

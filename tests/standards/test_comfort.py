@@ -185,8 +185,8 @@ def test_the_command_prints_one_object_and_writes_only_where_asked(ride, tmp_pat
     status, printed, _ = seatsim_command("comfort", ride, "--json", "--hours", "4")
     found = json.loads(printed)
     assert status == 0 and found["hours"] == 4.0 and found["operations"] == []
-    for wrong in (["--hours", "much"], ["--hours", "4", "--hours", "5"], ["--hours", "a=b"]):
-        status, _, said = seatsim_command("comfort", ride, *wrong)
+    for wrong in (["much"], ["4", "5"], ["a=b"], ["run-1=3", "run-1=4"]):
+        status, _, said = seatsim_command("comfort", ride, *(part for each in wrong for part in ("--hours", each)))
         assert status == 2 and "--hours" in said
     assert {"weighting", "rms", "vdv", "mtvv", "crest_factor", "method"} <= set(found["axes"]["z"])
     assert found["a8"] == pytest.approx(math.sqrt(0.5), rel=5e-3)

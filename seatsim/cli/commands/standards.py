@@ -41,7 +41,7 @@ def comfort(
     from seatsim.report.comfort import list_comfort_sentences
     from seatsim.standards.comfort import comfort as assess
 
-    channels = dict(_split(text, "=", "--channel", "z=acc_z") for text in channel or [])
+    channels = _split_pairs(channel or [], "--channel", "z=acc_z")
     blocks = [_stretch(text) for text in block or []]
     day = _read_hours(hours or [])
     found = assess(file, channels, hours=day, runs=run or (), blocks=blocks, rate=rate, unit=unit)
@@ -56,13 +56,22 @@ def comfort(
 
 def _read_hours(texts: list[str]) -> float | dict[str, float]:
     """Return the hours of a day, or of each run by its name."""
-    by_run = dict(_split(text, "=", "--hours", "loading=3") for text in texts) if len(texts) > 1 else {}
-    if len(texts) == 1 and "=" in texts[0]:
-        by_run = dict([_split(texts[0], "=", "--hours", "loading=3")])
+    named = len(texts) > 1 or "=" in "".join(texts)
+    by_run = _split_pairs(texts, "--hours", "loading=3") if named else {}
     try:
         return {run: float(text) for run, text in by_run.items()} or float(texts[0] if texts else 8.0)
     except ValueError as error:
         raise InputError(f"--hours {' '.join(texts)}: write hours, like --hours 6 or --hours loading=3") from error
+
+
+def _split_pairs(texts: list[str], option: str, example: str) -> dict[str, str]:
+    found = dict[str, str]()
+    for text in texts:
+        name, value = _split(text, "=", option, example)
+        if name in found:
+            raise InputError(f"{option} {text}: {name} has {found[name]} already; give it once")
+        found[name] = value
+    return found
 
 
 def _split(text: str, sign: str, option: str, example: str) -> tuple[str, str]:

@@ -5,17 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from seatsim.metrics.comfort import running_rms
 from seatsim.metrics.exposure import Exposure, Operation
 from seatsim.plots import style
-from seatsim.plots.densities import LOWEST, METHOD, estimate_density
+from seatsim.plots.densities import LOWEST, METHOD, draw_densities, estimate_density
 from seatsim.plots.style import GREY, Entry, Grid
 from seatsim.plots.thinning import spread_evenly
-from seatsim.schema.arrays import Array
-from seatsim.standards.comfort import Comfort, Stretch
+from seatsim.standards.comfort import Comfort
 
 MOST = 4
 """Stretches, and axes, that have a panel of their own; more are chosen evenly."""
@@ -23,8 +21,6 @@ RASTER = 0.1
 """s between the drawn values of a running RMS, whose window is ten times as long."""
 HIGHEST = 100.0
 """Hz up to which a spectrum is drawn: above it no weighting of the body lets much through."""
-DECADES = 5.0
-"""Decades below the highest density that are shown."""
 
 
 def plot_vibration(found: Comfort) -> dict[str, Figure]:
@@ -64,27 +60,12 @@ def _plot_spectra(found: Comfort, axes: Sequence[str]) -> Figure:
     for panel, axis in zip(page.list_panels(), chosen, strict=True):
         stretches = found.stretches[axis]
         signals = [part.acceleration for part in stretches], [part.weighted for part in stretches]
-        lines = [_estimate(stretches, each) for each in signals]
+        densities = [estimate_density(1.0 / stretches[0].sample_rate, each) for each in signals]
         style.scale_frequency_axis(panel, LOWEST, HIGHEST)
         panel.set_ylabel("density [m²/s³]")
         style.set_title(panel, f"{axis}, {found.axes[axis].direction.weighting}")
-        _draw_densities(panel, lines, looks)
+        draw_densities(panel, densities, looks, HIGHEST)
     return page.figure
-
-
-def _estimate(stretches: Sequence[Stretch], signals: Sequence[Array]) -> tuple[Array, Array]:
-    frequency, power = estimate_density(1.0 / stretches[0].sample_rate, signals)
-    return frequency[frequency <= HIGHEST], power[frequency <= HIGHEST]
-
-
-def _draw_densities(panel: Axes, lines: Sequence[tuple[Array, Array]], looks: Sequence[Entry]) -> None:
-    highest = max(float(np.max(power, initial=0.0)) for _, power in lines)
-    if highest == 0.0:
-        style.explain_empty(panel, "at rest, or too short a record for a spectrum")
-        return
-    for (frequency, power), look in zip(lines, looks, strict=True):
-        style.draw_line(panel, frequency, np.where(power > 0, power, np.nan), look)
-    style.scale_log(panel, "y", highest / 10**DECADES, 2.0 * highest)
 
 
 def _plot_operations(day: Exposure, operations: Sequence[Operation]) -> Figure:

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from seatsim.metrics.spectra import transmissibility
 from seatsim.plots import style
-from seatsim.plots.densities import LOWEST, METHOD, estimate_density
+from seatsim.plots.densities import LOWEST, METHOD, draw_densities, estimate_density
 from seatsim.plots.runs.naming import Shown
 from seatsim.plots.style import GREY, Entry, Grid
 from seatsim.schema.arrays import Array
@@ -19,8 +19,6 @@ from seatsim.simulation.result import Run
 
 BAND = (LOWEST, 50.0)
 """Hz; what the seat can change, and more than the driver feels."""
-DECADES = 5.0
-"""Decades below the highest density that are shown."""
 _TRUSTED = 0.5
 """Least coherence of a transmissibility: below it most of the driver's motion is not the floor's."""
 POWER = 1e-3
@@ -37,17 +35,9 @@ def plot_psd(shown: Shown) -> Figure:
     figure, axes = _make_page(f"Driver acceleration over frequency: {shown.title}", METHOD, shown, [floor])
     axes.set_ylabel("power density [m²/s³]")
     floors = {run.history["floor_acceleration"].tobytes(): run for run in shown.runs}.values()
-    lines = [(_estimate(run, "floor_acceleration"), floor) for run in floors]
-    lines += [(_estimate(run, "driver_acceleration"), look) for run, look in zip(shown.runs, shown.looks, strict=True)]
-    highest = max(float(np.max(power, initial=0.0)) for (_, power), _ in lines)
-    if highest == 0.0:
-        style.explain_empty(axes, "at rest, or too short a run for a spectrum")
-        return figure
-    axes.set_yscale("log")
-    for (frequency, power), look in lines:
-        style.draw_line(axes, frequency, np.where(power > 0, power, np.nan), look)
-    low, high = axes.get_ylim()
-    style.scale_log(axes, "y", max(low, highest / 10**DECADES), high)
+    found = [_estimate(run, "floor_acceleration") for run in floors]
+    found += [_estimate(run, "driver_acceleration") for run in shown.runs]
+    draw_densities(axes, found, [*[floor] * len(floors), *shown.looks], BAND[1])
     return figure
 
 
@@ -75,8 +65,7 @@ def _make_page(title: str, note: str, shown: Shown, legend: Sequence[Entry] = ()
 
 
 def _estimate(run: Run, channel: str) -> tuple[Array, Array]:
-    frequency, power = estimate_density(run.history.step, [run.history[channel]])
-    return frequency[frequency <= BAND[1]], power[frequency <= BAND[1]]
+    return estimate_density(run.history.step, [run.history[channel]])
 
 
 def _estimate_gain(run: Run) -> tuple[Array, Array]:
