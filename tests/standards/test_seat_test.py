@@ -85,9 +85,8 @@ def test_damping_test_finds_the_resonance_under_the_inert_mass(scenario, tested,
         conform(claim, "frequency response of the linear seat", measured, expected, tolerance=5e-3 * expected)
     assert test.transmissibility == max(test.transmissibilities)
     assert test.stroke == pytest.approx(0.04)
-    assert [(row.limit, row.passed) for row in tested.damping_rows] == [
-        (limit, test.transmissibility <= limit) for limit in (1.5, 2.0)
-    ]
+    limits = {(limit, test.transmissibility <= limit) for limit in (1.5, 2.0)}
+    assert {(row.limit, row.passed) for row in tested.damping_rows} == limits
 
 
 def test_every_class_and_driver_has_a_line(tested):
