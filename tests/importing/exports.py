@@ -1,6 +1,7 @@
 """One seat recording written in every format, as other programs export it."""
 
 import gzip
+import json
 import warnings
 
 import numpy as np
@@ -188,10 +189,17 @@ def rpc(path, table):
     path.write_bytes(records.ljust(blocks * 512, b"\0") + body)
 
 
+def sep005(path, table):
+    pytest.importorskip("sdypy_sep005")
+    channels = [(name, values.tolist()) for name, values in table.items() if name != "time"]
+    listed = [{"data": values, "name": name, "unit_str": UNITS[name], "fs": 500.0} for name, values in channels]
+    path.write_text(json.dumps(listed))
+
+
 FORMATS = {
     "a.csv": csv, "a.csv.gz": csv_gz, "german.csv": german_csv, "a.parquet": parquet, "a.feather": feather,
     "a.xlsx": xlsx, "a.h5": hdf5, "a.mat": mat5, "v73.mat": mat73, "table.mat": mat_timetable,
     "table73.mat": mat_timetable, "a.lvm": lvm, "a.mdf": mdf, "a.mf4": mdf, "a.tdms": tdms,
-    "a.uff": uff, "a.rsp": rpc,
+    "a.uff": uff, "a.rsp": rpc, "a.json": sep005,
 }  # fmt: skip
 """Name of a file, and what writes it."""

@@ -2,6 +2,10 @@
 
 import shutil
 import sys
+from contextlib import nullcontext
+from functools import partial
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -108,6 +112,38 @@ def test_samples_of_a_wav_are_shares_of_the_full_scale(tmp_path, kind, full_scal
     cut.write_bytes((tmp_path / "a.wav").read_bytes()[:-1])
     with pytest.raises(InputError, match="truncated"):
         read_file(cut)
+
+
+def test_channels_of_dewesoft_share_a_rate_or_have_times_of_their_own(tmp_path, monkeypatch):
+    """No program but the maker's writes such files: here its library is one that knows four channels."""
+    even = {"channel_type": 0, "sample_rate": 100.0, "unit": "kN"}
+    channels = {
+        "force": ([0.5, 0.51, 0.52], [1.0, 2.0, 3.0], even),
+        "travel": ([0.5, 0.51, 0.52], [4.0, 5.0, 6.0], even | {"unit": "mm"}),
+        "temperature": ([0.1, 0.9], [20.0, 21.0], {"channel_type": 1, "sample_rate": 0.0, "unit": "°C"}),
+        "spectrum": ([0.1, 0.9], [1.0, 2.0, 3.0, 4.0], even),
+    }
+
+    def open_file(source):
+        assert Path(source).read_bytes() == content
+        found = {}
+        for name, (times, values, stated) in channels.items():
+            scaled = partial(tuple, [np.array(times), np.array(values)])
+            found[name] = SimpleNamespace(long_name=name, scaled=scaled, **stated)
+        return nullcontext(found)
+
+    monkeypatch.setitem(sys.modules, "dwdatareader", SimpleNamespace(DWFile=open_file, DWError=RuntimeError))
+    content = b"MULTI_STREAM_FILE_VER0210-" + bytes(40)
+    (tmp_path / "ride.dxd").write_bytes(content)
+    file = read_file(tmp_path / "ride.dxd")
+    even, timed = file.groups
+    assert (even.rate, even.start) == (100.0, 0.5)
+    assert [(each.name, each.unit, *each.values) for each in even.signals] == [
+        ("force", "kN", 1.0, 2.0, 3.0),
+        ("travel", "mm", 4.0, 5.0, 6.0),
+    ]
+    assert [(each.name, *each.values) for each in timed.signals] == [("time", 0.1, 0.9), ("temperature", 20.0, 21.0)]
+    assert file.notes == ("channels that hold no single numbers, or are not read by dwdatareader: spectrum",)
 
 
 def test_a_file_that_is_not_there_names_its_neighbour(tmp_path):

@@ -68,6 +68,8 @@ FORMATS = (
     _Format("UFF", "time_histories.read_uff", (b"    -1",), (".uff", ".unv")),
     _Format("RPC III", "time_histories.read_rpc", (b"FORMAT\0", b"FORMAT "), (".rpc", ".rsp", ".tim")),
     _Format("WAV", "wav.read", (b"RIFF", b"RF64", b"RIFX"), (".wav",)),
+    _Format("Dewesoft", "dewesoft.read", (b"MULTI_STREAM_FILE_VER",), (".dxd", ".d7d")),
+    _Format("SEP 005", "sep005.read", (), ()),
     _Format("CSV", "text.read", (), (".csv", ".tsv", ".txt", ".asc", ".dat")),
 )
 """Formats in the order in which they are tried."""
@@ -85,6 +87,8 @@ _MARKUP = {
 }
 """How texts begin that are no tables."""
 _ZIP = b"PK\x03\x04"
+_RECORDS, _UNIT_OF_RECORD = re.compile(rb"\s*\[\s*\{"), b'"unit_str"'
+"""How a JSON list of channels begins, and what each must state by SEP 005."""
 
 
 def read_file(path: Path, layout: TextLayout | None = None) -> DataFile:
@@ -141,6 +145,8 @@ def _content(path: Path) -> bytes:
 
 def _recognise(path: Path, content: bytes) -> _Format:
     head, names = content[:_SNIFFED], {each.name: each for each in FORMATS}
+    if _RECORDS.match(head) and _UNIT_OF_RECORD in content:
+        return names["SEP 005"]
     for magic, what in _NOT_TABLES.items():
         if head.startswith(magic):
             raise InputError(f"{path}: is {what}; permitted: {_KNOWN}")
