@@ -69,6 +69,7 @@ def test_a_truncated_file_is_one_clear_error(exported, tmp_path):
         ("a.csv", b"a letter to nobody\nwith two lines\n", "no row of numbers"),
         ("a.csv", b"a,b\n", "no row of numbers"),
         ("a.h5", b"", "is empty"),
+        ("a.json", b'[{"name": "force", "unit_str": "N", "data": [1, 2]}]', "SEP 005 .channel 1: .*'time' or 'fs'"),
     ],
 )
 def test_a_file_of_another_kind_is_one_clear_error(tmp_path, name, content, expected):

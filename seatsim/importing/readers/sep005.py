@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import json
 from datetime import datetime
 from pathlib import Path
 
 import numpy as np
-from pydantic import TypeAdapter, ValidationError
+from pydantic import ValidationError
 
 from seatsim.importing.readers.reading import TextLayout, need
 from seatsim.importing.signals import Channels, DataFile, Signal
@@ -14,11 +15,14 @@ from seatsim.importing.signals import Channels, DataFile, Signal
 
 def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     """Return the channels; a start without times is counted in s from the earliest that a channel states."""
-    try:
-        channels = TypeAdapter(list[need("sdypy_sep005", "SEP 005").Sep005Data]).validate_json(content)
-    except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        raise ValueError(": ".join([*map(str, first["loc"][:2]), first["msg"]])) from error
+    check = need("sdypy_sep005", "SEP 005").Sep005Data.model_validate
+    channels = []
+    for number, stated in enumerate(json.loads(content), 1):
+        try:
+            channels.append(check(stated))
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]
+            raise ValueError(": ".join([f"channel {number}", *map(str, first["loc"][:1]), first["msg"]])) from error
     starts = [_start(channel.start_timestamp) for channel in channels]
     earliest = min((start for start in starts if start is not None), default=0.0)
     gathered = Channels()
