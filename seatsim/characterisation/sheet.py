@@ -160,6 +160,10 @@ class LimitCheck(NamedTuple):
     bound: str
     passes: Annotated[bool, Form(key="pass")]
 
+    def __str__(self) -> str:
+        value = f"{self.value:.4g}" if math.isfinite(self.value) else "not determined"
+        return f"{self.name}: {value}, {self.bound} {self.limit:g}: {'pass' if self.passes else 'FAIL'}"
+
 
 class BenchSheet(NamedTuple):
     """The tables; SI units, degC, a force is positive in rebound.

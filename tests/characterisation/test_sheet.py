@@ -139,7 +139,8 @@ def test_the_command_judges_limits_and_writes_a_workbook(folder, tmp_path, seats
     beside = tmp_path / "damper.yaml"
     beside.write_text(f"model: bingham\nparameters: {DAMPER._asdict()}\n")
     arguments = ("--limits", tmp_path / "limits.yaml", "--beside", beside, "--window", "0.1")
-    assert seatsim_command("characterise", tmp_path / "cold", *arguments, "--out", tmp_path / "out")[0] == 0
+    status, printed, said = seatsim_command("characterise", tmp_path / "cold", *arguments, "--out", tmp_path / "out")
+    assert status == 0 and "min 2: pass" in printed and "t90_up: not determined, max 0.025: FAIL" in said
     found = json.loads((tmp_path / "out" / "characterisation.json").read_text())
     checks = {row["name"]: row for row in found["limits"]}
     assert checks["dynamic_range"]["pass"] and checks["dynamic_range"]["value"] > 2.0

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, cast
 import typer
 
 from seatsim.cli.options import Json, Out, OwnCode, Pdf, complete_kind, pairs
-from seatsim.cli.terminal import answer, complain, conclude, show_progress, warn, wrote
+from seatsim.cli.terminal import answer, complain, conclude, say, show_progress, warn, wrote
 from seatsim.schema.errors import InputError
 
 if TYPE_CHECKING:
@@ -70,6 +70,8 @@ def characterise(
     if limits:
         found = found.set_limits(check_limits(found.sheet, limits))
     show_table(*make_characterisation_tables(found))
+    for check in found.sheet.limits:
+        (say if check.passes else complain)(str(check))
     warn(found.remarks)
     folder = out_folder or Path("out") / f"characterise-{found.name}"
     paths = write_characterisation(found, folder)
