@@ -14,6 +14,7 @@ from seatsim.provenance.statement import at_work, read_manifest, state_command
 from seatsim.schema.errors import InputError
 
 RECORDING = Path(__file__).resolve().parents[2] / "scenarios" / "data" / "recording"
+OUTPUTS = ["comfort.json", "report.html", "running_rms.png", "spectra.png"]
 
 
 @pytest.fixture(scope="module")
@@ -51,11 +52,11 @@ def test_a_manifest_holds_command_inputs_and_outputs_by_relative_paths(made):
     text = (made / "out" / "c" / "manifest.json").read_text()
     found = json.loads(text)
     assert str(made) not in text
-    assert (found["command"], found["arguments"]) == ("comfort", ["--hours=6.0", "--", "rec"])
+    assert (found["command"], found["arguments"]) == ("comfort", ["--hours=6", "--", "rec"])
     assert [each["path"] for each in found["inputs"]] == [
         f"../../rec/{name}" for name in ("recording.yaml", "run-1.csv.gz", "run-2.csv.gz")
     ]
-    assert [each["path"] for each in found["outputs"]] == ["comfort.json"]
+    assert [each["path"] for each in found["outputs"]] == OUTPUTS
     assert {"seed", "versions", "platform"} <= set(found)
 
 
@@ -63,7 +64,7 @@ def test_a_moved_project_gives_the_same_bytes_and_code_beside_it_is_not_run(proj
     for name in ("seatsim.py", "numpy.py", "json.py", "sitecustomize.py"):
         (project / name).write_text(f"open({str(project / 'ran')!r}, 'w')")
     found = reproduce(project / "out" / "c")
-    assert found.identical and found.compared == ["comfort.json"] and not found.versions
+    assert found.identical and found.compared == OUTPUTS and not found.versions
     assert not (project / "ran").exists()
 
 
