@@ -21,9 +21,10 @@ from seatsim.schema.errors import SynthesisError
 
 # A few starts tell an easy problem, where all lead to the same value; where they do not, many more follow.
 _FIRST_STARTS, _MORE_STARTS = 6, 24
-# Shares of the time budget: starts are explored until the first (until the second where none is stable), the best
-# refined until the second, and improved upon until the third; the rest is for proofs.
-_EXPLORED, _REFINED, _IMPROVED = 0.3, 0.5, 0.93
+# Shares of the time budget: starts are explored until the first; where none is stable, until the second a proof that
+# none can be is tried, and until the third starts are explored again. The best is refined until the third and improved
+# upon until the fourth; the rest is for proofs.
+_EXPLORED, _PROVEN, _REFINED, _IMPROVED = 0.3, 0.4, 0.5, 0.93
 # Share of the time left that a search of some of the plants may take: others may have to join them.
 _SUBSET = 0.4
 # A plant left out of the search counts as covered where its norm is no higher than this times the searched ones'.
@@ -77,7 +78,13 @@ def search(
         starts = _starts(objective, best, seed)
         found = _explore(objective, starts, part)
         if not found.candidates:
-            raise SynthesisError(_not_stabilised(found, first.rate, [plants[i] for i in chosen], limits, clock))
+            _require_hope([plants[i] for i in chosen], limits, part.after(_PROVEN))
+            found = _explore_on(objective, starts, found, part.after(_REFINED))
+        if not found.candidates:
+            raise SynthesisError(
+                f"no stabilising gain with {_permitted(limits)} was found from {found.starts} starts in at most"
+                f" {clock.budget:g} s; the least spectral abscissa reached is {found.abscissa * first.rate:.3g} 1/s"
+            )
         best = _lowest(objective, found, starts, seed, part, progress)
         norms = [everything.on([each.plant]).norm(best.entries) for each in scaled]
         worst = int(np.argmax(norms))
@@ -104,10 +111,31 @@ def _explore(objective: NormObjective, starts: Iterator[StartingGain], clock: Ti
     size = float(np.linalg.norm(plant.B1) * np.linalg.norm(plant.C1)) or 1.0
     gamma = found.gamma if found.candidates else size
     convex = generate_convex_start(plant, max(gamma, 1e-9 * size), objective.gain(objective.unit), deadline)
-    found = found.with_more(explore(objective, chain(convex, islice(starts, _MORE_STARTS)), deadline, found.gamma))
-    while not found.candidates and time.monotonic() < clock.after(_REFINED):
-        found = found.with_more(explore(objective, islice(starts, _FIRST_STARTS), clock.after(_REFINED)))
+    return found.with_more(explore(objective, chain(convex, islice(starts, _MORE_STARTS)), deadline, found.gamma))
+
+
+def _require_hope(plants: Sequence[GeneralisedPlant], limits: tuple[Array, Array], deadline: float) -> None:
+    """Raise where the time until the deadline suffices to prove that no permitted gain stabilises the plants."""
+    free = plants[0].free
+    if free.sum() <= MOST_GAINS:
+        low, high = (limit[free] for limit in limits)
+        proof = prove_no_better(plants, np.inf, low, high, max(deadline - time.monotonic(), 0.0))
+        if proof.is_proven:
+            raise SynthesisError(
+                f"no gain with {_permitted(limits)} stabilises this plant: proven for all of them (in boxes:"
+                f" {proof.boxes})"
+            )
+
+
+def _explore_on(objective: NormObjective, starts: Iterator[StartingGain], found: Descent, deadline: float) -> Descent:
+    """Go on with further starts until one is stable."""
+    while not found.candidates and time.monotonic() < deadline:
+        found = found.with_more(explore(objective, islice(starts, _FIRST_STARTS), deadline))
     return found
+
+
+def _permitted(limits: tuple[Array, Array]) -> str:
+    return f"|gain| <= {np.abs(limits).max():g}"
 
 
 def _lowest(
@@ -132,19 +160,3 @@ def _lowest(
         gained, best = lower.gamma < best.gamma * _GAINED, lower
     progress(f"gamma {best.gamma:.6g}")
     return best
-
-
-def _not_stabilised(
-    found: Descent, rate: float, plants: Sequence[GeneralisedPlant], limits: tuple[Array, Array], clock: TimeBudget
-) -> str:
-    """Return that no permitted gain is stabilising where the time left suffices to prove it, else what was tried."""
-    permitted, free = f"|gain| <= {np.abs(limits).max():g}", plants[0].free
-    if free.sum() <= MOST_GAINS:
-        low, high = (limit[free] for limit in limits)
-        proof = prove_no_better(plants, np.inf, low, high, max(clock.after(1.0) - time.monotonic(), 0.0))
-        if proof.is_proven:
-            return f"no gain with {permitted} stabilises this plant: proven for all of them (in boxes: {proof.boxes})"
-    return (
-        f"no stabilising gain with {permitted} was found from {found.starts} starts in at most {clock.budget:g} s; the "
-        f"least spectral abscissa reached is {found.abscissa * rate:.3g} 1/s"
-    )

@@ -8,8 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from controllers import synthesise
-from controllers.synthesis import GeneralisedPlant
+from controllers.synthesis import CONVERGED, GeneralisedPlant, synthesise
 
 
 @pytest.fixture(scope="session")
@@ -35,7 +34,7 @@ def seat():
 @pytest.fixture(scope="session")
 def designed(seat):
     """The design for the exact seat, by e1, synthesised once."""
-    return cache(lambda e1: synthesise(seat(e1)))
+    return cache(lambda e1: synthesise(seat(e1), time_budget=CONVERGED))
 
 
 @pytest.fixture

@@ -20,6 +20,17 @@ def test_every_example_loads_without_doubt_and_says_what_it_is(path):
     assert path.read_text(encoding="utf-8").startswith("# ")
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "path",
+    [path for path in FILES if "\nchecks:" not in path.read_text()],
+    ids=lambda path: str(path.relative_to(FOLDER)),
+)
+def test_every_example_runs_whose_checks_do_not_run_it(path, seatsim_command, tmp_path):
+    status, _, said = seatsim_command("run", path, "--out", tmp_path / "out")
+    assert status == 0, said
+
+
 def test_there_are_examples_of_every_kind():
     assert len(FILES) >= 12
 

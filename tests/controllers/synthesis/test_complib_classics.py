@@ -19,7 +19,7 @@ def best_known(shared):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["AC4", "AC7", "HE1", "NN2", "AC15"])
 def test_within_a_percent_of_the_best_known(complib, best_known, name):
-    design = synthesise(complib(name), time_budget=8.0)
+    design = synthesise(complib(name))
     assert design.gamma <= 1.01 * float(best_known[name])
     assert design.certificate.delta <= 1e-4
     assert design.lower_bound <= design.gamma
