@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from scipy import signal
 
 from seatsim.metrics.comfort import dose
+from seatsim.metrics.spine import spinal_dose, spine_response
 from seatsim.metrics.weighting import WEIGHTINGS, sections, weight
 
 Array = NDArray[np.float64]
@@ -35,6 +36,9 @@ def main() -> None:
         print("phonometry is not installed: compared with the oversampled filter alone")
     else:
         peers["phonometry"] = lambda x, name: np.asarray(vibration.apply_weighting(x, RATE, name))
+        spine = abs(spinal_dose(spine_response(record, RATE)) / vibration.acceleration_dose(record, RATE) - 1)
+        print(f"phonometry  ISO 2631-5  difference of the dose {spine:.1e}")
+        assert spine < 1e-9
     worst = 0.0
     for peer, weigh in peers.items():
         for name in WEIGHTINGS.keys() - {"Wh"}:

@@ -1,4 +1,4 @@
-"""The report of a measured vibration: what ISO 2631-1 and directive 2002/44/EC say of it."""
+"""The report of a measured vibration: what ISO 2631 and directive 2002/44/EC say of it."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from seatsim.metrics.exposure import DAY, Exposure, ValueReached
+from seatsim.metrics.spine import SpinalLoad
 from seatsim.plots.labels import format_percent
 from seatsim.report.blocks import Block, Report, Section, show_pictures, tabulate
 from seatsim.report.composing import Closing, compose
@@ -48,8 +49,20 @@ def list_comfort_sentences(found: Comfort) -> Iterator[str]:
     if found.motion_sickness:
         sickness = found.motion_sickness
         yield f"motion sickness (Wf): a_w {sickness.rms:.3f} m/s², MSDV {sickness.msdv:.2f} m/s¹·⁵"
+    if found.spine:
+        yield _say_spine(found.spine)
     if found.exposure:
         yield from _say_exposure(found.exposure)
+
+
+def _say_spine(load: SpinalLoad) -> str:
+    risks = ", ".join(
+        f"{name} R {risk.factor:.2f}, risk {format_percent(risk.probability)}" for name, risk in load.risks.items()
+    )
+    return (
+        f"lumbar spine (ISO 2631-5:2018): dose D_z {load.dose:.2f} m/s², of a day {load.daily_dose:.2f} m/s²;"
+        f" after work from 20 to 64 years of age: {risks}"
+    )
 
 
 def _say_exposure(day: Exposure) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""ISO 2631-1 figures of measured accelerations: each axis, their sum, a day's exposure, and what the seat passes on."""
+"""ISO 2631 figures of measured accelerations: each axis, their sum, a day's exposure, and what the seat passes on."""
 
 from __future__ import annotations
 
@@ -30,6 +30,7 @@ from seatsim.metrics.exposure import (
     point_of,
     split_exposure,
 )
+from seatsim.metrics.spine import SpinalLoad, assess_spine, join_spinal_doses, spinal_dose, spine_response
 from seatsim.metrics.weighting import weight
 from seatsim.recordings.quality.channels import say_implausible
 from seatsim.schema.arrays import Array
@@ -85,7 +86,7 @@ class MotionSickness(NamedTuple):
 
 
 class Comfort(NamedTuple):
-    """What ISO 2631-1 says of a record, or of chosen blocks of its runs taken together: the content of `comfort.json`.
+    """What ISO 2631 says of a record, or of chosen blocks of its runs taken together: the content of `comfort.json`.
 
     `duration` in s is what was recorded, `sample_rate` is in Hz.
     """
@@ -104,6 +105,8 @@ class Comfort(NamedTuple):
     seat: Mapping[str, SeatTransmission]
     """SEAT factors by axis, where seat and floor were recorded."""
     motion_sickness: MotionSickness | None
+    spine: SpinalLoad | None
+    """Of the z axis on the seat; the daily dose is that of the hours of the day."""
     notes: tuple[str, ...]
     stretches: Unwritten[Mapping[str, Sequence[Stretch]]]
     """What was assessed, by axis."""
@@ -171,6 +174,7 @@ def comfort(
         operations=split_exposure(exposure, operations) if exposure else (),
         seat={axis: _compare(cut[axis], cut[base], day) for base, axis in _FLOOR.items() if {base, axis} <= {*named}},
         motion_sickness=_motion_sickness(records, named["z"], blocks, day) if "z" in named else None,
+        spine=_load_spine(records, named["z"], blocks, hours) if "z" in named else None,
         notes=tuple(_notes(records, named, axes, stretches, day)),
         stretches=stretches,
     )
@@ -265,6 +269,26 @@ def _motion_sickness(
     stretches = _cut(records, column, direction("z")._replace(weighting="Wf"), blocks)
     found = join_doses([*_join_runs(stretches, day).values()])
     return MotionSickness(found.rms, motion_sickness_dose(found.rms, found.duration))
+
+
+def _load_spine(
+    records: Sequence[AccelerationRecord], column: str, blocks: _Blocks, hours: float | Mapping[str, float]
+) -> SpinalLoad:
+    """Return the load of the spine; runs without hours of their own have their shares of those of the day."""
+    doses, durations = list[float](), list[float]()
+    for record in records:
+        recorded = record.values(column, direction("z").unit)
+        response = spine_response(recorded - recorded.mean(), record.sample_rate)
+        parts = [response[part] for part in _cuts(record, len(response), blocks)]
+        doses.append(join_spinal_doses([spinal_dose(part) for part in parts]))
+        durations.append(sum(map(len, parts)) / record.sample_rate)
+    if isinstance(hours, Mapping):
+        exposed = [hours[record.name] for record in records]
+    else:
+        exposed = [hours * each / sum(durations) for each in durations]
+    times = HOUR * np.array(exposed) / durations
+    daily = join_spinal_doses(doses, times)
+    return SpinalLoad(join_spinal_doses(doses), daily, assess_spine(daily))
 
 
 def _notes(

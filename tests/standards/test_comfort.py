@@ -96,6 +96,7 @@ def test_operations_of_a_day_add_by_squares_and_fourth_powers():
     squares = [lasts * parts[run].axes["z"].dose.rms ** 2 for run, lasts in hours.items()]
     assert day.axes["z"].dose.rms ** 2 == pytest.approx(sum(squares) / 4.5)
     assert day.motion_sickness.msdv == pytest.approx(day.motion_sickness.rms * math.sqrt(4.5 * 3600))
+    assert day.spine.daily_dose**6 == pytest.approx(sum(part.spine.daily_dose**6 for part in parts.values()))
     # Work of two kinds is no repeat, whose spread would have to be small.
     assert day.seat["z"].within_spread is None and day.duration == pytest.approx(2 * parts["run-1"].duration)
 
