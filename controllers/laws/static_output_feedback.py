@@ -123,10 +123,10 @@ class StaticOutputFeedback(NamedTuple):
         self, plant: Plant, floors: Floors = no_floors, progress: Callable[[str], object] = lambda text: None
     ) -> Design:
         """Return the H-infinity design for a plant with this law's weights (the default ones where none are given)."""
-        from controllers.synthesis import CONVERGED, synthesise
+        from controllers.synthesis import SEAT_TIME_BUDGET, synthesise
 
         plants = self.plants(plant, self._shape_floors(floors))
-        return replace(synthesise(plants, time_budget=CONVERGED, progress=progress), measures=self.measures)
+        return replace(synthesise(plants, time_budget=SEAT_TIME_BUDGET, progress=progress), measures=self.measures)
 
     def plants(self, plant: Plant, floors: Sequence[ShapingFilter | None] = (None,)) -> list[GeneralisedPlant]:
         """Return the generalised plant of every driver with every force factor on every floor (None: a white one)."""

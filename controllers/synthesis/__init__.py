@@ -8,7 +8,16 @@ verify for what is true of it, and bound for what no controller can beat.
 from controllers.synthesis.certify import Certificate
 from controllers.synthesis.design import ClosedLoop, Design
 from controllers.synthesis.plant import GeneralisedPlant
-from controllers.synthesis.solve import CONVERGED, find_gain, synthesise
+from controllers.synthesis.solve import SEAT_TIME_BUDGET, find_gain, synthesise
 from controllers.synthesis.verify import verify
 
-__all__ = ["CONVERGED", "Certificate", "ClosedLoop", "Design", "GeneralisedPlant", "find_gain", "synthesise", "verify"]
+__all__ = [
+    "SEAT_TIME_BUDGET",
+    "Certificate",
+    "ClosedLoop",
+    "Design",
+    "GeneralisedPlant",
+    "find_gain",
+    "synthesise",
+    "verify",
+]

@@ -22,7 +22,7 @@ _MAX_GAIN = 1e6
 """Largest magnitude of an entry of the gain where none is stated."""
 _TIME_BUDGET = 60.0
 """Seconds of a search where none are stated."""
-CONVERGED = 900.0
+SEAT_TIME_BUDGET = 900.0
 """Seconds in which the search for a seat's gain converges on a slow computer too, so that all find the same gain."""
 
 
@@ -121,9 +121,11 @@ def synthesise(
 
 
 def find_gain(plants: Sequence[GeneralisedPlant]) -> Array:
-    """Return the gain that `synthesise` finds for plants within `CONVERGED`, without certificate and bound."""
+    """Return the gain that `synthesise` finds for plants within `SEAT_TIME_BUDGET` s, without certificate and bound."""
     begin = time.monotonic()
-    return search(plants, _limits(plants[0], _MAX_GAIN, None), 0, TimeBudget(begin, CONVERGED), lambda text: None)
+    return search(
+        plants, _limits(plants[0], _MAX_GAIN, None), 0, TimeBudget(begin, SEAT_TIME_BUDGET), lambda text: None
+    )
 
 
 def _find_largest_bound(design: Design, deadline: float) -> float:

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from scipy import fft
 
 from seatsim.metrics.motion import as_signal, require_finite, require_positive
-from seatsim.metrics.weighting import ComplexArray
+from seatsim.metrics.weighting import ComplexArray, quadratic
 from seatsim.schema.arrays import Array
 
 _ZERO = (34.0, 0.35)
@@ -72,8 +72,12 @@ def spine_transfer(frequency: ArrayLike) -> ComplexArray:
     Source: ISO 2631-5:2018, 5.2, formula 1 (read in phonometry 3.3.0).
     """
     s = 2j * np.pi * np.asarray(frequency, dtype=float)
-    response: ComplexArray = _quadratic(s, *_ZERO) / np.prod([_quadratic(s, *pole) for pole in _POLES], axis=0)
+    response: ComplexArray = _mode(s, *_ZERO) / np.prod([_mode(s, *pole) for pole in _POLES], axis=0)
     return response
+
+
+def _mode(s: ComplexArray, corner: float, damping: float) -> ComplexArray:
+    return quadratic(s, corner, 0.5 / damping)
 
 
 def spine_response(acceleration: ArrayLike, sample_rate: float) -> Array:
@@ -128,7 +132,3 @@ def _assess(person: _Person, daily_dose: float) -> SpinalRisk:
     strength = _STRENGTH - person.ageing * np.array(_AGES) - person.stress * _GRAVITY
     factor = join_spinal_doses(stress / strength, _DAYS)
     return SpinalRisk(stress, factor, 1.0 - math.exp(-((factor / person.scale) ** person.shape)))
-
-
-def _quadratic(s: ComplexArray, corner: float, damping: float) -> ComplexArray:
-    return 1 + 2 * damping * s / corner + (s / corner) ** 2

@@ -120,8 +120,8 @@ def frequency_response(frequency: ArrayLike, weighting: str = "Wk") -> ComplexAr
     c = _constants(weighting)
     jf = np.asarray(frequency, dtype=np.complex128) * 1j
     high_pass = jf**2 / (jf**2 + math.sqrt(2) * c.f1 * jf + c.f1**2)
-    low_pass = 1 / _quadratic(jf, c.f2, math.sqrt(0.5))
-    transition = (1 + jf / c.f3) / _quadratic(jf, c.f4, c.Q4)
+    low_pass = 1 / quadratic(jf, c.f2, math.sqrt(0.5))
+    transition = (1 + jf / c.f3) / quadratic(jf, c.f4, c.Q4)
     step = _upward_step(jf, c.step) if c.step else 1.0
     h: ComplexArray = high_pass * low_pass * transition * step * c.K
     return h
@@ -136,11 +136,11 @@ def _constants(weighting: str) -> Weighting:
 
 
 def _upward_step(jf: ComplexArray, step: _UpwardStep) -> ComplexArray:
-    rise: ComplexArray = _quadratic(jf, step.f5, step.Q5) / _quadratic(jf, step.f6, step.Q6)
+    rise: ComplexArray = quadratic(jf, step.f5, step.Q5) / quadratic(jf, step.f6, step.Q6)
     return rise * (step.f5 / step.f6) ** 2
 
 
-def _quadratic(jf: ComplexArray, corner: float, quality: float) -> ComplexArray:
+def quadratic(jf: ComplexArray, corner: float, quality: float) -> ComplexArray:
     """Return 1 + s/(Q w) + (s/w)^2 at s = 2 pi jf, w = 2 pi `corner`: the factors 2 pi cancel."""
     u: ComplexArray = jf / corner
     return 1 + u / quality + u * u

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
@@ -217,17 +218,29 @@ def _check_hours(hours: Mapping[str, float], runs: Sequence[str]) -> Mapping[str
 
 def _cut(records: Sequence[AccelerationRecord], column: str, along: Direction, blocks: _Blocks) -> list[Stretch]:
     """Return each block of each record."""
-    found = []
+    through = partial(weight, weighting=along.weighting)
+    return [
+        Stretch(record.name, record.sample_rate, x, weighted, dose(weighted, record.sample_rate))
+        for record, x, weighted in _filter(records, column, along.unit, through, blocks)
+    ]
+
+
+def _filter(
+    records: Sequence[AccelerationRecord],
+    column: str,
+    unit: str,
+    through: Callable[[Array, float], Array],
+    blocks: _Blocks,
+) -> Iterator[tuple[AccelerationRecord, Array, Array]]:
+    """Yield each block of each record, less the record's mean, before and after a filter of the whole record."""
     for record in records:
         # The high-pass would take seconds to forget a constant, and gravity in a sensor would be the largest vibration.
-        recorded = record.values(column, along.unit)
+        recorded = record.values(column, unit)
         x = recorded - recorded.mean()
         with placed(f"{record.name}, {column}"):
-            whole = weight(x, record.sample_rate, along.weighting)
+            whole = through(x, record.sample_rate)
         for part in _cuts(record, len(whole), blocks):
-            doses = dose(whole[part], record.sample_rate)
-            found.append(Stretch(record.name, record.sample_rate, x[part], whole[part], doses))
-    return found
+            yield record, x[part], whole[part]
 
 
 def _join_runs(stretches: Sequence[Stretch], day: Mapping[str, float]) -> dict[str, Dose]:
@@ -275,18 +288,16 @@ def _load_spine(
     records: Sequence[AccelerationRecord], column: str, blocks: _Blocks, hours: float | Mapping[str, float]
 ) -> SpinalLoad:
     """Return the load of the spine; runs without hours of their own have their shares of those of the day."""
-    doses, durations = list[float](), list[float]()
-    for record in records:
-        recorded = record.values(column, direction("z").unit)
-        response = spine_response(recorded - recorded.mean(), record.sample_rate)
-        parts = [response[part] for part in _cuts(record, len(response), blocks)]
-        doses.append(join_spinal_doses([spinal_dose(part) for part in parts]))
-        durations.append(sum(map(len, parts)) / record.sample_rate)
+    parts = [
+        (record.name, spinal_dose(response), len(response) / record.sample_rate)
+        for record, _, response in _filter(records, column, direction("z").unit, spine_response, blocks)
+    ]
+    doses = [value for _, value, _ in parts]
     if isinstance(hours, Mapping):
-        exposed = [hours[record.name] for record in records]
+        measured = {run: sum(lasts for name, _, lasts in parts if name == run) for run in hours}
+        times = [HOUR * hours[run] / measured[run] for run, _, _ in parts]
     else:
-        exposed = [hours * each / sum(durations) for each in durations]
-    times = HOUR * np.array(exposed) / durations
+        times = [HOUR * hours / sum(lasts for _, _, lasts in parts)] * len(parts)
     daily = join_spinal_doses(doses, times)
     return SpinalLoad(join_spinal_doses(doses), daily, assess_spine(daily))
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from controllers.synthesis import CONVERGED, GeneralisedPlant, synthesise
+from controllers.synthesis import SEAT_TIME_BUDGET, GeneralisedPlant, synthesise
 
 
 @pytest.fixture(scope="session")
@@ -34,7 +34,7 @@ def seat():
 @pytest.fixture(scope="session")
 def designed(seat):
     """The design for the exact seat, by e1, synthesised once."""
-    return cache(lambda e1: synthesise(seat(e1), time_budget=CONVERGED))
+    return cache(lambda e1: synthesise(seat(e1), time_budget=SEAT_TIME_BUDGET))
 
 
 @pytest.fixture

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import seatsim
+from seatsim.pytest_plugin import _STATES_CHECKS
 from seatsim.scenario.loading import load
 from seatsim.scenario.numbers import list_doubts
 
@@ -23,7 +24,7 @@ def test_every_example_loads_without_doubt_and_says_what_it_is(path):
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "path",
-    [path for path in FILES if "\nchecks:" not in path.read_text()],
+    [path for path in FILES if not _STATES_CHECKS.search(path.read_bytes())],
     ids=lambda path: str(path.relative_to(FOLDER)),
 )
 def test_every_example_runs_whose_checks_do_not_run_it(path, seatsim_command, tmp_path):

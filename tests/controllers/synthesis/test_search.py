@@ -8,7 +8,7 @@ import pytest
 from controllers.synthesis.norm import hinf_norm
 from controllers.synthesis.plant import GeneralisedPlant
 from controllers.synthesis.search import TimeBudget, search
-from controllers.synthesis.solve import CONVERGED
+from controllers.synthesis.solve import SEAT_TIME_BUDGET
 from seatsim.schema.errors import SynthesisError
 
 ONE, COLUMN = np.eye(1), np.zeros((2, 1))
@@ -19,7 +19,7 @@ def state_feedback(pole=-1.0, weight=1.0):
     return GeneralisedPlant(pole * ONE, ONE, ONE, [[weight], [0]], ONE, COLUMN, [[0], [1]], 0 * ONE)
 
 
-def ask(plants, limit=1e3, seconds=CONVERGED, lines=None):
+def ask(plants, limit=1e3, seconds=SEAT_TIME_BUDGET, lines=None):
     limits = np.full(plants[0].free.shape, limit)
     lines = [] if lines is None else lines
     return search(plants, (-limits, limits), 0, TimeBudget(time.monotonic(), seconds), lines.append)
