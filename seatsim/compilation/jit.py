@@ -10,6 +10,10 @@ from typing import Any, TypeVar
 import numba
 from numba.extending import overload, register_jitable
 
+from seatsim.compilation import lean_code
+
+lean_code.install()
+
 _F = TypeVar("_F", bound=Callable[..., object])
 _Resolve = Callable[..., Callable[..., object] | None]
 

@@ -196,7 +196,7 @@ def test_what_forms_explain_is_one_sentence(forms, said):
 
 def test_a_diagnosis_lists_the_forms_that_were_tried(wrong_form, tmp_path):
     settings = try_only(wrong_form, "bouc_wen").settings
-    found = seatsim.diagnose(wrong_form.recording, OTHERS, settings=settings, damper_forms=True)
+    found = seatsim.diagnose(wrong_form.recording, OTHERS, settings=settings, budget=1200.0, damper_forms=True)
     best = found.alternatives[0]
     content = to_content(found)
     assert best.model == "bouc_wen" and best.shrink > 0.5
@@ -209,7 +209,7 @@ def test_a_diagnosis_lists_the_forms_that_were_tried(wrong_form, tmp_path):
 
 def test_that_no_form_can_be_judged_is_noted_where_they_were_asked_for(tmp_path):
     problem = record(tmp_path / "rig", runs=1)
-    found = seatsim.diagnose(problem.recording, OTHERS, damper_forms=True)
+    found = seatsim.diagnose(problem.recording, OTHERS, budget=1200.0, damper_forms=True)
     assert found.alternatives == []
     assert describe_obstacle(problem) in found.notes
-    assert describe_obstacle(problem) not in seatsim.diagnose(problem.recording, OTHERS).notes
+    assert describe_obstacle(problem) not in seatsim.diagnose(problem.recording, OTHERS, budget=1200.0).notes

@@ -28,7 +28,7 @@ def made(tmp_path_factory):
 @pytest.mark.slow
 def test_a_faultless_rig_has_no_gap(made):
     folder, labels = made
-    diagnosis = seatsim.diagnose(folder / labels["none"][0])
+    diagnosis = seatsim.diagnose(folder / labels["none"][0], budget=1200.0)
     assert diagnosis.verdict == "none"
     assert diagnosis.selected == [] and diagnosis.where == []
 
@@ -37,7 +37,7 @@ def test_a_faultless_rig_has_no_gap(made):
 def test_a_hidden_effect_is_named_and_takes_the_gap_away(made):
     folder, labels = made
     name, label = labels["one"]
-    diagnosis = seatsim.diagnose(folder / name)
+    diagnosis = seatsim.diagnose(folder / name, budget=1200.0)
     (effect,) = label["effects"]
     assert effect in diagnosis.selected or any(effect in group for group in diagnosis.indistinguishable)
     assert diagnosis.gap.after.overall < 0.8 * diagnosis.gap.calibrated.overall
@@ -47,7 +47,7 @@ def test_a_hidden_effect_is_named_and_takes_the_gap_away(made):
 def test_what_no_effect_explains_is_unknown(made):
     folder, labels = made
     name, label = labels["outside"]
-    diagnosis = seatsim.diagnose(folder / name)
+    diagnosis = seatsim.diagnose(folder / name, budget=1200.0)
     assert diagnosis.verdict == "unknown"
     assert diagnosis.probability_unknown > 0.5
     # An effect that stands beside the unknown cause lies in its block and lowers the gap of the run held out.

@@ -25,7 +25,7 @@ BLANK = """() => [...document.querySelectorAll('.plot canvas')].filter(canvas =>
 @contextmanager
 def open_chromium():
     """Yield a browser; skip the test where Playwright or Chromium is missing."""
-    playwright = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
+    playwright = pytest.importorskip("playwright.sync_api", reason="without Playwright: pip install playwright")
     path = shutil.which("chromium") or shutil.which("google-chrome")
     if path is None:
         pytest.skip("no Chromium on this machine")

@@ -260,7 +260,7 @@ def heavier(folder):
 
 def test_a_folder_is_examined_posed_and_diagnosed(heavier, tmp_path):
     said = []
-    found = diagnose(write(heavier, tmp_path, None), progress=said.append, settings=SETTINGS)
+    found = diagnose(write(heavier, tmp_path, None), progress=said.append, settings=SETTINGS, budget=1200.0)
     assert "driver.mass" in found.selected and said[0] == "looking at the data"
     assert any(note.startswith("parameter_tolerance is not stated") for note in found.notes)
 
@@ -270,7 +270,7 @@ def test_a_second_recording_is_joined_to_the_first(heavier, tmp_path):
     for folder, runs in zip(folders, (["first"], ["second", "third"]), strict=True):
         folder.mkdir()
         write(heavier, folder, runs=runs)
-    found = diagnose(folders[0], after=folders[1], settings=SETTINGS)
+    found = diagnose(folders[0], after=folders[1], settings=SETTINGS, budget=1200.0)
     assert "driver.mass" in found.selected and len(found.gap.by_run) == 3
 
 
