@@ -7,9 +7,8 @@ seventy such functions and of such tuples: without both it compiles in six tenth
 
 from __future__ import annotations
 
-from typing import Any
-
-from numba.core import types
+from llvmlite.binding import ModuleRef
+from numba import types
 from numba.core.codegen import CPUCodeLibrary, JITCPUCodegen
 from numba.core.datamodel import default_manager, models
 
@@ -27,7 +26,7 @@ def install() -> None:
         default_manager.register(kind, _UniTuple)
 
 
-def finalize(library: Any) -> None:
+def finalize(library: CPUCodeLibrary) -> None:
     """End the compilation of a function: one that is inlined stays as it is written, for its callers.
 
     Any other links all that it inlines, with what that calls, and is optimised as one.
@@ -39,28 +38,28 @@ def finalize(library: Any) -> None:
     _finalize(library)
 
 
-def optimize_functions(library: Any, module: Any) -> None:
+def optimize_functions(library: CPUCodeLibrary, module: ModuleRef) -> None:
     """Optimise a module's functions one by one; those that are inlined are optimised in their callers."""
     module.data_layout = library._codegen._data_layout
     if not _is_inlined(module):
         _optimize_functions(library, module)
 
 
-def set_env(codegen: Any, name: str, environment: object) -> None:
+def set_env(codegen: JITCPUCodegen, name: str, environment: object) -> None:
     """Hand a function the Python objects that it refers to; one without machine code has no place for them."""
     if codegen._engine.is_symbol_defined(name):
         _set_env(codegen, name, environment)
 
 
-def _is_inlined(module: Any) -> bool:
+def _is_inlined(module: ModuleRef) -> bool:
     """Return whether callers inline all functions of a module; one that Python calls has an entry besides these."""
     outer = [each for each in module.functions if not each.is_declaration and each.linkage.name == "external"]
     return bool(outer) and all(any(b"alwaysinline" in text for text in each.attributes) for each in outer)
 
 
-def _list_linked(library: Any) -> list[Any]:
+def _list_linked(library: CPUCodeLibrary) -> list[CPUCodeLibrary]:
     """Return the libraries of what a function calls, and of what inlined functions among these call, each once."""
-    found, waiting = dict[Any, None](), list(library._linking_libraries)
+    found, waiting = dict[CPUCodeLibrary, None](), list(library._linking_libraries)
     while waiting:
         each = waiting.pop(0)
         if each not in found:
@@ -69,18 +68,18 @@ def _list_linked(library: Any) -> list[Any]:
     return list(found)
 
 
-class _Uncounted:
+class _Uncounted(models.DataModel):  # type: ignore[misc]  # numba has no types
     """A tuple whose references are counted only where a member is."""
 
-    def traverse(self, builder: object) -> list[Any]:
+    def traverse(self, builder: object) -> list[object]:
         """Return the members whose references may be counted."""
-        members: list[Any] = super().traverse(builder) if self.contains_nrt_meminfo() else []  # type: ignore[misc]
+        members: list[object] = super().traverse(builder) if self.contains_nrt_meminfo() else []
         return members
 
 
-class _Tuple(_Uncounted, models.TupleModel):  # type: ignore[misc]  # numba has no types
+class _Tuple(_Uncounted, models.TupleModel):  # type: ignore[misc]
     """Of members of several types."""
 
 
-class _UniTuple(_Uncounted, models.UniTupleModel):  # type: ignore[misc]  # numba has no types
+class _UniTuple(_Uncounted, models.UniTupleModel):  # type: ignore[misc]
     """Of members of one type."""

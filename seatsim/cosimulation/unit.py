@@ -113,8 +113,8 @@ class RunningUnit:
             raise RunError(f"{self._file}: the unit failed at {of}: {said}") from error
 
 
-PATIENCE = 30.0
-"""Seconds that a library may take to load and to make an instance; others take milliseconds."""
+PATIENCE = 180.0
+"""Seconds in which a process must have started, loaded a library and made an instance, on a slow computer too."""
 _TRIAL = """
 import sys
 from pathlib import Path

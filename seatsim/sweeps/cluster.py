@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 _EXTRA = 'engine dask needs an extra; install it with: pip install "seatsim[cluster]"'
 _AHEAD = 4
 """Tasks for each worker that are sent before it has asked for them, so that it never waits for one."""
-LONGEST_SEARCH = 10
+LONGEST_SEARCH = 60
 """Seconds in which a scheduler must answer."""
 
 
