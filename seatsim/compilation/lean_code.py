@@ -58,14 +58,21 @@ def _is_inlined(module: ModuleRef) -> bool:
 
 
 def _list_linked(library: CPUCodeLibrary) -> list[CPUCodeLibrary]:
-    """Return the libraries of what a function calls, and of what inlined functions among these call, each once."""
-    found, waiting = dict[CPUCodeLibrary, None](), list(library._linking_libraries)
-    while waiting:
-        each = waiting.pop(0)
-        if each not in found:
-            found[each] = None
-            waiting += each._linking_libraries if _is_inlined(each._final_module) else []
-    return list(found)
+    """Return the libraries of what a function calls, and of what inlined functions among these call, each once.
+
+    Each stands after all that call it: of a library that is linked before, LLVM leaves out what nothing calls yet.
+    """
+    ended = dict[CPUCodeLibrary, None]()
+
+    def visit(caller: CPUCodeLibrary) -> None:
+        for each in caller._linking_libraries:
+            if each not in ended:
+                if _is_inlined(each._final_module):
+                    visit(each)
+                ended[each] = None
+
+    visit(library)
+    return list(reversed(ended))
 
 
 class _Uncounted(models.DataModel):  # type: ignore[misc]  # numba has no types
