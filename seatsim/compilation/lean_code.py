@@ -14,6 +14,8 @@ from numba.core.datamodel import default_manager, models
 
 _finalize, _optimize_functions = CPUCodeLibrary.finalize, CPUCodeLibrary._optimize_functions
 _set_env = JITCPUCodegen.set_env
+_environments: dict[str, object] = {}
+"""Python objects that inlined functions refer to, by the symbol that stands for them in the code of their callers."""
 
 
 def install() -> None:
@@ -36,6 +38,9 @@ def finalize(library: CPUCodeLibrary) -> None:
         return
     library._linking_libraries = _list_linked(library)
     _finalize(library)
+    for variable in library._final_module.global_variables:
+        if variable.name in _environments:
+            _set_env(library._codegen, variable.name, _environments[variable.name])
 
 
 def optimize_functions(library: CPUCodeLibrary, module: ModuleRef) -> None:
@@ -46,9 +51,11 @@ def optimize_functions(library: CPUCodeLibrary, module: ModuleRef) -> None:
 
 
 def set_env(codegen: JITCPUCodegen, name: str, environment: object) -> None:
-    """Hand a function the Python objects that it refers to; one without machine code has no place for them."""
+    """Hand a function the Python objects that it refers to; one without machine code has them once a caller ends."""
     if codegen._engine.is_symbol_defined(name):
         _set_env(codegen, name, environment)
+    else:
+        _environments[name] = environment
 
 
 def _is_inlined(module: ModuleRef) -> bool:

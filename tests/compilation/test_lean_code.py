@@ -40,6 +40,20 @@ def test_an_inlined_function_within_an_inlined_one_reports_its_error():
         call(-1.0)
 
 
+def test_an_inlined_function_may_ask_python():
+    @jit
+    def ask(x):
+        with numba.objmode(y="float64"):
+            y = float(str(x)) + 1.0
+        return y
+
+    @numba.njit
+    def call(x):
+        return 2.0 * ask(x)
+
+    assert call(2.5) == 7.0
+
+
 @pytest.fixture
 def counted():
     """Allocations are counted meanwhile."""
