@@ -46,7 +46,10 @@ _FREQUENCIES = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000)
 
 
 class Entry(NamedTuple):
-    """An entry of a legend: what it calls a line, and how that line looks; width in points, `alpha` its opacity."""
+    """An entry of a legend: what it calls a line, and how that line looks; width in points, `alpha` its opacity.
+
+    `mark` is a marker of matplotlib, which is `hollow` where one behind it is to be seen.
+    """
 
     label: str
     colour: str
@@ -54,6 +57,7 @@ class Entry(NamedTuple):
     width: float = 1.4
     alpha: float = 1.0
     mark: str = ""
+    hollow: bool = False
 
 
 class Page(NamedTuple):
@@ -130,10 +134,10 @@ def measure_head(title: int, note: int) -> float:
     return _MARGIN + LINE * (title + note) + 0.12
 
 
-def draw_line(axes: Axes, x: ArrayLike, y: ArrayLike, look: Entry) -> None:
-    """Draw the line through (x, y), shape (N,) each, with the look of its entry."""
+def draw_line(axes: Axes, x: ArrayLike, y: ArrayLike, look: Entry) -> Line2D:
+    """Draw the line through (x, y), shape (N,) each, with the look of its entry; return it."""
     [line] = axes.plot(np.asarray(x), np.asarray(y))
-    _dress(line, look, LONGEST)
+    return _dress(line, look, LONGEST)
 
 
 def draw_legend_beside(axes: Axes, title: str) -> Legend:
@@ -205,6 +209,7 @@ def _dress(line: Line2D, look: Entry, longest: int) -> Line2D:
     """Return a line with the look of an entry, and its label in at most `longest` letters."""
     line.set(color=look.colour, linestyle=look.dashes, linewidth=look.width, alpha=look.alpha, marker=look.mark)
     line.set(label=clean_text(look.label, longest), solid_capstyle="butt")
+    line.set(fillstyle="none" if look.hollow else "full", markeredgewidth=1.8 if look.hollow else 1.0)
     return line
 
 

@@ -20,10 +20,10 @@ import traceback
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from functools import cache
-from importlib.machinery import ModuleSpec
+from importlib.machinery import ModuleSpec, SourceFileLoader
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import TYPE_CHECKING, NamedTuple, NoReturn, cast
 
 from seatsim.schema.errors import InputError
 from seatsim.schema.guarded import read_bytes
@@ -204,10 +204,18 @@ def _check_name_is_free(name: str, path: Path) -> None:
         raise InputError(f"{path}: '{name}' is the name of another module, {origin or 'built in'}; rename the file")
 
 
+class _FreshLoader(SourceFileLoader):
+    """Compiles a file whenever it is loaded: an edit may keep its second and size, by which Python tells bytecode."""
+
+    def path_stats(self, path: str) -> NoReturn:
+        """Say that the file has no time, so that no bytecode is looked for or kept."""
+        raise OSError
+
+
 def _load(name: str, shown: Path, path: Path) -> ModuleType:
     """Execute a file as a new module; the one that it replaces stays where that fails."""
     # A .py file always has one. An `assert` here, which pytest rewrites, would change the key of what is compiled.
-    spec = cast("ModuleSpec", importlib.util.spec_from_file_location(name, path))
+    spec = cast("ModuleSpec", importlib.util.spec_from_file_location(name, path, loader=_FreshLoader(name, str(path))))
     previous = sys.modules.get(name)
     try:
         return _execute(spec)

@@ -173,7 +173,7 @@ def test_variants_are_compared_by_bars_with_their_values(made_up):
     runs = [made_up({"variant": v}) for v in "ab"] + [made_up({"variant": "at rest"}, motion=0.0)]
     figure = plot_comparison(runs)
     assert [tick.get_text() for tick in figure.axes[0].get_yticklabels()] == ["a", "b", "at rest"]
-    assert [text.get_text() for text in figure.axes[2].texts] == ["14.2", "14.2", "0.0"]
+    assert [text.get_text() for text in figure.axes[2].texts] == ["14.2", "14.2", "0"]
     assert figure.axes[3].texts[2].get_text() == "none"
 
 
@@ -194,4 +194,4 @@ def test_more_runs_than_lines_can_tell_apart(made_up):
     many = [made_up({"seed": n}, seconds=0.1) for n in range(20)]
     spread = [run.scenario.label["seed"] for run in naming.show_runs(many)[0].runs]
     assert len(spread) == 8 and spread[0] == 0 and spread[-1] == 19
-    assert "8 of 20 runs are shown." in " ".join(texts(plot_psd(many))[1].split())
+    assert "8 of 20 runs are shown, spread evenly over their order." in " ".join(texts(plot_psd(many))[1].split())

@@ -49,9 +49,12 @@ def plot_steps(found: Characterisation) -> Figure:
     at = f" at {speeds.pop()}" if len(speeds) == 1 else ""
     note = f"Force{at}; t10, t63, t90: 10, 63 and 90 % of its change, from the current's own 10 % or a command's step."
     title = f"Response to steps of current: {found.name}"
-    page = style.make_page(title, note, Grid((3.0,), columns=2, top=0.3, gap=(0.3, 0.0)))
-    for axes, words in zip(page.rows[0], ("rises", "falls"), strict=True):
-        _draw_responses(axes, [pair for pair in known if pair[0].rises == (words == "rises")][:MOST])
+    shown = [[pair for pair in known if pair[0].rises == rises][:MOST] for rises in (True, False)]
+    # The legends stand below the panels, where they cover nothing.
+    room = 0.75 + style.LINE * max(map(len, shown))
+    page = style.make_page(title, note, Grid((3.0,), columns=2, top=0.3, bottom=room, gap=(0.3, 0.0)))
+    for axes, words, pairs in zip(page.rows[0], ("rises", "falls"), shown, strict=True):
+        _draw_responses(axes, pairs)
         style.set_title(axes, f"current {words}")
     page.rows[0][0].set_ylabel("share of the change [-]")
     page.rows[0][1].tick_params(labelleft=False)
@@ -75,9 +78,9 @@ def _draw_responses(axes: Axes, shown: list[tuple[Response, StepResponse]]) -> N
         axes.axhline(share, color=GREY, linewidth=0.7, linestyle=(0.0, (1.0, 2.0)))
         words, upright = _say_time(time, [row for _, row in shown]), "bottom" if share < 0.5 else "top"
         axes.text(0.99e3 * end, share, words, fontsize=9, horizontalalignment="right", verticalalignment=upright)
-    axes.set(xlabel="time [ms]", xlim=(-0.08e3 * end, 1e3 * end), ylim=(-0.25 - 0.17 * len(shown), top))
+    axes.set(xlabel="time [ms]", xlim=(-0.08e3 * end, 1e3 * end), ylim=(-0.15, top))
     axes.set_yticks([0, *(share for _, share in _TIMES)], ["0", *(f"{share:.2g}" for _, share in _TIMES)])
-    axes.legend(title="step", loc="lower right", fontsize=9, framealpha=0.9, alignment="left", handlelength=1.2)
+    axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.17), fontsize=style.FONT, frameon=False, borderaxespad=0)
 
 
 def _say_time(time: str, rows: Sequence[StepResponse]) -> str:

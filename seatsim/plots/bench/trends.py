@@ -52,8 +52,8 @@ _ENERGY = (
     _Figure("equivalent damping\n[kN·s/m]", "damping", 1e-3),
 )
 _ASYMMETRY = (
-    _Figure("asymmetric part /\nRMS force [%]", "asymmetry", 100.0, 1.0),
-    _Figure("the same, less\nthe offset [%]", "asymmetry_of_shape", 100.0, 1.0),
+    _Figure("asymmetric part /\nRMS force [%]", "asymmetry", 100.0, 10.0),
+    _Figure("asymmetry without the\nmean force [%]", "asymmetry_of_shape", 100.0, 10.0),
 )
 BY_CURRENT = Abscissa("current [A]", lambda r: r.current, lambda r: f", {r.temperature:.0f} °C")
 BY_TEMPERATURE = Abscissa("temperature [°C]", lambda r: r.temperature, lambda r: f", {r.current:.3g} A")

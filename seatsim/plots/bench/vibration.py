@@ -62,7 +62,7 @@ def _plot_spectra(found: Comfort, axes: Sequence[str]) -> Figure:
         signals = [part.acceleration for part in stretches], [part.weighted for part in stretches]
         densities = [estimate_density(1.0 / stretches[0].sample_rate, each) for each in signals]
         style.scale_frequency_axis(panel, LOWEST, HIGHEST)
-        panel.set_ylabel("density [m²/s³]")
+        panel.set_ylabel("density [(m/s²)²/Hz]")
         style.set_title(panel, f"{axis}, {found.axes[axis].direction.weighting}")
         draw_densities(panel, densities, looks, HIGHEST)
     return page.figure

@@ -25,10 +25,12 @@ Key = Literal["floor", "before", "calibrated", "after"]
 STAGES: dict[Key, Entry] = {
     "floor": Entry("noise floor", "0.35", "none", mark="|"),
     "before": Entry("nominal", COLOURS[1], "none", mark="o"),
-    "calibrated": Entry("refitted", COLOURS[2], "none", mark="D"),
+    "calibrated": Entry("refitted", COLOURS[2], "none", mark="D", hollow=True),
     "after": Entry("with effects", COLOURS[0], "none", mark="s"),
 }
 """How each gap of a diagnosis is called and marked."""
+_SIZES = {"|": 13, "o": 8, "D": 10, "s": 5}
+"""Sizes of the marks in points: of marks at one place, each is seen."""
 
 
 def select_stages(diagnosis: Diagnosis) -> list[Key]:
@@ -80,11 +82,7 @@ def _draw_gaps(
         if seen:
             axes.plot([min(v for _, v in seen), max(v for _, v in seen)], [row, row], color="0.8", linewidth=1.5)
         for stage, value in seen:
-            # The refit is hollow, so that what lies behind it is seen.
-            face = "1.0" if stage.mark == "D" else stage.colour
-            size, edge = 13 if stage.mark == "|" else 7, 2 if stage.mark in "|D" else 1
-            [mark] = axes.plot([value], [row], linestyle="", marker=stage.mark, markersize=size, zorder=3)
-            mark.set(markeredgecolor=stage.colour, markerfacecolor=face, markeredgewidth=edge)
+            style.draw_line(axes, [value], [row], stage).set(markersize=_SIZES[stage.mark], zorder=3)
     if not known:
         axes.text(0.5, 0.5, f"every gap is below {100 * SMALLEST:g} %", transform=axes.transAxes, ha="center")
     axes.axhline(0.5, color="0.8", linewidth=0.8)
@@ -133,11 +131,13 @@ def plot_ranking(diagnosis: Diagnosis) -> Figure | None:
     names, probabilities, shrinks, colours, texts = map(list, zip(*_list_rows(diagnosis), strict=True))
     equivalent = " Light blue: explain the gap as well." if _EQUIVALENT in colours else ""
     note = (
-        f"Bold and blue: named by the diagnosis.{equivalent} Each figure is the probability of being at work: two can"
-        " both be near 100 %."
+        f"Bold and blue: the answer of the diagnosis.{equivalent} Each figure is the probability of being at work: two"
+        " effects can both be near 100 %."
     )
     grid = Grid((ROW * len(names) + 0.1,), 2, left=measure_names(names), right=0.45, bottom=0.65, gap=(0.5, 0.0))
-    figure, [[left, right]] = make_page("Which effects are at work", note, grid)
+    figure, [[left, right]] = make_page(
+        f"Which effects are at work{': none is named' * (not diagnosis.selected)}", note, grid
+    )
     strong = [k for k, colour in enumerate(colours) if colour == _CHOSEN]
     for axes, shown in ((left, names), (right, [""] * len(names))):
         name_rows(axes, shown, strong)
@@ -146,7 +146,7 @@ def plot_ranking(diagnosis: Diagnosis) -> Figure | None:
     left.set(xlim=(0, 100), xticks=[0, 50, 100], xlabel="probability [%]")
     draw_bars(right, shrinks, colours, [_format_percent(each) if np.isfinite(each) else "" for each in shrinks])
     known = np.nan_to_num(shrinks)
-    right.set(xlim=(min(0.0, *known) * 1.5, max(10.0, *known)), xlabel="alone takes off the\nrefitted gap [%]")
+    right.set(xlim=(min(0.0, *known) * 1.5, 100), xlabel="refitted gap that the\neffect alone removes [%]")
     return figure
 
 
@@ -164,7 +164,9 @@ def _list_rows(diagnosis: Diagnosis) -> list[_Row]:
         most = f"at most {row.text}" if max(rest) >= LIKELY else f"below {100 * LIKELY:g} %"
         rows.append(row._replace(text=most))
     ends = (("no effect at all", diagnosis.probability_none), ("another cause", diagnosis.probability_unknown))
-    return [*rows, *(_make_row(name, value, REST) for name, value in ends)]
+    likelier = max(value for _, value in ends)
+    answers = [_CHOSEN if value == likelier and not diagnosis.selected else REST for _, value in ends]
+    return [*rows, *(_make_row(name, value, colour) for (name, value), colour in zip(ends, answers, strict=True))]
 
 
 def _make_row(name: str, probability: float, colour: str, shrink: float = np.nan) -> _Row:

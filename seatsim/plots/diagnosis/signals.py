@@ -18,7 +18,7 @@ from seatsim.plots import style
 from seatsim.plots.densities import estimate_density
 from seatsim.plots.diagnosis.bins import group_by_channel, nominal_gap
 from seatsim.plots.labels import Quantity, describe_channel, format_number
-from seatsim.plots.style import COLOURS, DASHES, GREY, Entry, Grid
+from seatsim.plots.style import COLOURS, DASHES, Entry, Grid
 from seatsim.plots.thinning import BINS, Window, find_loudest, thin_line
 from seatsim.recordings.gap import Gap, ReplayedPair
 from seatsim.schema.arrays import Array
@@ -29,8 +29,6 @@ BAND = 2.0
 """Standard deviations of the noise that are shaded."""
 DECADES = 1.5
 """Decades below the noise that a spectrum shows at most."""
-_EXCESS = 1.1
-"""RMS of a residual over its noise up to which it is called noise."""
 MEASURED = Entry("measured", "black", width=2.0)
 NOMINAL = Entry("nominal", COLOURS[1], DASHES[1], width=1.3)
 _AFTER = Entry("with effects", COLOURS[0], width=1.1)
@@ -86,11 +84,12 @@ def _plot_channel(trace: Trace, group: Sequence[Trace], lines: Sequence[Simulate
     window = find_loudest(left, step, SECONDS, RASTER)
     window = Window(window.start + trace.time[0], window.end + trace.time[0])
     noise = shown.factor * trace.noise_rms
-    note = f"{window} of {trace.run}, where the difference has most energy; RMS over the whole run."
-    note += f" Grey band: ±{BAND:g} noise." if noise else ""
     density = [estimate_density(step, [each.measured for each in group])]
     density += [estimate_density(step, [each.measured - line.read(each) for each in group]) for line in lines]
     has_spectrum = bool(len(density[0][0]))
+    note = f"{window} of {trace.run}, where the difference has most energy; RMS over the whole run."
+    note += f" Grey band: ±{BAND:g} noise." if noise else ""
+    note += " Below: power densities of the measured signal and of the differences." if has_spectrum else ""
     grid = GRID if has_spectrum else GRID._replace(heights=GRID.heights[:2])
     legend = [MEASURED, *(line.look for line in lines), *([NOISE] if noise and has_spectrum else [])]
     page = style.make_page(_make_title(trace, shown, lines), note, grid, legend)
@@ -100,8 +99,7 @@ def _plot_channel(trace: Trace, group: Sequence[Trace], lines: Sequence[Simulate
     for [axes] in page.rows[2:]:
         left_edge, bottom, width, height = axes.get_position().bounds
         axes.set_position((left_edge, bottom, width, height * (1 - OWN_AXIS / GRID.heights[2])))
-        looks = [MEASURED._replace(colour=GREY, width=1.2), *legend[1:]]
-        _draw_density(axes, density, looks, shown, 2 * noise**2 * step)
+        _draw_density(axes, density, legend, shown, 2 * noise**2 * step)
     return page.figure
 
 
@@ -114,7 +112,8 @@ def _draw_time(
         style.draw_line(axes, *thin_line(trace.time[inside], shown.factor * values[inside], BINS), look)
 
     draw(upper, trace.measured, MEASURED)
-    for line in lines:
+    # The first one, which is dashed, last: where two agree, both are seen.
+    for line in reversed(lines):
         draw(upper, line.read(trace), line.look)
         draw(lower, trace.measured - line.read(trace), line.look)
     lower.axhline(0.0, color="0.6", linewidth=0.8, zorder=0.5)
@@ -134,7 +133,7 @@ def _draw_density(
     """Draw densities, in SI units, and that of the noise, whose one-sided density is 2 s^2 dt where its RMS is s."""
     frequency = lines[0][0]
     axes.set_yscale("log")
-    for (places, power), look in zip(lines, looks, strict=False):
+    for (places, power), look in reversed([*zip(lines, looks, strict=False)]):
         style.draw_line(axes, places, np.where(power > 0, shown.factor**2 * power, np.nan), look)
     if noise:
         style.draw_line(axes, frequency[[0, -1]], [noise, noise], NOISE)
@@ -149,11 +148,7 @@ def _draw_density(
 def _make_title(trace: Trace, shown: Quantity, lines: Sequence[Simulated]) -> str:
     sizes = [rms(trace.measured - line.read(trace)) for line in lines]
     words = shown.words[:1].upper() + shown.words[1:]
-    if sizes[0] <= _EXCESS * trace.noise_rms:
-        return f"{words}: the {lines[0].look.label} one is already within noise"
-    figures = [
-        f"{format_number(shown.factor * size)} {shown.unit} {line.look.label}"
-        for size, line in zip(sizes, lines, strict=True)
-    ]
-    noise = f"; noise {format_number(shown.factor * trace.noise_rms)} {shown.unit}" if trace.noise_rms > 0 else ""
-    return f"{words}: RMS difference {', '.join(figures)}{noise}"
+    named = [line.look.label for line in lines] if len(lines) > 1 else ["difference"]
+    known = [*zip(named, sizes, strict=True), *([("noise", trace.noise_rms)] if trace.noise_rms > 0 else [])]
+    figures = [f"{name} {format_number(shown.factor * size)} {shown.unit}" for name, size in known]
+    return f"{words}, RMS: {', '.join(figures)}"

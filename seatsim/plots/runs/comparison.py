@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from seatsim.plots import style
+from seatsim.plots.labels import format_number
 from seatsim.plots.runs import naming
 from seatsim.plots.style import COLOURS, DARK, ROW, Entry, Grid
 from seatsim.scenario.scenario import condition_of
@@ -24,6 +25,8 @@ BEST = Entry("best run found of an ideal damper", DARK, (0.0, (5.0, 1.5)), 1.6)
 FLOOR = Entry("as much as the floor (SEAT = 1)", DARK, ":", 1.6)
 BAND = "0.88"
 """Grey between the bounds."""
+MARK = 13.0
+"""Diameter of a point in points of print."""
 NEAR = 1.6
 """How far above the greatest acceleration the floor's is still drawn, as a ratio."""
 MOST_PANELS = 12
@@ -102,7 +105,8 @@ def _make_points(runs: Sequence[Run], names: Sequence[str]) -> list[_RunPoint]:
 
 def _pad(values: Sequence[float]) -> tuple[float, float]:
     low, high = min(values), max(values)
-    margin = 0.12 * (high - low) or 0.1 * abs(high) or 1.0
+    # At least a tenth of the values: runs that hardly differ are not spread over the whole panel.
+    margin = max(0.12 * (high - low), 0.05 * abs(high)) or 1.0
     return max(0.0, low - margin), high + margin
 
 
@@ -125,27 +129,40 @@ def _draw_panel(axes: Axes, panel: Panel, ranked: Sequence[str], colours: Mappin
     # The most comfortable one on top of those that it meets.
     for point in sorted(panel.points, key=lambda point: -point.comfort):
         axes.scatter(point.travel, point.comfort, s=150, color=colours[point.name], edgecolors="1.0", zorder=4)
-        number = axes.annotate(str(ranked.index(point.name) + 1), (point.travel, point.comfort), fontsize=9, zorder=5)
-        number.set(color="1.0", fontweight="bold", ha="center", va="center_baseline")
+    _number_points(axes, panel.points, ranked)
     style.set_title(axes, panel.title)
 
 
+def _number_points(axes: Axes, points: Sequence[_RunPoint], ranked: Sequence[str]) -> None:
+    """Write the number of each point into it; those of points that overlap stand side by side above the first."""
+    left = sorted(points, key=lambda point: ranked.index(point.name))
+    while left:
+        places = axes.transData.transform([point[:2] for point in left]) * 72 / axes.figure.dpi
+        near = np.linalg.norm(places - places[0], axis=1) < MARK
+        numbers = [str(ranked.index(point.name) + 1) for point, close in zip(left, near, strict=True) if close]
+        alone = len(numbers) == 1
+        axes.annotate(
+            " ".join(numbers), left[0][:2], (0, 0 if alone else MARK), textcoords="offset points", fontsize=9, zorder=5,
+            fontweight="bold", ha="center", va="center_baseline", color="1.0" if alone else "0.0",
+        )  # fmt: skip
+        left = [point for point, close in zip(left, near, strict=True) if not close]
+
+
 class _Compared(NamedTuple):
-    """A metric that is compared: name, label of its axis, factor to the unit shown, decimals."""
+    """A metric that is compared: name, label of its axis, factor to the unit shown."""
 
     metric: str
     axis: str
     factor: float = 1.0
-    decimals: int = 2
 
 
 COMPARED = (
     _Compared("driver_acceleration_rms", "driver RMS\nacceleration [m/s²]"),
     _Compared("driver_acceleration_weighted", "driver Wk-weighted\nacceleration [m/s²]"),
-    _Compared("suspension_displacement_rms", "suspension RMS\ndisplacement [mm]", 1e3, 1),
+    _Compared("suspension_displacement_rms", "suspension RMS\ndisplacement [mm]", 1e3),
     _Compared("seat_factor", "SEAT factor\n[-]"),
 )
-NOTE = "Over the whole run; the smaller the better."
+NOTE = "Over the whole run; on the same floor, the smaller the better."
 
 
 def plot_comparison(runs: Sequence[Run]) -> Figure:
@@ -179,7 +196,7 @@ def _plot_bars(title: str, runs: Sequence[Run]) -> Figure:
     page = style.make_page(title, NOTE, grid)
     for k, (axes, compared) in enumerate(zip(page.list_panels(), COMPARED, strict=True)):
         values = _read_metric(runs, compared)
-        texts = [f"{value:.{compared.decimals}f}" if np.isfinite(value) else "none" for value in values]
+        texts = [format_number(value) for value in values]
         style.name_rows(axes, [""] * len(names) if k % 2 else names)
         style.draw_bars(axes, values.tolist(), colours, texts)
         # Room for the figures at the ends of the bars.

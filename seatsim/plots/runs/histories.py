@@ -60,6 +60,8 @@ def plot_time_histories(shown: Shown) -> Figure:
     views = [window]
     if single and window.end - window.start < common:
         views, note = [Window(0.0, float(common)), window], f"Left: whole run. Right: {note}"
+    elif window.end >= common:
+        note = "The whole run."
     limits, warms = _find_limits(shown.runs), any(np.ptp(run.history[TEMPERATURE.name]) > 0 for run in shown.runs)
     channels = (*CHANNELS, TEMPERATURE) if warms else CHANNELS
     legend = [] if single else [*shown.looks, *[LIMIT] * bool(limits)]

@@ -39,13 +39,12 @@ def show_runs(runs: Sequence[Run]) -> list[Shown]:
     parts = [list(runs)]
     if 1 < len(scenarios) < len(runs):
         parts = [[run for run in runs if run.scenario.name == name] for name in scenarios]
-    chosen = [_select_shown(part) for part in parts]
+    chosen, omissions = zip(*map(_select_shown, parts), strict=True)
     names = [label_runs(part) for part in chosen]
     looks = {look.label: look for look in make_entries(list(dict.fromkeys(name for part in names for name in part)))}
     found = []
-    for part, shown, called in zip(parts, chosen, names, strict=True):
+    for part, shown, called, omission in zip(parts, chosen, names, omissions, strict=True):
         scenario = part[0].scenario.name if len(parts) > 1 else ""
-        omission = f" {len(shown)} of {len(part)} runs are shown." if len(shown) < len(part) else ""
         found.append(Shown(scenario, make_title(part), shown, [looks[name] for name in called], omission))
     return found
 
@@ -98,13 +97,17 @@ def label_axis(scenario: Scenario, key: str) -> str:
     return f"{_name_key(key)} [{format_unit(find_unit(scenario, key)) or '-'}]"
 
 
-def _select_shown(runs: Sequence[Run]) -> list[Run]:
+def _select_shown(runs: Sequence[Run]) -> tuple[list[Run], str]:
+    """Return the runs that are drawn, and a sentence on how they were chosen where there are more."""
     if len(runs) <= MOST:
-        return list(runs)
+        return list(runs), ""
     # Lines of the same swept values differ in their variant, which is what a reader compares.
     first = _swept_values(runs[0])
     group = [run for run in runs if _swept_values(run) == first]
-    return group if 1 < len(group) <= MOST else spread_evenly(runs, MOST)
+    if 1 < len(group) <= MOST:
+        at = ", ".join(_describe_part(runs[0].scenario, key, value) for key, value in first.items())
+        return group, f" {len(group)} of {len(runs)} runs are shown: {at}."
+    return spread_evenly(runs, MOST), f" {MOST} of {len(runs)} runs are shown, spread evenly over their order."
 
 
 def _describe(scenario: Scenario, named: bool, without: str = "") -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import cycle
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,8 +12,8 @@ from matplotlib.figure import Figure
 from seatsim.metrics.spectra import transmissibility
 from seatsim.plots import style
 from seatsim.plots.densities import LOWEST, METHOD, draw_densities, estimate_density
-from seatsim.plots.runs.naming import Shown
-from seatsim.plots.style import GREY, Entry, Grid
+from seatsim.plots.runs.naming import Shown, distinguish_runs
+from seatsim.plots.style import DASHES, GREY, Entry, Grid
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.simulation.result import Run
@@ -30,25 +31,37 @@ NOTE = (
 
 
 def plot_psd(shown: Shown) -> Figure:
-    """Return the power spectral density of the driver's acceleration in m^2/s^3, run by run, with the floor's."""
-    floor = Entry("floor", GREY, width=2.2)
-    figure, axes = _make_page(f"Driver acceleration over frequency: {shown.title}", METHOD, shown, [floor])
-    axes.set_ylabel("power density [m²/s³]")
-    floors = {run.history["floor_acceleration"].tobytes(): run for run in shown.runs}.values()
-    found = [_estimate(run, "floor_acceleration") for run in floors]
+    """Return the power spectral density of the driver's acceleration, run by run, with the floor's."""
+    groups: dict[bytes, list[Run]] = {}
+    for run in shown.runs:
+        groups.setdefault(run.history["floor_acceleration"].tobytes(), []).append(run)
+    names = [distinguish_runs(group, shown.runs)[0] for group in groups.values()] if len(groups) > 1 else [""]
+    floors = [
+        Entry(f"floor: {name}".removesuffix(": "), f"{0.7 - 0.5 * k / len(names):.2f}", dashes, 2.2)
+        for k, (name, dashes) in enumerate(zip(names, cycle(DASHES), strict=False))
+    ]
+    drivers = shown.looks if len(shown.runs) > 1 else [shown.looks[0]._replace(label="driver")]
+    title = f"Driver acceleration over frequency: {shown.title}"
+    figure, axes = _make_page(title, METHOD + shown.omission, [*drivers, *floors])
+    axes.set_ylabel("power density [(m/s²)²/Hz]")
+    found = [_estimate(group[0], "floor_acceleration") for group in groups.values()]
     found += [_estimate(run, "driver_acceleration") for run in shown.runs]
-    draw_densities(axes, found, [*[floor] * len(floors), *shown.looks], BAND[1])
+    draw_densities(axes, found, [*floors, *drivers], BAND[1])
+    if not axes.lines:
+        figure.legends.clear()
     return figure
 
 
 def plot_transmissibility(shown: Shown) -> Figure:
     """Return the magnitude of the transmissibility from floor to driver where it can be trusted."""
-    figure, axes = _make_page(f"Transmissibility, floor to driver: {shown.title}", NOTE, shown)
+    looks = shown.looks if len(shown.runs) > 1 else []
+    figure, axes = _make_page(f"Transmissibility, floor to driver: {shown.title}", NOTE + shown.omission, looks)
     axes.set_ylabel("|driver / floor| [-]")
     gains = [_estimate_gain(run) for run in shown.runs]
     known = np.concatenate([gain[np.isfinite(gain) & (gain > 0)] for _, gain in gains])
     if not known.size:
         style.explain_empty(axes, "no floor motion, no coherence with it, or too short a run")
+        figure.legends.clear()
         return figure
     axes.axhline(1.0, color=GREY, linewidth=1.0, zorder=1)
     axes.set_yscale("log")
@@ -58,8 +71,8 @@ def plot_transmissibility(shown: Shown) -> Figure:
     return figure
 
 
-def _make_page(title: str, note: str, shown: Shown, legend: Sequence[Entry] = ()) -> tuple[Figure, Axes]:
-    figure, [[axes]] = style.make_page(title, note + shown.omission, Grid((2.9,)), [*shown.looks, *legend])
+def _make_page(title: str, note: str, legend: Sequence[Entry]) -> tuple[Figure, Axes]:
+    figure, [[axes]] = style.make_page(title, note, Grid((2.9,)), legend)
     style.scale_frequency_axis(axes, *BAND)
     return figure, axes
 
