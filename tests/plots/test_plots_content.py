@@ -174,7 +174,7 @@ def test_variants_are_compared_by_bars_with_their_values(made_up):
     figure = plot_comparison(runs)
     assert [tick.get_text() for tick in figure.axes[0].get_yticklabels()] == ["a", "b", "at rest"]
     assert [text.get_text() for text in figure.axes[2].texts] == ["14.2", "14.2", "0"]
-    assert figure.axes[3].texts[2].get_text() == "none"
+    assert figure.axes[3].texts[2].get_text() == "–"
 
 
 def test_only_numbers_that_change_in_every_run_are_swept(made_up):
