@@ -70,7 +70,7 @@ def test_a_gap_says_where_it_is_largest_and_what_to_do():
     assert "furthest off in the damper force, by 30 %" in outline.headings[0]
     assert any("seatsim diagnose" in words for words in outline.words) and "A note." in outline.words
     assert outline.rows("Gap of each run")["damper force"][0] == "29 %" and "Gap of each channel" in outline.headings
-    assert any(heading.startswith("Damper force, RMS: difference") for heading in outline.headings)
+    assert any(heading.startswith("Damper force, RMS difference: ") for heading in outline.headings)
     assert say_gap(gap(0.021)).endswith("there is nothing left to explain.")
 
 

@@ -6,6 +6,7 @@ The same picture shows a gap, with one simulation, and a diagnosis, with two.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from textwrap import fill
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +19,7 @@ from seatsim.plots import style
 from seatsim.plots.densities import estimate_density
 from seatsim.plots.diagnosis.bins import group_by_channel, nominal_gap
 from seatsim.plots.labels import Quantity, describe_channel, format_number
-from seatsim.plots.style import COLOURS, DASHES, Entry, Grid
+from seatsim.plots.style import COLOURS, Entry, Grid
 from seatsim.plots.thinning import BINS, Window, find_loudest, thin_line
 from seatsim.recordings.gap import Gap, ReplayedPair
 from seatsim.schema.arrays import Array
@@ -30,10 +31,12 @@ BAND = 2.0
 DECADES = 1.5
 """Decades below the noise that a spectrum shows at most."""
 MEASURED = Entry("measured", "black", width=2.0)
-NOMINAL = Entry("nominal", COLOURS[1], DASHES[1], width=1.3)
+NOMINAL = Entry("nominal", COLOURS[1], (0.0, (4.0, 3.0)), width=1.3)
 _AFTER = Entry("with effects", COLOURS[0], width=1.1)
 NOISE = Entry("sensor noise", "0.55", ":", width=1.8)
 GRID = Grid((1.5, 1.0, 1.7), left=0.85, gap=(0.0, 0.16), bottom=0.5)
+LETTERS = 19
+"""Letters of a label beside a panel that is this low."""
 OWN_AXIS = 0.42
 """Room in inches above the spectrum for the axis of time."""
 
@@ -118,7 +121,7 @@ def _draw_time(
         draw(lower, trace.measured - line.read(trace), line.look)
     lower.axhline(0.0, color="0.6", linewidth=0.8, zorder=0.5)
     upper.tick_params(labelbottom=False)
-    upper.set_ylabel(f"{shown.words}\n[{shown.unit}]")
+    upper.set_ylabel(fill(f"{shown.words} [{shown.unit}]", LETTERS))
     lower.set_ylabel(f"difference\n[{shown.unit}]")
     lower.set_xlabel("time [s]", labelpad=1)
     lower.yaxis.set_offset_position("right")
@@ -148,7 +151,7 @@ def _draw_density(
 def _make_title(trace: Trace, shown: Quantity, lines: Sequence[Simulated]) -> str:
     sizes = [rms(trace.measured - line.read(trace)) for line in lines]
     words = shown.words[:1].upper() + shown.words[1:]
-    named = [line.look.label for line in lines] if len(lines) > 1 else ["difference"]
-    known = [*zip(named, sizes, strict=True), *([("noise", trace.noise_rms)] if trace.noise_rms > 0 else [])]
-    figures = [f"{name} {format_number(shown.factor * size)} {shown.unit}" for name, size in known]
-    return f"{words}, RMS: {', '.join(figures)}"
+    named = [f"{line.look.label} " for line in lines] if len(lines) > 1 else [""]
+    known = [*zip(named, sizes, strict=True), *([("noise ", trace.noise_rms)] if trace.noise_rms > 0 else [])]
+    figures = [f"{name}{format_number(shown.factor * size)} {shown.unit}" for name, size in known]
+    return f"{words}, RMS difference: {', '.join(figures)}"

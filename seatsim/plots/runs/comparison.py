@@ -25,8 +25,8 @@ BEST = Entry("best run found of an ideal damper", DARK, (0.0, (5.0, 1.5)), 1.6)
 FLOOR = Entry("as much as the floor (SEAT = 1)", DARK, ":", 1.6)
 BAND = "0.88"
 """Grey between the bounds."""
-MARK = 13.0
-"""Diameter of a point in points of print."""
+SAME_PLACE = 6.0
+"""Distance in points of print, half a mark, below which one number would cover another."""
 NEAR = 1.6
 """How far above the greatest acceleration the floor's is still drawn, as a ratio."""
 MOST_PANELS = 12
@@ -134,16 +134,16 @@ def _draw_panel(axes: Axes, panel: Panel, ranked: Sequence[str], colours: Mappin
 
 
 def _number_points(axes: Axes, points: Sequence[_RunPoint], ranked: Sequence[str]) -> None:
-    """Write the number of each point into it; those of points that overlap stand side by side above the first."""
+    """Write the number of each point into it; those of points at one place stand beside it."""
     left = sorted(points, key=lambda point: ranked.index(point.name))
     while left:
         places = axes.transData.transform([point[:2] for point in left]) * 72 / axes.figure.dpi
-        near = np.linalg.norm(places - places[0], axis=1) < MARK
+        near = np.linalg.norm(places - places[0], axis=1) < SAME_PLACE
         numbers = [str(ranked.index(point.name) + 1) for point, close in zip(left, near, strict=True) if close]
         alone = len(numbers) == 1
         axes.annotate(
-            " ".join(numbers), left[0][:2], (0, 0 if alone else MARK), textcoords="offset points", fontsize=9, zorder=5,
-            fontweight="bold", ha="center", va="center_baseline", color="1.0" if alone else "0.0",
+            " ".join(numbers), left[0][:2], (0 if alone else 8, 0), textcoords="offset points", fontsize=9, zorder=5,
+            fontweight="bold", ha="center" if alone else "left", va="center_baseline", color="1.0" if alone else "0.0",
         )  # fmt: skip
         left = [point for point, close in zip(left, near, strict=True) if not close]
 
@@ -187,10 +187,7 @@ def find_swept_number(runs: Sequence[Run]) -> str:
 
 def _plot_bars(title: str, runs: Sequence[Run]) -> Figure:
     names = naming.label_runs(runs, 32)
-    looks = {
-        id(run): look for shown in naming.show_runs(runs) for run, look in zip(shown.runs, shown.looks, strict=True)
-    }
-    colours = [looks[id(run)].colour if len(looks) == len(runs) else COLOURS[0] for run in runs]
+    colours = _choose_colours(runs)
     left = style.measure_names(names)
     grid = Grid((ROW * len(runs) + 0.1,) * 2, columns=2, left=left, bottom=0.65, gap=(0.2, 0.75))
     page = style.make_page(title, NOTE, grid)
@@ -203,6 +200,17 @@ def _plot_bars(title: str, runs: Sequence[Run]) -> Figure:
         end = (1.0 + 0.45 / grid.width) * float(np.max(np.nan_to_num(values)))
         axes.set(xlim=(0.0, end or 1.0), xlabel=compared.axis)
     return page.figure
+
+
+def _choose_colours(runs: Sequence[Run]) -> list[str]:
+    """Return the colour of each run in other pictures; of more runs than these show, that of its variant."""
+    looks = [(run, look) for shown in naming.show_runs(runs) for run, look in zip(shown.runs, shown.looks, strict=True)]
+    if len(looks) == len(runs):
+        of_runs = {id(run): look.colour for run, look in looks}
+        return [of_runs[id(run)] for run in runs]
+    of_variants = {run.scenario.label.get("variant"): look.colour for run, look in looks}
+    variants = [run.scenario.label.get("variant") for run in runs]
+    return [of_variants[each] for each in variants] if set(variants) == set(of_variants) else [COLOURS[0]] * len(runs)
 
 
 def _plot_lines(title: str, key: str, series: dict[str, list[Run]]) -> Figure:
