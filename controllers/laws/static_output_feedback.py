@@ -151,8 +151,10 @@ class StaticOutputFeedback(NamedTuple):
         masses = None if self.masses is None else tuple(self.masses)
         factors, measures = tuple(self.force_factors), tuple(self.measures)
         hashable = self._replace(masses=masses, force_factors=factors, measures=measures)
+        # Seats whose drivers differ share a design for stated masses.
+        seat = plant._replace(driver_mass=masses[0]) if masses else plant
         with _DESIGNING:
-            return _design(hashable, plant, self._shape_floors(floors))
+            return _design(hashable, seat, self._shape_floors(floors))
 
     @property
     def is_limited_by_travel(self) -> bool:
