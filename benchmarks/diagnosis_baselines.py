@@ -42,7 +42,7 @@ from cases import (
     write_verdict,
 )
 
-from seatsim.blind.score.cases import Rate
+from seatsim.blind.score.rates import Rate
 from seatsim.blind.score.score import score_verdicts
 from seatsim.blind.score.verdicts import read_verdict
 from seatsim.blind.sealed import KINDS, Label, unseal

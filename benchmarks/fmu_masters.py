@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from seatsim.exchange.block import Block, list_variables
 from seatsim.exchange.blocks.damper import damper_block
-from seatsim.exchange.blocks.rig import rig_block
+from seatsim.exchange.blocks.rig_motion import rig_block
 from seatsim.scenario.loading import load
 from seatsim.scenario.scenario import Scenario
 

@@ -3,8 +3,6 @@
 A label is written in words of its own: kinds of cases, the contract's effects, the blocks of a rig.
 """
 
-from __future__ import annotations
-
 import base64
 import hashlib
 import hmac

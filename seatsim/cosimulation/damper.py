@@ -1,7 +1,5 @@
 """A damper that is a functional mock-up unit: what a scenario states of it, and its force as the time loop sees it."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -17,9 +17,8 @@ from seatsim.diagnosis.solve import solve
 from seatsim.diagnosis.state import state_diagnosis
 from seatsim.diagnosis.widen import search_wider
 from seatsim.recordings.header import NOT_STATED, USUAL
-from seatsim.recordings.joined import join_recordings
 from seatsim.recordings.quality.examination import examine, refuse
-from seatsim.recordings.recording import Recording, load_recording
+from seatsim.recordings.recording import Recording, join_recordings, load_recording
 from seatsim.schema.errors import InputError
 
 BUDGET = 120.0

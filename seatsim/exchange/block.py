@@ -10,8 +10,6 @@ Parameters, inputs, state and outputs are records (NamedTuple), the functions pl
 `seatsim.exchange.printing` prints them as C. Records of inputs and outputs state unit and meaning of their fields.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass

@@ -1,10 +1,7 @@
 """A block as C99 without allocation: alone, with a test vector that a compiled `main` checks, or for a unit."""
 
-from __future__ import annotations
-
 import math
-import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from importlib.resources import files
 from typing import SupportsFloat, SupportsInt
 
@@ -38,9 +35,18 @@ def resource(name: str) -> str:
     return (files("seatsim.exchange") / "c" / name).read_text(encoding="utf-8")
 
 
-def _fill(name: str, words: Mapping[str, str]) -> str:
-    """Return the text of such a file with its `@WORD@`s replaced, those that are in the words themselves left alone."""
-    return re.sub(r"@(\w+)@", lambda found: words[found[1]], resource(name))
+def fill(name: str, **words: object) -> str:
+    """Return a file of this package with its words put in; those of an XML file are escaped."""
+    import jinja2
+
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("seatsim.exchange", "."),
+        autoescape=jinja2.select_autoescape(["xml"]),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return environment.get_template(name).render(words)
 
 
 def print_model(block: Block) -> str:
@@ -69,22 +75,16 @@ def print_model(block: Block) -> str:
         f"static const {names[kind]} {name} = {_initialiser(values[kind], numba.typeof(values[kind]))};"
         for kind, name in (("Parameters", "nominal_parameters"), ("Inputs", "first_inputs"), ("State", "rest_state"))
     ]
-    words = {"START": start, "OBSERVE": observe, "ADVANCE": advance}
-    words |= {"FIXED_STEP": str(int(block.fixed_step)), "STEP": repr(block.step)}
-    model = _fill("model.h", names | words)
-    return "\n".join([resource("prelude.h"), program.source(), *constants, "", model])
+    model = fill("c/model.h", START=start, OBSERVE=observe, ADVANCE=advance, block=block, **names)
+    return "\n".join([resource("prelude.h"), program.source(), *constants, "", model, ""])
 
 
 def print_variables(variables: Sequence[Variable]) -> str:
     """Return the table of a model's variables, by which a wrapper finds them."""
     names = [v.name for v in variables]
     rates = [names.index(RATES[v.name]) if RATES.get(v.name) in names else -1 for v in variables]
-    rows = [
-        f'    {{"{v.name}", {_KINDS[type(v.value)]}, {v.causality.upper()}, offsetof(Model, {v.place}),'
-        f" {_limit(v.low)}, {_limit(v.high)}, {rate}}},"
-        for v, rate in zip(variables, rates, strict=True)
-    ]
-    return _fill("variables.h", {"ROWS": "\n".join(rows)})
+    kinds = [_KINDS[type(v.value)] for v in variables]
+    return fill("c/variables.h", variables=variables, kinds=kinds, rates=rates, limit=_limit) + "\n"
 
 
 def _call(
@@ -123,27 +123,10 @@ def print_c(block: Block) -> str:
     inputs = [v for v in variables if v.causality == "input"]
     outputs = [v for v in variables if v.causality == "output"]
     fed, expected = zip(*_test_vector(block, inputs, outputs), strict=True)
-    words = {
-        # A name must not end the comment in which it stands.
-        "TITLE": f"{block.name}: {block.summary}".replace("*/", "* /").replace("/*", "/ *"),
-        "NOTES": "".join(f"\n   Note: {note}." for note in block.notes),
-        "INPUTS": _list_of(inputs),
-        "OUTPUTS": _list_of(outputs),
-        "SAMPLES": str(_SAMPLES),
-        "FED": _rows(fed),
-        "EXPECTED": _rows(expected),
-        "FEED": "".join(f"        m.{v.place} = (real)fed[k][{j}];\n" for j, v in enumerate(inputs)),
-        "CHECK": "".join(
-            f"        off += is_off(m.{v.place}, expected[k][{j}], {j});\n" for j, v in enumerate(outputs)
-        ),
-        "INPUT_COUNT": str(len(inputs)),
-        "OUTPUT_COUNT": str(len(outputs)),
-    }
-    return _fill("file.c", words | {"MODEL": print_model(block)})
-
-
-def _list_of(variables: list[Variable]) -> str:
-    return "".join(f"\n     m.{v.place:<32} {v.unit:<8} {v.meaning}" for v in variables)
+    # A name must not end the comment in which it stands.
+    title = f"{block.name}: {block.summary}".replace("*/", "* /").replace("/*", "/ *")
+    words = {"inputs": inputs, "outputs": outputs, "fed": fed, "expected": expected, "samples": _SAMPLES}
+    return fill("c/file.c", title=title, block=block, model=print_model(block), **words) + "\n"
 
 
 def _test_vector(
@@ -165,7 +148,3 @@ def _signal(v: Variable, position: int, time: float) -> float:
     """Return a sine of a frequency and phase of its own about the value at the start."""
     size = next((size for size, names in _SIZES.items() if v.name in names.split()), 0.0)
     return float(v.value) + size * math.sin(7.0 * time * (1.0 + 0.37 * position) + position)
-
-
-def _rows(rows: tuple[list[float], ...]) -> str:
-    return "\n".join("    {" + ", ".join(map(repr, row)) + "}," for row in rows)

@@ -1,7 +1,5 @@
 """A scenario, or a part of it, as a file for another program."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -11,7 +9,7 @@ import numpy as np
 from seatsim.exchange.block import Block
 from seatsim.exchange.blocks.controller import controller_block
 from seatsim.exchange.blocks.damper import damper_block
-from seatsim.exchange.blocks.rig import rig_block
+from seatsim.exchange.blocks.rig_motion import rig_block
 from seatsim.exchange.c_source import print_c
 from seatsim.exchange.fmu import write_fmu
 from seatsim.rig.plant import Plant, control_system, state_space

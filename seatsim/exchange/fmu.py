@@ -3,8 +3,6 @@
 The C compiler of the system makes the library of the sources.
 """
 
-from __future__ import annotations
-
 import math
 import os
 import platform
@@ -21,7 +19,7 @@ from pathlib import Path
 import seatsim
 from seatsim.cosimulation.description import name_library
 from seatsim.exchange.block import Block, Variable, list_variables
-from seatsim.exchange.c_source import print_model, print_variables, resource
+from seatsim.exchange.c_source import fill, print_model, print_variables, resource
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.files import write_whole
 from seatsim.schema.guarded import temporary_folder
@@ -77,8 +75,8 @@ def make_files(block: Block, version: int) -> dict[str, bytes]:
     files = {"modelDescription.xml": _describe(block, variables, version, token)}
     files |= {f"sources/{name}": text.encode() for name, text in sources.items()}
     if version == 3:
-        words = {"identifier": identifier(block), "system": platform.system()}
-        files["sources/buildDescription.xml"] = _fill("buildDescription.xml", words)
+        described = _fill_xml("buildDescription.xml", identifier=identifier(block), system=platform.system())
+        files["sources/buildDescription.xml"] = described
     return files
 
 
@@ -99,19 +97,12 @@ def _describe(block: Block, variables: Sequence[Variable], version: int, token: 
         for v in variables
     ]
     words["outputs"] = [k for k, v in enumerate(variables) if v.causality == "output"]
-    return _fill("modelDescription.xml", words)
+    return _fill_xml("modelDescription.xml", **words)
 
 
-def _fill(name: str, words: Mapping[str, object]) -> bytes:
-    """Return an XML file of this package with its words put in, which the template escapes."""
-    import jinja2
-
-    loader, strict = jinja2.PackageLoader("seatsim.exchange", "fmi"), jinja2.StrictUndefined
-    environment = jinja2.Environment(
-        loader=loader, autoescape=True, undefined=strict, trim_blocks=True, lstrip_blocks=True
-    )
-    # An apostrophe needs no escape between quotation marks.
-    return environment.get_template(name).render(words).replace("&#39;", "'").replace("&#34;", "&quot;").encode()
+def _fill_xml(name: str, **words: object) -> bytes:
+    """Return an XML file of this package; an apostrophe needs no escape between quotation marks."""
+    return fill(f"fmi/{name}", **words).replace("&#39;", "'").replace("&#34;", "&quot;").encode()
 
 
 def _unit_name(v: Variable) -> str:

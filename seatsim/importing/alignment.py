@@ -4,8 +4,6 @@ The offset is where the correlation of two channels is greatest, between rows by
 standard error of the offsets that parts of the record show by themselves, and at least a tenth of a row.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from itertools import combinations
 from typing import NamedTuple

@@ -1,8 +1,5 @@
 """From files and a map to runs: groups on their clocks, channels in SI units, and one time base for all of them."""
 
-from __future__ import annotations
-
-import dataclasses
 from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
@@ -76,7 +73,7 @@ def assemble(files: Sequence[DataFile], stated: ImportMap) -> Assembled:
     for name, clocked in parts:
         used = _use_channels(name, clocked, stated, doubts, notes)
         runs.append(Run(name, _tabulate(name, used, _align(used, align, notes), stated, rate, notes)))
-    return Assembled(runs, rate, dataclasses.replace(stated, align=align), list(dict.fromkeys(notes)), doubts)
+    return Assembled(runs, rate, stated._replace(align=align), list(dict.fromkeys(notes)), doubts)
 
 
 def doubt_runs(assembled: Assembled) -> list[Issue]:

@@ -4,8 +4,6 @@ A group has the time of a column, of its format, or of a stated rate; it makes a
 are converted to SI units and corrected.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
@@ -17,7 +15,7 @@ from seatsim.importing.doubts import doubt_channel, doubt_time
 from seatsim.importing.import_map import PRIMITIVE, AxisMap, ChannelMap, ImportMap
 from seatsim.importing.names import quantity_of
 from seatsim.importing.signals import LISTED, DataFile, Group
-from seatsim.importing.time_axis import Axis, check_is_history, even_axis, find_clock, measured_axis, unbroken
+from seatsim.importing.time_axis import Axis, check_is_history, even_axis, find_clock, measured_axis
 from seatsim.recordings.quality.damage import find_spikes
 from seatsim.recordings.quality.issue import Issue
 from seatsim.schema.arrays import Array
@@ -129,7 +127,7 @@ def _parts(name: str, broken: Clocked, notes: list[str]) -> list[tuple[str, list
         if lasts < SHORTEST_RUN:
             short.append(f"{lasts:.3g} s from {broken.axis.times[begin]:.6g} s on")
         else:
-            axis = unbroken(broken.axis.times[begin:end], broken.axis.rate, broken.axis.is_even)
+            axis = Axis(broken.axis.times[begin:end], broken.axis.rate, broken.axis.is_even)
             part = broken._replace(group=broken.group.take(slice(begin, end)), axis=axis)
             parts.append((f"{name}-{len(parts) + 1}", [part]))
     if not parts:
@@ -155,7 +153,7 @@ def _without_repeats(clocked: Clocked) -> Clocked:
             f"{clocked.label}: a gap of {longest:.3g} s is not filled, {_LONGEST_FILL} s at most are; write gaps: split"
         )
     kept = np.concatenate([[True], steps > 0.0])
-    axis = unbroken(times[kept], clocked.axis.rate, is_even=False)
+    axis = Axis(times[kept], clocked.axis.rate, is_even=False)
     return clocked._replace(group=clocked.group.take(kept), axis=axis)
 
 

@@ -1,8 +1,5 @@
 """The way in: files and a map, or the map that is proposed for them, become a recording on disk, with its map."""
 
-from __future__ import annotations
-
-import dataclasses
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, NamedTuple
@@ -59,7 +56,7 @@ class Import(NamedTuple):
 
     @property
     @written()
-    def align(self) -> dict[str, float]:
+    def align(self) -> Mapping[str, float]:
         """How records of several clocks were brought together."""
         return self.map.align
 
@@ -173,7 +170,7 @@ def _commented(assembled: Assembled) -> ImportMap:
             said.append(f"floor at high frequencies {noise:.2g} {unit}: noise_rms, if it is the sensor's")
         if said:
             comments[name] = "; ".join(said)
-    return dataclasses.replace(assembled.map, comments=comments)
+    return assembled.map._replace(comments=comments)
 
 
 def _examined(assembled: Assembled, scenario: Mapping[str, object]) -> list[Issue]:

@@ -1,25 +1,29 @@
-"""What a file or a recording holds: every channel with unit, rate, range, RMS and noise, and every doubt about it."""
+"""What a file or a recording holds: every channel with unit, rate, range, RMS and noise, and every doubt about it.
 
-from __future__ import annotations
+Of a recording that is also what `gap` and `diagnose` say of it, and the noise that is not stated.
+"""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.importing.doubts import doubt_channel, doubt_time
-from seatsim.importing.import_map import Rig
+from seatsim.importing.assembly import assemble, doubt_runs
+from seatsim.importing.doubts import doubt_channel, doubt_pairs, doubt_time
+from seatsim.importing.import_map import Rig, read_map
 from seatsim.importing.matching import Column, channel_of, read_columns
-from seatsim.importing.names import SI_UNITS, is_of, read_name, without_unit
+from seatsim.importing.names import SI_UNITS, is_of, quantity_of, read_name, without_unit
 from seatsim.importing.readers.reading import read_file
-from seatsim.importing.relations import doubt_pairs
 from seatsim.importing.signals import DataFile, Group, Signal
 from seatsim.importing.time_axis import Axis, Clock, find_clock, is_spectrum
-from seatsim.recordings.quality.damage import noise_of
-from seatsim.recordings.quality.issue import Issue
-from seatsim.recordings.recording import BENCH_CHANNELS, SEAT_CHANNELS
+from seatsim.recordings.quality.damage import QUIET, noise_of
+from seatsim.recordings.quality.examination import examine, merge_issues
+from seatsim.recordings.quality.issue import Issue, place_in_run
+from seatsim.recordings.quality.relations import doubt_relations
+from seatsim.recordings.quality.sensors import list_unrepeated, measure_unrepeated
+from seatsim.recordings.recording import BENCH_CHANNELS, CHANNELS, COMMANDS, SEAT_CHANNELS, Recording, load_recording
 from seatsim.schema.arrays import Array
 from seatsim.schema.content import Joined, Unwritten, written
 from seatsim.schema.units import conversion
@@ -107,7 +111,7 @@ def _group(group: Group, rig: Rig) -> tuple[list[ChannelSummary], list[Issue]]:
         if column.meaning.quantity != "mark":
             found += doubt_channel(column.signal.name, values, rate, quantity)
         known[column.signal.name], quantities[column.signal.name] = values, quantity
-        summaries.append(summarise(column.signal, column.meaning.unit, channel_of(column, rig), rate))
+        summaries.append(_summarise(column.signal, column.meaning.unit, channel_of(column, rig), rate))
     parts = _longest_part(axis, known) if axis else known
     commands = {column.signal.name for column in columns if column.meaning.is_command}
     return summaries, [*found, *doubt_pairs(parts, rate, quantities, commands)]
@@ -150,7 +154,7 @@ def _in_si(column: Column) -> tuple[Array, str | None]:
     return (column.signal.values if found == (1.0, 0.0) else found.factor * column.signal.values + found.zero), quantity
 
 
-def summarise(signal: Signal, unit: str, channel: str | None, rate: float | None) -> ChannelSummary:
+def _summarise(signal: Signal, unit: str, channel: str | None, rate: float | None) -> ChannelSummary:
     """Return the figures of one channel."""
     values = signal.values[np.isfinite(signal.values)] if np.isnan(signal.values).any() else signal.values
     if not len(values):
@@ -184,3 +188,71 @@ def _repeated_rows(file: DataFile) -> Iterator[Issue]:
         if len(rows):
             repeat = f"repeat the row before in all channels, first row {rows[0]}; they were written twice"
             yield Issue("warning", "repeated_rows", f"{len(rows)} rows {repeat}")
+
+
+def inspect_recording(folder: Path) -> Inspection:
+    """Return what a recording holds.
+
+    Raises:
+        InputError: its header, a table or its nominal scenario cannot be read.
+    """
+    recording = load_recording(folder)
+    rate = recording.header.sample_rate
+    channels: dict[str, list[ChannelSummary]] = {}
+    doubts: list[Issue] = []
+    for run in recording.runs:
+        table = recording.table(run)
+        channels[run] = _summarise_table(table, CHANNELS[recording.header.rig], rate)
+        found = [
+            issue for name, values in table.items() for issue in doubt_channel(name, values, rate, quantity_of(name))
+        ]
+        found += [] if recording.nominal_file.exists() else doubt_relations(table, rate)
+        doubts += place_in_run(run, found)
+    doubts = merge_issues(doubts, len(recording.runs))
+    doubts += _offered(recording, channels, doubts)
+    if recording.nominal_file.exists():
+        doubts += examine(recording).issues
+    else:
+        text = f"{recording.header.nominal} is missing; signs, units and delays are not compared with a simulation"
+        doubts.append(Issue("warning", "nominal", text))
+    return Inspection(str(folder), "recording", channels, doubts)
+
+
+def inspect_mapped(path: Path, map_file: Path) -> Inspection:
+    """Return what import would make of a file by a map: channels in SI units, with what is left to doubt.
+
+    Raises:
+        InputError: the file or the map is wrong.
+    """
+    stated = read_map(map_file)
+    file = read_file(path, stated.csv)
+    assembled = assemble([file], stated._replace(runs={}))
+    units = CHANNELS[stated.rig]
+    channels = {run.name: _summarise_table(run.table, units, assembled.rate) for run in assembled.runs}
+    notes = [Issue("note", "mapped", note) for note in (*file.notes, *assembled.notes)]
+    doubts = merge_issues([*assembled.doubts, *doubt_runs(assembled)], len(assembled.runs))
+    return Inspection(str(path), f"{file.format} by {map_file.name}", channels, [*notes, *doubts])
+
+
+def _summarise_table(table: Mapping[str, Array], units: Mapping[str, str], rate: float) -> list[ChannelSummary]:
+    return [_summarise(Signal(name, units[name], values), units[name], name, rate) for name, values in table.items()]
+
+
+def _offered(
+    recording: Recording, channels: dict[str, list[ChannelSummary]], doubts: Sequence[Issue]
+) -> Iterator[Issue]:
+    """Yield the noise of each measured channel that states none: of its floor, or of repeats, which show all of it."""
+    tables = {run: recording.table(run) for run in recording.runs}
+    for name, entry in recording.channels.items():
+        if entry.noise_rms > 0.0 or name in COMMANDS:
+            continue
+        repeated = measure_unrepeated(list_unrepeated(recording.runs, tables, name))
+        noises = (each.noise for held in channels.values() for each in held if each.name == name)
+        floor = min(filter(None, noises), default=0.0)
+        is_quiet = any(issue.channel == name and issue.kind in QUIET for issue in doubts)
+        if repeated > 0.0:
+            differ = f"differ by noise_rms: {repeated:.2g}, with {floor:.2g} at high frequencies"
+            yield Issue("note", "noise", f"{name}: states no noise; repeats of one excitation {differ}", name)
+        elif floor and not is_quiet:
+            text = f"states no noise; its floor at high frequencies shows noise_rms: {floor:.2g}"
+            yield Issue("note", "noise", f"{name}: {text}", name)

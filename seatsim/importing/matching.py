@@ -4,8 +4,6 @@ A sign is never guessed. Where two columns fit a channel equally well, or a unit
 open and says what to write.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from typing import NamedTuple

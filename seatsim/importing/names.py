@@ -1,68 +1,31 @@
 """What the names of columns mean, in English, German, French and Chinese (pinyin): a quantity, a place, a unit.
 
-A word of four letters and more counts wherever it stands in a name, a shorter one only where it stands alone.
+The words stand in `names.yaml`. One of four letters and more counts wherever it stands in a name, a shorter one only
+where it stands alone.
 """
-
-from __future__ import annotations
 
 import functools
 import re
 import string
 import unicodedata
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import NamedTuple
 
+from pydantic import TypeAdapter
+
 from seatsim.schema.units import DIMENSIONS, find_conversion, is_unit
+from seatsim.schema.yaml_text import parse_value
 
-
-def _read_table(words: Mapping[str, str]) -> Mapping[str, tuple[str, ...]]:
-    return {name: tuple(listed.split()) for name, listed in words.items()}
-
-
-_QUANTITIES = _read_table(
-    {
-        "acceleration": "acceleration accel acc a beschleunigung beschl ax ay az accx accy accz acz jiasudu",
-        "displacement": "displacement disp stroke travel position deflection weg federweg einfederung hub auslenkung"
-        " deplacement debattement course weiyi xingcheng x s lvdt",
-        "velocity": "velocity speed vel geschwindigkeit geschw vitesse sudu v",
-        "force": "force load kraft effort zunili li f fd",
-        "current": "current strom bestromung courant intensite dianliu i",
-        "voltage": "voltage spannung tension dianya u",
-        "temperature": "temperature temp temperatur wendu thermo",
-        "time": "time zeit temps shijian t timestamp timestamps zeitstempel elapsed datetime uhrzeit seconds"
-        " sekunden secondes millis milliseconds sec secs msec x_value abscissa abszisse",
-        "frequency": "frequency frequenz frequence pinlv freq",
-        "distance": "distance chainage station strecke abstand juli",
-        "elevation": "elevation height profile profil hohe hoehe hauteur gaodu z",
-        "mark": "valid gultig gueltig segment marker trigger index row zeile counter",
-    }
+_WORDS = TypeAdapter(dict[str, dict[str, str]]).validate_python(
+    parse_value(Path(__file__).with_name("names.yaml").read_text(encoding="utf-8"))
 )
-"""Words for what a column holds; for a velocity before a displacement, since `x` alone is one."""
-_PLACES = _read_table(
-    {
-        "frame": "frame rahmen gestell oberteil cadre chassis kuangjia zs",
-        "floor": "floor base boden kabine cabin cab plancher cabine diban platform plattform table ground basis"
-        " fusspunkt z0 input",
-        "driver": "driver fahrer occupant person dummy seat sitz cushion kissen pad conducteur siege assise"
-        " jiashiyuan zuoyi renti zc passenger body",
-    }
+_QUANTITIES, _PLACES, _AXES, _MARKS = (
+    {name: tuple(words.split()) for name, words in table.items()} for table in _WORDS.values()
 )
-"""Words for where a sensor is; the first place that fits counts, so that a seat's frame is a frame."""
-_AXES = _read_table(
-    {
-        "x": "x ax accx longitudinal fore laengs langs",
-        "y": "y ay accy lateral quer",
-        "z": "z az accz acz vertical vertikal",
-    }
-)
-_COMMANDS, _OTHERS = _read_table(
-    {
-        "command": "command commanded cmd soll setpoint sollwert consigne commande zhiling target ref demand",
-        "other": "ambient umgebung room raum engine motor",
-    }
-).values()
+"""Words for what a column holds, for where a sensor is, for its axis, and for commands and what is of no seat."""
 _DAMPERS = ("damper", "dampfer", "daempfer", "amortisseur", "zuni", "load cell", "mrd")
-"""Words for commands, for axes, for what belongs to no seat, and for its damper."""
+"""Words for what belongs to a damper."""
 SI_UNITS = dict.fromkeys(("displacement", "distance", "elevation"), "m") | DIMENSIONS
 """SI units of the quantities that have one."""
 _TIMES = dict.fromkeys(("ms", "msec", "millis", "milliseconds"), "ms")
@@ -101,11 +64,11 @@ class Meaning(NamedTuple):
 def read_name(name: str, unit: str = "") -> Meaning:
     """Return what the name of a column says, with the unit that its file states beside it."""
     plain, words = _plain(name), _words(name)
-    if any(_has(word, plain, words) for word in _OTHERS):
+    if any(_has(word, plain, words) for word in _MARKS["other"]):
         return Meaning(None)
     quantity, stated = _read_quantity(name, unit)
     axis = next((axis for axis, known in _AXES.items() if words & {*known}), None)
-    is_command, is_damper = (any(_has(word, plain, words) for word in known) for known in (_COMMANDS, _DAMPERS))
+    is_command, is_damper = (any(_has(word, plain, words) for word in known) for known in (_MARKS["command"], _DAMPERS))
     return Meaning(quantity, _first(_PLACES, plain, words), is_command, axis, stated, is_damper)
 
 

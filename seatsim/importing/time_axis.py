@@ -1,7 +1,5 @@
 """The time of a group: from a column, from what its format states, or from a sample rate; and what is wrong with it."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
@@ -41,22 +39,17 @@ class Axis(NamedTuple):
 
     times: Array
     rate: float
-    breaks: NDArray[np.int_]
-    lost: int
-    repeated: int
-    backwards: int
-    is_even: bool
+    is_even: bool = True
     resolution: float = 0.0
+    breaks: NDArray[np.int_] = np.empty(0, dtype=int)
+    lost: int = 0
+    repeated: int = 0
+    backwards: int = 0
 
 
 def even_axis(rows: int, rate: float, start: float) -> Axis:
     """Return the axis of rows at a stated rate."""
-    return unbroken(start + np.arange(rows) / rate, rate)
-
-
-def unbroken(times: Array, rate: float, is_even: bool = True, resolution: float = 0.0) -> Axis:
-    """Return the axis of times without breaks."""
-    return Axis(times, rate, np.empty(0, dtype=int), 0, 0, 0, is_even, resolution)
+    return Axis(start + np.arange(rows) / rate, rate)
 
 
 def measured_axis(times: Array) -> Axis | None:
@@ -71,7 +64,7 @@ def measured_axis(times: Array) -> Axis | None:
     usual = float(np.median(rising))
     breaks = np.flatnonzero((steps > _GAP * usual) | (steps <= 0.0)) + 1
     if len(breaks) > 0.05 * len(steps) and not (steps < 0.0).any():
-        return unbroken(times, _whole_rate((len(times) - 1) / float(times[-1] - times[0])), is_even=False)
+        return Axis(times, _whole_rate((len(times) - 1) / float(times[-1] - times[0])), is_even=False)
     parts = np.split(times, breaks)
     spans = np.array([part[-1] - part[0] for part in parts])
     counted = np.array([len(part) - 1 for part in parts])
@@ -79,7 +72,8 @@ def measured_axis(times: Array) -> Axis | None:
     off = max(float(np.max(np.abs(part - np.linspace(part[0], part[-1], len(part))))) for part in parts)
     jumps = steps[breaks - 1]
     lost = int(np.sum(np.round(jumps[jumps > 0.0] * rate) - 1))
-    return Axis(times, rate, breaks, lost, int(np.sum(jumps == 0.0)), int(np.sum(jumps < 0.0)), off * rate <= _EVEN)
+    repeated, backwards = int(np.sum(jumps == 0.0)), int(np.sum(jumps < 0.0))
+    return Axis(times, rate, off * rate <= _EVEN, 0.0, breaks, lost, repeated, backwards)
 
 
 def _rounded_axis(times: Array, steps: Array) -> Axis | None:
@@ -100,8 +94,8 @@ def _rounded_axis(times: Array, steps: Array) -> Axis | None:
     off, slope = min((float(np.ptp(times - each * rows)), each) for each in slopes)
     if off <= (_SHARED if is_shared else _ROUNDED) * resolution:
         rate = _whole_rate(1.0 / slope, 1.0 / len(rows))
-        return unbroken(times[first] + (rows - first) / rate, rate, resolution=resolution)
-    return unbroken(times, 1.0 / slope, is_even=False, resolution=resolution) if is_shared else None
+        return Axis(times[first] + (rows - first) / rate, rate, resolution=resolution)
+    return Axis(times, 1.0 / slope, is_even=False, resolution=resolution) if is_shared else None
 
 
 def _resolution(times: Array, steps: Array) -> float:

@@ -3,8 +3,6 @@
 The manifest holds no time and no absolute path, so that equal commands on equal inputs give equal manifests.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path

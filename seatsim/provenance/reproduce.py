@@ -5,8 +5,6 @@ into the folder they are given are run, with their options checked by name, on i
 manifest states, into a temporary folder. Code that it names is run only where the user names it, too.
 """
 
-from __future__ import annotations
-
 import csv
 import io
 import json
@@ -17,16 +15,9 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from seatsim.provenance import statement
 from seatsim.provenance.manifest import EXAMPLE
-from seatsim.provenance.statement import (
-    MANIFEST,
-    REPEATABLE,
-    Manifest,
-    list_platform,
-    list_versions,
-    read_manifest,
-    state_file,
-)
+from seatsim.provenance.statement import MANIFEST, REPEATABLE, Manifest, read_manifest, state_file
 from seatsim.scenario.loading import EXAMPLES
 from seatsim.schema.errors import InputError, RunError, nearest
 from seatsim.schema.guarded import expect, is_there, read_bytes, temporary_folder
@@ -42,6 +33,11 @@ class Difference(NamedTuple):
     problem: str
 
 
+def _refuse(folder: Path, problem: str) -> InputError:
+    """Return the error of what a manifest states and may not."""
+    return InputError(f"{folder / MANIFEST}: {problem}")
+
+
 def compare_outputs(manifest: Manifest, folder: Path, found: Manifest, again: Path) -> Iterator[Difference]:
     """Yield files that are not as the manifest states, or not what the command writes now."""
     # Files that a sweep varies may be read by other processes; their hashes stand in its configuration.
@@ -50,7 +46,7 @@ def compare_outputs(manifest: Manifest, folder: Path, found: Manifest, again: Pa
     stated, made = {each.path: each for each in manifest.outputs}, {each.path for each in found.outputs}
     for name, each in stated.items():
         if Path(name).is_absolute() or ".." in Path(name).parts:
-            raise InputError(f"{folder / MANIFEST}: output {name!r} lies outside its folder")
+            raise _refuse(folder, f"output {name!r} lies outside its folder")
         if not (folder / name).is_file():
             yield Difference(name, "is not there any more")
             continue
@@ -136,17 +132,17 @@ def _check_arguments(manifest: Manifest, folder: Path) -> list[str]:
     """Return the arguments, refused where one could do more than say what is computed."""
     command, arguments = manifest.command, manifest.arguments
     if command not in REPEATABLE:
-        raise InputError(
-            f"{folder / MANIFEST}: command {command!r} is not run again{nearest(command, REPEATABLE)}; permitted:"
-            f" {', '.join(REPEATABLE)}"
+        raise _refuse(
+            folder,
+            f"command {command!r} is not run again{nearest(command, REPEATABLE)}; permitted: {', '.join(REPEATABLE)}",
         )
     if "--" not in arguments:
-        raise InputError(f"{folder / MANIFEST}: its arguments have no '--' before the files")
+        raise _refuse(folder, "its arguments have no '--' before the files")
     for text in arguments[: arguments.index("--")]:
         name = text.partition("=")[0]
         if name not in REPEATABLE[command]:
             permitted = ", ".join(sorted(REPEATABLE[command])) or "none"
-            raise InputError(f"{folder / MANIFEST}: option {text!r} is not run again; permitted: {permitted}")
+            raise _refuse(folder, f"option {text!r} is not run again; permitted: {permitted}")
     return list(arguments)
 
 
@@ -157,7 +153,7 @@ def _check_files(manifest: Manifest, folder: Path, directory: Path) -> None:
         for word in (text, text.partition("=")[2]):
             path = (directory / word).resolve()
             if word and is_there(path) and not any(each.is_relative_to(path) for each in inputs):
-                raise InputError(f"{folder / MANIFEST}: {word!r} is there, but none of the inputs that it states")
+                raise _refuse(folder, f"{word!r} is there, but none of the inputs that it states")
 
 
 def _find_directory(manifest: Manifest, folder: Path) -> Path:
@@ -177,7 +173,7 @@ def _resolve(name: str, folder: Path) -> Path:
         found = [each / inside for each in EXAMPLES if ".." not in inside.parts and (each / inside).is_file()]
         return found[0] if found else EXAMPLES[0] / inside.name
     if Path(name).is_absolute() or name.startswith(("/", "\\")) or "\0" in name:
-        raise InputError(f"{folder / MANIFEST}: {name!r} is an absolute path; permitted: one relative to the manifest")
+        raise _refuse(folder, f"{name!r} is an absolute path; permitted: one relative to the manifest")
     return folder.absolute() / name
 
 
@@ -204,7 +200,7 @@ def _compare_code(manifest: Manifest, own_code: Sequence[Path]) -> Iterator[Diff
 
 
 def _compare_versions(manifest: Manifest) -> Iterator[str]:
-    now = {**list_versions(), **list_platform()}
+    now = {**statement.list_versions(), **statement.list_platform()}
     for name, was in {**manifest.versions, **manifest.platform}.items():
         # The own code of a sweep is among its sources.
         if name in now and was != now[name] and not (name == "sources" and manifest.own_code):

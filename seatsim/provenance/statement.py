@@ -1,7 +1,5 @@
 """What a manifest states: the command at work, its inputs and files by hash, versions and platform."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import platform

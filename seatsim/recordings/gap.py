@@ -1,7 +1,5 @@
 """The gap between a simulation and a recording, and the one to be expected there, where a diagnosis is given."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace

@@ -1,7 +1,5 @@
 """What `recording.yaml` states at its top and of each run: numbers, tolerances, runs and what was changed for them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import Annotated, Literal, NamedTuple
 
@@ -22,22 +20,9 @@ _DEFAULT = "default"
 Tolerance = float | Literal["fitted"]
 """Fraction to which a parameter is known, or `fitted` where it was fitted to such data."""
 Tolerances = Tolerance | Mapping[str, Tolerance]
-Refusal = Literal[
-    "rate",
-    "jump",
-    "short",
-    "duplicate",
-    "repeat",
-    "still",
-    "constant",
-    "clipped",
-    "stuck",
-    "doubled",
-    "sign",
-    "unit",
-    "exchange",
-    "late",
-]
+_OfRuns = Literal["rate", "jump", "short", "duplicate", "repeat", "still"]
+_OfChannels = Literal["constant", "clipped", "stuck", "doubled", "sign", "unit", "exchange", "late"]
+Refusal = Literal[_OfRuns, _OfChannels]
 """Checks of the data because of which a recording is refused, unless its owner accepts what they find."""
 
 

@@ -1,9 +1,6 @@
 """What a scenario leaves beyond stated noise, by channel and frequency band, and what that predicts elsewhere."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Annotated, NamedTuple
 
@@ -53,8 +50,7 @@ class RunError(NamedTuple):
     missed_rms: dict[str, float]
 
 
-@dataclass(frozen=True)
-class ModelError:
+class ModelError(NamedTuple):
     """What a scenario leaves of each measured channel beyond stated noise, by frequency band.
 
     With the mean squares E of `measured - simulated`, M of measured and S of simulated in a band, and N of the noise,

@@ -1,7 +1,5 @@
 """Nuisance parameters: nominal parameters known to within the recording's tolerance; refitting one is no effect."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from collections.abc import Mapping, Sequence

@@ -9,11 +9,8 @@ the standard deviation s to be expected of the measured channel,
 What is missed is taken for uncorrelated with what the effects change, as the residual of a fit is.
 """
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
@@ -70,8 +67,7 @@ class Expected(NamedTuple):
     after: float
 
 
-@dataclass(frozen=True)
-class Prediction:
+class Prediction(NamedTuple):
     """The gap to be expected before and after, overall and by channel, and the shrink with its 90 % interval."""
 
     before: float
@@ -102,14 +98,14 @@ def predict_gap(
     """
     recording = recording if isinstance(recording, Recording) else load_recording(recording)
     augmented = scenario if isinstance(scenario, Scenario) else single(scenario)
-    stated, names = _read_diagnosis(Path(diagnosis)), list(runs) or list(recording.runs)
+    stated = _read_diagnosis(Path(diagnosis))
     with expect(diagnosis, "diagnosis"):
         error, causes = read_model_error(stated, str(diagnosis)), _read_causes(stated)
         _check_rig(augmented, error, recording, diagnosis)
         _check_augmented(augmented, stated, causes, Path(diagnosis))
-    after = _simulate(augmented, recording, names)
-    before = _simulate(recording.nominal, recording, names)
-    shifted = [_simulate(other, recording, names) for other in _move_parameters(augmented, causes)]
+    moved = _move_parameters(augmented, causes)
+    rigs = (augmented, recording.nominal, *moved)
+    after, before, *shifted = (_simulate(each, recording, runs or list(recording.runs)) for each in rigs)
     simulated = SimulatedRigs(recording.header.sample_rate, before, after, shifted)
     return _combine(error, simulated, str(recording.folder))
 

@@ -1,7 +1,5 @@
 """Replay of a scenario against a run of a recording: what drives it, and which part of both is compared."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 

@@ -8,8 +8,6 @@ with u_num from halving the step of the integration, u_input from the noise of t
 simulation, and u_D the stated noise of the channel; all are RMS values over the run (ASME V&V 20-2009).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
@@ -60,13 +58,10 @@ def budget_errors(scenario: Scenario, recording: Recording, run: str, channels: 
     budgets = []
     for name in channels:
         entry, error = recording.channels[name], rms(measured[name] - simulated[name])
-        budgets.append(_divide(name, entry.unit, error, numerical[name], carried[name], entry.noise_rms))
+        parts = numerical[name], carried[name], entry.noise_rms
+        left = error**2 - parts[0] ** 2 - parts[1] ** 2 - parts[2] ** 2
+        budgets.append(ErrorBudget(name, entry.unit, error, *parts, float(np.sqrt(max(left, 0.0)))))
     return budgets
-
-
-def _divide(channel: str, unit: str, error: float, numerical: float, inputs: float, data: float) -> ErrorBudget:
-    left = error**2 - numerical**2 - inputs**2 - data**2
-    return ErrorBudget(channel, unit, error, numerical, inputs, data, float(np.sqrt(max(left, 0.0))))
 
 
 def measure_step_error(scenario: Scenario, recording: Recording, table: _Table) -> dict[str, float]:

@@ -1,7 +1,5 @@
 """A simulated result written as a recording of a rig."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path

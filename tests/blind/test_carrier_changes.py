@@ -33,7 +33,9 @@ def share_left(carrier, drawn):
         parameters["channel"] = drawn.change.channel
     effects = [*altered.nominal.get("effects", []), {"effect": drawn.change.effect, "parameters": parameters}]
     mended = dataclasses.replace(altered, nominal={**altered.nominal, "effects": effects})
-    return ruler.gap(mended) / ruler.gap(altered)
+    before, after = (ruler.residuals(each) for each in (altered, mended))
+    squares = [[np.mean((each[name] / ruler.spread[name]) ** 2) for name in ruler.before] for each in (before, after)]
+    return np.sqrt(np.mean(squares[1]) / np.mean(squares[0]))
 
 
 @pytest.mark.parametrize(
@@ -87,7 +89,7 @@ def test_every_change_has_a_name_of_the_contract_and_leaves_the_carrier_as_it_wa
         before = {run: {name: values.copy() for name, values in table.items()} for run, table in carrier.tables.items()}
         for change in draw_changes(carrier, np.random.default_rng(1)):
             assert change.effect in EFFECTS
-            change.alter(change.span[1] / 2)
+            change.alter(change.largest / 2)
         for run, table in carrier.tables.items():
             assert all(np.array_equal(values, before[run][name]) for name, values in table.items())
 

@@ -59,7 +59,7 @@ def best_stump(features, hits):
 @pytest.mark.slow
 @pytest.mark.parametrize(("kinds", "cases"), [("mixed", 2000), ("varied", 1200)])
 def test_a_classifier_of_all_but_the_signals_stays_at_chance(kinds, cases, monkeypatch):
-    monkeypatch.setattr("seatsim.blind.make.draw_varied._add_background", lambda experiment, _: experiment)
+    monkeypatch.setattr("seatsim.blind.make.draw_experiment._add_background", lambda experiment, _: experiment)
     orders = compose(cases, kinds, np.random.default_rng(1))
     rows = [numbers(told(order.draw_rig(np.random.default_rng([1, k])))) for k, order in enumerate(orders)]
     names = sorted({name for row in rows for name in row})
@@ -101,7 +101,7 @@ def test_a_change_of_a_carrier_alters_no_file_but_its_signals(make, tmp_path):
     runs = tuple(read.tables)
     before = encode_carrier(read, runs)
     for change in draw_changes(read, np.random.default_rng(0)):
-        after = encode_carrier(change.alter(0.3 * change.span[1]).carrier, runs)
+        after = encode_carrier(change.alter(0.3 * change.largest).carrier, runs)
         assert list(after) == list(before)
         for name, content in after.items():
             if name.endswith(".yaml"):

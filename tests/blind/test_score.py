@@ -8,7 +8,7 @@ import pytest
 from rich.console import Console
 
 from seatsim.blind.carrier.recorded import encode_carrier
-from seatsim.blind.score.cases import Rate, calibration_error, reliability
+from seatsim.blind.score.rates import Rate, calibration_error, reliability
 from seatsim.blind.score.score import score, score_verdicts
 from seatsim.blind.score.shrink import score_shrink
 from seatsim.blind.score.verdicts import Verdict, is_right, read_verdict

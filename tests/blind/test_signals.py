@@ -1,7 +1,5 @@
 """Excitations, forces on the frame and sensor faults: spectra, sizes and delays."""
 
-import dataclasses
-
 import numpy as np
 import pytest
 from scipy.signal import welch
@@ -50,7 +48,7 @@ def test_a_late_log_is_late_by_its_size():
     np.testing.assert_allclose(read["coil_current"][50:], motion().current[50:] - 0.01)
     np.testing.assert_allclose(read["current_command"][50:], motion().command[50:] - 5.0)
     np.testing.assert_array_equal(read["floor_acceleration"], np.arange(0.0, 2000.0, 4.0))
-    drifting = dataclasses.replace(late, detail=0.5)
+    drifting = late._replace(detail=0.5)
     assert late.on_input and not SensorFault("gain", "damper_force", 0.1).on_input
     for run, left in ((0, 1.0 - 0.5 * 0.6), (1, 0.5)):
         read = experiment.read_sensors(motion(), np.arange(2000.0), [drifting], run)

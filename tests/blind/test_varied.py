@@ -9,7 +9,7 @@ import pytest
 from scipy.signal import welch
 
 import seatsim
-from seatsim.blind.make import draw_varied
+from seatsim.blind.make import draw_experiment
 from seatsim.blind.make.compose import compose
 from seatsim.blind.make.folder import encode_recording, recording_header, write_folder
 from seatsim.blind.make.materiality import CommandedRuns
@@ -22,7 +22,7 @@ from seatsim.blind.truth.rig import EXCITATION_RATE, INTEGRATION_STEP
 
 
 def drawn(seed, bingham=False):
-    return draw_varied.draw_varied_experiment(np.random.default_rng(seed), bingham, CHANNELS)
+    return draw_experiment.draw_varied_experiment(np.random.default_rng(seed), bingham, CHANNELS)
 
 
 @pytest.fixture(scope="module")
@@ -33,15 +33,15 @@ def rigs():
 
 def test_every_rig_is_another_and_inside_what_is_built():
     rng = np.random.default_rng(0)
-    rigs = [draw_varied.draw_nominal(rng, k % 2 == 0) for k in range(300)]
+    rigs = [draw_experiment.draw_nominal(rng, k % 2 == 0) for k in range(300)]
     assert len({tuple(sorted(rig.items())) for rig in rigs}) == 300
     for rig in rigs:
         mass, ratio = rig["ms"] + rig["m"], rig["damper_ratio"]
         assert 0.99 < math.sqrt(rig["kf"] / mass) / (2.0 * math.pi) < 2.21
-        assert 50.0 <= rig["m"] <= 110.0 and 0.4 <= ratio <= 1.0 and rig["c_a"] >= draw_varied.LEAST_VISCOUS
+        assert 50.0 <= rig["m"] <= 110.0 and 0.4 <= ratio <= 1.0 and rig["c_a"] >= draw_experiment.LEAST_VISCOUS
         if rig["is_bingham"]:
             rate = ratio**2 * (rig["y_a"] + rig["y_b"]) / rig["v_ref"] / rig["ms"]
-            assert rate < 1.02 * draw_varied.STEEPEST
+            assert rate < 1.02 * draw_experiment.STEEPEST
         else:
             assert rig["A"] == pytest.approx(rig["beta"] + rig["gamma"], rel=0.01) and rig["n"] in (1.0, 2.0)
     scissors = [rig for rig in rigs if rig["damper_ratio"] < 0.8]
@@ -52,7 +52,7 @@ def test_every_rig_is_another_and_inside_what_is_built():
 
 
 def test_parameters_lie_inside_the_stated_tolerance(rigs):
-    assert {rig.sample_rate for rig in rigs} == set(draw_varied.SAMPLE_RATES)
+    assert {rig.sample_rate for rig in rigs} == set(draw_experiment.SAMPLE_RATES)
     assert 0.2 < np.mean([bool(rig.background) for rig in rigs]) < 0.5
     for rig in rigs:
         assert 0.01 <= rig.tolerance <= 0.05
@@ -70,10 +70,10 @@ def test_a_background_is_shown_by_a_repeat_and_is_not_material(rigs):
     motions = [simulate_run(still, Changes(), k) for k in range(4)]
     true = experiment.true
     carried = np.std(true["ms"] * motions[0].frame + true["m"] * motions[0].driver)
-    assert experiment.background[0].rms < 1.01 * draw_varied.BACKGROUND[1] * carried
+    assert experiment.background[0].rms < 1.01 * draw_experiment.BACKGROUND[1] * carried
     runs = CommandedRuns(still, [motion.command for motion in motions])
     size, _ = runs.materiality(Changes(frame_forces=experiment.background), Changes())
-    assert 0.01 < size < 1.05 * draw_varied.LARGEST_BACKGROUND
+    assert 0.01 < size < 1.05 * draw_experiment.LARGEST_BACKGROUND
 
 
 @pytest.mark.parametrize(("rate", "n"), [(256.0, 1.0), (512.0, 2.0), (800.0, 0.0)])
@@ -88,7 +88,7 @@ def test_a_faultless_rig_of_any_kind_replays_to_within_its_noise(rigs, rate, n, 
     assert gap.overall < 1.5 * gap.floor.overall + 0.005
 
 
-@pytest.mark.parametrize("rate", draw_varied.SAMPLE_RATES)
+@pytest.mark.parametrize("rate", draw_experiment.SAMPLE_RATES)
 def test_a_row_is_a_whole_number_of_steps(rigs, rate):
     experiment = next(rig for rig in rigs if rig.sample_rate == rate)
     motion = simulate_run(experiment, Changes(), 0)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from typer.main import get_command
 
-from seatsim.blind.score.cases import Rate
+from seatsim.blind.score.rates import Rate
 from seatsim.blind.score.score import score_verdicts
 from seatsim.blind.score.shrink import ShrinkScore
 from seatsim.blind.score.verdicts import Verdict

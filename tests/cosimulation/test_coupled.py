@@ -10,7 +10,7 @@ import pytest
 from seatsim.cli.check_files import check_file
 from seatsim.exchange.blocks.controller import controller_block
 from seatsim.exchange.blocks.damper import damper_block
-from seatsim.exchange.blocks.rig import rig_block
+from seatsim.exchange.blocks.rig_motion import rig_block
 from seatsim.exchange.fmu import compile_library, write_fmu
 from seatsim.identification.damper_record import find_model
 from seatsim.scenario.loading import load

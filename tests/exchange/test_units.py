@@ -10,8 +10,7 @@ from fmpy.validation import validate_fmu
 
 from seatsim.dampers.base import DAMPERS
 from seatsim.exchange.blocks.damper import damper_block
-from seatsim.exchange.blocks.rig import rig_block
-from seatsim.exchange.blocks.rig_motion import RigOutputs
+from seatsim.exchange.blocks.rig_motion import RigOutputs, rig_block
 from seatsim.exchange.fmu import compile_library, write_fmu
 from seatsim.scenario.loading import load
 from seatsim.scenario.scenario import DamperChoice

@@ -7,8 +7,7 @@ import pytest
 from ruamel.yaml import YAML
 
 from seatsim.importing.importing import import_files
-from seatsim.importing.inspected_recording import inspect_recording
-from seatsim.importing.inspection import inspect_file
+from seatsim.importing.inspection import inspect_file, inspect_recording
 from seatsim.schema.content import to_content
 
 from .helpers import kinds, write_csv

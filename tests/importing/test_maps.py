@@ -127,10 +127,10 @@ runs:
         ("channels: {floor_acceleration: {colum: a}}", "did you mean 'column'"),
         ("channels: {floor_acceleration: {column: a, sign: 2}}", "sign"),
         ("channels: {floor_acceleration: {unit: g}}", "give either the name of its column"),
-        ("channels: {floor_acceleration: {column: a}}\nruns: {a: b}", "is no list of files"),
+        ("channels: {floor_acceleration: {column: a}}\nruns: {a: b}", "must be a list, such as \\[b\\]"),
         ("channels: {floor_acceleration: {column: a}}\ngaps: cut", "gaps"),
-        ("channels: {floor_acceleration: {column: a}}\nalign: {b: soon}", "is no finite number"),
-        ("channels: {floor_acceleration: {column: a}}\nalign: {b: .nan}", "is no finite number"),
+        ("channels: {floor_acceleration: {column: a}}\nalign: {b: soon}", "must be a finite number"),
+        ("channels: {floor_acceleration: {column: a}}\nalign: {b: .nan}", "must be a finite number"),
         ("channels: {floor_acceleration: {column: a}}\nsample_rate: 1.0e-300", "must be at least 0.001 Hz"),
     ],
 )

@@ -7,9 +7,8 @@ import pytest
 
 import seatsim
 from seatsim.recordings.gap import measure_gap
-from seatsim.recordings.joined import join_recordings
 from seatsim.recordings.quality.examination import examine
-from seatsim.recordings.recording import load_recording
+from seatsim.recordings.recording import join_recordings, load_recording
 
 from ..faulty_recordings import edit
 from ..text import words

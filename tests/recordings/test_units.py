@@ -7,8 +7,7 @@ import pandas as pd
 import pytest
 
 import seatsim
-from seatsim.recordings.joined import join_recordings
-from seatsim.recordings.recording import load_recording
+from seatsim.recordings.recording import join_recordings, load_recording
 from seatsim.schema.errors import InputError
 from seatsim.schema.units import STANDARD_GRAVITY
 

@@ -1,25 +1,14 @@
 """Forces added to what a load cell measured, and a play between the recorded motion and the damper's."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
+from typing import NamedTuple
 
 import numpy as np
 from numpy.random import Generator
 
-from seatsim.blind.carrier.readings import commanded
-from seatsim.blind.carrier.recorded import (
-    Altered,
-    Carrier,
-    Change,
-    Table,
-    low_pass,
-    number,
-    section,
-    slide,
-    slope,
-    with_tables,
-)
+from seatsim.blind.carrier import recorded
+from seatsim.blind.carrier.readings import command_gain, commanded
+from seatsim.blind.carrier.recorded import Altered, Carrier, Change, Table, number, section
 from seatsim.schema.arrays import Array
 
 _LARGEST = 1.5
@@ -32,138 +21,137 @@ _LEAST_LEVELS, _STANDING = 3, 0.03
 """Levels of the current that tell a saturation from another yield force, and the share of the rows that makes one."""
 _REFERENCE, _LEAST_WARMING = 20.0, 10.0
 """degC at which a damper has its stated forces; K by which it must warm, else a fade is a smaller force throughout."""
-_Forces = Callable[[Table], Array]
+
+
+class _Bench(NamedTuple):
+    """A bench with a load cell: spread and mean of its force in N, and the spread of its motion in m."""
+
+    carrier: Carrier
+    size: float
+    middle: float
+    travel: float
+
+    def change(
+        self,
+        effect: str,
+        form: str,
+        largest: float,
+        added: Callable[[Table, float], Array | float],
+        parameters: Callable[[float], Mapping[str, float]] = lambda amount: {},
+    ) -> Change:
+        """Return an effect that adds a force, N, to what was measured in a run."""
+
+        def read(table: Table, amount: float) -> Array:
+            return table["damper_force"] + added(table, amount)
+
+        named = (f"damper.{effect}", form)
+        return recorded.change_channel(self.carrier, named, "damper_force", largest, read, parameters)
+
+    def speed(self, table: Table) -> Array:
+        """Return the speed of a run, m/s."""
+        return table["velocity"] if "velocity" in table else recorded.slope(table["displacement"], self.carrier.step)
 
 
 def draw_damper_changes(carrier: Carrier, rng: Generator) -> list[Change]:
     """Return the changes of the damper that a bench with a load cell allows."""
     if carrier.rig != "damper_bench" or "damper_force" not in carrier.channels:
         return []
-    found = [_seal_friction(carrier, rng), _gas_spring(carrier, rng), _preload(carrier, rng)]
-    found += [_asymmetry_by_force(carrier, rng), _asymmetry_by_speed(carrier, rng), _free_play(carrier, rng)]
-    return found + _saturation(carrier) + _fade(carrier)
+    force = carrier.pooled("damper_force")
+    bench = _Bench(carrier, float(np.std(force)), float(np.mean(force)), float(np.std(carrier.pooled("displacement"))))
+    found = [_seal_friction(bench, rng), *_gas_springs(bench, rng), *_asymmetries(bench, rng), _free_play(bench, rng)]
+    return found + _saturation(bench) + _fade(bench)
 
 
-def _spread(carrier: Carrier) -> float:
-    return float(np.std(carrier.pooled("damper_force")))
-
-
-def _added(carrier: Carrier, force: _Forces) -> Carrier:
-    return with_tables(carrier, lambda table: {**table, "damper_force": table["damper_force"] + force(table)})
-
-
-def _seal_friction(carrier: Carrier, rng: Generator) -> Change:
+def _seal_friction(bench: _Bench, rng: Generator) -> Change:
     """Return Coulomb friction `F sgn v`, with the small travel over which a real seal begins to slide."""
-    size, travel = _spread(carrier), float(np.exp(rng.uniform(*np.log(_TRAVELS))))
+    size, travel = bench.size, float(np.exp(rng.uniform(*np.log(_TRAVELS))))
 
-    def alter(amount: float) -> Altered:
-        added = _added(carrier, lambda table: amount * size * slide(table["displacement"], travel))
-        return Altered(added, {"force": amount * size})
+    def added(table: Table, amount: float) -> Array:
+        return amount * size * recorded.slide(table["displacement"], travel)
 
-    return Change("damper.seal_friction", "F sgn v", "", (0.0, _LARGEST), alter)
-
-
-def _gas_spring(carrier: Carrier, rng: Generator) -> Change:
-    """Return preload and stiffness of a gas volume, both of about the same force."""
-    size, travel = _spread(carrier), float(np.std(carrier.pooled("displacement")))
-    share, sign = float(rng.uniform(0.4, 1.0)), -1.0 if rng.random() < 0.5 else 1.0
-
-    def alter(amount: float) -> Altered:
-        stiffness, preload = amount * size / travel, sign * share * amount * size
-        added = _added(carrier, lambda table: preload + stiffness * (table["displacement"] - table["displacement"][0]))
-        return Altered(added, {"preload": preload, "stiffness": stiffness})
-
-    return Change("damper.gas_spring", "preload and stiffness", "", (0.0, _LARGEST), alter)
+    return bench.change("seal_friction", "F sgn v", _LARGEST, added, lambda amount: {"force": amount * size})
 
 
-def _preload(carrier: Carrier, rng: Generator) -> Change:
-    size = (-1.0 if rng.random() < 0.5 else 1.0) * _spread(carrier)
+def _gas_springs(bench: _Bench, rng: Generator) -> list[Change]:
+    """Return preload and stiffness of a gas volume, both of about the same force; then a preload alone."""
+    share, sign = float(rng.uniform(0.4, 1.0)), recorded.draw_sign(rng)
+    alone = recorded.draw_sign(rng) * bench.size
 
-    def alter(amount: float) -> Altered:
-        return Altered(_added(carrier, lambda table: np.asarray(amount * size)), {"preload": amount * size})
+    def both(amount: float) -> dict[str, float]:
+        return {"preload": sign * share * amount * bench.size, "stiffness": amount * bench.size / bench.travel}
 
-    return Change("damper.gas_spring", "preload", "", (0.0, _LARGEST), alter)
+    def added(table: Table, amount: float) -> Array:
+        x, of_gas = table["displacement"], both(amount)
+        return np.asarray(of_gas["preload"] + of_gas["stiffness"] * (x - x[0]))
 
-
-def _asymmetry_by_force(carrier: Carrier, rng: Generator) -> Change:
-    """Return push and pull of the damper scaled apart; continuous, since the scale changes where the force is zero."""
-    sign, middle = -1.0 if rng.random() < 0.5 else 1.0, float(np.mean(carrier.pooled("damper_force")))
-
-    def alter(amount: float) -> Altered:
-        return Altered(_added(carrier, lambda t: sign * amount * np.abs(t["damper_force"] - middle)), {})
-
-    return Change("damper.asymmetry", "by the sign of the force", "", (0.0, 0.8), alter)
-
-
-def _asymmetry_by_speed(carrier: Carrier, rng: Generator) -> Change:
-    """Return extension and compression scaled apart, one turning into the other over a speed."""
-    sign, middle = -1.0 if rng.random() < 0.5 else 1.0, float(np.mean(carrier.pooled("damper_force")))
-    width = float(rng.uniform(0.1, 0.4)) * float(np.std(np.concatenate([_speed(carrier, t) for t in _tables(carrier)])))
-
-    def side(table: Table) -> Array:
-        v = _speed(carrier, table) / width
-        return v / np.sqrt(1.0 + v**2)
-
-    def alter(amount: float) -> Altered:
-        return Altered(_added(carrier, lambda t: sign * amount * side(t) * (t["damper_force"] - middle)), {})
-
-    return Change("damper.asymmetry", "by the sign of the speed", "", (0.0, 0.8), alter)
+    return [
+        bench.change("gas_spring", "preload and stiffness", _LARGEST, added, both),
+        bench.change("gas_spring", "preload", _LARGEST, lambda _, a: a * alone, lambda a: {"preload": a * alone}),
+    ]
 
 
-def _tables(carrier: Carrier) -> list[Table]:
-    return list(carrier.tables.values())
+def _asymmetries(bench: _Bench, rng: Generator) -> list[Change]:
+    """Return push and pull scaled apart, and extension and compression, one turning into the other over a speed.
+
+    The first is continuous, since its scale changes where the force is zero.
+    """
+    by_force, by_speed = recorded.draw_sign(rng), recorded.draw_sign(rng)
+    speeds = np.concatenate([bench.speed(table) for table in bench.carrier.tables.values()])
+    width = float(rng.uniform(0.1, 0.4)) * float(np.std(speeds))
+
+    def of_force(table: Table, amount: float) -> Array:
+        return by_force * amount * np.abs(table["damper_force"] - bench.middle)
+
+    def of_speed(table: Table, amount: float) -> Array:
+        v = bench.speed(table) / width
+        return by_speed * amount * (v / np.sqrt(1.0 + v**2)) * (table["damper_force"] - bench.middle)
+
+    return [
+        bench.change("asymmetry", "by the sign of the force", 0.8, of_force),
+        bench.change("asymmetry", "by the sign of the speed", 0.8, of_speed),
+    ]
 
 
-def _speed(carrier: Carrier, table: Table) -> Array:
-    return table["velocity"] if "velocity" in table else slope(table["displacement"], carrier.step)
-
-
-def _free_play(carrier: Carrier, rng: Generator) -> Change:
+def _free_play(bench: _Bench, rng: Generator) -> Change:
     """Return a play in series: the same force, a recorded motion that runs ahead of the damper's by half a gap.
 
     The gap is crossed where the force is a small share of its spread, since behind it every mount yields.
     """
-    soft = float(rng.uniform(*_CROSSED)) * _spread(carrier)
-    travel = float(np.std(carrier.pooled("displacement")))
+    soft = float(rng.uniform(*_CROSSED)) * bench.size
 
     def alter(amount: float) -> Altered:
-        gap = amount * travel
+        gap = amount * bench.travel
 
         def played(table: Table) -> Table:
             across = np.clip(table["damper_force"] / soft, -1.0, 1.0)
             ahead = 0.5 * gap * (1.5 * across - 0.5 * across**3)
             moved = {**table, "displacement": table["displacement"] + ahead - ahead[0]}
-            return moved | ({"velocity": table["velocity"] + slope(ahead, carrier.step)} if "velocity" in table else {})
+            rate = recorded.slope(ahead, bench.carrier.step)
+            return moved | ({"velocity": table["velocity"] + rate} if "velocity" in table else {})
 
-        return Altered(with_tables(carrier, played), {"gap": gap})
+        return Altered(recorded.with_tables(bench.carrier, played), {"gap": gap})
 
-    return Change("damper.free_play", "motion shifted", "", (0.0, 1.0), alter)
+    return Change("damper.free_play", "motion shifted", "", 1.0, alter)
 
 
-def _saturation(carrier: Carrier) -> list[Change]:
+def _saturation(bench: _Bench) -> list[Change]:
     """Return a yield force that grows ever less with current: that part of the force is scaled by `1 / (1 + i / i_s)`.
 
     The part that depends on the current is told from the rest by the nominal's own shares of it.
     """
-    command, yields = commanded(carrier), _yield_shares(section(section(carrier.nominal, "damper"), "parameters"))
-    if command is None or yields is None:
+    carrier, command = bench.carrier, commanded(bench.carrier)
+    yields = _yield_shares(section(section(carrier.nominal, "damper"), "parameters"))
+    if command is None or yields is None or len(_levels(carrier.pooled(command))) < _LEAST_LEVELS:
         return []
-    gain = number(section(carrier.header, "actuator").get("gain", 1.0)) if command == "command_voltage" else 1.0
-    rate = number(section(carrier.nominal, "actuator").get("rate", 130.0))
+    gain, rate = command_gain(carrier, command), number(section(carrier.nominal, "actuator").get("rate", 130.0))
     fixed, by_current, viscous, viscous_by_current = yields
-    middle = float(np.mean(carrier.pooled("damper_force")))
-    if len(_levels(carrier.pooled(command))) < _LEAST_LEVELS:
-        return []
 
     def lost(table: Table, bend: float) -> Array:
-        i = np.clip(low_pass(gain * table[command], 1.0 / rate, carrier.step), 0.0, None)
-        yielding = table["damper_force"] - middle - (viscous + viscous_by_current * i) * _speed(carrier, table)
+        i = np.clip(recorded.low_pass(gain * table[command], 1.0 / rate, carrier.step), 0.0, None)
+        yielding = table["damper_force"] - bench.middle - (viscous + viscous_by_current * i) * bench.speed(table)
         return -yielding * (by_current * i / (fixed + by_current * i)) * (bend * i / (1.0 + bend * i))
 
-    def alter(amount: float) -> Altered:
-        return Altered(_added(carrier, lambda table: lost(table, amount)), {"bend": amount})
-
-    return [Change("damper.magnetic_saturation", "yield part saturates", "", (0.0, 3.0), alter)]
+    return [bench.change("magnetic_saturation", "yield part saturates", 3.0, lost, lambda bend: {"bend": bend})]
 
 
 def _levels(command: Array) -> Array:
@@ -172,37 +160,31 @@ def _levels(command: Array) -> Array:
     return np.asarray(steps[counts > _STANDING * len(command)])
 
 
-def _yield_shares(values: Mapping[str, object]) -> tuple[float, float, float, float] | None:
+def _yield_shares(values: Mapping[str, object]) -> list[float] | None:
     """Return yield force at no current and per ampere, viscous coefficient likewise; None of another damper model."""
     for letter in ("alpha", "fc"):
         names = (f"{letter}_a", f"{letter}_b", "c_a", "c_b")
         if all(name in values for name in names):
             found = [number(values[name]) for name in names]
-            return (found[0], found[1], found[2], found[3]) if found[0] > 0.0 and found[1] > 0.0 else None
+            return found if found[0] > 0.0 and found[1] > 0.0 else None
     return None
 
 
-def _fade(carrier: Carrier) -> list[Change]:
-    """Return a force that falls with the recorded temperature, from its value at the reference."""
-    if (
-        "damper_temperature" not in carrier.channels
-        or float(np.ptp(carrier.pooled("damper_temperature"))) < _LEAST_WARMING
-    ):
+def _fade(bench: _Bench) -> list[Change]:
+    """Return a force that falls with the recorded temperature, from its value at the reference.
+
+    The temperature is taken without the noise of its sensor: as a mean over 2 s.
+    """
+    channel, carrier = "damper_temperature", bench.carrier
+    if channel not in carrier.channels or float(np.ptp(carrier.pooled(channel))) < _LEAST_WARMING:
         return []
-    middle = float(np.mean(carrier.pooled("damper_force")))
 
-    def share(table: Table, rate: float) -> Array:
-        smooth = _low_pass_temperature(table["damper_temperature"], carrier.step)
-        return 1.0 / (1.0 + rate * np.clip(smooth - _REFERENCE, 0.0, None)) - 1.0
+    def lost(table: Table, rate: float) -> Array:
+        values = table[channel]
+        width = min(len(values), max(1, round(2.0 / carrier.step)))
+        padded = np.pad(values, width // 2, mode="edge")
+        smooth = np.convolve(padded, np.ones(width) / width, mode="valid")[: len(values)]
+        share = 1.0 / (1.0 + rate * np.clip(smooth - _REFERENCE, 0.0, None)) - 1.0
+        return share * (table["damper_force"] - bench.middle)
 
-    def alter(amount: float) -> Altered:
-        return Altered(_added(carrier, lambda t: share(t, amount) * (t["damper_force"] - middle)), {"viscous": amount})
-
-    return [Change("damper.thermal_fade", "force falls with temperature", "", (0.0, 0.1), alter)]
-
-
-def _low_pass_temperature(values: Array, step: float) -> Array:
-    """Return a temperature without the noise of its sensor: a mean over 2 s."""
-    width = min(len(values), max(1, round(2.0 / step)))
-    padded = np.pad(values, width // 2, mode="edge")
-    return np.convolve(padded, np.ones(width) / width, mode="valid")[: len(values)]
+    return [bench.change("thermal_fade", "force falls with temperature", 0.1, lost, lambda rate: {"viscous": rate})]

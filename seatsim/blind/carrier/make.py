@@ -1,7 +1,5 @@
 """Makes a set of sealed cases on a measured recording: some of its runs, one change of a drawn size in each."""
 
-from __future__ import annotations
-
 import dataclasses
 import functools
 import math
@@ -61,8 +59,8 @@ def choose_runs(carrier: Carrier, rng: Generator) -> Carrier:
 
 
 def draw_amount(ruler: Ruler, change: Change, size: float) -> DrawnCase | None:
-    """Return the change at the amount at which it has a size, None where no amount inside its span has about that."""
-    low, high = change.span
+    """Return the change at the amount at which it has a size, None where no amount that it permits has about that."""
+    low, high = 0.0, change.largest
     for _ in range(_EVALUATIONS):
         middle = 0.5 * (low + high) if low > 0.0 else 0.25 * high
         found = ruler.size(change.alter(middle).carrier)
@@ -73,11 +71,6 @@ def draw_amount(ruler: Ruler, change: Change, size: float) -> DrawnCase | None:
     found = ruler.size(altered.carrier)
     fits = 1.0 - 2.0 * _CLOSE < found / size < 1.0 + 4.0 * _CLOSE and ruler.stands_out(altered.carrier)
     return DrawnCase(change, altered, found) if fits else None
-
-
-def _draw_size(rng: Generator) -> float:
-    """Draw a size, log-uniform from just material to strong."""
-    return float(np.exp(rng.uniform(math.log(_WEAKEST), math.log(_STRONGEST))))
 
 
 def make_on_carrier(
@@ -134,7 +127,8 @@ def _draw_case(carrier: Carrier, wanted: str, rng: Generator) -> DrawnCase:
     Raises:
         InputError: no effect of a material size can be put into the carrier.
     """
-    ruler, size = Ruler(carrier), _draw_size(rng)
+    # log-uniform from just material to strong
+    ruler, size = Ruler(carrier), float(np.exp(rng.uniform(math.log(_WEAKEST), math.log(_STRONGEST))))
     changes = draw_changes(carrier, rng)
     tried = sorted((changes[k] for k in rng.permutation(len(changes))), key=lambda change: change.effect != wanted)
     for change in tried:

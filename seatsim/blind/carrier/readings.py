@@ -4,26 +4,13 @@ A command that was given earlier than logged, a supply that did not reach it, a 
 low-pass of a sensor, and a controller's log that is shifted in time.
 """
 
-from __future__ import annotations
-
 import dataclasses
-from collections.abc import Callable
 
 import numpy as np
 from numpy.random import Generator
 
-from seatsim.blind.carrier.recorded import (
-    Altered,
-    Carrier,
-    Change,
-    Table,
-    low_pass,
-    number,
-    section,
-    shifted,
-    shifted_rows,
-    with_tables,
-)
+from seatsim.blind.carrier import recorded
+from seatsim.blind.carrier.recorded import Altered, Carrier, Change, Table, change_channel, number, section
 from seatsim.schema.arrays import Array
 
 _COMMANDS = ("current_command", "command_voltage")
@@ -47,15 +34,16 @@ _LARGEST_OFFSET = 2.0
 def draw_delays(carrier: Carrier, rng: Generator) -> list[Change]:
     """Return a coil that follows its command late: the command is logged earlier than it was given."""
     command = commanded(carrier)
-    if command is None or not any(np.ptp(table[command]) > 0.0 for table in carrier.tables.values()):
+    if command is None or not _varies(carrier, command):
         return []
 
-    def alter(amount: float) -> Altered:
-        rows = round(amount / carrier.step)
-        early = with_tables(carrier, lambda table: {**table, command: shifted_rows(table[command], -rows)})
-        return Altered(early, {"time": rows * carrier.step})
+    def early(table: Table, amount: float) -> Array:
+        return recorded.shifted_rows(table[command], -round(amount / carrier.step))
 
-    return [Change("coil.delay", "command advanced", "", (0.0, _LONGEST_DELAY), alter)]
+    def state(amount: float) -> dict[str, float]:
+        return {"time": round(amount / carrier.step) * carrier.step}
+
+    return [change_channel(carrier, ("coil.delay", "command advanced"), command, _LONGEST_DELAY, early, state)]
 
 
 def draw_limits(carrier: Carrier, rng: Generator) -> list[Change]:
@@ -68,7 +56,7 @@ def draw_limits(carrier: Carrier, rng: Generator) -> list[Change]:
     command = commanded(carrier)
     if command is None or "coil_current" not in carrier.channels:
         return []
-    gain = number(section(carrier.header, "actuator").get("gain", 1.0)) if command == "command_voltage" else 1.0
+    gain = command_gain(carrier, command)
     top = max(float(np.quantile(table[command], 0.99)) for table in carrier.tables.values())
     room = number(section(carrier.nominal, "actuator").get("max_current", 1.0)) / max(gain * top, 1e-9) - 1.0
     if top <= 0.0 or room < 0.2:
@@ -76,13 +64,13 @@ def draw_limits(carrier: Carrier, rng: Generator) -> list[Change]:
     raised = {run: _raises(table[command], top, rng) for run, table in carrier.tables.items()}
 
     def alter(amount: float) -> Altered:
-        def lifted(run: str, table: Table) -> Table:
-            return {**table, command: table[command] * (1.0 + amount * raised[run])}
-
-        tables = {run: lifted(run, table) for run, table in carrier.tables.items()}
+        tables = {
+            run: {**table, command: table[command] * (1.0 + amount * raised[run])}
+            for run, table in carrier.tables.items()
+        }
         return Altered(dataclasses.replace(carrier, tables=tables), {"limit": gain * top})
 
-    return [Change("coil.current_limit", "command raised above what flowed", "", (0.0, room), alter)]
+    return [Change("coil.current_limit", "command raised above what flowed", "", room, alter)]
 
 
 def _raises(command: Array, top: float, rng: Generator) -> Array:
@@ -99,6 +87,11 @@ def commanded(carrier: Carrier) -> str | None:
     return next((name for name in _COMMANDS if name in carrier.channels), None)
 
 
+def command_gain(carrier: Carrier, command: str) -> float:
+    """Return the current of a command, A/V of a voltage."""
+    return number(section(carrier.header, "actuator").get("gain", 1.0)) if command == "command_voltage" else 1.0
+
+
 def draw_sensor_changes(carrier: Carrier, rng: Generator) -> list[Change]:
     """Return a gain, an offset, a drift and a lag of every sensor.
 
@@ -107,66 +100,50 @@ def draw_sensor_changes(carrier: Carrier, rng: Generator) -> list[Change]:
     """
     found: list[Change] = []
     for channel in _SENSORS:
-        if channel not in carrier.channels or ("velocity" in carrier.channels and channel == "displacement"):
-            continue
-        found += [_gain(carrier, channel, rng), _lag(carrier, channel)]
-        if channel not in _INPUTS:
-            found += [_offset(carrier, channel, rng), _drift(carrier, channel, rng)]
+        if channel in carrier.channels and not ("velocity" in carrier.channels and channel == "displacement"):
+            found += [_gain(carrier, channel, rng), _lag(carrier, channel)]
+            found += _biases(carrier, channel, rng) if channel not in _INPUTS else []
     return found
 
 
 def _gain(carrier: Carrier, channel: str, rng: Generator) -> Change:
-    sign = -0.5 if rng.random() < 0.5 else 1.0
-    return _reading(
-        carrier, "gain", channel, _LARGEST_GAIN, lambda a: ({"error": sign * a}, lambda y: y + sign * a * y)
-    )
+    sign = recorded.draw_sign(rng, -0.5)
+
+    def read(table: Table, amount: float) -> Array:
+        return table[channel] + sign * amount * table[channel]
+
+    return change_channel(carrier, ("sensor.gain", "gain"), channel, _LARGEST_GAIN, read, lambda a: {"error": sign * a})
 
 
 def _lag(carrier: Carrier, channel: str) -> Change:
-    step = carrier.step
-    return _reading(carrier, "lag", channel, _LONGEST_LAG, lambda a: ({"time": a}, lambda y: low_pass(y, a, step)))
+    def read(table: Table, amount: float) -> Array:
+        return recorded.low_pass(table[channel], amount, carrier.step)
+
+    return change_channel(carrier, ("sensor.lag", "lag"), channel, _LONGEST_LAG, read, lambda a: {"time": a})
 
 
-def _offset(carrier: Carrier, channel: str, rng: Generator) -> Change:
-    size = _signed(rng) * float(np.std(carrier.pooled(channel)))
-    scale = _SCALES.get(channel, 1.0)
+def _biases(carrier: Carrier, channel: str, rng: Generator) -> list[Change]:
+    """Return an offset, and a drift: zero at first, and the amount in the mean of the runs' lengths."""
+    pooled, scale = carrier.pooled(channel), _SCALES.get(channel, 1.0)
+    offset, last = (recorded.draw_sign(rng) * float(np.std(pooled)) for _ in range(2))
+    rate = last / (len(pooled) / len(carrier.tables) * carrier.step)
 
-    def at(amount: float) -> tuple[dict[str, float], Callable[[Array], Array]]:
-        return {"share": size * amount / scale}, lambda y: y + size * amount
+    def drifting(table: Table, amount: float) -> Array:
+        return table[channel] + rate * amount * carrier.step * np.arange(len(table[channel]))
 
-    return _reading(carrier, "bias", channel, _LARGEST_OFFSET, at)
+    def shares(amount: float) -> dict[str, float]:
+        return {"share": offset * amount / scale}
 
+    def rates(amount: float) -> dict[str, float]:
+        return {"share": 0.0, "drift": rate * amount / scale}
 
-def _drift(carrier: Carrier, channel: str, rng: Generator) -> Change:
-    """Return a drift that begins at zero in every run and has reached the amount in the mean of the runs' lengths."""
-    size = _signed(rng) * float(np.std(carrier.pooled(channel)))
-    scale, rows = _SCALES.get(channel, 1.0), len(carrier.pooled(channel)) / len(carrier.tables)
-    rate = size / (rows * carrier.step)
+    def shifted(table: Table, amount: float) -> Array:
+        return table[channel] + offset * amount
 
-    def at(amount: float) -> tuple[dict[str, float], Callable[[Array], Array]]:
-        drift = rate * amount
-        return {"share": 0.0, "drift": drift / scale}, lambda y: y + drift * carrier.step * np.arange(len(y))
-
-    change = _reading(carrier, "bias", channel, 2.0 * _LARGEST_OFFSET, at)
-    return change._replace(form="drift")
-
-
-def _signed(rng: Generator) -> float:
-    return -1.0 if rng.random() < 0.5 else 1.0
-
-
-def _reading(
-    carrier: Carrier,
-    name: str,
-    channel: str,
-    largest: float,
-    at: Callable[[float], tuple[dict[str, float], Callable[[Array], Array]]],
-) -> Change:
-    def alter(amount: float) -> Altered:
-        parameters, read = at(amount)
-        return Altered(with_tables(carrier, lambda table: {**table, channel: read(table[channel])}), parameters)
-
-    return Change(f"sensor.{name}", name, channel, (0.0, largest), alter)
+    return [
+        change_channel(carrier, ("sensor.bias", "bias"), channel, _LARGEST_OFFSET, shifted, shares),
+        change_channel(carrier, ("sensor.bias", "drift"), channel, 2.0 * _LARGEST_OFFSET, drifting, rates),
+    ]
 
 
 def draw_skewed_logs(carrier: Carrier, rng: Generator) -> list[Change]:
@@ -177,20 +154,20 @@ def draw_skewed_logs(carrier: Carrier, rng: Generator) -> list[Change]:
     logged = [name for name in _LOGGED if name in carrier.channels]
     if not any(_varies(carrier, name) for name in logged):
         return []
-    sign = _signed(rng) if "coil_current" in logged and len(logged) > 1 else 1.0
+    sign = recorded.draw_sign(rng) if "coil_current" in logged and len(logged) > 1 else 1.0
 
     def alter(amount: float) -> Altered:
         rows = round(sign * amount / carrier.step)
 
         def late(table: Table) -> Table:
-            moved = {name: shifted_rows(table[name], rows) for name in logged if name != "coil_current"}
+            moved = {name: recorded.shifted_rows(table[name], rows) for name in logged if name != "coil_current"}
             if "coil_current" in logged:
-                moved["coil_current"] = shifted(table["coil_current"], rows * carrier.step, carrier.step)
+                moved["coil_current"] = recorded.shifted(table["coil_current"], rows * carrier.step, carrier.step)
             return {**table, **moved}
 
-        return Altered(with_tables(carrier, late), {"shift": rows * carrier.step})
+        return Altered(recorded.with_tables(carrier, late), {"shift": rows * carrier.step})
 
-    return [Change("sensor.clock_skew", "late log" if sign > 0 else "early log", "", (0.0, _LONGEST_SKEW), alter)]
+    return [Change("sensor.clock_skew", "late log" if sign > 0 else "early log", "", _LONGEST_SKEW, alter)]
 
 
 def _varies(carrier: Carrier, channel: str) -> bool:

@@ -1,7 +1,5 @@
 """A measured recording as values that can be changed and written again, what a change is, and arithmetic on signals."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from collections.abc import Callable, Mapping
@@ -10,6 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from numpy.random import Generator
 from scipy.signal import lfilter, savgol_filter
 
 from seatsim.blind.make.folder import encode_table, encode_yaml
@@ -141,7 +140,7 @@ class Altered(NamedTuple):
 
 
 class Change(NamedTuple):
-    """An effect in one form: `alter` gives the carrier with the effect at an amount inside `span`.
+    """An effect in one form: `alter` gives the carrier with the effect at an amount up to `largest`.
 
     `effect` is a name of the contract, `form` how it was put in, `channel` that of a sensor effect, else empty.
     """
@@ -149,13 +148,34 @@ class Change(NamedTuple):
     effect: str
     form: str
     channel: str
-    span: tuple[float, float]
+    largest: float
     alter: Callable[[float], Altered]
 
 
 def with_tables(carrier: Carrier, table_of: Callable[[Table], Table]) -> Carrier:
     """Return the carrier with every run replaced."""
     return dataclasses.replace(carrier, tables={run: table_of(table) for run, table in carrier.tables.items()})
+
+
+def change_channel(
+    carrier: Carrier,
+    effect: tuple[str, str],
+    channel: str,
+    largest: float,
+    read: Callable[[Table, float], Array],
+    parameters: Callable[[float], Mapping[str, float]],
+) -> Change:
+    """Return an effect, by name and form, whose channel shows what `read` makes of a run and an amount."""
+
+    def alter(amount: float) -> Altered:
+        return Altered(with_tables(carrier, lambda table: {**table, channel: read(table, amount)}), parameters(amount))
+
+    return Change(*effect, channel if effect[0].startswith("sensor.") else "", largest, alter)
+
+
+def draw_sign(rng: Generator, negative: float = -1.0) -> float:
+    """Draw 1 or a negative number."""
+    return negative if rng.random() < 0.5 else 1.0
 
 
 def slope(values: Array, step: float) -> Array:

@@ -1,7 +1,5 @@
 """How far a change moves what a gap compares, beyond what parameters inside their tolerance could take away."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Mapping
 from pathlib import Path
@@ -35,7 +33,7 @@ class Ruler:
     def __init__(self, carrier: Carrier) -> None:
         self.carrier = carrier
         self.recording = _load(carrier)
-        self.before = self._residuals(carrier)
+        self.before = self.residuals(carrier)
         self.spread = {name: float(np.std(carrier.pooled(name))) for name in self.before}
         self.columns = self._sensitivities()
 
@@ -43,7 +41,7 @@ class Ruler:
         """Return how the residuals change where each parameter is up by its tolerance, in std, end to end."""
         found = []
         for nominal in _varied_nominals(self.carrier):
-            moved = self._residuals(dataclasses.replace(self.carrier, nominal=nominal))
+            moved = self.residuals(dataclasses.replace(self.carrier, nominal=nominal))
             column = self._stack({name: moved[name] - self.before[name] for name in self.before})
             if np.all(np.isfinite(column)):
                 found.append(column)
@@ -77,7 +75,7 @@ class Ruler:
 
     def _change(self, changed: Carrier) -> Array:
         """Return what a change does to measured minus simulated, in std, end to end; NaN where channels are lost."""
-        after = self._residuals(changed)
+        after = self.residuals(changed)
         if set(after) != set(self.before):
             return np.full(sum(map(len, self.before.values())), np.nan)
         return self._stack({name: after[name] - self.before[name] for name in self.before})
@@ -88,7 +86,7 @@ class Ruler:
         J = np.column_stack(self.columns)
         return np.asarray(J @ bounded_least_squares(J, g))
 
-    def _residuals(self, carrier: Carrier) -> _Residuals:
+    def residuals(self, carrier: Carrier) -> _Residuals:
         """Return measured minus simulated of the channels that stand above their noise."""
         scenario, rate = single(carrier.nominal), self.recording.header.sample_rate
         parts: dict[str, list[Array]] = {}
@@ -98,11 +96,6 @@ class Ruler:
                 parts.setdefault(name, []).append(measured[name] - values)
         pooled = {name: np.concatenate(values) for name, values in parts.items()}
         return {n: values for n, values in pooled.items() if stands_out(carrier.pooled(n), carrier.noise(n))}
-
-    def gap(self, changed: Carrier) -> float:
-        """Return the overall gap of a changed carrier, in std."""
-        after = self._residuals(changed)
-        return float(np.sqrt(np.mean([np.mean((after[n] / self.spread[n]) ** 2) for n in self.before])))
 
 
 def _load(carrier: Carrier) -> Recording:

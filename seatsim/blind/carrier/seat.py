@@ -4,8 +4,6 @@ With the rig's equations linear, the difference d of the motion with and without
 `M d'' + C d' + K d = -f(x + d, v + d')`, where x is the recorded motion. So the background stays what was measured.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import itertools
 from collections.abc import Callable, Mapping
@@ -60,7 +58,7 @@ def draw_seat_changes(carrier: Carrier, rng: Generator) -> list[Change]:
             }
             return Altered(dataclasses.replace(carrier, tables=tables), parameters)
 
-        return Change(effect, form, "", (0.0, largest), alter)
+        return Change(effect, form, "", largest, alter)
 
     def rub(a: float) -> _Putting:
         return {"force": a * force}, lambda: _friction(a * force, width)

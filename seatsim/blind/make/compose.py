@@ -1,17 +1,14 @@
 """What the cases of a set are to be: kind, faults, rig and channels, shuffled; and how strong their faults are."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from itertools import combinations
+from typing import NamedTuple
 
 import numpy as np
 from numpy.random import Generator
 
-from seatsim.blind.make.draw_experiment import SCATTER, draw_experiment
-from seatsim.blind.make.draw_varied import draw_varied_experiment
+from seatsim.blind.make.draw_experiment import SCATTER, draw_experiment, draw_varied_experiment
 from seatsim.blind.sealed import EFFECTS, KINDS, Kind
 from seatsim.blind.truth.experiment import CHANNELS, COMPARED, Experiment
 from seatsim.blind.truth.faults import scenarios_of
@@ -53,8 +50,7 @@ def draw_missing_channels(rng: Generator) -> tuple[str, ...]:
     return tuple(str(name) for name in rng.choice(list(_OPTIONAL), count, replace=False, p=list(_OPTIONAL.values())))
 
 
-@dataclass(frozen=True)
-class CaseSpecification:
+class CaseSpecification(NamedTuple):
     """Specification of a case: its kind, and its effects (or the scenarios outside the library).
 
     `missing` are the channels not recorded (None: drawn), `background` is a random force on the frame, N rms, and
@@ -160,9 +156,9 @@ class _Dealer:
         return self.left.pop(place)
 
 
-def draw_target(rng: Generator, top: float = _STRONGEST_TARGET, bottom: float = _WEAKEST_TARGET) -> float:
+def draw_target(rng: Generator, top: float = _STRONGEST_TARGET) -> float:
     """Draw a materiality, log-uniform from the material limit to strong."""
-    return float(np.exp(rng.uniform(math.log(bottom), math.log(max(top, bottom * 1.01)))))
+    return float(np.exp(rng.uniform(math.log(_WEAKEST_TARGET), math.log(max(top, _WEAKEST_TARGET * 1.01)))))
 
 
 def find_severity(
@@ -197,10 +193,6 @@ def find_severity(
                 break
             continue
         s = _next_severity(known, target, low, high)
-    return _closest_material(known, target)
-
-
-def _closest_material(known: _Known, target: float) -> tuple[float, float] | None:
     material = [pair for pair in known if pair[1] >= _MATERIAL]
     return min(material, key=lambda pair: abs(math.log(pair[1] / target)), default=None)
 

@@ -1,10 +1,7 @@
 """Draws a case: which kind, which faults in which form, how strong, on which rig with which channels."""
 
-from __future__ import annotations
-
-import dataclasses
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.random import Generator
@@ -32,8 +29,7 @@ _WEAKEST = 0.4
 """Materiality below which a fault is raised no faster, as response and severity are not proportional that far."""
 
 
-@dataclass(frozen=True)
-class _DrawnFault:
+class _DrawnFault(NamedTuple):
     """A scenario, its drawn shape and severity, its materiality beside the others: in all, and net of tolerance."""
 
     scenario: FaultScenario
@@ -44,8 +40,7 @@ class _DrawnFault:
     net: float = 0.0
 
 
-@dataclass(frozen=True)
-class _Case:
+class _Case(NamedTuple):
     """A drawn case: the rig, what is wrong with it, what its channels show without noise; the last run is unseen."""
 
     specification: CaseSpecification
@@ -74,7 +69,7 @@ class _Case:
             "sample_rate": self.experiment.sample_rate,
             "tolerance": self.experiment.tolerance,
             "rig": dict(self.experiment.nominal),
-            "order": dataclasses.asdict(self.specification),
+            "order": self.specification._asdict(),
         }
 
 
@@ -98,7 +93,7 @@ def draw_case(specification: CaseSpecification, rng: Generator) -> _Case:
             scenarios = _draw_scenarios(specification, rng)
         outside = [scenario.name for scenario in scenarios_of("outside")]
         others = rng.choice(outside if specification.kind == "outside" else EFFECTS, len(scenarios), replace=False)
-        specification = replace(specification, names=tuple(map(str, others)))
+        specification = specification._replace(names=tuple(map(str, others)))
         scenarios = _draw_scenarios(specification, rng)
     raise RunError(f"no material case of kind {specification.kind} came of {_ATTEMPTS * _EXCHANGES} draws")
 
@@ -176,7 +171,7 @@ def _measure(
         others = _sum_of_changes([other for j, other in enumerate(faults) if j != k])
         size, response = runs.materiality(fault.changes, others)
         net = size * rig.refit.unexplained_share(fault.changes, others)
-        sized.append(replace(fault, materiality=size, net=net))
+        sized.append(fault._replace(materiality=size, net=net))
         responses.append(response)
     alike = collinearity(*responses) if len(responses) == 2 else 0.0
     if alike > _LARGEST_COLLINEARITY or not all(np.isfinite(fault.materiality) for fault in sized):
@@ -189,4 +184,4 @@ def _raise(fault: _DrawnFault, context: Context) -> _DrawnFault:
     if fault.net >= _MATERIAL:
         return fault
     severity = min(fault.severity * _RAISE / max(fault.net, _WEAKEST), fault.scenario.span[1])
-    return replace(fault, severity=severity, changes=fault.scenario.build(severity, fault.shape, context))
+    return fault._replace(severity=severity, changes=fault.scenario.build(severity, fault.shape, context))

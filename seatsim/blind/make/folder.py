@@ -1,7 +1,5 @@
 """Recording folders of drawn cases, in the contract's format, with nothing in them that reveals the label."""
 
-from __future__ import annotations
-
 import io
 import os
 import struct
@@ -55,7 +53,8 @@ def nominal_scenario(experiment: Experiment) -> dict[str, object]:
 
 def recording_header(experiment: Experiment, runs: Sequence[RunPlan]) -> dict[str, object]:
     """Return the content of `recording.yaml`."""
-    channels = {name: _channel_header(experiment, name) for name in CHANNELS if name in experiment.channels}
+    noise = {name: {"noise_rms": rms} for name, rms in experiment.noise.items()}
+    recorded = [name for name in CHANNELS if name in experiment.channels]
     entries = [
         {"name": run.name, "file": f"{run.name}.csv.gz"} | ({"repeat_of": run.repeat_of} if run.repeat_of else {})
         for run in runs
@@ -66,13 +65,8 @@ def recording_header(experiment: Experiment, runs: Sequence[RunPlan]) -> dict[st
         "parameter_tolerance": experiment.tolerance,
         "nominal": "nominal.yaml",
         "runs": entries,
-        "channels": channels,
+        "channels": {name: {"unit": CHANNELS[name].unit} | noise.get(name, {}) for name in recorded},
     }
-
-
-def _channel_header(experiment: Experiment, name: str) -> dict[str, str | float]:
-    header: dict[str, str | float] = {"unit": CHANNELS[name].unit}
-    return header | {"noise_rms": experiment.noise[name]} if name in experiment.noise else header
 
 
 def add_noise(experiment: Experiment, readings: Readings, rng: Generator) -> Readings:

@@ -5,8 +5,6 @@ processes. While it is unfinished, seed, key, labels and unseen runs lie in `SEA
 alone, so that a call that was broken off goes on; that folder is deleted when the file is sealed.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import secrets
@@ -64,18 +62,22 @@ def make(
     progress: Progress | None = None,
     kinds: str | list[str] = "mixed",
     processes: int = 2,
+    key: str | None = None,
+    of: int | None = None,
 ) -> str:
     """Write a set on simulated rigs; return the key.
 
     `kinds` is a preset (`mixed`, `varied`, `null`, `background`) or a kind (none, one, two, outside), or kinds
-    that are gone through in turn. The rest is that of `make_set`.
+    that are gone through in turn. The cases are the first ones `of` so many. The rest is that of `make_set`.
 
     Raises:
         InputError: fewer than one case, an unknown preset, a folder or file that is another set's.
     """
-    return make_set(
-        cases, seed, kinds, Path(out), Path(sealed), lambda s: _order(cases, kinds, s), draw_files, progress, processes
-    )
+
+    def order(seed: int) -> Sequence[CaseSpecification]:
+        return compose(of or cases, kinds, np.random.default_rng(np.random.SeedSequence(seed).spawn(1)[0]))
+
+    return make_set(cases, seed, kinds, Path(out), Path(sealed), order, draw_files, progress, processes, key)
 
 
 def make_public(
@@ -98,22 +100,7 @@ def make_public(
     if cases > PUBLIC_CASES:
         raise InputError(f"--cases {cases}: a public set has {PUBLIC_CASES} cases; give another name for others")
     seed = int.from_bytes(hashlib.sha256(name.encode()).digest())
-    return make_set(
-        cases,
-        seed,
-        _PUBLIC_KINDS,
-        Path(out),
-        Path(sealed),
-        lambda s: _order(PUBLIC_CASES, _PUBLIC_KINDS, s),
-        draw_files,
-        progress,
-        processes,
-        key_of(name),
-    )
-
-
-def _order(cases: int, kinds: str | Sequence[str], seed: int) -> Sequence[CaseSpecification]:
-    return compose(cases, kinds, np.random.default_rng(np.random.SeedSequence(seed).spawn(1)[0]))
+    return make(cases, seed, out, sealed, progress, _PUBLIC_KINDS, processes, key_of(name), PUBLIC_CASES)
 
 
 def make_set(
@@ -141,7 +128,8 @@ def make_set(
         raise InputError(f"{target}: lies inside {folder}; the labels must lie elsewhere than the recordings")
     plan = _begin_or_resume(cases, seed, kinds, folder, target, partial, key)
     wanted = order(plan.seed)
-    todo = [k for k in range(cases) if not _is_finished(folder, partial, case_name(k))]
+    names = {k: case_name(k) for k in range(cases)}
+    todo = [k for k, name in names.items() if not ((folder / name).is_dir() and (partial / f"{name}.json").is_file())]
     done_before = cases - len(todo)
     if progress:
         progress(done_before, cases)
@@ -179,10 +167,6 @@ def _begin_or_resume(
         raise InputError(f"{partial}: cannot be written: {error.strerror}; give another --sealed") from error
     write_text(note, json.dumps(plan._asdict()))
     return plan
-
-
-def _is_finished(folder: Path, partial: Path, name: str) -> bool:
-    return (folder / name).is_dir() and (partial / f"{name}.json").is_file()
 
 
 def make_case(draw: _Draw[Wanted], k: int, wanted: Wanted, seed: int, folder: Path, partial: Path) -> None:

@@ -8,17 +8,14 @@ By the contract a gap that the tolerance explains is no gap. So a fault counts h
 the best bounded refit of every nominal parameter, linear in the parameters: `min |g - J theta|`, `|theta| <= 1`.
 """
 
-from __future__ import annotations
-
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 from scipy.optimize import lsq_linear
 
-from seatsim.blind.make.draw_experiment import EXACT, zero_scales
 from seatsim.blind.truth.experiment import CHANNELS, Experiment, Readings, read_channels, simulate_run
 from seatsim.blind.truth.faults import Changes, Context
 from seatsim.blind.truth.rig import RigMotion
@@ -38,6 +35,13 @@ SECONDS = 12.0
 """Of each run that are looked at: half of it, as every parameter costs a simulation."""
 _NEGLIGIBLE = 0.2
 """Materiality below which a fault is not material whatever a refit takes away."""
+EXACT = ("is_bingham", "n", "i_max", "damper_ratio")
+"""Parameters that are choices, not measurements, and are never off."""
+
+
+def zero_scales(nominal: Mapping[str, float]) -> dict[str, float]:
+    """Return what a relative error refers to where the nominal value is zero (contract, section 3)."""
+    return {"k0": nominal["kf"], "x0": 0.01, "f0": 100.0}
 
 
 @dataclass

@@ -1,46 +1,78 @@
 """Scores the diagnoses of a blind set against its sealed labels."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.blind.score.cases import (
-    Bin,
-    Failure,
-    FoundSize,
-    Rate,
-    ScoredCase,
-    brier_score,
-    calibration_error,
-    compare_sizes,
-    confusion,
-    count_named,
-    count_true,
-    describe_failure,
-    missing_channels,
-    rate_right,
-    rates_by,
-    reliability,
-    strength_class,
-)
+from seatsim.blind.score.rates import Bin, Rate, brier_score, calibration_error, count_true, reliability
 from seatsim.blind.score.shrink import ShrinkScore, score_shrink
-from seatsim.blind.score.verdicts import (
-    NAMING,
-    Verdict,
-    is_block_first,
-    is_isolable_group_first,
-    is_wrong_name,
-    read_verdict,
-)
+from seatsim.blind.score.verdicts import NAMING, Verdict, is_right, is_wrong_name, read_verdict
 from seatsim.blind.sealed import EFFECTS, KINDS, Label, unseal
 from seatsim.schema.errors import InputError
 from seatsim.schema.processes import Progress
+
+_SIZES = (1.5, 2.5, 4.0)
+"""Upper edges, in material limits, of the classes by strength: just material, common, strong."""
+_NAMED = 3
+"""Causes of a wrong verdict that are listed."""
+
+
+class ScoredCase(NamedTuple):
+    """A case with its label and what a diagnosis said of it."""
+
+    name: str
+    label: Label
+    verdict: Verdict
+
+    @property
+    def right(self) -> bool:
+        """Whether the verdict is right."""
+        return is_right(self.label, self.verdict)
+
+    @property
+    def is_block_first(self) -> bool:
+        """Whether the first block is one where something is wrong."""
+        return bool(self.verdict.blocks) and self.verdict.blocks[0] in self.label["blocks"]
+
+    @property
+    def is_isolable_group_first(self) -> bool:
+        """Whether it is, with blocks that the channels cannot tell apart taken for one."""
+        alike = [
+            group for group in self.verdict.isolable if self.verdict.blocks[:1] and self.verdict.blocks[0] in group
+        ]
+        return self.is_block_first or any(set(self.label["blocks"]) & set(group) for group in alike)
+
+
+class Failure(NamedTuple):
+    """A case whose verdict is wrong, as it stands in `score.json`."""
+
+    case: str
+    kind: str
+    effects: list[str]
+    forms: list[str]
+    materialities: list[float]
+    missing: list[str]
+    verdict: str
+    named: list[str]
+    selected: list[str]
+    groups: list[list[str]]
+    where: list[str]
+
+
+class FoundSize(NamedTuple):
+    """A parameter of an effect that was found: its true and its estimated value."""
+
+    case: str
+    effect: str
+    parameter: str
+    true: float
+    found: float
 
 
 @dataclass(frozen=True)
@@ -91,14 +123,13 @@ def score(
     sealed: str | Path,
     key: str,
     diagnoses: str = "diagnosis",
-    unseen: bool = True,
     progress: Progress | None = None,
     processes: int = 2,
 ) -> Score:
     """Score DIR/case-*/DIAGNOSES/diagnosis.json against the sealed labels.
 
-    With `unseen`, the stated shrink is compared with that of `augmented.yaml` on the run that was never given;
-    `progress` is called with the replays done and all.
+    The stated shrink is compared with that of `augmented.yaml` on the run that was never given; `progress` is called
+    with the replays done and all.
 
     Raises:
         InputError: wrong key, changed file, another set's folder, or a diagnosis that is no diagnosis.
@@ -108,7 +139,7 @@ def score(
     verdicts = {name: read_verdict(base / name / diagnoses / "diagnosis.json") for name in opened.labels}
     if all(verdict.verdict == "missing" for verdict in verdicts.values()):
         raise InputError(f"{base}: no case-*/{diagnoses}/diagnosis.json; diagnose the cases first")
-    shrink = score_shrink(base, opened, verdicts, processes, progress) if unseen else None
+    shrink = score_shrink(base, opened, verdicts, processes, progress)
     return score_verdicts(opened.labels, verdicts, shrink)
 
 
@@ -126,13 +157,13 @@ def score_verdicts(
     recall, precision = _recall_and_precision(kinds["two"])
     single = known + kinds["outside"]
     return Score(
-        right=rate_right(cases),
-        kinds={kind: rate_right(some) for kind, some in kinds.items() if some},
-        outside_with_block=count_true([c.right and is_block_first(c.label, c.verdict) for c in kinds["outside"]]),
+        right=_rate_right(cases),
+        kinds={kind: _rate_right(some) for kind, some in kinds.items() if some},
+        outside_with_block=count_true([c.right and c.is_block_first for c in kinds["outside"]]),
         top1=_rate_among_first(known, 1),
         top3=_rate_among_first(known, 3),
-        block=count_true([is_block_first(c.label, c.verdict) for c in faulty]),
-        block_coarse=count_true([is_isolable_group_first(c.label, c.verdict) for c in faulty]),
+        block=count_true([c.is_block_first for c in faulty]),
+        block_coarse=count_true([c.is_isolable_group_first for c in faulty]),
         wrong_names=count_true([is_wrong_name(c.label, c.verdict) for c in known]),
         false_alarms=count_true([c.verdict.verdict != "none" for c in kinds["none"]]),
         detected=count_true([c.verdict.verdict not in ("none", "missing") for c in faulty]),
@@ -143,15 +174,15 @@ def score_verdicts(
         reliability=table,
         shrink=shrink,
         group_size=_mean_group_size(cases),
-        effects=rates_by(known, lambda label: label["effects"][:1]),
-        forms=rates_by(single, lambda label: label.get("forms", [])),
-        confusion=confusion(cases),
-        by_missing=rates_by(cases, missing_channels),
-        by_size=rates_by(single, strength_class),
-        failures=[describe_failure(case) for case in cases if not case.right],
+        effects=_rates_by(known, lambda label: label["effects"][:1]),
+        forms=_rates_by(single, lambda label: label.get("forms", [])),
+        confusion=_confusion(cases),
+        by_missing=_rates_by(cases, _missing_channels),
+        by_size=_rates_by(single, _strength_class),
+        failures=[_describe_failure(case) for case in cases if not case.right],
         cases=len(every),
-        untouched=count_named([case for case in every if case.label["kind"] == "untouched"]),
-        found_sizes=compare_sizes(kinds["carried"]),
+        untouched=_count_named([case for case in every if case.label["kind"] == "untouched"]),
+        found_sizes=_compare_sizes(kinds["carried"]),
     )
 
 
@@ -183,3 +214,74 @@ def _mean_group_size(cases: Sequence[ScoredCase]) -> float:
     """Return how many effects an answer holds on average, of the verdicts that name some; NaN where none does."""
     naming = [case.verdict for case in cases if case.verdict.verdict in NAMING and case.verdict.causes]
     return float(np.mean([len(verdict.group) for verdict in naming])) if naming else math.nan
+
+
+def _rate_right(cases: Iterable[ScoredCase]) -> Rate:
+    """Return how many verdicts are right."""
+    return count_true([case.right for case in cases])
+
+
+def _rates_by(cases: Iterable[ScoredCase], classes_of: Callable[[Label], Sequence[str]]) -> dict[str, Rate]:
+    """Return how many verdicts are right by class, in the order of the alphabet; a case may belong to several."""
+    flags: dict[str, list[bool]] = {}
+    for case in cases:
+        for name in classes_of(case.label):
+            flags.setdefault(name, []).append(case.right)
+    return {name: count_true(flags[name]) for name in sorted(flags)}
+
+
+def _strength_class(label: Label) -> list[str]:
+    """Return the class of a case by the materiality of its weakest fault."""
+    weakest = min(label.get("materialities") or [math.nan])
+    for edge in _SIZES:
+        if weakest < edge:
+            return [f"{edge:.1f} x limit or less"]
+    return ["stronger"]
+
+
+def _missing_channels(label: Label) -> list[str]:
+    """Return the class of a case by the channels that it lacks."""
+    return [" ".join(label.get("missing", [])) or "all channels"]
+
+
+def _confusion(cases: Iterable[ScoredCase]) -> dict[str, dict[str, int]]:
+    """Return how often each name was given, most often first, by what is true."""
+    counts: dict[str, Counter[str]] = {}
+    for case in cases:
+        counts.setdefault(_true_name(case.label), Counter())[case.verdict.named] += 1
+    return {row: dict(counts[row].most_common()) for row in sorted(counts)}
+
+
+def _count_named(cases: Iterable[ScoredCase]) -> dict[str, int]:
+    """Return how often each effect stands first among those selected, most often first, else the verdict."""
+    said = [case.verdict for case in cases]
+    first = (next((name for name in each.causes if name in each.selected), each.verdict) for each in said)
+    return dict(Counter(first).most_common())
+
+
+def _compare_sizes(cases: Iterable[ScoredCase]) -> list[FoundSize]:
+    """Return true and estimated parameters of the same name, of the cases in which the effect is selected."""
+    found = []
+    for case in cases:
+        for effect, true in zip(case.label["effects"], case.label.get("shapes", []), strict=False):
+            estimated = case.verdict.parameters.get(effect, {}) if effect in case.verdict.selected else {}
+            found += [FoundSize(case.name, effect, p, v, estimated[p]) for p, v in true.items() if p in estimated]
+    return found
+
+
+def _true_name(label: Label) -> str:
+    match label["kind"]:
+        case "one" | "carried":
+            return label["effects"][0]
+        case "outside":
+            return f"outside ({label['blocks'][0]})"
+        case kind:
+            return kind
+
+
+def _describe_failure(case: ScoredCase) -> Failure:
+    """Return what is true of a case whose verdict is wrong, and what was said."""
+    label, verdict = case.label, case.verdict
+    known = label.get("forms", []), label.get("materialities", []), label.get("missing", [])
+    said = list(verdict.causes[:_NAMED]), list(verdict.selected), [list(group) for group in verdict.groups]
+    return Failure(case.name, label["kind"], label["effects"], *known, verdict.verdict, *said, list(verdict.blocks[:2]))

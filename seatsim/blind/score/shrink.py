@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.blind.score.cases import Rate, count_true
+from seatsim.blind.score.rates import Rate, count_true
 from seatsim.blind.score.verdicts import NAMING, Verdict
 from seatsim.blind.sealed import Sealed
 from seatsim.schema.errors import SeatsimError

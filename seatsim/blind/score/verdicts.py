@@ -1,7 +1,5 @@
 """What a diagnosis said of a case, and whether that is right."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -148,16 +146,3 @@ def is_right(label: Label, verdict: Verdict) -> bool:
 def is_wrong_name(label: Label, verdict: Verdict) -> bool:
     """Tell whether a wrong effect is named first: one is selected, and neither it nor its group of two is right."""
     return bool(verdict.selected) and verdict.verdict in (*NAMING, "unknown") and not is_right(label, verdict)
-
-
-def is_block_first(label: Label, verdict: Verdict) -> bool:
-    """Tell whether the first block is one where something is wrong."""
-    return bool(verdict.blocks) and verdict.blocks[0] in label["blocks"]
-
-
-def is_isolable_group_first(label: Label, verdict: Verdict) -> bool:
-    """Tell whether it is, with blocks that the channels cannot tell apart taken for one."""
-    if is_block_first(label, verdict):
-        return True
-    alike = [group for group in verdict.isolable if verdict.blocks and verdict.blocks[0] in group]
-    return any(set(label["blocks"]) & set(group) for group in alike)

@@ -5,8 +5,6 @@ sampled at the rows: a schedule, on-off skyhook or static output feedback. Its `
 level (A), then what the kind needs. Behind the coil, its field saturates and stays, and the fluid warms up.
 """
 
-from __future__ import annotations
-
 import math
 
 from seatsim.blind.truth import state

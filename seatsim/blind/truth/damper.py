@@ -5,18 +5,9 @@ Bouc-Wen variable or `tanh(v / v_ref)`. Everything else is zero, or one, while i
 rigidly, with play at its ends, or with air that is squeezed before it carries.
 """
 
-from __future__ import annotations
-
 import math
 
-from seatsim.blind.truth import state
-from seatsim.blind.truth.coil import (
-    viscous_factor,
-    write_heat_rates,
-    write_magnetisation_rate,
-    yield_current,
-    yield_factor,
-)
+from seatsim.blind.truth import coil, state
 from seatsim.blind.truth.state import FASTEST, MICRO_DAMPING, RigParameters, bristle_rate, compiled
 from seatsim.schema.arrays import Array
 
@@ -74,7 +65,7 @@ def _viscous_damping(y: Array, v: float, p: RigParameters) -> float:
     """Return the viscous damping at the fluid's temperature, the direction and the speed, N s/m."""
     viscous = p.c_a + p.c_b * y[state.CURRENT]
     if p.fade_law != 0.0:
-        viscous *= viscous_factor(y[state.T_FLUID], p)
+        viscous *= coil.viscous_factor(y[state.T_FLUID], p)
     up = 0.5 * (1.0 + math.tanh(v / p.asym_speed))
     viscous *= 1.0 + p.asym_viscous_up * up + p.asym_viscous_down * (1.0 - up)
     if p.thinning_power != 0.0:
@@ -85,9 +76,9 @@ def _viscous_damping(y: Array, v: float, p: RigParameters) -> float:
 @compiled
 def _yield_force(y: Array, memory: Array, z: float, p: RigParameters) -> float:
     """Return the yield force at the fluid's temperature and the direction of z, N."""
-    strength = p.y_a + p.y_b * yield_current(y, memory, p)
+    strength = p.y_a + p.y_b * coil.yield_current(y, memory, p)
     if p.fade_law != 0.0:
-        strength *= yield_factor(y[state.T_FLUID], p)
+        strength *= coil.yield_factor(y[state.T_FLUID], p)
     up = 0.5 * (1.0 + min(max(z, -1.0), 1.0))
     return float(strength * (1.0 + p.asym_yield_up * up + p.asym_yield_down * (1.0 - up)))
 
@@ -229,9 +220,9 @@ def damper_force(y: Array, rates: Array, memory: Array, x: float, speed: float, 
     _write_yield_rates(y, rates, v, p)
     if not (loose or resting):
         force = main_force(y, memory, x, v, p)
-    write_magnetisation_rate(y, rates, p)
+    coil.write_magnetisation_rate(y, rates, p)
     if p.seal_force != 0.0:
         force += seal_force(y, rates, v, force, p)
     # the gas stores its work, so the fluid is heated by the force before it
-    write_heat_rates(y, rates, force * v, p)
+    coil.write_heat_rates(y, rates, force * v, p)
     return force + gas_force(x, p)

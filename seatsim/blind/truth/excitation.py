@@ -3,8 +3,6 @@
 All of it is made of coloured noise, as the noise and the bias drift of sensors are.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import NamedTuple
 
@@ -153,23 +151,16 @@ def draw_vehicle_floor(rng: Generator, vehicle: _Vehicle, seconds: float, bumps:
     `(2 pi n0)^2 Gd(n0) v`; so it is drawn white and scaled by the speed and the roughness of the moment.
     """
     samples = round(seconds * EXCITATION_RATE)
-    speed = _draw_speed(rng, samples)
-    power = (2.0 * np.pi * _REFERENCE) ** 2 * _draw_roughness(rng, samples) * speed
+    # levels of 15-100 % of the fastest speed, m/s; the roughness of a class, m^3, patched by factors of 1/2 to 2
+    speed = rng.uniform(8.0, 25.0) * _levels(rng, samples, 0.15, 1.0)
+    middle = _ROUGHNESS[str(rng.choice(list(_ROUGHNESS), p=[0.1, 0.35, 0.4, 0.15]))]
+    power = (2.0 * np.pi * _REFERENCE) ** 2 * (middle * 2.0 ** _levels(rng, samples, -1.0, 1.0)) * speed
     road = np.sqrt(0.5 * EXCITATION_RATE * power) * rng.standard_normal(samples)
     floor = _through_vehicle(road + _draw_bump_velocity(rng, speed, bumps), vehicle)
     level = float(np.std(floor))
-    return floor * min(max(level, _QUIETEST), _LOUDEST) / level + _draw_engine(rng, vehicle, samples)
-
-
-def _draw_speed(rng: Generator, samples: int) -> Array:
-    """Return the speed of a drive, m/s, shape (samples,): linear between levels of 15-100 % of its fastest."""
-    return rng.uniform(8.0, 25.0) * _levels(rng, samples, 0.15, 1.0)
-
-
-def _draw_roughness(rng: Generator, samples: int) -> Array:
-    """Return `Gd(n0)`, m^3, shape (samples,): that of a class, patched by factors of 1/2 to 2."""
-    middle = _ROUGHNESS[str(rng.choice(list(_ROUGHNESS), p=[0.1, 0.35, 0.4, 0.15]))]
-    return np.asarray(middle * 2.0 ** _levels(rng, samples, -1.0, 1.0))
+    # the engine is a narrow band about its frequency
+    engine = coloured_noise(rng, samples, 0.97 * vehicle.engine, vehicle.engine, 0.0, EXCITATION_RATE)
+    return floor * min(max(level, _QUIETEST), _LOUDEST) / level + vehicle.hum * engine
 
 
 def _levels(rng: Generator, samples: int, low: float, high: float) -> Array:
@@ -214,11 +205,6 @@ def _mode(s: _Spectrum, w: float, damping: float) -> _Spectrum:
     return carried / (s * s + carried)
 
 
-def _draw_engine(rng: Generator, vehicle: _Vehicle, samples: int) -> Array:
-    """Return the engine's part of the floor, m/s^2, shape (samples,): a narrow band about its frequency."""
-    return vehicle.hum * coloured_noise(rng, samples, 0.97 * vehicle.engine, vehicle.engine, 0.0, EXCITATION_RATE)
-
-
 def draw_current_steps(rng: Generator, rows: int, top: float, rate: float = SAMPLE_RATE) -> Array:
     """Return a schedule of current steps, A, shape (rows,): random levels, zero now and then, held 0.3-2.5 s."""
     out = np.zeros(rows)
@@ -234,28 +220,19 @@ def draw_current_steps(rng: Generator, rows: int, top: float, rate: float = SAMP
 def frame_force(forces: Iterable[FrameForce], run: int, seconds: float) -> Array:
     """Return the sum of forces in a run, shape (samples,); each has its own generator, so none changes another."""
     drawn = [force.rms * _draw_unit_force(np.random.default_rng([force.seed, run]), force, seconds) for force in forces]
-    if not drawn:
-        return _NO_FORCE
-    total = np.zeros(round(seconds * EXCITATION_RATE))
-    for values in drawn:
-        total += values
-    return total
+    return sum(drawn, np.zeros(round(seconds * EXCITATION_RATE))) if drawn else _NO_FORCE
 
 
 def _draw_unit_force(rng: Generator, force: FrameForce, seconds: float) -> Array:
+    """Return a force of 1 N rms: random from 1-2.5 Hz to 8-18 Hz, the tone of an engine, or knocks."""
     match force.kind:
         case "coloured":
-            return _draw_coloured_force(rng, seconds)
+            low, high, samples = rng.uniform(1.0, 2.5), rng.uniform(8.0, 18.0), round(seconds * EXCITATION_RATE)
+            return coloured_noise(rng, samples, low, high, rng.uniform(-0.3, 0.3), EXCITATION_RATE)
         case "hum":
             return _draw_hum(rng, seconds, force.detail)
         case "knock":
             return _draw_knocks(rng, seconds, force.detail)
-
-
-def _draw_coloured_force(rng: Generator, seconds: float) -> Array:
-    """Return a random force of 1 N rms, from 1-2.5 Hz to 8-18 Hz."""
-    low, high = rng.uniform(1.0, 2.5), rng.uniform(8.0, 18.0)
-    return coloured_noise(rng, round(seconds * EXCITATION_RATE), low, high, rng.uniform(-0.3, 0.3), EXCITATION_RATE)
 
 
 def _draw_hum(rng: Generator, seconds: float, hertz: float) -> Array:

@@ -1,7 +1,5 @@
 """One rig under test and its protocol: what a run is, with or without faults, and what its channels read."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -215,27 +213,19 @@ def simulate_run(
     With `command` (A, one per row) the loop is open; a `floor` (m/s^2) in place of the run's is given at the rows.
     """
     plan = experiment.runs[run]
-    record = parameter_record(_run_parameters(experiment, changes, run))
-    law, schedule = (plan.law, plan.schedule) if command is None else (np.zeros(6), command)
-    base, rate = (plan.floor, EXCITATION_RATE) if floor is None else (floor, experiment.sample_rate)
-    force = frame_force((*experiment.background, *changes.frame_forces), run, plan.rows / experiment.sample_rate)
-    return simulate(record, Inputs(base, rate, force, law, schedule, experiment.sample_rate), step)
-
-
-def _run_parameters(experiment: Experiment, changes: Changes, run: int) -> dict[str, float]:
-    """Return the parameters of a run: the true ones, its temperature, and the changes."""
-    temperature = experiment.runs[run].temperature
-    values = dict(experiment.true) | {"t_start": temperature, "t_ambient": temperature}
+    values = dict(experiment.true) | {"t_start": plan.temperature, "t_ambient": plan.temperature}
     for name, value in changes.parameters.items():
         number = value[min(run, len(value) - 1)] if isinstance(value, tuple) else value
         if name == "rate_factor":
             values["rate"] *= number
         else:
             values[name] = number
-    return values
+    law, schedule = (plan.law, plan.schedule) if command is None else (np.zeros(6), command)
+    base, rate = (plan.floor, EXCITATION_RATE) if floor is None else (floor, experiment.sample_rate)
+    force = frame_force((*experiment.background, *changes.frame_forces), run, plan.rows / experiment.sample_rate)
+    return simulate(parameter_record(values), Inputs(base, rate, force, law, schedule, experiment.sample_rate), step)
 
 
 def read_channels(experiment: Experiment, changes: Changes, run: int, motion: RigMotion) -> Readings:
     """Return what the channels show of a motion, without noise, in the contract's order."""
-    readings = read_sensors(motion, experiment.runs[run].floor, changes.sensor_faults, run)
-    return {name: readings[name] for name in CHANNELS}
+    return read_sensors(motion, experiment.runs[run].floor, changes.sensor_faults, run)

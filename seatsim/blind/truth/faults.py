@@ -26,15 +26,6 @@ _ForceKind = Literal["coloured", "hum", "knock"]
 _Misreading = Literal["gain", "gain_bent", "bias", "wander", "lag_second", "lag_average"]
 """Of the contract's effects, beside a log that is skewed; others are outside the library."""
 _SensorFaultKind = Literal[_Misreading, "skew", "quantise", "clip", "backlash", "crosstalk"]
-_FAULTY_CHANNELS = (
-    "frame_acceleration",
-    "driver_acceleration",
-    "suspension_displacement",
-    "damper_force",
-    "coil_current",
-    "floor_acceleration",
-)
-"""Channels that a sensor fault can sit on, where they are recorded."""
 NEIGHBOUR = {
     "frame_acceleration": "driver_acceleration",
     "driver_acceleration": "frame_acceleration",
@@ -44,10 +35,11 @@ NEIGHBOUR = {
     "floor_acceleration": "frame_acceleration",
 }
 """The channel that couples into each, where channels are not kept apart."""
+_FAULTY_CHANNELS = tuple(NEIGHBOUR)
+"""Channels that a sensor fault can sit on, where they are recorded."""
 
 
-@dataclass(frozen=True)
-class FrameForce:
+class FrameForce(NamedTuple):
     """A force on the frame that no channel records: rms in N; `detail` is the tone in Hz or the interval in s."""
 
     kind: _ForceKind
@@ -56,8 +48,7 @@ class FrameForce:
     detail: float = 0.0
 
 
-@dataclass(frozen=True)
-class SensorFault:
+class SensorFault(NamedTuple):
     """A sensor fault: kind, channel, size (as `sensors` states), detail (0..1), seed, and the channel's spread."""
 
     kind: _SensorFaultKind
@@ -93,8 +84,7 @@ class Changes:
         )
 
 
-@dataclass(frozen=True)
-class Context:
+class Context(NamedTuple):
     """What a scenario may know of the rig without it, so that its sizes fit the motion."""
 
     spread: Mapping[str, float]

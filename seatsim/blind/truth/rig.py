@@ -5,10 +5,7 @@
 The floor enters only as an acceleration; all motion is relative (`x = zs - z0`, `y = zc - zs`), so nothing drifts.
 """
 
-from __future__ import annotations
-
 import math
-from dataclasses import dataclass
 from typing import NamedTuple, cast
 
 import numpy as np
@@ -31,8 +28,7 @@ _FORGETTING = 0.8
 """1/s, at which a controller's integral of an acceleration forgets, so that no offset runs away."""
 
 
-@dataclass(frozen=True)
-class RigMotion:
+class RigMotion(NamedTuple):
     """What the rig did, shape (rows,) each, before sensors and noise; `fine_current` has a value for every step."""
 
     frame: Array  # m/s^2

@@ -4,8 +4,6 @@ Beside them stand buffers, linkage friction, bushing and creep; what foam and co
 the floor, muscles that answer late.
 """
 
-from __future__ import annotations
-
 import math
 
 from seatsim.blind.truth import state

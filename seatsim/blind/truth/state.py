@@ -6,8 +6,6 @@ numba keeps compiled code beside each source and looks only at that file's date:
 called from another module, delete the `__pycache__` of this package.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from pathlib import Path

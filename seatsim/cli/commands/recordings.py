@@ -136,11 +136,11 @@ def inspect_data(
 def _inspected(data: Path, map_file: Path | None) -> Inspection:
     """Return what a file or a recording holds; what a recording needs is not loaded for a file."""
     if map_file is not None:
-        from seatsim.importing.inspected_recording import inspect_mapped
+        from seatsim.importing.inspection import inspect_mapped
 
         return inspect_mapped(data, map_file)
     if data.is_dir():
-        from seatsim.importing.inspected_recording import inspect_recording
+        from seatsim.importing.inspection import inspect_recording
 
         return inspect_recording(data)
     from seatsim.importing.inspection import inspect_file

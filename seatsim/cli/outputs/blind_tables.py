@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 from rich.table import Table
 
-from seatsim.blind.score.cases import Failure, Rate
-from seatsim.blind.score.score import Score
+from seatsim.blind.score.rates import Rate
+from seatsim.blind.score.score import Failure, Score
 from seatsim.cli.show_table import make_table
 
 _RATE = ("share", "count", "95 % interval")

@@ -4,8 +4,6 @@ One advance is one sample. The inverse cannot know the true state of a damper: i
 current, also where that of a simulation knows the true one.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Annotated, NamedTuple
 

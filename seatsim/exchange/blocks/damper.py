@@ -1,7 +1,5 @@
 """The damper with its coil as a block: motion, command and temperature in, force out."""
 
-from __future__ import annotations
-
 import math
 from typing import Annotated, NamedTuple
 

@@ -4,8 +4,6 @@ The numbers are parameters and the temperature, and another program may change a
 compared at every step, so that a held value is always the one that would be computed.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -1,12 +1,12 @@
-#define STEP R(@STEP@)
-#define FIXED_STEP @FIXED_STEP@
+#define STEP R({{ block.step }})
+#define FIXED_STEP {{ block.fixed_step | int }}
 
 /* The model: its numbers, and what can be done with it. Nothing is allocated. */
 typedef struct {
-    @Parameters@ parameters;
-    @Inputs@ inputs;
-    @State@ state;
-    @Outputs@ outputs;
+    {{ Parameters }} parameters;
+    {{ Inputs }} inputs;
+    {{ State }} state;
+    {{ Outputs }} outputs;
     real age; /* s since the inputs were given */
 } Model;
 
@@ -22,7 +22,7 @@ static inline void model_reset(Model *m)
 /* Begin at time zero with the parameters and inputs that are set. */
 static inline void model_start(Model *m)
 {
-    m->state = @START@;
+    m->state = {{ START }};
     m->age = R(0.0);
 }
 
@@ -33,7 +33,7 @@ static inline int model_advance(Model *m, real length)
     const int steps = FIXED_STEP ? greatest_int(1, (int)(length / STEP + R(0.5))) : 1;
     const real part = FIXED_STEP ? STEP : length;
     for (int k = 0; k < steps; k++) {
-        const @Advanced@ next = @ADVANCE@;
+        const {{ Advanced }} next = {{ ADVANCE }};
         if (!next.item1) {
             return 0;
         }
@@ -46,5 +46,5 @@ static inline int model_advance(Model *m, real length)
 /* Compute the outputs. */
 static inline void model_observe(Model *m)
 {
-    m->outputs = @OBSERVE@;
+    m->outputs = {{ OBSERVE }};
 }

@@ -15,5 +15,7 @@ typedef struct {
 } Variable;
 
 static const Variable variables[] = {
-@ROWS@
+{% for v in variables %}
+    {"{{ v.name }}", {{ kinds[loop.index0] }}, {{ v.causality | upper }}, offsetof(Model, {{ v.place }}), {{ limit(v.low) }}, {{ limit(v.high) }}, {{ rates[loop.index0] }}},
+{% endfor %}
 };

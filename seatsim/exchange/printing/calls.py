@@ -1,7 +1,5 @@
 """Calls: of `math` and built-in functions, of records' classes and methods, and of functions that are printed too."""
 
-from __future__ import annotations
-
 import ast
 import builtins
 import inspect
@@ -14,19 +12,7 @@ from numba import types
 
 from seatsim.compilation.jit import GENERIC
 from seatsim.exchange.printing.program import Scope, build_tuple, element, source_of
-from seatsim.exchange.printing.values import (
-    BOOLEAN,
-    INTEGER,
-    REAL,
-    UNARY,
-    Signature,
-    Value,
-    as_real,
-    is_empty,
-    is_known,
-    is_tuple,
-    number,
-)
+from seatsim.exchange.printing.values import BOOLEAN, INTEGER, REAL, Rank, Signature, Value, is_known, is_tuple, number
 
 _Evaluate = Callable[[ast.expr, Scope], Value]
 _MATHS = "exp log sqrt sin cos tan atan tanh sinh cosh expm1 copysign hypot atan2 pow"
@@ -105,12 +91,12 @@ def _print_own(function: FunctionType, values: list[Value], scope: Scope, evalua
         return printed.value
     if printed.passed is not None:
         return values[printed.passed]
-    if is_empty(printed.result):
+    if Value("", printed.result).is_empty:
         return Value("", printed.result)
     listed = ", ".join(
         _address(scope, value) if scope.program.takes_address(function, value.type) else value.code
         for value in values
-        if not is_empty(value.type)
+        if not value.is_empty
     )
     return Value(f"{printed.name}({listed})", printed.result, plain=False)
 
@@ -143,20 +129,20 @@ def _print_library(  # noqa: PLR0911 - one return per function
         compute = getattr(math, name, None) or getattr(builtins, name)
         return number(compute(*[value.known for value in values]))
     if name in ("min", "max"):
-        first, *rest = values if whole else map(as_real, values)
+        first, *rest = values if whole else [value.as_real() for value in values]
         for value in rest:
             word = {"min": "least", "max": "greatest"}[name] + ("_int" if whole else "")
             first = Value(f"{word}({first.code}, {value.code})", INTEGER if whole else REAL, plain=False)
         return first
     listed = ", ".join(value.code for value in values)
     if name == "float":
-        return as_real(values[0])
+        return values[0].as_real()
     if name == "abs":
         return Value(f"{'abs' if whole else 'r_fabs'}({listed})", INTEGER if whole else REAL, plain=False)
     if name in ("isnan", "isinf", "isfinite"):
         return Value(f"{name}({listed})", BOOLEAN, plain=False)
     if name in ("floor", "ceil"):
-        return Value(f"(int)r_{name}({listed})", INTEGER, plain=False, rank=UNARY)
+        return Value(f"(int)r_{name}({listed})", INTEGER, plain=False, rank=Rank.UNARY)
     if name in _MATHS.split():
         return Value(f"r_{name}({listed})", REAL, plain=False)
     raise scope.refuse(node, f"'{name}' has no counterpart in C")

@@ -1,7 +1,5 @@
 """Expressions: arithmetic, comparisons, elements of tuples and arrays."""
 
-from __future__ import annotations
-
 import ast
 import math
 import operator
@@ -13,24 +11,7 @@ from numba import types
 
 from seatsim.exchange.printing.calls import print_call
 from seatsim.exchange.printing.program import Scope, build_tuple, element, part
-from seatsim.exchange.printing.values import (
-    BOOLEAN,
-    CHOICE,
-    COMPARISON,
-    INTEGER,
-    LOGIC,
-    PRODUCT,
-    REAL,
-    SUM,
-    UNARY,
-    Value,
-    as_real,
-    is_empty,
-    is_known,
-    is_tuple,
-    number,
-    within,
-)
+from seatsim.exchange.printing.values import BOOLEAN, INTEGER, REAL, Rank, Value, is_known, is_tuple, number
 
 _ARITHMETIC: dict[type[ast.operator], tuple[str, Callable[[float, float], float]]] = {
     ast.Add: ("+", operator.add),
@@ -138,10 +119,10 @@ def arithmetic(op: ast.operator, left: Value, right: Value, node: ast.AST, scope
         return number(compute(left.known, right.known))
     if sign in "/%" and isinstance(op, ast.FloorDiv | ast.Mod) and not whole:
         raise scope.refuse(node, "// and % are for whole numbers only")
-    rank = SUM if sign in "+-" else PRODUCT
+    rank = Rank.SUM if sign in "+-" else Rank.PRODUCT
     if not whole:
-        left, right = as_real(left), as_real(right)
-    code = f"{within(left, rank)} {sign} {within(right, rank - 1)}"
+        left, right = left.as_real(), right.as_real()
+    code = f"{left.within(rank)} {sign} {right.within(rank - 1)}"
     return Value(code, INTEGER if whole else REAL, plain=False, rank=rank)
 
 
@@ -156,19 +137,19 @@ def _print_power(base: Value, exponent: Value, scope: Scope) -> Value:
     whole = int(exponent.known) if isinstance(exponent.known, int) else 0
     if 1 <= whole <= _UNROLLED:
         factor = scope.keep(base)
-        return Value(" * ".join([within(factor, UNARY)] * whole), base.type, plain=False, rank=PRODUCT)
+        return Value(" * ".join([factor.within(Rank.UNARY)] * whole), base.type, plain=False, rank=Rank.PRODUCT)
     return Value(f"r_pow({base.code}, {exponent.code})", REAL, plain=False)
 
 
 def _print_unary(op: ast.unaryop, value: Value, node: ast.AST, scope: Scope) -> Value:
     if isinstance(op, ast.Not):
-        opposite = Value(f"!{within(value, 0)}", BOOLEAN, plain=False, rank=UNARY)
+        opposite = Value(f"!{value.within(0)}", BOOLEAN, plain=False, rank=Rank.UNARY)
         return number(not value.known) if is_known(value) else opposite
     if not isinstance(op, ast.USub) or not _is_number(value):
         raise scope.refuse(node, "this operation has no counterpart")
     if is_known(value):
         return number(-value.known)
-    return Value(f"-{within(value, 0)}", value.type, plain=False, rank=UNARY)
+    return Value(f"-{value.within(0)}", value.type, plain=False, rank=Rank.UNARY)
 
 
 def _print_comparison(node: ast.Compare, scope: Scope) -> Value:
@@ -180,10 +161,10 @@ def _print_comparison(node: ast.Compare, scope: Scope) -> Value:
         return number(all(_COMPARED[type(op)][1](a.known, b.known) for op, a, b in pairs))
     values[1:-1] = map(scope.keep, values[1:-1])
     parts = [
-        f"{within(a, SUM)} {_COMPARED[type(op)][0]} {within(b, SUM)}"
+        f"{a.within(Rank.SUM)} {_COMPARED[type(op)][0]} {b.within(Rank.SUM)}"
         for op, a, b in zip(node.ops, values, values[1:], strict=False)
     ]
-    return Value(" && ".join(parts), BOOLEAN, plain=False, rank=COMPARISON if len(parts) == 1 else LOGIC)
+    return Value(" && ".join(parts), BOOLEAN, plain=False, rank=Rank.COMPARISON if len(parts) == 1 else Rank.LOGIC)
 
 
 def _print_logic(node: ast.BoolOp, scope: Scope) -> Value:
@@ -199,7 +180,7 @@ def _print_logic(node: ast.BoolOp, scope: Scope) -> Value:
             return number(deciding)
     if len(remaining) < 2:
         return remaining[0] if remaining else number(not deciding)
-    return Value(sign.join(within(value, COMPARISON) for value in remaining), BOOLEAN, plain=False, rank=LOGIC)
+    return Value(sign.join(value.within(Rank.COMPARISON) for value in remaining), BOOLEAN, plain=False, rank=Rank.LOGIC)
 
 
 def _print_choice(node: ast.IfExp, scope: Scope) -> Value:
@@ -209,12 +190,12 @@ def _print_choice(node: ast.IfExp, scope: Scope) -> Value:
     yes, no = print_expression(node.body, scope), print_expression(node.orelse, scope)
     if yes.type != no.type and not (_is_number(yes) and _is_number(no)):
         raise scope.refuse(node, f"both branches must have one type, not {yes.type} and {no.type}")
-    if is_empty(yes.type):
+    if yes.is_empty:
         return yes
     if REAL in (yes.type, no.type):
-        yes, no = as_real(yes), as_real(no)
-    code = f"{within(condition, LOGIC)} ? {within(yes, LOGIC)} : {within(no, CHOICE)}"
-    return Value(code, yes.type, plain=False, rank=CHOICE)
+        yes, no = yes.as_real(), no.as_real()
+    code = f"{condition.within(Rank.LOGIC)} ? {yes.within(Rank.LOGIC)} : {no.within(Rank.CHOICE)}"
+    return Value(code, yes.type, plain=False, rank=Rank.CHOICE)
 
 
 def _print_subscript(node: ast.Subscript, scope: Scope) -> Value:
@@ -239,9 +220,9 @@ def _array_element(owner: Value, indices: list[Value], scope: Scope) -> Value:
     terms = []
     for position, index in enumerate(indices):
         stride = math.prod(owner.shape[position + 1 :])
-        terms.append(f"{within(index, UNARY)} * {stride}" if stride != 1 else index.code)
+        terms.append(f"{index.within(Rank.UNARY)} * {stride}" if stride != 1 else index.code)
     rest = owner.shape[len(indices) :]
     if not rest:
         return Value(f"{owner.code}[{' + '.join(terms)}]", REAL)
     kind = types.Array(REAL, len(rest), "C", readonly=not owner.type.mutable)
-    return Value(f"({within(owner, SUM)} + {' + '.join(terms)})", kind, shape=rest)
+    return Value(f"({owner.within(Rank.SUM)} + {' + '.join(terms)})", kind, shape=rest)

@@ -1,7 +1,5 @@
 """Functions: their parameters and types, their statements and what they return."""
 
-from __future__ import annotations
-
 import ast
 import re
 from collections import Counter
@@ -14,9 +12,8 @@ from seatsim.exchange.printing.program import Printed, Program, Scope, element, 
 from seatsim.exchange.printing.values import (
     NOTHING,
     REAL,
-    UNARY,
-    UNKNOWN,
     NotPrintableError,
+    Rank,
     Signature,
     Value,
     is_empty,
@@ -49,7 +46,7 @@ def print_function(
         passed = [k for k, value in enumerate(given) if value is only and kept[k]]
         if passed:
             return Printed(name, result, passed=passed[0])
-        if only.known is not UNKNOWN and not is_tuple(only.type):
+        if is_known(only) and not is_tuple(only.type):
             return Printed(name, result, value=only)
     if not is_empty(result):
         program.functions.append(_definition(program, function, name, result, parameters, scope))
@@ -67,7 +64,7 @@ def _parameter(scope: Scope, name: str, argument: Signature) -> str:
         scope.variables[name] = Value(code, kind, shape=argument.shape)
         return f"{written} {code}".replace("* ", "*")
     if scope.assigned[name] == 1:
-        scope.variables[name] = Value(f"*{code}", kind, rank=UNARY)
+        scope.variables[name] = Value(f"*{code}", kind, rank=Rank.UNARY)
         return f"const {written} *{code}"
     given = scope.name(f"{name}_given")
     scope.write(f"{written} {code} = *{given};")
@@ -169,7 +166,7 @@ def _print_statement(node: ast.stmt, scope: Scope) -> bool:
 def _print_return(value: ast.expr | None, scope: Scope) -> bool:
     result = print_expression(value, scope) if value else Value("", NOTHING)
     scope.results.append(result)
-    scope.write(f"return {result.code};" if not is_empty(result.type) else "return;")
+    scope.write(f"return {result.code};" if not result.is_empty else "return;")
     return True
 
 
@@ -193,7 +190,7 @@ def _assign(target: ast.expr, value: ast.expr, scope: Scope) -> None:
 
 def _copied(value: Value) -> Value:
     """Return a value that is to be held apart from the variable it comes from."""
-    return value if value.known is not UNKNOWN or value.type is None else value._replace(plain=False)
+    return value if is_known(value) or value.type is None else value._replace(plain=False)
 
 
 def _store(target: ast.expr, value: Value, scope: Scope) -> None:

@@ -160,7 +160,7 @@ class Scope:
         """Assign a value to the variable that Python calls `name`."""
         before = self.variables.get(name)
         known = value.known if self.assigned.get(name, 0) <= 1 else UNKNOWN
-        if value.type is None or is_empty(value.type) or known is not UNKNOWN or value.shape:
+        if value.type is None or value.is_empty or known is not UNKNOWN or value.shape:
             # Nothing to compute: the value itself stands for the variable.
             self.variables[name] = value
             return
@@ -181,7 +181,7 @@ class Scope:
 
     def keep(self, value: Value) -> Value:
         """Return a value whose expression may be repeated, held in a variable of its own where it costs anything."""
-        if value.plain or is_empty(value.type):
+        if value.plain or value.is_empty:
             return value
         name = self.name("part")
         self.write(f"const {self.program.types.name(value.type)} {name} = {value.code};")
@@ -202,7 +202,7 @@ def build_tuple(scope: Scope, items: list[Value], cls: type | None = None) -> Va
     known = tuple(item.known for item in items) if items and is_known(*items) else UNKNOWN
     if is_empty(kind):
         return Value("", kind)
-    listed = ", ".join(item.code for item in items if not is_empty(item.type))
+    listed = ", ".join(item.code for item in items if not item.is_empty)
     name = scope.program.types.name(kind)
     return Value(f"({name}){{{{{listed}}}}}" if is_row(kind) else f"({name}){{{listed}}}", kind, known, False)
 

@@ -1,9 +1,8 @@
 """Values of the printed code: a C expression with the type that numba gives it, and what is known of it beforehand."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection
+from enum import IntEnum
 from typing import Any, NamedTuple
 
 from numba import types
@@ -11,7 +10,7 @@ from numba import types
 from seatsim.schema.errors import InputError
 
 REAL, INTEGER, BOOLEAN, NOTHING = types.float64, types.int64, types.boolean, types.none
-UNARY, PRODUCT, SUM, COMPARISON, LOGIC, CHOICE = range(1, 7)
+Rank = IntEnum("Rank", "UNARY PRODUCT SUM COMPARISON LOGIC CHOICE")
 """Ranks of C's operators, from the one that binds most; 0 is a name, a literal or a call."""
 _TAKEN = """
 auto break case char const continue default do double else enum extern float for goto if inline int long register
@@ -36,7 +35,7 @@ class NotPrintableError(InputError):
 class Value(NamedTuple):
     """A value: C expression, type, what it is if that is known, and whether repeating the expression costs nothing.
 
-    `shape` is that of an array, `rank` that of the outermost operator (see `PRODUCT` and the others). A value without
+    `shape` is that of an array, `rank` that of the outermost operator (see `Rank`). A value without
     type is a Python object that exists while the code is printed only: a module, a function, a class.
     """
 
@@ -46,6 +45,23 @@ class Value(NamedTuple):
     plain: bool = True
     shape: tuple[int, ...] = ()
     rank: int = 0
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether the value holds no number, so that it has no counterpart in C."""
+        return is_empty(self.type)
+
+    def within(self, most: int) -> str:
+        """Return the expression, in brackets where its outermost operator has a rank above `most`."""
+        return f"({self.code})" if self.rank > most else self.code
+
+    def as_real(self) -> "Value":
+        """Return a number as a real one, by a cast where it is a whole one that is known only when the code runs."""
+        if self.type == REAL:
+            return self
+        if is_known(self):
+            return number(float(self.known))
+        return Value(f"(real){self.within(Rank.UNARY)}", REAL, plain=False, rank=Rank.UNARY)
 
 
 class Signature(NamedTuple):
@@ -65,28 +81,14 @@ def number(value: float | bool) -> Value:
     if isinstance(value, bool):
         return Value(str(int(value)), BOOLEAN, value)
     if isinstance(value, int):
-        return Value(str(value), INTEGER, value, rank=0 if value >= 0 else UNARY)
+        return Value(str(value), INTEGER, value, rank=0 if value >= 0 else Rank.UNARY)
     value = float(value)
     if math.isnan(value):
         return Value("R_NAN", REAL, value)
     if math.isinf(value):
-        return Value("R_INFINITY", REAL, value) if value > 0 else Value("-R_INFINITY", REAL, value, rank=UNARY)
+        return Value("R_INFINITY", REAL, value) if value > 0 else Value("-R_INFINITY", REAL, value, rank=Rank.UNARY)
     negative = math.copysign(1.0, value) < 0.0
-    return Value(f"-R({-value!r})", REAL, value, rank=UNARY) if negative else Value(f"R({value!r})", REAL, value)
-
-
-def within(value: Value, most: int) -> str:
-    """Return the expression of a value, in brackets where its outermost operator has a rank above `most`."""
-    return f"({value.code})" if value.rank > most else value.code
-
-
-def as_real(value: Value) -> Value:
-    """Return a number as a real one, by a cast where it is a whole one that is known only when the code runs."""
-    if value.type == REAL:
-        return value
-    if is_known(value):
-        return number(float(value.known))
-    return Value(f"(real){within(value, UNARY)}", REAL, plain=False, rank=UNARY)
+    return Value(f"-R({-value!r})", REAL, value, rank=Rank.UNARY) if negative else Value(f"R({value!r})", REAL, value)
 
 
 def is_tuple(kind: object) -> bool:

@@ -1,12 +1,11 @@
 """How a text table is written: its delimiter, its decimal sign, and which of its rows hold numbers."""
 
-from __future__ import annotations
-
 import csv
 import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from seatsim.schema.errors import InputError
 from seatsim.schema.units import USUAL
 
 DELIMITERS = (";", "\t", ",", "|", " ")
@@ -38,6 +37,10 @@ WITH_UNIT = re.compile(r"(\S.*?[\d.,])\s+([^\W\d_][^\s\d]*[²2]?|%|°C?)")
 _LEADING_ZERO = re.compile(r"0\d+")
 _LONGEST_NUMBER = 40
 """Letters of a cell that may hold a number and its unit."""
+COMMENT = re.compile(r"^\s*(?:#+|%+|//+|!+)\s*")
+"""What begins a remark; names may stand in one."""
+_MOSTLY = 0.75
+"""Share of the rows from the first one on, as far as the table was looked at, that belong to it."""
 _SCORED = 50
 """Lines at either end by which delimiter and decimal sign are chosen."""
 _DISAGREEING = 0.9
@@ -56,23 +59,44 @@ class Dialect(NamedTuple):
     delimiter: str
     decimal: str
 
+    @classmethod
+    def find(cls, lines: Sequence[str], delimiter: str | None, decimal: str | None) -> "Dialect | None":
+        """Return how lines are written that are not blank, as far as it is not stated; None where they hold no numbers.
 
-def split_line(line: str, delimiter: str) -> list[str]:
-    """Return the cells of a line, without the quotation marks around them."""
-    if delimiter == " ":
-        return [cell.strip('"') for cell in BLANKS.findall(line)]
-    if '"' in line:
-        return next(csv.reader([line], delimiter=delimiter, skipinitialspace=True))
-    return line.split(delimiter)
+        The last lines tell it, as the first may be titles; these tell which way has as many names as columns.
+        """
+        first, last = lines[:_SCORED], lines[-_SCORED:]
+        best, most = None, 0.0
+        for each in (delimiter,) if delimiter else DELIMITERS:
+            for sign in (decimal,) if decimal else (".", ","):
+                if each == sign and not any('"' in line for line in last):
+                    continue
+                dialect = cls(each, sign)
+                score = _score(last, dialect) * (1.0 if _agrees_with_names(first, dialect) else _DISAGREEING)
+                score += 1e-3 * _score(first, dialect)
+                if score > most + 1e-9:
+                    best, most = dialect, score
+        return best
 
+    def split(self, line: str) -> list[str]:
+        """Return the cells of a line, without the quotation marks around them."""
+        if self.delimiter == " ":
+            return [cell.strip('"') for cell in BLANKS.findall(line)]
+        if '"' in line:
+            return next(csv.reader([line], delimiter=self.delimiter, skipinitialspace=True))
+        return line.split(self.delimiter)
 
-def kind_of(cell: str, decimal: str) -> Kind:
-    """Say what a cell holds."""
-    plain = cell.strip()
-    if plain in MISSING:
-        return None
-    patterns = (PLAIN[decimal], THOUSANDS[decimal], _STAMP)
-    return any(pattern.fullmatch(_without_unit(plain)) for pattern in patterns)
+    def kind(self, cell: str) -> Kind:
+        """Say what a cell holds."""
+        plain = cell.strip()
+        if plain in MISSING:
+            return None
+        patterns = (PLAIN[self.decimal], THOUSANDS[self.decimal], _STAMP)
+        return any(pattern.fullmatch(_without_unit(plain)) for pattern in patterns)
+
+    def kinds(self, rows: Sequence[Sequence[str]]) -> list[list[Kind]]:
+        """Say what the cells of rows hold."""
+        return [[self.kind(cell) for cell in row] for row in rows]
 
 
 def _without_unit(cell: str) -> str:
@@ -96,37 +120,51 @@ def find_body(kinds: Sequence[Sequence[Kind]]) -> tuple[int, int]:
     return best
 
 
-def find_dialect(lines: Sequence[str], delimiter: str | None, decimal: str | None) -> Dialect | None:
-    """Return how lines are written that are not blank, as far as it is not stated; None where they hold no numbers.
+def check_header(header: int, lines: int, place: str) -> None:
+    """Raise InputError where no row is left below so many lines above the first row of numbers."""
+    if header >= lines:
+        raise InputError(f"{place}: has {lines} lines; csv.header {header} counts those above the first row of numbers")
 
-    The last lines tell it, as the first may be titles; these tell which way has as many names as columns.
+
+def find_first_row(rows: Sequence[Sequence[Kind]], place: str) -> int:
+    """Return the first row of the table; `rows` say of each cell what it holds.
+
+    The table is the longest stretch of equally wide rows with numbers. A row belongs to it where the first column of
+    numbers holds no text, and at most half of the others do: a line of factors or serial numbers begins with a word.
+
+    Raises:
+        InputError: there is no such row.
     """
-    first, last = lines[:_SCORED], lines[-_SCORED:]
-    best, most = None, 0.0
-    for each in (delimiter,) if delimiter else DELIMITERS:
-        for sign in (decimal,) if decimal else (".", ","):
-            if each == sign and not any('"' in line for line in last):
-                continue
-            score = _score(last, each, sign) * (1.0 if _agrees_with_names(first, each, sign) else _DISAGREEING)
-            score += 1e-3 * _score(first, each, sign)
-            if score > most + 1e-9:
-                best, most = Dialect(each, sign), score
-    return best
+    begin, end = find_body(rows)
+    if begin == end:
+        raise InputError(f"{place}: holds no row of numbers; it is no table")
+    body = rows[begin:end]
+    columns = range(len(body[0]))
+    numeric = [column for column in columns if 2 * sum(row[column] is True for row in body) > len(body)]
+    numeric = numeric or [column for column in columns if any(row[column] for row in body)]
+    belongs = [len(row) == len(columns) and _belongs(row, numeric) for row in rows[:end]]
+    # Rows above a remark belong to the table, a line of numbers among titles does not.
+    return next(row for row in range(end) if belongs[row] and sum(belongs[row:end]) >= _MOSTLY * (end - row))
 
 
-def _agrees_with_names(lines: Sequence[str], delimiter: str, decimal: str) -> bool:
+def _belongs(row: Sequence[Kind], numeric: Sequence[int]) -> bool:
+    texts = sum(row[column] is False for column in numeric)
+    return any(row) and row[numeric[0]] is not False and 2 * texts <= len(numeric)
+
+
+def _agrees_with_names(lines: Sequence[str], dialect: Dialect) -> bool:
     """Say whether the line above the first rows has as many cells as they have, or there is none."""
-    rows = [split_line(line, delimiter) for line in lines]
-    begin, _ = find_body([[kind_of(cell, decimal) for cell in row] for row in rows])
+    rows = [dialect.split(line) for line in lines]
+    begin, _ = find_body(dialect.kinds(rows))
     return begin == 0 or len(rows[begin - 1]) == len(rows[begin])
 
 
-def _score(lines: Sequence[str], delimiter: str, decimal: str) -> float:
+def _score(lines: Sequence[str], dialect: Dialect) -> float:
     """Return how well lines are read: which share of them is the table, and how much of it is numbers."""
-    rows = [split_line(line, delimiter) for line in lines]
-    begin, end = find_body([[kind_of(cell, decimal) for cell in row] for row in rows])
+    rows = [dialect.split(line) for line in lines]
+    begin, end = find_body(dialect.kinds(rows))
     filled = [cell.strip() for row in rows[begin:end] for cell in row if cell.strip() not in MISSING]
-    numbers = sum(_count(cell, decimal) for cell in filled)
+    numbers = sum(_count(cell, dialect.decimal) for cell in filled)
     if not numbers:
         return 0.0
     # A column of texts (remarks) is no reason against a delimiter; a comma that splits 0,5 in two gives as many

@@ -4,26 +4,13 @@ Text tables and sheets share this: lines of titles, a row of names, perhaps a ro
 names the columns only where it has as many cells as there are columns.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterator, Sequence
-from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
 from seatsim.importing.names import Meaning, read_name
-from seatsim.importing.readers.dialect import (
-    BLANKS,
-    DELIMITERS,
-    LISTED_UNITS,
-    Dialect,
-    Kind,
-    find_body,
-    kind_of,
-    quote,
-    split_line,
-)
+from seatsim.importing.readers.dialect import BLANKS, COMMENT, DELIMITERS, LISTED_UNITS, Dialect, Kind, quote
 from seatsim.schema.errors import InputError
 from seatsim.schema.units import is_unit
 
@@ -31,12 +18,9 @@ _BRACKETS = re.compile(r"^(.*?)\s*([\[({<])\s*([^\[\](){}<>]*?)\s*[\])}>]\s*$")
 _SLASH = re.compile(r"^(.*?\S)\s*/\s*\(?([^/()\s]+(?:/[^/()\s]+)?)\)?$")
 _UNIT_CELL = re.compile(r"^[\[(]?\s*[A-Za-zµμ°²³%\"Ω][A-Za-zµμ°²³%/*^_. ·0-9-]{0,11}\s*[\])]?$|^[\[(]?[-1]?[\])]?$")
 
+_PLAIN = Dialect(",", ".")
 _NOTHING = "-"
 """What stands in place of a unit where none is stated."""
-_MOSTLY = 0.75
-"""Share of the rows from the first one on, as far as the table was looked at, that belong to it."""
-COMMENT = re.compile(r"^\s*(?:#+|%+|//+|!+)\s*")
-"""What begins a remark; names may stand in one."""
 _COMMENT_OR_SEMICOLON = re.compile(r"^\s*(?:#+|%+|//+|!+|;)\s*")
 _LABEL = re.compile(r"^(?:headers?|columns?|fields?|names?|channels?|spalten|colonnes)\s*[:=,;\t ]\s*", re.IGNORECASE)
 """A word before the names that says that they follow."""
@@ -76,7 +60,7 @@ def _may_be_names(row: Sequence[str]) -> bool:
     """Say whether a row holds texts in most columns, and no number; numbers that count columns are names, too."""
     filled = [cell for cell in row if cell.strip()]
     return len(filled) >= max(1, 0.6 * len(row)) and (
-        not any(kind_of(cell, ".") for cell in filled) or count_columns(row)
+        not any(_PLAIN.kind(cell) for cell in filled) or count_columns(row)
     )
 
 
@@ -84,7 +68,7 @@ def count_columns(row: Sequence[str]) -> bool:
     """Say whether a row has a text or nothing in front, and then numbers that count from 0 or 1."""
     numbers = [cell.strip() for cell in row[1:]]
     counts = [[str(number) for number in range(begin, begin + len(numbers))] for begin in (0, 1)]
-    return len(numbers) > 1 and not kind_of(row[0], ".") and numbers in counts
+    return len(numbers) > 1 and not _PLAIN.kind(row[0]) and numbers in counts
 
 
 def _count_meanings(row: Sequence[str]) -> int:
@@ -118,38 +102,6 @@ def _name_and_unit(cell: str, index: int) -> tuple[str, str]:
     if parted and is_unit(parted[2]):
         return parted[1], parted[2]
     return text or f"column {index + 1}", ""
-
-
-def check_header(header: int, lines: int, place: str) -> None:
-    """Raise InputError where no row is left below so many lines above the first row of numbers."""
-    if header >= lines:
-        raise InputError(f"{place}: has {lines} lines; csv.header {header} counts those above the first row of numbers")
-
-
-def first_row_of_numbers(rows: Sequence[Sequence[Kind]], place: str) -> int:
-    """Return the first row of the table; `rows` say of each cell what it holds.
-
-    The table is the longest stretch of equally wide rows with numbers. A row belongs to it where the first column of
-    numbers holds no text, and at most half of the others do: a line of factors or serial numbers begins with a word.
-
-    Raises:
-        InputError: there is no such row.
-    """
-    begin, end = find_body(rows)
-    if begin == end:
-        raise InputError(f"{place}: holds no row of numbers; it is no table")
-    body = rows[begin:end]
-    columns = range(len(body[0]))
-    numeric = [column for column in columns if 2 * sum(row[column] is True for row in body) > len(body)]
-    numeric = numeric or [column for column in columns if any(row[column] for row in body)]
-    belongs = [len(row) == len(columns) and _belongs(row, numeric) for row in rows[:end]]
-    # Rows above a remark belong to the table, a line of numbers among titles does not.
-    return next(row for row in range(end) if belongs[row] and sum(belongs[row:end]) >= _MOSTLY * (end - row))
-
-
-def _belongs(row: Sequence[Kind], numeric: Sequence[int]) -> bool:
-    texts = sum(row[column] is False for column in numeric)
-    return any(row) and row[numeric[0]] is not False and 2 * texts <= len(numeric)
 
 
 class Rows(NamedTuple):
@@ -209,7 +161,7 @@ def _names(line: str, cells: Sequence[str], dialect: Dialect) -> bool:
 
     A sentence is parted by blanks, too.
     """
-    if len(cells) < 2 or any(kind_of(cell, dialect.decimal) for cell in cells):
+    if len(cells) < 2 or any(dialect.kind(cell) for cell in cells):
         return False
     return dialect.delimiter != " " or any(read_name(cell)[:2] != (None, None) for cell in cells)
 
@@ -220,27 +172,28 @@ def _fit(line: str, rows: Rows, dialect: Dialect) -> list[str]:
     text = mark.sub("", line)
     is_remark = text != line.lstrip()
     for words in (text, _LABEL.sub("", text)):
-        for part in _ways(words, dialect.delimiter, is_remark):
+        for part in _ways(words, dialect, is_remark):
             cells = [cell.strip() for cell in part(words)]
             cells[:1] = [mark.sub("", cell) for cell in cells[:1]]
             while len(cells) > rows.columns and cells[-1].lower() in _LEFT_OUT:
                 cells.pop()
             if rows.filled <= len(cells) <= rows.columns:
                 return [*cells, *[""] * (rows.columns - len(cells))]
-    return [cell.strip() for cell in split_line(text, dialect.delimiter)]
+    return [cell.strip() for cell in dialect.split(text)]
 
 
-def _ways(text: str, delimiter: str, is_remark: bool) -> Iterator[Callable[[str], list[str]]]:
+def _ways(text: str, dialect: Dialect, is_remark: bool) -> Iterator[Callable[[str], list[str]]]:
     """Yield how names may be parted: as the numbers are; where that delimiter is absent, by another one.
 
     Blanks part them in a remark, or where every word means something: a title is no row of names.
     """
+    delimiter = dialect.delimiter
     if delimiter != " ":
-        yield partial(split_line, delimiter=delimiter)
+        yield dialect.split
         if delimiter in text:
             return
     yield from (
-        partial(split_line, delimiter=each) for each in DELIMITERS if each not in (" ", delimiter) and each in text
+        dialect._replace(delimiter=each).split for each in DELIMITERS if each not in (" ", delimiter) and each in text
     )
     if is_remark or delimiter == " " or all(read_name(word) != Meaning(None) for word in text.split()):
         yield lambda text: [cell.strip('"') for cell in BLANKS.findall(text)]

@@ -5,8 +5,6 @@ filled up to eight. An array is an element of elements: flags, dimensions, a nam
 objects such as tables hold lies in an array without a name, as the elements of a file of its own.
 """
 
-from __future__ import annotations
-
 import struct
 import zlib
 from collections.abc import Callable, Iterator

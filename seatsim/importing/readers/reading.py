@@ -1,7 +1,5 @@
 """Which reader a file needs, chosen by its first bytes and else by its ending, and one error where it fails."""
 
-from __future__ import annotations
-
 import io
 import re
 import zipfile
@@ -62,14 +60,14 @@ FORMATS = (
     _Format("MAT v7.3", "matlab.read", (b"MATLAB 7.3 MAT-file",), ()),
     _Format("MAT v5", "matlab.read", (b"MATLAB 5.0 MAT-file",), (".mat",)),
     _Format("HDF5", "hdf5.read", (HDF5,), (".h5", ".hdf5", ".hdf")),
-    _Format("MDF", "mdf.read", (b"MDF     ", b"UnFinMF "), (".mf4", ".mdf", ".dat4")),
+    _Format("MDF", "loggers.read_mdf", (b"MDF     ", b"UnFinMF "), (".mf4", ".mdf", ".dat4")),
     _Format("LVM", "labview.read_lvm", (b"LabVIEW Measurement",), ()),
     _Format("TDMS", "labview.read_tdms", (b"TDSm",), (".tdms",)),
     _Format("UFF", "time_histories.read_uff", (b"    -1",), (".uff", ".unv")),
     _Format("RPC III", "time_histories.read_rpc", (b"FORMAT\0", b"FORMAT "), (".rpc", ".rsp", ".tim")),
-    _Format("WAV", "wav.read", (b"RIFF", b"RF64", b"RIFX"), (".wav",)),
-    _Format("Dewesoft", "dewesoft.read", (b"MULTI_STREAM_FILE_VER",), (".dxd", ".d7d")),
-    _Format("SEP 005", "sep005.read", (), ()),
+    _Format("WAV", "loggers.read_wav", (b"RIFF", b"RF64", b"RIFX"), (".wav",)),
+    _Format("Dewesoft", "loggers.read_dewesoft", (b"MULTI_STREAM_FILE_VER",), (".dxd", ".d7d")),
+    _Format("SEP 005", "time_histories.read_sep005", (), ()),
     _Format("CSV", "text.read", (), (".csv", ".tsv", ".txt", ".asc", ".dat")),
 )
 """Formats in the order in which they are tried."""
@@ -186,8 +184,7 @@ def _is_text(head: bytes) -> bool:
     """Say whether bytes are text: without control characters, or UTF-16, whose every other byte is 0 in a table."""
     if head.startswith((b"\xff\xfe", b"\xfe\xff")) or not (any(head[::2]) and any(head[1::2])):
         return True
-    control = sum(byte < 9 or 13 < byte < 32 for byte in head)
-    return control == 0
+    return not any(byte < 9 or 13 < byte < 32 for byte in head)
 
 
 def _checked(file: DataFile) -> DataFile:

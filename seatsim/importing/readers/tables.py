@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from seatsim.importing.readers.columns import read_column
-from seatsim.importing.readers.header import check_header, first_row_of_numbers, split_header
+from seatsim.importing.readers.dialect import check_header, find_first_row
+from seatsim.importing.readers.header import split_header
 from seatsim.importing.readers.reading import TextLayout, need
 from seatsim.importing.signals import TIME, DataFile, Group, Signal, note_left_out, stated_unit
 from seatsim.schema.arrays import Array, open_parquet
@@ -88,7 +89,7 @@ def _group(title: str, rows: Sequence[Sequence[_Cell]], place: str, layout: Text
     """Return the columns of numbers, and the names of the others."""
     first = layout.header
     if first is None:
-        first = first_row_of_numbers([[_is_number(cell) for cell in row] for row in rows], place)
+        first = find_first_row([[_is_number(cell) for cell in row] for row in rows], place)
     check_header(first, len(rows), place)
     above = [["" if cell is None else str(cell) for cell in row] for row in rows[:first]]
     header = split_header(above, len(rows[first]))

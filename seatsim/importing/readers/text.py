@@ -11,17 +11,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from seatsim.importing.readers.columns import part_by_time, read_column
-from seatsim.importing.readers.dialect import BLANKS, MISSING, Dialect, find_dialect, kind_of, quote, split_line
-from seatsim.importing.readers.header import (
-    COMMENT,
-    Header,
-    Rows,
-    check_header,
-    count_columns,
-    first_row_of_numbers,
-    fit_names,
-    split_header,
-)
+from seatsim.importing.readers.dialect import BLANKS, COMMENT, MISSING, Dialect, check_header, find_first_row, quote
+from seatsim.importing.readers.header import Header, Rows, count_columns, fit_names, split_header
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.signals import DataFile, Signal, find_rate, note_left_out
 from seatsim.schema.errors import InputError
@@ -94,15 +85,15 @@ def _encoding(content: bytes) -> str:
 def _read_head(path: Path, content: bytes, layout: TextLayout) -> _Head:
     lines = _sample(content)
     used = [index for index, line in enumerate(lines) if line.strip() and not COMMENT.match(line)]
-    dialect = find_dialect([lines[index] for index in used], layout.delimiter, layout.decimal)
+    dialect = Dialect.find([lines[index] for index in used], layout.delimiter, layout.decimal)
     if dialect is None:
         is_stated = layout.delimiter or layout.decimal
         reason = "csv.delimiter and csv.decimal are wrong" if is_stated else "csv.delimiter has to be stated in a map"
         raise InputError(f"{path}: holds no row of numbers; it is no table, or {reason}")
-    rows = [split_line(lines[index], dialect.delimiter) for index in used]
-    kinds = [[kind_of(cell, dialect.decimal) for cell in row] for row in rows]
+    rows = [dialect.split(lines[index]) for index in used]
+    kinds = dialect.kinds(rows)
     if layout.header is None:
-        first = first_row_of_numbers(kinds, str(path))
+        first = find_first_row(kinds, str(path))
         first += first == 0 and len(rows) > 1 and count_columns(rows[0])
     else:
         first = sum(index < layout.header for index in used)
@@ -167,8 +158,8 @@ def _find_headings(lines: Sequence[bytes], names: set[bytes], dialect: Dialect) 
 
 def _is_row(line: bytes, dialect: Dialect) -> bool:
     """Say whether the first cell of a line that is not empty holds a number, or what stands for a missing one."""
-    cells = [cell for cell in split_line(line.decode(errors="replace"), dialect.delimiter) if cell.strip()]
-    return bool(cells) and kind_of(cells[0], dialect.decimal) is not False
+    cells = [cell for cell in dialect.split(line.decode(errors="replace")) if cell.strip()]
+    return bool(cells) and dialect.kind(cells[0]) is not False
 
 
 def _cells_of_blanks(line: bytes) -> list[bytes]:
@@ -186,9 +177,7 @@ def _check_rows(path: Path, content: bytes, bad: Sequence[tuple[str, int]], head
     lines = [line.strip() for line in content.decode(errors="replace").splitlines()]
     last = [line for line in lines if line][-len(bad) :]
     texts = {text.strip() for text, _ in bad}
-    is_footer = {*last} == texts and not any(
-        kind_of(split_line(text, head.dialect.delimiter)[0], head.dialect.decimal) for text in texts
-    )
+    is_footer = {*last} == texts and not any(head.dialect.kind(head.dialect.split(text)[0]) for text in texts)
     if is_footer:
         notes.append(f"lines below the table are left out: {'; '.join(quote(line) for line in last[:3])}")
         return

@@ -1,7 +1,5 @@
 """Faults of a channel of a run that its own values show: their range, their size and their shape."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -4,8 +4,6 @@ A fault is named where its correction lowers the consistency residual (see `resi
 channel itself then fits. Correcting an input requires a new simulation.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple

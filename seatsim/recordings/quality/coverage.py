@@ -5,10 +5,7 @@ the displacement below the frequency at which its spectrum meets its noise (a de
 where no displacement is recorded, the integral of frame acceleration - floor acceleration above 0.5 Hz.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -45,8 +42,7 @@ _Visited = dict[str, _VisitedRange]
 """Ranges by quantity."""
 
 
-@dataclass(frozen=True)
-class Coverage:
+class Coverage(NamedTuple):
     """Seconds recorded, ranges by quantity, band of the excitation in Hz, and sentences on what is missing."""
 
     seconds: float

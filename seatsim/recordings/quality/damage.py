@@ -1,7 +1,5 @@
 """What the values of a channel look like, whatever they mean: plateaus, flat tops, smallest step, white noise."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -119,11 +117,11 @@ def measure_level(values: Array, rate: float) -> Level:
     return Level(*(float(np.mean(each)) for each in (third[quiet], fourth[quiet], fourth[calm], fourth[lively])))
 
 
-class Doubter:
-    """The doubts about one channel, gathered while it is looked at."""
+class Doubter(NamedTuple):
+    """What says the doubts about one channel, with its rate in Hz where that is known."""
 
-    def __init__(self, channel: str, rate: float | None) -> None:
-        self.channel, self.rate = channel, rate
+    channel: str
+    rate: float | None
 
     def say(self, severity: Severity, kind: str, text: str) -> Issue:
         """Return a doubt."""

@@ -5,12 +5,10 @@ accepts it by its kind. A `warning` is stated and they continue. A `note` is for
 library or chance can produce is no error, because a gap between a rig and its simulation is not a fault of the data.
 """
 
-from __future__ import annotations
-
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from itertools import chain
+from typing import NamedTuple
 
 from seatsim.recordings.quality.channels import check_damage, check_ranges, check_shapes, check_sizes
 from seatsim.recordings.quality.consistency import check_consistency, check_exchanged_currents
@@ -26,8 +24,7 @@ from seatsim.schema.errors import InputError
 _ORDER = ("error", "warning", "note")
 
 
-@dataclass(frozen=True)
-class Examination:
+class Examination(NamedTuple):
     """All issues of a recording, errors first."""
 
     issues: list[Issue]
@@ -99,12 +96,7 @@ def _each(run: RunUnderTest) -> list[Issue]:
     return issues
 
 
-def _check_relations(run: RunUnderTest) -> Iterator[Issue]:
-    """Report signs and units that contradict the laws of motion, whatever the nominal scenario says."""
-    yield from place_in_run(run.name, doubt_relations(run.table, run.rate))
-
-
-CHECKS = (
+CHECKS: tuple[Callable[[RunUnderTest], Iterable[Issue]], ...] = (
     check_ranges,
     check_exchanged_currents,
     check_shapes,
@@ -113,7 +105,8 @@ CHECKS = (
     check_floor_sensor,
     check_consistency,
     check_sizes,
-    _check_relations,
+    # signs and units that contradict the laws of motion, whatever the nominal scenario says
+    lambda run: place_in_run(run.name, doubt_relations(run.table, run.rate)),
 )
 """Checks of one run, in their order."""
 

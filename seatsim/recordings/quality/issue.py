@@ -1,7 +1,5 @@
 """Issues that an examination finds, and a run under examination: its table, and what its recording states of it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Literal, NamedTuple, get_args
 

@@ -10,8 +10,6 @@ Signs and units that no law of motion permits need nothing of the rig. The consi
 between 0.5 and 8 Hz, where the channels are recorded: in this band even a rough nominal agrees with its seat.
 """
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Iterator
 

@@ -1,7 +1,5 @@
 """Rows that were doubled or lost, and what is not recorded: seen in the channels, where no column of time tells."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterator, Sequence
 

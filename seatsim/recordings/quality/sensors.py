@@ -5,8 +5,6 @@ What is shaken about a place has no mean acceleration: a sensor with a mean has 
 the gravity of the floor's accelerometer would pull the simulated suspension down by decimetres.
 """
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType

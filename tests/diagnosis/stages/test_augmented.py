@@ -14,7 +14,7 @@ from seatsim.diagnosis.candidates import Candidate, list_candidates
 from seatsim.diagnosis.objective import Parameters
 from seatsim.effects.seat import Biodynamics
 from seatsim.effects.sensor import Bias
-from seatsim.exchange.blocks.rig import rig_block
+from seatsim.exchange.blocks.rig_motion import rig_block
 from seatsim.recordings.nuisance import Nuisance
 from seatsim.rig.drivers import BODIES, SINGLE_MASS
 from seatsim.scenario.loading import single

@@ -1,10 +1,15 @@
-"""MDF files of versions 3 and 4, read by asammdf; every channel group has its own time."""
+"""Recordings of data loggers: MDF, read by asammdf, Dewesoft, read by the compiled library of its maker, and WAV.
+
+Every channel group of an MDF file of version 3 or 4 has its own time. A WAV file of a recorder or an analyser, read by
+scipy, holds shares of a full scale that it does not state.
+"""
 
 from __future__ import annotations
 
 import io
 import logging
 import struct
+import warnings
 import zlib
 from collections.abc import Hashable, Sequence
 from contextlib import suppress
@@ -12,14 +17,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from seatsim.importing.readers.reading import TextLayout, need
-from seatsim.importing.signals import Channels, DataFile, Signal, note_left_out
+from seatsim.importing.signals import Channels, DataFile, Group, Signal, note_left_out
+from seatsim.schema.arrays import Array
 from seatsim.schema.bounds import Part, check_made, check_parts
+from seatsim.schema.guarded import temporary_folder
 
 if TYPE_CHECKING:
     from asammdf import MDF
-    from asammdf.blocks.mdf_common import Group
+    from asammdf.blocks.mdf_common import Group as MdfGroup
 
 _BEGIN = 64
 """Address of the first block."""
@@ -32,9 +40,14 @@ _LEADS_TO = {b"HD": (b"DG",), b"DG": (b"DG", b"CG"), b"CG": (b"CG", b"CN"), b"CN
 """Kinds of blocks to which the first links of others lead: these are followed without a look at the kind."""
 _EVENT_ABOVE = (1, 2)
 """Links of an event to the event above it and to the beginning of its range."""
+_EVEN = 0
+"""Type of a channel whose samples have one distance."""
+_LEFT_OUT = "channels that hold no single numbers, or are not read by dwdatareader"
+_UNSIGNED_ZERO = 128.0
+"""What samples of 8 bits, which alone are unsigned, have at rest."""
 
 
-def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
+def read_mdf(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     """Return the channel groups; groups of the same time are one."""
     asammdf = need("asammdf", "MDF")
     # What it says of damaged blocks would stand beside the one error.
@@ -64,14 +77,14 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     return DataFile(path, "", gathered.groups(), note_left_out("channels that hold no single numbers", left_out))
 
 
-def _bytes_of(group: Group) -> int:
+def _bytes_of(group: MdfGroup) -> int:
     """Return how many bytes the rows of a group make, as they stand and as numbers."""
     stated = group.channel_group
     size = stated.samples_byte_nr + getattr(stated, "invalidation_bytes_nr", 0)
     return int(stated.cycles_nr) * max(int(size), 8 * len(group.channels))
 
 
-def _check_places(group: Group, size: int) -> None:
+def _check_places(group: MdfGroup, size: int) -> None:
     """Raise ValueError where rows lie beyond the file, or a channel beyond its rows: asammdf would read on there."""
     stated = group.channel_group
     rows, held = stated.cycles_nr * stated.samples_byte_nr, sum(block.original_size for block in group.data_blocks)
@@ -147,3 +160,48 @@ def _block_3(content: bytes, address: Hashable, order: str) -> Part:
     links = struct.unpack_from(f"{order}{max(0, count)}I", content, address + 4)
     _check_kinds(content, kind, links, 0)
     return Part(4 * len(links), tuple(link for link in links if 0 < link < len(content)))
+
+
+def read_dewesoft(path: Path, content: bytes, layout: TextLayout) -> DataFile:
+    """Return the channels of single numbers: those of one rate as a group, those with times of their own as others."""
+    dewesoft = need("dwdatareader", "Dewesoft")
+    gathered, left_out = Channels(), list[str]()
+    with temporary_folder() as folder:
+        copy = folder / "file.dxd"  # the library opens files, and what was unpacked is none
+        copy.write_bytes(content)
+        with dewesoft.DWFile(str(copy)) as file:
+            for channel in file.values():
+                try:
+                    times, values = channel.scaled()
+                except (dewesoft.DWError, AttributeError):  # of messages on a bus, and of texts
+                    times, values = np.empty(0), np.empty(0)
+                signal = Signal(channel.long_name, channel.unit, values)
+                if not len(times) or values.shape != times.shape or values.dtype.kind != "f":
+                    left_out.append(signal.name)
+                elif channel.channel_type == _EVEN:
+                    gathered.add(path.stem, signal, channel.sample_rate, float(times[0]))
+                else:
+                    gathered.add_timed(path.stem, times, [signal])
+    return DataFile(path, "", gathered.groups(), note_left_out(_LEFT_OUT, left_out))
+
+
+def read_wav(path: Path, content: bytes, layout: TextLayout) -> DataFile:
+    """Return the channels, in the order of the file; integers become shares of the full scale, -1 to 1."""
+    from scipy.io import wavfile
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", wavfile.WavFileWarning)  # of parts that hold no samples
+        warnings.filterwarnings("error", "Reached EOF", wavfile.WavFileWarning)
+        rate, samples = wavfile.read(io.BytesIO(content))
+    columns = _scale(samples.reshape(len(samples), -1))
+    signals = tuple(Signal(f"channel_{k + 1}", "", column) for k, column in enumerate(columns.T))
+    note = "a WAV file states neither names nor units: state unit and scale, the value at full scale, in the map"
+    return DataFile(path, "", (Group(path.stem, signals, float(rate)),), (note,))
+
+
+def _scale(samples: NDArray[np.generic]) -> Array:
+    """Return samples as shares of the full scale; those of 24 bits fill the upper part of 32."""
+    values = samples.astype(np.float64)
+    if samples.dtype.kind == "u":
+        return (values - _UNSIGNED_ZERO) / _UNSIGNED_ZERO
+    return values / 2.0 ** (8 * samples.dtype.itemsize - 1) if samples.dtype.kind == "i" else values
