@@ -119,8 +119,7 @@ def unpack(path: Path, version: int, identifier: str) -> Iterator[tuple[Path, Pa
 
     The folder is removed afterwards, also where a run is interrupted.
     """
-    with temporary_folder("seatsim-fmu-") as name:
-        folder = Path(name)
+    with temporary_folder("seatsim-fmu-") as folder:
         with open_archive(path) as archive:
             library = find_library(path, archive, version, identifier)
             wanted = (f"{library.rpartition('/')[0]}/", "resources/")

@@ -62,18 +62,14 @@ def print_model(block: Block) -> str:
     given = ("m->parameters", "m->inputs", "m->state")
     observe = _call(program, block.observe, (p, u, s, number_), (*given, "m->age"))
     advance = _call(program, block.advance, (p, u, s, number_, number_), (*given, "(real)k * part", "part"))
-    result = numba.typeof((block.initial, True))
-    names = {
-        "Parameters": program.types.name(p.type),
-        "Inputs": program.types.name(u.type),
-        "State": program.types.name(s.type),
-        "Outputs": program.types.name(numba.typeof(block.outputs)),
-        "Advanced": program.types.name(result),
-    }
-    values = {"Parameters": block.parameters, "Inputs": block.inputs, "State": block.rest}
+    records = {"Parameters": block.parameters, "Inputs": block.inputs, "State": block.rest}
+    results = {"Outputs": block.outputs, "Advanced": (block.initial, True)}
+    names = {name: program.types.name(numba.typeof(value)) for name, value in (records | results).items()}
     constants = [
-        f"static const {names[kind]} {name} = {_initialiser(values[kind], numba.typeof(values[kind]))};"
-        for kind, name in (("Parameters", "nominal_parameters"), ("Inputs", "first_inputs"), ("State", "rest_state"))
+        f"static const {names[kind]} {name} = {_initialiser(value, numba.typeof(value))};"
+        for name, (kind, value) in zip(
+            ("nominal_parameters", "first_inputs", "rest_state"), records.items(), strict=True
+        )
     ]
     model = fill("c/model.h", START=start, OBSERVE=observe, ADVANCE=advance, block=block, **names)
     return "\n".join([resource("prelude.h"), program.source(), *constants, "", model, ""])

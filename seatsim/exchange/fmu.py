@@ -52,9 +52,9 @@ def write_fmu(block: Block, version: int, path: Path) -> None:
     files = make_files(block, version)
     with temporary_folder() as folder:
         for name, content in files.items():
-            (Path(folder) / Path(name).name).write_bytes(content)
-        library = Path(folder) / "library"
-        compile_library(Path(folder) / f"fmi{version}.c", library)
+            (folder / Path(name).name).write_bytes(content)
+        library = folder / "library"
+        compile_library(folder / f"fmi{version}.c", library)
         files[name_library(version, identifier(block))] = library.read_bytes()
     write_whole(path, lambda part: _pack(files, part))
 

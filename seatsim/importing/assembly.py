@@ -21,22 +21,13 @@ _SAME_RATE = 1e-4
 """Fraction by which rates differ that are one rate by the clocks of two loggers: nothing is said of it."""
 
 
-class Run(NamedTuple):
-    """A run on one time base: channels in SI units, shape (N,) each."""
-
-    name: str
-    table: dict[str, Array]
-
-    @property
-    def rows(self) -> int:
-        """Rows of its table."""
-        return len(next(iter(self.table.values())))
-
-
 class Assembled(NamedTuple):
-    """The runs at one rate in Hz, the map as it was used, what was done in sentences, and doubts about the data."""
+    """Tables of the runs at one rate in Hz, the map as used, what was done in sentences, and doubts about the data.
 
-    runs: list[Run]
+    A table has channels in SI units, shape (N,) each, on one time base.
+    """
+
+    runs: dict[str, dict[str, Array]]
     rate: float
     map: ImportMap
     notes: list[str]
@@ -69,17 +60,17 @@ def assemble(files: Sequence[DataFile], stated: ImportMap) -> Assembled:
     for name, members in _group_runs(files, stated):
         parts += split_at_gaps(name, clock_groups(members, stated, doubts), stated, notes)
     rate = stated.resample or max(each.axis.rate for _, clocked in parts for each in clocked)
-    runs, align = [], dict(stated.align)
+    runs, align = dict[str, dict[str, Array]](), dict(stated.align)
     for name, clocked in parts:
         used = _use_channels(name, clocked, stated, doubts, notes)
-        runs.append(Run(name, _tabulate(name, used, _align(used, align, notes), stated, rate, notes)))
+        runs[name] = _tabulate(name, used, _align(used, align, notes), stated, rate, notes)
     return Assembled(runs, rate, stated._replace(align=align), list(dict.fromkeys(notes)), doubts)
 
 
 def doubt_runs(assembled: Assembled) -> list[Issue]:
     """Return what the channels of each run show of each other, which an examination would find too."""
-    runs = assembled.runs
-    return [each for run in runs for each in place_in_run(run.name, doubt_relations(run.table, assembled.rate))]
+    found = {name: doubt_relations(table, assembled.rate) for name, table in assembled.runs.items()}
+    return [each for name, doubts in found.items() for each in place_in_run(name, doubts)]
 
 
 def _group_runs(files: Sequence[DataFile], stated: ImportMap) -> list[tuple[str, list[DataFile]]]:

@@ -12,7 +12,7 @@ from seatsim.importing.matching import propose
 from seatsim.importing.readers.reading import read_file
 from seatsim.importing.signals import LISTED, DataFile
 from seatsim.importing.time_axis import find_clock
-from seatsim.provenance.manifest import write_documented
+from seatsim.provenance.statement import write_documented
 from seatsim.recordings.quality.damage import QUIET, noise_of
 from seatsim.recordings.quality.examination import examine, merge_issues
 from seatsim.recordings.quality.issue import Issue
@@ -89,13 +89,12 @@ def import_files(
         used = stated
         check_files(used.runs, [file.path.name for file in files], map_file or Path(FILE))
     assembled = _assembled(files, used, folder, stated is None)
-    scenario = _make_nominal(nominal, used.rig, assembled.runs[0].table) if nominal else None
+    scenario = _make_nominal(nominal, used.rig, used.channels) if nominal else None
     found = [*assembled.doubts, *([] if scenario else doubt_runs(assembled))]
     doubts = merge_issues(found, len(assembled.runs)) + (_examined(assembled, scenario) if scenario else [])
     written = _write_recording(folder, assembled, scenario)
-    runs = tuple(run.name for run in assembled.runs)
     notes += assembled.notes
-    return Import(folder, assembled.map, stated is None, written, notes, doubts, assembled.rate, runs)
+    return Import(folder, assembled.map, stated is None, written, notes, doubts, assembled.rate, tuple(assembled.runs))
 
 
 def _data_files(paths: Sequence[Path]) -> list[Path]:
@@ -161,9 +160,9 @@ def _assembled(files: Sequence[DataFile], used: ImportMap, folder: Path, is_prop
 def _commented(assembled: Assembled) -> ImportMap:
     """Return the proposed map with the noise floor and the doubts of each channel behind it."""
     comments: dict[str, str] = {}
-    for name in assembled.map.channels:
+    for name, values in next(iter(assembled.runs.values())).items():
         kinds = {issue.kind: issue.severity for issue in assembled.doubts if issue.channel == name}
-        noise = noise_of(assembled.runs[0].table[name], assembled.rate)
+        noise = noise_of(values, assembled.rate)
         unit = CHANNELS[assembled.map.rig][name]
         said = [kind for kind, severity in kinds.items() if severity == "warning"]
         if noise and name not in COMMANDS and not any(kind in kinds for kind in QUIET):
@@ -176,16 +175,16 @@ def _commented(assembled: Assembled) -> ImportMap:
 def _examined(assembled: Assembled, scenario: Mapping[str, object]) -> list[Issue]:
     """Return the issues that `gap` and `diagnose` will name, from a copy in a temporary folder."""
     with temporary_folder() as place:
-        _write_recording(Path(place), assembled, scenario)
+        _write_recording(place, assembled, scenario)
         return examine(load_recording(place)).issues
 
 
 def _write_recording(folder: Path, assembled: Assembled, nominal: Mapping[str, object] | None) -> list[Path]:
     """Write tables, nominal scenario, map and header of a recording, all or none."""
     used, rate = assembled.map, assembled.rate
-    tables = {run.name: {"time": np.arange(run.rows) / rate, **run.table} for run in assembled.runs}
-    names = [run.name for run in assembled.runs]
-    runs = {name: {"repeat_of": used.repeats[name]} if name in used.repeats else {} for name in names}
+    rows = {name: len(next(iter(table.values()))) for name, table in assembled.runs.items()}
+    tables = {name: {"time": np.arange(rows[name]) / rate, **table} for name, table in assembled.runs.items()}
+    runs = {name: {"repeat_of": used.repeats[name]} if name in used.repeats else {} for name in tables}
     noise = {name: entry.noise_rms for name, entry in used.channels.items()}
     header = state_header(used.rig, rate, {}, runs, noise)
     header |= {"actuator": used.actuator._asdict()} if used.actuator else {}

@@ -228,7 +228,7 @@ def inspect_mapped(path: Path, map_file: Path) -> Inspection:
     file = read_file(path, stated.csv)
     assembled = assemble([file], stated._replace(runs={}))
     units = CHANNELS[stated.rig]
-    channels = {run.name: _summarise_table(run.table, units, assembled.rate) for run in assembled.runs}
+    channels = {run: _summarise_table(table, units, assembled.rate) for run, table in assembled.runs.items()}
     notes = [Issue("note", "mapped", note) for note in (*file.notes, *assembled.notes)]
     doubts = merge_issues([*assembled.doubts, *doubt_runs(assembled)], len(assembled.runs))
     return Inspection(str(path), f"{file.format} by {map_file.name}", channels, [*notes, *doubts])

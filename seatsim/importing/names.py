@@ -12,14 +12,10 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from pydantic import TypeAdapter
-
+from seatsim.schema.fields import read_packaged
 from seatsim.schema.units import DIMENSIONS, find_conversion, is_unit
-from seatsim.schema.yaml_text import parse_value
 
-_WORDS = TypeAdapter(dict[str, dict[str, str]]).validate_python(
-    parse_value(Path(__file__).with_name("names.yaml").read_text(encoding="utf-8"))
-)
+_WORDS = read_packaged(Path(__file__).with_name("names.yaml"), dict[str, dict[str, str]])
 _QUANTITIES, _PLACES, _AXES, _MARKS = (
     {name: tuple(words.split()) for name, words in table.items()} for table in _WORDS.values()
 )

@@ -16,8 +16,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from seatsim.provenance import statement
-from seatsim.provenance.manifest import EXAMPLE
-from seatsim.provenance.statement import MANIFEST, REPEATABLE, Manifest, read_manifest, state_file
+from seatsim.provenance.statement import EXAMPLE, MANIFEST, REPEATABLE, Manifest, read_manifest, state_file
 from seatsim.scenario.loading import EXAMPLES
 from seatsim.schema.errors import InputError, RunError, nearest
 from seatsim.schema.guarded import expect, is_there, read_bytes, temporary_folder
@@ -119,7 +118,7 @@ def reproduce(
     if changed:
         return Reproduction(command, False, [], changed, versions, unnamed)
     with temporary_folder() as place:
-        again = Path(place) / manifest.folder
+        again = place / manifest.folder
         runs = f": {manifest.counts['runs']} runs" if manifest.counts else ""
         tell(f"running {command} again{runs}")
         again = _run(command, arguments, own_code, directory, again)

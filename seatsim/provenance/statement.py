@@ -1,11 +1,14 @@
-"""What a manifest states: the command at work, its inputs and files by hash, versions and platform."""
+"""`manifest.json` beside the files of a command: what made them, of which inputs and files by hash, and versions.
+
+The manifest holds no time and no absolute path, so that equal commands on equal inputs give equal manifests.
+"""
 
 import hashlib
 import os
 import platform
 import re
 import shlex
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import cache
@@ -19,6 +22,7 @@ import seatsim
 from seatsim.schema.content import IfAny
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import validated
+from seatsim.schema.files import write_json, write_together
 from seatsim.schema.guarded import expect, is_there, read_json, watch_reads
 from seatsim.schema.modules import import_named, shipped_packages, used_files
 from seatsim.schema.text import explain_bad_name
@@ -71,6 +75,10 @@ def _list_sources(folder: str) -> Iterator[str]:
 
 
 MANIFEST = "manifest.json"
+EXAMPLE = "example:"
+"""Begins the path of an input that comes with seatsim."""
+Measured = Mapping[str, tuple[str, ...]]
+"""Columns or keys of files that hold times which were measured, and differ each time."""
 _KIND = "manifest of a command of seatsim"
 
 
@@ -236,3 +244,68 @@ def relate(path: Path, folder: Path) -> str:
         return Path(os.path.relpath(path, folder)).as_posix()
     except ValueError:
         return path.as_posix()
+
+
+def write_documented(
+    folder: Path, write: Callable[[Path], Iterable[Path]], seed: int | None = None, measured: Measured | None = None
+) -> list[Path]:
+    """Write files as `write_together` does, with a manifest where a command is at work.
+
+    Args:
+        folder: where they go.
+        write: fills a folder and returns its files there.
+        seed: from which every random draw derives, None where there is none or the inputs state several.
+        measured: see `Measured`.
+    """
+
+    def write_all(part: Path) -> list[Path]:
+        paths = list(write(part))
+        invocation = current_invocation()
+        if invocation is None:
+            return paths
+        outputs = {path.relative_to(part).as_posix(): path for path in paths}
+        manifest = describe(invocation, folder, outputs, list_versions(), seed, measured or {})
+        return [*paths, write_json(part / MANIFEST, manifest)]
+
+    return write_together(folder, write_all)
+
+
+def describe(
+    invocation: Invocation,
+    folder: Path,
+    outputs: Mapping[str, Path],
+    versions: Mapping[str, str],
+    seed: int | None = None,
+    measured: Measured | None = None,
+) -> Manifest:
+    """Return the manifest that a folder gets of the command at work, which wrote `outputs`, paths by name."""
+    place = Path(os.path.abspath(folder))
+    return Manifest(
+        command=invocation.command,
+        arguments=invocation.arguments,
+        directory=relate(invocation.directory, place),
+        folder=place.name,
+        versions=versions,
+        platform=list_platform(),
+        own_code=[state_file(relate(path, place), path.read_bytes()) for path in used_files()],
+        inputs=[
+            stated._replace(path=_name_input(path, place))
+            for path, stated in sorted(invocation.reads.items())
+            # Drafts that were read back are gone; a sweep that is gone on with reads the manifest that this one
+            # replaces.
+            if path.is_file() and path != place / MANIFEST
+        ],
+        outputs=[state_file(name, path.read_bytes()) for name, path in outputs.items()],
+        measured={name: fields for name, fields in (measured or {}).items() if name in outputs},
+        seed=seed,
+    )
+
+
+def _name_input(path: Path, folder: Path) -> str:
+    """Return the path of an input relative to the folder of the manifest, or as an example of seatsim."""
+    from seatsim.scenario.loading import EXAMPLES  # takes longer to load than a command that checks its options
+
+    for examples in EXAMPLES:
+        if path.is_relative_to(examples):
+            return f"{EXAMPLE}{path.relative_to(examples).as_posix()}"
+    return relate(path, folder)

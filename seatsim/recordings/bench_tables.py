@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
 from pathlib import Path
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,10 +77,9 @@ class BenchRecord(NamedTuple):
 
     def part(self, first: int, last: int) -> BenchRecord:
         """Return rows `first` to `last` (excluded)."""
-        cut = slice(first, last)
-        warmth = None if self.temperature is None else self.temperature[cut]
-        arrays = {name: getattr(self, name)[cut] for name in ("displacement", "velocity", "force", "current")}
-        return self._replace(temperature=warmth, **arrays)
+        fields = self._asdict()
+        rows: dict[str, Any] = {name: v[first:last] for name, v in fields.items() if isinstance(v, np.ndarray)}
+        return self._replace(**rows)
 
     def liveliest(self, rows: int) -> tuple[int, int]:
         """Return first and last row (excluded) of the stretch of at most so many rows with the highest mean speed."""

@@ -10,7 +10,7 @@ simulation, and u_D the stated noise of the channel; all are RMS values over the
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline, UnivariateSpline
@@ -27,6 +27,8 @@ from seatsim.simulation.respond import respond
 
 _Table = Mapping[str, Array]
 
+_LINEAR = ("coil_current", "damper_temperature")
+"""Inputs of a bench that are linear between rows; commands are held."""
 _REPLICATES = 3
 """Simulations with newly drawn noise of the inputs."""
 
@@ -87,22 +89,12 @@ def _smooth_motion(inputs: BenchInputs, parts: int) -> BenchInputs:
     finer = np.arange(parts * (len(rows) - 1) + 1, dtype=np.float64) / parts
     motion = UnivariateSpline(rows, inputs.displacement, k=5, s=len(rows) * inputs.displacement_noise**2)
 
-    def held(values: Array | None) -> Array | None:
-        return None if values is None else values[finer.astype(int)]
-
-    def linear(values: Array | None) -> Array | None:
-        return None if values is None else np.interp(finer, rows, values)
-
-    return inputs._replace(
-        interval=inputs.interval / parts,
-        displacement=motion(finer),
-        displacement_noise=0.0,
-        velocity=None if inputs.velocity is None else CubicSpline(rows, inputs.velocity)(finer),
-        current_command=held(inputs.current_command),
-        command_voltage=held(inputs.command_voltage),
-        coil_current=linear(inputs.coil_current),
-        damper_temperature=linear(inputs.damper_temperature),
-    )
+    given: dict[str, Any] = {name: each for name, each in inputs._asdict().items() if isinstance(each, np.ndarray)}
+    finely = {name: given[name][finer.astype(int)] for name in COMMANDS if name in given}
+    finely |= {name: np.interp(finer, rows, given[name]) for name in _LINEAR if name in given}
+    finely |= {"velocity": CubicSpline(rows, given["velocity"])(finer)} if "velocity" in given else {}
+    finely |= {"displacement": motion(finer), "displacement_noise": 0.0, "interval": inputs.interval / parts}
+    return inputs._replace(**finely)
 
 
 def carry_input_noise(scenario: Scenario, recording: Recording, table: _Table) -> dict[str, float]:

@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from functools import cache
+from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, TypeVar, cast, get_args, get_origin, get_type_hints
 
 from annotated_types import Ge, Gt, Le
@@ -22,6 +23,7 @@ from pydantic.fields import FieldInfo
 
 from seatsim.schema.registry import Record
 from seatsim.schema.units import conversion
+from seatsim.schema.yaml_text import parse_value
 
 _R = TypeVar("_R")
 N = TypeVar("N", bound=Record)
@@ -72,6 +74,11 @@ def validated(record: type[_R], values: object) -> _R:
     """Return the record of a class with the given values; raises `pydantic.ValidationError` where they do not fit."""
     known: type = record
     return cast("_R", adapter(known).validate_python(values))
+
+
+def read_packaged(path: Path, kind: type[_R]) -> _R:
+    """Return what stands in a YAML file of the package, as a value of a kind."""
+    return validated(kind, parse_value(path.read_text(encoding="utf-8")))
 
 
 @cache

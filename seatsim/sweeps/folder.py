@@ -16,8 +16,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from seatsim.provenance.manifest import describe
-from seatsim.provenance.statement import current_invocation, list_versions
+from seatsim.provenance.statement import current_invocation, describe, list_versions
 from seatsim.schema.content import plain, to_content
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import make_folder, write_json

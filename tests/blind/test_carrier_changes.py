@@ -5,8 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from seatsim.blind.carrier.make import draw_amount, draw_changes
-from seatsim.blind.carrier.replays import Ruler
+from seatsim.blind.carrier.make import Ruler, draw_amount, draw_changes
 from seatsim.blind.sealed import EFFECTS
 
 from .carriers import RATE, bench_carrier, offset, seat_carrier

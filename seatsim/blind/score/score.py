@@ -43,9 +43,8 @@ class ScoredCase(NamedTuple):
     @property
     def is_isolable_group_first(self) -> bool:
         """Whether it is, with blocks that the channels cannot tell apart taken for one."""
-        alike = [
-            group for group in self.verdict.isolable if self.verdict.blocks[:1] and self.verdict.blocks[0] in group
-        ]
+        first = set(self.verdict.blocks[:1])
+        alike = [group for group in self.verdict.isolable if first & set(group)]
         return self.is_block_first or any(set(self.label["blocks"]) & set(group) for group in alike)
 
 

@@ -58,11 +58,7 @@ def score_shrink(
     if not claims:
         return None
     with temporary_folder() as temporary:
-        unseen = [opened.extract(name, Path(temporary)) for name in claims]
-        jobs = [
-            (base / n / "nominal.yaml", claimed, place)
-            for (n, claimed), place in zip(claims.items(), unseen, strict=True)
-        ]
+        jobs = [(base / n / "nominal.yaml", claimed, opened.extract(n, temporary)) for n, claimed in claims.items()]
         found = run_jobs(_find_unseen_shrink, jobs, processes if len(jobs) >= _FEWEST_FOR_PROCESSES else 1, progress)
     pairs = list(zip(claims, found, strict=True))
     stated = [_compare_case(n, verdicts[n].shrink, verdicts[n].shrink_interval, each.true) for n, each in pairs]

@@ -13,10 +13,9 @@ from pathlib import Path
 from typing import Literal, NamedTuple
 
 from numpy.random import Generator
-from pydantic import TypeAdapter
 
 from seatsim.blind.sealed import EFFECTS
-from seatsim.schema.yaml_text import parse_value
+from seatsim.schema.fields import read_packaged
 
 Shape = dict[str, float]
 """The drawn choices of a scenario (lengths, time constants, signs, seeds), without its severity."""
@@ -189,9 +188,7 @@ def _evaluate_runs(formula: str | float | list[str], known: Mapping[str, object]
 
 
 _FUNCTIONS = {"min": min, "max": max, "sqrt": math.sqrt, "exp": math.exp, "log": math.log, "pi": math.pi}
-_TABLE = TypeAdapter(list[FaultScenario]).validate_python(
-    parse_value(Path(__file__).with_name("faults.yaml").read_text(encoding="utf-8"))
-)
+_TABLE = read_packaged(Path(__file__).with_name("faults.yaml"), list[FaultScenario])
 SCENARIOS = {scenario.name: scenario for scenario in _TABLE}
 """All scenarios by name, those outside the library last."""
 

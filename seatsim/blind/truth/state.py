@@ -13,9 +13,8 @@ from typing import Protocol, TypeVar
 
 import numba
 import numpy as np
-from pydantic import TypeAdapter
 
-from seatsim.schema.yaml_text import parse_value
+from seatsim.schema.fields import read_packaged
 
 
 class RigParameters(Protocol):
@@ -28,9 +27,7 @@ class RigParameters(Protocol):
         """Return a parameter."""
 
 
-_DEFAULTS = TypeAdapter(dict[str, float]).validate_python(
-    parse_value(Path(__file__).with_name("parameters.yaml").read_text(encoding="utf-8"))
-)
+_DEFAULTS = read_packaged(Path(__file__).with_name("parameters.yaml"), dict[str, float])
 _RECORD = np.dtype([(name, np.float64) for name in _DEFAULTS])
 """The layout in which compiled functions see `RigParameters`."""
 

@@ -80,7 +80,7 @@ def synthesise(
     """
     from seatsim.cli.outputs.run_tables import make_design_table
     from seatsim.cli.show_table import show_table
-    from seatsim.provenance.manifest import write_documented
+    from seatsim.provenance.statement import write_documented
     from seatsim.scenario.loading import single
     from seatsim.schema.yaml_source import Source
     from seatsim.simulation.design_outcome import measure_clipping

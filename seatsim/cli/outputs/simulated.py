@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from seatsim.cli.outputs.printing import print_reports
 from seatsim.cli.outputs.writing import name_pictures, write_each, write_outputs
-from seatsim.provenance.manifest import write_documented
+from seatsim.provenance.statement import write_documented
 from seatsim.report.runs import report_runs
 from seatsim.schema.content import IfAny, Joined, Unwritten
 from seatsim.schema.files import write_together

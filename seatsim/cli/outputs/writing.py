@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from seatsim.cli.outputs.printing import print_reports
 from seatsim.cli.outputs.workbook import write_workbook
-from seatsim.provenance.manifest import Measured, write_documented
+from seatsim.provenance.statement import Measured, write_documented
 from seatsim.report.rendering import write_html
 from seatsim.schema.content import to_content
 from seatsim.schema.files import write_json, write_text, write_together, write_whole

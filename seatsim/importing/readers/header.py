@@ -30,15 +30,8 @@ _ROW = "row"
 """Name of a first column of row numbers or labels, which has none in the file."""
 
 
-class Header(NamedTuple):
-    """Names and units of the columns."""
-
-    names: tuple[str, ...]
-    units: tuple[str, ...]
-
-
-def split_header(rows: Sequence[Sequence[str]], columns: int) -> Header:
-    """Return what the rows above the numbers say of so many columns; rows of another width are titles.
+def split_header(rows: Sequence[Sequence[str]], columns: int) -> list[tuple[str, str]]:
+    """Return name and unit of each column as the rows above the numbers say them; rows of another width are titles.
 
     Of the rows of texts that fill most columns one may hold units; of the others the one that says most holds the
     names, the last one where several say as much.
@@ -50,10 +43,7 @@ def split_header(rows: Sequence[Sequence[str]], columns: int) -> Header:
     named = [_name_and_unit(name, index) for index, name in enumerate(names)]
     stated = [_unmarked(unit).strip("[]() ") for unit in below or [""] * columns]
     stated = ["" if unit == _NOTHING else unit for unit in stated]
-    return Header(
-        tuple(name for name, _ in named),
-        tuple(unit or of_name for unit, (_, of_name) in zip(stated, named, strict=True)),
-    )
+    return [(name, unit or of_name) for unit, (name, of_name) in zip(stated, named, strict=True)]
 
 
 def _may_be_names(row: Sequence[str]) -> bool:

@@ -92,10 +92,8 @@ def _group(title: str, rows: Sequence[Sequence[_Cell]], place: str, layout: Text
         first = find_first_row([[_is_number(cell) for cell in row] for row in rows], place)
     check_header(first, len(rows), place)
     above = [["" if cell is None else str(cell) for cell in row] for row in rows[:first]]
-    header = split_header(above, len(rows[first]))
-    columns = list(zip(*rows[first:], strict=True))
-    named = zip(header.names, header.units, columns, strict=True)
-    signals = [Signal(name, unit, _values(cells)) for name, unit, cells in named]
+    columns = zip(split_header(above, len(rows[first])), zip(*rows[first:], strict=True), strict=True)
+    signals = [Signal(*named, _values(cells)) for named, cells in columns]
     empty = [signal.name for signal in signals if np.isnan(signal.values).all()]
     left_out = [name for name in empty if not name.startswith("column ")]
     return Group(title, tuple(signal for signal in signals if signal.name not in empty)), left_out

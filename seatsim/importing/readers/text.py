@@ -12,7 +12,7 @@ import numpy as np
 
 from seatsim.importing.readers.columns import part_by_time, read_column
 from seatsim.importing.readers.dialect import BLANKS, COMMENT, MISSING, Dialect, check_header, find_first_row, quote
-from seatsim.importing.readers.header import Header, Rows, count_columns, fit_names, split_header
+from seatsim.importing.readers.header import Rows, count_columns, fit_names, split_header
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.signals import DataFile, Signal, find_rate, note_left_out
 from seatsim.schema.errors import InputError
@@ -35,7 +35,7 @@ class _Head(NamedTuple):
     """The beginning of a table: how it is written, and the lines above its numbers with what they say."""
 
     dialect: Dialect
-    header: Header
+    columns: list[tuple[str, str]]
     above: list[str]
 
 
@@ -49,7 +49,7 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     content = as_utf8(content, layout.encoding)
     head = _read_head(path, content, layout)
     body, notes = _clean(_without_lines(content, len(head.above)), head)
-    columns, (delimiter, decimal) = [str(index) for index in range(len(head.header.names))], head.dialect
+    columns, (delimiter, decimal) = [str(index) for index in range(len(head.columns))], head.dialect
     table, bad = parse_rows(body, path, columns, delimiter=delimiter, decimal=decimal, missing=MISSING)
     if bad:
         _check_rows(path, content, [(row.text, row.actual_columns) for row in bad], head, notes)
@@ -190,7 +190,7 @@ def _check_rows(path: Path, content: bytes, bad: Sequence[tuple[str, int]], head
         else f": {quote(text)}; correct or remove that line"
     )
     more = f" (and {len(bad) - 1} more lines)" if len(bad) > 1 else ""
-    wanted = len(head.header.names)
+    wanted = len(head.columns)
     raise InputError(f"{path}, line {line}: has {columns} columns where the others have {wanted}{more}{reason}")
 
 
@@ -214,7 +214,7 @@ def _find(lines: Sequence[str], text: str) -> int:
 def _signals(table: pa.Table, head: _Head, notes: list[str]) -> list[Signal]:
     """Return the columns of numbers; a column of dates is added to the times of day behind it. The others are noted."""
     signals, left_out, days = [], [], None
-    for name, unit, column in zip(head.header.names, head.header.units, table.columns, strict=True):
+    for (name, unit), column in zip(head.columns, table.columns, strict=True):
         found = read_column(column, head.dialect.decimal)
         if found is None or not found.holds_numbers:
             left_out += [] if re.fullmatch(r"column \d+", name) else [name]
