@@ -9,9 +9,8 @@ import hmac
 import io
 import json
 import zipfile
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal, Required, TypedDict, get_args
+from typing import Literal, NamedTuple, Required, TypedDict, get_args
 
 from cryptography.fernet import Fernet, InvalidToken
 from cryptography.hazmat.primitives.ciphers import Cipher
@@ -92,8 +91,7 @@ SEAL = "seal.txt"
 """Name of the hash beside the recordings."""
 
 
-@dataclass(frozen=True)
-class Sealed:
+class Sealed(NamedTuple):
     """What a sealed file holds: labels by case, unseen recordings by case (files by name), and what made them."""
 
     labels: dict[str, Label]

@@ -172,7 +172,8 @@ def make_channel(
     rate = clocked.axis.rate
     # What is still to be differentiated is a position or a velocity.
     quantity = {0: quantity_of(name), 1: None, 2: "displacement"}[entry.differentiate]
-    doubts = [issue for issue in doubt_channel(name, values, rate, quantity) if not _mends(entry, issue)]
+    mended = {"gravity": entry.remove_mean, "offset": entry.remove_mean, "missing": entry.fill, "spikes": entry.despike}
+    doubts = [issue for issue in doubt_channel(name, values, rate, quantity) if not mended.get(issue.kind)]
     channel = _evened(name, *_filled(name, entry, values, clocked, notes), clocked.axis)
     return channel._replace(values=_corrected(name, channel.values, entry, channel.rate, notes)), doubts
 
@@ -202,12 +203,6 @@ def _in_si(name: str, entry: ChannelMap, values: Array, clocked: Clocked, wanted
     with placed(f"channels.{name}.unit"):
         found = conversion(unit, base)
     return found.factor * (entry.sign * entry.scale * values + entry.offset) + found.zero
-
-
-def _mends(entry: ChannelMap, issue: Issue) -> bool:
-    """Say whether the map corrects what is doubted."""
-    mended = {"gravity": entry.remove_mean, "offset": entry.remove_mean, "missing": entry.fill, "spikes": entry.despike}
-    return mended.get(issue.kind, False)
 
 
 def _filled(name: str, entry: ChannelMap, values: Array, clocked: Clocked, notes: list[str]) -> tuple[Array, Array]:

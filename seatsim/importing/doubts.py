@@ -7,7 +7,6 @@ from collections.abc import Collection, Iterator, Mapping
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.importing.names import BY_UNIT, SI_UNITS
 from seatsim.importing.time_axis import Axis
@@ -53,7 +52,9 @@ def doubt_channel(channel: str, raw: Array, rate: float | None, quantity: str | 
     doubter = Doubter(channel, rate)
     missing = np.isnan(raw)
     if missing.any():
-        yield _missing(doubter, missing)
+        rows = np.flatnonzero(missing)
+        text = f"{len(rows)} rows hold no number, the first at {doubter.at(int(rows[0]))}; fill: true interpolates them"
+        yield doubter.say("warning", "missing", text)
     values = raw[~missing] if missing.any() else raw
     if not len(values):
         return
@@ -73,12 +74,6 @@ def doubt_channel(channel: str, raw: Array, rate: float | None, quantity: str | 
         yield issue._replace(severity="note") if issue.kind == "held" and quantity in _SWITCHED else issue
     if rate is not None and quantity not in _SWITCHED:
         yield from doubt_dropouts(doubter, values, lengths, starts)
-
-
-def _missing(doubter: Doubter, missing: NDArray[np.bool_]) -> Issue:
-    rows = np.flatnonzero(missing)
-    text = f"{len(rows)} rows hold no number, the first at {doubter.at(int(rows[0]))}; fill: true interpolates them"
-    return doubter.say("warning", "missing", text)
 
 
 def _of_quantity(doubter: Doubter, values: Array, quantity: str | None) -> Iterator[Issue]:

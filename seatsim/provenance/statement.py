@@ -193,7 +193,8 @@ def at_work(command: str, options: Sequence[tuple[str, object]], operands: Seque
         options: each that was given, with its value; True for one that takes none.
         operands: what it was given besides, in order.
     """
-    kept = [_join(name, value) for name, value in options if name in REPEATABLE.get(command, ())]
+    told = [(name, value) for name, value in options if name in REPEATABLE.get(command, ())]
+    kept = [name if value is True else f"{name}={_shorten(value)}" for name, value in told]
     arguments = (*kept, "--", *map(_shorten, operands))
     invocation = Invocation(command, arguments, Path.cwd(), {})
     token = _current.set(invocation)
@@ -226,10 +227,6 @@ def state_command(otherwise: str) -> str:
 def _keep(invocation: Invocation, path: Path, content: bytes) -> None:
     whole = os.path.abspath(invocation.directory / path)
     invocation.reads[Path(whole)] = state_file(whole, content)
-
-
-def _join(name: str, value: object) -> str:
-    return name if value is True else f"{name}={_shorten(value)}"
 
 
 def _shorten(value: object) -> str:

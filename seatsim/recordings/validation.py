@@ -103,10 +103,8 @@ def carry_input_noise(scenario: Scenario, recording: Recording, table: _Table) -
     rng = np.random.default_rng(0)
     clean = replay_table(scenario, recording, table)
     noisy = [replay_table(scenario, recording, _add_noise(recording, table, rng)) for _ in range(_REPLICATES)]
-    return {
-        name: float(np.sqrt(np.mean([np.mean((other[name] - values) ** 2) for other in noisy])))
-        for name, values in clean.items()
-    }
+    squares = {name: [np.mean((other[name] - values) ** 2) for other in noisy] for name, values in clean.items()}
+    return {name: float(np.sqrt(np.mean(each))) for name, each in squares.items()}
 
 
 def _add_noise(recording: Recording, table: _Table, rng: np.random.Generator) -> dict[str, Array]:
@@ -114,12 +112,9 @@ def _add_noise(recording: Recording, table: _Table, rng: np.random.Generator) ->
     outputs = set(COMPARED[recording.header.rig])
     if not any(name in table for name in COMMANDS):
         outputs -= {"coil_current"}
-    return {
-        name: values
-        if name in outputs
-        else values + recording.channels[name].noise_rms * rng.standard_normal(len(values))
-        for name, values in table.items()
-    }
+    levels = {name: recording.channels[name].noise_rms for name in table if name not in outputs}
+    drawn = {name: level * rng.standard_normal(len(table[name])) for name, level in levels.items()}
+    return {name: values + drawn[name] if name in drawn else values for name, values in table.items()}
 
 
 _STEP = 0.1

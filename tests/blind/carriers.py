@@ -1,7 +1,5 @@
 """Small recordings that carry cases: a damper bench with a switched current, and a seat without a damper."""
 
-import dataclasses
-
 import numpy as np
 from ruamel.yaml import YAML
 
@@ -76,7 +74,7 @@ def write_carrier(carrier, folder):
 def offset(carrier, newtons):
     """Return a carrier whose load cell reads so much more."""
     tables = {run: {**t, "damper_force": t["damper_force"] + newtons} for run, t in carrier.tables.items()}
-    return dataclasses.replace(carrier, tables=tables)
+    return carrier._replace(tables=tables)
 
 
 def seat_carrier():

@@ -1,7 +1,5 @@
 """What is put into a recording is what its label says: the effect of that name and size takes the gap away again."""
 
-import dataclasses
-
 import numpy as np
 import pytest
 
@@ -31,7 +29,7 @@ def share_left(carrier, drawn):
     if drawn.change.channel:
         parameters["channel"] = drawn.change.channel
     effects = [*altered.nominal.get("effects", []), {"effect": drawn.change.effect, "parameters": parameters}]
-    mended = dataclasses.replace(altered, nominal={**altered.nominal, "effects": effects})
+    mended = altered._replace(nominal={**altered.nominal, "effects": effects})
     before, after = (ruler.residuals(each) for each in (altered, mended))
     squares = [[np.mean((each[name] / ruler.spread[name]) ** 2) for name in ruler.before] for each in (before, after)]
     return np.sqrt(np.mean(squares[1]) / np.mean(squares[0]))
@@ -98,6 +96,6 @@ def test_a_size_counts_in_standard_deviations_beyond_the_tolerance():
     spread = float(np.std(carrier.pooled("damper_force")))
     assert Ruler(carrier).size(offset(carrier, 0.1 * spread)) == pytest.approx(0.1, rel=1e-3)
     tables = {run: {**t, "damper_force": 1.08 * t["damper_force"]} for run, t in carrier.tables.items()}
-    known, loose = (dataclasses.replace(bench_carrier(tolerance), tables=tables) for tolerance in (0.0, 0.1))
+    known, loose = (bench_carrier(tolerance)._replace(tables=tables) for tolerance in (0.0, 0.1))
     assert Ruler(bench_carrier(0.0)).size(known) == pytest.approx(0.08, rel=0.05)
     assert Ruler(bench_carrier(0.1)).size(loose) < 0.02

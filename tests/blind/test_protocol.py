@@ -1,6 +1,5 @@
 """Nothing of a case but its signals depends on its label: protocol, header, nominal, order, digits."""
 
-import dataclasses
 import gzip
 from collections.abc import Mapping
 from functools import partial
@@ -96,7 +95,7 @@ def test_a_change_of_a_carrier_alters_no_file_but_its_signals(make, tmp_path):
     rounded = {
         run: {name: np.round(values, 4) for name, values in table.items()} for run, table in carrier.tables.items()
     }
-    folder = write_carrier(dataclasses.replace(carrier, tables=rounded), tmp_path / "carrier")
+    folder = write_carrier(carrier._replace(tables=rounded), tmp_path / "carrier")
     read = read_carrier(folder)
     runs = tuple(read.tables)
     before = encode_carrier(read, runs)
@@ -113,9 +112,9 @@ def test_a_change_of_a_carrier_alters_no_file_but_its_signals(make, tmp_path):
 def test_a_command_recorded_as_zero_or_one_can_be_changed(tmp_path):
     carrier = bench_carrier()
     table = {**carrier.tables["run-0"], "current_command": np.repeat([0.0, 1.0], 1000)}
-    read = read_carrier(write_carrier(dataclasses.replace(carrier, tables={"run-0": table}), tmp_path / "carrier"))
+    read = read_carrier(write_carrier(carrier._replace(tables={"run-0": table}), tmp_path / "carrier"))
     changed = {"run-0": {**table, "current_command": 1.234 * table["current_command"]}}
-    lines = gzip.decompress(encode_carrier(dataclasses.replace(read, tables=changed), ("run-0",))["run-0.csv.gz"])
+    lines = gzip.decompress(encode_carrier(read._replace(tables=changed), ("run-0",))["run-0.csv.gz"])
     assert float(lines.decode().splitlines()[-1].split(",")[-1]) == pytest.approx(1.234)
 
 

@@ -1,6 +1,5 @@
 """Rigs of the preset `varied`: their ranges, their noise and floors, and that a faultless one replays."""
 
-import dataclasses
 import gzip
 import math
 
@@ -66,7 +65,7 @@ def test_parameters_lie_inside_the_stated_tolerance(rigs):
 def test_a_background_is_shown_by_a_repeat_and_is_not_material(rigs):
     experiment = next(rig for rig in rigs if rig.background)
     assert [run.repeat_of for run in experiment.runs] == [None, None, None, "run-a", None]
-    still = dataclasses.replace(experiment, background=())
+    still = experiment._replace(background=())
     motions = [simulate_run(still, Changes(), k) for k in range(4)]
     true = experiment.true
     carried = np.std(true["ms"] * motions[0].frame + true["m"] * motions[0].driver)
@@ -80,7 +79,7 @@ def test_a_background_is_shown_by_a_repeat_and_is_not_material(rigs):
 def test_a_faultless_rig_of_any_kind_replays_to_within_its_noise(rigs, rate, n, tmp_path):
     found = (rig for rig in rigs if rig.sample_rate == rate and rig.nominal.get("n", 0.0) == n and not rig.background)
     experiment = next(found)
-    experiment = dataclasses.replace(experiment, true=dict(experiment.nominal))
+    experiment = experiment._replace(true=dict(experiment.nominal))
     shown = [read_channels(experiment, Changes(), k, simulate_run(experiment, Changes(), k)) for k in range(3)]
     write_folder(tmp_path / "case", encode_recording(experiment, shown, np.random.default_rng(0), range(3)))
     gap = seatsim.gap(tmp_path / "case" / "nominal.yaml", tmp_path / "case")

@@ -2,7 +2,6 @@
 
 import json
 import math
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -73,7 +72,7 @@ def test_a_score_is_of_the_documented_form():
     wrong = Verdict("known", ("sensor",), ("sensor.gain",), {"sensor.gain": 0.9})
     once = ShrinkScore(0.1, 0.0, Rate(1, 1), [("a", 0.5, 0.6, True)])
     found = score_verdicts(
-        {"a": {"kind": "none", "effects": [], "blocks": []}}, {"a": wrong}, replace(once, predicted=once)
+        {"a": {"kind": "none", "effects": [], "blocks": []}}, {"a": wrong}, once._replace(predicted=once)
     )
     check_answer("blind-score", json.dumps({**to_content(found), "files": []}))
 

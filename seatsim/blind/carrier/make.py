@@ -68,7 +68,7 @@ class Ruler:
         """Return how the residuals change where each parameter is up by its tolerance, in std, end to end."""
         found = []
         for nominal in _varied_nominals(self.carrier):
-            moved = self.residuals(dataclasses.replace(self.carrier, nominal=nominal))
+            moved = self.residuals(self.carrier._replace(nominal=nominal))
             column = self._stack({name: moved[name] - self.before[name] for name in self.before})
             if np.all(np.isfinite(column)):
                 found.append(column)
@@ -141,15 +141,10 @@ def _load(carrier: Carrier) -> Recording:
     return dataclasses.replace(recording, channels=recording.channels | smooth)
 
 
-def _tolerance(carrier: Carrier) -> float:
-    """Return the fraction to which parameters are taken to be known."""
-    stated = carrier.header.get("parameter_tolerance", 0.02)
-    return number(stated) if isinstance(stated, int | float) else _UNKNOWN_TOLERANCE
-
-
 def _varied_nominals(carrier: Carrier) -> list[Content]:
     """Return the nominal with each of its parameters, one after another, up by the tolerance."""
-    share, nominal = _tolerance(carrier), carrier.nominal
+    stated, nominal = carrier.header.get("parameter_tolerance", 0.02), carrier.nominal
+    share = number(stated) if isinstance(stated, int | float) else _UNKNOWN_TOLERANCE
     damper, plant, coil = section(nominal, "damper"), section(nominal, "plant"), section(nominal, "actuator")
     values = section(damper, "parameters")
     varied: list[Content] = []
@@ -185,7 +180,7 @@ def choose_runs(carrier: Carrier, rng: Generator) -> Carrier:
     """Return the carrier with at most `_MOST_RUNS` of its runs, drawn and in their own order."""
     names = list(carrier.tables)
     kept = sorted(rng.choice(len(names), min(_MOST_RUNS, len(names)), replace=False))
-    return dataclasses.replace(carrier, tables={names[k]: carrier.tables[names[k]] for k in kept})
+    return carrier._replace(tables={names[k]: carrier.tables[names[k]] for k in kept})
 
 
 def draw_amount(ruler: Ruler, change: Change, size: float) -> DrawnCase | None:

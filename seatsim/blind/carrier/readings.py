@@ -4,8 +4,6 @@ A command that was given earlier than logged, a supply that did not reach it, a 
 low-pass of a sensor, and a controller's log that is shifted in time.
 """
 
-import dataclasses
-
 import numpy as np
 from numpy.random import Generator
 
@@ -68,7 +66,7 @@ def draw_limits(carrier: Carrier, rng: Generator) -> list[Change]:
             run: {**table, command: table[command] * (1.0 + amount * raised[run])}
             for run, table in carrier.tables.items()
         }
-        return Altered(dataclasses.replace(carrier, tables=tables), {"limit": gain * top})
+        return Altered(carrier._replace(tables=tables), {"limit": gain * top})
 
     return [Change("coil.current_limit", "command raised above what flowed", "", room, alter)]
 

@@ -1,9 +1,7 @@
 """A measured recording as values that can be changed and written again, what a change is, and arithmetic on signals."""
 
-import dataclasses
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
@@ -30,14 +28,13 @@ _SMOOTHING = 0.02
 """s; window of the polynomial whose slope is the velocity."""
 
 
-@dataclass(frozen=True)
-class Carrier:
+class Carrier(NamedTuple):
     """A recording as read: the contents of its two YAML files, and its runs by name."""
 
     header: Content
     nominal: Content
     tables: Mapping[str, Table]
-    decimals: Mapping[str, int] = field(default_factory=dict)
+    decimals: Mapping[str, int] = {}
     """Digits after the point with which each channel is written."""
 
     @property
@@ -154,7 +151,7 @@ class Change(NamedTuple):
 
 def with_tables(carrier: Carrier, table_of: Callable[[Table], Table]) -> Carrier:
     """Return the carrier with every run replaced."""
-    return dataclasses.replace(carrier, tables={run: table_of(table) for run, table in carrier.tables.items()})
+    return carrier._replace(tables={run: table_of(table) for run, table in carrier.tables.items()})
 
 
 def change_channel(

@@ -4,7 +4,6 @@ With the rig's equations linear, the difference d of the motion with and without
 `M d'' + C d' + K d = -f(x + d, v + d')`, where x is the recorded motion. So the background stays what was measured.
 """
 
-import dataclasses
 import itertools
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
@@ -56,7 +55,7 @@ def draw_seat_changes(carrier: Carrier, rng: Generator) -> list[Change]:
                 run: {**table, **_respond(carrier, plant, table, motions[run], begin())}
                 for run, table in carrier.tables.items()
             }
-            return Altered(dataclasses.replace(carrier, tables=tables), parameters)
+            return Altered(carrier._replace(tables=tables), parameters)
 
         return Change(effect, form, "", largest, alter)
 

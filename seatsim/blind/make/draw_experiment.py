@@ -4,7 +4,6 @@ It is a plain rig, which is always the same seat, or one unlike any other: seat,
 noise, floor, tolerance, background force.
 """
 
-import dataclasses
 import math
 from collections.abc import Collection, Mapping
 from typing import NamedTuple
@@ -123,7 +122,7 @@ def _draw_runs(rng: Generator, repeat: bool) -> tuple[RunPlan, ...]:
         laws = [(schedule, excitation.draw_current_steps(rng, rows, top)) for _ in laws]
     second = RunPlan("run-b", excitation.draw_road(rng, SECONDS, rms), *laws[0], starts[1])
     third = RunPlan("run-c", excitation.draw_bumps(rng, SECONDS, rng.uniform(6.0, 8.5)), *laws[1], starts[2])
-    again = (dataclasses.replace(first, name="run-d", repeat_of="run-a"),) if repeat else ()
+    again = (first._replace(name="run-d", repeat_of="run-a"),) if repeat else ()
     sweep = excitation.draw_sweep(rng, UNSEEN_SECONDS, 0.9 * rms)
     last = RunPlan("run-u", sweep, schedule, excitation.draw_current_steps(rng, unseen, top), starts[3])
     return (first, second, third, *again, last)
@@ -178,15 +177,13 @@ def draw_varied_experiment(rng: Generator, bingham: bool, channels: tuple[str, .
     rate, tolerance = float(rng.choice(SAMPLE_RATES)), _log_uniform(rng, _SMALLEST_TOLERANCE, _LARGEST_TOLERANCE)
     tolerance = float(f"{tolerance:.2g}")
     nominal = draw_nominal(rng, bingham)
-    noise = {
-        name: float(f"{value * _log_uniform(rng, 1.0 / _NOISE_FACTOR, _NOISE_FACTOR):.3g}")
-        for name, value in noise_of(channels).items()
-    }
+    factors = {name: _log_uniform(rng, 1.0 / _NOISE_FACTOR, _NOISE_FACTOR) for name in noise_of(channels)}
+    noise = {name: float(f"{value * factors[name]:.3g}") for name, value in noise_of(channels).items()}
     true = scatter_parameters(nominal, rng, tolerance) | draw_heat(rng)
     colours = {name: _draw_colour(rng) for name in noise}
     experiment = Experiment(nominal, true, channels, noise, (), (), rate, tolerance, colours)
     repeat = rng.random() < _BACKGROUND_SHARE
-    experiment = dataclasses.replace(experiment, runs=_draw_varied_runs(rng, experiment, repeat))
+    experiment = experiment._replace(runs=_draw_varied_runs(rng, experiment, repeat))
     return _add_background(experiment, rng) if repeat else experiment
 
 
@@ -259,7 +256,7 @@ def _draw_varied_runs(rng: Generator, experiment: Experiment, repeat: bool) -> t
         floor = excitation.draw_vehicle_floor(rng, vehicle, seconds, rng.uniform(0.05, 0.6))
         currents = excitation.draw_current_steps(rng, round(seconds * rate), top, rate)
         runs.append(RunPlan(name, floor, law, currents, starts[k]))
-    again = [dataclasses.replace(runs[0], name="run-d", repeat_of="run-a")] if repeat else []
+    again = [runs[0]._replace(name="run-d", repeat_of="run-a")] if repeat else []
     return (*runs[:3], *again, runs[3])
 
 
@@ -283,4 +280,4 @@ def _add_background(experiment: Experiment, rng: Generator) -> Experiment:
     runs = CommandedRuns(experiment, [motion.command for motion in motions])
     size, _ = runs.materiality(Changes(frame_forces=(force,)), Changes())
     weaker = force._replace(rms=rms * min(1.0, LARGEST_BACKGROUND / size))
-    return dataclasses.replace(experiment, background=(weaker,))
+    return experiment._replace(background=(weaker,))

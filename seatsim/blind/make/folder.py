@@ -55,10 +55,8 @@ def recording_header(experiment: Experiment, runs: Sequence[RunPlan]) -> dict[st
     """Return the content of `recording.yaml`."""
     noise = {name: {"noise_rms": rms} for name, rms in experiment.noise.items()}
     recorded = [name for name in CHANNELS if name in experiment.channels]
-    entries = [
-        {"name": run.name, "file": f"{run.name}.csv.gz"} | ({"repeat_of": run.repeat_of} if run.repeat_of else {})
-        for run in runs
-    ]
+    repeats = {run.name: {"repeat_of": run.repeat_of} for run in runs if run.repeat_of}
+    entries = [{"name": run.name, "file": f"{run.name}.csv.gz"} | repeats.get(run.name, {}) for run in runs]
     return {
         "rig": "seat",
         "sample_rate": experiment.sample_rate,
@@ -112,10 +110,8 @@ def encode_recording(
 ) -> dict[str, bytes]:
     """Return the files of a recording folder that holds these runs, by name; the noise is drawn run by run."""
     plans = [experiment.runs[k] for k in runs]
-    files = {
-        "recording.yaml": encode_yaml(recording_header(experiment, plans)),
-        "nominal.yaml": encode_yaml(nominal_scenario(experiment)),
-    }
+    files = {"recording.yaml": encode_yaml(recording_header(experiment, plans))}
+    files |= {"nominal.yaml": encode_yaml(nominal_scenario(experiment))}
     rate = experiment.sample_rate
     for k, plan in zip(runs, plans, strict=True):
         noisy = add_noise(experiment, readings[k], rng)

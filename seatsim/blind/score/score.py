@@ -3,7 +3,6 @@
 import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
@@ -74,8 +73,7 @@ class FoundSize(NamedTuple):
     found: float
 
 
-@dataclass(frozen=True)
-class Score:
+class Score(NamedTuple):
     """All figures of a set, the content of `score.json`; rates hold how many of how many."""
 
     right: Rate
@@ -176,7 +174,7 @@ def score_verdicts(
         effects=_rates_by(known, lambda label: label["effects"][:1]),
         forms=_rates_by(single, lambda label: label.get("forms", [])),
         confusion=_confusion(cases),
-        by_missing=_rates_by(cases, _missing_channels),
+        by_missing=_rates_by(cases, lambda label: [" ".join(label.get("missing", [])) or "all channels"]),
         by_size=_rates_by(single, _strength_class),
         failures=[_describe_failure(case) for case in cases if not case.right],
         cases=len(every),
@@ -236,11 +234,6 @@ def _strength_class(label: Label) -> list[str]:
         if weakest < edge:
             return [f"{edge:.1f} x limit or less"]
     return ["stronger"]
-
-
-def _missing_channels(label: Label) -> list[str]:
-    """Return the class of a case by the channels that it lacks."""
-    return [" ".join(label.get("missing", [])) or "all channels"]
 
 
 def _confusion(cases: Iterable[ScoredCase]) -> dict[str, dict[str, int]]:

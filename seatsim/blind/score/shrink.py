@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
@@ -28,8 +26,7 @@ _ROUNDING = 1e-9
 """By how much a true shrink may lie beyond an interval of no width, as of a scenario that is left as it is."""
 
 
-@dataclass(frozen=True)
-class ShrinkScore:
+class ShrinkScore(NamedTuple):
     """Stated against true shrink on the unseen runs: mean absolute and mean difference, coverage, and each case.
 
     `predicted` holds the same of the shrink that is predicted from the inputs of these runs alone.
@@ -62,10 +59,9 @@ def score_shrink(
         found = run_jobs(_find_unseen_shrink, jobs, processes if len(jobs) >= _FEWEST_FOR_PROCESSES else 1, progress)
     pairs = list(zip(claims, found, strict=True))
     stated = [_compare_case(n, verdicts[n].shrink, verdicts[n].shrink_interval, each.true) for n, each in pairs]
-    expected = [
-        _compare_case(n, each.predicted, each.interval, each.true) for n, each in pairs if each.predicted is not None
-    ]
-    return dataclasses.replace(_compare(stated), predicted=_compare(expected) if expected else None)
+    foretold = [(n, each) for n, each in pairs if each.predicted is not None]
+    expected = [_compare_case(n, each.predicted, each.interval, each.true) for n, each in foretold]
+    return _compare(stated)._replace(predicted=_compare(expected) if expected else None)
 
 
 def _find_augmented(verdict: Verdict) -> Path | None:

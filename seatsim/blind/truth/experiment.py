@@ -1,7 +1,6 @@
 """One rig under test and its protocol: what a run is, with or without faults, and what its channels read."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -153,8 +152,7 @@ CHANNELS = {
 digits are a tenth of the noise or less."""
 
 
-@dataclass(frozen=True)
-class RunPlan:
+class RunPlan(NamedTuple):
     """Excitation and control of a run; `temperature` of the damper at its start, degC."""
 
     name: str
@@ -170,8 +168,7 @@ class RunPlan:
         return self.schedule.size
 
 
-@dataclass(frozen=True)
-class Experiment:
+class Experiment(NamedTuple):
     """A rig and its protocol before any effect; the last run is the unseen one.
 
     `nominal` are the parameters that the owner assumes, known to within the relative `tolerance` that he states, `true`
@@ -187,7 +184,7 @@ class Experiment:
     background: tuple[FrameForce, ...] = ()
     sample_rate: float = SAMPLE_RATE
     tolerance: float = _TOLERANCE
-    colours: Mapping[str, NoiseColour] = field(default_factory=dict)
+    colours: Mapping[str, NoiseColour] = {}
 
     @property
     def compared(self) -> tuple[str, ...]:

@@ -13,23 +13,8 @@ import numpy as np
 from numba import types
 
 from seatsim.compilation.jit import GENERIC
-from seatsim.exchange.printing.values import (
-    REAL,
-    UNKNOWN,
-    Declarations,
-    NotPrintableError,
-    Signature,
-    Value,
-    field_names,
-    free_name,
-    identifier,
-    is_empty,
-    is_known,
-    is_row,
-    is_tuple,
-    number,
-    whole_as_int64,
-)
+from seatsim.exchange.printing import values
+from seatsim.exchange.printing.values import NotPrintableError, Signature, Value
 from seatsim.schema.arrays import Array
 
 _N = TypeVar("_N", bound=ast.AST)
@@ -52,7 +37,7 @@ class Program:
 
     def __init__(self, translate: Callable[[Program, Callable[..., object], str, tuple[Signature, ...]], Printed]):
         self.translate = translate
-        self.types = Declarations()
+        self.types = values.Declarations()
         self.functions: list[str] = []
         self.tables: list[str] = []
         self._printed: dict[tuple[object, tuple[Signature, ...]], Printed] = {}
@@ -65,7 +50,7 @@ class Program:
         """Return the printed function for arguments of these types; it is printed when it is first asked for."""
         key = (function, arguments)
         if key not in self._printed:
-            name = free_name(_function_name(function), self._names)
+            name = values.free_name(_function_name(function), self._names)
             self._names.add(name)
             self._printed[key] = self.translate(self, function, name, arguments)
         return self._printed[key]
@@ -76,7 +61,7 @@ class Program:
         What is inlined takes addresses of records, and nothing is copied. What is called takes copies: a caller whose
         records a function might see has to keep them in memory.
         """
-        return is_tuple(kind) and not is_empty(kind) and function not in self.apart
+        return values.is_tuple(kind) and not values.is_empty(kind) and function not in self.apart
 
     def form(self, generic: Callable[..., object], arguments: tuple[types.Type, ...]) -> Callable[..., object] | None:
         """Return the form of a generic function for arguments of these types, the same one every time."""
@@ -85,15 +70,17 @@ class Program:
             self._forms[key] = GENERIC[generic](*arguments)
         return self._forms[key]
 
-    def table(self, values: Array) -> Value:
+    def table(self, array: Array) -> Value:
         """Return a constant array, as a table that is printed once."""
-        flat = np.ascontiguousarray(values, dtype=np.float64)
+        flat = np.ascontiguousarray(array, dtype=np.float64)
         key = flat.tobytes()
         if key not in self._table_names:
             name = self._table_names[key] = f"table_{len(self._table_names) + 1}"
-            numbers = textwrap.fill(", ".join(number(float(v)).code for v in flat.ravel()), 110)
+            numbers = textwrap.fill(", ".join(values.number(float(v)).code for v in flat.ravel()), 110)
             self.tables.append(f"static const real {name}[{flat.size}] = {{\n{textwrap.indent(numbers, '    ')}\n}};\n")
-        return Value(self._table_names[key], types.Array(REAL, flat.ndim, "C", readonly=True), values, True, flat.shape)
+        return Value(
+            self._table_names[key], types.Array(values.REAL, flat.ndim, "C", readonly=True), array, True, flat.shape
+        )
 
     def source(self) -> str:
         """Return the text of structs, tables and functions."""
@@ -152,20 +139,20 @@ class Scope:
 
     def name(self, wanted: str) -> str:
         """Return a name for a variable that is free within the function."""
-        name = free_name(identifier(wanted), self._names)
+        name = values.free_name(values.identifier(wanted), self._names)
         self._names.add(name)
         return name
 
     def assign(self, name: str, value: Value) -> None:
         """Assign a value to the variable that Python calls `name`."""
         before = self.variables.get(name)
-        known = value.known if self.assigned.get(name, 0) <= 1 else UNKNOWN
-        if value.type is None or value.is_empty or known is not UNKNOWN or value.shape:
+        known = value.known if self.assigned.get(name, 0) <= 1 else values.UNKNOWN
+        if value.type is None or value.is_empty or known is not values.UNKNOWN or value.shape:
             # Nothing to compute: the value itself stands for the variable.
             self.variables[name] = value
             return
-        kind = whole_as_int64(value.type)
-        if before is None or before.type != kind or before.known is not UNKNOWN:
+        kind = values.whole_as_int64(value.type)
+        if before is None or before.type != kind or before.known is not values.UNKNOWN:
             self._declare(name, kind, value.code)
         else:
             self.write(f"{before.code} = {value.code};")
@@ -192,37 +179,37 @@ class Scope:
         code = self.function.__code__
         if name in code.co_freevars:
             return (self.function.__closure__ or ())[code.co_freevars.index(name)].cell_contents
-        found = self.function.__globals__.get(name, UNKNOWN)
-        return getattr(builtins, name, UNKNOWN) if found is UNKNOWN else found
+        found = self.function.__globals__.get(name, values.UNKNOWN)
+        return getattr(builtins, name, values.UNKNOWN) if found is values.UNKNOWN else found
 
 
 def build_tuple(scope: Scope, items: list[Value], cls: type | None = None) -> Value:
     """Return a tuple, or a record of a class, of these elements."""
-    kind = types.BaseTuple.from_types(tuple(whole_as_int64(item.type) for item in items), cls)
-    known = tuple(item.known for item in items) if items and is_known(*items) else UNKNOWN
-    if is_empty(kind):
+    kind = types.BaseTuple.from_types(tuple(values.whole_as_int64(item.type) for item in items), cls)
+    known = tuple(item.known for item in items) if items and values.is_known(*items) else values.UNKNOWN
+    if values.is_empty(kind):
         return Value("", kind)
     listed = ", ".join(item.code for item in items if not item.is_empty)
     name = scope.program.types.name(kind)
-    return Value(f"({name}){{{{{listed}}}}}" if is_row(kind) else f"({name}){{{listed}}}", kind, known, False)
+    return Value(f"({name}){{{{{listed}}}}}" if values.is_row(kind) else f"({name}){{{listed}}}", kind, known, False)
 
 
 def element(scope: Scope, owner: Value, index: int | Value, node: ast.AST | None = None) -> Value:
     """Return one element of a tuple, by its position or, where all have one type, by a number known later."""
     if isinstance(index, Value):
-        if not is_row(owner.type):
+        if not values.is_row(owner.type):
             raise scope.refuse(node or ast.Pass(), "the position in a tuple of several types must be a constant")
         return Value(f"{_member(scope.keep(owner))}at[{index.code}]", owner.type.dtype)
     index %= len(owner.type)
     if isinstance(owner.known, tuple):
         return _known_element(scope, owner, index)
     kind = tuple(owner.type)[index]
-    if is_empty(kind):
+    if values.is_empty(kind):
         return Value("", kind)
     held = scope.keep(owner)
-    if is_row(owner.type):
+    if values.is_row(owner.type):
         return Value(f"{_member(held)}at[{index}]", kind)
-    return Value(f"{_member(held)}{field_names(owner.type)[index]}", kind)
+    return Value(f"{_member(held)}{values.field_names(owner.type)[index]}", kind)
 
 
 def _member(owner: Value) -> str:
@@ -233,9 +220,11 @@ def _member(owner: Value) -> str:
 def _known_element(scope: Scope, owner: Value, index: int) -> Value:
     found = owner.known[index]
     if not isinstance(found, tuple):
-        return number(found)
+        return values.number(found)
     kinds = tuple(owner.type)[index]
-    return build_tuple(scope, [number(float(v) if k == REAL else v) for v, k in zip(found, kinds, strict=True)])
+    return build_tuple(
+        scope, [values.number(float(v) if k == values.REAL else v) for v, k in zip(found, kinds, strict=True)]
+    )
 
 
 def part(scope: Scope, owner: Value, span: slice) -> Value:

@@ -21,11 +21,8 @@ y0 y1 yn j0 j1 jn remove rename link select least greatest
 """Words of C and of its library."""
 
 
-class _Unknown:
-    """What is only known when the code runs."""
-
-
-UNKNOWN = _Unknown()
+UNKNOWN = object()
+"""What is only known when the code runs."""
 
 
 class NotPrintableError(InputError):

@@ -177,11 +177,8 @@ def part_by_time(signals: Sequence[Signal], rate: float | None) -> tuple[Group, 
             same += [signal for signal in part if signal is not clock]
     if len(parts) == 1:
         return (Group("", tuple(parts[0]), rate),)
-    clocks = [_clock(part) for part in parts]
-    return tuple(
-        Group(clock.name, tuple(part)).take(np.isfinite(clock.values))
-        for clock, part in zip(clocks, parts, strict=True)
-    )
+    clocked = [(_clock(part), Group("", tuple(part))) for part in parts]
+    return tuple(group.take(np.isfinite(clock.values))._replace(name=clock.name) for clock, group in clocked)
 
 
 def _is_clock(signal: Signal) -> bool:

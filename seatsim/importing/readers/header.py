@@ -49,9 +49,8 @@ def split_header(rows: Sequence[Sequence[str]], columns: int) -> list[tuple[str,
 def _may_be_names(row: Sequence[str]) -> bool:
     """Say whether a row holds texts in most columns, and no number; numbers that count columns are names, too."""
     filled = [cell for cell in row if cell.strip()]
-    return len(filled) >= max(1, 0.6 * len(row)) and (
-        not any(_PLAIN.kind(cell) for cell in filled) or count_columns(row)
-    )
+    holds_numbers = any(_PLAIN.kind(cell) for cell in filled)
+    return len(filled) >= max(1, 0.6 * len(row)) and (not holds_numbers or count_columns(row))
 
 
 def count_columns(row: Sequence[str]) -> bool:

@@ -183,12 +183,9 @@ def _check_rows(path: Path, content: bytes, bad: Sequence[tuple[str, int]], head
         return
     text, columns = min(bad, key=lambda row: _find(lines, row[0]))
     line = _find(lines, text)
-    is_last = text.strip() == last[-1]
-    reason = (
-        "; the file is truncated or damaged: export it again"
-        if is_last
-        else f": {quote(text)}; correct or remove that line"
-    )
+    reason = f": {quote(text)}; correct or remove that line"
+    if text.strip() == last[-1]:
+        reason = "; the file is truncated or damaged: export it again"
     more = f" (and {len(bad) - 1} more lines)" if len(bad) > 1 else ""
     wanted = len(head.columns)
     raise InputError(f"{path}, line {line}: has {columns} columns where the others have {wanted}{more}{reason}")

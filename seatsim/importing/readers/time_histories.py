@@ -136,18 +136,16 @@ def _kept(table: Array, per_frame: int) -> tuple[int, tuple[str, ...]]:
     filled = per_frame - 1 - int(used[-1]) if len(used) else 0
     if not filled:
         return table.shape[1], ()
-    return table.shape[1] - filled, (
-        f"the last {filled} points of every channel are zero: they fill the last frame and are left out",
-    )
+    note = f"the last {filled} points of every channel are zero: they fill the last frame and are left out"
+    return table.shape[1] - filled, (note,)
 
 
 def _header(path: Path, content: bytes) -> dict[str, str]:
     header: dict[str, str] = {}
     for start in range(0, len(content) - _RECORD + 1, _RECORD):
         record = content[start : start + _RECORD]
-        key, value = (
-            part.split(b"\0")[0].decode("cp1252", "replace").strip() for part in (record[:_KEYWORD], record[_KEYWORD:])
-        )
+        parts = record[:_KEYWORD], record[_KEYWORD:]
+        key, value = (part.split(b"\0")[0].decode("cp1252", "replace").strip() for part in parts)
         if key:
             header[key] = value
         if start // _RECORD + 1 >= int(header.get("NUM_PARAMS", "3")):

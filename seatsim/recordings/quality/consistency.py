@@ -96,12 +96,8 @@ def _scales(run: RunUnderTest, channel: str, outputs: Table) -> Iterator[_DataFa
 
 def _is_near(run: RunUnderTest, outputs: Table) -> bool:
     """Return whether effects may change the outputs from what is simulated to the size that they have."""
-    sizes = {
-        c: float(np.std(run.table[c])) / max(float(np.std(values)), 1e-300)
-        for c, values in outputs.items()
-        if c in MOTION
-    }
-    return bool(sizes) and all(is_within_reach(channel, size) for channel, size in sizes.items())
+    spreads = {c: (float(np.std(run.table[c])), float(np.std(outputs[c]))) for c in outputs if c in MOTION}
+    return bool(spreads) and all(is_within_reach(c, seen / max(own, 1e-300)) for c, (seen, own) in spreads.items())
 
 
 def _scaled(channels: Sequence[str], factor: float) -> Callable[[Table], Table]:

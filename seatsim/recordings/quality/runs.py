@@ -41,11 +41,10 @@ def check_rows(run: RunUnderTest) -> Iterator[Issue]:
     if travel in run.table:
         steps = find_spikes(np.diff(run.table[travel]), _STEP)
         if len(steps):
-            text = (
-                f"steps at {steps[0] / run.rate:.4g} s (row {steps[0] + 1}), where no inertia lets it; rows were lost"
-            )
+            text = f"steps at {steps[0] / run.rate:.4g} s (row {steps[0] + 1}), where no inertia lets it"
             more = f", and in {len(steps) - 1} more places" * (len(steps) > 1)
-            yield run.issue("warning", "lost", f"{text} there{more}: cut the run there, or record anew", travel)
+            text += f"; rows were lost there{more}: cut the run there, or record anew"
+            yield run.issue("warning", "lost", text, travel)
 
 
 def _doubled(run: RunUnderTest) -> Iterator[Issue]:
@@ -96,9 +95,8 @@ def _check_stated(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
         and "current" not in stated
     ):
         text = "neither current_command nor coil_current is recorded, and the nominal scenario states no current"
-        yield issue_in_all_runs(
-            "warning", "current", f"{text}; 0 A is taken: write controller.current", "current_command"
-        )
+        text += "; 0 A is taken: write controller.current"
+        yield issue_in_all_runs("warning", "current", text, "current_command")
     command = [run.table.get("current_command", _NOTHING) for run in runs]
     flowing = [run.table.get("coil_current", _NOTHING) for run in runs]
     if (

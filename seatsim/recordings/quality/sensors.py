@@ -76,23 +76,17 @@ def check_constants(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     for channel, mean in runs[0].recording.removed.items():
         text = f"its mean of {mean:.4g} m/s^2 is gravity, which is taken out; the gap and the diagnosis are without it"
         yield issue_in_all_runs("note", "gravity", text, channel)
-    for channel in ACCELEROMETERS:
-        if channel in runs[0].table:
-            mean = float(np.mean(np.concatenate([run.table[channel] for run in runs])))
-            if abs(mean) > _OFFSET:
-                text = (
-                    f"its mean is {mean:.3g} m/s^2, an offset: a seat that stays where it is has no mean acceleration"
-                )
-                yield issue_in_all_runs("note", "offset", text, channel)
-    for channel in _ABOUT_ZERO:
-        if channel in runs[0].table:
-            values = np.concatenate([run.table[channel] for run in runs])
-            low, high = np.quantile(values, (0.01, 0.99))
-            mean, swing = float(np.mean(values)), 0.5 * float(high - low)
-            if abs(mean) > _DISPLACED * swing > 0.0:
-                unit = runs[0].recording.channels[channel].unit
-                text = f"its mean is {mean:.3g} {unit}, {abs(mean) / swing:.0%} of its swing; check the sensor's zero"
-                yield issue_in_all_runs("note", "offset", text, channel)
+    for channel in (name for name in (*ACCELEROMETERS, *_ABOUT_ZERO) if name in runs[0].table):
+        values, unit = np.concatenate([run.table[channel] for run in runs]), runs[0].recording.channels[channel].unit
+        low, high = np.quantile(values, (0.01, 0.99))
+        mean, swing = float(np.mean(values)), 0.5 * float(high - low)
+        text = f"its mean is {mean:.3g} {unit}"
+        if channel in ACCELEROMETERS and abs(mean) > _OFFSET:
+            said = f"{text}, an offset: a seat that stays where it is has no mean acceleration"
+            yield issue_in_all_runs("note", "offset", said, channel)
+        elif channel not in ACCELEROMETERS and abs(mean) > _DISPLACED * swing > 0.0:
+            said = f"{text}, {abs(mean) / swing:.0%} of its swing; check the sensor's zero"
+            yield issue_in_all_runs("note", "offset", said, channel)
 
 
 def check_noise(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
