@@ -159,7 +159,10 @@ def at_rest(frame):
     return frame.assign(**{c: (NOISE[c] * generator.standard_normal(len(frame))).round(7) for c in moving})
 
 
-SIGNS = words("frame_acceleration driver_acceleration suspension_displacement damper_force current_command")
+SIGNS = words("""
+    floor_acceleration frame_acceleration driver_acceleration suspension_displacement damper_force current_command
+    coil_current
+""")
 FAULTS = {f"sign of {c}": (scaled(c, -1.0), c, "sign is swapped") for c in SIGNS} | {
     "no rows": (lambda frame: frame.iloc[:0], None, "holds 0 rows"),
     "holes": (holed("frame_acceleration"), "frame_acceleration", "line 752, frame_acceleration: not a finite"),
@@ -175,6 +178,10 @@ FAULTS = {f"sign of {c}": (scaled(c, -1.0), c, "sign is swapped") for c in SIGNS
     "at rest": (at_rest, None, "nothing moves"),
     "driver in mm/s^2": (scaled("driver_acceleration", 1000.0), "driver_acceleration", "in mm/s^2"),
     "command in mA": (scaled("current_command", 1000.0), "current_command", "in mA"),
+    "travel in mm": (scaled("suspension_displacement", 1000.0), "suspension_displacement", "in mm"),
+    "travel in inch": (scaled("suspension_displacement", 1 / 0.0254), "suspension_displacement", "in inch"),
+    "floor in g": (scaled("floor_acceleration", 1 / G), "floor_acceleration", "in g"),
+    "force in kN": (scaled("damper_force", 1e-3), "damper_force", "in kN"),
     "accelerations upside down": (
         lambda f: f.assign(**{c: -f[c] for c in f if c.endswith("_acceleration")}),
         "driver_acceleration",

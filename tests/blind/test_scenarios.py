@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from seatsim.blind.make.compose import find_severity
 from seatsim.blind.sealed import BLOCKS, EFFECTS
 from seatsim.blind.truth.experiment import read_channels, simulate_run
 from seatsim.blind.truth.faults import SCENARIOS, Changes, scenarios_of
@@ -43,21 +42,6 @@ def test_every_form_moves_the_channels_as_it_always_did(bingham):
             )
     assert found and min(found.values()) > 1e-4
     assert found == pytest.approx({name: known[name] for name in found}, rel=1e-5)
-
-
-@pytest.mark.parametrize("name", ["friction-lugre", "gain-scale"])
-def test_a_drawn_severity_is_material(name):
-    _, context, runs = small_experiment()
-    scenario = SCENARIOS[name]
-    rng = np.random.default_rng(2)
-    shape = scenario.draw(rng, context)
-    found = find_severity(
-        lambda s: runs.materiality(scenario.build(s, shape, context), Changes())[0], scenario.span, rng
-    )
-    assert found is not None
-    severity, size = found
-    assert 1.0 <= size < 11.0
-    assert runs.materiality(scenario.build(severity, shape, context), Changes())[0] == pytest.approx(size)
 
 
 def test_a_shifted_log_counts_by_what_the_replay_misses():

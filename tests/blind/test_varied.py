@@ -14,7 +14,7 @@ from seatsim.blind.make.folder import encode_recording, recording_header, write_
 from seatsim.blind.make.materiality import CommandedRuns
 from seatsim.blind.sealed import KINDS
 from seatsim.blind.truth import excitation
-from seatsim.blind.truth.excitation import NoiseColour, colour_noise
+from seatsim.blind.truth.excitation import NoiseColour, colour_noise, coloured_noise
 from seatsim.blind.truth.experiment import CHANNELS, read_channels, simulate_run
 from seatsim.blind.truth.faults import Changes
 from seatsim.blind.truth.rig import EXCITATION_RATE, INTEGRATION_STEP
@@ -132,3 +132,18 @@ def test_a_varied_set_has_the_mix_of_kinds():
     orders = compose(100, "varied", np.random.default_rng(0))
     assert [sum(order.kind == kind for order in orders) for kind in KINDS] == [20, 40, 20, 20]
     assert all(order.varied for order in orders)
+
+
+def test_coloured_noise_has_unit_variance_and_its_slope():
+    noise = coloured_noise(np.random.default_rng(0), 200_000, 0.5, 200.0, -1.0, 500.0)
+    f, power = welch(noise, 500.0, nperseg=4096)
+    assert np.std(noise) == pytest.approx(1.0)
+    assert np.sqrt(power[f.searchsorted(4.0)] / power[f.searchsorted(16.0)]) == pytest.approx(4.0, rel=0.2)
+    assert power[f > 61.0].max() < 1e-6 * power.max()
+    half = coloured_noise(np.random.default_rng(0), 200_000, 0.5, 10.0, 0.0, 500.0)
+    f, power = welch(half, 500.0, nperseg=4096)
+    at = {
+        hertz: np.mean(power[f.searchsorted(hertz - 0.3) : f.searchsorted(hertz + 0.3)]) for hertz in (3.0, 10.0, 20.0)
+    }
+    assert at[10.0] / at[3.0] == pytest.approx(0.5, rel=0.3)
+    assert at[20.0] / at[3.0] == pytest.approx(1.0 / 257.0, rel=0.4)

@@ -3,19 +3,12 @@
 import json
 import math
 
-import numpy as np
 import pandas as pd
 import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from typer.testing import CliRunner
 
-from seatsim.characterisation.model_tests import DamperSpecimen, characterise_model, choose_settings, load_specimen
-from seatsim.characterisation.summary import characterise
+from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
 from seatsim.cli.app import app
-from seatsim.cli.outputs.damper_tables import make_characterisation_tables
-from seatsim.plots.bench.characterisation import plot_characterisation
-from seatsim.rig.coil import Coil
-from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.errors import InputError
 
 from ..text import words
@@ -126,30 +119,3 @@ def test_default_settings_keep_to_the_ranges_of_the_model():
         assert speed <= tested.specification.max_speed and max(chosen.currents) == tested.specification.max_current
     assert choose_settings(load_specimen("yu2019", None)).temperatures == [20.0, 50.0, 80.0]
     assert choose_settings(load_specimen("yu2019", None), frequencies="0.7").amplitudes == [0.0035, 0.007]
-
-
-def cases(record, sine):
-    motion, seconds = sine(0.01, 2.0)
-    switched = record(lambda t: 0.004 * np.sin(20 * t), 12.0, lambda t: np.where(t % 1 < 0.5, 0.0, 1.0), lag=(130.0,))
-    warm = [
-        record(motion, seconds, temperature=lambda t, base=base: base + t)._replace(name=f"a long name {base}")
-        for base in (20.0, 50.0)
-    ]
-    yield characterise([switched], "_switched $a$ b$")
-    yield characterise(warm, "warm")
-    yield characterise([record(lambda t: 0.0 * t, 2.0)], "still")
-    tested = DamperSpecimen(DAMPER, TemperatureFactors(viscous=-0.004), Coil(max_current=1.2))
-    yield characterise_model(tested, choose_settings(tested, "0,0.6,1.2", "20,80", "0.008", "0.5,0.7"))
-
-
-def test_pictures_are_labelled_and_inside_their_page(record, sine):
-    for found in cases(record, sine):
-        assert make_characterisation_tables(found)
-        for name, figure in plot_characterisation(found).items():
-            canvas = FigureCanvasAgg(figure)
-            canvas.draw()
-            width, height = canvas.get_width_height()
-            assert all(axes.get_xlabel().endswith("]") or not axes.lines for axes in figure.axes)
-            for part in [*figure.texts, *figure.legends, *figure.axes]:
-                box = part.get_tightbbox()
-                assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= width and box.y1 <= height, (found.name, name, part)

@@ -3,72 +3,18 @@
 import csv
 import inspect
 import math
-from dataclasses import dataclass
 from types import SimpleNamespace
 
 import pandas as pd
 import pytest
 
 from seatsim.cli.commands.recordings import diagnose as diagnose_command
-from seatsim.cli.outputs.simulated import Brackets
 from seatsim.cli.outputs.writing import write_diagnosis, write_outputs
 from seatsim.cli.show_table import format_number
 from seatsim.diagnosis.diagnose import BUDGET
-from seatsim.metrics.table import Metric
 from seatsim.plots.labels import shorten
-from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
 from seatsim.schema.yaml_source import Source
-from seatsim.simulation.performance_bounds import place_runs
-from seatsim.simulation.result import Result, Run
-
-from ..text import parse
-
-
-@dataclass(frozen=True)
-class Bounds:
-    """A bound that falls by 20 m/s^2 a metre, and a best run 0.1 m/s^2 above it."""
-
-    travel: float = 0.01
-
-    def bound(self, travel):
-        return 1.0 - 20.0 * travel
-
-    def best(self, travel):
-        return self.bound(travel) + 0.1
-
-
-def run(name, rig, acceleration=0.88, travel=0.01):
-    metrics = {
-        "driver_acceleration_weighted": Metric(acceleration, "m/s^2", "weighted"),
-        "suspension_displacement_rms": Metric(travel, "m", "travel"),
-    }
-    scenario = SimpleNamespace(name=name, rig=rig, label={"variant": "soft"})
-    return Run(scenario, SimpleNamespace(notes=["n"]), metrics, ("hot",))
-
-
-def test_each_rig_has_its_bounds_and_the_distances_of_its_runs():
-    result = Result([run("a", "one"), run("b", "two"), run("c", "one", 1.2)], {"one": Bounds()})
-    [found] = to_content(Brackets(place_runs(result)))["rigs"]
-    assert found["travel"] == 0.01
-    assert [each["scenario"] for each in found["runs"]] == ["a", "c"]
-    first = found["runs"][0]
-    assert list(first) == ["scenario", "label", "acceleration", "travel", "bound", "best", "above_bound", "above_best"]
-    assert (first["bound"], first["best"]) == pytest.approx((0.8, 0.9))
-    assert (first["above_bound"], first["above_best"]) == pytest.approx((0.1, 0.88 / 0.9 - 1))
-
-
-def test_a_summary_states_metrics_with_unit_and_meaning():
-    [found] = to_content(Result([run("a", "one")]))["runs"]
-    assert found == parse("""
-        scenario: a
-        label: {variant: soft}
-        warnings: [hot]
-        unverified: []
-        notes: [n]
-        metrics: {driver_acceleration_weighted: {value: 0.88, unit: m/s^2, meaning: weighted},
-            suspension_displacement_rms: {value: 0.01, unit: m, meaning: travel}}
-    """)
 
 
 @pytest.mark.parametrize("rows", [list, pd.DataFrame])

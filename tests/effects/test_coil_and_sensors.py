@@ -6,7 +6,7 @@ import pytest
 from seatsim.rig.coil import Coil, relax
 from seatsim.schema.registry import find
 
-from .rigs import record, shaken, starts
+from .rigs import record, shaken
 
 STEP = 0.001
 NOMINAL = Coil()
@@ -93,10 +93,3 @@ def test_a_held_command_moves_by_the_same_time_at_any_step():
     skew = record("sensor.clock_skew", shift=-0.0026, drift=2e-5, hold=STEP)
     fine = skew.truth("current_command", STEP / 4, np.repeat(command, 4))
     assert np.array_equal(fine[::4], skew.truth("current_command", STEP, command))
-
-
-def test_a_sensor_changes_no_motion(bingham):
-    effect = starts("sensor.gain")[0]._replace(channel="driver_acceleration")
-    with_it, without = shaken(bingham, effect), shaken(bingham)
-    assert with_it["driver_acceleration"] == pytest.approx(1.05 * without["driver_acceleration"])
-    assert np.array_equal(with_it["suspension_displacement"], without["suspension_displacement"])

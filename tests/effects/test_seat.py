@@ -30,14 +30,6 @@ def cushion(history, mass=DRIVER):
     return -mass * history["driver_acceleration"]
 
 
-def foam(scenario, history):
-    """The linear part of it, out of the cushion's motion."""
-    plant = scenario.plant
-    return plant.cushion_stiffness * history["cushion_displacement"] + (
-        plant.cushion_damping * history["cushion_velocity"]
-    )
-
-
 def linkage(scenario, history):
     """Force of the effects on the suspension in N, out of the balance of forces on the frame."""
     plant = scenario.plant
@@ -81,26 +73,6 @@ def test_a_body_of_its_own_has_no_energy_balance_and_is_not_marked_for_it(tmp_pa
     history = simulate(scenario, carry_all_effects=True)
     assert np.all(np.isnan(history["energy_floor"]))
     assert not any("energy" in reason for reason in list_reasons(scenario, history, measure_run(scenario, history)))
-
-
-def test_the_body_resonates_near_its_frequency(tmp_path):
-    """The apparent mass, force over acceleration at the seat, against that of a mass on a spring within a mass."""
-    share, natural, damping = 0.3, 5.0, 0.2
-    effect = record("driver.biodynamics", share=share, frequency=natural, damping=damping)
-    sizes = {}
-    for frequency in (2.0, 5.0, 12.0):
-        shaking = {"kind": "sine", "amplitude": 0.02 / frequency**2, "frequency": frequency, "duration": 4.0}
-        scenario = seat(tmp_path, LOOSE | {"plant.suspension_damping": 2000.0, "excitation": shaking})
-        history = shaken(scenario, effect)
-        turn = np.exp(-2j * np.pi * frequency * history["time"][-1000:])
-        force, acceleration = (
-            np.sum(values[-1000:] * turn) for values in (-foam(scenario, history), history["driver_acceleration"])
-        )
-        r = frequency / natural
-        through = (1 + 2j * damping * r) / (1 - r**2 + 2j * damping * r)
-        assert force / acceleration == pytest.approx(DRIVER * (1 - share + share * through), rel=5e-3)
-        sizes[frequency] = abs(force / acceleration)
-    assert sizes[5.0] > 1.15 * sizes[2.0] > sizes[12.0]
 
 
 def test_the_unmeasured_force_pushes_the_frame_and_no_channel_of_the_floor_shows_it(loose):

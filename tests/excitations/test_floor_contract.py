@@ -10,7 +10,7 @@ from seatsim.excitations.periodic import Chirp, Sine, SteppedSine
 from seatsim.excitations.road import Road
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import adapter, describe
-from seatsim.schema.registry import name_of, specification_of
+from seatsim.schema.registry import find, names, specification_of
 
 from ..part_space import check
 
@@ -75,10 +75,10 @@ def test_too_coarse_a_step_is_refused_with_the_permitted_one(made):
         made.floor(0.5, 3)
 
 
-@pytest.mark.parametrize("cls", dict.fromkeys(m[0] for m in MAPPINGS), ids=lambda c: c.__name__)
-def test_every_key_is_described_and_registered(cls):
+@pytest.mark.parametrize("name", sorted(set(names("excitation")) - {"recording"}))
+def test_every_key_is_described(name):
+    cls = find("excitation", name)
     assert all(specification.meaning for specification in describe(cls))
-    assert name_of("excitation", cls) in {"road", "iso7096", "sine", "stepped_sine", "chirp", "bumps"}
     assert isinstance(specification_of(cls).source, str)
 
 

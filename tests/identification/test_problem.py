@@ -8,8 +8,8 @@ import pytest
 
 from seatsim.identification.damper_record import find_model
 from seatsim.identification.prediction import BenchModel, predict_force
-from seatsim.identification.problem import compute_jacobian, find_origin, state_problem
-from seatsim.identification.search import refine, search_globally
+from seatsim.identification.problem import find_origin, state_problem
+from seatsim.identification.search import search_globally
 from seatsim.identification.settings import IdentificationSettings as Settings
 from seatsim.rig.temperature import TemperatureFactors
 
@@ -58,39 +58,6 @@ def test_a_bench_comes_back_from_its_vector_with_coil_and_temperature():
     """)
     low, high = problem.bounds
     assert high[-6] == pytest.approx(math.log(30.0)) and low[-4] == pytest.approx(-3.0) and high[-1] == math.inf
-
-
-def test_what_stands_at_a_bound_is_named():
-    problem, _ = stated([made(current=1.0)])
-    vector = problem.coordinates.to_vector(BINGHAM)
-    low, high = problem.bounds
-    at = problem.labels.index("fc_b")
-    assert problem.labels_at_bounds(vector) == []
-    for end in (low[at] + 5e-4, high[at] - 5e-4):
-        vector[at] = end
-        assert problem.labels_at_bounds(vector) == ["fc_b"]
-
-
-def test_the_jacobian_is_that_of_central_differences(executor):
-    problem, _ = stated(sines(BINGHAM))
-    fine = problem._replace(tolerance=1e-9)
-    vector = problem.coordinates.to_vector(BINGHAM)
-    found = compute_jacobian(fine, vector, fine.residuals(vector), executor, 1e-5)
-    for k, unit in enumerate(np.eye(len(vector))):
-        central = (fine.residuals(vector + 1e-4 * unit) - fine.residuals(vector - 1e-4 * unit)) / 2e-4
-        np.testing.assert_allclose(found[:, k], central, atol=1e-4 * np.max(np.abs(central)))
-
-
-def test_least_squares_find_what_ordinary_least_squares_do(executor):
-    record = made(noise=0.05, seconds=3.0, rate=300.0)
-    problem, _ = stated([record])
-    start = problem.coordinates.to_vector(problem.coordinates.start)
-    found = refine(problem, start, executor)
-    columns = np.column_stack([record.velocity, np.tanh(record.velocity / BINGHAM.v_ref), np.ones(len(record.force))])
-    expected, squares, *_ = np.linalg.lstsq(columns, record.force, rcond=None)
-    damper = problem.to_bench(found.vector).damper
-    assert (damper.c_a, damper.fc_a, damper.f0) == pytest.approx(tuple(expected), rel=1e-3)
-    assert found.cost == pytest.approx(squares[0] / len(record.force) / np.var(record.force), rel=1e-6)
 
 
 def test_the_global_search_comes_closer_and_repeats_itself(executor):

@@ -3,11 +3,8 @@
 import math
 from typing import NamedTuple
 
-import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
-from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.kernel.generic import AssumedModel, follow_state, model_scaling, model_state
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 
@@ -44,17 +41,3 @@ def test_motion_runs_along_straight_lines_between_samples():
     quartic = [length * (b**4 - a**4) / (4.0 * (b - a)) for a, b in ((x0, x1), (v0, v1))]
     expected = (1.0 + quartic[0], 2.0 + quartic[1], 3.0 + length * (0.6 + 0.7))
     assert found == pytest.approx(expected, rel=1e-13)
-
-
-def test_the_state_of_a_bouc_wen_damper_is_followed():
-    d, z, step = BoucWen(), (0.0,), 1e-3
-    time = step * np.arange(201)
-    x, v = 0.01 * np.sin(20.0 * time), 0.2 * np.cos(20.0 * time)
-    for k in range(200):
-        z = follow_state(d, z, x[k], v[k], x[k + 1], v[k + 1], 0.5, NONE, step)
-
-    def rates(t, s):
-        return d.rates(0.01 * np.sin(20.0 * t), 0.2 * np.cos(20.0 * t), 0.5, NONE, tuple(s))
-
-    exact = solve_ivp(rates, (0.0, time[-1]), [0.0], rtol=1e-10, atol=1e-12).y[:, -1]
-    assert z == pytest.approx(exact, rel=1e-3)

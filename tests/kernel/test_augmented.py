@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import pytest
 
-from seatsim.kernel.augmented import SETTLING, AugmentedDamper, _piston_speed, classes_of
+from seatsim.kernel.augmented import AugmentedDamper, classes_of
 from seatsim.rig.temperature import TemperatureScaling
 
 from .uncompiled import Hysteretic, Linear, Yielding, plugged
@@ -71,22 +71,6 @@ class Late(NamedTuple):
         return (target - z[0],)
 
 
-@plugged("mount", initial=(0.001,))
-class Mount(NamedTuple):
-    """An elastic mount whose state is its elongation."""
-
-    stiffness: float = 1e5
-
-    def mount_force(self, force, z):
-        return self.stiffness * z[0]
-
-    def mount_stiffness(self, z):
-        return self.stiffness
-
-    def rates(self, x, v, u, i, demanded, target, z):
-        return (v - u,)
-
-
 def force(*effects, damper=DAMPER, v=V, z=()):
     return AugmentedDamper(damper, effects).force(X, v, AMPS, WARM, z)
 
@@ -135,23 +119,6 @@ def test_a_yield_part_with_a_shape_of_its_own():
     assert force(Late(), damper=damper, z=(0.3,)) == pytest.approx(expected, rel=1e-9)
     assert rates(Late(), damper=damper, z=(0.3,)) == pytest.approx((target - 0.3,), rel=1e-9)
     assert limit(Late(), damper=damper, z=(0.3,)) == 0.0
-
-
-@pytest.mark.parametrize("elongation", [0.0, 0.001, -0.002, 0.004])
-@pytest.mark.parametrize("v", [0.02, -0.3])
-def test_behind_a_mount_the_damper_bears_the_mounts_force(elongation, v):
-    effects, z = (Mount(),), (elongation,)
-    assert force(*effects, v=v, z=z) == pytest.approx(1e5 * elongation, rel=1e-12)
-    own = AugmentedDamper(DAMPER, ()).force(X, v, AMPS, WARM, ())
-    u = _piston_speed(DAMPER, effects, X, v, AMPS, WARM, (), z, own)
-    borne = 400.0 * 0.9 * u + 0.7 * 350.0 * math.tanh(u / 0.01) + (u - v) * 1e5 / SETTLING
-    assert borne == pytest.approx(1e5 * elongation, abs=0.011)
-    assert rates(*effects, v=v, z=z) == pytest.approx((v - u,), rel=1e-12)
-
-
-def test_a_gap_without_mount_moves_the_piston_by_its_share():
-    assert _piston_speed(DAMPER, (Half(),), X, V, AMPS, WARM, (), (), 7.0) == pytest.approx(0.5 * V)
-    assert _piston_speed(DAMPER, (Half(),), X, V, AMPS, WARM, (), (), -7.0) == pytest.approx(0.25 * V)
 
 
 def test_a_loop_is_compiled_of_the_damper_and_its_effects():

@@ -6,8 +6,15 @@ import numba
 import numpy as np
 import pytest
 
-from seatsim.kernel import hooks
-from seatsim.kernel.hooks import effect_state, fold_hook, join_hook, leading_state, state_at_rest, sum_hook
+from seatsim.kernel.hooks import (
+    effect_state,
+    fold_hook,
+    join_hook,
+    leading_state,
+    record_class,
+    state_at_rest,
+    sum_hook,
+)
 
 from .uncompiled import plugged
 
@@ -83,11 +90,10 @@ def test_the_state_is_parted_at_the_effects():
     assert leading_state(EFFECTS, z) == (0.1, 0.2)
     assert effect_state(EFFECTS, z) == Z
     assert (leading_state((), z), effect_state((), z)) == (z, ())
-    kinds = numba.typeof(EFFECTS)
-    assert hooks._leading_state(kinds, z)(EFFECTS, z) == (0.1, 0.2)
-    assert hooks._effect_state(kinds, z)(EFFECTS, z) == Z
 
 
 def test_what_is_no_tuple_of_records_is_refused():
     with pytest.raises(numba.TypingError):
         compiled_hooks(np.zeros(2), Z)
+    with pytest.raises(TypeError, match="takes records"):
+        record_class(numba.typeof((1.0, 2.0)))

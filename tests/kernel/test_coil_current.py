@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatsim.kernel.bench import follow_command, simulate_current
+from seatsim.kernel.bench import follow_command
 from seatsim.rig.coil import Coil
 
 STEP = 2e-3
@@ -16,12 +16,6 @@ def test_a_delay_of_whole_steps_moves_the_rows(rows):
     late = follow_command(COIL._replace(delay=rows * STEP), command, STEP, 0.4)
     assert late[: rows + 1].tolist() == [0.4] * (rows + 1)
     assert late[rows:].tolist() == follow_command(COIL, command, STEP, 0.4)[:-rows].tolist()
-
-
-def test_compiled_it_is_the_same():
-    command = np.random.default_rng(2).uniform(0.0, 1.0, 50)
-    found = simulate_current(COIL, command, STEP, 0.4)
-    assert found == pytest.approx(follow_command(COIL, command, STEP, 0.4), rel=1e-13)
 
 
 @pytest.mark.parametrize("quarters", [1, 3, 5, 10])

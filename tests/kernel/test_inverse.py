@@ -3,16 +3,13 @@
 import numpy as np
 import pytest
 
-from controllers.laws.static_output_feedback import OutputFeedback
 from seatsim.dampers.bingham import Bingham
 from seatsim.dampers.bouc_wen import BoucWen, ModifiedBoucWen
-from seatsim.kernel.generic import AssumedModel
 from seatsim.kernel.inverse import CELLS, invert, total_force
-from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
+from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.registry import specification_of
 
 from .dampers import Bump, Parabola, Steep, Wavy
-from .rigs import rms, rough, run
 
 HEAT = TemperatureScaling(0.9, 1.0, 0.8)
 TOP = 1.2
@@ -113,14 +110,6 @@ def test_a_small_curvature_is_kept_however_large_the_force_that_does_not_depend_
     for current in (0.2, 0.6, 1.0):
         wanted = total_force(damper, 0.0, 0.1, current, HEAT, ())
         assert ask(damper, wanted, 0.0, 0.1, ()).current == pytest.approx(current, abs=1e-8)
-
-
-def test_an_assumed_model_that_is_true_asks_for_the_same_current():
-    floor, law = rough(2.0, rms=1.5), OutputFeedback(2.0, 2147.6)
-    knows = run(BoucWen(), law, floor, every=5)
-    assumes = run(BoucWen(), law, floor, every=5, model=AssumedModel(BoucWen(), 1, TemperatureFactors(), np.nan))
-    assert rms(assumes["coil_current"] - knows["coil_current"]) < 0.01 * rms(knows["coil_current"])
-    assert rms(assumes["damper_force"] - knows["damper_force"]) < 1e-3 * rms(knows["damper_force"])
 
 
 def test_beyond_the_current_from_which_the_force_stays_the_same_the_least_is_taken():

@@ -2,15 +2,14 @@
 
 from typing import NamedTuple
 
-import numpy as np
 import pytest
 
-from seatsim.kernel.rig import STICKING, Disturbance, Rig, _friction, derivative
-from seatsim.rig.plant import Plant, state_space
+from seatsim.kernel.rig import Disturbance, Rig, derivative
+from seatsim.rig.plant import Plant
 from seatsim.rig.state import CUSHION_WORK, DAMPER_WORK, FLOOR_WORK, MECHANICAL, SUSPENSION_WORK
 from seatsim.rig.temperature import TemperatureScaling
 
-from .uncompiled import Hysteretic, Linear, plugged
+from .uncompiled import Linear, plugged
 
 PLANT = Plant(20.0, 80.0, 4600.0, 150.0, 60000.0, 1500.0, damper_ratio=0.7)
 HOT = TemperatureScaling(0.8, 0.9, 0.7)
@@ -41,33 +40,6 @@ class SeatEffect(NamedTuple):
 
     def rates(self, plant, motion, z):
         return (motion.driver - motion.frame + motion.xc + motion.vc + motion.x + motion.v,)
-
-
-def test_without_effects_it_is_the_linear_seat():
-    rates, forces = derivative(Rig(PLANT, Linear()), STATE, Disturbance(1.3, 0.0, 0.0), 0.5, HOT, 0.0)
-    force = 950.0 * 0.8 * 0.7 * STATE[1] + 900.0 * 0.7 * STATE[0]
-    s = state_space(PLANT)
-    expected = s.A @ STATE[:4] + s.B1[:, 0] * 1.3 + s.B2[:, 0] * force
-    assert rates[:4] == pytest.approx(expected, rel=1e-12)
-    assert forces == pytest.approx((force, 0.0, 0.0), rel=1e-12)
-
-
-def test_forces_from_outside_push_upward():
-    pushed, still = (
-        derivative(Rig(PLANT, Linear()), STATE, d, 0.5, HOT, 0.0)[0]
-        for d in (Disturbance(1.3, 25.0, -40.0), Disturbance(1.3, 0.0, 0.0))
-    )
-    change = np.subtract(pushed, still)
-    frame, driver = 25.0 / 20.0, -40.0 / 80.0
-    assert change[:4] == pytest.approx((0.0, frame, 0.0, driver - frame), rel=1e-12)
-
-
-def test_the_damper_moves_by_its_ratio_and_keeps_its_state():
-    state = (*STATE, 0.5, -0.2)
-    rates, forces = derivative(Rig(PLANT, Hysteretic()), state, DISTURBANCE, 0.4, HOT, 0.0)
-    x, v = 0.7 * STATE[0], 0.7 * STATE[1]
-    assert rates[MECHANICAL:] == pytest.approx((50.0 * (v - 0.5), x), rel=1e-12)
-    assert forces.damper_force == pytest.approx(300.0 * 0.8 * v + 2000.0 * 0.4 * 0.7 * 0.5 - 20.0, rel=1e-12)
 
 
 def test_effects_add_to_the_seat():
@@ -113,23 +85,3 @@ def test_supplied_less_dissipated_power_is_the_rate_of_the_energy_stored():
     assert rates[DAMPER_WORK] == pytest.approx((950.0 * 0.8 * 0.7 * v + 60.0 * 0.7) * 0.7 * v, rel=1e-12)
     assert rates[SUSPENSION_WORK] == pytest.approx(150.0 * v * v, rel=1e-12)
     assert rates[CUSHION_WORK] == pytest.approx(1500.0 * vc * vc, rel=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("free", "v", "slip", "limit", "friction", "acceleration"),
-    [
-        (3.0, 0.0, STICKING, 1.0, 60.0, 0.0),
-        (3.0, 0.2, 0.0, 0.0, 0.0, 3.0),
-        (3.0, 0.2, 1.0, -1.0, 0.0, 3.0),
-        (3.0, 0.0, 0.0, 60.0, 60.0, 0.0),
-        (-3.0, 0.0, 0.0, 60.0, -60.0, 0.0),
-        (3.0, 0.0, 0.0, 40.0, 40.0, 1.0),
-        (-3.0, 0.0, 0.0, 40.0, -40.0, -1.0),
-        (3.0, -0.2, 0.0, 40.0, -40.0, 5.0),
-        (3.0, 0.2, 0.0, 40.0, 40.0, 1.0),
-        (3.0, 0.2, -1.0, 40.0, -40.0, 5.0),
-        (3.0, -0.2, 1.0, 40.0, 40.0, 1.0),
-    ],
-)
-def test_friction_holds_or_opposes(free, v, slip, limit, friction, acceleration):
-    assert _friction(free, v, slip, limit, 20.0) == pytest.approx((friction, acceleration), abs=1e-12)

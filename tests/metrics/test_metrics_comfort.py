@@ -4,8 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from seatsim.metrics.comfort import (
     crest_factor,
@@ -19,7 +17,7 @@ from seatsim.metrics.comfort import (
     vdv,
     weighted_rms,
 )
-from seatsim.metrics.weighting import frequency_response, weight
+from seatsim.metrics.weighting import frequency_response
 from seatsim.schema.errors import InputError
 
 RATE = 1000.0
@@ -35,13 +33,6 @@ def test_weighted_rms_of_a_sine_is_the_weighted_amplitude(conform):
     expected = 2 * 1.039 / math.sqrt(2)
     claim = "a_w of a sine of 5 Hz and 2 m/s^2, m/s^2"
     conform(claim, "ISO 2631-1:1997, table 3: 1.039", found, expected, tolerance=1e-3 * expected)
-
-
-def test_weighted_rms_of_noise_agrees_with_the_integrated_spectrum():
-    noise = np.random.default_rng(1).normal(size=200_000)
-    grid = (np.arange(50_000) + 0.5) * RATE / 2 / 50_000
-    expected = math.sqrt(np.mean(np.abs(frequency_response(grid)) ** 2))
-    assert weighted_rms(noise, RATE) == pytest.approx(expected, rel=0.02)
 
 
 def test_vdv_of_a_sine(conform):
@@ -100,12 +91,6 @@ def test_ratios_at_rest_are_not_numbers():
     assert math.isnan(dose(still, RATE).vdv_ratio)
 
 
-def test_seat_factor_of_a_rigid_and_of_a_halving_seat():
-    floor = np.random.default_rng(3).normal(size=20_000)
-    assert seat_factor(floor, floor, RATE) == 1.0
-    assert seat_factor(-0.5 * floor, floor, RATE) == pytest.approx(0.5)
-
-
 def test_seat_factor_weighs_what_the_seat_adds():
     floor, added = sine(1.0, 1.0, 200), sine(1.0, 6.0, 200)
     expected = math.hypot(abs(frequency_response(1.0)), abs(frequency_response(6.0))) / abs(frequency_response(1.0))
@@ -142,20 +127,3 @@ def test_dose_of_a_sine(conform):
 def test_refuses_nonsense(call):
     with pytest.raises(InputError):
         call()
-
-
-@settings(derandomize=True, deadline=None, max_examples=25)
-@given(st.floats(1e-6, 1e6), st.integers(0, 2**32 - 1))
-def test_scaling_and_bounds(factor, seed):
-    x = np.random.default_rng(seed).standard_t(3, size=1500)
-    small, large = dose(x, RATE), dose(-factor * x, RATE)
-    amplitudes = ("rms", "vdv", "estimated_vdv", "mtvv")
-    assert [getattr(large, a) for a in amplitudes] == pytest.approx([factor * getattr(small, a) for a in amplitudes])
-    ratios = ("crest_factor", "mtvv_ratio", "vdv_ratio")
-    assert [getattr(large, r) for r in ratios] == pytest.approx([getattr(small, r) for r in ratios])
-    assert small.vdv_ratio >= 1 <= small.crest_factor
-
-
-def test_weighting_then_dose_fits_together():
-    x = sine(1.0, 8.0, 60)
-    assert dose(weight(x, RATE), RATE).rms == weighted_rms(x, RATE)

@@ -3,14 +3,9 @@
 import dataclasses
 import shutil
 
-import numpy as np
 import pytest
 
 import seatsim
-from seatsim.diagnosis.candidates import list_candidates
-from seatsim.diagnosis.design.separability import project, stack_jacobian, stack_whitened
-from seatsim.diagnosis.noise import weigh_noise
-from seatsim.diagnosis.objective import Objective, Parameters
 from seatsim.recordings.gap import measure_gap
 from seatsim.recordings.quality.examination import examine
 from seatsim.recordings.recording import load_recording
@@ -97,27 +92,6 @@ def test_a_fit_simulates_each_run_as_it_was_set(heavier):
     tolerances = {each.key: each.tolerance / each.nominal for each in problem.parameters if each.nominal}
     assert tolerances["plant.frame_mass"] == pytest.approx(problem.settings.fit.fitted_tolerance)
     assert tolerances["plant.driver_mass"] == pytest.approx(0.1)
-
-
-def show_mass(folder):
-    """Return how much 4 kg on the driver change the outputs beyond what refitted parameters do, in noise units."""
-    problem = pose(folder)
-    objective = Objective(problem, weigh_noise(problem))
-    light = Parameters(problem.nominal)
-    term = next(each for each in list_candidates(problem) if each.effect == "driver.mass")
-    nominal, heavy = objective.evaluate([light, light.add(term, np.array([4.0]))])
-    change = stack_whitened(objective, heavy.whitened) - stack_whitened(objective, nominal.whitened)
-    jacobian = stack_jacobian(objective, objective.linearise_nuisances(nominal))
-    return np.linalg.norm(project(change[None], jacobian, np.full(len(jacobian), 0.58)))
-
-
-def test_added_mass_makes_the_drivers_mass_separable(kept_seat_file, tmp_path):
-    found = []
-    for mass in (80.0, 110.0):
-        variants = {"a": {}, "b": {"plant.driver_mass": mass, "seed": 3}}
-        result = seatsim.run(kept_seat_file, {"variants": variants, "solver": {"step": 0.005}})
-        found.append(show_mass(save_recording(result, tmp_path / f"{mass:g}", CHANNELS, "fitted")))
-    assert found[1] > 1.5 * found[0]
 
 
 def test_runs_of_different_dampers_are_no_recording(kept_seat_file, tmp_path):

@@ -6,7 +6,6 @@ import numpy as np
 import pandas as pd
 import pytest
 
-import seatsim
 from seatsim.recordings.recording import join_recordings, load_recording
 from seatsim.schema.errors import InputError
 from seatsim.schema.units import STANDARD_GRAVITY
@@ -40,11 +39,6 @@ def test_tables_and_noise_are_converted_on_reading(in_other_units, sound):
     entry = found.channels["driver_acceleration"]
     assert entry.unit == "m/s^2"
     assert entry.noise_rms == pytest.approx(0.01 * STANDARD_GRAVITY)
-
-
-def test_the_gap_is_the_same_in_any_unit(in_other_units, sound, sound_gap):
-    found = seatsim.gap(sound / "nominal.yaml", in_other_units).overall
-    assert found == pytest.approx(sound_gap.overall, rel=1e-6, abs=1e-9)
 
 
 def test_recordings_in_other_units_are_not_joined(in_other_units, sound):

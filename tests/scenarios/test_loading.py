@@ -1,6 +1,5 @@
 """Scenario files: variants, sweeps, settings, examples, a user's own classes."""
 
-import numpy as np
 import pytest
 
 import seatsim
@@ -43,14 +42,6 @@ def test_whole_numbers_and_exponents_are_numbers(seat_file):
     assert isinstance(run.plant.driver_mass, float)
     seat_file.write_text(seat_file.read_text() + "solver: {step: 1e-3}\n")
     assert load(seat_file)[0].solver.step == 1e-3
-
-
-def test_a_result_gives_channels_with_units_and_a_table(seat_file):
-    result = seatsim.run(seat_file)
-    acceleration = result["driver_acceleration"]
-    assert (acceleration.unit, acceleration.name, acceleration.shape) == ("m/s^2", "driver_acceleration", (6001,))
-    assert result.table.driver_acceleration_rms[0] == pytest.approx(float(np.sqrt(np.mean(acceleration**2))))
-    assert acceleration[100:].unit == "m/s^2" and (2 * acceleration).unit == ""
 
 
 def test_merged_keys_and_aliases_are_read(seat_file):

@@ -84,20 +84,6 @@ def test_readings_are_made_in_order_and_undone_in_the_opposite_one():
     assert both["coil_current"] == pytest.approx(values + 1.0)
 
 
-@pytest.mark.parametrize("name", ["sensor.gain", "sensor.bias", "sensor.lag"])
-def test_what_a_registered_sensor_effect_says_is_undone(name):
-    time = 0.002 * np.arange(2000)
-    true = np.sin(2 * np.pi * time)
-    error = {"sensor.gain": "error", "sensor.bias": "share", "sensor.lag": "time"}[name]
-    wrong = effect(name, channel="damper_force", **{error: 0.02})
-    said = read_sensors([wrong], 0.002, {"damper_force": true, "frame_acceleration": true})
-    assert np.max(np.abs(said["damper_force"] - true)) > 0.015
-    assert undo_reading([wrong], said["damper_force"], "damper_force", 0.002)[5:-5] == pytest.approx(
-        true[5:-5], abs=1e-3
-    )
-    assert np.array_equal(said["frame_acceleration"], true)
-
-
 ALL_ON_DAMPER = {find("effect", name) for name in names("effect") if acts_on(find("effect", name), ON_DAMPER)}
 ALL_ON_SEAT = {find("effect", name) for name in names("effect") if acts_on(find("effect", name), ON_SEAT)}
 

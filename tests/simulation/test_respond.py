@@ -106,18 +106,6 @@ def test_what_sensors_say_is_what_effects_make_of_it(seat, inputs):
     assert halved["driver_acceleration"] == pytest.approx(0.5 * true["driver_acceleration"], abs=1e-6)
 
 
-@pytest.fixture(scope="module")
-def hysteretic(sound):
-    """A seat with a Bouc-Wen damper: the loop that carries all effects is compiled for it in other tests too."""
-    return single(sound / "nominal.yaml")
-
-
-def test_carrying_all_effects_changes_no_number(hysteretic, inputs):
-    bare, carried = respond(hysteretic, inputs), respond(hysteretic, inputs, carry_all_effects=True)
-    for name in SEAT_OUTPUTS:
-        assert carried[name] == pytest.approx(bare[name], abs=1e-9 * np.max(np.abs(bare[name])))
-
-
 @pytest.fixture
 def bench(seat):
     return replace(seat, plant=None, control=None)
@@ -163,12 +151,6 @@ def test_a_command_voltage_counts_with_its_gain_and_a_command_before_it(bench):
     assert respond(bench, both)["coil_current"][-1] == pytest.approx(0.1, rel=1e-9)
     too_much = respond(bench, MOVED._replace(current_command=np.full(1500, 3.0)))["coil_current"]
     assert too_much[-1] == pytest.approx(1.0, rel=1e-9)
-
-
-def test_a_bench_has_no_part_for_effects_of_the_seat(bench):
-    for name in ("suspension.friction", "driver.mass", "floor.unmeasured_input"):
-        with pytest.raises(InputError, match=f"no part on which {name} acts"):
-            respond(replace(bench, effects=(off(find("effect", name)),)), MOVED)
 
 
 def test_a_bench_cannot_be_shaken_as_a_seat(bench, inputs):

@@ -27,7 +27,10 @@ def problem():
 
 @pytest.fixture(scope="session")
 def dense(problem):
-    """Return H, h, the constant, and G: criterion F H F + 2 h F + constant, damper velocity G F + w0."""
+    """The same in all forces at once.
+
+    Return H, h, the constant, and G: criterion F H F + 2 h F + constant, damper velocity G F + w0.
+    """
     t, n = problem.transcription, problem.intervals
     states = np.zeros((n, len(t.A), n))
     for k in range(1, n):

@@ -9,9 +9,7 @@ import seatsim
 from controllers.clairvoyant import clairvoyant
 from controllers.clairvoyant.bound import find_lower_bound
 from controllers.clairvoyant.feasible import find_best_run
-from controllers.clairvoyant.problem import HeldForceProblem
 from controllers.clairvoyant.recursion import ForceBand
-from controllers.clairvoyant.transcription import transcribe
 from seatsim.metrics.comfort import weighted_rms
 from seatsim.schema.errors import InputError
 from seatsim.simulation.inputs import Forces
@@ -23,8 +21,6 @@ LAWS = {
     "soft": {"controller": {"law": "constant", "current": 0.0}},
     "hard": {"controller": {"law": "constant", "current": 1.0}},
 }
-BAND = ForceBand(c=250.0, f=45.0, b=600.0, a=665.0)
-WEIGHT = 30.0**2
 
 
 @pytest.fixture(scope="module")
@@ -34,25 +30,7 @@ def scenarios(kept_seat_file):
 
 @pytest.fixture(scope="module")
 def bracket(scenarios):
-    return clairvoyant(scenarios[0], [WEIGHT])
-
-
-def posed(scenario, duration=0.4, weight=WEIGHT):
-    floor = scenario.excitation.floor(0.001, scenario.seed).acceleration[500 : 501 + round(1000 * duration)]
-    return HeldForceProblem(transcribe(scenario.plant, floor, 0.001, 5, (0.0, 0.0)), weight)
-
-
-def dense(problem):
-    """The problem in all forces at once: velocities G F + w0, criterion F H F + 2 h F + free."""
-    t, n = problem.transcription, problem.intervals
-    states = np.zeros((n, len(t.A), n))
-    for k in range(1, n):
-        states[k] = t.A @ states[k - 1]
-        states[k, :, k - 1] += t.B
-    y = np.concatenate([states, np.eye(n)[:, None, :]], axis=1)
-    p = problem.stage_matrices
-    H, h = np.einsum("kif,ij,kjg->fg", y, p.Q, y), np.einsum("kif,ki->f", y, p.q)
-    return H, h, t.acceleration.free + problem.weight * t.travel.free, np.einsum("i,kif->kf", p.V, y)
+    return clairvoyant(scenarios[0], [30.0**2])
 
 
 def test_bound_lies_below_every_law_and_below_the_run(scenarios, bracket):
@@ -66,7 +44,7 @@ def test_bound_lies_below_every_law_and_below_the_run(scenarios, bracket):
         assert aw > bracket.bound(x)
 
 
-def test_run_is_what_the_simulation_makes_of_its_force(scenarios, bracket):
+def test_run_is_what_the_simulation_makes_of_its_force(scenarios, bracket, band):
     scenario = scenarios[0]
     weak = scenario.damper.record._replace(c_a=0.0, c_b=0.0, alpha_a=0.0, alpha_b=0.0)
     free = dataclasses.replace(scenario, damper=dataclasses.replace(scenario.damper, record=weak))
@@ -80,15 +58,14 @@ def test_run_is_what_the_simulation_makes_of_its_force(scenarios, bracket):
     assert np.sqrt(np.mean(history["suspension_displacement"] ** 2)) == pytest.approx(bracket.travel[0], rel=5e-3)
     w = np.diff(history["suspension_displacement"][::5]) / 0.005
     F, size = bracket.force[0], np.abs(w)
-    assert np.min(F * w - BAND.c * w**2 - BAND.f * size) > -0.02 * np.max(F * w)
-    assert np.max(np.abs(F) - BAND.a - BAND.b * size) < 5.0
+    assert np.min(F * w - band.c * w**2 - band.f * size) > -0.02 * np.max(F * w)
+    assert np.max(np.abs(F) - band.a - band.b * size) < 5.0
 
 
-def test_both_ends_meet_where_the_damper_has_no_choice(scenarios):
+def test_both_ends_meet_where_the_damper_has_no_choice(problem, dense):
     """A band about F = c w leaves a dashpot, whose criterion follows from a linear system."""
-    problem = posed(scenarios[0], 0.5)
     band = ForceBand(c=800.0, f=0.0, b=800.0, a=4.0)
-    H, h, free, G = dense(problem)
+    H, h, free, G = dense
     F = np.linalg.solve(np.eye(problem.intervals) - band.c * G, band.c * problem.transcription.free_velocity)
     dashpot = free + F @ H @ F + 2 * h @ F
     run = find_best_run(problem, band)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from controllers.clairvoyant.feasible import find_best_run
-from controllers.clairvoyant.recursion import ForceBand
 
 
 def constant_laws(problem):
@@ -33,13 +32,6 @@ def test_no_small_change_of_a_free_force_improves_it(problem, band):
             moved = gain.copy()
             moved[k, -1] += size
             assert problem.simulate(band, moved).cost > run.cost * (1 - 1e-6)
-
-
-def test_a_band_with_no_choice_is_a_dashpot(problem, dense):
-    band = ForceBand(c=800.0, f=0.0, b=800.0, a=4.0)
-    H, h, free, G = dense
-    F = np.linalg.solve(np.eye(problem.intervals) - 800.0 * G, 800.0 * problem.transcription.free_velocity)
-    assert find_best_run(problem, band).cost == pytest.approx(free + F @ H @ F + 2 * h @ F, rel=0.05)
 
 
 def test_a_start_is_used_and_never_made_worse(problem, band):

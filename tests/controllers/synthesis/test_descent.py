@@ -5,7 +5,7 @@ import time
 import numpy as np
 import pytest
 
-from controllers.synthesis.descent import Descent, StabilisingGain, explore, improve, refine
+from controllers.synthesis.descent import Descent, StabilisingGain, explore, improve
 from controllers.synthesis.objective import NormObjective
 from controllers.synthesis.plant import GeneralisedPlant
 from controllers.synthesis.starts import StartingGain
@@ -57,19 +57,6 @@ def test_two_explorations_join():
     assert not joint.agrees
     assert Descent(candidates(1.0, 1.001), 0.0, 2).agrees
     assert not Descent(candidates(1.0, 1.001), 0.0, 3).agrees
-
-
-def test_refining_is_not_content_with_the_first_of_two_valleys(random_plant):
-    plant = random_plant(1, n=3)
-    problem = objective(plant, 20.0)
-    random = np.random.default_rng(0)
-    gains = [StartingGain(random.standard_normal((2, 2)), np.ones((2, 2))) for _ in range(4)]
-    found = explore(problem, gains, later())
-    gammas = [candidate.gamma for candidate in found.candidates]
-    assert gammas == sorted(gammas) and gammas[0] < gammas[-1]
-    best = refine(problem, found.candidates, later())
-    assert best.gamma <= found.candidates[0].gamma
-    assert best.gamma == problem.norm(best.entries)
 
 
 def test_improving_looks_about_the_best_and_never_loses_it():

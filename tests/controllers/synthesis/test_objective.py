@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from controllers.synthesis.norm import hinf_norm
 from controllers.synthesis.objective import NormObjective
 from controllers.synthesis.plant import GeneralisedPlant
 from controllers.synthesis.scaling import scale
@@ -52,28 +51,6 @@ def test_angles_undo_entries_and_stay_within_limits(seat):
     np.testing.assert_allclose(objective.entries(objective.angles(np.array([1e9, -5.0]))), [49.97, 0.015])
     # For small gains about the centre an angle is the entry.
     assert objective.entries(objective.angles(np.array([20.01, 15.0])))[0] == pytest.approx(20.01)
-
-
-def test_the_worst_plant_counts(random_plant):
-    plants = [stable(random_plant(seed)) for seed in (0, 1, 2)]
-    objective, entries = objective_of(*plants), 0.01 * np.ones(4)
-    norms = [hinf_norm(plant.close(0.01 * np.ones((2, 2)))).value for plant in plants]
-    assert objective.norm(entries) == pytest.approx(max(norms), rel=1e-9)
-    assert objective.log_norm(objective.angles(entries))[0] == pytest.approx(np.log(max(norms)), rel=1e-8)
-    one = objective.on(plants[:1])
-    assert one.norm(entries) == pytest.approx(norms[0], rel=1e-9)
-    np.testing.assert_array_equal(one.high, objective.high)
-
-
-def test_above_the_ceiling_there_is_no_gradient(random_plant):
-    objective = objective_of(stable(random_plant(0)))
-    theta = np.zeros(4)
-    value, slope = objective.log_norm(theta, np.inf)
-    above, none = objective.log_norm(theta, value - 1.0)
-    assert above > value - 1.0 and not none.any() and slope.any()
-    value, slope = objective.abscissa(theta)
-    above, none = objective.abscissa(theta, value - 0.1)
-    assert above == value and not none.any() and slope.any()
 
 
 def test_unstable_and_silent_loops(random_plant):

@@ -4,11 +4,13 @@ import control
 import numpy as np
 import pytest
 
+from controllers import synthesise
 from controllers.synthesis.norm import frequency_response
 from controllers.synthesis.plant import GeneralisedPlant, Loop
 from seatsim.schema.errors import InputError
 
 GAIN = np.array([[0.4, -0.2], [0.3, 0.1]])
+NAMES = ("A", "B1", "B2", "C1", "C2", "D11", "D12", "D21")
 
 
 def test_a_gain_closes_the_loop_that_the_equations_give(random_plant):
@@ -44,7 +46,7 @@ def test_a_state_space_is_split(random_plant):
     D = np.block([[p.D11, p.D12], [p.D21, np.zeros((2, 2))]])
     system = control.ss(p.A, np.hstack([p.B1, p.B2]), np.vstack([p.C1, p.C2]), D)
     q = GeneralisedPlant.from_state_space(system, 2, 3, [[1, 1], [0, 1]])
-    for name in ("A", "B1", "B2", "C1", "C2", "D11", "D12", "D21"):
+    for name in NAMES:
         np.testing.assert_array_equal(getattr(q, name), getattr(p, name))
     np.testing.assert_array_equal(q.free, [[True, True], [False, True]])
     for split, words in (((4, 3), "4 disturbance inputs of 4"), ((2, 0), "0 performance outputs of 5")):
@@ -56,20 +58,33 @@ def test_a_state_space_is_split(random_plant):
         GeneralisedPlant.from_state_space(control.ss(p.A, system.B, system.C, D + 1), 2, 3)
 
 
-def test_matrices_are_checked_and_cannot_be_changed(random_plant):
+@pytest.mark.parametrize(
+    ("name", "value", "words"),
+    [
+        ("A", np.ones((4, 3)), r"A has shape \(4, 3\)"),
+        ("B2", np.ones((3, 1)), r"B2 has shape \(3, 1\), wanted is \(4, 1\)"),
+        ("C2", [1.0, 0.0, 0.0, 0.0], r"C2 has shape \(4,\)"),
+        ("D21", np.zeros((2, 2)), r"D21 has shape \(2, 2\), wanted is \(2, 1\)"),
+        ("B1", [[0], [np.nan], [0], [0]], r"B1\[1, 0\] is nan"),
+        ("C1", [["a", 1, 2, 3]], "C1 is not a matrix of real numbers"),
+        ("A", 1j * np.eye(4), "A is complex"),
+        ("D11", None, "the plant lacks D11"),
+        ("B1", np.zeros((4, 0)), r"B1 has shape \(4, 0\)"),
+    ],
+)
+def test_wrong_matrices_are_named(seat, name, value, words):
+    with pytest.raises(InputError, match=words):
+        synthesise(**{each: getattr(seat(30.0), each) for each in NAMES} | {name: value})
+
+
+def test_every_matrix_is_checked_and_none_can_be_changed(random_plant):
     p = random_plant(0)
-    parts = [p.A, p.B1, p.B2, p.C1, p.C2, p.D11, p.D12, p.D21]
-    names = ("A", "B1", "B2", "C1", "C2", "D11", "D12", "D21")
-    for place, name in enumerate(names):
-        wrong = [np.hstack([part, part]) if k == place else part for k, part in enumerate(parts)]
-        with pytest.raises(InputError, match="wanted is"):
-            GeneralisedPlant.from_matrices(wrong)
-        wrong = [np.full(part.shape, np.inf) if k == place else part for k, part in enumerate(parts)]
-        with pytest.raises(InputError, match=rf"{name}\[0, 0\] is inf"):
-            GeneralisedPlant.from_matrices(wrong)
-    made = GeneralisedPlant.from_matrices([part.tolist() for part in parts])
+    parts = {name: getattr(p, name) for name in NAMES}
+    for name, part in parts.items():
+        for wrong, said in ((np.hstack([part, part]), "wanted is"), (np.inf * part, rf"{name}\[0, 0\] is -?inf")):
+            with pytest.raises(InputError, match=said):
+                GeneralisedPlant.from_matrices(list((parts | {name: wrong}).values()))
+    made = GeneralisedPlant.from_matrices([part.tolist() for part in parts.values()])
     np.testing.assert_array_equal(made.D21, p.D21)
     with pytest.raises(ValueError, match="read-only"):
         made.A[0, 0] = 0.0
-    with pytest.raises(InputError, match="complex"):
-        GeneralisedPlant.from_matrices([1j * p.A, *parts[1:]])

@@ -34,15 +34,6 @@ def test_columns_rows_rates_and_both_ends_are_of_one_size(scaled):
     assert np.abs(off).max() < 20
 
 
-def test_a_plant_may_be_scaled_like_another(seat, scaled):
-    light = scale(seat(30.0, m=40.0), like=scaled)
-    assert light.rate == scaled.rate
-    np.testing.assert_array_equal(light.controls, scaled.controls)
-    np.testing.assert_array_equal(light.measured, scaled.measured)
-    own = hinf_norm(seat(30.0, m=40.0).close(GAIN))
-    assert hinf_norm(light.plant.close(scaled.scaled_gain(GAIN))).value == pytest.approx(own.value, rel=1e-12)
-
-
 @pytest.mark.parametrize("seed", range(3))
 def test_the_coordinates_do_not_depend_on_the_units_of_disturbance_performance_and_time(random_plant, seed):
     p, far = random_plant(seed), 2.0**20

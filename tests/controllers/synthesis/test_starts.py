@@ -18,21 +18,6 @@ def test_the_same_seed_gives_the_same_starts_within_the_structure(random_plant):
     assert not np.any(np.array(first)[:, 0, 0, 1])
 
 
-def test_no_gain_then_state_feedback_then_gains_over_decades(random_plant):
-    plants = [random_plant(0), random_plant(1)]
-    starts = list(islice(generate_starting_gains(plants, UNIT, 1), 15))
-    np.testing.assert_array_equal(starts[0], [np.zeros((2, 2)), UNIT])
-    for start, plant in zip(starts[1:3], plants, strict=True):
-        np.testing.assert_array_equal(start, [project_state_feedback(plant), np.ones((2, 2))])
-    for k, (own, scaled) in enumerate([(1.0, 1.0), (10.0, 100.0), (0.1, 10.0), (100.0, 1000.0)]):
-        user, plain, wide = starts[3 + 3 * k : 6 + 3 * k]
-        np.testing.assert_array_equal(user.unit, own * UNIT)
-        np.testing.assert_array_equal(plain.unit, scaled * np.ones((2, 2)))
-        size = wide.unit / (1.0, 8.0)[k % 2]
-        assert np.all((size >= 10**-1.5) & (size <= 10**1.5)) and len(np.unique(size)) == 4
-        np.testing.assert_array_equal(np.abs(wide.gain), wide.unit)
-
-
 def test_state_feedback_is_that_of_the_riccati_equation_where_the_state_is_measured(random_plant):
     plant = random_plant(1, n=3, ny=3)
     P = solve_continuous_are(plant.A, plant.B2, np.eye(3), np.eye(2))

@@ -4,10 +4,22 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from seatsim.diagnosis.fit import fit, solve_step
+from seatsim.diagnosis.fit import fit, search_pattern, solve_step
 from seatsim.diagnosis.settings import DiagnosisSettings
 
-from .toy import Cubed, Edge, add_up, draw_signals, make_problem, offer, offer_two, place, stack, weigh_stated
+from .toy import (
+    Cubed,
+    Edge,
+    add_up,
+    draw_signals,
+    make_problem,
+    offer,
+    offer_two,
+    place,
+    pose_tones,
+    stack,
+    weigh_stated,
+)
 
 NAMES = ["nominal", "nuisance 0", "nuisance 1", "a.one", "a.one beside", "b.two"]
 PAIR = offer_two("a.one", (-2.0, 0.5), (-9.0, -9.0), (9.0, 9.0))
@@ -116,3 +128,17 @@ def test_a_component_beyond_its_bound_by_rounding_stays_where_it_is():
     beyond = np.array([-1.0 - 1e-10, 1.0 + 1e-10])
     step = solve_step(matrix, right, 0, beyond, -np.ones(2), np.ones(2), 1.0)
     np.testing.assert_array_equal(step, 0.0)
+
+
+def test_a_pattern_search_ends_within_its_smallest_step_of_the_minimum_and_evaluates_no_point_twice():
+    objective = pose_tones({"a.one": (0.3, 0.1)}, (0.01, 0.01), {"run": 200}, ["a.one"])
+    # The true amount is 1.
+    start = objective.evaluate([place(objective.problem, (offer("a.one"), 0.3))])[0]
+    found = search_pattern(objective, start)
+    # The simulation of the start is the first of them.
+    amounts = [round(effect.amount, 9) for _, _, (effect,) in objective.problem.calls]
+    assert len(amounts) == len(set(amounts)) > 5
+    smallest = objective.settings.fit.pattern_steps[-1] * float(offer("a.one").scale[0])
+    assert found.parameters.values[-1][0] == pytest.approx(1.0, abs=smallest)
+    assert found.cost < start.cost and np.array_equal(found.parameters.deviations, start.parameters.deviations)
+    assert search_pattern(objective, found) is found

@@ -1,9 +1,9 @@
-"""Smoothed spectra against plain loops, responses against known ones, and Wiener's filter against its formula."""
+"""Smoothed spectra against plain loops, and signals of random phases."""
 
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.spectra import as_complex, estimate_response, randomise_phases, smooth_spectrum, wiener_share
+from seatsim.diagnosis.spectra import randomise_phases, smooth_spectrum
 
 
 def averaged(power, half_width):
@@ -19,25 +19,6 @@ def averaged(power, half_width):
 def test_a_smoothed_spectrum_is_the_mean_over_a_relative_band(half_width):
     power = np.random.default_rng(0).exponential(size=(2, 90))
     np.testing.assert_allclose(smooth_spectrum(power, half_width), averaged(power, half_width), rtol=1e-10)
-
-
-def test_a_response_is_found_with_its_sign_and_phase():
-    rng = np.random.default_rng(3)
-    cause = rng.standard_normal(400) + 1j * rng.standard_normal(400)
-    responses = np.array([[2.0 - 1.0j], [-0.5j]])
-    found = estimate_response(responses * cause, cause, 0.15)
-    np.testing.assert_allclose(found, np.broadcast_to(responses, found.shape), rtol=1e-9)
-
-
-def test_whitened_numbers_are_real_parts_and_then_imaginary_ones():
-    whitened = np.arange(12.0).reshape(2, 6)
-    expected = np.array([[0 + 3j, 1 + 4j, 2 + 5j], [6 + 9j, 7 + 10j, 8 + 11j]])
-    np.testing.assert_array_equal(as_complex(whitened), expected)
-
-
-def test_wieners_share_is_signal_over_signal_and_noise():
-    # Whitened noise has the power 2, of real and imaginary part; a signal of the power 6 is then 3/4 of both.
-    np.testing.assert_allclose(wiener_share(np.array([8.0, 4.0, 2.0, 1.0])), [0.75, 0.5, 0.0, 0.0])
 
 
 @pytest.mark.parametrize("samples", [100, 101])

@@ -1,9 +1,9 @@
-"""Separability of rigs whose distances are worked out by hand."""
+"""Separability and likeness of rigs, from distances that are worked out by hand."""
 
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.design.separability import PredictedExperiment, measure_separability
+from seatsim.diagnosis.design.separability import PredictedExperiment, measure_likeness, measure_separability
 
 NONE = np.zeros((0, 2))
 
@@ -38,3 +38,18 @@ def test_the_nearest_pair_counts():
     old = predict([[0.0, 0.0]] * 3)
     new = predict([[0.0, 0.0], [3.0, 4.0], [3.0, 6.0]])
     assert measure_separability(old, new, 1.0, 1.0) == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize(
+    ("vectors", "likeness"),
+    [
+        ([[3.0, 0.0], [0.0, 4.0]], 1.0 / 26.0),
+        ([[3.0, 0.0], [3.0, 0.0]], 1.0),
+        ([[3.0, 0.0], [-3.0, 0.0]], 1.0),
+        ([[10.0, 0.0], [2.0, 0.0]], 41.0 / 105.0),
+        ([[0.1, 0.0], [0.0, 0.1]], 1.0 / 1.02),
+        ([[5.0, 0.0, 0.0], [0.0, 5.0, 0.0], [3.0, 4.0, 0.0]], (2.0 * 20.0 + 1.0) / 51.0),
+    ],
+)
+def test_likeness_is_that_of_the_most_alike_pair(vectors, likeness):
+    assert measure_likeness(np.array(vectors)) == pytest.approx(likeness)

@@ -23,25 +23,6 @@ def test_a_sound_run_contradicts_nothing(run):
 
 
 @pytest.mark.parametrize(
-    ("channel", "factor", "kind", "words"),
-    [
-        ("damper_force", -1.0, "sign", "its sign is swapped"),
-        ("floor_acceleration", -1.0, "sign", "its sign is swapped"),
-        ("coil_current", -1.0, "sign", "its sign is swapped"),
-        ("suspension_displacement", 1000.0, "unit", "in mm"),
-        ("suspension_displacement", 1 / 0.0254, "unit", "in inch"),
-        ("frame_acceleration", 1000.0, "unit", "in mm/s^2"),
-        ("floor_acceleration", 1 / 9.81, "unit", "in g"),
-        ("damper_force", 1e-3, "unit", "in kN"),
-    ],
-)
-def test_a_wrong_scale_is_named(run, channel, factor, kind, words):
-    (issue,) = check_consistency(with_channel(run, **{channel: factor * run.table[channel]}))
-    assert (issue.severity, issue.kind, issue.channel, issue.run) == ("error", kind, channel, "run-1")
-    assert words in issue.sentence
-
-
-@pytest.mark.parametrize(
     ("channel", "seconds", "severity", "words"),
     [
         ("coil_current", 0.16, "warning", "is 0.16 s late"),
