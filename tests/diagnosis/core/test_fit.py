@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from seatsim.diagnosis.fit import fit, search_pattern, solve_step
+from seatsim.diagnosis.fit import fit, list_directions, search_pattern, solve_step
 from seatsim.diagnosis.settings import DiagnosisSettings
 
 from .toy import (
@@ -128,6 +128,13 @@ def test_a_component_beyond_its_bound_by_rounding_stays_where_it_is():
     beyond = np.array([-1.0 - 1e-10, 1.0 + 1e-10])
     step = solve_step(matrix, right, 0, beyond, -np.ones(2), np.ones(2), 1.0)
     np.testing.assert_array_equal(step, 0.0)
+
+
+@pytest.mark.parametrize(("count", "directions"), [(1, 2), (2, 8), (3, 18)])
+def test_a_pattern_search_goes_along_one_parameter_or_two(count, directions):
+    found = list_directions(count)
+    assert found.shape == (directions, count) and len({tuple(each) for each in found}) == directions
+    assert np.all(np.isin(np.count_nonzero(found, axis=1), (1, 2)))
 
 
 def test_a_pattern_search_ends_within_its_smallest_step_of_the_minimum_and_evaluates_no_point_twice():

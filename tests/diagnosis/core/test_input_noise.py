@@ -6,13 +6,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from seatsim.diagnosis.noise import carry_input_noise, weigh_noise
+from seatsim.diagnosis.noise import _draw_floor, carry_input_noise, weigh_noise
 from seatsim.diagnosis.problem import pose_problem
 from seatsim.recordings.recording import load_recording
 from seatsim.simulation.inputs import BenchInputs
 from seatsim.simulation.respond import respond
 
 from ..builders import SerialExecutor
+from .toy import add_up, draw_signals, make_problem
 
 RATE, ROWS, NOISE = 200.0, 1500, 2e-5
 TIME = np.arange(ROWS) / RATE
@@ -87,3 +88,14 @@ def test_the_weights_of_a_bench_count_it(tmp_path):
     power = 2.0 / weights**2
     assert np.all(power >= samples * 1.0**2 * (1.0 - 1e-9))
     assert np.max(power) > 1.5 * samples * 1.0**2
+
+
+def test_noise_of_the_floor_is_drawn_at_the_rows_and_runs_straight_between():
+    signals = draw_signals(["nominal"], {"a": 2000})
+    problem = make_problem(signals, add_up(signals, {}), floor_noise=0.3)
+    drawn = _draw_floor(problem, problem.inputs["a"], np.random.default_rng(1)).floor.acceleration
+    drawn = drawn - problem.inputs["a"].floor.acceleration
+    rows = drawn[:: problem.parts]
+    assert np.std(rows) == pytest.approx(0.3, rel=0.1) and abs(np.mean(rows)) < 0.03
+    assert np.ptp(np.abs(rows)) > 0.6
+    np.testing.assert_allclose(drawn[1:-1:2], 0.5 * (drawn[:-2:2] + drawn[2::2]))

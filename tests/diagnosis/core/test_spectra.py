@@ -1,9 +1,9 @@
-"""Smoothed spectra against plain loops, and signals of random phases."""
+"""Smoothed spectra against plain loops, Wiener's filter against its formula, and signals of random phases."""
 
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.spectra import randomise_phases, smooth_spectrum
+from seatsim.diagnosis.spectra import randomise_phases, smooth_spectrum, wiener_share
 
 
 def averaged(power, half_width):
@@ -19,6 +19,11 @@ def averaged(power, half_width):
 def test_a_smoothed_spectrum_is_the_mean_over_a_relative_band(half_width):
     power = np.random.default_rng(0).exponential(size=(2, 90))
     np.testing.assert_allclose(smooth_spectrum(power, half_width), averaged(power, half_width), rtol=1e-10)
+
+
+def test_wieners_share_is_signal_over_signal_and_noise():
+    # Whitened noise has the power 2, of real and imaginary part; a signal of the power 6 is then 3/4 of both.
+    np.testing.assert_allclose(wiener_share(np.array([8.0, 4.0, 2.0, 1.0])), [0.75, 0.5, 0.0, 0.0])
 
 
 @pytest.mark.parametrize("samples", [100, 101])

@@ -1,14 +1,79 @@
-"""Fault hypotheses: the block that a planted fault lies in, and what is said of it."""
+"""Fault hypotheses: the evidence against the dense Gaussian formula, and the block that a planted fault lies in."""
 
 import dataclasses
 
 import numpy as np
 import pytest
+from scipy.optimize import lsq_linear
 
+from seatsim.diagnosis.localise import localisation
+from seatsim.diagnosis.localise.input_estimate import InputEstimate
 from seatsim.diagnosis.localise.localisation import evaluate_hypotheses
 from seatsim.diagnosis.localise.reconstruction import PORTS
+from seatsim.diagnosis.objective import Evaluation, Linearisation, Parameters
 
 from .toy import CHANNELS, SKIP, evaluate_nominal, plant, pose, record, slow_signal, weigh_stated
+
+PRIOR = 0.58
+SIZES = {"a": (2, 3), "b": (2, 4)}
+"""Channels and frequencies of two tiny runs."""
+
+
+def draw_tiny(rng, nuisances):
+    """Return random estimates by run and a linearisation about a rig that is off by some deviations."""
+    estimates, jacobian = {}, {}
+    for run, (channels, bins) in SIZES.items():
+        response = rng.standard_normal((channels, bins)) + 1j * rng.standard_normal((channels, bins))
+        residuals = rng.standard_normal((channels, 2 * bins))
+        estimates[run] = InputEstimate(residuals, response, rng.uniform(0.1, 3.0, bins), np.zeros(1))
+        jacobian[run] = rng.standard_normal((nuisances, residuals.size))
+    rig = Parameters(rng.uniform(-0.5, 0.5, nuisances))
+    return estimates, Linearisation(Evaluation(rig, {}, {}, 0.0), jacobian)
+
+
+def stack_dense(estimates, nuisances):
+    """Return residuals, Jacobian and covariance of all real and imaginary parts, frequency by frequency."""
+    parts, columns, blocks = [], [], []
+    for run, (residuals, response, power, _) in estimates.items():
+        channels, bins = response.shape
+        jacobian = nuisances.jacobian[run].reshape(-1, channels, 2 * bins)
+        for f in range(bins):
+            outer = np.eye(channels) + np.outer(response[:, f], response[:, f].conj()) * power[f] / 2.0
+            blocks.append(np.block([[outer.real, -outer.imag], [outer.imag, outer.real]]))
+            parts.append(np.concatenate([residuals[:, f], residuals[:, bins + f]]))
+            columns.append(np.concatenate([jacobian[:, :, f], jacobian[:, :, bins + f]], axis=1))
+    covariance = np.zeros([sum(len(block) for block in blocks)] * 2)
+    at = 0
+    for block in blocks:
+        covariance[at : at + len(block), at : at + len(block)] = block
+        at += len(block)
+    return np.concatenate(parts), np.concatenate(columns, axis=1), covariance
+
+
+@pytest.mark.parametrize("nuisances", [0, 1, 3])
+def test_the_evidence_is_that_of_the_dense_gaussian(folder, nuisances):
+    objective, rng = weigh_stated(pose(record(folder))), np.random.default_rng(nuisances)
+    for _ in range(5):
+        estimates, linearisation = draw_tiny(rng, nuisances)
+        # Residuals that deviations beyond their bounds would explain best.
+        shift = 2.0 * rng.standard_normal(nuisances)
+        for run, estimate in estimates.items():
+            more = (shift @ linearisation.jacobian[run]).reshape(estimate.residuals.shape)
+            estimates[run] = estimate._replace(residuals=estimate.residuals + more)
+        residuals, jacobian, covariance = stack_dense(estimates, linearisation)
+        now = linearisation.evaluation.parameters.deviations
+        inverse = np.linalg.inv(covariance)
+        shift = np.zeros(nuisances)
+        if nuisances:
+            root = np.linalg.cholesky(inverse).T
+            rows = np.vstack([root @ jacobian.T, np.eye(nuisances) / PRIOR])
+            target = np.concatenate([root @ residuals, -now / PRIOR])
+            shift = lsq_linear(rows, target, (-1.0 - now, 1.0 - now), tol=1e-14).x
+        left = residuals - shift @ jacobian
+        expected = (left @ inverse @ left + np.linalg.slogdet(covariance)[1]) / len(residuals) - 1.0
+        found = localisation._negative_log_evidence(objective, linearisation, estimates)
+        assert found == pytest.approx(expected, abs=1e-5)
+
 
 RUNS = {"first": 400, "second": 300}
 

@@ -1,4 +1,4 @@
-"""Estimates of unknown inputs against signals that were planted."""
+"""Estimates of unknown inputs against signals that were planted, and against their formulas."""
 
 import dataclasses
 
@@ -9,8 +9,10 @@ from seatsim.diagnosis.localise.input_estimate import (
     estimate_current,
     estimate_input,
     estimate_nonrepeatable_force,
+    respond_to_error,
 )
 from seatsim.diagnosis.localise.reconstruction import PORTS, Port, reconstruct
+from seatsim.diagnosis.spectra import measure_power
 
 from .toy import CHANNELS, RATE, SKIP, evaluate_nominal, place, plant, pose, record, slow_signal, weigh_stated
 
@@ -64,6 +66,14 @@ def test_a_current_is_what_was_logged_beyond_that_of_the_simulated_coil(folder):
     nominal = evaluate_nominal(objective)
     found = estimate_current(objective, nominal, "first")
     assert np.std(found.signal - logged) < 0.1 * np.std(logged)
+    weights, half = objective.weights.weights["first"], objective.weights.bins["first"]
+    row = nominal.whitened["first"][4]
+    error = row[:half] + 1j * row[half:]
+    expected = np.zeros(SAMPLES // 2 + 1, dtype=complex)
+    expected[:half] = error / weights[4] * np.maximum(0.0, 1.0 - 2.0 / measure_power(error, 0.15))
+    assert np.allclose(found.signal, np.fft.irfft(expected, SAMPLES))
+    assert found.power == pytest.approx(measure_power(error / weights[4], 0.15))
+    assert np.array_equal(found.response, respond_to_error(weights, 4))
     # What the logged current does not explain of the other channels stays, and the log itself is what is explained.
     rig = reconstruct(objective, place(objective.problem), "first", Port(current=1.0))
     assert np.allclose(found.residuals[:4], rig.whiten_residuals(rig.simulate_with(found.signal))[:4])
