@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import pytest
 
-from seatsim.kernel.augmented import AugmentedDamper, classes_of
+from seatsim.kernel.augmented import SETTLING, AugmentedDamper, classes_of
 from seatsim.rig.temperature import TemperatureScaling
 
 from .uncompiled import Hysteretic, Linear, Yielding, plugged
@@ -71,6 +71,22 @@ class Late(NamedTuple):
         return (target - z[0],)
 
 
+@plugged("mount", initial=(0.001,))
+class Mount(NamedTuple):
+    """An elastic mount whose state is its elongation."""
+
+    stiffness: float = 1e5
+
+    def mount_force(self, force, z):
+        return self.stiffness * z[0]
+
+    def mount_stiffness(self, z):
+        return self.stiffness
+
+    def rates(self, x, v, u, i, demanded, target, z):
+        return (v - u,)
+
+
 def force(*effects, damper=DAMPER, v=V, z=()):
     return AugmentedDamper(damper, effects).force(X, v, AMPS, WARM, z)
 
@@ -119,6 +135,16 @@ def test_a_yield_part_with_a_shape_of_its_own():
     assert force(Late(), damper=damper, z=(0.3,)) == pytest.approx(expected, rel=1e-9)
     assert rates(Late(), damper=damper, z=(0.3,)) == pytest.approx((target - 0.3,), rel=1e-9)
     assert limit(Late(), damper=damper, z=(0.3,)) == 0.0
+
+
+@pytest.mark.parametrize("elongation", [0.0, -0.002])
+@pytest.mark.parametrize("v", [0.02, -0.3])
+def test_behind_a_mount_the_damper_bears_the_mounts_force(elongation, v):
+    assert force(Mount(), v=v, z=(elongation,)) == pytest.approx(1e5 * elongation, rel=1e-12)
+    (widening,) = rates(Mount(), v=v, z=(elongation,))
+    u = v - widening
+    borne = 400.0 * 0.9 * u + 0.7 * 350.0 * math.tanh(u / 0.01) - widening * 1e5 / SETTLING
+    assert borne == pytest.approx(1e5 * elongation, abs=0.011)
 
 
 def test_a_loop_is_compiled_of_the_damper_and_its_effects():
