@@ -24,6 +24,15 @@ def test_doubles_are_taken_as_they_are():
         np.testing.assert_array_equal(ExactMatrix.of(matrix).rounded(), matrix)
 
 
+def test_sums_products_and_transposes_do_not_round():
+    a, b, x, y = ExactMatrix.of(A), ExactMatrix.of(B), fractions(A), fractions(B)
+    np.testing.assert_array_equal(value(a @ b), x @ y)
+    np.testing.assert_array_equal(value(a + b), x + y)
+    np.testing.assert_array_equal(value(b - a), y - x)
+    np.testing.assert_array_equal(value(a.T), x.T)
+    np.testing.assert_array_equal(((a @ a) - (a @ a) + b).rounded(), B)
+
+
 def test_the_nearest_double_is_returned():
     third = ExactMatrix(np.array([[2**80 // 3]], dtype=object), 80)
     assert third.rounded()[0, 0] == 1 / 3
