@@ -1,13 +1,19 @@
-"""The tables of a bench day, as records: forces, gas and friction, hysteresis, energy, fade, responses, limits."""
+"""The tables of a bench day, as records: forces, gas and friction, hysteresis, energy, fade, responses, limits.
+
+Limits that a damper has to keep are on figures of these tables.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
 from typing import Annotated, NamedTuple, get_args, get_type_hints
 
 from seatsim.schema.content import Form
 from seatsim.schema.fields import param
+from seatsim.schema.validation import check_keys, mapping, read_number
+from seatsim.schema.yaml_source import Source
 
 _Current = Annotated[float, param("A", "current")]
 _Warmth = Annotated[float, param("degC", "temperature of the damper")]
@@ -190,3 +196,60 @@ def list_tables(sheet: BenchSheet) -> dict[str, tuple[type, Sequence[object]]]:
     """Return the class of the rows and the rows of each table, by its name."""
     hints = get_type_hints(BenchSheet, include_extras=True)
     return {name: (get_args(hints[name])[0], getattr(sheet, name)) for name in BenchSheet._fields}
+
+
+_TIMES = ("start", "t10", "t63", "t90", "settling", "recovery", "overshoot", "dip", "current_overshoot")
+_FIGURES = {
+    "rebound": ("peak_forces", "rebound"),
+    "compression": ("peak_forces", "compression"),
+    "spread": ("peak_forces", "spread"),
+    "gas_force": ("gas_force", "force"),
+    "friction": ("friction", "force"),
+    "dynamic_range": ("dynamic_range", "both"),
+    "hysteresis": ("hysteresis", "width"),
+    "energy": ("energy", "energy"),
+    "current_hysteresis": ("current_hysteresis", "width"),
+    "fade": ("fade", "per_kelvin"),
+    "fade_by_energy": ("fade", "per_kilojoule"),
+}
+"""Table and column of each figure that may have a limit, beside the times of responses."""
+
+
+def check_limits(sheet: BenchSheet, file: Path) -> list[LimitCheck]:
+    """Return each limit of a file, `limits: {t90_up: {max: 0.025}}`, with the worst value of its figure.
+
+    A figure is one of `_FIGURES`, or one of the response times with `_up` or `_down`, for steps to a larger or to a
+    smaller current. A figure that the tables do not hold fails.
+
+    Raises:
+        InputError: the file holds no limits, or one of them is on no such figure or no number.
+    """
+    source = Source(file)
+    check_keys(source.data, ("limits",), source, ())
+    figures, stated = _list_figures(sheet), mapping(source.data.get("limits"), source, ("limits",))
+    check_keys(stated, figures, source, ("limits",))
+    found = []
+    for name, bounds in stated.items():
+        keys = ("limits", name)
+        limits = mapping(bounds, source, keys)
+        check_keys(limits, ("min", "max"), source, keys)
+        for bound, value in limits.items():
+            limit = read_number(value, source, (*keys, bound))
+            worst = (max if bound == "max" else min)(figures[name], default=math.nan)
+            found.append(LimitCheck(name, worst, limit, bound, worst <= limit if bound == "max" else worst >= limit))
+    return found
+
+
+def _list_figures(sheet: BenchSheet) -> Mapping[str, list[float]]:
+    """Return the values of every figure that may have a limit."""
+    found = {name: _list_column(getattr(sheet, table), column) for name, (table, column) in _FIGURES.items()}
+    for name in _TIMES:
+        for way, sign in (("up", 1.0), ("down", -1.0)):
+            rows = [each for each in sheet.response if sign * (each.after - each.before) > 0.0]
+            found[f"{name}_{way}"] = _list_column(rows, name)
+    return found
+
+
+def _list_column(rows: Iterable[object], column: str) -> list[float]:
+    """Return the values of a column that are known."""
+    return [value for row in rows if math.isfinite(value := getattr(row, column))]

@@ -19,12 +19,10 @@ from typer.core import TyperCommand, TyperGroup
 from seatsim.cli.commands.blind import blind
 from seatsim.cli.commands.dampers import characterise, identify
 from seatsim.cli.commands.files import check, describe, new, reproduce, schema
-from seatsim.cli.commands.recordings import diagnose, gap, import_data, inspect_data
-from seatsim.cli.commands.runs import compare, run
+from seatsim.cli.commands.recordings import comfort, diagnose, gap, import_data, inspect_data, seat_test
+from seatsim.cli.commands.runs import compare, run, sweep, sweep_report
 from seatsim.cli.commands.scenarios import explore, export, synthesise
-from seatsim.cli.commands.standards import comfort, seat_test
-from seatsim.cli.commands.sweeps import sweep, sweep_report
-from seatsim.cli.options import with_help
+from seatsim.cli.options import with_options
 from seatsim.cli.terminal import answer_as_json, answer_error, fail, print_any_letter, refuse, say, warn
 from seatsim.compilation.messages import explain, is_compilation
 from seatsim.schema.errors import InputError, SeatsimError
@@ -96,10 +94,15 @@ _GROUPS: tuple[tuple[Callable[..., None], ...], ...] = (
     (comfort, seat_test, export),
     (new, check, schema, explore, reproduce),
 )
+_REPORTED = (run, compare, sweep_report, gap, diagnose, characterise, identify, comfort, seat_test)
+"""Commands that write a report."""
+_WITHOUT_CODE = (sweep, sweep_report, comfort, new, reproduce)
+"""Commands that run none of the user's own code, or take more than note of it."""
 for command in chain.from_iterable(_GROUPS):
-    app.command(cls=_Command)(with_help(command))
-app.command("import", cls=_Command)(with_help(import_data))
-app.command("inspect")(with_help(inspect_data))
+    common = ["own_code"] * (command not in _WITHOUT_CODE) + ["pdf"] * (command in _REPORTED)
+    app.command(cls=_Command)(with_options(*common)(command))
+app.command("import", cls=_Command)(with_options("own_code")(import_data))
+app.command("inspect")(with_options("own_code")(inspect_data))
 app.add_typer(blind, name="blind")
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from seatsim.cli import templates
 from seatsim.cli.outputs.answers import FILES
 from seatsim.scenario.loading import EXAMPLES
-from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.errors import InputError, permit
 from seatsim.schema.files import write_together
 from seatsim.schema.registry import names
 
@@ -31,7 +31,7 @@ def write_new(kind: str, path: Path) -> list[Path]:
         InputError: there is no such kind, the name cannot be used or is taken, or a file cannot be written.
     """
     if kind not in KINDS:
-        raise InputError(f"new {kind}: no such kind{nearest(kind, KINDS)}; permitted: {', '.join(KINDS)}")
+        raise InputError(f"new {kind}: no such kind{permit(kind, KINDS)}")
     contents = _code(kind, path) if kind in REGISTERED else _recording(path) if kind == "recording" else _scenario(path)
     for file in contents:
         if file.exists():

@@ -5,8 +5,9 @@ from __future__ import annotations
 import inspect
 import re
 from collections.abc import Callable, Sequence
+from functools import wraps
 from pathlib import Path
-from typing import Annotated, get_type_hints
+from typing import Annotated
 
 import typer
 
@@ -17,15 +18,29 @@ from seatsim.schema.files import check_folder
 from seatsim.schema.modules import use_all
 
 
-def with_help(command: Callable[..., None]) -> Callable[..., None]:
-    """Give the options and arguments of a command the help that its docstring has below `Options:`."""
-    text, _, listed = inspect.cleandoc(command.__doc__ or "").partition("\n\nOptions:\n")
-    helps = dict(re.findall(r"^    (\w+): (.+(?:\n        .+)*)", listed, re.MULTILINE))
-    hints = get_type_hints(command, include_extras=True)
-    for name, words in helps.items():
-        hints[name].__metadata__[0].help = " ".join(words.split())
-    command.__doc__, command.__annotations__ = text, hints
-    return command
+def with_options(*common: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Return a decorator that gives a command the help that its docstring has below `Options:`, and common options.
+
+    `--json` is one of every command's; `common` names others of `_COMMON`. They act while options are read, and the
+    function of the command does not see them.
+    """
+
+    def decorate(command: Callable[..., None]) -> Callable[..., None]:
+        text, _, listed = inspect.cleandoc(command.__doc__ or "").partition("\n\nOptions:\n")
+        own = inspect.signature(command, eval_str=True).parameters
+        for name, words in re.findall(r"^    (\w+): (.+(?:\n        .+)*)", listed, re.MULTILINE):
+            own[name].annotation.__metadata__[0].help = " ".join(words.split())
+
+        @wraps(command)
+        def run(**given: object) -> None:
+            command(**{name: given[name] for name in own})
+
+        every = [*own.values(), *(_COMMON[name] for name in (*common, "as_json"))]
+        run.__doc__, run.__annotations__ = text, {each.name: each.annotation for each in every}
+        vars(run)["__signature__"] = inspect.Signature(every)
+        return run
+
+    return decorate
 
 
 def _use_files(files: list[Path] | None) -> list[Path]:
@@ -117,7 +132,7 @@ OwnCode = Annotated[
         " FMU; may be given several times.",
     ),
 ]
-Pdf = Annotated[
+_Pdf = Annotated[
     bool,
     typer.Option(
         "--pdf",
@@ -125,11 +140,16 @@ Pdf = Annotated[
         help="Print report.html to report.pdf, too, by a browser of this machine or WeasyPrint.",
     ),
 ]
-Json = Annotated[
+_Json = Annotated[
     bool,
     # Eager, so that an error in another option is an object, too.
     typer.Option("--json", is_eager=True, callback=answer_as_json, help="Print one JSON object and nothing else."),
 ]
+_COMMON = {
+    name: inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=hint)
+    for name, hint, default in (("own_code", OwnCode, None), ("pdf", _Pdf, False), ("as_json", _Json, False))
+}
+"""Options that act while options are read."""
 
 
 def scenario_settings(texts: Sequence[str] | None) -> dict[str, object]:

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Sequence
+from textwrap import fill
+from typing import TYPE_CHECKING
 
 from rich import box
 from rich.cells import cell_len
@@ -18,8 +20,15 @@ from rich.text import Text
 
 from seatsim.cli.terminal import out, say
 
+if TYPE_CHECKING:
+    from seatsim.report.blocks import Table as ReportTable
+
 _WIDEST = 10_000
 """Letters that no table has in a line."""
+_HEADING = 12
+"""Letters of a line of a heading, if its words permit."""
+_MOST_ROWS = 60
+"""Rows of a table of a report that are printed."""
 
 
 def make_table(
@@ -59,6 +68,19 @@ def show_table(*tables: Table) -> None:
                 say(f"left out, as the terminal is narrow: {', '.join(left_out)}")
         else:
             say(make_plain(table))
+
+
+def show_report_tables(tables: Iterable[ReportTable]) -> None:
+    """Print tables of a report; rows that stand out there are bold, and a note counts those that have no room."""
+    for table in tables:
+        rows = [
+            [f"[bold]{escape(cell)}[/]" if number in table.strong else escape(cell) for cell in row]
+            for number, row in enumerate(table.rows[:_MOST_ROWS])
+        ]
+        headings = [fill(text, _HEADING, break_long_words=False) for text in table.head]
+        left = len(table.rows) - len(rows)
+        caption = f"{left} more rows in report.html" if left else None
+        show_table(make_table(table.caption, headings, rows, range(table.words), caption))
 
 
 def make_plain(table: Table) -> str:

@@ -1,4 +1,10 @@
-"""A damper model as a fit sees it: fields read and replaced by name, their units, and laws in the current."""
+"""A damper model as a fit sees it: fields by name, their units, laws in the current, and all of them as a vector.
+
+Every component of the vector is a pure number of order one: a parameter over its size, or the logarithm of that ratio
+where it must be positive. A law in the current counts by its values at currents spread over its range, not by its
+coefficients, which are strongly correlated; these values stay at least zero where they are so at the start, since a
+damping below zero lets a state run away at currents that the data hardly hold.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +20,7 @@ from seatsim.cosimulation.damper import PREFIX
 from seatsim.dampers.base import DAMPERS
 from seatsim.kernel.generic import DamperModel
 from seatsim.schema.arrays import Array
-from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.errors import InputError, permit
 from seatsim.schema.fields import bounds, describe, item_units
 from seatsim.schema.validation import is_finite_number
 
@@ -134,7 +140,7 @@ def fix_parameters(record: R, values: Mapping[str, float]) -> R:
     known = numeric_fields(type(record))
     for name, value in values.items():
         if name not in known:
-            raise InputError(f"--fix {name}: no such number{nearest(name, known)}; permitted: {', '.join(known)}")
+            raise InputError(f"--fix {name}: no such number{permit(name, known)}")
         low, high = bounds(type(record), name)
         whole = isinstance(record._asdict()[name], int)
         if not _is_permitted(value, low, high, whole):
@@ -152,3 +158,141 @@ def _is_permitted(value: object, low: float, high: float, whole: bool) -> bool:
 def numeric_fields(cls: type) -> list[str]:
     """Return the names of the numbers of a record class, those that can be fixed."""
     return [specification.name for specification in describe(cls) if isinstance(specification.default, int | float)]
+
+
+_SPAN = 1e3
+"""Factor by which a positive parameter may differ from its start, and from its size in the data, where its bounds do
+not say."""
+_DATA_SHARE = 0.1
+"""Share of what its unit is worth in the data that a parameter counts in where it is zero at the start."""
+_LEAST_RATIO = 1e-12
+"""Least ratio of a positive parameter to its size, so that its logarithm exists."""
+
+
+class Component(NamedTuple):
+    """One component of the vector: where it belongs, and how it is scaled.
+
+    `position` is that in a tuple field, None for a number. A law's component is its value at the current `at` in A.
+    `size` is what the component counts in, `natural` a tenth of the size that a quantity of its unit has in the data.
+    `low` and `high` bound the component itself, a pure number.
+    """
+
+    field: str
+    position: int | None
+    unit: str
+    size: float
+    natural: float
+    logarithmic: bool
+    low: float
+    high: float
+    at: float | None
+
+    @property
+    def name(self) -> str:
+        """Name as the parameter files have it."""
+        return self.field if self.position is None else f"{self.field}[{self.position}]"
+
+    @property
+    def label(self) -> str:
+        """Name of what the component is: the same, or the value of a law at a current."""
+        return self.name if self.at is None else f"{self.field}({self.at:.3g} A)"
+
+    def read(self, value: FieldValue) -> float:
+        """Return the number of a field's value, or the coefficient of a law, that the component belongs to."""
+        number = value[self.position] if isinstance(value, tuple) and self.position is not None else value
+        assert isinstance(number, int | float)
+        return number
+
+    def to_number(self, value: FieldValue) -> float:
+        """Return the component of a field's value."""
+        if self.at is not None:
+            assert isinstance(value, tuple)
+            return float(evaluate_law(value, np.array([self.at]))[0]) / self.size
+        number = self.read(value)
+        return math.log(max(number, _LEAST_RATIO * self.size) / self.size) if self.logarithmic else number / self.size
+
+    def to_value(self, number: float) -> float:
+        """Return the parameter in its unit, or the value of the law, that a component stands for."""
+        return self.size * (math.exp(number) if self.logarithmic else float(number))
+
+
+class Coordinates:
+    """The free parameters of a record class, between the record and a vector of shape (P,).
+
+    start: a record of the class, from which sizes are taken. fixed: fields that stay as they are in it. levels: how
+    many currents the data hold, which a law's degree stays below, None for any number. `end` is the current in A up to
+    which laws are counted; `low` and `high` bound the vector.
+    """
+
+    def __init__(
+        self, start: DamperRecord, scales: Scales, fixed: Sequence[str] = (), levels: int | None = None
+    ) -> None:
+        self.start, self.levels = start, levels
+        self.cls = type(start)
+        self.fields: Mapping[str, FieldValue] = start._asdict()
+        self.end = law_range(self.fields, scales.current) or 1.0
+        self.bounds = {name: bounds(self.cls, name) for name in self.fields}
+        self.components: list[Component] = []
+        for specification in describe(self.cls):
+            value = self.fields[specification.name]
+            # Without any current in the data, what multiplies it has no influence at all.
+            moot = scales.current == 0.0 and parse_unit(specification.unit).get("A", 0.0) != 0.0
+            kept = specification.name in (*RANGE_FIELDS, *fixed) or moot
+            if not kept and not isinstance(value, int | str):
+                natural = _DATA_SHARE * scales.size(specification.unit)
+                self.components += self._of_field(specification.name, specification.unit, value, natural)
+        self.low = np.array([c.low for c in self.components])
+        self.high = np.array([c.high for c in self.components])
+
+    def _of_field(self, name: str, unit: str, value: float | tuple[float, ...], natural: float) -> list[Component]:
+        if isinstance(value, tuple):
+            return self._of_tuple(name, unit, value, natural)
+        low, high = self.bounds[name]
+        size = abs(value) or natural
+        if low > 0.0 or (low == 0.0 and value > 0.0):
+            # What the data are a thousand times larger than has no influence, whatever the default is.
+            least = max(low, min(size, natural) / _SPAN)
+            most = high if math.isfinite(high) else _SPAN * max(size, natural)
+            ends = math.log(least / size), math.log(most / size)
+            return [Component(name, None, unit, size, natural, True, *ends, None)]
+        return [Component(name, None, unit, size, natural, False, low / size, high / size, None)]
+
+    def _of_tuple(self, name: str, unit: str, value: tuple[float, ...], natural: float) -> list[Component]:
+        if not is_current_law(self.cls, name):
+            size = float(np.max(np.abs(value))) or natural
+            return [
+                Component(name, k, unit, size, natural, False, -math.inf, math.inf, None) for k in range(len(value))
+            ]
+        at = np.linspace(0.0, self.end, min(len(value), self.levels or len(value)))
+        values = evaluate_law(value, at)
+        size = float(np.max(np.abs(values))) or natural
+        low = 0.0 if np.min(values) >= 0.0 < np.max(values) else -math.inf
+        return [Component(name, k, unit, size, natural, False, low, math.inf, float(a)) for k, a in enumerate(at)]
+
+    def to_vector(self, record: DamperRecord) -> Array:
+        """Return the vector of a record, shape (P,), moved into its bounds."""
+        fields = record._asdict()
+        values = [c.to_number(fields[c.field]) for c in self.components]
+        return np.asarray(np.clip(values, self.low, self.high), dtype=float)
+
+    def to_record(self, vector: Array) -> DamperRecord:
+        """Return the record of a vector of shape (P,); numbers are moved into the bounds of their fields."""
+        changed: dict[str, FieldValue] = {}
+        tuples: dict[str, list[float]] = {}
+        for c, number in zip(self.components, vector, strict=True):
+            value = c.to_value(number)
+            if c.position is None:
+                low, high = self.bounds[c.field]
+                changed[c.field] = min(max(value, low), high)
+            else:
+                tuples.setdefault(c.field, []).append(value)
+        changed |= {name: self._to_tuple(name, values) for name, values in tuples.items()}
+        return self.start._replace(**changed)
+
+    def _to_tuple(self, name: str, values: list[float]) -> tuple[float, ...]:
+        """Return a tuple field from its components; coefficients that a law of few values lacks are zero."""
+        if not is_current_law(self.cls, name):
+            return tuple(values)
+        before = self.fields[name]
+        assert isinstance(before, tuple)
+        return (*interpolate_law(np.array(values), self.end), *[0.0] * (len(before) - len(values)))

@@ -8,7 +8,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from seatsim.identification.coordinates import Component
+from seatsim.identification.damper_record import Component
 from seatsim.identification.problem import IdentificationProblem, compute_jacobian, read_bench
 from seatsim.schema.arrays import Array
 from seatsim.schema.content import Form, written

@@ -10,8 +10,14 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.dampers.base import DAMPERS
-from seatsim.identification.coordinates import Component, Coordinates
-from seatsim.identification.damper_record import DamperRecord, Scales, fix_parameters, rescale_damper
+from seatsim.identification.damper_record import (
+    Component,
+    Coordinates,
+    DamperRecord,
+    Scales,
+    fix_parameters,
+    rescale_damper,
+)
 from seatsim.identification.prediction import BenchModel, RecordInputs, predict_force, prepare_inputs
 from seatsim.identification.settings import IdentificationSettings
 from seatsim.kernel.bench import TOLERANCE

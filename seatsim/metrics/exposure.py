@@ -12,7 +12,7 @@ from typing import Annotated, NamedTuple
 from seatsim.metrics.comfort import EIGHT_HOURS, Dose, daily_exposure, daily_vdv, estimated_vdv
 from seatsim.metrics.motion import ratio
 from seatsim.schema.content import Form, written
-from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.errors import InputError, permit
 
 HOUR, DAY = 3600.0, 24.0
 """s; h"""
@@ -209,7 +209,7 @@ def direction(axis: str) -> Direction:
         InputError: no axis has this name.
     """
     if axis not in DIRECTIONS:
-        raise InputError(f"no axis is called '{axis}'{nearest(axis, DIRECTIONS)}; permitted: {', '.join(DIRECTIONS)}")
+        raise InputError(f"no axis is called '{axis}'{permit(axis, DIRECTIONS)}")
     return DIRECTIONS[axis]
 
 

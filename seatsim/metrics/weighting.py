@@ -26,7 +26,7 @@ from scipy import fft
 
 from seatsim.metrics.motion import as_signal, require_finite, require_positive
 from seatsim.schema.arrays import Array
-from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.errors import InputError, permit
 
 ComplexArray = NDArray[np.complex128]
 
@@ -129,9 +129,7 @@ def frequency_response(frequency: ArrayLike, weighting: str = "Wk") -> ComplexAr
 
 def _constants(weighting: str) -> Weighting:
     if weighting not in WEIGHTINGS:
-        permitted = ", ".join(WEIGHTINGS)
-        problem = f"no weighting is called '{weighting}'{nearest(weighting, WEIGHTINGS)}; permitted: {permitted}"
-        raise InputError(problem)
+        raise InputError(f"no weighting is called '{weighting}'{permit(weighting, WEIGHTINGS)}")
     return WEIGHTINGS[weighting]
 
 

@@ -14,8 +14,7 @@ from seatsim.diagnosis.candidates import Candidate, list_candidates
 from seatsim.diagnosis.objective import Parameters
 from seatsim.diagnosis.problem import pose_problem
 from seatsim.metrics.motion import rms
-from seatsim.page.controls import Choice, Slider, Switch, read_number
-from seatsim.page.scenario_view import View
+from seatsim.page.scenario_view import Choice, Slider, Switch, View, read_number
 from seatsim.plots.labels import describe_channel, format_percent
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.recording import load_recording

@@ -6,7 +6,7 @@ The template turns them into HTML. Every text is plain text, which it escapes, w
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from seatsim.plots.labels import format_number
 from seatsim.plots.saving import Inline, render_inline
@@ -71,6 +71,8 @@ class Pictures(NamedTuple):
     kind: str = "pictures"
 
 
+Figures: TypeAlias = "Mapping[str, Figure]"
+"""Figures by name."""
 Block = Text | Items | Code | Table | Signals | Pictures
 
 
@@ -97,7 +99,7 @@ class Report(NamedTuple):
     badge: tuple[str, str, str] | None = None
 
 
-def show_pictures(figures: Mapping[str, Figure], *starts: str) -> list[Block]:
+def show_pictures(figures: Figures, *starts: str) -> list[Block]:
     """Return the figures whose names begin with one of some words, in the order of these words."""
     chosen = {name: figure for start in starts for name, figure in figures.items() if name.startswith(start)}
     return [Pictures(list(map(render_inline, chosen.values())))] if chosen else []
@@ -110,7 +112,7 @@ def tabulate(
     words: int = 1,
     strong: Sequence[int] = (),
     folded: bool = False,
-) -> list[Block]:
+) -> list[Table]:
     """Return a table; nothing where there is no row.
 
     Args:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from pathlib import Path
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -14,47 +13,40 @@ from seatsim.plots.diagnosis.draw import plot_diagnosis
 from seatsim.plots.labels import format_percent
 from seatsim.recordings.header import NOT_STATED
 from seatsim.report import diagnosis_sections
-from seatsim.report.blocks import Report, Section, show_pictures
-from seatsim.report.composing import Closing, compose
-from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs, validate, verify
-from seatsim.report.formatting import format_sentence, say_noise
-from seatsim.report.rendering import write_html
-from seatsim.report.words import read_words, say_action, say_cause
+from seatsim.report.blocks import Block, Report, show_pictures
+from seatsim.report.composing import (
+    Closing,
+    Factor,
+    compose,
+    count_variations,
+    state_intervals,
+    trace_inputs,
+    validate,
+    verify,
+)
+from seatsim.report.formatting import format_sentence, read_words, say_action, say_cause, say_noise
 from seatsim.schema.fields import UNUSUAL
 from seatsim.schema.text import join_names
 
 _NEARLY_ALL = 0.98
 
 
-def write_report(diagnosis: Diagnosis, path: Path) -> Path:
-    """Write the report of a diagnosis as one self-contained HTML file, whole or not at all; return its path.
-
-    The same diagnosis gives the same bytes. Sections without content are left out.
-
-    Raises:
-        InputError: the folder or the file cannot be written.
-    """
-    return write_html(report_diagnosis(diagnosis), path)
-
-
 def report_diagnosis(diagnosis: Diagnosis) -> Report:
     """Return the report of a diagnosis; without a gap it has no evidence for causes."""
     figures = plot_diagnosis(diagnosis)
-    sections = [
-        Section("causes", "Where it lies and what causes it", diagnosis_sections.show_causes(diagnosis, figures)),
-        Section("gaps", "How far: gaps before and after", diagnosis_sections.show_gaps(diagnosis, figures)),
-        Section(
-            "signals", "Measured and simulated, before and after", diagnosis_sections.show_signals(diagnosis, figures)
-        ),
-        Section("missing", "The missing signal", diagnosis_sections.show_discrepancy(diagnosis, figures)),
-        Section("forms", "Other forms of the damper", diagnosis_sections.show_forms(diagnosis)),
-        Section("confusions", "Which effects look alike", diagnosis_sections.show_confusions(diagnosis)),
-        Section("maps", "Where in the operating range the error is large", show_pictures(figures, "maps")),
-        Section("budget", "What the remaining error is made of", diagnosis_sections.show_budget(diagnosis)),
-        Section("comfort", "Comfort and travel", diagnosis_sections.show_comfort(diagnosis)),
-    ]
+    sections: dict[str, Sequence[Block]] = {
+        "causes": diagnosis_sections.show_causes(diagnosis, figures),
+        "gaps": diagnosis_sections.show_gaps(diagnosis, figures),
+        "signals": diagnosis_sections.show_signals(diagnosis, figures),
+        "missing": diagnosis_sections.show_discrepancy(diagnosis, figures),
+        "forms": diagnosis_sections.show_forms(diagnosis),
+        "confusions": diagnosis_sections.show_confusions(diagnosis),
+        "maps": show_pictures(figures, "maps"),
+        "budget": diagnosis_sections.show_budget(diagnosis),
+        "comfort": diagnosis_sections.show_comfort(diagnosis),
+    }
     if diagnosis.verdict == "none":
-        sections = [each for each in sections if each.anchor not in ("causes", "missing", "confusions", "maps")]
+        sections |= {anchor: [] for anchor in ("causes", "missing", "confusions", "maps")}
     answer = [say_diagnosis(diagnosis), format_sentence(diagnosis.sentence)]
     closing = Closing(
         diagnosis_sections.list_notes(diagnosis), judge_diagnosis(diagnosis), f"seatsim diagnose {diagnosis.name}"

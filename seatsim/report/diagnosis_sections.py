@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 from seatsim.diagnosis.result import CalibratedParameter, Cause, Diagnosis, Trace
 from seatsim.plots.diagnosis.answer import STAGES, Key, read_gap, select_stages
 from seatsim.plots.diagnosis.bins import drop_start
 from seatsim.plots.diagnosis.signals import name_last
 from seatsim.plots.labels import UNKNOWN, describe_channel, format_number, format_percent, format_unit
-from seatsim.report.blocks import Block, Items, Text, show_pictures, tabulate
+from seatsim.report.blocks import Block, Figures, Items, Table, Text, show_pictures, tabulate
 from seatsim.report.formatting import (
     describe_effect,
+    explain,
     format_estimate,
     format_noise,
     format_quantity,
@@ -25,9 +25,6 @@ from seatsim.report.packing import MEASURED, Panel, pack_signals
 from seatsim.schema.arrays import Array
 from seatsim.schema.text import join_names
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 LIKELY = 0.05
 """Probability from which on the parameters of a cause are printed."""
 _ALIKE, _MOST_PAIRS = 0.5, 12
@@ -35,7 +32,7 @@ _ALIKE, _MOST_PAIRS = 0.5, 12
 EXPLAINED = "Refitted is the nominal scenario with its parameters moved inside their tolerance."
 
 
-def show_causes(diagnosis: Diagnosis, figures: Mapping[str, Figure]) -> list[Block]:
+def show_causes(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
     """Return where the gap lies, which effects may cause it, and their parameters."""
     shown = [each for each in diagnosis.causes if each.probability >= LIKELY or each.effect in diagnosis.selected]
     rows = []
@@ -70,7 +67,7 @@ def show_confusions(diagnosis: Diagnosis) -> list[Block]:
     return [*blocks, *tabulate(caption, "effect, and, likeness", rows, 2)]
 
 
-def show_forms(diagnosis: Diagnosis) -> list[Block]:
+def show_forms(diagnosis: Diagnosis) -> list[Table]:
     """Return the table of other forms of the damper, where they were tried."""
     forms = diagnosis.alternatives
     if not forms:
@@ -91,7 +88,7 @@ def _list_parameters(cause: Cause) -> str:
     return "; ".join(f"{name} {format_estimate(value)}" for name, value in cause.parameters.items()) or UNKNOWN
 
 
-def show_gaps(diagnosis: Diagnosis, figures: Mapping[str, Figure]) -> list[Block]:
+def show_gaps(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
     """Return picture and tables of the gaps by channel and by run, and of the refitted parameters."""
     gap, keys = diagnosis.gap, select_stages(diagnosis)
     held = ", ".join(diagnosis.held_out) or "all runs"
@@ -135,7 +132,7 @@ def _describe_shrink(diagnosis: Diagnosis) -> str:
     return f"The gap shrinks by {format_percent(gap.shrink)}{between} with the {effects} found."
 
 
-def _tabulate_parameters(parameters: Sequence[CalibratedParameter]) -> list[Block]:
+def _tabulate_parameters(parameters: Sequence[CalibratedParameter]) -> list[Table]:
     ranked = sorted(parameters, key=lambda each: not each.at_bound)
     rows = []
     for each in ranked:
@@ -147,7 +144,7 @@ def _tabulate_parameters(parameters: Sequence[CalibratedParameter]) -> list[Bloc
     return tabulate(caption, "parameter, unit, nominal, refitted, bounds", rows, 2, strong)
 
 
-def show_signals(diagnosis: Diagnosis, figures: Mapping[str, Figure]) -> list[Block]:
+def show_signals(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
     """Return the held-out signals with what is left of them, then every run over time, the held-out one first."""
     groups: dict[str, list[Trace]] = {}
     for trace in map(drop_start, [*diagnosis.evidence.traces, *diagnosis.evidence.other_traces]):
@@ -167,7 +164,7 @@ def show_signals(diagnosis: Diagnosis, figures: Mapping[str, Figure]) -> list[Bl
     return [*show_pictures(figures, "signal_"), packed]
 
 
-def show_discrepancy(diagnosis: Diagnosis, figures: Mapping[str, Figure]) -> list[Block]:
+def show_discrepancy(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
     """Return the signal that would close the gap, described, over time and over what may drive it."""
     found = diagnosis.evidence.discrepancy
     if found is None or len(found.values) < 2:
@@ -179,7 +176,7 @@ def show_discrepancy(diagnosis: Diagnosis, figures: Mapping[str, Figure]) -> lis
     return [Text(lead), Items(list(map(format_sentence, found.description))), *show_pictures(figures, "discrepancy")]
 
 
-def show_comfort(diagnosis: Diagnosis) -> list[Block]:
+def show_comfort(diagnosis: Diagnosis) -> list[Table]:
     """Return comfort and travel on the held-out run, the figures by which seats are assessed."""
     rows = []
     for each in diagnosis.evidence.comfort:
@@ -192,18 +189,12 @@ def show_comfort(diagnosis: Diagnosis) -> list[Block]:
 
 def show_budget(diagnosis: Diagnosis) -> list[Block]:
     """Return what the error of the stated scenario is made of on the held-out run, by channel."""
-    lead = (
-        "The error E is the RMS of measured less simulated, of the scenario with the effects found. Its parts are those"
-        " of ASME V&V 20: what halving the step of the integration changes (u_num), what the noise of the recorded"
-        " inputs makes (u_input), and the noise of the sensor itself (u_D). What these leave is the error of the"
-        " form of the model."
-    )
     rows = []
     for channel, unit, *parts in diagnosis.error_budget:
         shown = describe_channel(channel, unit)
         rows.append([shown.words, shown.unit, *(shown.factor * part for part in parts)])
     head = "channel, unit, error E, step u_num, inputs u_input, sensor u_D, model form"
-    return [Text(lead), *tabulate("Parts of the error", head, rows, 2)] if rows else []
+    return [*explain("budget"), *tabulate("Parts of the error", head, rows, 2)] if rows else []
 
 
 def list_notes(diagnosis: Diagnosis) -> list[str]:

@@ -1,21 +1,28 @@
-"""Numbers and names as the report prints them."""
+"""What reports say: numbers and names as they are printed, how figures are made, what an effect means to an owner."""
 
 from __future__ import annotations
 
 import inspect
 import math
 import re
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from importlib.resources import files
+from typing import NamedTuple
 
-from seatsim.diagnosis.result import Estimate
+from seatsim.diagnosis.result import Cause, Estimate
 from seatsim.plots.labels import MINUS, UNKNOWN, describe_channel, format_number, format_percent
+from seatsim.report.blocks import Text
 from seatsim.schema import registry
 from seatsim.schema.errors import InputError
+from seatsim.schema.fields import validated
+from seatsim.schema.yaml_text import parse_value
 
 
-def format_quantity(value: float, unit: str, digits: int = 3) -> str:
+def format_quantity(value: float, unit: str) -> str:
     """Return a value in SI units with the unit in which it is shown, as in `12.4 mm`."""
     shown = describe_channel("", unit)
-    text = format_number(shown.factor * value, digits)
+    text = format_number(shown.factor * value)
     return text if shown.unit == "-" or text == UNKNOWN else f"{text} {shown.unit}"
 
 
@@ -71,3 +78,69 @@ def describe_effect(effect: str) -> str:
     except InputError:
         return ""
     return re.split(r"[.:;](?:\s|$)", text, maxsplit=1)[0].replace("`", "").strip()
+
+
+class _EffectWords(NamedTuple):
+    """A clause on what is the matter, `{}` being the size of the parameter named, and what to do about it."""
+
+    clause: str
+    action: str
+    parameter: str = ""
+
+
+class Words(NamedTuple):
+    """The content of `assets/words.yaml`.
+
+    By kind of report the headings of its sections and sentences on its method; paragraphs that explain figures;
+    captions of the tables of a bench sheet, in their order; conditions of each level of credibility; name and
+    explanation of each verdict; words for each effect.
+    """
+
+    headings: Mapping[str, Mapping[str, str]]
+    methods: Mapping[str, Sequence[str]]
+    explanations: Mapping[str, Sequence[str]]
+    captions: Mapping[str, str]
+    conditions: Mapping[str, Sequence[str]]
+    verdicts: Mapping[str, tuple[str, str]]
+    effects: Mapping[str, _EffectWords]
+
+
+@lru_cache(maxsize=1)
+def read_words() -> Words:
+    """Return the words of all reports."""
+    return validated(Words, parse_value(files(__package__).joinpath("assets/words.yaml").read_text(encoding="utf-8")))
+
+
+def explain(name: str, **facts: str) -> list[Text]:
+    """Return the paragraphs that explain some figures; `facts` are what they leave open."""
+    return [Text(text.format(**facts)) for text in read_words().explanations[name]]
+
+
+def say_cause(cause: Cause) -> str:
+    """Return what is the matter in a clause; of an effect of the reader's own, its documentation."""
+    words = read_words().effects.get(cause.effect)
+    if words is None:
+        return f"{cause.effect} is at work ({describe_effect(cause.effect) or 'an effect of your own'})"
+    return words.clause.format(_say_size(cause.parameters, words.parameter), **_say_rest(cause.parameters))
+
+
+def say_action(effect: str) -> str:
+    """Return what to do about an effect."""
+    words = read_words().effects.get(effect)
+    return words.action if words else format_sentence(f"look at what {effect} describes on the rig")
+
+
+def _say_size(parameters: Mapping[str, Estimate | str], name: str) -> str:
+    found = parameters.get(name)
+    if not isinstance(found, Estimate):
+        return "some amount"
+    if found.unit == "s":
+        return f"{format_quantity(abs(1e3 * found.value), '-')} ms"
+    return format_quantity(abs(found.value), found.unit)
+
+
+def _say_rest(parameters: Mapping[str, Estimate | str]) -> dict[str, str]:
+    channel, shift = parameters.get("channel"), parameters.get("shift")
+    ahead = isinstance(shift, Estimate) and shift.value < 0
+    name = channel.replace("_", " ") if isinstance(channel, str) else "of one sensor"
+    return {"channel": name, "side": "early" if ahead else "late"}

@@ -1,4 +1,7 @@
-"""The report of a gap: how far a scenario is from a recording, channel by channel and run by run."""
+"""The report of a gap: how far a scenario is from a recording, channel by channel and run by run.
+
+The figures by which a simulation is signed off stand with it: objective ratings, and the error beside its uncertainty.
+"""
 
 from __future__ import annotations
 
@@ -8,16 +11,25 @@ from pathlib import Path
 import numpy as np
 
 from seatsim.metrics.motion import rms
+from seatsim.metrics.objective_rating import GRADES, ObjectiveRating
 from seatsim.plots.diagnosis.answer import SMALLEST, plot_gap
 from seatsim.plots.diagnosis.signals import plot_pairs
 from seatsim.plots.labels import UNKNOWN, describe_channel, format_number, format_percent
 from seatsim.recordings.gap import Gap, ReplayedPair
 from seatsim.recordings.recording import load_recording
-from seatsim.report.agreement import show_agreement
-from seatsim.report.blocks import Report, Section, Signals, Table, show_pictures
-from seatsim.report.composing import Closing, compose
-from seatsim.report.credibility import NEAR_NOISE, Factor, count_variations, state_intervals, trace_inputs, validate
-from seatsim.report.formatting import format_noise, say_noise
+from seatsim.recordings.validation import Validation
+from seatsim.report.blocks import Block, Items, Report, Signals, Table, show_pictures
+from seatsim.report.composing import (
+    NEAR_NOISE,
+    Closing,
+    Factor,
+    compose,
+    count_variations,
+    state_intervals,
+    trace_inputs,
+    validate,
+)
+from seatsim.report.formatting import explain, format_noise, say_noise
 from seatsim.report.packing import MEASURED, Panel, pack_signals
 from seatsim.scenario.loading import single
 from seatsim.schema.arrays import Array
@@ -37,11 +49,11 @@ def report_gap(
     """
     figures = {"gaps": plot_gap(found), **plot_pairs(found, pairs)}
     tables = [_make_table(found, pairs), *([_compare_runs(found, pairs)] if len(pairs) > 1 else [])]
-    sections = [
-        Section("gaps", "How far: gap of each channel", [*show_pictures(figures, "gaps"), *tables]),
-        Section("signals", "Measured and simulated", [*show_pictures(figures, "signal_"), _show_pairs(found, pairs)]),
-        Section("agreement", "Objective rating and uncertainty", show_agreement(found)),
-    ]
+    sections = {
+        "gaps": [*show_pictures(figures, "gaps"), *tables],
+        "signals": [*show_pictures(figures, "signal_"), _show_pairs(found, pairs)],
+        "agreement": show_agreement(found),
+    }
     closing = Closing(found.notes, factors, command)
     return compose("gap", f"Gap: {name}", [say_gap(found)], _advise(found), sections, closing)
 
@@ -130,3 +142,31 @@ def _compare_runs(found: Gap, pairs: Mapping[str, ReplayedPair]) -> Table:
         rows.append([name.replace("_", " "), *map(format_percent, gaps)])
     caption = "Gap of each run, in per cent of the standard deviation of the signal in the run"
     return Table(caption, ["channel", *pairs], rows)
+
+
+def show_agreement(found: Gap) -> list[Block]:
+    """Return the ratings and the errors of the channels with what each figure means, nothing where there are none."""
+    if not found.iso18571:
+        return []
+    grades = ", ".join(f"{grade} above {least:g}" for grade, least in GRADES.items() if least > 0)
+    meanings = Items([each.text for each in explain("ratings", grades=grades)])
+    return [_show_ratings(found.iso18571), meanings, _show_errors(found.v_and_v), *explain("errors")]
+
+
+def _show_ratings(ratings: Mapping[str, ObjectiveRating]) -> Table:
+    rows = []
+    for name, rating in ratings.items():
+        shares = (f"{each:.3f}" for each in (rating.overall, *rating[:4]))
+        rows.append([name.replace("_", " "), rating.grade, *shares, format_number(1e3 * rating.shift)])
+    caption = "Objective rating after ISO/TS 18571 against the measured signal, mean over the runs; 1 is identical"
+    return Table(caption, ["channel", "grade", "overall", *ObjectiveRating._fields[:4], "late by [ms]"], rows, 2)
+
+
+def _show_errors(errors: Mapping[str, Validation]) -> Table:
+    rows = []
+    for name, each in errors.items():
+        shown = describe_channel(name, each.unit)
+        figures = (each.error, each.u_val, each.u_num, each.u_input, each.u_d)
+        rows.append([shown.words, shown.unit, *(format_number(shown.factor * figure) for figure in figures)])
+    head = ["channel", "unit", "error E", "u_val", "step u_num", "inputs u_input", "sensor u_D"]
+    return Table("Comparison error and validation uncertainty after ASME V&V 20, over all runs", head, rows, 2)

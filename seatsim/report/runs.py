@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 
 from seatsim.metrics.table import SHORT
 from seatsim.plots.labels import describe_channel, format_number, format_unit
 from seatsim.plots.runs.naming import Shown, label_runs, show_runs
-from seatsim.report.blocks import Block, Report, Section, Signals, show_pictures, tabulate
-from seatsim.report.composing import Closing, compose
-from seatsim.report.credibility import Factor, count_variations, trace_inputs, verify
+from seatsim.report.blocks import Figures, Report, Signals, Table, show_pictures, tabulate
+from seatsim.report.composing import Closing, Factor, compose, count_variations, trace_inputs, verify
 from seatsim.report.formatting import format_quantity, format_sentence, format_setting
 from seatsim.report.headline import SAME, compare_runs, count_times, describe_run, find_best, read_metric
 from seatsim.report.packing import FINEST, Panel, pack_signals
@@ -22,11 +20,7 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.errors import RunError
 from seatsim.schema.text import join_names, name_some
 from seatsim.simulation.result import UNITS, Run
-from seatsim.simulation.runs import share_a_loop
-from seatsim.simulation.trials import STRETCH, try_changes
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from seatsim.simulation.runs import STRETCH, share_a_loop, try_changes
 
 SEAT, HITS, _PEAK = "seat_factor", "end_stop_hits", "suspension_displacement_peak"
 CHANNELS = (
@@ -37,7 +31,7 @@ UNVERIFIED = "* unverified, and never the best: the notes say why."
 
 
 def report_runs(
-    runs: Sequence[Run], figures: Mapping[str, Figure], command: str, title: str, failures: Sequence[str] = ()
+    runs: Sequence[Run], figures: Figures, command: str, title: str, failures: Sequence[str] = ()
 ) -> Report:
     """Return the report of runs: of a single one, or of a comparison.
 
@@ -49,12 +43,12 @@ def report_runs(
         failures: why others were not carried to their end.
     """
     bars, signals = show_pictures(figures, "pareto", "comparison"), show_pictures(figures, "time_histories")
-    sections = [
-        Section("figures", "Comfort, travel and effort", [*bars, *_tabulate_figures(runs)]),
-        Section("signals", "Signals over time", [*signals, show_signals(show_runs(runs))]),
-        Section("spectra", "Driver and floor over frequency", show_pictures(figures, "transmissibility", "psd")),
-        Section("loops", "Loops of the damper", show_pictures(figures, "damper_loops", "force_velocity")),
-    ]
+    sections = {
+        "figures": [*bars, *_tabulate_figures(runs)],
+        "signals": [*signals, show_signals(show_runs(runs))],
+        "spectra": show_pictures(figures, "transmissibility", "psd"),
+        "loops": show_pictures(figures, "damper_loops", "force_velocity"),
+    }
     single = len(runs) == 1
     about = f"Simulated run: {title}" if single else f"Comparison of {len(runs)} simulated runs: {title}"
     answer = [*([describe_run(runs[0])] if single else compare_runs(runs)), *_list_gaps(runs, failures)]
@@ -166,7 +160,7 @@ def _list_gaps(runs: Sequence[Run], failures: Sequence[str]) -> list[str]:
     return [format_sentence(text) for text in texts]
 
 
-def _tabulate_figures(runs: Sequence[Run]) -> list[Block]:
+def _tabulate_figures(runs: Sequence[Run]) -> list[Table]:
     """Return every figure of one run, or the figures of several side by side."""
     if len(runs) == 1:
         figures = runs[0].metrics.values()
@@ -195,7 +189,7 @@ def _state_notes(runs: Sequence[Run]) -> list[str]:
     return texts + [f"{run.scenario.title}: {sentence}" for run in runs for sentence in run.history.notes]
 
 
-def _list_settings(scenario: Scenario) -> list[Block]:
+def _list_settings(scenario: Scenario) -> list[Table]:
     """Return the numbers of the first scenario by dotted key, with their units."""
     rows = [
         (key, format_unit(find_unit(scenario, key)) or "-", format_setting(value))

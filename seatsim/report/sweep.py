@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from seatsim.dampers.base import DAMPERS
 from seatsim.plots.labels import format_number, format_percent
@@ -17,12 +17,13 @@ from seatsim.plots.sweeps import (
     plot_shares,
     plot_tornado,
 )
-from seatsim.report.blocks import Block, Report, Section, Text, show_pictures, tabulate
-from seatsim.report.composing import Closing, compose
-from seatsim.report.credibility import (
+from seatsim.report.blocks import Block, Figures, Report, Table, Text, show_pictures, tabulate
+from seatsim.report.composing import (
     ENOUGH_RUNS,
     EXPLAINED,
+    Closing,
     Factor,
+    compose,
     count_variations,
     state_intervals,
     trace_inputs,
@@ -36,7 +37,6 @@ from seatsim.sweeps.sensitivity import Sensitivities, Sensitivity, choose_key
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.figure import Figure
 
 _MATTERS = 0.1
 """Share of the variance from which on a key is worth a step."""
@@ -53,15 +53,15 @@ def report_sweep(
     """Return the report of a sweep from its rows and the statistics on them."""
     settings = [Text(_say_seeds(rows)), Text(f"Identity of the sweep: {rows.manifest['identity']}")]
     figures = draw_figures(found, rows)
-    sections = [
-        Section("limits", "How often limits are exceeded", _show_limits(exceeded, rows)),
-        Section("choices", "Best choice under each condition", tabulate_best(rows)),
-        Section("sensitivity", "What matters most", _show_sensitivity(found, rows, figures)),
-        Section("pareto", "Comfort and travel", show_pictures(figures, "comfort")),
-        Section("maps", "Means over two keys", show_pictures(figures, "means")),
-        Section("quantiles", "Quantiles", _show_quantiles(quantiles, rows)),
-        Section("states", "Failed and unverified runs", _show_states(rows)),
-    ]
+    sections: dict[str, Sequence[Block]] = {
+        "limits": _show_limits(exceeded, rows),
+        "choices": tabulate_best(rows),
+        "sensitivity": _show_sensitivity(found, rows, figures),
+        "pareto": show_pictures(figures, "comfort"),
+        "maps": show_pictures(figures, "means"),
+        "quantiles": _show_quantiles(quantiles, rows),
+        "states": _show_states(rows),
+    }
     answer, factors = [*state_importance(found, rows), _count_runs(rows)], _judge(rows, found, exceeded)
     closing = Closing([], factors, f"seatsim sweep-report {rows.folder.name}", settings)
     return compose("sweep", f"Sweep: {rows.folder.name}", answer, _advise(found, exceeded, rows), sections, closing)
@@ -121,7 +121,7 @@ def advise_on_keys(found: Sequence[Sensitivity], rows: SweepRows) -> list[str]:
     return texts
 
 
-def tabulate_best(rows: SweepRows) -> list[Block]:
+def tabulate_best(rows: SweepRows) -> list[Table]:
     """Return the most comfortable choice under each condition, the worst condition first; nothing of random points.
 
     Figures are means over seeds. Only a design with every choice under every condition can be compared so.
@@ -211,11 +211,11 @@ def _list_metrics(found: Sensitivities, rows: SweepRows) -> list[str]:
     return list(known) or ([_choose_metric(found)] if found.rows else [])
 
 
-def draw_figures(found: Sensitivities, rows: SweepRows) -> dict[str, Figure]:
+def draw_figures(found: Sensitivities, rows: SweepRows) -> Figures:
     """Return the figures of a sweep by name."""
     ranked = [row.key for row in found.of(_choose_metric(found))] if found.rows else []
     order = [*ranked, *(key for key in rows.keys if key not in ranked)]
-    figures: dict[str, Figure | None] = {}
+    figures: dict[str, Any] = {}
     for metric in _list_metrics(found, rows):
         shares, words = found.of(metric), describe_column(metric, rows.units).words
         figures |= {f"shares_{metric}": plot_shares(shares, words), f"tornado_{metric}": plot_tornado(shares, rows)}
@@ -224,7 +224,7 @@ def draw_figures(found: Sensitivities, rows: SweepRows) -> dict[str, Figure]:
     return {name: figure for name, figure in figures.items() if figure is not None}
 
 
-def _show_sensitivity(found: Sensitivities, rows: SweepRows, figures: Mapping[str, Figure]) -> list[Block]:
+def _show_sensitivity(found: Sensitivities, rows: SweepRows, figures: Figures) -> list[Block]:
     """Return the shares of variance and the swings of comfort, travel and each limited metric."""
     if not found.rows:
         return [Text(f"{found.problem[0].upper()}{found.problem[1:]}.")]
@@ -259,7 +259,7 @@ def _show_limits(exceeded: Sequence[Exceedance], rows: SweepRows) -> list[Block]
     return [Text(lead), *tabulate("Runs above each limit", head, lines, len(groups) + 1)]
 
 
-def _show_quantiles(quantiles: pd.DataFrame, rows: SweepRows) -> list[Block]:
+def _show_quantiles(quantiles: pd.DataFrame, rows: SweepRows) -> list[Table]:
     lines = []
     for record in quantiles[quantiles.metric.isin(SHOWN)].head(MOST_LINES).to_dict("records"):
         shown = describe_column(str(record["metric"]), rows.units)
@@ -271,7 +271,7 @@ def _show_quantiles(quantiles: pd.DataFrame, rows: SweepRows) -> list[Block]:
     return tabulate(caption, head, lines, len(rows.texts) + 2, folded=True)
 
 
-def _show_states(rows: SweepRows) -> list[Block]:
+def _show_states(rows: SweepRows) -> list[Table]:
     doubtful = rows.every[rows.every.state.isin((FAILED, UNVERIFIED))]
     reasons = doubtful.groupby(["state", "reason"]).run.agg(["size", "first"]).sort_values("size", ascending=False)
     counted = reasons.head(_MOST_REASONS).itertuples(name=None)

@@ -23,7 +23,7 @@ from seatsim.metrics.table import METRICS
 from seatsim.schema.errors import nearest
 from seatsim.schema.fields import validated
 from seatsim.schema.json_schema import TEXT, Schema, mapping_schema
-from seatsim.schema.validation import check_keys, is_finite_number, mapping
+from seatsim.schema.validation import check_keys, mapping, read_number
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import KeyPath
 
@@ -79,13 +79,7 @@ def _read_check(name: str, value: object, source: Source) -> Check:
         return Check(name, variants=_variants(stated, source, keys))
     stated = mapping(value, source, keys)
     check_keys(stated, ("min", "max", "per"), source, keys)
-    bounds = {}
-    for key in ("min", "max"):
-        bound = stated.get(key)
-        if is_finite_number(bound):
-            bounds[key] = float(bound)
-        elif key in stated:
-            raise source.error((*keys, key), f"{bound!r} is not permitted; it must be a finite number")
+    bounds = {key: read_number(stated[key], source, (*keys, key)) for key in ("min", "max") if key in stated}
     low, high = bounds.get("min", -math.inf), bounds.get("max", math.inf)
     if not bounds or low > high:
         raise source.error(keys, "states no range; write {min: x}, {max: x}, or both with min below max")
@@ -145,6 +139,4 @@ def check_published(source: Source, labels: Sequence[str]) -> None:
         naming = [key for key in mapping(row, source, keys) if key in labels or "." in key]
         check_keys(row, [*naming, "variant", "temperature", *METRICS], source, keys)
         for name in [name for name in row if name in METRICS]:
-            value = row[name]
-            if not is_finite_number(value):
-                raise source.error((*keys, name), f"{value!r} is not permitted; it must be a finite number")
+            read_number(row[name], source, (*keys, name))

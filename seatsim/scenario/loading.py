@@ -20,9 +20,9 @@ from typing import Any
 from seatsim.scenario.checks import check_published, require_variants
 from seatsim.scenario.scenario import Scenario
 from seatsim.scenario.sections import NEEDED, NEEDED_BY_A_SEAT, OF_ALL_RUNS, SECTIONS
-from seatsim.schema.errors import InputError, gathered, nearest, raise_all
+from seatsim.schema.errors import InputError, gathered, nearest, permit, raise_all
 from seatsim.schema.guarded import is_there
-from seatsim.schema.text import join_names
+from seatsim.schema.text import cut, join_names
 from seatsim.schema.validation import check_keys, mapping
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import KeyPath
@@ -66,8 +66,7 @@ def _swept_values(values: object, source: Source, key: str) -> list[object]:
 
 def _place_of_setting(dotted: str, value: object) -> str:
     """Return the place of a value that an option states: that option, not a line of the file."""
-    shown = value if isinstance(value, str) else json.dumps(value, default=str)
-    return f"--set {dotted}={shown if len(shown) <= 60 else shown[:57] + '...'}"
+    return f"--set {dotted}={cut(value if isinstance(value, str) else json.dumps(value, default=str))}"
 
 
 def _replace(source: Source, dotted: str, value: object, origin: KeyPath) -> None:
@@ -174,11 +173,7 @@ def reread(scenario: Scenario, sections: Iterable[str], source: Source, label: M
     Raises:
         InputError: a value in one of the sections is not permitted, or no section has this name.
     """
-    errors = [
-        source.error((key,), f"unknown key{nearest(key, SECTIONS)}; permitted: {', '.join(SECTIONS)}")
-        for key in sections
-        if key not in SECTIONS
-    ]
+    errors = [source.error((key,), f"unknown key{permit(key, SECTIONS)}") for key in sections if key not in SECTIONS]
     found = _read(source, [key for key in sections if key in SECTIONS], errors)
     raise_all(errors)
     return replace(scenario, label=label, source=source, **found)

@@ -13,7 +13,7 @@ from seatsim.rig.sensors import Sensors
 from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Scenario
 from seatsim.scenario.sections import SECTIONS
-from seatsim.schema.errors import nearest
+from seatsim.schema.errors import permit
 from seatsim.schema.fields import FieldSpecification, bounds, describe, doubt, field_names, replace_fields
 from seatsim.schema.registry import Record, is_own, specification_of
 from seatsim.schema.validation import check_value
@@ -76,8 +76,7 @@ def check_key(key: str, known: Iterable[str], source: Source, keys: KeyPath) -> 
     """Raise InputError, placed at `keys` of a source, where a dotted key names no number of a scenario."""
     permitted = list(known)
     if key not in permitted:
-        problem = f"the nominal scenario has no such number{nearest(key, permitted)}"
-        raise source.error(keys, f"{problem}; permitted: {', '.join(permitted)}")
+        raise source.error(keys, f"the nominal scenario has no such number{permit(key, permitted)}")
 
 
 def check_number(scenario: Scenario, key: str, value: float, source: Source, keys: KeyPath) -> None:

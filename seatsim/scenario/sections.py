@@ -8,7 +8,8 @@ its unit, meaning, bounds and default stand.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, NamedTuple, cast
+from functools import partial
+from typing import TYPE_CHECKING, Annotated, NamedTuple, cast
 
 from seatsim.effects.base import EFFECTS
 from seatsim.rig.coil import Coil
@@ -20,7 +21,8 @@ from seatsim.rig.temperature import TemperatureFactors, Thermal
 from seatsim.scenario.checks import checks_schema, read_checks
 from seatsim.scenario.damper import damper_schema, read_damper, schema_of_models
 from seatsim.scenario.scenario import Control, Inverse, Solver, Start
-from seatsim.schema.errors import InputError, gathered, raise_all
+from seatsim.schema.errors import read_each
+from seatsim.schema.fields import param
 from seatsim.schema.json_schema import (
     ANYTHING,
     BY_KEY,
@@ -31,11 +33,12 @@ from seatsim.schema.json_schema import (
     mapping_schema,
     name_schema,
     named_schema,
+    properties_of,
     record_schema,
 )
 from seatsim.schema.registry import Record, Registry, find
 from seatsim.schema.text import explain_bad_name
-from seatsim.schema.validation import build, check_keys, chosen_class, is_finite_number, mapping, sweep_hint
+from seatsim.schema.validation import build, check_keys, chosen_class, is_finite_number, mapping, read_whole
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import KeyPath
 
@@ -44,12 +47,16 @@ if TYPE_CHECKING:
 
 _LARGEST_SEED = 2**63 - 1
 """The largest whole number that a column of a table holds."""
-_LONGEST_SAMPLE_TIME = 1.0
-"""Seconds between two samples of a law."""
 FILES = (("controller", "design"), ("excitation", "path"))
 """_Section and key under which a scenario names a file, from its own folder."""
 # An excitation may read a recording, whose nominal is a scenario: their package builds on this one.
 _EXCITATIONS: Registry[Excitation, object] = Registry("excitation")
+
+
+class _Sampling(NamedTuple):
+    """When a law is asked; one without a sample time has that of `seatsim.simulation.simulate`."""
+
+    sample_time: Annotated[float | None, param("s", "time between two samples of the law", above=0, high=1)] = None
 
 
 class _Section(NamedTuple):
@@ -85,13 +92,6 @@ def _read_name(value: object, source: Source) -> str:
     return str(value)
 
 
-def _read_seed(value: object, source: Source) -> int:
-    if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= _LARGEST_SEED:
-        needed = f"a whole number of at least 0 and at most {_LARGEST_SEED}"
-        raise source.error(("seed",), f"{value!r} is not permitted; it must be {needed}{sweep_hint(value, ('seed',))}")
-    return value
-
-
 def _read_temperature(value: object, source: Source) -> float | Thermal:
     if isinstance(value, Mapping):
         return build(Thermal, value, source, ("temperature",))
@@ -105,23 +105,22 @@ def _temperature_schema() -> Schema:
 
 def _read_control(values: object, source: Source) -> Control:
     keys: KeyPath = ("controller",)
-    stated, errors = mapping(values, source, keys), list[InputError]()
-    inverse = sensors = sample_time = law = None
-    floors: tuple[Excitation, ...] = ()
-    with gathered(errors):
+    stated = mapping(values, source, keys)
+
+    def read_law() -> Law:
         cls = chosen_class(LAWS, stated, "law", source, keys)
         # What is registered as a law has one of the methods of `Law`: its decorator is applied to nothing else.
-        law = cast("Law", build(cls, _own_keys(stated, ("law", *_CONTROL), "design", source), source, keys))
-    with gathered(errors):
-        inverse = _read_inverse(stated["inverse"], source) if "inverse" in stated else None
-    with gathered(errors):
-        sensors = build(Sensors, stated["sensors"], source, (*keys, "sensors")) if "sensors" in stated else None
-    with gathered(errors):
-        sample_time = _read_sample_time(stated.get("sample_time"), source)
-    with gathered(errors):
-        floors = _read_floors(stated.get("floors", []), source)
-    raise_all(errors)
-    return Control(law, sample_time, inverse, sensors, floors)
+        return cast("Law", build(cls, _own_keys(stated, ("law", *_CONTROL), "design", source), source, keys))
+
+    sensors, sampling = (*keys, "sensors"), {key: stated[key] for key in _Sampling._fields if key in stated}
+    readers: dict[str, Callable[[], object]] = {
+        "law": read_law,
+        "inverse": lambda: _read_inverse(stated["inverse"], source) if "inverse" in stated else None,
+        "sensors": lambda: build(Sensors, stated["sensors"], source, sensors) if "sensors" in stated else None,
+        "sample_time": lambda: build(_Sampling, sampling, source, keys).sample_time,
+        "floors": lambda: _read_floors(stated.get("floors", []), source),
+    }
+    return Control(**read_each(readers))
 
 
 def _read_floors(values: object, source: Source) -> tuple[Excitation, ...]:
@@ -129,15 +128,6 @@ def _read_floors(values: object, source: Source) -> tuple[Excitation, ...]:
     if not isinstance(values, list):
         raise source.error(keys, f"{values!r} is not a list; write '- kind: NAME' below it, once for every floor")
     return tuple(_read_excitation(value, source, (*keys, index)) for index, value in enumerate(values))
-
-
-def _read_sample_time(value: object, source: Source) -> float | None:
-    if value is None:
-        return None
-    if not (is_finite_number(value) and 0 < value <= _LONGEST_SAMPLE_TIME):
-        keys = ("controller", "sample_time")
-        raise source.error(keys, f"{value!r} is not permitted; it must be 0 to 1 s{sweep_hint(value, keys)}")
-    return value
 
 
 def _read_inverse(values: object, source: Source) -> Inverse:
@@ -152,13 +142,7 @@ def _read_inverse(values: object, source: Source) -> Inverse:
 
 
 _CONTROL: Mapping[str, Callable[[], Schema]] = {
-    "sample_time": lambda: {
-        "type": "number",
-        "exclusiveMinimum": 0,
-        "maximum": _LONGEST_SAMPLE_TIME,
-        "unit": "s",
-        "description": "time between two samples of the law [s]",
-    },
+    "sample_time": lambda: cast("Schema", properties_of(record_schema(_Sampling))["sample_time"]),
     "inverse": lambda: damper_schema({"temperature": ANYTHING}),
     "sensors": lambda: record_schema(Sensors),
     "floors": lambda: {"type": "array", "items": named_schema("excitation", "kind", {})},
@@ -182,16 +166,15 @@ def _own_keys(stated: Mapping[str, object], others: tuple[str, ...], path: str, 
 def _read_effects(values: object, source: Source) -> tuple[Record, ...]:
     if not isinstance(values, list):
         raise source.error(("effects",), f"{values!r} is not a list; write '- effect: NAME' below it")
-    effects, errors = list[Record](), list[InputError]()
-    for index, value in enumerate(values):
-        keys: KeyPath = ("effects", index)
-        with gathered(errors):
-            stated = mapping(value, source, keys)
-            check_keys(stated, ("effect", "parameters"), source, keys)
-            cls = chosen_class(EFFECTS, stated, "effect", source, keys)
-            effects.append(build(cls, stated.get("parameters", {}), source, (*keys, "parameters")))
-    raise_all(errors)
-    return tuple(effects)
+    return tuple(read_each({k: partial(_read_effect, value, source, k) for k, value in enumerate(values)}).values())
+
+
+def _read_effect(value: object, source: Source, index: int) -> Record:
+    keys: KeyPath = ("effects", index)
+    stated = mapping(value, source, keys)
+    check_keys(stated, ("effect", "parameters"), source, keys)
+    cls = chosen_class(EFFECTS, stated, "effect", source, keys)
+    return build(cls, stated.get("parameters", {}), source, (*keys, "parameters"))
 
 
 def _effects_schema() -> Schema:
@@ -205,7 +188,8 @@ def _effects_schema() -> Schema:
 SECTIONS: Mapping[str, _Section] = {
     "name": _Section(_read_name, lambda: TEXT),
     "seed": _Section(
-        _read_seed, lambda: {"type": "integer", "minimum": 0, "description": "every random draw derives from it"}
+        lambda value, source: read_whole(value, source, ("seed",), 0, _LARGEST_SEED),
+        lambda: {"type": "integer", "minimum": 0, "description": "every random draw derives from it"},
     ),
     "plant": _of_record("plant", Plant),
     "driver": _of_record("driver", Driver),

@@ -10,12 +10,14 @@ SeatsimError            everything that seatsim raises on purpose
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from typing import Any, TypeVar
 
 _LONGEST = 200
 """Letters of a name from which on none is sought that is near: that takes ever longer, and it is none."""
 _LONGEST_MESSAGE = 2000
+_Key = TypeVar("_Key")
 
 
 class SeatsimError(Exception):
@@ -55,6 +57,20 @@ def gathered(errors: list[InputError]) -> Iterator[None]:
         errors.append(error)
 
 
+def read_each(readers: Mapping[_Key, Callable[[], Any]]) -> dict[_Key, Any]:
+    """Return what each of some readers of a file returns, by its key.
+
+    Raises:
+        InputError: some of them do; all others are called nevertheless (see `raise_all`).
+    """
+    found, errors = dict[_Key, Any](), list[InputError]()
+    for key, read in readers.items():
+        with gathered(errors):
+            found[key] = read()
+    raise_all(errors)
+    return found
+
+
 @contextmanager
 def placed(place: str) -> Iterator[None]:
     """Put before an InputError that is raised meanwhile the place of what is wrong."""
@@ -83,6 +99,11 @@ def find_nearest(name: object, known: Iterable[str]) -> str:
         return ""
     matches = difflib.get_close_matches(str(name), [str(k) for k in known], n=1, cutoff=0.5)
     return matches[0] if matches else ""
+
+
+def permit(name: object, known: Collection[str]) -> str:
+    """Return `" (did you mean 'x'?); permitted: x, y"`, the end of the error that a name is none of the known ones."""
+    return f"{nearest(name, known)}; permitted: {', '.join(known)}"
 
 
 def nearest(name: object, known: Iterable[str]) -> str:

@@ -12,7 +12,7 @@ Pydantic validates it from a mapping, numba compiles it as a typed record. A val
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, TypeVar, cast, get_args, get_origin, get_type_hints
@@ -21,6 +21,7 @@ from annotated_types import Ge, Gt, Le
 from pydantic import Field, JsonValue, TypeAdapter
 from pydantic.fields import FieldInfo
 
+from seatsim.schema.content import list_written
 from seatsim.schema.registry import Record
 from seatsim.schema.units import conversion
 from seatsim.schema.yaml_text import parse_value
@@ -203,3 +204,9 @@ def _is_usual(value: float, field: FieldSpecification) -> bool:
     # A range that begins above zero is one of magnitudes: the ends of a travel have both signs.
     size = abs(value) if low > 0.0 else value
     return low <= size <= high and math.isfinite(size)
+
+
+def head_columns(record: type, print_unit: Callable[[str], str] = str) -> list[str]:
+    """Return the name of each written field of a record class with its unit, as `print_unit` prints it."""
+    units = {field.name: print_unit(field.unit) for field in describe(record)}
+    return [f"{field.key} [{unit}]" if (unit := units[field.name]) else field.key for field in list_written(record)]

@@ -29,6 +29,11 @@ def cut_words(text: str) -> str:
     return re.sub(rf"\S{{{_LONGEST_WORD},}}", lambda found: f"{found[0][:100]}...{found[0][-50:]}", text)
 
 
+def cut(text: str) -> str:
+    """Return a text of 60 letters at most, without the end of a longer one."""
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
 def join_names(names: Collection[str], last: str = "and") -> str:
     """Return one or more names as they stand in a sentence: `a, b and c`."""
     *first, end = names

@@ -9,9 +9,10 @@ from typing import TypeGuard, TypeVar
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from seatsim.schema.errors import InputError, find_nearest, nearest, placed, raise_all
+from seatsim.schema.errors import InputError, find_nearest, nearest, permit, placed, raise_all
 from seatsim.schema.fields import describe, field_names, guess, validated
 from seatsim.schema.registry import Record, Registry
+from seatsim.schema.text import cut
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import KeyPath
 
@@ -88,7 +89,7 @@ def _find_unknown(
 ) -> Iterator[InputError]:
     for key in values:
         if key not in known:
-            yield source.error((*keys, key), f"unknown key{nearest(key, known)}; permitted: {', '.join(known)}")
+            yield source.error((*keys, key), f"unknown key{permit(key, known)}")
 
 
 def choose(values: Mapping[str, object], key: str, source: Source, keys: KeyPath) -> str:
@@ -107,6 +108,23 @@ def chosen_class(
     name = choose(values, key, source, keys)
     with placed(source.place((*keys, key))):
         return registry.find(name, source.path.parent)
+
+
+def read_number(value: object, source: Source, keys: KeyPath, unit: str = "") -> float:
+    """Return a value as a number if it is a finite one, else raise InputError."""
+    if not is_finite_number(value):
+        raise source.error(
+            keys, f"{value!r} is not permitted; it must be a finite number{f' in {unit}' if unit else ''}"
+        )
+    return float(value)
+
+
+def read_whole(value: object, source: Source, keys: KeyPath, low: int, high: int) -> int:
+    """Return a value if it is a whole number between two others, else raise InputError."""
+    if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+        problem = f"{value!r} is not permitted; it must be a whole number from {low} to {high}"
+        raise source.error(keys, f"{problem}{sweep_hint(value, keys)}")
+    return value
 
 
 def is_finite_number(value: object) -> TypeGuard[float]:
@@ -141,7 +159,7 @@ def _problem(record: type, error: ErrorDetails) -> str:
         return "this key is missing"
     if error["type"] == "literal_error":
         options = [part.strip("' ") for part in str(context["expected"]).replace(" or ", ", ").split(",")]
-        return f"{value} is not permitted{nearest(error['input'], options)}; permitted: {', '.join(options)}"
+        return f"{value} is not permitted{permit(error['input'], options)}"
     if error["type"] == "tuple_type":
         return f"{value} is not permitted; it must be a list, such as [{error['input']}]"
     if error["type"].startswith(("float", "int", "finite")):
@@ -150,8 +168,7 @@ def _problem(record: type, error: ErrorDetails) -> str:
 
 
 def _shown(value: object) -> str:
-    text = f"'{value}'" if isinstance(value, str) else str(list(value) if isinstance(value, tuple) else value)
-    return text if len(text) <= 60 else text[:57] + "..."
+    return cut(f"'{value}'" if isinstance(value, str) else str(list(value) if isinstance(value, tuple) else value))
 
 
 def _tuples(value: object) -> object:

@@ -14,6 +14,8 @@ from typing import NamedTuple, TypeAlias, cast
 
 import yaml
 
+from seatsim.schema.text import cut
+
 LARGEST = 8 * 2**20
 """Bytes of a text."""
 DEEPEST = 32
@@ -165,7 +167,7 @@ class _Composer:
             if key == "<<" and event.implicit[0]:
                 merged += _mappings(value)
             elif key in entries:
-                raise YamlError(f"found duplicate key '{_short(key)}'; write each key once, as 'key: value'", at)
+                raise YamlError(f"found duplicate key '{cut(key)}'; write each key once, as 'key: value'", at)
             else:
                 entries[key] = (at, value)
         return _Node(line, entries, tuple(merged), _sum_sizes(line, [*merged, *(each for _, each in entries.values())]))
@@ -218,11 +220,7 @@ def _read_scalar(text: str, line: int) -> _Scalar:
 def _check_signs(text: str, line: int) -> None:
     """Raise YamlError at a zero byte, which an escape puts into a text: no path, name or unit may have one."""
     if "\0" in text:
-        raise YamlError(f"{_short(text)!r} holds a zero byte; leave it out", line)
-
-
-def _short(text: str) -> str:
-    return text if len(text) <= 60 else text[:57] + "..."
+        raise YamlError(f"{cut(text)!r} holds a zero byte; leave it out", line)
 
 
 def _line(event: yaml.Event) -> int:

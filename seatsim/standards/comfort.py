@@ -36,7 +36,7 @@ from seatsim.metrics.weighting import weight
 from seatsim.recordings.quality.channels import say_implausible
 from seatsim.schema.arrays import Array
 from seatsim.schema.content import Form, Joined, Unwritten, show_record, written
-from seatsim.schema.errors import InputError, nearest, placed
+from seatsim.schema.errors import InputError, permit, placed
 from seatsim.schema.units import STANDARD_GRAVITY
 from seatsim.standards.acceleration_records import AccelerationRecord, choose_axes, load_accelerations
 
@@ -196,15 +196,14 @@ def _chosen(records: list[AccelerationRecord], runs: Sequence[str], source: str 
     known = [record.name for record in records]
     for name in runs:
         if name not in known:
-            problem = f"{source}: no run is called '{name}'{nearest(name, known)}; permitted: {', '.join(known)}"
-            raise InputError(problem)
+            raise InputError(f"{source}: no run is called '{name}'{permit(name, known)}")
     return [record for record in records if not runs or record.name in runs]
 
 
 def _check_axes(named: Mapping[str, str]) -> None:
     for axis in named:
         if axis not in _AXES:
-            raise InputError(f"no axis is called '{axis}'{nearest(axis, _AXES)}; permitted: {', '.join(_AXES)}")
+            raise InputError(f"no axis is called '{axis}'{permit(axis, _AXES)}")
 
 
 def _check_hours(hours: Mapping[str, float], runs: Sequence[str]) -> Mapping[str, float]:

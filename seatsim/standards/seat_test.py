@@ -27,7 +27,7 @@ from seatsim.rig.plant import Plant, natural_frequencies
 from seatsim.scenario.loading import load
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
-from seatsim.schema.errors import InputError, RunError, nearest
+from seatsim.schema.errors import InputError, RunError, permit
 from seatsim.schema.registry import specification_of
 from seatsim.schema.text import join_names
 from seatsim.simulation.augment import augment_plant
@@ -100,7 +100,7 @@ def _find_classes(names: Sequence[str]) -> tuple[SpectralClass, ...]:
     known = {name.lower(): name for name in LIMITS}
     for name in names:
         if name.lower() not in known:
-            raise InputError(f"no class is called '{name}'{nearest(name, LIMITS)}; permitted: {', '.join(LIMITS)}")
+            raise InputError(f"no class is called '{name}'{permit(name, LIMITS)}")
     return tuple(known[name.lower()] for name in names)
 
 

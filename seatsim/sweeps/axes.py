@@ -10,7 +10,7 @@ import numpy as np
 
 from seatsim.schema.arrays import Array
 from seatsim.schema.json_schema import Schema, mapping_schema
-from seatsim.schema.validation import check_keys, is_finite_number, mapping
+from seatsim.schema.validation import check_keys, is_finite_number, mapping, read_whole
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import KeyPath, parse_value
 
@@ -98,10 +98,7 @@ def _read_range(stated: Mapping[str, object], source: Source, where: KeyPath) ->
         if not is_finite_number(stated.get(name)):
             problem = f"{stated.get(name)!r} is not a finite number; a range is {{from: A, to: B, steps: N}}"
             raise source.error((*where, name), problem)
-    steps, ends = stated["steps"], [stated["from"], stated["to"]]
-    if not isinstance(steps, int) or not 2 <= steps <= _MOST_STEPS:
-        problem = f"{steps!r} is not permitted; it must be a whole number from 2 to {_MOST_STEPS}"
-        raise source.error((*where, "steps"), problem)
+    ends, steps = [stated["from"], stated["to"]], read_whole(stated["steps"], source, (*where, "steps"), 2, _MOST_STEPS)
     values = np.linspace(float(str(ends[0])), float(str(ends[1])), steps).tolist()
     whole = all(isinstance(end, int) for end in ends) and all(value.is_integer() for value in values)
     # Whole numbers stay what they are: keys such as `seed` take no others.

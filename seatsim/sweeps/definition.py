@@ -12,15 +12,16 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
 from seatsim.metrics.table import METRICS
 from seatsim.scenario.loading import find_file
-from seatsim.schema.errors import InputError, gathered, nearest, raise_all
+from seatsim.schema.errors import InputError, permit, read_each
 from seatsim.schema.guarded import is_there, read_bytes
 from seatsim.schema.json_schema import BY_KEY, TEXT, Schema, head_schema, mapping_schema
-from seatsim.schema.validation import check_keys, is_finite_number, mapping
+from seatsim.schema.validation import check_keys, mapping, read_number, read_whole
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import YamlError, parse_value
 from seatsim.sweeps.axes import SPECIMENS, Axis, axis_schema, read_axis
@@ -71,6 +72,7 @@ def read_definition(path: Path) -> SweepDefinition:
     if "scenario" not in source.data and {"plant", "damper"} & set(source.data):
         raise InputError(f"{path}: is a scenario; a sweep is a file that names one under scenario, and what varies")
     readers: Mapping[str, Callable[[], object]] = {
+        "source": lambda: check_keys(source.data, _KEYS, source, ()),
         "scenario": lambda: _read_scenario(source),
         "seed": lambda: _read_whole(source, "seed", least=0) or 0,
         "design": lambda: _read_design(source),
@@ -80,14 +82,7 @@ def read_definition(path: Path) -> SweepDefinition:
         "table": lambda: _read_table(source),
         "limits": lambda: _read_limits(source),
     }
-    found, errors = dict[str, object](source=source), list[InputError]()
-    with gathered(errors):
-        check_keys(source.data, _KEYS, source, ())
-    for name, read in readers.items():
-        with gathered(errors):
-            found[name] = read()
-    raise_all(errors)
-    return SweepDefinition._make(found[name] for name in SweepDefinition._fields)
+    return SweepDefinition(**read_each(readers) | {"source": source})
 
 
 def _is_table(source: Source) -> bool:
@@ -100,15 +95,10 @@ def _read_axes(source: Source) -> tuple[Axis, ...]:
             problem = "a design 'table' takes its keys from the columns of the file; leave 'vary' out"
             raise source.error(("vary",), problem)
         return ()
-    stated, errors = mapping(source.data.get("vary", {}), source, ("vary",)), list[InputError]()
+    stated = mapping(source.data.get("vary", {}), source, ("vary",))
     if not stated:
         raise source.error((), "key 'vary' is missing; it names the keys of the scenario that are varied")
-    axes = []
-    for key in stated:
-        with gathered(errors):
-            axes.append(read_axis(key, source))
-    raise_all(errors)
-    return tuple(axes)
+    return tuple(read_each({key: partial(read_axis, key, source) for key in stated}).values())
 
 
 def is_sweep(data: Mapping[str, object]) -> bool:
@@ -119,7 +109,7 @@ def is_sweep(data: Mapping[str, object]) -> bool:
 def _read_design(source: Source) -> str:
     name = source.data.get("design", "cross")
     if name not in _DESIGNS:
-        problem = f"{name!r} is not permitted{nearest(name, _DESIGNS)}; permitted: {', '.join(_DESIGNS)}"
+        problem = f"{name!r} is not permitted{permit(name, _DESIGNS)}"
         raise source.error(("design",), problem)
     return str(name)
 
@@ -138,24 +128,13 @@ def _read_scenario(source: Source) -> Source:
 
 
 def _read_whole(source: Source, key: str, least: int) -> int | None:
-    if key not in source.data:
-        return None
-    value = source.data[key]
-    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= MOST_RUNS:
-        raise source.error((key,), f"{value!r} is not permitted; it must be a whole number from {least} to {MOST_RUNS}")
-    return value
+    return read_whole(source.data[key], source, (key,), least, MOST_RUNS) if key in source.data else None
 
 
 def _read_limits(source: Source) -> Mapping[str, float]:
     stated = mapping(source.data.get("limits", {}), source, ("limits",))
     check_keys(stated, METRICS, source, ("limits",))
-    limits = {}
-    for name, value in stated.items():
-        if not is_finite_number(value):
-            problem = f"{value!r} is not permitted; it must be a finite number in {METRICS[name].unit}"
-            raise source.error(("limits", name), problem)
-        limits[name] = float(value)
-    return limits
+    return {name: read_number(each, source, ("limits", name), METRICS[name].unit) for name, each in stated.items()}
 
 
 def _read_table(source: Source) -> _Table | None:

@@ -22,6 +22,7 @@ from seatsim.schema.errors import InputError
 from seatsim.schema.files import make_folder, write_json
 from seatsim.schema.guarded import check_no_link, expect, open_in_place, read_json
 from seatsim.schema.modules import used_files
+from seatsim.schema.text import cut
 from seatsim.sweeps.definition import SweepDefinition
 from seatsim.sweeps.outcome import STATES
 from seatsim.sweeps.plan import Plan
@@ -102,8 +103,7 @@ def _read_back(value: object) -> Mapping[str, object]:
 
 
 def _shown(value: object) -> str:
-    text = "absent" if value is None else json.dumps(value)
-    return text if len(text) <= 60 else f"{text[:57]}..."
+    return "absent" if value is None else cut(json.dumps(value))
 
 
 @contextmanager

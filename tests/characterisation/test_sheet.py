@@ -162,9 +162,9 @@ def test_the_command_judges_limits_and_writes_a_workbook(folder, tmp_path, seats
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("limits: {t90_upp: {max: 1}}", "line 1, limits.t90_upp: is no figure of a damper (did you mean 't90_up'?)"),
-        ("limits: {friction: {most: 1}}", "limits.friction.most: is no bound; permitted: min, max"),
-        ("limits: {friction: {max: much}}", "'much' is no number"),
+        ("limits: {t90_upp: {max: 1}}", "line 1, limits.t90_upp: unknown key (did you mean 't90_up'?)"),
+        ("limits: {friction: {most: 1}}", "limits.friction.most: unknown key; permitted: min, max"),
+        ("limits: {friction: {max: much}}", "'much' is not permitted; it must be a finite number"),
         ("limit: {friction: {max: 1}}", "unknown key (did you mean 'limits'?)"),
     ],
 )

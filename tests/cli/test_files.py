@@ -11,7 +11,7 @@ from ruamel.yaml import YAML
 import seatsim
 from seatsim.cli.new_files import KINDS, REGISTERED, write_new
 from seatsim.cli.outputs.answers import FILES
-from seatsim.cli.outputs.diagnosis_tables import make_tables
+from seatsim.cli.outputs.diagnosis_results import make_tables
 from seatsim.diagnosis.result import Cause, Estimate
 from seatsim.schema.registry import find
 

@@ -9,7 +9,8 @@ import pandas as pd
 import pytest
 
 from seatsim.cli.commands.recordings import diagnose as diagnose_command
-from seatsim.cli.outputs.writing import write_diagnosis, write_outputs
+from seatsim.cli.outputs.diagnosis_results import write_diagnosis
+from seatsim.cli.outputs.writing import write_outputs
 from seatsim.cli.show_table import format_number
 from seatsim.diagnosis.diagnose import BUDGET
 from seatsim.plots.labels import shorten

@@ -8,7 +8,7 @@ import pytest
 from ruamel.yaml import YAML
 
 import seatsim
-from seatsim.cli.outputs.diagnosis_tables import make_tables
+from seatsim.cli.outputs.diagnosis_results import make_tables
 from seatsim.diagnosis.alternatives import are_forms_due, compare_damper_forms, describe_forms, describe_obstacle
 from seatsim.diagnosis.result import DamperForm, GapFigures, Gaps
 from seatsim.effects.base import EFFECTS
@@ -17,7 +17,8 @@ from seatsim.effects.sensor import Gain
 from seatsim.excitations.recording import interpolate_floor
 from seatsim.recordings.gap import measure_gap
 from seatsim.recordings.recording import BENCH_CHANNELS, SEAT_CHANNELS
-from seatsim.report.diagnosis import write_report
+from seatsim.report.diagnosis import report_diagnosis
+from seatsim.report.rendering import render_report
 from seatsim.scenario.loading import single
 from seatsim.schema.content import to_content
 from seatsim.simulation.inputs import BenchInputs, SeatInputs
@@ -194,7 +195,7 @@ def test_what_forms_explain_is_one_sentence(forms, said):
     assert describe_forms(forms, gaps(0.4, 0.3), 0.1) == said
 
 
-def test_a_diagnosis_lists_the_forms_that_were_tried(wrong_form, tmp_path):
+def test_a_diagnosis_lists_the_forms_that_were_tried(wrong_form):
     settings = try_only(wrong_form, "bouc_wen").settings
     found = seatsim.diagnose(wrong_form.recording, OTHERS, settings=settings, budget=1200.0, damper_forms=True)
     best = found.alternatives[0]
@@ -203,7 +204,7 @@ def test_a_diagnosis_lists_the_forms_that_were_tried(wrong_form, tmp_path):
     assert content["alternatives"][0]["shrink"] == best.shrink
     assert set(content["alternatives"][0]["parameters"]) == set(TRUE)
     assert [table.title for table in make_tables(found)][-1] == "other forms of the damper than bingham"
-    page = write_report(found, tmp_path / "report.html").read_text()
+    page = render_report(report_diagnosis(found))
     assert "Other forms of the damper" in page and '<th scope="row">bouc_wen</th>' in page
 
 

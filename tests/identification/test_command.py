@@ -10,7 +10,7 @@ from ruamel.yaml import YAML
 from typer.testing import CliRunner
 
 from seatsim.cli.app import app
-from seatsim.cli.outputs.writing import write_identification
+from seatsim.cli.outputs.damper_results import write_identification
 from seatsim.identification import model_benchmark as module
 from seatsim.identification.assessment import PredictionData
 from seatsim.identification.identify import identify
@@ -53,7 +53,7 @@ def test_files_and_tables_are_written(fitted):
     folder, said = fitted
     assert {path.name for path in folder.iterdir()} == DOCUMENTED
     assert (folder / "loops.png").stat().st_size > 10000
-    for text in ("sine_2.5Hz, 1 A (test)", "mean, predicted", "c_b", "N s/(m A)", f"written to {folder}:"):
+    for text in ("sine_2.5Hz, 1 A", "mean, predicted", "c_b", "N·s/(m·A)", f"written to {folder}:"):
         assert text in said.replace("\n", "") or text in said, text
 
 

@@ -7,8 +7,14 @@ import numpy as np
 import pytest
 
 from seatsim.dampers.bouc_wen import BoucWen, ModifiedBoucWen
-from seatsim.identification.coordinates import Coordinates
-from seatsim.identification.damper_record import Scales, evaluate_law, fix_parameters, numeric_fields, rescale_damper
+from seatsim.identification.damper_record import (
+    Coordinates,
+    Scales,
+    evaluate_law,
+    fix_parameters,
+    numeric_fields,
+    rescale_damper,
+)
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import bounds, param
 from seatsim.schema.registry import find, names, specification_of

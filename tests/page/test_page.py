@@ -11,8 +11,7 @@ import uvicorn
 from uvicorn.server import ServerState
 
 from seatsim.page.app import make_app
-from seatsim.page.controls import Choice, Slider, read_choice, read_number
-from seatsim.page.scenario_view import View
+from seatsim.page.scenario_view import Choice, Slider, View, read_choice, read_number
 from seatsim.page.serve import Impatient, find_target, open_target
 from seatsim.report.blocks import Table
 from seatsim.report.packing import Panel, pack_signals

@@ -20,15 +20,13 @@ from seatsim.plots.bench.vibration import plot_vibration
 from seatsim.plots.runs.draw import plot_result
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.recordings.gap import Gap, GapFigures, ReplayedPair
-from seatsim.report.characterisation import report_characterisation
-from seatsim.report.comfort import report_comfort
-from seatsim.report.credibility import count_variations
+from seatsim.report.composing import count_variations
+from seatsim.report.dampers import report_characterisation, report_identification
 from seatsim.report.diagnosis import report_diagnosis
 from seatsim.report.gap import report_gap
-from seatsim.report.identification import report_identification
 from seatsim.report.rendering import render_report
 from seatsim.report.runs import report_runs
-from seatsim.report.seat_test import report_seat_test
+from seatsim.report.standards import report_comfort, report_seat_test
 from seatsim.report.sweep import report_sweep
 from seatsim.scenario.loading import load
 from seatsim.simulation.damper_bench import SineTest

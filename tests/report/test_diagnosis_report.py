@@ -18,10 +18,9 @@ from seatsim.diagnosis.result import (
     Share,
 )
 from seatsim.plots.labels import format_percent
-from seatsim.report.diagnosis import advise, report_diagnosis, say_diagnosis, write_report
-from seatsim.report.formatting import format_estimate, format_sentence
+from seatsim.report.diagnosis import advise, report_diagnosis, say_diagnosis
+from seatsim.report.formatting import format_estimate, format_sentence, read_words, say_action, say_cause
 from seatsim.report.rendering import render_report
-from seatsim.report.words import read_words, say_action, say_cause
 from seatsim.schema.registry import names
 
 from ..text import words
@@ -93,7 +92,7 @@ def test_every_run_is_drawn_and_the_held_out_one_is_named(pages):
     assert len(block.data["panels"]) == 5 and all(len(panel["runs"]) == 3 for panel in block.data["panels"])
 
 
-def test_hostile_names_are_text(tmp_path):
+def test_hostile_names_are_text():
     bad = "</script><script>alert('x')</script>$a$ & \"b\" {{ 7 * 7 }}"
     found = known(("damper_force",))
     traces = [replace(trace, run=bad, channel=bad, unit=bad) for trace in found.evidence.traces]
@@ -106,7 +105,7 @@ def test_hostile_names_are_text(tmp_path):
             collinearity=Collinearity([bad, "b"], np.eye(2)),
         ),
     )  # fmt: skip
-    text = write_report(found, tmp_path / "report.html").read_text(encoding="utf-8")
+    text = render_report(report_diagnosis(found))
     assert "<script>alert" not in text and "49" not in text.partition("<nav")[0].partition("<main")[2]
     outline = Outline(text)
     assert any("<script>" in words for words in outline.words)
@@ -115,7 +114,7 @@ def test_hostile_names_are_text(tmp_path):
     assert text.count("<script>") == 1
 
 
-def test_little_is_known(tmp_path):
+def test_little_is_known():
     """No traces, no motion, no gaps by channel, numbers that are none: what is left is printed."""
     found = known()
     nothing = Evidence([], {}, None, Collinearity([], np.zeros((0, 0))), [])
@@ -123,7 +122,7 @@ def test_little_is_known(tmp_path):
     found = replace(
         found, evidence=nothing, gap=gap, notes=[], held_out=[], isolable=[], where=[], selected=[], parameters=[]
     )
-    outline = Outline(write_report(found, tmp_path / "report.html").read_text(encoding="utf-8"))
+    outline = Outline(render_report(report_diagnosis(found)))
     assert outline.anchors == ["causes", "gaps", "credibility", "method"]
     assert "–" in outline.words and not any("nan" in words for words in outline.words)
 

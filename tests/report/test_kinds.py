@@ -6,12 +6,11 @@ import pytest
 
 from seatsim.characterisation.summary import Characterisation
 from seatsim.characterisation.tabulate import make_sheet
-from seatsim.cli.outputs.diagnosis_tables import make_gap_table
+from seatsim.cli.outputs.diagnosis_results import make_gap_table
 from seatsim.cli.show_table import make_plain
 from seatsim.plots.bench.identification import plot_predictions
-from seatsim.report.characterisation import report_characterisation
+from seatsim.report.dampers import report_characterisation, report_identification
 from seatsim.report.gap import report_gap, say_gap
-from seatsim.report.identification import report_identification
 from seatsim.report.rendering import render_report
 from seatsim.report.runs import report_runs
 
@@ -108,7 +107,8 @@ def test_a_characterisation_says_force_and_response():
         "Moved by ±10 mm at 1 Hz, the damper gives up to 450 N at 1 A, 4.5 times its force at 0 A; it follows a step"
         " of the current within 23.1 ms."
     )
-    assert outline.rows("Largest forces")["a"][8] == "0" and "steps" in outline.anchors
+    figures = outline.rows("Largest forces")
+    assert figures["a"][figures["record"].index("offset [N]")] == "0" and "steps" in outline.anchors
     assert any("three currents" in words for words in outline.words)
 
 

@@ -2,7 +2,8 @@
 
 import pytest
 
-from seatsim.report.diagnosis import write_report
+from seatsim.report.diagnosis import report_diagnosis
+from seatsim.report.rendering import write_html
 
 from .browser import BLANK, open_chromium, open_page
 from .diagnoses import with_every_run
@@ -10,7 +11,7 @@ from .diagnoses import with_every_run
 
 @pytest.fixture(scope="module")
 def opened(tmp_path_factory):
-    path = write_report(with_every_run(), tmp_path_factory.mktemp("page") / "report.html")
+    path = write_html(report_diagnosis(with_every_run()), tmp_path_factory.mktemp("page") / "report.html")
     with open_chromium() as browser:
         yield browser, path.as_uri()
 

@@ -8,7 +8,7 @@ import pytest
 
 import seatsim
 from seatsim.scenario.loading import load
-from seatsim.simulation.design_outcome import describe_designs
+from seatsim.simulation.checks import describe_designs
 
 README = (Path(__file__).resolve().parents[2] / "README.md").read_text(encoding="utf-8")
 NUMBER = r"-?\d+(?:\.\d+)?"

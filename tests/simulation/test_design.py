@@ -9,8 +9,8 @@ import seatsim
 from seatsim.rig.control import prepare_law
 from seatsim.scenario.loading import single
 from seatsim.schema.errors import InputError, SynthesisError
+from seatsim.simulation.checks import measure_clipping
 from seatsim.simulation.design import record_floors, settle_travel
-from seatsim.simulation.design_outcome import measure_clipping
 from seatsim.simulation.simulate import measure_peak_travel
 
 PLAIN = {"variants": {}, "sweep": {}, "checks": {}, "excitation.duration": 10.0, "controller.masses": [60.0]}

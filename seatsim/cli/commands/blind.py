@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from seatsim.cli.options import Json, NewFolder, OwnCode, check_out
+from seatsim.cli.options import NewFolder, check_out, with_options
 from seatsim.cli.terminal import answer, count_progress, out, say, wrote_one
 from seatsim.schema.errors import InputError, SeatsimError
 
@@ -19,6 +19,7 @@ blind = typer.Typer(help="Check diagnoses on recordings whose effects are sealed
 
 
 @blind.command("make")
+@with_options("own_code")
 def blind_make(
     out_folder: NewFolder,
     sealed: Annotated[Path, typer.Option("--sealed", help="File for the encrypted labels.")],
@@ -36,8 +37,6 @@ def blind_make(
     carrier: Annotated[
         Path | None, typer.Option("--carrier", help="A measured recording into which the effects are put instead.")
     ] = None,
-    own_code: OwnCode = None,
-    as_json: Json = False,
 ) -> None:
     """Draw rigs with hidden effects, write recordings of them and seal the labels; the key is printed once."""
     from seatsim.blind.carrier.make import make_on_carrier
@@ -64,6 +63,7 @@ def blind_make(
 
 
 @blind.command("score")
+@with_options("own_code")
 def blind_score(
     folder: Annotated[Path, typer.Argument(help="Folder of `blind make`; undiagnosed cases are diagnosed first.")],
     sealed: Annotated[Path, typer.Option("--sealed", help="File of the encrypted labels.")],
@@ -71,8 +71,6 @@ def blind_score(
     out_folder: Annotated[
         Path | None, typer.Option("--out", help="Folder for score.json, FOLDER by default.", callback=check_out)
     ] = None,
-    own_code: OwnCode = None,
-    as_json: Json = False,
 ) -> None:
     """Diagnose every recording of a sealed set and score the verdicts against the labels."""
     from seatsim.blind.score.score import score
@@ -106,7 +104,7 @@ def _diagnose_all(folder: Path, count: Callable[[int, int], None]) -> None:
 
 def _diagnose_one(case: Path) -> None:
     """Diagnose one case; one that cannot be diagnosed is left without, and counts as wrong."""
-    from seatsim.cli.outputs.writing import write_diagnosis
+    from seatsim.cli.outputs.diagnosis_results import write_diagnosis
     from seatsim.diagnosis.diagnose import diagnose
     from seatsim.schema.files import write_json
 

@@ -8,15 +8,12 @@ from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
-from seatsim.cli.options import Json, Out, OwnCode, Pdf, complete_kind, pairs
-from seatsim.cli.terminal import answer, complain, conclude, say, show_progress, warn, wrote
+from seatsim.cli.options import Out, complete_kind, pairs
+from seatsim.cli.terminal import show_progress
 from seatsim.schema.errors import InputError
 
 if TYPE_CHECKING:
     from seatsim.characterisation.summary import Characterisation
-    from seatsim.identification.assessment import PredictionData
-    from seatsim.identification.settings import IdentificationSettings
-    from seatsim.recordings.bench_tables import BenchRecord
 
 
 def characterise(
@@ -32,9 +29,6 @@ def characterise(
     beside: Annotated[Path | None, typer.Option("--beside", metavar="DAMPER.yaml")] = None,
     pattern: Annotated[str, typer.Option("--pattern", metavar="REGEX")] = "",
     window: Annotated[float, typer.Option("--window", min=0.001, max=1.0)] = 0.1,
-    own_code: OwnCode = None,
-    pdf: Pdf = False,
-    as_json: Json = False,
 ) -> None:
     """Show what a bench shows of a damper: loops, energy, asymmetry, offset and response times.
 
@@ -51,11 +45,9 @@ def characterise(
         pattern: Groups current and temperature of file names.
         window: Part of the stroke over which forces are averaged.
     """
-    from seatsim.characterisation.limits import check_limits
     from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
-    from seatsim.cli.outputs.damper_tables import make_characterisation_tables
-    from seatsim.cli.outputs.writing import write_characterisation
-    from seatsim.cli.show_table import show_table
+    from seatsim.characterisation.sheet import check_limits
+    from seatsim.cli.outputs.damper_results import present_characterisation
 
     grid = (currents, temperatures, amplitudes, frequencies)
     if (data is None) == (model is None and parameters is None) or (data is not None and any(grid)):
@@ -69,13 +61,7 @@ def characterise(
         found = characterise_model(tested, choose_settings(tested, *grid), window)
     if limits:
         found = found.set_limits(check_limits(found.sheet, limits))
-    show_table(*make_characterisation_tables(found))
-    for check in found.sheet.limits:
-        (say if check.passes else complain)(str(check))
-    warn(found.remarks)
-    folder = out_folder or Path("out") / f"characterise-{found.name}"
-    paths = write_characterisation(found, folder)
-    conclude(found, folder, paths)
+    present_characterisation(found, out_folder or Path("out") / f"characterise-{found.name}")
 
 
 def _characterise_data(data: Path, beside: Path | None, pattern: str, window: float) -> Characterisation:
@@ -102,9 +88,6 @@ def identify(
     centred: Annotated[bool, typer.Option("--centred")] = False,
     seed: Annotated[int, typer.Option("--seed", min=0)] = 0,
     out_folder: Out = None,
-    own_code: OwnCode = None,
-    pdf: Pdf = False,
-    as_json: Json = False,
 ) -> None:
     """Fit a damper model, or every model, to bench records and assess it on records held out.
 
@@ -120,6 +103,7 @@ def identify(
         centred: The predicted records' mean force was removed.
         seed: Seed of the global search.
     """
+    from seatsim.cli.outputs.damper_results import compare_models, identify_damper, identify_specimens
     from seatsim.identification.assessment import load_prediction_data
     from seatsim.identification.settings import IdentificationSettings
     from seatsim.recordings.bench_tables import load_bench
@@ -134,86 +118,13 @@ def identify(
     if len(data) > 1:
         if several or len({_title(each) for each in data}) < len(data):
             raise InputError("several DATA are specimens: give them names of their own, and a single --model")
-        _identify_specimens({_title(each): load_bench(each) for each in data}, models[0], request, beside, folder)
+        identify_specimens({_title(each): load_bench(each) for each in data}, models[0], request, beside, folder)
         return
     records = load_bench(data[0])
     if several:
-        _benchmark_models(records, models, request, beside, folder)
+        compare_models(records, models, request, beside, folder)
     else:
-        _identify(records, models[0], request, beside, folder)
-
-
-def _identify(
-    records: list[BenchRecord], model: str, request: IdentificationSettings, beside: PredictionData, folder: Path
-) -> None:
-    from seatsim.cli.outputs.damper_tables import make_identification_tables
-    from seatsim.cli.outputs.writing import write_identification
-    from seatsim.cli.show_table import show_table
-    from seatsim.identification.identify import identify_records, predict_records
-
-    with show_progress() as progress:
-        found = predict_records(identify_records(records, model, request, progress), beside)
-        paths = write_identification(found, folder, request.seed)
-    show_table(*make_identification_tables(found))
-    warn(found.notes)
-    conclude(found, folder, paths)
-
-
-def _identify_specimens(
-    specimens: Mapping[str, list[BenchRecord]],
-    model: str,
-    request: IdentificationSettings,
-    beside: PredictionData,
-    folder: Path,
-) -> None:
-    """Identify a model of each specimen; write each fit in a folder of its name, their mean and their values."""
-    from seatsim.cli.outputs.damper_tables import make_specimen_table
-    from seatsim.cli.outputs.writing import write_member, write_specimens
-    from seatsim.cli.show_table import show_table
-    from seatsim.identification.identify import identify_records, predict_records
-    from seatsim.identification.specimens import gather_specimens
-
-    found = {}
-    with show_progress() as progress:
-        for name, records in specimens.items():
-            progress(name)
-            found[name] = predict_records(identify_records(records, model, request, progress), beside)
-            write_member(found[name], folder / name)  # at once, so that an interrupt keeps it
-        gathered = gather_specimens(found)
-        paths = write_specimens(gathered, folder, request.seed)
-    show_table(make_specimen_table(gathered))
-    warn(f"{name}: {note}" for name, each in found.items() for note in each.notes)
-    conclude(gathered, folder, paths)
-
-
-def _benchmark_models(
-    records: list[BenchRecord], models: list[str], request: IdentificationSettings, beside: PredictionData, folder: Path
-) -> None:
-    """Identify several models, print and write the table; exit 1 where one failed."""
-    from seatsim.cli.outputs.damper_tables import make_league_table
-    from seatsim.cli.outputs.writing import write_league, write_member
-    from seatsim.cli.show_table import show_table
-    from seatsim.identification.model_benchmark import League, benchmark_models
-
-    with show_progress() as progress:
-        places = benchmark_models(
-            records,
-            models,
-            request,
-            beside,
-            folder,
-            progress,
-            lambda found: write_member(found, folder / found.model.rpartition(":")[2]),
-        )
-    show_table(make_league_table(places))
-    failed = [place for place in places if place.failed]
-    for place in failed:
-        complain(f"failed: {place.failed}")
-    paths = write_league(places, folder, request.seed)
-    wrote(folder, paths)
-    answer(League(places), paths)
-    if failed:
-        raise typer.Exit(1)
+        identify_damper(records, models[0], request, beside, folder)
 
 
 def _title(data: Path) -> str:

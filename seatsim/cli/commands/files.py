@@ -11,9 +11,9 @@ from typing import Annotated
 
 import typer
 
-from seatsim.cli.options import Json, OwnCode, check_out, complete, complete_kind
+from seatsim.cli.options import check_out, complete, complete_kind
 from seatsim.cli.terminal import answer, complain, refuse, say, show_progress, warn, wrote_one
-from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.errors import InputError, permit
 
 _NEXT = {
     "scenario": "seatsim run {file}",
@@ -29,7 +29,6 @@ _NEXT = {
 def new(
     kind: Annotated[str, typer.Argument(autocompletion=complete(*_NEXT))],
     name: Annotated[str, typer.Argument()],
-    as_json: Json = False,
 ) -> None:
     """Write a commented file that works as it stands, to be changed.
 
@@ -50,8 +49,6 @@ def new(
 def check(
     file: Annotated[Path, typer.Argument()],
     run: Annotated[bool, typer.Option("--run")] = False,
-    own_code: OwnCode = None,
-    as_json: Json = False,
 ) -> None:
     """Read a file as the other commands would, and say what is wrong or doubtful; it is run by --run alone.
 
@@ -92,8 +89,6 @@ def _complete_schema(incomplete: str) -> list[str]:
 
 def schema(
     kind: Annotated[str, typer.Argument(autocompletion=_complete_schema)] = "scenario",
-    own_code: OwnCode = None,
-    as_json: Json = False,
 ) -> None:
     """Print a JSON Schema, with which an editor completes and checks a file.
 
@@ -102,7 +97,7 @@ def schema(
     """
     known = _list_schemas()
     if kind not in known:
-        raise InputError(f"schema {kind}: no such kind{nearest(kind, known)}; permitted: {', '.join(known)}")
+        raise InputError(f"schema {kind}: no such kind{permit(kind, known)}")
     # A schema is JSON with or without --json.
     sys.stdout.write(json.dumps(known[kind]()) + "\n")
 
@@ -113,8 +108,6 @@ _ENDINGS = (".png", ".svg", ".pdf")
 def describe(
     name: Annotated[str, typer.Argument(autocompletion=complete_kind("damper", "law", "excitation", "effect"))] = "",
     picture: Annotated[Path | None, typer.Option("--picture", metavar="FILE")] = None,
-    own_code: OwnCode = None,
-    as_json: Json = False,
 ) -> None:
     """List dampers, laws, excitations and effects, or the keys of one of them with units and bounds.
 
@@ -153,7 +146,6 @@ def reproduce(
     folder: Annotated[Path, typer.Argument(metavar="DIR", show_default=False)],
     out_folder: Annotated[Path | None, typer.Option("--out", callback=check_out)] = None,
     own_code: Annotated[list[Path] | None, typer.Option("--with", metavar="FILE.py")] = None,
-    as_json: Json = False,
 ) -> None:
     """Run again what made a folder, and compare the bytes: exit 0 identical, 1 different.
 

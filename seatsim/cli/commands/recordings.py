@@ -1,4 +1,4 @@
-"""The commands on recordings: import, inspect, gap, diagnose."""
+"""The commands on measured data: import, inspect, gap, diagnose, comfort, seat-test."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seatsim.cli.options import Json, NewFolder, OneScenario, Out, OwnCode, Pdf, RecordingFolder
-from seatsim.cli.terminal import answer, conclude, say, show_progress, warn, wrote
+from seatsim.cli.options import NewFolder, OneScenario, Out, RecordingFolder, Settings, scenario_settings
+from seatsim.cli.terminal import answer, count_progress, say, show_progress, warn, wrote
+from seatsim.schema.errors import InputError
 from seatsim.schema.text import make_printable
 
 if TYPE_CHECKING:
@@ -21,27 +22,18 @@ def gap(
     recording: RecordingFolder,
     out_folder: Out = None,
     predict: Annotated[Path | None, typer.Option("--predict", metavar="DIAGNOSIS.json")] = None,
-    own_code: OwnCode = None,
-    pdf: Pdf = False,
-    as_json: Json = False,
 ) -> None:
     """Replay a scenario against a recording and print the gap with the noise floor.
 
     Options:
         predict: Predict the gap from the recording's inputs alone.
     """
-    from seatsim.cli.outputs.diagnosis_tables import make_gap_table
-    from seatsim.cli.outputs.writing import write_gap
-    from seatsim.cli.show_table import show_table
+    from seatsim.cli.outputs.diagnosis_results import present_gap
     from seatsim.recordings.gap import forecast_gap
     from seatsim.recordings.gap import gap as find_gap
 
     found = find_gap(scenario, recording) if predict is None else forecast_gap(scenario, recording, predict)
-    show_table(make_gap_table(found))
-    warn(found.notes)
-    folder = out_folder or Path("out") / f"gap-{Path(recording).name}"
-    paths = write_gap(found, scenario, recording, folder)
-    conclude(found, folder, paths)
+    present_gap(found, scenario, recording, out_folder or Path("out") / f"gap-{recording.name}")
 
 
 def diagnose(
@@ -51,9 +43,6 @@ def diagnose(
     budget: Annotated[float, typer.Option(metavar="SECONDS")] = 120.0,
     damper_forms: Annotated[bool, typer.Option("--damper-forms")] = False,
     after: Annotated[Path | None, typer.Option("--after", metavar="RECORDING")] = None,
-    own_code: OwnCode = None,
-    pdf: Pdf = False,
-    as_json: Json = False,
 ) -> None:
     """Say where the gap between a recording and its nominal scenario lies, what causes it and how far it shrinks.
 
@@ -63,9 +52,7 @@ def diagnose(
         damper_forms: Try other forms of the damper whatever the verdict.
         after: Diagnose this further recording of the rig together with it.
     """
-    from seatsim.cli.outputs.diagnosis_tables import make_tables
-    from seatsim.cli.outputs.writing import write_diagnosis
-    from seatsim.cli.show_table import show_table
+    from seatsim.cli.outputs.diagnosis_results import present_diagnosis
     from seatsim.diagnosis.diagnose import diagnose as find_cause
     from seatsim.effects.base import EFFECTS
 
@@ -75,12 +62,7 @@ def diagnose(
         EFFECTS.find(name)
     with show_progress() as progress:
         diagnosis = find_cause(recording, withheld, progress, budget=budget, damper_forms=damper_forms, after=after)
-    show_table(*make_tables(diagnosis))
-    warn(diagnosis.notes)
-    say(diagnosis.sentence)
-    folder = out_folder or Path("out") / f"diagnosis-{Path(recording).resolve().name}"
-    paths = write_diagnosis(diagnosis, folder)
-    conclude(diagnosis, folder, paths)
+    present_diagnosis(diagnosis, out_folder or Path("out") / f"diagnosis-{recording.resolve().name}")
 
 
 def import_data(
@@ -88,8 +70,6 @@ def import_data(
     folder: NewFolder,
     map_file: Annotated[Path | None, typer.Option("--map", metavar="MAP.yaml")] = None,
     nominal: Annotated[str | None, typer.Option("--nominal", metavar="SCENARIO")] = None,
-    own_code: OwnCode = None,
-    as_json: Json = False,
 ) -> None:
     """Make a recording of CSV, Parquet, Feather, XLSX, HDF5, MAT, MDF, TDMS, UFF58, RPC III or WAV files.
 
@@ -118,8 +98,6 @@ def import_data(
 def inspect_data(
     data: Annotated[Path, typer.Argument(show_default=False)],
     map_file: Annotated[Path | None, typer.Option("--map", metavar="MAP.yaml")] = None,
-    own_code: OwnCode = None,
-    as_json: Json = False,
 ) -> None:
     """Show the channels of a file or a recording, with unit, rate, range, RMS, noise and every doubt.
 
@@ -177,3 +155,92 @@ def _doubt(doubts: list[Issue]) -> None:
                 places.setdefault(text if colon else place, []).append(place if colon else "")
         said = (f"{'; '.join(held)}: {text}" if any(held) else text for text, held in places.items())
         warn(said, word)
+
+
+def comfort(
+    file: Annotated[Path, typer.Argument(show_default=False)],
+    channel: Annotated[list[str] | None, typer.Option("--channel", metavar="AXIS=COLUMN")] = None,
+    hours: Annotated[list[str] | None, typer.Option("--hours", metavar="H or RUN=H")] = None,
+    run: Annotated[list[str] | None, typer.Option("--run")] = None,
+    block: Annotated[list[str] | None, typer.Option("--block", metavar="FROM:TO")] = None,
+    rate: Annotated[float | None, typer.Option("--rate")] = None,
+    unit: Annotated[str | None, typer.Option("--unit")] = None,
+    out_folder: Out = None,
+) -> None:
+    """Work out the ISO 2631-1 figures of measured accelerations, a day's exposure and SEAT factors.
+
+    Options:
+        file: A CSV table of accelerations, or a recording.
+        channel: x, y, z, rx .. on the seat, back.x .. feet.z, floor.z.
+        hours: Hours of such vibration in a day (8), or of each run: RUN=H.
+        run: A run of a recording; all together where none is named.
+        block: Only this stretch, in s; several count as one.
+        rate: Sample rate in Hz of a table without times.
+        unit: Of columns whose names state none, such as g.
+    """
+    from seatsim.cli.outputs.seat_results import present_comfort
+    from seatsim.standards.comfort import comfort as assess
+
+    channels = _split_pairs(channel or [], "--channel", "z=acc_z")
+    blocks = [_stretch(text) for text in block or []]
+    day = _read_hours(hours or [])
+    found = assess(file, channels, hours=day, runs=run or (), blocks=blocks, rate=rate, unit=unit)
+    name = file.resolve().name.partition(".")[0]
+    present_comfort(found, file, out_folder or Path("out") / f"comfort-{name}")
+
+
+def _read_hours(texts: list[str]) -> float | dict[str, float]:
+    """Return the hours of a day, or of each run by its name."""
+    named = len(texts) > 1 or "=" in "".join(texts)
+    by_run = _split_pairs(texts, "--hours", "loading=3") if named else {}
+    try:
+        return {run: float(text) for run, text in by_run.items()} or float(texts[0] if texts else 8.0)
+    except ValueError as error:
+        raise InputError(f"--hours {' '.join(texts)}: write hours, like --hours 6 or --hours loading=3") from error
+
+
+def _split_pairs(texts: list[str], option: str, example: str) -> dict[str, str]:
+    found = dict[str, str]()
+    for text in texts:
+        name, value = _split(text, "=", option, example)
+        if name in found:
+            raise InputError(f"{option} {text}: {name} has {found[name]} already; give it once")
+        found[name] = value
+    return found
+
+
+def _split(text: str, sign: str, option: str, example: str) -> tuple[str, str]:
+    left, found, right = text.partition(sign)
+    if not (left and found and right):
+        raise InputError(f"{option} {text}: write it like {option} {example}")
+    return left.strip(), right.strip()
+
+
+def _stretch(text: str) -> tuple[float, float]:
+    try:
+        start, end = (float(part) for part in _split(text, ":", "--block", "10:70"))
+    except ValueError as error:
+        raise InputError(f"--block {text}: write seconds from the record's start, like --block 10:70") from error
+    return start, end
+
+
+def seat_test(
+    source: Annotated[str, typer.Argument(show_default=False)],
+    spectral_class: Annotated[list[str] | None, typer.Option("--class", metavar="EM1")] = None,
+    out_folder: Out = None,
+    settings: Settings = None,
+) -> None:
+    """Put a seat to the test of ISO 7096: SEAT factors of two drivers, damping, end stops.
+
+    Options:
+        source: The scenario of a seat, or a recording of one.
+        spectral_class: Only this class; may be given several times.
+    """
+    from seatsim.cli.outputs.seat_results import present_seat_test
+    from seatsim.standards.seat_test import seat_test as test
+
+    with count_progress("simulating") as count:
+        found = test(source, spectral_class or (), scenario_settings(settings), count)
+    present_seat_test(found, Path(source), out_folder or Path("out") / f"seat-test-{Path(source).stem}")
+    if found.failures:
+        raise typer.Exit(1)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seatsim.cli.options import Json, OneScenario, Out, OwnCode, Settings, complete, scenario_settings
+from seatsim.cli.options import OneScenario, Out, Settings, complete, scenario_settings
 from seatsim.cli.terminal import announce, answer, show_progress, warn, wrote, wrote_one
 from seatsim.schema.errors import InputError, nearest
 
@@ -28,8 +28,6 @@ def export(
     out: Annotated[Path, typer.Option("--out", metavar="FILE")],
     variant: Annotated[str | None, typer.Option("--variant", metavar="NAME", show_default="the first")] = None,
     settings: Settings = None,
-    own_code: OwnCode = None,
-    as_json: Json = False,
 ) -> None:
     """Write a scenario's rig, damper or controller for other programs: as an FMU, as C, or as a MAT file.
 
@@ -70,8 +68,6 @@ def synthesise(
     out_folder: Out = None,
     prove_best: Annotated[bool, typer.Option("--global")] = False,
     settings: Settings = None,
-    own_code: OwnCode = None,
-    as_json: Json = False,
 ) -> None:
     """Synthesise the H-infinity static output feedback of a scenario's plant and weights.
 
@@ -83,7 +79,7 @@ def synthesise(
     from seatsim.provenance.statement import write_documented
     from seatsim.scenario.loading import single
     from seatsim.schema.yaml_source import Source
-    from seatsim.simulation.design_outcome import measure_clipping
+    from seatsim.simulation.checks import measure_clipping
 
     chosen = single(scenario, scenario_settings(settings))
     with show_progress() as progress:
@@ -127,8 +123,6 @@ def explore(
     target: Annotated[str, typer.Argument(metavar="[SCENARIO|RECORDING]")] = "quickstart",
     port: Annotated[int, typer.Option("--port", min=0, max=65535, show_default="a free one")] = 0,
     no_browser: Annotated[bool, typer.Option("--no-browser")] = False,
-    own_code: OwnCode = None,
-    as_json: Json = False,
 ) -> None:
     """Open a page on this machine: move driver, temperature, road and controller, or effects, and see what follows.
 

@@ -6,6 +6,9 @@ The records of commands that find nothing stand here, all others in the packages
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import reduce
+from importlib import import_module
+from operator import or_
 from pathlib import Path
 from typing import NamedTuple
 
@@ -27,7 +30,7 @@ class NewAnswer(NamedTuple):
     kind: str
 
 
-class _ExploreAnswer(NamedTuple):
+class ExploreAnswer(NamedTuple):
     """A page that is served until the command is interrupted."""
 
     address: str
@@ -48,13 +51,13 @@ class SlurmAnswer(NamedTuple):
     runs: int
 
 
-class _ErrorAnswer(NamedTuple):
+class ErrorAnswer(NamedTuple):
     """What any command prints where it ends with an error."""
 
     error: str
 
 
-class _SynthesisAnswer(NamedTuple):
+class SynthesisAnswer(NamedTuple):
     """A design, as in `design.yaml`."""
 
     measures: list[str]
@@ -63,50 +66,43 @@ class _SynthesisAnswer(NamedTuple):
     lower_bound: float
 
 
-def list_answers() -> Mapping[str, object]:
-    """Return the type of what each command prints, by its name; `error` is what any of them prints where it fails."""
-    from seatsim.blind.score.score import Score
-    from seatsim.characterisation.summary import Characterisation
-    from seatsim.cli.check_files import CheckedFile
-    from seatsim.cli.outputs.simulated import RunAnswer, SweepReport
-    from seatsim.diagnosis.result import Diagnosis
-    from seatsim.exchange.block import ExportedBlock
-    from seatsim.identification.identify import Identification
-    from seatsim.identification.model_benchmark import League
-    from seatsim.identification.specimens import Specimens
-    from seatsim.importing.importing import Import
-    from seatsim.importing.inspection import Inspection
-    from seatsim.provenance.reproduce import Reproduction
-    from seatsim.recordings.gap import Forecast, Gap
-    from seatsim.scenario.describe import Pages
-    from seatsim.standards.comfort import Comfort
-    from seatsim.standards.seat_rows import SeatTest
-    from seatsim.sweeps.execute import SweepResult
+_ANSWERS = {
+    "run": "cli.outputs.simulated.RunAnswer",
+    "compare": "cli.outputs.simulated.RunAnswer",
+    "sweep": "sweeps.execute.SweepResult cli.outputs.answers.SlurmAnswer",
+    "sweep-report": "cli.outputs.simulated.SweepReport",
+    "synthesise": "cli.outputs.answers.SynthesisAnswer",
+    "gap": "recordings.gap.Gap recordings.gap.Forecast",
+    "diagnose": "diagnosis.result.Diagnosis",
+    "characterise": "characterisation.summary.Characterisation",
+    "identify": "identification.identify.Identification identification.model_benchmark.League"
+    " identification.specimens.Specimens",
+    "describe": "scenario.describe.Pages",
+    "new": "cli.outputs.answers.NewAnswer",
+    "check": "cli.check_files.CheckedFile",
+    "import": "importing.importing.Import",
+    "inspect": "importing.inspection.Inspection",
+    "comfort": "standards.comfort.Comfort",
+    "seat-test": "standards.seat_rows.SeatTest",
+    "export": "exchange.block.ExportedBlock",
+    "blind-make": "cli.outputs.answers.BlindMakeAnswer",
+    "blind-score": "blind.score.score.Score",
+    "explore": "cli.outputs.answers.ExploreAnswer",
+    "reproduce": "provenance.reproduce.Reproduction",
+    "error": "cli.outputs.answers.ErrorAnswer",
+}
+"""Records that each command prints, by its name; `error` is what any of them prints where it fails."""
 
-    return {
-        "run": RunAnswer,
-        "compare": RunAnswer,
-        "sweep": SweepResult | SlurmAnswer,
-        "sweep-report": SweepReport,
-        "synthesise": _SynthesisAnswer,
-        "gap": Gap | Forecast,
-        "diagnose": Diagnosis,
-        "characterise": Characterisation,
-        "identify": Identification | League | Specimens,
-        "describe": Pages,
-        "new": NewAnswer,
-        "check": CheckedFile,
-        "import": Import,
-        "inspect": Inspection,
-        "comfort": Comfort,
-        "seat-test": SeatTest,
-        "export": ExportedBlock,
-        "blind-make": BlindMakeAnswer,
-        "blind-score": Score,
-        "explore": _ExploreAnswer,
-        "reproduce": Reproduction,
-        "error": _ErrorAnswer,
-    }
+
+def list_answers() -> Mapping[str, object]:
+    """Return the type of what each command prints, by its name."""
+
+    def find(name: str) -> type:
+        home, _, own = name.rpartition(".")
+        found: type = getattr(import_module(f"seatsim.{home}"), own)
+        return found
+
+    return {command: reduce(or_, map(find, names.split())) for command, names in _ANSWERS.items()}
 
 
 def describe_answer(command: str) -> dict[str, object]:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from ruamel.yaml import YAML
 
-from seatsim.cli.outputs.writing import write_diagnosis
+from seatsim.cli.outputs.diagnosis_results import write_diagnosis
 from seatsim.diagnosis.diagnose import diagnose, diagnose_problem
 from seatsim.diagnosis.result import Estimate, Share
 from seatsim.diagnosis.settings import DiagnosisSettings

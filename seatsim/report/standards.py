@@ -1,26 +1,23 @@
-"""The report of a measured vibration: what ISO 2631 and directive 2002/44/EC say of it."""
+"""The reports of vibration judged by standards: of a measured one by ISO 2631, of a seat's test by ISO 7096."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
 
 from seatsim.metrics.exposure import DAY, Exposure, ValueReached
 from seatsim.metrics.spine import SpinalLoad
+from seatsim.plots.bench.resonance import plot_damping
 from seatsim.plots.labels import format_percent
-from seatsim.report.blocks import Block, Report, Section, show_pictures, tabulate
-from seatsim.report.composing import Closing, compose
-from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs
+from seatsim.report.blocks import Block, Figures, Report, Table, show_pictures, tabulate
+from seatsim.report.composing import Closing, Factor, compose, count_variations, state_intervals, trace_inputs
 from seatsim.report.formatting import format_sentence
 from seatsim.schema.text import join_names
 from seatsim.standards.comfort import Comfort
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from seatsim.standards.seat_rows import ACCEPTANCE, DAMPING, LIMITS, RECALLED, DampingRow, SeatRow, SeatTest
 
 
-def report_comfort(found: Comfort, figures: Mapping[str, Figure], command: str) -> Report:
+def report_comfort(found: Comfort, figures: Figures, command: str) -> Report:
     """Return the report of a measured vibration.
 
     Args:
@@ -29,13 +26,13 @@ def report_comfort(found: Comfort, figures: Mapping[str, Figure], command: str) 
         command: what makes the report again.
     """
     answer = [_say_comfort(found), *map(format_sentence, list_comfort_sentences(found))]
-    sections = [
-        Section("day", "A working day", [*_tabulate_operations(found), *show_pictures(figures, "operations")]),
-        Section("axes", "Axis by axis", [*_tabulate_axes(found), *show_pictures(figures, "running_rms", "spectra")]),
-        Section("seat", "What the seat passes on", _tabulate_seat(found)),
-    ]
-    closing = Closing(found.notes, _judge(found), command)
-    return compose("comfort", f"Vibration of {found.name}", answer, [*_advise(found)], sections, closing)
+    sections: dict[str, Sequence[Block]] = {
+        "day": [*tabulate_operations(found), *show_pictures(figures, "operations")],
+        "axes": [*tabulate_axes(found), *show_pictures(figures, "running_rms", "spectra")],
+        "seat": tabulate_seat(found),
+    }
+    closing = Closing(found.notes, _judge_comfort(found), command)
+    return compose("comfort", f"Vibration of {found.name}", answer, [*_advise_on_comfort(found)], sections, closing)
 
 
 def list_comfort_sentences(found: Comfort) -> Iterator[str]:
@@ -99,7 +96,7 @@ def _say_comfort(found: Comfort) -> str:
     return f"{day.hours:g} h a day of this vibration give A(8) = {day.a8:.2f} m/s² along {day.a8_axis}, {judged}."
 
 
-def _advise(found: Comfort) -> Iterator[str]:
+def _advise_on_comfort(found: Comfort) -> Iterator[str]:
     day = found.exposure
     if day and len(found.operations) > 1:
         most = max(found.operations, key=lambda each: each.share)
@@ -113,7 +110,7 @@ def _advise(found: Comfort) -> Iterator[str]:
         yield "Measure the floor beside the seat: then the SEAT factor says what the seat itself takes away."
 
 
-def _judge(found: Comfort) -> list[Factor]:
+def _judge_comfort(found: Comfort) -> list[Factor]:
     """Return how far the figures may be trusted."""
     repeated = any(each.within_spread is not None for each in found.seat.values())
     return [
@@ -123,7 +120,8 @@ def _judge(found: Comfort) -> list[Factor]:
     ]
 
 
-def _tabulate_operations(found: Comfort) -> list[Block]:
+def tabulate_operations(found: Comfort) -> list[Table]:
+    """Return the table of the parts of a working day, where its runs have hours of their own."""
     axes = [*found.operations[0].a8] if found.operations else []
     rows = [
         (each.name, each.hours, *each.a8.values(), *each.vdv8.values(), format_percent(each.share))
@@ -134,7 +132,8 @@ def _tabulate_operations(found: Comfort) -> list[Block]:
     return tabulate("Partial exposure of each operation", ["operation", "hours", *exposures, "share of A(8)²"], rows)
 
 
-def _tabulate_axes(found: Comfort) -> list[Block]:
+def tabulate_axes(found: Comfort) -> list[Table]:
+    """Return the table of the axes, with the weighting, the factors and the figures of each."""
     rows = []
     for axis, each in found.axes.items():
         k, dose = each.direction, each.dose
@@ -148,7 +147,8 @@ def _tabulate_axes(found: Comfort) -> list[Block]:
     return tabulate(f"Weighted vibration of each axis, {over}; rotation in rad/s²", head, rows, 4)
 
 
-def _tabulate_seat(found: Comfort) -> list[Block]:
+def tabulate_seat(found: Comfort) -> list[Table]:
+    """Return the table of the SEAT factors, where seat and floor were recorded."""
     said = {True: "yes", False: "no", None: "no three repeats"}
     rows = [
         (axis, ", ".join(f"{run:.3f}" for run in each.runs), said[each.within_spread], each.rms, each.vdv,
@@ -157,3 +157,88 @@ def _tabulate_seat(found: Comfort) -> list[Block]:
     ]  # fmt: skip
     head = "axis, SEAT of each run, three runs within 5 %, SEAT by RMS, SEAT by VDV, spread of runs"
     return tabulate("SEAT factor: weighted vibration on the seat over that at its base (ISO 10326-1)", head, rows, 3)
+
+
+PASSED = ("no", "yes")
+NAMED = 3
+"""Failures that the answer names."""
+
+
+def report_seat_test(found: SeatTest, name: str, is_measured: bool, command: str) -> Report:
+    """Return the report of a seat test.
+
+    Args:
+        found: its lines.
+        name: of the scenario or recording, for the head.
+        is_measured: whether the lines are of a recording.
+        command: what makes the report again.
+    """
+    notes = [*found.notes, *(f"{each.run} failed: {each.reason}" for each in found.failures)]
+    curves = show_pictures(plot_damping(found), "damping")
+    sections: dict[str, Sequence[Block]] = {
+        "classes": tabulate_classes(found.rows),
+        "damping": [*tabulate_damping(found.damping_rows), *curves],
+    }
+    answer, closing = [say_seat_test(found)], Closing(notes, _judge_seat_test(found, is_measured), command)
+    recalled = format_sentence(RECALLED)
+    return compose(
+        "seat_test", f"Seat test: {name}", answer, _advise_on_seat_test(found), sections, closing, recalled=recalled
+    )
+
+
+def _judge_seat_test(found: SeatTest, is_measured: bool) -> list[Factor]:
+    """Return how far a seat test may be trusted."""
+    has_spread = any(row.within_spread is not None for row in found.rows)
+    several = len({row.person for row in found.rows}) > 1
+    return [
+        trace_inputs([*found.notes, *(failure.reason for failure in found.failures)], is_measured=is_measured),
+        state_intervals(["the SEAT factors, by the spread of their runs"] * has_spread),
+        count_variations(len(found.rows), ["spectral class", "mass of the test person"] * several),
+    ]
+
+
+def say_seat_test(found: SeatTest) -> str:
+    """Return in a sentence which lines of the test are passed."""
+    rows: list[SeatRow | DampingRow] = [*found.rows, *found.damping_rows]
+    failed = list(dict.fromkeys(f"{row.run} on {row.spectral_class}" for row in rows if not row.passed))
+    count = f"{sum(row.passed for row in rows)} of {len(rows)} checks are within the limits of ISO 7096"
+    others = [f"{len(failed) - NAMED} others"] * (len(failed) > NAMED)
+    return f"{count}; {join_names([*failed[:NAMED], *others])} exceed theirs." if failed else f"{count}."
+
+
+def _advise_on_seat_test(found: SeatTest) -> list[str]:
+    worst = max(found.rows, key=lambda row: row.seat / row.limit, default=None)
+    texts = []
+    if worst is not None and not worst.passed:
+        where = f"{worst.run} on {worst.spectral_class} under a driver of {worst.mass:g} kg"
+        share = format_percent(worst.seat / worst.limit)
+        texts.append(f"Begin with {where}: its SEAT factor is {share} of the limit.")
+    if any(row.end_stop_hits for row in found.rows):
+        texts.append("Look at the travel: the seat hits its end stops, for which the standard has no limit.")
+    return [*texts, "Try other laws and settings on the floor of a class: excitation: {kind: iso7096} in a scenario."]
+
+
+def tabulate_classes(rows: Sequence[SeatRow]) -> list[Table]:
+    """Return the table of the SEAT factors, a row for each class and driver."""
+    lines = []
+    for row in rows:
+        tested = (row.run, row.spectral_class, LIMITS[row.spectral_class].machines, PASSED[row.passed])
+        figures = (f"{row.mass:g}", row.seat, row.limit, row.corrected, format_percent(row.spread), row.end_stop_hits)
+        lines.append((*tested, *figures))
+    caption = f"Each class with a light and a heavy driver, by {ACCEPTANCE}; in bold what is above its limit"
+    head = (
+        "run, class, machine, passed, driver [kg], SEAT factor, limit, a_w at the intended input [m/s²], spread of"
+        " runs, end-stop hits"
+    )
+    return tabulate(caption, head, lines, 4, [k for k, row in enumerate(rows) if not row.passed])
+
+
+def tabulate_damping(rows: Sequence[DampingRow]) -> list[Table]:
+    """Return the table of the damping test, a row for each seat and class."""
+    lines = [
+        (row.run, row.spectral_class, PASSED[row.passed], row.resonance, row.transmissibility, row.limit)
+        for row in rows
+    ]
+    caption = f"Transmissibility at the resonance, by {DAMPING}; in bold what is above its limit"
+    head = "run, class, passed, resonance [Hz], transmissibility, limit"
+    return tabulate(caption, head, lines, 3, [k for k, row in enumerate(rows) if not row.passed])

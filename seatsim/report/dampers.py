@@ -1,0 +1,257 @@
+"""The reports of an identified damper, and of a characterised one: what its model, and what the bench itself shows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from seatsim.characterisation.response import Response
+from seatsim.characterisation.rows import Row
+from seatsim.characterisation.sheet import BenchSheet, list_tables
+from seatsim.characterisation.summary import Characterisation, group_by_setting
+from seatsim.dampers.base import DAMPERS
+from seatsim.identification.assessment import Assessment
+from seatsim.identification.identify import Identification
+from seatsim.metrics.motion import ratio
+from seatsim.plots.bench.identification import PARTS, select_records
+from seatsim.plots.labels import format_number, format_unit
+from seatsim.report.blocks import Block, Code, Figures, Report, Table, Text, show_pictures, tabulate
+from seatsim.report.composing import Closing, Factor, compose, count_variations, state_intervals, trace_inputs, validate
+from seatsim.report.formatting import format_quantity, read_words
+from seatsim.report.packing import MEASURED, Panel, pack_signals
+from seatsim.schema.content import list_written
+from seatsim.schema.fields import head_columns
+from seatsim.schema.text import join_names
+
+ROWS = 3000
+"""Most rows of a record that are drawn over time, from the stretch with the highest speed."""
+GOOD, FAIR = 90.0, 75.0
+"""Fits in per cent from which on a model is called good, or usable."""
+
+
+def report_identification(found: Identification, figures: Figures, command: str) -> Report:
+    """Return the report of an identified damper; `command` makes it again."""
+    fit, chosen = [*show_pictures(figures, "loops"), *tabulate_fit(found)], select_records(found.assessments)
+    sections: dict[str, Sequence[Block]] = {
+        "figures": fit,
+        "signals": [_show_time(chosen)],
+        "parameters": tabulate_parameters(found),
+    }
+    about, closing = f"Identification: {found.model}", Closing(found.notes, _judge_fit(found), command)
+    return compose("identification", about, [_say_fit(found)], _advise_on_fit(found), sections, closing)
+
+
+def _judge_fit(found: Identification) -> list[Factor]:
+    """Return how far an identified damper may be trusted, on held-out records where there are some."""
+    mean, parts = found.mean("test") or found.mean("train"), [each.part for each in found.assessments]
+    error = None if mean is None else 1.0 - mean.fit_percent / 100.0
+    loose = [each.name for each in found.information.estimates if not each.identified]
+    return [
+        validate(len(parts), parts.count("test"), error),
+        trace_inputs([], [type(found.bench.damper)], True, loose),
+        state_intervals(["the parameters"], True),
+        count_variations(len(parts)),
+    ]
+
+
+def _say_fit(found: Identification) -> str:
+    """Return in a sentence how well a model predicts the force, on held-out records where there are some."""
+    test, train = found.mean("test"), found.mean("train")
+    mean = test or train
+    if mean is None:
+        return f"{found.model} was fitted, but no record assesses it."
+    word = "well" if mean.fit_percent >= GOOD else "usably" if mean.fit_percent >= FAIR else "poorly"
+    where = "on records that took no part in the fit" if test else "on the records it was fitted to; none was held out"
+    return (
+        f"{found.model} predicts the damper's force {word}: a fit of {format_number(mean.fit_percent)} %, an error of"
+        f" {format_quantity(mean.rmse, 'N')} RMS, {where}."
+    )
+
+
+def _advise_on_fit(found: Identification) -> list[str]:
+    texts = []
+    loose = [each.name for each in found.information.estimates if not each.identified]
+    if found.mean("test") is None:
+        texts.append("Hold out records with --test, or the last part of each with --test-fraction, before trusting it.")
+    mean = found.mean("test") or found.mean("train")
+    if mean is not None and mean.fit_percent < FAIR:
+        texts.append("Try other models: --model all compares them on the same records.")
+    if loose:
+        texts.append(f"The data do not determine {join_names(loose)}: fix them with --fix, or record other motions.")
+    texts.append("Copy the sections damper and actuator of parameters.yaml into a scenario, and run it.")
+    return texts
+
+
+def tabulate_fit(found: Identification) -> list[Table]:
+    """Return the table of the agreement on each record, and of its means."""
+    every = found.assessments
+    judged = [(each.record.name, PARTS[each.part], each.record.mean_current, each.agreement) for each in every]
+    means = [(f"mean, {words}", words, "", mean) for part, words in PARTS.items() if (mean := found.mean(part))]
+    rows = [
+        (*name, agreement.fit_percent, format_number(agreement.r2, 5), agreement.rmse, agreement.md)
+        for *name, agreement in [*judged, *means]
+    ]
+    caption = "Agreement of the predicted force with the measured one"
+    head = "record, part, current [A], fit [%], R², RMS error [N], mean deviation"
+    return tabulate(caption, head, rows, 2, range(len(judged), len(rows)))
+
+
+def _show_time(chosen: Sequence[Assessment]) -> Block:
+    times, force, current = {}, {}, {}
+    for k, each in enumerate(chosen):
+        name, part = f"{k + 1}: {each.record.name}", slice(*each.record.liveliest(ROWS))
+        times[name] = each.record.time[part]
+        force[name] = [each.record.force[part], each.predicted[part]]
+        current[name] = [each.record.current[part], None]
+    panels = [Panel("damper force", "N", "", force), Panel("current", "A", "", current)]
+    lines = [("measured", MEASURED), ("predicted", 1)]
+    return pack_signals("The part of each record with the highest speed.", lines, times, panels)
+
+
+def tabulate_parameters(found: Identification) -> list[Table]:
+    """Return the table of the parameters, and that of the pairs that can replace each other."""
+    known = found.information
+    rows = []
+    for each in known.estimates:
+        figures = (format_number(each.value, 5), format_number(1.96 * each.std, 2))
+        rows.append((each.name + " (not determined)" * (not each.identified), format_unit(each.unit), *figures))
+    strong = [k for k, each in enumerate(known.estimates) if not each.identified]
+    caption = "Fitted values, ± 1.96 standard deviations; in bold those that the data do not determine"
+    pairs = "Pairs of parameters that can replace each other"
+    return [
+        *tabulate(caption, "parameter, unit, value, ±", rows, 2, strong),
+        *tabulate(pairs, "one, other, correlation", known.correlated, 2),
+    ]
+
+
+MOST_ROWS = 60
+ROUNDING = 1e-9
+"""Share of the peak force below which an offset is no finding."""
+
+
+def report_characterisation(found: Characterisation, figures: Figures, remarks: Sequence[str], command: str) -> Report:
+    """Return the report of a characterisation; `remarks` are sentences on it, `command` makes it again."""
+    tested: list[Block] = [Text("What was tested:"), Code(found.source, "What was tested")]
+    steps = [*show_pictures(figures, "steps"), *tabulate_steps(found.responses)]
+    sections: dict[str, Sequence[Block]] = {
+        "loops": show_pictures(figures, "loops", "energy", "asymmetry", "warm_up"),
+        "figures": tabulate_rows(found),
+        "limits": _tabulate_sheet(found.sheet, {"limits": "Worst figure against each limit"}),
+        "steps": steps,
+        "sheet": _tabulate_sheet(found.sheet, read_words().captions),
+    }
+    about = f"Characterisation: {found.name}"
+    closing = Closing(remarks, _judge_characterisation(found), command, tested)
+    return compose("characterisation", about, [_say_character(found)], _advise_on_character(found), sections, closing)
+
+
+def _judge_characterisation(found: Characterisation) -> list[Factor]:
+    """Return how far the figures of a bench's records, or of a model's tests, may be trusted."""
+    models = [] if found.measured or found.name not in DAMPERS.names() else [DAMPERS.find(found.name)]
+    doubts = dict.fromkeys([*found.notes, *(note for row in found.rows for note in row.notes)])
+    return [
+        trace_inputs(list(doubts), models, is_measured=found.measured),
+        state_intervals(["the response times"] * any(math.isfinite(each.t95_sd) for each in found.responses)),
+        count_variations(len(found.rows)),
+    ]
+
+
+def _say_character(found: Characterisation) -> str:
+    """Return in a sentence what the damper does: how its force grows with current, and how fast it follows."""
+    group = max(group_by_setting(found.rows), key=lambda rows: len({row.current for row in rows}), default=[])
+    said = f"{len(found.rows)} records were characterised"
+    if group:
+        low, high = min(group, key=lambda row: row.current), max(group, key=lambda row: row.current)
+        force = f"up to {format_quantity(high.peak_rebound, 'N')} at {high.current:.3g} A"
+        said = f"Moved by {_name_motion(high)}, the damper gives {force}"
+        if high.current > low.current and low.peak_rebound > 0:
+            ratio = format_number(high.peak_rebound / low.peak_rebound, 2)
+            said += f", {ratio} times its force at {low.current:.3g} A"
+    times = [answer.t95 for answer in found.responses if math.isfinite(answer.t95)]
+    if times:
+        said += f"; it follows a step of the current within {format_number(1e3 * float(np.median(times)))} ms"
+    return f"{said}."
+
+
+def _advise_on_character(found: Characterisation) -> list[str]:
+    if not found.measured:
+        return ["Compare it with a measured damper: seatsim characterise takes a folder of bench tables, too."]
+    texts = ["Fit a model to these records: seatsim identify takes the same folder."]
+    if not any(math.isfinite(answer.t95) for answer in found.responses):
+        texts.append("Record steps of the current at constant speed: nothing here shows how fast the force follows.")
+    if len({round(row.current, 2) for row in found.rows}) < 3:
+        texts.append("Record at three currents or more: the force's growth with current is a curve.")
+    return texts
+
+
+def _name_motion(row: Row) -> str:
+    """Return amplitude and frequency of a row in words; a record without cycles has no frequency."""
+    steady = f" at {row.frequency:.3g} Hz" if row.cycles else ", no steady cycles"
+    return f"±{1e3 * row.amplitude:.3g} mm{steady}"
+
+
+_COLUMNS: Mapping[str, Callable[[Row], float]] = {
+    "current [A]": lambda row: row.current,
+    "temperature [°C]": lambda row: row.temperature,
+    "speed [m/s]": lambda row: row.peak_speed,
+    "cycles": lambda row: row.cycles or math.nan,
+    "rebound [N]": lambda row: row.peak_rebound,
+    "compression [N]": lambda row: row.peak_compression,
+    "energy [J]": lambda row: row.energy,
+    "± of energy [%]": lambda row: 100.0 * ratio(row.energy_sd, row.energy),
+    "damping [N·s/m]": lambda row: row.damping,
+    "RMS [N]": lambda row: math.nan if row.cycles else row.force_rms,
+    # What is rounding, beside the forces, is no offset.
+    "offset [N]": lambda row: row.offset if abs(row.offset) >= ROUNDING * abs(row.peak_rebound) else 0.0,
+    "asymmetry [%]": lambda row: 100.0 * row.asymmetry,
+    "asymmetry of shape [%]": lambda row: 100.0 * row.asymmetry_of_shape,
+}
+"""Figures of the rows by the heading of their column, which a table without any of them leaves out."""
+
+
+def tabulate_rows(found: Characterisation) -> list[Table]:
+    """Return the table of the records, or of the tests of a model."""
+    left, named, rows = len(found.rows) - MOST_ROWS, int(found.measured), found.rows[:MOST_ROWS]
+    more = f"; {left} more in cycles.csv" if left > 0 else ""
+    shown = {head: read for head, read in _COLUMNS.items() if any(math.isfinite(read(row)) for row in rows)}
+    lines = [(*[row.record] * named, _name_motion(row), *(read(row) for read in shown.values())) for row in rows]
+    caption = f"Largest forces of rebound and compression, energy and damping of the mean cycle{more}"
+    return tabulate(caption, [*["record"] * named, "motion", *shown], lines, named + 1)
+
+
+def _tabulate_sheet(sheet: BenchSheet, captions: Mapping[str, str]) -> list[Block]:
+    """Return the tables with these names that have rows."""
+    tables, blocks = list_tables(sheet), list[Block]()
+    for name, caption in captions.items():
+        record, rows = tables[name]
+        head = [text.replace("_", " ") for text in head_columns(record, format_unit)]
+        lines = [[_say(getattr(row, each.name)) for each in list_written(record)] for row in rows[:MOST_ROWS]]
+        more = f"; {len(rows) - MOST_ROWS} more in characterisation.xlsx" if len(rows) > MOST_ROWS else ""
+        blocks += tabulate(f"{caption}{more}", head, lines)
+    return blocks
+
+
+def _say(value: object) -> str:
+    if isinstance(value, bool):
+        return "pass" if value else "FAIL"
+    return format_number(value) if isinstance(value, float) else str(value)
+
+
+def tabulate_steps(answers: Sequence[Response]) -> list[Table]:
+    """Return the table of the responses to steps of the current."""
+    rows = []
+    for each in answers:
+        times = (1e3 * time for time in (each.t5, each.t90, each.t95, each.t95_sd, each.delay, each.current_t95))
+        how = each.method or each.note or "not determined"
+        rows.append((each.record or "model", each.before, each.after, each.steps, *times, each.rate_95, each.rate, how))
+    caption = (
+        "Time from the step of the current to 5, 90 and 95 % of the change of force; rates ln 20 / t95, and behind a"
+        " delay ln 19 / (t95 - t5)"
+    )
+    head = (
+        "record, from [A], to [A], steps, t5 [ms], t90 [ms], t95 [ms], ± [ms], delay [ms], t95 of current [ms],"
+        " rate [1/s], rate behind delay [1/s], how"
+    )
+    return tabulate(caption, head, rows)
