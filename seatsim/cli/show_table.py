@@ -19,6 +19,7 @@ from rich.table import Column, Table
 from rich.text import Text
 
 from seatsim.cli.terminal import out, say
+from seatsim.plots.labels import MINUS, UNKNOWN
 
 if TYPE_CHECKING:
     from seatsim.report.blocks import Table as ReportTable
@@ -27,6 +28,8 @@ _WIDEST = 10_000
 """Letters that no table has in a line."""
 _HEADING = 12
 """Letters of a line of a heading, if its words permit."""
+_PLAIN = str.maketrans({MINUS: "-", UNKNOWN: "-"})
+"""Signs that programs which read a table do not take for those of numbers."""
 _MOST_ROWS = 60
 """Rows of a table of a report that are printed."""
 
@@ -73,10 +76,9 @@ def show_table(*tables: Table) -> None:
 def show_report_tables(tables: Iterable[ReportTable]) -> None:
     """Print tables of a report; rows that stand out there are bold, and a note counts those that have no room."""
     for table in tables:
-        rows = [
-            [f"[bold]{escape(cell)}[/]" if number in table.strong else escape(cell) for cell in row]
-            for number, row in enumerate(table.rows[:_MOST_ROWS])
-        ]
+        rows = [[escape(cell.translate(_PLAIN)) for cell in row] for row in table.rows[:_MOST_ROWS]]
+        for number in {*table.strong} & {*range(len(rows))}:
+            rows[number] = [f"[bold]{cell}[/]" for cell in rows[number]]
         headings = [fill(text, _HEADING, break_long_words=False) for text in table.head]
         left = len(table.rows) - len(rows)
         caption = f"{left} more rows in report.html" if left else None

@@ -205,8 +205,8 @@ _COLUMNS: Mapping[str, Callable[[Row], float]] = {
     "RMS [N]": lambda row: math.nan if row.cycles else row.force_rms,
     # What is rounding, beside the forces, is no offset.
     "offset [N]": lambda row: row.offset if abs(row.offset) >= ROUNDING * abs(row.peak_rebound) else 0.0,
-    "asymmetry [%]": lambda row: 100.0 * row.asymmetry,
-    "asymmetry of shape [%]": lambda row: 100.0 * row.asymmetry_of_shape,
+    "asymmetry [%]": lambda row: 100.0 * round(row.asymmetry, 9),
+    "asymmetry of shape [%]": lambda row: 100.0 * round(row.asymmetry_of_shape, 9),
 }
 """Figures of the rows by the heading of their column, which a table without any of them leaves out."""
 
@@ -233,10 +233,8 @@ def _tabulate_sheet(sheet: BenchSheet, captions: Mapping[str, str]) -> list[Bloc
     return blocks
 
 
-def _say(value: object) -> str:
-    if isinstance(value, bool):
-        return "pass" if value else "FAIL"
-    return format_number(value) if isinstance(value, float) else str(value)
+def _say(value: object) -> object:
+    return ("pass" if value else "FAIL") if isinstance(value, bool) else value
 
 
 def tabulate_steps(answers: Sequence[Response]) -> list[Table]:

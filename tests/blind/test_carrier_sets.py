@@ -11,7 +11,7 @@ from seatsim.blind.carrier.recorded import read_carrier
 from seatsim.blind.score.score import score_verdicts
 from seatsim.blind.score.verdicts import Verdict, is_right, is_wrong_name
 from seatsim.blind.sealed import EFFECTS, unseal
-from seatsim.cli.outputs.blind_tables import make_score_tables
+from seatsim.cli.outputs.diagnosis_results import make_score_tables
 from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
 

@@ -13,7 +13,7 @@ from seatsim.blind.score.score import score, score_verdicts
 from seatsim.blind.score.shrink import score_shrink
 from seatsim.blind.score.verdicts import Verdict, is_right, read_verdict
 from seatsim.blind.sealed import Sealed, new_key, seal
-from seatsim.cli.outputs.blind_tables import make_score_tables
+from seatsim.cli.outputs.diagnosis_results import make_score_tables
 from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
 

@@ -75,7 +75,7 @@ def blind_score(
     """Diagnose every recording of a sealed set and score the verdicts against the labels."""
     from seatsim.blind.score.score import score
     from seatsim.blind.sealed import unseal
-    from seatsim.cli.outputs.blind_tables import make_score_tables
+    from seatsim.cli.outputs.diagnosis_results import make_score_tables
     from seatsim.cli.show_table import show_table
     from seatsim.schema.files import write_json
 
