@@ -122,7 +122,7 @@ def read_number(value: object, source: Source, keys: KeyPath, unit: str = "") ->
 def read_whole(value: object, source: Source, keys: KeyPath, low: int, high: int) -> int:
     """Return a value if it is a whole number between two others, else raise InputError."""
     if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
-        problem = f"{value!r} is not permitted; it must be a whole number from {low} to {high}"
+        problem = f"{value!r} is not permitted; it must be a whole number of at least {low} and at most {high}"
         raise source.error(keys, f"{problem}{sweep_hint(value, keys)}")
     return value
 
