@@ -1,14 +1,16 @@
-"""A benchmark of models: each identified on the same records, the best prediction of held-out ones first."""
+"""Several identifications: of models on the same records, the best prediction first, and of specimens of a damper."""
 
 from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from typing import NamedTuple
+
+import numpy as np
 
 from seatsim.compilation.cached import digest
 from seatsim.dampers.base import find_confidence
@@ -18,10 +20,12 @@ from seatsim.identification.identify import Identification, identify_records, pr
 from seatsim.identification.search import Progress
 from seatsim.identification.settings import IdentificationSettings, split_records
 from seatsim.recordings.bench_tables import BenchRecord
+from seatsim.schema.content import Unwritten
 from seatsim.schema.errors import InputError, SeatsimError, nearest
 from seatsim.schema.files import write_json
 from seatsim.schema.guarded import expect, read_json
 from seatsim.schema.registry import names
+from seatsim.schema.yaml_source import Source
 
 _ALL = "all"
 """Stands for every registered model."""
@@ -73,7 +77,7 @@ def benchmark_models(
     split_records(records, settings)  # what cannot be held out is refused before the first fit
     _check_fixed(settings.fix, models)
     entries = []
-    for model, key in zip(models, _keys(models, records, settings, data), strict=True):
+    for model, key in zip(models, _entry_keys(models, records, settings, data), strict=True):
         path = folder / "league" / f"{model.rpartition(':')[2]}-{key}.json"
         if path.exists():
             entries.append(_read_entry(path))
@@ -147,7 +151,7 @@ def _check_fixed(fix: Mapping[str, float], models: Sequence[str]) -> None:
             raise InputError(problem)
 
 
-def _keys(
+def _entry_keys(
     models: Sequence[str], records: Sequence[BenchRecord], settings: IdentificationSettings, data: PredictionData
 ) -> list[str]:
     """Return what tells the entries of these data, settings and models, as they are now, from others."""
@@ -168,3 +172,53 @@ def _keys(
 def _hash_code(module: str) -> str:
     """Return a hash of a module and of all that it reaches."""
     return digest([sys.modules[module]])
+
+
+class Specimens(NamedTuple):
+    """The content of `specimens.yaml`: the values of each specimen by keys of a scenario, which a sweep takes together.
+
+    Keys are those in which the specimens differ, such as `damper.parameters.c_a`; `standard_deviation` is that of a
+    sample. damper: the damper with the mean values and its coil, as a scenario has them.
+    """
+
+    model: str
+    specimens: dict[str, dict[str, float]]
+    mean: dict[str, float]
+    standard_deviation: dict[str, float]
+    damper: Unwritten[dict[str, object]]
+
+
+def gather_specimens(found: Mapping[str, Identification]) -> Specimens:
+    """Return what the identifications of two specimens or more, by their names, have in common and how they differ.
+
+    Raises:
+        InputError: the influence of temperature was fitted to some of them only, or all are the same.
+    """
+    contents = {name: {**each.to_scenario()} for name, each in found.items()}
+    for content in contents.values():
+        del content["bench"]
+    values = {name: dict(_list_numbers(content)) for name, content in contents.items()}
+    first, *others = values
+    for name in others:
+        if set(values[name]) != set(values[first]):
+            problem = "the temperature matters in the records of only one of them: add --ignore-temperature"
+            raise InputError(f"{first} and {name} have other parameters; {problem}")
+    keys = [key for key in values[first] if len({each[key] for each in values.values()}) > 1]
+    if not keys:
+        raise InputError(f"{first} and {', '.join(others)} do not differ; name folders of different specimens")
+    table = np.array([[each[key] for key in keys] for each in values.values()])
+    mean, deviation = (dict(zip(keys, map(float, y), strict=True)) for y in (table.mean(0), table.std(0, ddof=1)))
+    middle = Source.of(contents[first])
+    for key, value in mean.items():
+        middle.put(key, value, first)
+    each = {name: {key: own[key] for key in keys} for name, own in values.items()}
+    return Specimens(found[first].model, each, mean, deviation, middle.data)
+
+
+def _list_numbers(content: object, key: str = "") -> Iterator[tuple[str, float]]:
+    """Yield the numbers of nested mappings and lists by their dotted keys."""
+    if isinstance(content, Mapping | list):
+        for name, value in content.items() if isinstance(content, Mapping) else enumerate(content):
+            yield from _list_numbers(value, f"{key}.{name}" if key else str(name))
+    elif isinstance(content, int | float):
+        yield key, float(content)

@@ -76,7 +76,7 @@ _ANSWERS = {
     "diagnose": "diagnosis.result.Diagnosis",
     "characterise": "characterisation.summary.Characterisation",
     "identify": "identification.identify.Identification identification.model_benchmark.League"
-    " identification.specimens.Specimens",
+    " identification.model_benchmark.Specimens",
     "describe": "scenario.describe.Pages",
     "new": "cli.outputs.answers.NewAnswer",
     "check": "cli.check_files.CheckedFile",

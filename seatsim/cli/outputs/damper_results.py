@@ -18,9 +18,8 @@ from seatsim.cli.terminal import complain, conclude, say, show_progress, warn
 from seatsim.dampers.base import OWN
 from seatsim.identification.assessment import PredictionData
 from seatsim.identification.identify import Identification, identify_records, predict_records
-from seatsim.identification.model_benchmark import League, benchmark_models
+from seatsim.identification.model_benchmark import League, benchmark_models, gather_specimens
 from seatsim.identification.settings import IdentificationSettings
-from seatsim.identification.specimens import gather_specimens
 from seatsim.plots.bench.characterisation import plot_characterisation
 from seatsim.plots.bench.identification import plot_predictions
 from seatsim.recordings.bench_tables import BenchRecord
