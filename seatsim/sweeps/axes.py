@@ -10,7 +10,7 @@ import numpy as np
 
 from seatsim.schema.arrays import Array
 from seatsim.schema.json_schema import Schema, mapping_schema
-from seatsim.schema.validation import check_keys, is_finite_number, mapping, read_whole
+from seatsim.schema.validation import check_keys, is_finite_number, mapping, read_number, read_whole
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import KeyPath, parse_value
 
@@ -136,15 +136,12 @@ def _read_pair(values: object, kind: str, source: Source, where: KeyPath) -> tup
 
 
 def _read_truncation(stated: Mapping[str, object], source: Source, where: KeyPath) -> tuple[float, float]:
-    ends = []
-    for name, default in (("low", -math.inf), ("high", math.inf)):
-        value = stated.get(name, default)
-        if name in stated and not is_finite_number(value):
-            raise source.error((*where, name), f"{value!r} is not a finite number")
-        ends.append(float(str(value)))
-    if not ends[0] < ends[1]:
-        raise source.error((*where, "high"), f"{ends[1]:g} is not permitted; it must be greater than low, {ends[0]:g}")
-    return ends[0], ends[1]
+    stops = {"low": -math.inf, "high": math.inf}
+    stops |= {name: read_number(stated[name], source, (*where, name)) for name in stops if name in stated}
+    low, high = stops.values()
+    if not low < high:
+        raise source.error((*where, "high"), f"{high:g} is not permitted; it must be greater than low, {low:g}")
+    return low, high
 
 
 def _truncated_normal(u: Array, mean: float, deviation: float, low: float, high: float) -> Array:
