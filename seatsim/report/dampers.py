@@ -18,7 +18,8 @@ from seatsim.metrics.motion import ratio
 from seatsim.plots.bench.identification import PARTS, select_records
 from seatsim.plots.labels import format_number, format_unit
 from seatsim.report.blocks import Block, Code, Figures, Report, Table, Text, show_pictures, tabulate
-from seatsim.report.composing import Closing, Factor, compose, count_variations, state_intervals, trace_inputs, validate
+from seatsim.report.composing import Closing, compose
+from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs, validate
 from seatsim.report.formatting import format_quantity, read_words
 from seatsim.report.packing import MEASURED, Panel, pack_signals
 from seatsim.schema.content import list_written

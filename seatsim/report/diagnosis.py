@@ -14,16 +14,8 @@ from seatsim.plots.labels import format_percent
 from seatsim.recordings.header import NOT_STATED
 from seatsim.report import diagnosis_sections
 from seatsim.report.blocks import Block, Report, show_pictures
-from seatsim.report.composing import (
-    Closing,
-    Factor,
-    compose,
-    count_variations,
-    state_intervals,
-    trace_inputs,
-    validate,
-    verify,
-)
+from seatsim.report.composing import Closing, compose
+from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs, validate, verify
 from seatsim.report.formatting import format_sentence, read_words, say_action, say_cause, say_noise
 from seatsim.schema.fields import UNUSUAL
 from seatsim.schema.text import join_names

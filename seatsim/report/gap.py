@@ -19,16 +19,8 @@ from seatsim.recordings.gap import Gap, ReplayedPair
 from seatsim.recordings.recording import load_recording
 from seatsim.recordings.validation import Validation
 from seatsim.report.blocks import Block, Items, Report, Signals, Table, show_pictures
-from seatsim.report.composing import (
-    NEAR_NOISE,
-    Closing,
-    Factor,
-    compose,
-    count_variations,
-    state_intervals,
-    trace_inputs,
-    validate,
-)
+from seatsim.report.composing import Closing, compose
+from seatsim.report.credibility import NEAR_NOISE, Factor, count_variations, state_intervals, trace_inputs, validate
 from seatsim.report.formatting import explain, format_noise, say_noise
 from seatsim.report.packing import MEASURED, Panel, pack_signals
 from seatsim.scenario.loading import single

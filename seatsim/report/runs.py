@@ -10,7 +10,8 @@ from seatsim.metrics.table import SHORT
 from seatsim.plots.labels import describe_channel, format_number, format_unit
 from seatsim.plots.runs.naming import Shown, label_runs, show_runs
 from seatsim.report.blocks import Figures, Report, Signals, Table, show_pictures, tabulate
-from seatsim.report.composing import Closing, Factor, compose, count_variations, trace_inputs, verify
+from seatsim.report.composing import Closing, compose
+from seatsim.report.credibility import Factor, count_variations, trace_inputs, verify
 from seatsim.report.formatting import format_quantity, format_sentence, format_setting
 from seatsim.report.headline import SAME, compare_runs, count_times, describe_run, find_best, read_metric
 from seatsim.report.packing import FINEST, Panel, pack_signals

@@ -10,7 +10,8 @@ from seatsim.metrics.spine import SpinalLoad
 from seatsim.plots.bench.resonance import plot_damping
 from seatsim.plots.labels import format_percent
 from seatsim.report.blocks import Block, Figures, Report, Table, show_pictures, tabulate
-from seatsim.report.composing import Closing, Factor, compose, count_variations, state_intervals, trace_inputs
+from seatsim.report.composing import Closing, compose
+from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs
 from seatsim.report.formatting import format_sentence
 from seatsim.schema.text import join_names
 from seatsim.standards.comfort import Comfort

@@ -18,12 +18,11 @@ from seatsim.plots.sweeps import (
     plot_tornado,
 )
 from seatsim.report.blocks import Block, Figures, Report, Table, Text, show_pictures, tabulate
-from seatsim.report.composing import (
+from seatsim.report.composing import Closing, compose
+from seatsim.report.credibility import (
     ENOUGH_RUNS,
     EXPLAINED,
-    Closing,
     Factor,
-    compose,
     count_variations,
     state_intervals,
     trace_inputs,

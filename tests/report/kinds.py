@@ -20,7 +20,7 @@ from seatsim.plots.bench.vibration import plot_vibration
 from seatsim.plots.runs.draw import plot_result
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.recordings.gap import Gap, GapFigures, ReplayedPair
-from seatsim.report.composing import count_variations
+from seatsim.report.credibility import count_variations
 from seatsim.report.dampers import report_characterisation, report_identification
 from seatsim.report.diagnosis import report_diagnosis
 from seatsim.report.gap import report_gap

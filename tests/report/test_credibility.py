@@ -10,7 +10,7 @@ import seatsim
 from seatsim.dampers.base import DAMPERS
 from seatsim.provenance.statement import at_work
 from seatsim.recordings.header import NOT_STATED
-from seatsim.report.composing import Factor, read_conditions, say_doubt, show_card, trace_inputs, validate, verify
+from seatsim.report.credibility import Factor, read_conditions, say_doubt, show_card, trace_inputs, validate, verify
 from seatsim.report.diagnosis import judge_diagnosis
 from seatsim.report.gap import judge_gap
 from seatsim.report.runs import judge_runs
