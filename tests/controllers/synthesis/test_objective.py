@@ -64,3 +64,14 @@ def test_unstable_and_silent_loops(random_plant):
     p = stable(random_plant(0))
     silent = GeneralisedPlant(p.A, 0 * p.B1, p.B2, p.C1, p.C2, 0 * p.D11, p.D12, 0 * p.D21)
     assert objective_of(silent).log_norm(np.zeros(4))[0] == -np.inf
+
+
+def test_above_the_ceiling_there_is_no_gradient(random_plant):
+    objective = objective_of(stable(random_plant(0)))
+    theta = np.zeros(4)
+    value, slope = objective.log_norm(theta, np.inf)
+    above, none = objective.log_norm(theta, value - 1.0)
+    assert above > value - 1.0 and not none.any() and slope.any()
+    value, slope = objective.abscissa(theta)
+    above, none = objective.abscissa(theta, value - 0.1)
+    assert above == value and not none.any() and slope.any()
