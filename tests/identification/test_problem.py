@@ -60,6 +60,17 @@ def test_a_bench_comes_back_from_its_vector_with_coil_and_temperature():
     assert high[-6] == pytest.approx(math.log(30.0)) and low[-4] == pytest.approx(-3.0) and high[-1] == math.inf
 
 
+def test_what_stands_at_a_bound_is_named():
+    problem, _ = stated([made(current=1.0)])
+    vector = problem.coordinates.to_vector(BINGHAM)
+    low, high = problem.bounds
+    at = problem.labels.index("fc_b")
+    assert problem.labels_at_bounds(vector) == []
+    for end in (low[at] + 5e-4, high[at] - 5e-4):
+        vector[at] = end
+        assert problem.labels_at_bounds(vector) == ["fc_b"]
+
+
 def test_the_global_search_comes_closer_and_repeats_itself(executor):
     _, short = stated(sines(BINGHAM, noise=0.0))
     start = short.coordinates.to_vector(short.coordinates.start)
