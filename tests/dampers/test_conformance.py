@@ -11,7 +11,7 @@ from seatsim.dampers.base import CONFIDENCE, Confidence
 from seatsim.kernel.bench import FORCE_SCALE
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 from seatsim.schema.fields import adapter, describe
-from seatsim.simulation.damper_bench import sine_test
+from seatsim.simulation.damper_bench import bench_force, sine_test
 
 COLD = TemperatureScaling()
 COARSEST, LEVELS, HALVINGS = 256, 6, 3
@@ -79,6 +79,11 @@ def runge_kutta(model, specification, x, v, step):
         except OverflowError:
             break
     return force
+
+
+def conditions(specification):
+    currents = np.linspace(0.0, specification.max_current, 4)
+    return [(float(i), float(t)) for i in currents for t in specification.temperatures]
 
 
 def test_the_card_is_complete(cls, specification):
@@ -158,6 +163,18 @@ def test_steps_converge_at_the_order_of_the_model(model, specification):
         before = now
     assert len(errors) > HALVINGS
     assert errors[-1] < errors[0] / (8.0 if specification.smooth else 2.0) ** HALVINGS
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(4))
+def test_models_with_a_hysteretic_state_dissipate_over_closed_cycles(model, specification, seed):
+    if specification.centred:
+        pytest.skip("branches on the sign of the displacement: tested on centred sines in tests/robustness")
+    x, v, step, samples = closed_motion(seed)
+    for current, temperature in conditions(specification):
+        force = bench_force(model, x, v, current, temperature, step)[-samples - 1 :]
+        power = force * v[::2][-samples - 1 :]
+        assert np.trapezoid(power, dx=step) > 0.0
 
 
 @pytest.mark.slow

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 from seatsim.dampers.bouc_wen import ModifiedBoucWen, SimpleBoucWen
 from seatsim.dampers.pieces import branch, branch_rate
 from seatsim.dampers.s_curves import KwokTanh, WengArctangent
-from seatsim.dampers.sigmoid_gaussian import HongSigmoidGaussian
+from seatsim.dampers.sigmoid_gaussian import HongSigmoidGaussian, table_row
 from seatsim.dampers.yu import Yu2017, Yu2019
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.registry import name_of, specification_of
@@ -68,6 +68,15 @@ def test_the_modified_bouc_wen_laws_are_the_published_ones(current, conform):
     ):
         claim = f"modified_bouc_wen, {name}, at {current:g} A"
         conform(claim, "Braz-Cesar and Barros 2012, eqs 4.5-4.7", found, published, tolerance=1e-9 * published)
+
+
+def test_the_modified_bouc_wen_laws_are_held_beyond_one_ampere():
+    at = [sine_test(ModifiedBoucWen(), 0.004, 1.5, i, 20.0).peak_force for i in (1.0, 1.5)]
+    assert at[0] == at[1]
+
+
+def test_hong_tables_are_held_beyond_the_last_test_current():
+    assert all(table_row(test, 5.0) == table_row(test, 2.0) for test in HONG)
 
 
 @pytest.mark.parametrize("test", HONG)
