@@ -1,6 +1,5 @@
 """Cases on measured recordings: how they are counted, nominals that hold mechanisms, and the joint fit beside them."""
 
-import dataclasses
 import json
 
 import pytest
@@ -41,7 +40,7 @@ def test_a_nominal_holds_the_mechanism_that_the_records_show(benchmark, tmp_path
     nominals, records = benchmark("carrier_nominals"), benchmark("rig_records")
     carrier = offset(bench_carrier(), 60.0)
     header = {**carrier.header, "runs": carrier.header["runs"][:1]}
-    one = dataclasses.replace(carrier, header=header, tables={"run-0": carrier.tables["run-0"]})
+    one = carrier._replace(header=header, tables={"run-0": carrier.tables["run-0"]})
     recording = nominals.quick(nominals.load_recording(write_carrier(one, tmp_path / "rig")))
     trials = (records.SATURATION, ("damper.gas_spring", {}, {"preload": 50.0}))
     found, kept = nominals.identify(recording, carrier.nominal, ("damper.c_a",), trials)

@@ -1,6 +1,5 @@
 """The fault scenarios: complete, the same in every version, material when drawn."""
 
-import dataclasses
 import json
 from pathlib import Path
 
@@ -66,7 +65,7 @@ def test_a_late_log_is_late_by_its_size():
     np.testing.assert_allclose(read["coil_current"][50:], motion().current[50:] - 0.01)
     np.testing.assert_allclose(read["current_command"][50:], motion().command[50:] - 5.0)
     np.testing.assert_array_equal(read["floor_acceleration"], np.arange(0.0, 2000.0, 4.0))
-    drifting = dataclasses.replace(late, detail=0.5)
+    drifting = late._replace(detail=0.5)
     assert late.on_input and not SensorFault("gain", "damper_force", 0.1).on_input
     for run, left in ((0, 1.0 - 0.5 * 0.6), (1, 0.5)):
         read = read_sensors(motion(), np.arange(2000.0), [drifting], run)
