@@ -158,7 +158,7 @@ def run_case(folder: Path, seed: int, pool: Executor) -> IntervalCase:
     problem = pose_problem(recording, pool)
     objective = Objective(problem, weigh_noise(problem))
     start = Parameters(problem.nominal).add(candidate, np.asarray(candidate.start))
-    fitted = refit_closely(objective, start)
+    fitted = refit_closely(objective, objective.linearise_nuisances(objective.evaluate([start])[0]))
     (term,), (values,) = fitted.parameters.terms, fitted.parameters.values
     index = term.free.index(next(name for known, name in SIZES if known == effect))
     deviations = estimate_standard_deviations(objective, fitted, objective.linearise_nuisances(fitted))

@@ -42,14 +42,14 @@ def select_by_cross_validation(objective: Objective, selection: Selection) -> _S
     """
     settings, problem = objective.settings.cross_validation, objective.problem
     chosen, equivalent = selection.calibrated, list[Evaluation]()
-    alone = cross_validate(objective, chosen, selection.linearise_nuisances(objective, chosen))
+    alone = cross_validate(objective, chosen, selection.nuisances)
     before = _charge(objective, chosen, 1.0)
     found = [(chosen, before)]
     for sets in selection.sets[1:]:
         compared = [each for each in sets[: settings.sets_compared] if is_material(problem, each)]
-        nuisances, tried = selection.linearise_nuisances(objective, sets[0]), []
+        tried = []
         for each in compared:
-            after = cross_validate(objective, each, nuisances)
+            after = cross_validate(objective, each, selection.nuisances)
             tried.append((each, _charge(objective, each, float(np.mean(after**2) / np.mean(alone**2)))))
         found += tried
         best = sorted(_list_equals(objective, tried), key=lambda each: (_count_sensors(each[0]), each[1]))

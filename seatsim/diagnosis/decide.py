@@ -16,7 +16,6 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Sequence
-from itertools import takewhile
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -132,9 +131,20 @@ def shows_effect(problem: DiagnosisProblem, selection: Selection) -> bool:
 
 
 def _drop_immaterial(problem: DiagnosisProblem, selection: Selection) -> Selection:
-    """Return the selection with those sets alone that hold no immaterial effect, up to the first size that has none."""
-    sets = ([each for each in sets if is_material(problem, each)] for sets in selection.sets[1:])
-    return dataclasses.replace(selection, sets=(selection.sets[0], *map(tuple, takewhile(bool, sets))))
+    """Return the selection without sets that hold an immaterial effect, up to the first size of which none is left.
+
+    Beyond the best set of a size, only those are asked that could be equivalent to it; others are neither chosen nor
+    named.
+    """
+    settings, kept = problem.settings.decision, [selection.sets[0]]
+    for sets in selection.sets[1:]:
+        first = next((k for k, each in enumerate(sets) if is_material(problem, each)), None)
+        if first is None:
+            break
+        best, *others = sets[first:]
+        limit = settings.equivalent * best.excess + settings.equivalent_floor
+        kept.append((best, *(each for each in others if each.excess > limit or is_material(problem, each))))
+    return dataclasses.replace(selection, sets=tuple(kept))
 
 
 def _shows_no_gap(problem: DiagnosisProblem, selection: Selection) -> bool:

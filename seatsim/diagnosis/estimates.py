@@ -16,6 +16,7 @@ Whether their 90 % intervals cover is measured by `benchmarks/diagnosis_interval
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -23,16 +24,14 @@ import numpy as np
 
 from seatsim.diagnosis.decide import Decision
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters
-from seatsim.diagnosis.problem import DiagnosisProblem
+from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
 from seatsim.diagnosis.result import Cause, ComfortFigure, Estimate, Trace
 from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.spectra import Spectra, as_complex
-from seatsim.diagnosis.validate import ReplayedRun, make_scenario
+from seatsim.diagnosis.validate import ReplayedRun
 from seatsim.metrics.motion import rms
-from seatsim.recordings.gap import measure_gap
 from seatsim.recordings.model_error import band_edges, band_powers, band_widths
 from seatsim.recordings.replay import LEFT_OUT
-from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
 from seatsim.schema.fields import describe
 
@@ -49,8 +48,7 @@ def estimate_causes(
     selection: Selection,
     decision: Decision,
     calibrated: Evaluation,
-    augmented: Evaluation,
-    nominal: Scenario,
+    augmented: Linearisation,
     run: str,
 ) -> list[Cause]:
     """Return every effect, ranked by probability, with its own shrink on a held-out run and its parameters.
@@ -61,27 +59,25 @@ def estimate_causes(
         decision: probabilities by effect.
         calibrated: the rig with refitted parameters, fitted without the run.
         augmented: the rig with the effects chosen, fitted without the run, which gives their parameters.
-        nominal: the owner's scenario.
         run: held out of the fits.
     """
-    problem = objective.problem
-    base = measure_gap(make_scenario(problem, nominal, calibrated.parameters), problem.recording, [run]).overall
+    held_out = objective.on_runs([run])
+    base = normalise_rms_errors(held_out.problem, held_out.evaluate([calibrated.parameters])[0].residuals)
     # Single effects share one linearisation of the nuisances, about the calibrated rig: one each would take longer than
     # the fits. The chosen effects, whose figures the user acts on, have their own.
-    about_calibrated = selection.linearise_nuisances(objective, selection.calibrated)
     chosen = dict[str, _FoundEffect]()
-    if augmented.parameters.terms:
-        fitted = objective.on_runs(list(augmented.whitened))
-        chosen = _estimate_parameters(fitted, augmented, selection.linearise_nuisances(fitted, augmented))
+    if augmented.evaluation.parameters.terms:
+        # Sensitivities that a fit carried along need not be those at its end.
+        fitted = dataclasses.replace(augmented.evaluation, own=None)
+        chosen = _estimate_parameters(objective.on_runs(list(fitted.whitened)), fitted, augmented)
     causes = []
     for effect, probability in decision.probabilities.items():
         shrink, found = 0.0, chosen.get(effect, _FoundEffect({}, False))
         single = selection.singles.get(effect)
         if single is not None:
-            with_it = make_scenario(problem, nominal, single.parameters)
-            shrink = 1.0 - measure_gap(with_it, problem.recording, [run]).overall / base
+            shrink = 1.0 - float(normalise_rms_errors(held_out.problem, single.residuals)[0] / base[0])
             if effect not in chosen:
-                found = _estimate_parameters(objective, single, about_calibrated)[effect]
+                found = _estimate_parameters(objective, single, selection.nuisances)[effect]
         # Effects of one set differ in probability by what no evidence can tell; the larger shrink then comes first.
         stated = float(f"{probability:.{_STATED_DIGITS}g}")
         causes.append(Cause(effect, stated, shrink, *found))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import time
-from collections.abc import Collection, Container, Mapping, Sequence
+from collections.abc import Collection, Container, Hashable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -14,7 +14,7 @@ import numpy as np
 from scipy.fft import prev_fast_len
 
 from seatsim.diagnosis.settings import DiagnosisSettings
-from seatsim.effects.base import replace_effects
+from seatsim.effects.base import ON_DAMPER, ON_SEAT, acts_on, replace_effects
 from seatsim.recordings.nuisance import Nuisance, list_varied, vary
 from seatsim.recordings.quality.coverage import shows_falling_current
 from seatsim.recordings.quality.sensors import without_gravity
@@ -24,8 +24,9 @@ from seatsim.scenario.scenario import Scenario, Start
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import Record
+from seatsim.simulation.augment import read_sensors
 from seatsim.simulation.inputs import RigInputs
-from seatsim.simulation.respond import FINER, respond
+from seatsim.simulation.respond import FINER, SEAT_OUTPUTS, respond
 
 
 class OutOfTimeError(Exception):
@@ -62,6 +63,12 @@ _COARSEST_STEP = 0.002
 """s; longest step of the simulation: its adaptive sub-steps make a shorter one change no figure of a diagnosis."""
 _REACHED = {"m": ("suspension_displacement",), "A": ("coil_current", "current_command")}
 """Channels that tell how far the rig went towards a limit, by its unit: the first that was recorded does."""
+_ONLY_READ = tuple(name for name in SEAT_OUTPUTS if name != "coil_current")
+"""Channels that nothing is simulated from: an error of their sensor leaves the motion of the rig as it is."""
+_IN_LOOP = (*ON_DAMPER, *ON_SEAT, "factors")
+"""Hooks of effects that change what the time loop is compiled for."""
+_MOST_MOTIONS = 48
+"""Motions that are kept, some megabytes each, for candidates and difference steps that share them."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +78,8 @@ class DiagnosisProblem:
     `measured` holds the compared channels of each run without its first second, shape (channels, samples), `inputs` the
     inputs of each run, `parameters` those that the stated tolerance lets vary; `pool` runs simulations in parallel.
     Fits end at the `deadline`. `current_falls` says whether the current falls anywhere, by which memory of it shows,
-    `reached` how far the rig went towards a limit of its travel or current, by the limit's unit.
+    `reached` how far the rig went towards a limit of its travel or current, by the limit's unit. `motions` holds the
+    last outputs of rigs some of whose sensors err.
     """
 
     recording: Recording
@@ -86,6 +94,7 @@ class DiagnosisProblem:
     deadline: Deadline = field(default=NEVER, kw_only=True)
     current_falls: bool = field(default=True, kw_only=True)
     reached: Mapping[str, float] = field(default_factory=dict, kw_only=True)
+    motions: dict[Hashable, Mapping[str, Array]] = field(default_factory=dict, kw_only=True, repr=False, compare=False)
 
     @property
     def bench(self) -> bool:
@@ -155,11 +164,24 @@ class DiagnosisProblem:
 
         `inputs` drive the rig instead of the recorded ones.
         """
-        driven_by = self.inputs[run] if inputs is None else inputs
-        # Thousands of candidates are simulated, so they have to share one compiled loop.
-        outputs = respond(self.scenario_of(run, deviations, effects), driven_by, carry_all_effects=True)
+        scenario = self.scenario_of(run, deviations, effects)
+        outputs = _respond(scenario, inputs) if inputs else self._replay(run, deviations, scenario)
         end = self.skip + self.measured[run].shape[1]
         return np.array([outputs[name][self.skip : end] for name in self.channels])
+
+    def _replay(self, run: str, deviations: Array, scenario: Scenario) -> Mapping[str, Array]:
+        """Return what the sensors say in a run; a motion that only sensors read otherwise is not simulated again."""
+        wrong = tuple(each for each in scenario.effects if _is_only_read(each))
+        others = tuple(each for each in scenario.effects if each not in wrong)
+        key = run, self.parameters, deviations.tobytes(), repr(others)
+        outputs = self.motions.get(key) if wrong else None
+        if outputs is None:
+            outputs = _respond(dataclasses.replace(scenario, effects=others), self.inputs[run])
+        if wrong:
+            if len(self.motions) >= _MOST_MOTIONS:
+                self.motions.clear()
+            self.motions[key] = outputs
+        return read_sensors(wrong, 1.0 / self.rate, outputs)
 
     def _residuals(self, run: str, deviations: Array, effects: Sequence[Record]) -> Array:
         """Return `measured - simulated` of a run, infinite where the rig leaves all bounds."""
@@ -177,6 +199,19 @@ class DiagnosisProblem:
         for (index, run), values in zip(jobs, answers, strict=True):
             found[index][run] = values
         return found
+
+
+def _is_only_read(effect: object) -> bool:
+    """Whether an effect changes what one sensor says, and nothing of the motion of the rig."""
+    return hasattr(effect, "reading") and getattr(effect, "channel", "") in _ONLY_READ
+
+
+def _respond(scenario: Scenario, inputs: RigInputs) -> dict[str, Array]:
+    """Return what the sensors say, by one of two compiled loops: without effects or, twice as slow, with all of them.
+
+    Thousands of candidates are simulated, so that none can have a loop of its own.
+    """
+    return respond(scenario, inputs, carry_all_effects=any(acts_on(type(each), _IN_LOOP) for each in scenario.effects))
 
 
 def pose_problem(recording: Recording, pool: Executor, settings: DiagnosisSettings | None = None) -> DiagnosisProblem:

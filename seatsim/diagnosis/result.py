@@ -122,7 +122,7 @@ class DiscrepancySignal(NamedTuple):
 class Collinearity(NamedTuple):
     """Effects, and how collinear their sensitivities are, shape (effects, effects), 0 to 1.
 
-    Sensitivities are taken in this recording, about the rig found, with the nuisance parameters projected out.
+    Sensitivities are taken in this recording, about the calibrated rig, with the nuisance parameters projected out.
     """
 
     effects: list[str]

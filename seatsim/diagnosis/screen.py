@@ -33,12 +33,32 @@ class Sensitivities(NamedTuple):
         ends = np.cumsum([candidate.sizes for candidate in self.candidates]).tolist()
         return [slice(end - each.sizes, end) for end, each in zip(ends, self.candidates, strict=True)]
 
+    def without(self, effect: str) -> Sensitivities:
+        """Return those of the other effects."""
+        kept = [candidate.effect != effect for candidate in self.candidates]
+        rows = np.repeat(kept, [candidate.sizes for candidate in self.candidates])
+        others = [candidate for candidate, is_kept in zip(self.candidates, kept, strict=True) if is_kept]
+        return Sensitivities(others, {run: each[rows] for run, each in self.changes.items()})
+
 
 class _Prediction(NamedTuple):
-    """The cost that a linear model predicts for the best multiples of a candidate's sizes, and those multiples."""
+    """The least cost that a linear model predicts with a candidate, the step of the base there, and the multiples.
+
+    Those are of the candidate's sizes.
+    """
 
     cost: float
+    step: Array
     factors: Array
+
+
+def pick_starts(candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Return one candidate of each structure, from one of its smaller starts: a linear model scales it to any size."""
+    structures: dict[Hashable, list[Candidate]] = {}
+    for candidate in candidates:
+        structures.setdefault(candidate.structure, []).append(candidate)
+    ranked = (sorted(each, key=lambda candidate: abs(candidate.start[0])) for each in structures.values())
+    return [each[(len(each) - 1) // 3] for each in ranked]
 
 
 def measure_sensitivities(
@@ -89,19 +109,20 @@ def screen_candidates(
         offered: sensitivities to the candidates; those of the effects of the base are left out.
         nuisances: linearisation of the nuisance parameters.
         bound: predicted cost from which a candidate is not tried.
-        count: most candidates that are tried, each in one structure.
+        count: most candidates that are tried.
     """
     predicted = _predict(objective, base, offered, nuisances)
-    first: dict[Hashable, int] = {}
-    for k in sorted(predicted, key=lambda k: predicted[k].cost):
-        if predicted[k].cost < bound:
-            first.setdefault(offered.candidates[k].structure, k)
-    shortlist = list(first.values())[:count]
-    starts = [
-        _starts_around(objective, base.parameters, offered.candidates[k], predicted[k].factors) for k in shortlist
-    ]
-    evaluations = iter(objective.evaluate([parameters for several in starts for parameters in several]))
-    return [min(islice(evaluations, len(several)), key=lambda each: each.cost) for several in starts]
+    ranked = sorted(predicted, key=lambda k: predicted[k].cost)
+    shortlist = [k for k in ranked if predicted[k].cost < bound][:count]
+    several = [_starts_around(objective, base.parameters, offered.candidates[k], predicted[k]) for k in shortlist]
+    evaluations = iter(objective.evaluate([parameters for starts in several for parameters in starts]))
+    best = [min(islice(evaluations, len(starts)), key=lambda each: each.cost) for starts in several]
+    # Where the prediction fails, a fit begins at the candidate's own start.
+    failed = [k for k, each in enumerate(best) if each.cost >= base.cost]
+    own = [(offered.candidates[shortlist[k]], np.array(offered.candidates[shortlist[k]].start)) for k in failed]
+    for k, start in zip(failed, objective.evaluate([base.parameters.add(*each) for each in own]), strict=True):
+        best[k] = min(best[k], start, key=lambda each: each.cost)
+    return [each for each in best if np.isfinite(each.cost)]
 
 
 def _predict(
@@ -150,22 +171,22 @@ def _predict_one(
     start = np.append(vector, np.zeros(candidate.sizes))
     step = solve_step(matrix, right, count, start, low, high, objective.settings.fit.prior_std)
     cost = base.cost - 2.0 * float(step @ right) + float(step @ matrix @ step)
-    return _Prediction(cost, step[-candidate.sizes :])
+    return _Prediction(cost, step[: -candidate.sizes], step[-candidate.sizes :])
 
 
 def _starts_around(
-    objective: Objective, parameters: Parameters, candidate: Candidate, factors: Array
+    objective: Objective, base: Parameters, candidate: Candidate, predicted: _Prediction
 ) -> list[Parameters]:
-    """Return the parameters with a candidate at its start, and with its sizes scaled as predicted."""
-    settings, start = objective.settings.selection, np.array(candidate.start)
+    """Return a base with a candidate where the prediction has its least cost, a limit a little to either side."""
+    settings, start, factors = objective.settings.selection, np.array(candidate.start), predicted.factors
     if candidate.is_limit:
         # The action of a limit is not proportional to its size, so only the direction of the prediction is used.
         less = settings.limit_factors
         scaled = [start[:1] * (each if factors[0] < 1.0 else 1.0 / each) for each in less]
-    elif np.max(np.abs(factors)) > settings.least_factor:
-        size = candidate.from_nominal(candidate.start)
-        scaled = [start[: candidate.sizes] + (each * factors - 1.0) * size for each in settings.start_factors]
-    else:
-        scaled = []
-    starts = [np.concatenate([sizes, start[len(sizes) :]]) for sizes in scaled]
-    return [parameters.add(candidate, np.clip(each, candidate.low, candidate.high)) for each in [start, *starts]]
+        starts = [start, *(np.concatenate([sizes, start[1:]]) for sizes in scaled)]
+        return [base.add(candidate, np.clip(each, candidate.low, candidate.high)) for each in starts]
+    if np.max(np.abs(factors)) <= settings.least_factor:
+        return [base.add(candidate, start)]
+    sizes = start[: candidate.sizes] + (factors - 1.0) * candidate.from_nominal(candidate.start)
+    there = np.clip(np.concatenate([sizes, start[len(sizes) :]]), candidate.low, candidate.high)
+    return [base.move_to(base.vector + predicted.step).add(candidate, there)]

@@ -14,7 +14,7 @@ from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.fit import fit, search_pattern
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters, scale
 from seatsim.diagnosis.problem import OutOfTimeError
-from seatsim.diagnosis.screen import Sensitivities, measure_sensitivities, name_unstable, screen_candidates
+from seatsim.diagnosis.screen import Sensitivities, measure_sensitivities, name_unstable, pick_starts, screen_candidates
 
 
 class LinearisedRig(NamedTuple):
@@ -34,14 +34,13 @@ class LinearisedRig(NamedTuple):
 class Selection:
     """Fitted sets of effects by size, the best first; `sets[0]` holds the calibrated nominal scenario alone.
 
-    `linearisations` holds the sensitivities to the nuisance parameters about the best set of each size, `sensitivities`
-    those of the calibrated rig to the candidates, `notes` a sentence on each effect that could not be simulated from
-    some start.
+    `nuisances` holds the sensitivities of the calibrated rig to the nuisance parameters, `sensitivities` those to the
+    candidates, `notes` a sentence on each effect that could not be simulated from some start.
     """
 
     nominal: Evaluation
     sets: tuple[tuple[Evaluation, ...], ...]
-    linearisations: tuple[Linearisation, ...]
+    nuisances: Linearisation
     sensitivities: Sensitivities = field(default=Sensitivities((), {}), kw_only=True)
     notes: tuple[str, ...] = field(default=(), kw_only=True)
 
@@ -55,20 +54,14 @@ class Selection:
         """The fitted sets of one effect by its name, the best first."""
         return {each.parameters.terms[0].effect: each for sets in self.sets[1:2] for each in sets}
 
-    def linearise_nuisances(self, objective: Objective, evaluation: Evaluation) -> Linearisation:
-        """Return the sensitivities to the nuisance parameters about a set, computed only where none are at hand.
-
-        Those at hand were taken before the last steps of the set's fit, during which they hardly change.
-        """
-        for taken in self.linearisations:
-            if taken.evaluation.parameters.terms == evaluation.parameters.terms:
-                return Linearisation(evaluation, taken.jacobian)
-        return objective.linearise_nuisances(evaluation)
+    def linearise(self, evaluation: Evaluation) -> Linearisation:
+        """Return a set with the sensitivities of the calibrated rig to the nuisance parameters, which hardly change."""
+        return Linearisation(evaluation, self.nuisances.jacobian)
 
     def weigh_again(self, old: Objective, new: Objective) -> LinearisedRig:
         """Return the rig under other weights, its nuisance parameters refitted; nothing is linearised again."""
         nominal, calibrated = (new.weigh(each.parameters, each.residuals) for each in (self.nominal, self.calibrated))
-        jacobian = scale(self.linearisations[0].jacobian, old, new)
+        jacobian = scale(self.nuisances.jacobian, old, new)
         nearest = min(nominal, calibrated, key=lambda each: each.cost)
         refitted = fit(new.unhurried, nearest, Linearisation(calibrated, jacobian))
         sensitivities = self.sensitivities._replace(changes=scale(self.sensitivities.changes, old, new))
@@ -96,8 +89,8 @@ def select_effects(
     rig = _linearise_rig(objective, candidates) if rig is None else rig
     nuisances, sensitivities = rig.nuisances, rig.sensitivities
     sets: list[list[Evaluation]] = [[rig.calibrated]]
-    linearisations = [nuisances]
-    notes = () if objective.problem.deadline.is_past else name_unstable(candidates, sensitivities.candidates)
+    offered = [] if objective.problem.deadline.is_past else pick_starts(candidates)
+    notes = name_unstable(offered, sensitivities.candidates)
     # At the deadline the sets so far are the answer.
     with suppress(OutOfTimeError):
         for size in range(1, largest + 1):
@@ -106,22 +99,19 @@ def select_effects(
             if not larger:
                 break
             sets.append(larger)
-            if size > 1:
-                larger[:] = _best_of_each_set([*larger, *_swap_effects(objective, larger[0], sets[1], nuisances)])
-            elif larger[0].excess > settings.nothing_left:
-                again = _restart_effect(objective, larger[0], sensitivities.candidates, nuisances)
+            if size == 1 and larger[0].excess > settings.nothing_left:
+                again = _restart_effect(objective, larger[0], candidates, nuisances)
                 larger[:] = _best_of_each_set([*larger, *again])
-            # Sets are ranked with the sensitivities of a smaller set; the best is then fitted to the end with its own.
-            nuisances = objective.linearise_nuisances(larger[0])
-            linearisations.append(nuisances)
-            larger[0] = fit(objective, larger[0], nuisances)
+            larger[:] = _best_of_each_set([*larger, *_fit_twins(objective, larger[0], candidates, nuisances)])
             if not _gains(objective, sets):
                 break
         if len(sets) > settings.largest_set and sets[-1][0].excess < settings.enlarge * sets[-2][0].excess:
             progress("eliminating backwards")
             sets[-2] = _best_of_each_set([*sets[-2], *_eliminate_backwards(objective, sets[-1][0], nuisances)])
+            twins = _fit_twins(objective, sets[-2][0], candidates, nuisances)
+            sets[-2] = _best_of_each_set([*sets[-2], *twins])
     fitted = tuple(tuple(each) for each in sets)
-    return Selection(rig.nominal, fitted, tuple(linearisations), sensitivities=sensitivities, notes=notes)
+    return Selection(rig.nominal, fitted, nuisances, sensitivities=sensitivities, notes=notes)
 
 
 def _linearise_rig(objective: Objective, candidates: Sequence[Candidate]) -> LinearisedRig:
@@ -131,10 +121,9 @@ def _linearise_rig(objective: Objective, candidates: Sequence[Candidate]) -> Lin
     """
     unhurried = objective.unhurried
     nominal = unhurried.evaluate([Parameters(objective.problem.nominal)])[0]
-    calibrated = fit(unhurried, nominal, unhurried.linearise_nuisances(nominal))
-    nuisances = unhurried.linearise_nuisances(calibrated)
-    calibrated = fit(unhurried, calibrated, nuisances)
-    sensitivities = measure_sensitivities(objective, calibrated, candidates)
+    nuisances = unhurried.linearise_nuisances(nominal)
+    calibrated = fit(unhurried, nominal, nuisances)
+    sensitivities = measure_sensitivities(objective, calibrated, pick_starts(candidates))
     return LinearisedRig(nominal, Linearisation(calibrated, nuisances.jacobian), sensitivities)
 
 
@@ -154,39 +143,24 @@ def _extend(
     """Return the fitted enlargements of the best sets by one effect, best first, one structure of each set."""
     settings = objective.settings.selection
     bases: Sequence[Evaluation] = sets[-1][: settings.beam]
-    begun = []
+    starts = list[Evaluation]()
     for base in bases:
         taken = base.parameters.names
         count = settings.further_shortlist if taken else settings.first_shortlist
-        # A first effect is always tried; a further one only where a linear model predicts that it helps.
-        bound = base.rows * (1.0 + settings.promising * bases[0].excess) if taken else float("inf")
-        starts = screen_candidates(objective, base, sensitivities, nuisances, bound, count)
-        begun += [fit(objective, start, nuisances, settings.begun_steps) for start in starts]
-    ranked, finalists = _best_of_each_set(begun), settings.finalists
+        # A first effect of a gap is always tried; others only where a linear model predicts that they help.
+        if taken:
+            bound = base.rows * (1.0 + settings.promising * bases[0].excess)
+        elif base.excess < settings.nothing_left:
+            bound = base.cost - objective.settings.decision.least_lowered * base.rows
+        else:
+            bound = float("inf")
+        starts += screen_candidates(objective, base, sensitivities, nuisances, bound, count)
+    starts.sort(key=lambda start: start.charged)
+    most, finalists = settings.further_shortlist, settings.finalists
+    begun = [fit(objective, start, nuisances, settings.begun_steps) for start in starts[:most]]
+    ranked = _best_of_each_set(begun + starts[most:])
     finished = [fit(objective, evaluation, nuisances) for evaluation in ranked[:finalists]]
     return _best_of_each_set(finished + ranked[finalists:])
-
-
-def _swap_effects(
-    objective: Objective, best: Evaluation, singles: Sequence[Evaluation], nuisances: Linearisation
-) -> list[Evaluation]:
-    """Return fitted sets in which one effect of the best set is swapped for one that did nearly as well alone."""
-    settings = objective.settings.selection
-    alone = {evaluation.parameters.terms[0].effect: evaluation for evaluation in singles}
-    starts = []
-    for term in best.parameters.terms:
-        kept = best.parameters.remove(term.effect)
-        taken = best.parameters.names
-        others = [single for name, single in alone.items() if name not in taken and term.effect in alone]
-        near = [single for single in others if single.cost < settings.swap_within * alone[term.effect].cost]
-        starts += [
-            kept.add(single.parameters.terms[0], single.parameters.values[0]) for single in near[: settings.most_swaps]
-        ]
-    begun = [fit(objective, start, nuisances, settings.begun_steps) for start in objective.evaluate(starts)]
-    return [
-        fit(objective, evaluation, nuisances) if evaluation.cost < settings.swap_within * best.cost else evaluation
-        for evaluation in begun
-    ]
 
 
 def _restart_effect(
@@ -207,6 +181,18 @@ def _restart_effect(
     pairs = permutations((each.parameters for each in fitted), 2)
     moved = [b.remove(term.effect).add(a.terms[0], *b.values) for a, b in pairs if a.terms[0].free == b.terms[0].free]
     return fitted + [fit(objective, search_pattern(objective, each), nuisances) for each in objective.evaluate(moved)]
+
+
+def _fit_twins(
+    objective: Objective, best: Evaluation, candidates: Sequence[Candidate], nuisances: Linearisation
+) -> list[Evaluation]:
+    """Return fits in which one effect of the best set is another of the same form, as friction elsewhere in the rig."""
+    rig, starts = best.parameters, list[Parameters]()
+    for term, values in zip(rig.terms, rig.values, strict=True):
+        same = {each.effect: each for each in candidates if (each.free, each.fixed) == (term.free, term.fixed)}
+        others = [each for name, each in same.items() if name not in rig.names]
+        starts += [rig.remove(term.effect).add(each, np.clip(values, each.low, each.high)) for each in others]
+    return [fit(objective, each, nuisances) for each in objective.evaluate(starts)]
 
 
 def _fit_from_best(objective: Objective, starts: Sequence[Evaluation], nuisances: Linearisation) -> Evaluation:

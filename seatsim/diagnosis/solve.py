@@ -11,7 +11,7 @@ import numpy as np
 from seatsim.diagnosis.candidates import list_candidates
 from seatsim.diagnosis.cross_validate import cross_validate, select_by_cross_validation
 from seatsim.diagnosis.decide import explain_after_all, shows_effect
-from seatsim.diagnosis.fit import refit
+from seatsim.diagnosis.fit import refit_on
 from seatsim.diagnosis.localise.discrepancy import describe_discrepancy
 from seatsim.diagnosis.localise.input_estimate import estimate_nonrepeatable_force
 from seatsim.diagnosis.localise.localisation import localise_remainder, share_gap
@@ -122,7 +122,8 @@ def _search_beyond_broadband(task: SearchTask, first: Solution) -> Solution:
     if broadband < problem.settings.noise.broadband_share * best.excess * best.rows:
         return first
     task.progress("counting a broadband residual as noise")
-    second = search(task, Objective(problem, first.objective.weights.add(errors)))
+    louder = Objective(problem, first.objective.weights.add(errors))
+    second = search(task, louder, first.selection.weigh_again(first.objective, louder))
     return second if second.decision.verdict in ("known", "ambiguous") else first
 
 
@@ -137,7 +138,7 @@ def _search_by_gap(task: SearchTask, first: Solution) -> Solution:
     chosen, equivalent, tried = select_by_cross_validation(objective, selection)
     evident = None if chosen.parameters.terms else _fit_evident(first, objective, selection)
     if evident is None:
-        refitted = refit(first.objective, chosen.parameters)
+        refitted = refit_on(first.objective, first.selection.linearise(chosen))
         decision = decide_beside_unknown(settings.decision, first.decision, refitted, equivalent, tried)
         # Where weak signals weigh most a fit may end far from the set that takes all of the gap.
         if _takes_enough(first.objective, first._replace(decision=decision)):
@@ -164,9 +165,9 @@ def _fit_evident(first: Solution, objective: Objective, selection: Selection) ->
     best = next((sets[0] for sets in first.selection.sets[1:] if sets[0].excess < least), None)
     if best is None or before.excess < settings.localisation.above_noise:
         return None
-    fitted = refit(objective, best.parameters)
+    fitted = refit_on(objective, selection.linearise(best))
     gaps = [
-        float(np.mean(cross_validate(objective, each, selection.linearise_nuisances(objective, each)) ** 2))
+        float(np.mean(cross_validate(objective, each, selection.nuisances) ** 2))
         for each in (selection.calibrated, fitted)
     ]
     return fitted if gaps[1] < gaps[0] and is_material(objective.problem, fitted) else None
@@ -187,7 +188,8 @@ def _localise(task: SearchTask, solution: Solution) -> Solution:
         # On a bench only the damper lies between the prescribed motion and the load cell.
         return solution._replace(where=[Share("damper", 1.0)])
     task.progress("asking which block could hold the remainder")
-    remainder, rig = localise_remainder(objective, solution.selection.calibrated, decision.chosen)
+    selection = solution.selection
+    remainder, rig = localise_remainder(objective, selection.nuisances, selection.linearise(decision.chosen))
     found = describe_discrepancy(problem, rig.parameters, remainder.block, remainder.likeliest)
     if rig is not decision.chosen:
         decision = decide_beside_unknown(objective.settings.decision, decision, rig)
@@ -214,7 +216,9 @@ def _search_beside_disturbance(task: SearchTask, first: Solution, without: Seque
     task.progress(f"counting {effect} as noise")
     noisy = Objective(problem, add_to_noise(problem, objective.weights, effect, found))
     others = task._replace(candidates=[each for each in task.candidates if each.effect != effect])
-    second = _search_at_lower_noise(others, search(others, noisy))
+    rig = first.selection.weigh_again(objective, noisy)
+    rig = rig._replace(sensitivities=rig.sensitivities.without(effect))
+    second = _search_at_lower_noise(others, search(others, noisy, rig))
     if second.decision.verdict == "unknown":
         return first
     localised = _localise(others, second)

@@ -14,12 +14,13 @@ from seatsim.diagnosis.design.experiment import propose_experiment
 from seatsim.diagnosis.design.isolability import describe_missing_sensors, find_isolable_groups
 from seatsim.diagnosis.design.separability import measure_collinearity
 from seatsim.diagnosis.estimates import compare_comfort, estimate_causes, trace_motion, trace_replayed, trace_run
-from seatsim.diagnosis.fit import refit
+from seatsim.diagnosis.fit import fit
 from seatsim.diagnosis.localise.discrepancy import show_discrepancy
 from seatsim.diagnosis.localise.stochastic import add_strength
 from seatsim.diagnosis.movement import name_immaterial, share_removable
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters
 from seatsim.diagnosis.result import Cause, DamperForm, Diagnosis, Evidence, Gaps, ProposedExperiment
+from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.solution import Solution, call_unknown, decide_without, doubt_single
 from seatsim.diagnosis.validate import (
     ReplayedRun,
@@ -44,10 +45,11 @@ class _Validation:
     """A solution on a run held out of its fits: the rigs fitted without the run, and the gaps that they leave on it.
 
     `runs` holds every run, replayed with the nominal, the calibrated and the augmented scenario, the three `scenarios`.
+    `found` is the rig of the solution, fitted to all runs, with its sensitivities to the nuisance parameters.
     """
 
     solution: Solution
-    nominal: Scenario
+    found: Linearisation
     run: str
     calibrated: Evaluation
     augmented: Evaluation
@@ -77,7 +79,8 @@ def validate_on_held_out(solution: Solution) -> _Validation:
         run = choose_typical_run(problem, selection.nominal, chosen)
     else:
         run = choose_held_out_run(problem, chosen, shrink, problem.settings.validation.quantile)
-    calibrated, augmented = refit_without(objective, chosen, run)
+    found = objective.linearise_nuisances(chosen) if chosen.parameters.terms else selection.nuisances
+    calibrated, augmented = refit_without(objective, selection.nuisances, found, run)
     if decision.verdict == "unknown" and not chosen.parameters.terms:
         augmented = selection.nominal
     nominal = problem.recording.nominal
@@ -103,7 +106,7 @@ def validate_on_held_out(solution: Solution) -> _Validation:
         taken = share_removable(objective.on_runs([run]), gaps.before.overall, gaps.after.overall)
         if taken < problem.settings.decision.least_taken:
             solution = solution._replace(decision=call_unknown(problem.settings.decision, decision))
-    return _Validation(solution, nominal, run, calibrated, augmented, (first, second, third), runs, gaps)
+    return _Validation(solution, found, run, calibrated, augmented, (first, second, third), runs, gaps)
 
 
 def _name_raised_gap(gaps: Gaps, held_out: str) -> str:
@@ -122,7 +125,9 @@ def _give_up(solution: Solution, reason: str, given_up: Sequence[str] = ()) -> S
         selection, notes=(*selection.notes, f"{' with '.join(given_up)} was given up, since it {reason}")
     )
     kept = decision.chosen.parameters.remove(*given_up)
-    rig = refit(objective, kept) if kept.terms else selection.calibrated
+    rig = selection.calibrated
+    if kept.terms:
+        rig = fit(objective, objective.evaluate([kept])[0], selection.nuisances)
     left = decide_without(objective.problem, decision, rig, given_up)
     where = () if left.verdict == "none" else solution.where
     return solution._replace(selection=noted, decision=left, where=where)
@@ -144,7 +149,6 @@ def state_diagnosis(
     decision = solution.decision
     if not solution.stochastic:
         decision = doubt_single(problem, solution.selection, decision, causes)
-    nuisances = solution.selection.linearise_nuisances(objective, decision.chosen)
     forms = _list_alternatives(validation, damper_forms, progress)
     none = describe_obstacle(problem) or "No other form of the damper was found to fit its force better."
     asked = [none] if damper_forms and not forms else []
@@ -154,14 +158,15 @@ def state_diagnosis(
         name=recording.folder.name, verdict=decision.verdict, sentence="", where=list(solution.where), causes=causes,
         probability_none=decision.none, probability_unknown=decision.unknown,
         selected=[name for name in decision.probabilities if name in at_work], stochastic=solution.stochastic,
-        indistinguishable=decision.groups, experiment=_propose_experiment(objective, decision, nuisances),
+        indistinguishable=decision.groups,
+        experiment=_propose_experiment(objective, solution.selection, decision, validation.found),
         held_out=[validation.run], isolable=find_isolable_groups(rig, channels), gap=validation.gaps,
         notes=[
             *notes, *solution.selection.notes, *describe_missing_sensors(rig, channels), *asked,
             *measure_coverage(recording).missing,
         ],
         augmented=write_augmented(problem, validation.augmented.parameters),
-        evidence=_collect_evidence(validation, nuisances, causes), alternatives=forms,
+        evidence=_collect_evidence(validation, causes), alternatives=forms,
         parameters=list_calibrated(problem.parameters, validation.fitted.deviations, at_bound),
         model_error=state_model_error(problem, runs),
         error_budget=budget_errors(validation.scenarios[2], recording, validation.run, problem.channels),
@@ -178,8 +183,7 @@ def _list_causes(validation: _Validation) -> list[Cause]:
         solution.selection,
         solution.decision,
         validation.calibrated,
-        validation.augmented,
-        validation.nominal,
+        Linearisation(validation.augmented, validation.found.jacobian),
         validation.run,
     )
     if found is None:
@@ -199,15 +203,18 @@ def _list_alternatives(validation: _Validation, asked: bool, progress: Callable[
 
 
 def _propose_experiment(
-    objective: Objective, decision: Decision, nuisances: Linearisation
+    objective: Objective, selection: Selection, decision: Decision, found: Linearisation
 ) -> ProposedExperiment | None:
     """Return the experiment that separates the first group of equivalent effects, None where there is no group."""
     if decision.verdict != "ambiguous":
         return None
-    return propose_experiment(objective, nuisances, decision.groups[0])
+    # The members were fitted in sets of the same size; the rig found is the first that holds one of them.
+    fitted = [found.evaluation, *selection.sets[len(found.evaluation.parameters.terms)]]
+    members = {name: next(each for each in fitted if name in each.parameters.names) for name in decision.groups[0]}
+    return propose_experiment(objective, found, members)
 
 
-def _collect_evidence(validation: _Validation, nuisances: Linearisation, causes: Sequence[Cause]) -> Evidence:
+def _collect_evidence(validation: _Validation, causes: Sequence[Cause]) -> Evidence:
     """Return the content of the report's figures, on the held-out run."""
     solution, run = validation.solution, validation.run
     problem, settings = solution.objective.problem, solution.objective.settings.design
@@ -215,7 +222,7 @@ def _collect_evidence(validation: _Validation, nuisances: Linearisation, causes:
     found = solution.discrepancy
     shown = None if found is None else show_discrepancy(problem, found, run)
     relevant = [c.effect for c in causes[: settings.listed] if c.probability > settings.listed_probability]
-    collinearity = measure_collinearity(solution.objective, nuisances, relevant)
+    collinearity = measure_collinearity(solution.objective, solution.selection, relevant)
     others = trace_replayed(problem, [each for each in validation.runs if each.name != run])
     motion = trace_motion(problem, run)
     return Evidence(traces, motion, shown, collinearity, compare_comfort(traces), others)

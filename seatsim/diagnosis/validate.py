@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.diagnosis.fit import refit
+from seatsim.diagnosis.fit import refit_on
 from seatsim.diagnosis.movement import measure_movements
-from seatsim.diagnosis.objective import Evaluation, Objective, Parameters
+from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
 from seatsim.diagnosis.result import Gaps, RunGaps
 from seatsim.effects.base import replace_effects
@@ -70,19 +70,21 @@ def _spare(problem: DiagnosisProblem, share: Array) -> NDArray[np.bool_]:
     return np.asarray(largest < max(problem.settings.validation.most_share, 1.001 * largest.min()))
 
 
-def refit_without(objective: Objective, evaluation: Evaluation, run: str) -> tuple[Evaluation, Evaluation]:
-    """Return the calibrated and the augmented rig, both fitted without a run."""
+def refit_without(
+    objective: Objective, calibrated: Linearisation, chosen: Linearisation, run: str
+) -> tuple[Evaluation, Evaluation]:
+    """Return the calibrated and the augmented rig, both fitted without a run, from rigs fitted with it."""
     others = tuple(name for name in objective.problem.runs if name != run) or objective.problem.runs
     part = objective.on_runs(others)
-    calibrated = refit(part, Parameters(objective.problem.nominal))
-    return calibrated, refit_closely(part, evaluation.parameters) if evaluation.parameters.terms else calibrated
+    without = refit_on(part, calibrated)
+    return without, refit_closely(part, chosen) if chosen.evaluation.parameters.terms else without
 
 
-def refit_closely(objective: Objective, parameters: Parameters) -> Evaluation:
+def refit_closely(objective: Objective, rig: Linearisation) -> Evaluation:
     """Return a refit that ends where steps change the estimate by less than its standard deviation."""
     problem, settings = objective.problem, objective.settings
     closer = settings._replace(fit=settings.fit._replace(settled=settings.validation.settled))
-    return refit(dataclasses.replace(objective, problem=dataclasses.replace(problem, settings=closer)), parameters)
+    return refit_on(dataclasses.replace(objective, problem=dataclasses.replace(problem, settings=closer)), rig)
 
 
 def make_scenario(problem: DiagnosisProblem, nominal: Scenario, parameters: Parameters) -> Scenario:

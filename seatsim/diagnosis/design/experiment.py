@@ -1,6 +1,6 @@
 """The next experiment: one that distinguishes effects that explain the recording equally well.
 
-Every member of the group is fitted to the recording, so that all give nearly the same outputs there. Each candidate
+Every member of the group was fitted to the recording, so that all give nearly the same outputs there. Each candidate
 experiment is then simulated with each member, with white noise sigma = hypot(stated noise, model_error * rms) on each
 channel. It is assessed by the separability of the nearest pair, in noise units, and by the likeness of the most similar
 pair: 0 where their changes of the outputs share nothing, 1 where they are the same.
@@ -22,7 +22,6 @@ from seatsim.diagnosis.design.candidate_experiments import (
 )
 from seatsim.diagnosis.design.separability import (
     PredictedExperiment,
-    fit_member,
     measure_likeness,
     measure_separability,
     project,
@@ -64,7 +63,9 @@ class _Verdict(NamedTuple):
     reach: float = 0.0
 
 
-def propose_experiment(objective: Objective, nuisances: Linearisation, group: Sequence[str]) -> ProposedExperiment:
+def propose_experiment(
+    objective: Objective, nuisances: Linearisation, members: Mapping[str, Evaluation]
+) -> ProposedExperiment:
     """Return the cheapest experiment that distinguishes the members of a group, or the statement that none does.
 
     A faulty sensor is distinguished from other causes by calibrating it. Where several candidates separate all members
@@ -73,22 +74,21 @@ def propose_experiment(objective: Objective, nuisances: Linearisation, group: Se
     Args:
         objective: over all runs.
         nuisances: the rig found, with its sensitivities to the nuisance parameters.
-        group: effects that explain the recording equally well, the chosen one first.
+        members: fitted rigs that explain the recording equally well, by the effect in which they differ.
     """
-    members = [fit_member(objective, nuisances, name, group) for name in group]
-    base = objective.evaluate([nuisances.evaluation.parameters.remove(*group)])[0]
+    base = objective.evaluate([nuisances.evaluation.parameters.remove(*members)])[0]
     whitened = stack_whitened(objective, base.whitened)
-    changes = np.array([whitened - stack_whitened(objective, member.whitened) for member in members])
+    changes = np.array([whitened - stack_whitened(objective, member.whitened) for member in members.values()])
     now = _likeness(objective, changes, stack_jacobian(objective, nuisances))
     sensors, first = _name_sensors(members), ""
     if sensors:
         unloaded = " while it is unloaded" if sensors == ["damper force"] else ""
         first = f"calibrating {' and '.join(sensors)}{unloaded} tells a wrong sensor from a change of the rig"
-        members = [member for member in members if member.parameters.terms[-1].block != "sensor"]
+        members = {name: member for name, member in members.items() if not name.startswith("sensor.")}
         if len(members) <= 1:
             return _propose("intervention", "calibrate_sensor", first, now, 0.0)
         first += "; beside that, "
-    return _choose(objective, _assess_candidates(objective, nuisances, base, members), first, now)
+    return _choose(objective, _assess_candidates(objective, nuisances, base, [*members.values()]), first, now)
 
 
 def _choose(objective: Objective, seen: Sequence[_Verdict], first: str, now: float) -> ProposedExperiment:
@@ -118,7 +118,8 @@ def _assess_candidates(
 ) -> list[_Verdict]:
     """Return the predictions of the candidates, up to the first kind that distinguishes all members.
 
-    Excitations cost least, so the best of the menu is optimised; changes of the rig are tried where it does not either.
+    Excitations cost least, so that where none distinguishes them the best is optimised; changes of the rig are tried
+    where it does not either.
     """
     settings, candidates = objective.settings.design, list(list_candidate_experiments(objective.problem))
 
@@ -133,7 +134,7 @@ def _assess_candidates(
         seen.append(assess(candidate))
         return _score(settings, seen[-1])
 
-    if settings.trials:
+    if not _is_distinct(settings, seen[-1]):
         optimise_excitation(objective.problem, best.candidate.name, score, settings.trials)
     if any(_is_distinct(settings, each) for each in seen):
         return seen
@@ -177,9 +178,9 @@ def _write_scenario(problem: DiagnosisProblem, candidate: CandidateExperiment) -
     return {key: value for key, value in values.items() if key not in _NOT_REPEATED}
 
 
-def _name_sensors(members: Sequence[Evaluation]) -> list[str]:
+def _name_sensors(members: Mapping[str, Evaluation]) -> list[str]:
     """Return the channels whose calibration distinguishes the group's members; none where two act on the same one."""
-    terms = [member.parameters.terms[-1] for member in members]
+    terms = [term for name, member in members.items() for term in member.parameters.terms if term.effect == name]
     named = [str(t.fixed.get("channel", "the clock")).replace("_", " ") for t in terms if t.block == "sensor"]
     return named if len(set(named)) == len(named) else []
 

@@ -58,23 +58,25 @@ def estimate_input(
 ) -> InputEstimate:
     """Return the estimate of an input, below a highest frequency in Hz, that matches the channels as well as it can.
 
-    The frequency response is estimated anew about each signal, with another random probe each time: a strong signal
-    changes how the damper slips, and the next probe may correct what one probe got wrong.
+    The frequency response is estimated anew, about the signal so far and with another random probe, where a correction
+    by the last one was fruitless: a strong signal changes how the damper slips.
     """
     rig = reconstruct(objective, evaluation.parameters, run, port)
     settings, bins = rig.settings, objective.weights.bins[run]
     permitted = np.fft.rfftfreq(rig.samples, 1.0 / objective.problem.rate)[:bins] <= highest
     plausible = rig.plausible_power()
-    best, fruitless = _attempt(rig, np.zeros(rig.samples)), 0
+    best, fruitless, stale = _attempt(rig, np.zeros(rig.samples)), 0, True
     for seed in range(1, settings.rounds + 1):
         before = best.cost
-        response = rig.measure_response(best.signal, best.outputs, seed)
-        size = np.sum(np.abs(response) ** 2, axis=0)
+        if stale:
+            response = rig.measure_response(best.signal, best.outputs, seed)
+            size = np.sum(np.abs(response) ** 2, axis=0)
         step = np.zeros(rig.samples // 2 + 1, dtype=complex)
         matched = np.sum(response.conj() * as_complex(best.residuals), axis=0)
         step[:bins] = permitted * matched / (size + 2.0 / plausible)
         best = _improve(rig, best, np.fft.irfft(step, rig.samples))
-        fruitless = fruitless + 1 if best.cost > (1.0 - settings.settled) * before else 0
+        stale = best.cost > (1.0 - settings.settled) * before
+        fruitless = fruitless + 1 if stale else 0
         if fruitless == settings.fruitless or best.cost < best.residuals.size:
             break
     spectrum = np.fft.rfft(best.signal)

@@ -193,7 +193,7 @@ def share_gap(objective: Objective, chosen: Evaluation, remainder: Remainder | N
 
 
 def localise_remainder(
-    objective: Objective, calibrated: Evaluation, chosen: Evaluation
+    objective: Objective, calibrated: Linearisation, found: Linearisation
 ) -> tuple[Remainder, Evaluation]:
     """Return what is unexplained, and the rig that lacks it: the calibrated one where a single block explains the gap.
 
@@ -201,17 +201,17 @@ def localise_remainder(
     leaves more than one beside them. Where the form of the rig is wrong everywhere no such input explains it, and where
     the gap is less than noise and disturbance nothing shows that there is one.
     """
-    settings, beside = objective.settings, weigh_blocks(objective, objective.linearise_nuisances(chosen))
-    if not chosen.parameters.terms or calibrated.excess < settings.localisation.above_noise:
+    settings, beside = objective.settings, weigh_blocks(objective, found)
+    chosen, before = found.evaluation, calibrated.evaluation.excess
+    if not chosen.parameters.terms or before < settings.localisation.above_noise:
         return beside, chosen
-    alone = weigh_blocks(objective, objective.linearise_nuisances(calibrated))
+    alone = weigh_blocks(objective, calibrated)
     # An error of the very sensor that an effect names is that effect in a more general form.
     if alone.likeliest.channel in [term.fixed.get("channel") for term in chosen.parameters.terms]:
         return beside, chosen
-    little = settings.decision.explained * calibrated.excess
-    slight = settings.localisation.slight * calibrated.excess
+    little, slight = settings.decision.explained * before, settings.localisation.slight * before
     if alone.likeliest.negative_log_evidence < min(little, beside.likeliest.negative_log_evidence + slight):
-        return alone, calibrated
+        return alone, calibrated.evaluation
     return beside, chosen
 
 

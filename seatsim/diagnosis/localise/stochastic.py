@@ -34,11 +34,7 @@ def find_disturbance(objective: Objective, selection: Selection) -> Discrepancy 
     A disturbance shows only about a rig with the effects beside it, and they are found only where the disturbance is
     expected. Sets are therefore judged by what they leave beyond a disturbance, not by all that they leave.
     """
-    tried = [
-        selection.calibrated,
-        *(each for sets in selection.sets[1:] for each in sets[: objective.settings.selection.beam]),
-    ]
-    rigs = [selection.linearise_nuisances(objective, each) for each in tried]
+    rigs = [selection.linearise(sets[0]) for sets in selection.sets]
     left = [
         _measure_left(objective, rig, selection.calibrated.excess)
         + objective.settings.localisation.slight * len(rig.evaluation.parameters.terms)

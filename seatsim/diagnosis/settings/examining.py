@@ -120,13 +120,6 @@ class DesignSettings(NamedTuple):
     """Prior standard deviation of an effect's parameter, in its natural size.
     Trades off: lower: effects are separable only because they are thought small.
     Chosen: by convention."""
-    structures: int = 4
-    """Structures and channels of an effect that are fitted.
-    Trades off: more: time.
-    Chosen: on simulated rigs."""
-    stretch: float = 8.0
-    """Largest factor by which the start of an effect is made larger or smaller.
-    Chosen: numerically."""
     separated: float = 30.0
     """Least separability, in noise units, of an experiment that is proposed.
     Trades off: lower: experiments that do not decide; higher: none is proposed.
@@ -142,7 +135,7 @@ class DesignSettings(NamedTuple):
     """Least probability of an effect of the collinearity table.
     Chosen: by convention."""
     trials: int = 16
-    """Excitations that are tried to optimise the best of the menu.
+    """Excitations that are tried to optimise the best of the menu, where none on it distinguishes all members.
     Trades off: more: time.
     Chosen: by convention."""
     largest_travel: float = 0.05

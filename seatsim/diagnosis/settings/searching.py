@@ -81,11 +81,11 @@ class SelectionSettings(NamedTuple):
     """Subset selection: screening by linear models, fits of single effects, then of larger sets."""
 
     first_shortlist: int = 12
-    """Candidates whose fit is begun after the screening for a first effect.
+    """Candidates that are simulated after the screening for a first effect.
     Trades off: fewer: an effect that a linear model underrates is missed; more: time.
     Chosen: on simulated rigs."""
     further_shortlist: int = 7
-    """Candidates whose fit is begun after the screening for a further effect.
+    """Candidates that are simulated after the screening for a further effect, and most fits of a size that are begun.
     Trades off: as `first_shortlist`.
     Chosen: on simulated rigs."""
     finalists: int = 4
@@ -112,21 +112,9 @@ class SelectionSettings(NamedTuple):
     """Largest factor by which the screening enlarges the start of a candidate.
     Trades off: larger: a linear model is trusted farther than it holds.
     Chosen: on simulated rigs."""
-    swap_within: float = 1.5
-    """Factor on the cost of an effect within which another one is tried in its place.
-    Trades off: larger: more fits; smaller: a wrong member of a set stays.
-    Chosen: on simulated rigs."""
-    most_swaps: int = 3
-    """Effects that are tried in the place of each one.
-    Trades off: as `swap_within`.
-    Chosen: on simulated rigs."""
-    start_factors: tuple[float, ...] = (0.6, 1.0, 1.6)
-    """Multiples of the size that a linear model predicts at which a candidate is started.
-    Trades off: more: fewer fits that end in a wrong minimum, more time.
-    Chosen: on simulated rigs."""
     limit_factors: tuple[float, ...] = (1.08, 1.16, 1.27)
     """Factors that are tried on a limit that acts too much; their inverses where it acts too little.
-    Trades off: as `start_factors`: a limit acts by what exceeds it, so that its size must be near.
+    Trades off: more: fewer fits that end in a wrong minimum, more time: a limit acts by what exceeds it.
     Chosen: on simulated rigs."""
     limit_starts: tuple[float, ...] = (1.0, 0.5, 0.7, 1.4, 2.0)
     """Factors on the start of a limit from which fits are begun.

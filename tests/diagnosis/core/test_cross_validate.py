@@ -85,8 +85,9 @@ def select(objective, *sets):
     """Return the names that runs left out support, and those of the sets that help as much."""
     tried = [[fitted(objective, *names) for names in size] for size in sets]
     calibrated = fitted(objective)
+    nuisances = objective.linearise_nuisances(calibrated)
     chosen, equivalent, _ = select_by_cross_validation(
-        objective, Selection(calibrated, ((calibrated,), *map(tuple, tried)), ())
+        objective, Selection(calibrated, ((calibrated,), *map(tuple, tried)), nuisances)
     )
     return set(chosen.parameters.names), [set(each.parameters.names) for each in equivalent]
 
@@ -156,7 +157,7 @@ def test_two_other_effects_take_the_place_of_one_only_where_the_evidence_decides
 def test_every_set_tried_is_returned_with_its_weight():
     objective = pose(amounts=TRUE | {"nuisance 0": 0.8})
     calibrated, one, two = (fitted(objective, *names) for names in ((), ("rig.one",), ("rig.two",)))
-    selection = Selection(calibrated, ((calibrated,), (one, two)), ())
+    selection = Selection(calibrated, ((calibrated,), (one, two)), objective.linearise_nuisances(calibrated))
     tried = select_by_cross_validation(objective, selection).tried
     assert [each for each, _ in tried] == [calibrated, one, two]
     expected = [(1.0 - gain(objective, names)) ** 2 for names in ([], ["rig.one"], ["rig.two"])]

@@ -47,7 +47,7 @@ def selected(objective, before, *sets):
     """Return a selection from the calibrated excess and, by size, lists of (effects, excess, ...)."""
     calibrated = before if not isinstance(before, float) else state(objective, {}, before)
     larger = (tuple(state(objective, *each) for each in size) for size in sets)
-    return Selection(calibrated, ((calibrated,), *larger), ())
+    return Selection(calibrated, ((calibrated,), *larger), objective.linearise_nuisances(calibrated))
 
 
 def decide(objective, before, *sets):

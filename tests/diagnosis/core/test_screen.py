@@ -6,7 +6,7 @@ from scipy.optimize import lsq_linear
 
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.objective import Parameters
-from seatsim.diagnosis.screen import measure_sensitivities, name_unstable, screen_candidates
+from seatsim.diagnosis.screen import measure_sensitivities, name_unstable, pick_starts, screen_candidates
 
 from .toy import Edge, Limited, Stated, add_up, draw_signals, make_problem, offer, offer_two, place, stack, weigh_stated
 
@@ -58,7 +58,6 @@ def test_the_predicted_cost_is_the_least_that_the_candidate_leaves(start):
     assert shortlisted_below(objective, candidate, exact * (1.0 + 1e-5))
     assert not shortlisted_below(objective, candidate, exact * (1.0 - 1e-5))
     (found,) = screened(objective, [candidate])
-    # Of 0, 0.6, 1 and 1.6 times the predicted amount, the predicted one is the best start.
     assert found.parameters.values[0][0] == pytest.approx(amount, rel=1e-4)
 
 
@@ -75,6 +74,13 @@ def test_a_candidate_without_a_sign_is_not_turned_around():
     assert turned.parameters.values[0][0] == pytest.approx(-1.5, abs=0.05)
 
 
+def test_a_fit_begins_at_a_candidates_own_start_where_the_prediction_fails():
+    # Twice the amount at the start leaves nothing, were the rig linear; beyond 1 it leaves all bounds.
+    objective = pose({"b.two": 1.2})
+    (found,) = screened(objective, [offer("b.two", start=0.6, cls=Edge)])
+    assert found.parameters.values[0][0] == 0.6 and np.isfinite(found.cost)
+
+
 def test_the_best_predicted_come_first_and_no_more_than_the_count():
     objective = pose({"b.two": 1.5, "c.three": 0.8, "a.one": 0.3})
     candidates = [offer("a.one"), offer("b.two"), offer("c.three")]
@@ -86,13 +92,10 @@ def test_the_best_predicted_come_first_and_no_more_than_the_count():
     ]
 
 
-def test_a_structure_is_tried_once_from_its_most_promising_start():
-    objective = pose({"b.two": 9.0})
-    near, far = offer("b.two", start=2.0), offer("b.two", start=0.1)
-    other = near._replace(fixed={"signal": "b.two", "second": 0.0}, start=(0.05,))
-    found = screened(objective, [far, near, other])
-    assert len(found) == 2
-    assert found[0].parameters.terms[0] is near
+def test_a_structure_is_screened_once_from_one_of_its_smaller_starts():
+    several = [offer("b.two", start=start) for start in (0.1, -9.0, 2.0, 0.4, -0.3)]
+    other = offer("b.two", "c.three", start=7.0)
+    assert pick_starts([*several, other]) == [several[4], other]
 
 
 def test_each_size_is_predicted_by_itself():

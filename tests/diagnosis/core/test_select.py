@@ -87,24 +87,9 @@ MIXED = {"decoy.mix": {"true.one": 1.0, "true.two": 1.0, "decoy.0": 0.5}}
 """A decoy that explains more alone than either of the planted effects, which it imitates together."""
 
 
-def test_a_wrong_first_effect_is_swapped_for_one_that_did_nearly_as_well():
-    amounts, offered = {"true.one": 1.0, "true.two": 0.9}, ("decoy.mix", "true.one", "true.two", "decoy.1")
-    narrow = {"beam": 1, "swap_within": 20.0}
-    found, _ = search(pose(amounts, MIXED, **narrow), offered)
-    assert names_of(found.sets[2])[0] == {"true.one", "true.two"}
-    exact = best_cost(pose(amounts, MIXED), ["true.one", "true.two"])
-    assert found.sets[2][0].cost == pytest.approx(exact, rel=1e-6)
-    # Neither without swaps nor where none did nearly as well.
-    for without in ({"beam": 1, "most_swaps": 0}, {"beam": 1, "swap_within": 1.001}):
-        kept, _ = search(pose(amounts, MIXED, **without), offered, largest=2)
-        assert "decoy.mix" in kept.sets[2][0].parameters.names
-        assert {"true.one", "true.two"} not in names_of(kept.sets[2])
-
-
 def test_a_first_effect_that_later_ones_make_idle_is_eliminated():
     amounts, offered = {"true.one": 1.0, "true.two": 0.9}, ("decoy.mix", "true.one", "true.two", "decoy.1")
-    settings = {"beam": 1, "most_swaps": 0}
-    found, told = search(pose(amounts, MIXED, **settings), offered)
+    found, told = search(pose(amounts, MIXED, beam=1), offered)
     assert told[-1] == "eliminating backwards"
     assert names_of(found.sets[3])[0] == {"decoy.mix", "true.one", "true.two"}
     assert names_of(found.sets[2])[0] == {"true.one", "true.two"}
@@ -122,6 +107,18 @@ def test_an_effect_is_in_a_set_once_and_the_best_structure_of_it_is_kept():
     assert singles["true.one"].parameters.terms[0].fixed == {"signal": "true.one"}
     assert len(found.sets[1]) == 2
     assert names_of(found.sets[2]) == [{"true.one", "true.two"}]
+
+
+def test_an_effect_of_the_same_form_is_fitted_as_closely_in_the_place_of_the_best():
+    objective = pose({"true.one": 1.4, "true.two": -0.6}, first_shortlist=1, further_shortlist=1)
+    twins = [
+        offer(name, signal, start=0.3) for signal in ("true.one", "true.two") for name in (signal, f"{signal}.twin")
+    ]
+    found = select_effects(objective, twins, lambda _: None, 2)
+    names = [set(each.parameters.names) for each in found.sets[2][:3]]
+    assert {"true.one", "true.two"} in names and {"true.one.twin", "true.two"} in names
+    costs = [each.cost for each in found.sets[2][:3]]
+    assert costs == pytest.approx([costs[0]] * 3, rel=1e-6)
 
 
 def test_the_best_effect_is_begun_again_in_its_other_forms():

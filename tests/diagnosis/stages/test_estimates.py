@@ -11,7 +11,6 @@ from seatsim.diagnosis.estimates import compare_comfort, estimate_causes, estima
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.result import Trace
 from seatsim.diagnosis.select import Selection
-from seatsim.scenario.loading import single
 
 from .toy import RATE, SKIP, Added, AddedTwice, add_taps, offer, place, pose, record, weigh_stated, whiten
 
@@ -98,11 +97,12 @@ def found(folder):
     rigs = {name: objective.evaluate([rig])[0] for name, rig in rigs.items()}
     without = objective.on_runs(["first"])
     held = {name: without.evaluate([rigs[name].parameters])[0] for name in ("calibrated", "augmented")}
-    selection = Selection(rigs["calibrated"], ((rigs["calibrated"],), (rigs["single"], rigs["twice"])), ())
+    nuisances = objective.linearise_nuisances(rigs["calibrated"])
+    selection = Selection(rigs["calibrated"], ((rigs["calibrated"],), (rigs["single"], rigs["twice"])), nuisances)
     probabilities = {"c.absent": 0.1, "b.twice": 0.1, "a.one": 0.9, "d.absent": 0.2}
     decision = Decision("known", rigs["single"], [], probabilities, 0.0, 0.0)
-    nominal = single(folder / "nominal.yaml")
-    given = objective, selection, decision, held["calibrated"], held["augmented"], nominal, "second"
+    augmented = objective.linearise_nuisances(held["augmented"])
+    given = objective, selection, decision, held["calibrated"], augmented, "second"
     return objective, rigs, held, estimate_causes(*given), given
 
 
@@ -126,8 +126,9 @@ def test_a_parameter_at_the_end_of_its_range_and_a_cause_all_of_whose_size_is_th
     chosen = objective.evaluate([place(problem, (half, 0.5, 0.3), (term, 0.1))])[0]
     calibrated = objective.evaluate([place(problem)])[0]
     decision = Decision("known", chosen, [], {"b.twice": 0.9, "c.three": 0.8}, 0.0, 0.0)
-    selection, nominal = Selection(calibrated, ((calibrated,),), ()), single(folder / "nominal.yaml")
-    twice, third = estimate_causes(objective, selection, decision, calibrated, chosen, nominal, "first")
+    selection = Selection(calibrated, ((calibrated,),), objective.linearise_nuisances(calibrated))
+    found = objective.linearise_nuisances(chosen)
+    twice, third = estimate_causes(objective, selection, decision, calibrated, found, "first")
     assert (twice.ends, twice.at_bound, third.ends, third.at_bound) == (["second"], False, ["amount"], True)
     assert third.parameters["amount"].bound == (-20.0, 0.1)
 

@@ -34,7 +34,7 @@ def make_solution(objective, verdict, *terms, **changed):
     probabilities = dict.fromkeys(["driver.mass", TWO.effect, ONE.effect, "coil.lag"], 0.001)
     probabilities |= {term.effect: 0.9 for term in terms}
     decision = Decision(verdict, chosen, changed.pop("groups", []), probabilities, 0.02, 0.3)
-    selection = Selection(nominal, ((calibrated,), single_effects), ())
+    selection = Selection(nominal, ((calibrated,), single_effects), objective.linearise_nuisances(calibrated))
     return Solution(objective, selection, decision, **changed)
 
 

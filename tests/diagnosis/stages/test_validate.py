@@ -109,12 +109,14 @@ def test_a_rig_is_fitted_without_the_run(folder):
     truth = {"first": (Added("one", 0.5),), "second": (Added("one", 0.5),), "other": (Added("one", 3.0),)}
     runs = {"first": 240, "other": 300, "second": 240}
     objective = weigh_stated(pose(record(folder, truth, runs, noise=1e-3)))
-    chosen = objective.evaluate([place(objective.problem, (offer("x.one", "one"), 1.0))])[0]
-    calibrated, augmented = refit_without(objective, chosen, "other")
+    both = place(objective.problem), place(objective.problem, (offer("x.one", "one"), 1.0))
+    nominal, chosen = objective.evaluate(both)
+    rigs = [objective.linearise_nuisances(each) for each in (nominal, chosen)]
+    calibrated, augmented = refit_without(objective, *rigs, "other")
     assert set(augmented.whitened) == set(calibrated.whitened) == {"first", "second"}
     assert augmented.parameters.values[0][0] == pytest.approx(0.5, abs=1e-3)
     assert calibrated.parameters.terms == () and np.any(calibrated.parameters.deviations)
-    alone = refit_without(objective, chosen, "first")[1]
+    alone = refit_without(objective, *rigs, "first")[1]
     assert alone.parameters.values[0][0] > 1.0
 
 
