@@ -31,11 +31,9 @@ from seatsim.blind.make.make import case_name, draw_files, make_case
 from seatsim.blind.score.verdicts import Verdict, is_right, read_verdict
 from seatsim.blind.sealed import Label
 from seatsim.diagnosis.candidates import list_candidates
-from seatsim.diagnosis.design.separability import fit_member
 from seatsim.diagnosis.diagnose import diagnose
-from seatsim.diagnosis.fit import fit
 from seatsim.diagnosis.noise import weigh_noise
-from seatsim.diagnosis.objective import Objective, Parameters
+from seatsim.diagnosis.objective import Objective
 from seatsim.diagnosis.problem import DiagnosisProblem, pose_problem
 from seatsim.diagnosis.select import select_effects
 from seatsim.diagnosis.settings.judging import DecisionSettings
@@ -73,26 +71,17 @@ def write_imitators(case: Path, effect: str) -> None:
 def find_imitators(problem: DiagnosisProblem, effect: str) -> dict[str, float]:
     """Return what share of the true effect each other could explain; nothing where no simulation shows it."""
     candidates = list_candidates(problem)
+    own = [candidate for candidate in candidates if candidate.effect == effect]
     others = [candidate for candidate in candidates if candidate.effect != effect]
-    if len(others) == len(candidates):
+    if not own:
         return {}
     objective = Objective(problem, weigh_noise(problem))
-    rig = fit_true_effect(objective, effect)
+    rig = select_effects(objective, own, lambda _: None, 1).sets[1][0].parameters
     measured = {run: problem.simulated(run, rig.deviations, rig.effects) for run in problem.runs}
     replicate = Objective(dataclasses.replace(problem, measured=measured), objective.weights)
     selection = select_effects(replicate, others, lambda _: None, 1)
     whole = selection.calibrated.cost
     return {single.parameters.terms[0].effect: 1.0 - single.cost / whole for single in selection.sets[1]}
-
-
-def fit_true_effect(objective: Objective, effect: str) -> Parameters:
-    """Return the rig with the true effect, fitted to the recording."""
-    nominal = objective.evaluate([Parameters(objective.problem.nominal)])[0]
-    nuisances = objective.linearise_nuisances(nominal)
-    calibrated = fit(objective, nominal, nuisances)
-    # Sensitivities to the nuisances hardly change as they are refitted: those about the nominal rig serve both fits.
-    about_calibrated = dataclasses.replace(nuisances, evaluation=calibrated)
-    return fit_member(objective, about_calibrated, effect, [effect]).parameters
 
 
 def load_label(out: Path, case: str) -> Label:
