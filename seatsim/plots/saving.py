@@ -69,5 +69,5 @@ def render_inline(figure: Figure) -> Inline:
     for pattern, shorter in _SHORTER:
         drawing = re.sub(pattern, shorter, drawing)
     source = f"data:image/svg+xml,{quote(drawing.strip(), safe=' /:=;,()-')}"
-    words = [" ".join(text.get_text().split()).replace(r"\$", "$") for text in texts]
+    words = [text.get_text().replace("\n", " ").replace(r"\$", "$") for text in texts]
     return Inline(words[0], words[1], source)

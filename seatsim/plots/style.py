@@ -164,7 +164,8 @@ def scale_log(axes: Axes, which: Literal["x", "y"], low: float, high: float) -> 
     """Make an axis logarithmic from `low` to `high`, in plain numbers: 1, 2, 5 of each decade, or decades of many."""
     axes.set(**{f"{which}scale": "log", f"{which}lim": (low, high)})
     axis = axes.xaxis if which == "x" else axes.yaxis
-    axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high / low < 300 else (1,), numticks=8))
+    most = 12 if which == "x" else 8
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high / low < 300 else (1,), numticks=most))
     axis.set_major_formatter(lambda value, _: _write_plainly(value))
     axis.set_minor_locator(NullLocator())
 

@@ -47,7 +47,10 @@ def plot_steps(found: Characterisation) -> Figure:
     known = list(zip(answers, found.sheet.response, strict=True))
     speeds = {f"{answer.speed:.3g} m/s" for answer in answers if math.isfinite(answer.speed)}
     at = f" at {speeds.pop()}" if len(speeds) == 1 else ""
-    note = f"Force{at}; t10, t63, t90: 10, 63 and 90 % of its change, from the current's own 10 % or a command's step."
+    note = (
+        f"Share of its change that the force{at} has covered, where the current falls, too. t10, t63 and t90 are those"
+        " of all steps of a panel, from the current's own 10 % or, where only a command was recorded, from its step."
+    )
     title = f"Response to steps of current: {found.name}"
     shown = [[pair for pair in known if pair[0].rises == rises][:MOST] for rises in (True, False)]
     # The legends stand below the panels, where they cover nothing.

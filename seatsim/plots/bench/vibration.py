@@ -36,7 +36,10 @@ def _plot_running_rms(found: Comfort, axes: Sequence[str]) -> Figure:
     """Return the running RMS of each axis, a panel for each stretch."""
     looks = style.make_entries(axes)
     chosen = spread_evenly(range(len(found.stretches[axes[0]])), MOST)
-    note = "RMS of the weighted acceleration over the last second, without multiplying factor; its peak is the MTVV."
+    note = (
+        "RMS of the weighted acceleration over the last second, without multiplying factor; its peak is the MTVV. The"
+        " first second, in which the window fills, is left out."
+    )
     page = style.make_page("Vibration over time", note, Grid((1.5,) * len(chosen), top=0.3), looks)
     highest = max(found.axes[axis].dose.mtvv for axis in axes)
     for panel, k in zip(page.list_panels(), chosen, strict=True):
@@ -44,7 +47,8 @@ def _plot_running_rms(found: Comfort, axes: Sequence[str]) -> Figure:
             part = found.stretches[axis][k]
             stride = max(1, round(RASTER * part.sample_rate))
             values = running_rms(part.weighted, part.sample_rate)[::stride]
-            style.draw_line(panel, np.arange(len(values)) * stride / part.sample_rate, values, look)
+            time = np.arange(len(values)) * stride / part.sample_rate
+            style.draw_line(panel, time[time >= 1.0], values[time >= 1.0], look)
         style.set_title(panel, found.stretches[axes[0]][k].run)
         panel.set_ylim(0.0, 1.05 * highest or 1.0)
         panel.set_xlabel("time [s]")

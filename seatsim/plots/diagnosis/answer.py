@@ -129,15 +129,19 @@ def plot_ranking(diagnosis: Diagnosis) -> Figure | None:
     if not diagnosis.causes:
         return None
     names, probabilities, shrinks, colours, texts = map(list, zip(*_list_rows(diagnosis), strict=True))
+    alike = [name for name, colour in zip(names, colours, strict=True) if colour in (_CHOSEN, _EQUIVALENT)]
+    title = "Which effects are at work"
+    if not diagnosis.selected:
+        title += ": none is named"
+    elif _EQUIVALENT in colours:
+        title += f": cannot be told apart, {', '.join(alike)}"
     equivalent = " Light blue: explain the gap as well." if _EQUIVALENT in colours else ""
     note = (
         f"Bold and blue: the answer of the diagnosis.{equivalent} Each figure is the probability of being at work: two"
         " effects can both be near 100 %."
     )
     grid = Grid((ROW * len(names) + 0.1,), 2, left=measure_names(names), right=0.45, bottom=0.65, gap=(0.5, 0.0))
-    figure, [[left, right]] = make_page(
-        f"Which effects are at work{': none is named' * (not diagnosis.selected)}", note, grid
-    )
+    figure, [[left, right]] = make_page(title, note, grid)
     strong = [k for k, colour in enumerate(colours) if colour == _CHOSEN]
     for axes, shown in ((left, names), (right, [""] * len(names))):
         name_rows(axes, shown, strong)

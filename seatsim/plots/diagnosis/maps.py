@@ -73,7 +73,8 @@ def plot_discrepancy(diagnosis: Diagnosis) -> Figure | None:
     motion = {name: values for name, values in known.items() if len(values) == len(found.values)}
     grid = Grid((1.5,) * (1 + -(-len(motion) // 2)), columns=2, gap=(0.75, 0.6))
     title = f"The missing {shown.words} of the {found.block}"
-    page = style.make_page(title, "On the held-out run: over time, then over its motion.", grid)
+    note = "What the simulation lacks to agree with the held-out run: over time, then over what moves."
+    page = style.make_page(title, note, grid)
     first, second, *panels = page.list_panels(2 + len(motion))
     second.remove()
     box = first.get_position()

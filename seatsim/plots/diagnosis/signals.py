@@ -153,5 +153,5 @@ def _make_title(trace: Trace, shown: Quantity, lines: Sequence[Simulated]) -> st
     words = shown.words[:1].upper() + shown.words[1:]
     named = [f"{line.look.label} " for line in lines] if len(lines) > 1 else [""]
     known = [*zip(named, sizes, strict=True), *([("noise ", trace.noise_rms)] if trace.noise_rms > 0 else [])]
-    figures = [f"{name}{format_number(shown.factor * size)} {shown.unit}" for name, size in known]
+    figures = [f"{name}{format_number(shown.factor * size)}\u00a0{shown.unit}" for name, size in known]
     return f"{words}, RMS difference: {', '.join(figures)}"

@@ -19,7 +19,7 @@ from seatsim.simulation.performance_bounds import PerformanceBounds
 from seatsim.simulation.result import Run
 
 COMFORT, TRAVEL, SEAT = "driver_acceleration_weighted", "suspension_displacement_rms", "seat_factor"
-_PARETO_NOTE = "Over the whole run; lower left is better. The numbers are in the order of comfort."
+_PARETO_NOTE = "Over the whole run; on the same floor, lower left is better. The numbers are in the order of comfort."
 BOUND = Entry("no damper without memory comes below", "black", width=1.6)
 BEST = Entry("best run found of an ideal damper", DARK, (0.0, (5.0, 1.5)), 1.6)
 FLOOR = Entry("as much as the floor (SEAT = 1)", DARK, ":", 1.6)

@@ -62,6 +62,8 @@ def plot_time_histories(shown: Shown) -> Figure:
         views, note = [Window(0.0, float(common)), window], f"Left: whole run. Right: {note}"
     elif window.end >= common:
         note = "The whole run."
+    if not np.any(first["driver_acceleration"]):
+        note = "At rest."
     limits, warms = _find_limits(shown.runs), any(np.ptp(run.history[TEMPERATURE.name]) > 0 for run in shown.runs)
     channels = (*CHANNELS, TEMPERATURE) if warms else CHANNELS
     legend = [] if single else [*shown.looks, *[LIMIT] * bool(limits)]
