@@ -178,10 +178,11 @@ def measure_forces(loop: SineTest, window: float) -> tuple[float, float]:
     return rebound, compression
 
 
-def summarise_record(record: BenchRecord, window: float = WINDOW) -> Row:
+def summarise_record(record: BenchRecord, window: float = WINDOW, last: int = 0) -> Row:
     """Return the row of a measured record at one current: of its steady cycles, or as a record without cycles.
 
-    `window` is the part of the stroke over which the force at the peak speed is averaged.
+    `window` is the part of the stroke over which the force at the peak speed is averaged; only so many of the `last`
+    steady cycles count, all where 0. Drift and damage are sought in all of them.
     """
     found = find_cycles(record.displacement)
     steady = select_steady_cycles(found)
@@ -193,6 +194,7 @@ def summarise_record(record: BenchRecord, window: float = WINDOW) -> Row:
     notes = [*_of_damage(record), *_of_current(record), *_of_loops(loops), *_of_zero(record, moved), *_of_sign(record)]
     if min(cycle.length for cycle in steady) < _COARSE:
         notes.append(f"fewer than {_COARSE} rows a cycle: peaks and areas are coarse")
+    steady, loops = steady[-last:], loops[-last:]
     current = _average_cycles(record.current, steady)
     warmth = math.nan if record.temperature is None else _average_cycles(record.temperature, steady)
     left_out = len(found) - len(steady)

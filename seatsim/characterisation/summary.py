@@ -77,16 +77,18 @@ def characterise(
     window: float = WINDOW,
     pattern: str = "",
     progress: Callable[[str], object] = lambda _: None,
+    last: int = 0,
 ) -> Characterisation:
     """Return what bench records, or the tables of a folder, show before anything is modelled.
 
     `window` is the part of the stroke over which the force at the peak speed is averaged; `pattern` is that of
-    `seatsim.recordings.bench_tables.map_bench`; `progress` is called with what is done.
+    `seatsim.recordings.bench_tables.map_bench`; `progress` is called with what is done; only so many of the `last`
+    steady cycles of each record count, all where 0.
 
     A record whose current rests at several levels, with steady cycles at one of them, has a row for each such stretch;
     any other record has one row.
     """
-    found, examine = _Findings([], [], []), partial(_examine, window)
+    found, examine = _Findings([], [], []), partial(_examine, window, last)
     parts: Iterable[_Findings]
     if isinstance(data, str | Path):
         name, parts = name or Path(data).stem, map_bench(data, examine, pattern)
@@ -109,23 +111,23 @@ class _Findings(NamedTuple):
     unused: list[str]
 
 
-def _examine(window: float, records: Iterable[BenchRecord]) -> _Findings:
+def _examine(window: float, last: int, records: Iterable[BenchRecord]) -> _Findings:
     found = _Findings([], [], [])
     for record in records:
-        found.rows.extend(_rows(record, window))
+        found.rows.extend(_rows(record, window, last))
         found.responses.extend(measure_responses(record))
         found.unused.extend(record.unused)
     return found
 
 
-def _rows(record: BenchRecord, window: float) -> list[Row]:
+def _rows(record: BenchRecord, window: float, last: int) -> list[Row]:
     rests = find_plateaus(record.current, record.rate)
     if len(rests) < 2:
-        return [summarise_record(record, window)]
+        return [summarise_record(record, window, last)]
     skipped = round(_SETTLED * record.rate)
     parts = [(rest, record.part(rest.first + skipped, rest.last)) for rest in rests if rest.last > rest.first + skipped]
     rows = [
-        summarise_record(part, window)._replace(record=f"{record.name}, {rest.first / record.rate:.1f} s")
+        summarise_record(part, window, last)._replace(record=f"{record.name}, {rest.first / record.rate:.1f} s")
         for rest, part in parts
     ]
     cyclic = [row for row in rows if row.loop is not None]

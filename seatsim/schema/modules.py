@@ -161,6 +161,8 @@ def import_named(name: str, beside: Path | None = None) -> ModuleType:
             raise _missing(name, beside) from error
         raise InputError(f"module '{name}' cannot be imported: {error}") from error
     except ImportError as error:
+        if isinstance(error.__cause__, KeyboardInterrupt):  # modules in C++ make such an error of it
+            raise KeyboardInterrupt from error
         raise InputError(f"module '{name}' cannot be imported: {error}") from error
 
 

@@ -46,6 +46,17 @@ def test_the_figures_of_a_record_are_those_of_a_sine_test(record, sine, damper):
     assert hysteresis.width == pytest.approx(np.ptp(ends), abs=0.01 * test.peak_force)
 
 
+def test_the_last_cycles_are_counted_alone_where_asked(record, sine):
+    motion, seconds = sine(0.008, 1.5)
+    made = record(motion, seconds, lambda t: 1.0 + 0.0 * t)
+    fading = made._replace(force=made.force * (1.0 - 0.05 * np.arange(len(made.force)) / len(made.force)))
+    whole, two, one = (characterise([fading], last=last).rows[0] for last in (0, 2, 1))
+    assert (whole.cycles, two.cycles, one.cycles) == (8, 2, 1)
+    each = whole.cycle_values["energy"]
+    assert (two.energy, one.energy) == pytest.approx((np.mean(each[-2:]), each[-1]))
+    assert one.energy < two.energy < whole.energy and math.isnan(one.energy_sd)
+
+
 def test_an_offset_stroke_noise_and_rests_are_no_matter(record, sine):
     centred, seconds = sine(0.005, 2.0)
     offset, _ = sine(0.005, 2.0, offset=0.031)

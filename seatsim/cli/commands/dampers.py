@@ -29,6 +29,7 @@ def characterise(
     beside: Annotated[Path | None, typer.Option("--beside", metavar="DAMPER.yaml")] = None,
     pattern: Annotated[str, typer.Option("--pattern", metavar="REGEX")] = "",
     window: Annotated[float, typer.Option("--window", min=0.001, max=1.0)] = 0.1,
+    last: Annotated[int, typer.Option("--last", min=0, metavar="N")] = 0,
 ) -> None:
     """Show what a bench shows of a damper: loops, energy, asymmetry, offset and response times.
 
@@ -44,6 +45,7 @@ def characterise(
         beside: A damper whose forces stand beside.
         pattern: Groups current and temperature of file names.
         window: Part of the stroke over which forces are averaged.
+        last: Last steady cycles that count; 0 for all.
     """
     from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
     from seatsim.characterisation.sheet import check_limits
@@ -53,9 +55,9 @@ def characterise(
     if (data is None) == (model is None and parameters is None) or (data is not None and any(grid)):
         raise InputError("characterise either DATA, or a model by --model or --parameters with its tests; see --help")
     if data is not None:
-        found = _characterise_data(data, beside, pattern, window)
-    elif beside or pattern:
-        raise InputError("--beside and --pattern are of DATA; leave them out for a model")
+        found = _characterise_data(data, beside, pattern, window, last)
+    elif beside or pattern or last:
+        raise InputError("--beside, --pattern and --last are of DATA; leave them out for a model")
     else:
         tested = load_specimen(model, parameters)
         found = characterise_model(tested, choose_settings(tested, *grid), window)
@@ -64,7 +66,7 @@ def characterise(
     present_characterisation(found, out_folder or Path("out") / f"characterise-{found.name}")
 
 
-def _characterise_data(data: Path, beside: Path | None, pattern: str, window: float) -> Characterisation:
+def _characterise_data(data: Path, beside: Path | None, pattern: str, window: float, last: int) -> Characterisation:
     """Return what bench tables show of a damper, with the forces of another one beside where it is named."""
     from seatsim.characterisation.model_tests import load_specimen, model_peaks
     from seatsim.characterisation.summary import characterise as of_records
@@ -72,7 +74,7 @@ def _characterise_data(data: Path, beside: Path | None, pattern: str, window: fl
 
     specimen = load_specimen(None, beside) if beside else None
     with show_progress() as progress:
-        found = of_records(data, _title(data), data.resolve().name, window, pattern or NAMED, progress)
+        found = of_records(data, _title(data), data.resolve().name, window, pattern or NAMED, progress, last)
     return found.set_beside(model_peaks(specimen, found.rows, window)) if specimen else found
 
 
