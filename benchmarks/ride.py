@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import argparse
 import itertools
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -23,8 +22,6 @@ from ruamel.yaml import YAML
 import seatsim
 from seatsim.schema.errors import InputError
 from seatsim.simulation.performance_bounds import compute_performance_bounds, measure_distance
-from seatsim.simulation.result import Run
-from seatsim.simulation.runs import run_many
 
 HERE = Path(__file__).parent
 TEMPERATURES, MASSES = (20.0, 50.0, 80.0), (45.0, 80.0, 110.0)
@@ -34,6 +31,12 @@ DAMPINGS = np.geomspace(150.0, 2500.0, 15)
 SECONDS, BOUNDED = 60.0, 15.0
 RIDE = "driver_acceleration_weighted"
 Settings = dict[str, Any]
+QUICKSTART, OURS = (
+    YAML(typ="safe").load(path) for path in (HERE.parent / "scenarios" / "quickstart.yaml", HERE / "ride.yaml")
+)
+VARIANTS: dict[str, Settings] = {**QUICKSTART["variants"], **OURS}
+ALONE: Settings = {"sweep": {}, "checks": {}}
+"""What leaves the quickstart its variants alone."""
 
 
 def list_floors(data: Path | None) -> dict[str, Settings]:
@@ -56,29 +59,12 @@ def list_floors(data: Path | None) -> dict[str, Settings]:
     return {name: floor | {"duration": SECONDS} for name, floor in floors.items()}
 
 
-def run_all(settings: Settings) -> Iterator[Run]:
-    """Yield the runs of the quickstart with these settings."""
-    for scenario, answer in run_many(
-        seatsim.load("quickstart", {"sweep": {}, "checks": {}} | settings), lambda _: None
-    ):
-        if not isinstance(answer, Run):
-            raise SystemExit(f"{scenario.title}: {answer}")
-        yield answer
-
-
 def find_best_viscous(cell: Settings) -> float:
     """Return the least Wk RMS in m/s^2 of a driver over the viscous dampers."""
-    viscous = load_variants()["passive, best"]
+    viscous = VARIANTS["passive, best"]
     parameters = viscous["damper.parameters"]
     dampers = {f"{c:.0f}": viscous | {"damper.parameters": parameters | {"c_a": float(c)}} for c in DAMPINGS}
-    return min(run.metrics[RIDE].value for run in run_all(cell | {"variants": dampers}))
-
-
-def load_variants() -> dict[str, Settings]:
-    """Return the variants of the quickstart and of `ride.yaml` by name."""
-    paths = (HERE.parent / "scenarios" / "quickstart.yaml", HERE / "ride.yaml")
-    quickstart, ours = (YAML(typ="safe").load(path) for path in paths)
-    return {**quickstart["variants"], **ours}
+    return min(run.metrics[RIDE].value for run in seatsim.run("quickstart", ALONE | cell | {"variants": dampers}).runs)
 
 
 def run_cells(floors: dict[str, Settings], seed: int) -> pd.DataFrame:
@@ -89,7 +75,9 @@ def run_cells(floors: dict[str, Settings], seed: int) -> pd.DataFrame:
         best = find_best_viscous(cell)
         print(f"{floor}, {mass:g} kg: best viscous damper {best:.3f} m/s^2", flush=True)
         for temperature in TEMPERATURES:
-            for run in run_all(cell | {"temperature": temperature, "variants": load_variants()}):
+            for run in seatsim.run(
+                "quickstart", ALONE | cell | {"temperature": temperature, "variants": VARIANTS}
+            ).runs:
                 ride, peak = (run.metrics[name].value for name in (RIDE, "suspension_displacement_peak"))
                 variant = run.scenario.label["variant"]
                 rows.append([variant, floor, mass, temperature, ride, best, ride / best, 1e3 * peak])
@@ -100,7 +88,8 @@ def run_cells(floors: dict[str, Settings], seed: int) -> pd.DataFrame:
 def measure_excess(variant: str, settings: Settings) -> float:
     """Return the Wk RMS of a variant over the bound at its travel, in `BOUNDED` s of a cell without end stops."""
     floor = settings["excitation"] | {"duration": BOUNDED}
-    [run] = run_all(settings | {"excitation": floor, "effects": [], "variants": {variant: load_variants()[variant]}})
+    rig = ALONE | settings | {"excitation": floor, "effects": [], "variants": {variant: VARIANTS[variant]}}
+    [run] = seatsim.run("quickstart", rig).runs
     [(_, bounds)] = compute_performance_bounds([run], lambda _: None)
     return np.nan if isinstance(bounds, InputError) else 1.0 + measure_distance(run, bounds).above_bound
 
