@@ -16,7 +16,6 @@ Whether their 90 % intervals cover is measured by `benchmarks/diagnosis_interval
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -65,11 +64,8 @@ def estimate_causes(
     base = normalise_rms_errors(held_out.problem, held_out.evaluate([calibrated.parameters])[0].residuals)
     # Single effects share one linearisation of the nuisances, about the calibrated rig: one each would take longer than
     # the fits. The chosen effects, whose figures the user acts on, have their own.
-    chosen = dict[str, _FoundEffect]()
-    if augmented.evaluation.parameters.terms:
-        # Sensitivities that a fit carried along need not be those at its end.
-        fitted = dataclasses.replace(augmented.evaluation, own=None)
-        chosen = _estimate_parameters(objective.on_runs(list(fitted.whitened)), fitted, augmented)
+    fitted = augmented.evaluation
+    chosen = _estimate_parameters(objective.on_runs(list(fitted.whitened)), fitted, augmented)
     causes = []
     for effect, probability in decision.probabilities.items():
         shrink, found = 0.0, chosen.get(effect, _FoundEffect({}, False))

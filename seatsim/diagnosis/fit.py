@@ -1,15 +1,14 @@
 """Fits of effects together with the nuisance parameters: Gauss-Newton steps under bounds, and a pattern search.
 
 The sensitivities of the nuisance parameters hardly change as effects are added, but cost most of a linearisation. A fit
-therefore uses those that its caller passes in. Those of the effects are carried along from step to step, and computed
-anew only where a step by them does not help. Where the cost jumps, so that no sensitivity leads downwards, a pattern
-search descends in the parameters of one effect.
+therefore uses those that its caller passes in, and computes those of the effects anew at every step: carried along from
+step to step, they leave a stiff stop far from its minimum. Where the cost jumps, so that no sensitivity leads
+downwards, a pattern search descends in the parameters of one effect.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -37,43 +36,14 @@ def fit(objective: Objective, start: Evaluation, nuisances: Linearisation, steps
 
 
 def _step_down(objective: Objective, evaluation: Evaluation, nuisances: Linearisation) -> Evaluation:
-    """Return the evaluation after one step, the whole or a fraction of it; the one given where none lowers the cost.
-
-    Sensitivities that were carried along are computed anew where the whole step by them does not lower it.
-    """
-    is_carried, own = evaluation.own is not None, objective.linearise_effects(evaluation).jacobian
-    step = find_step(objective, evaluation, nuisances, own)
-    for fraction in (1.0,) if is_carried else objective.settings.fit.backtracking:
+    """Return the evaluation after one step, the whole or a fraction of it; the one given where none lowers the cost."""
+    step = find_step(objective, evaluation, nuisances, objective.linearise_effects(evaluation).jacobian)
+    for fraction in objective.settings.fit.backtracking:
         moved = evaluation.parameters.move_to(evaluation.parameters.vector + fraction * step)
         tried = objective.evaluate([moved])[0]
         if tried.cost < evaluation.cost:
-            return replace(tried, own=_carry_along(evaluation, tried, nuisances, own))
-    if is_carried and evaluation.parameters.terms:
-        return _step_down(objective, replace(evaluation, own=None), nuisances)
-    return replace(evaluation, own=own)
-
-
-def _carry_along(
-    before: Evaluation, after: Evaluation, nuisances: Linearisation, own: Mapping[str, Array]
-) -> dict[str, Array]:
-    """Return the sensitivities to the effects' parameters after a step, by Broyden's update.
-
-        J += s (d - J' s)' / |s|^2
-
-    with s the step of these parameters and d the change of the whitened outputs beyond that by the nuisance parameters.
-
-    Source: C. G. Broyden, "A class of methods for solving nonlinear simultaneous equations", Mathematics of Computation
-    19 (1965) 577-593 (recalled).
-    """
-    step = after.parameters.vector - before.parameters.vector
-    count = len(before.parameters.deviations)
-    size = float(step[count:] @ step[count:])
-    part = step[count:] / size if size > 0.0 else step[count:]
-    carried = {}
-    for run, jacobian in own.items():
-        change = (before.whitened[run] - after.whitened[run]).ravel() - step[:count] @ nuisances.jacobian[run]
-        carried[run] = jacobian + np.outer(part, change - step[count:] @ jacobian)
-    return carried
+            return tried
+    return evaluation
 
 
 def refit(objective: Objective, parameters: Parameters) -> Evaluation:

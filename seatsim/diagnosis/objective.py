@@ -116,8 +116,7 @@ AT_ONCE = 16
 class Evaluation:
     """Parameters, residuals by run of shape (channels, samples), whitened residuals, and the cost with the prior.
 
-    `charge` is the factor on the cost by which structures with further parameters are ranked behind simpler ones. `own`
-    holds the sensitivities to the effects' free parameters by run, as `Linearisation` does, where a fit knows them.
+    `charge` is the factor on the cost by which structures with further parameters are ranked behind simpler ones.
     """
 
     parameters: Parameters
@@ -126,7 +125,6 @@ class Evaluation:
     cost: float
     independent: float = 1.0
     charge: float = 1.0
-    own: dict[str, Array] | None = None
 
     @property
     def rows(self) -> float:
@@ -235,9 +233,7 @@ class Objective:
         return self.linearise(evaluation, evaluation.parameters.nuisance_components)
 
     def linearise_effects(self, evaluation: Evaluation) -> Linearisation:
-        """Return the sensitivities to the effects' free parameters, computed only where no fit knows them."""
-        if evaluation.own is not None:
-            return Linearisation(evaluation, evaluation.own)
+        """Return the sensitivities to the effects' free parameters."""
         return self.linearise(evaluation, evaluation.parameters.effect_components)
 
 

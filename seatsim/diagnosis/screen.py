@@ -52,15 +52,6 @@ class _Prediction(NamedTuple):
     factors: Array
 
 
-def pick_starts(candidates: Sequence[Candidate]) -> list[Candidate]:
-    """Return one candidate of each structure, from one of its smaller starts: a linear model scales it to any size."""
-    structures: dict[Hashable, list[Candidate]] = {}
-    for candidate in candidates:
-        structures.setdefault(candidate.structure, []).append(candidate)
-    ranked = (sorted(each, key=lambda candidate: abs(candidate.start[0])) for each in structures.values())
-    return [each[(len(each) - 1) // 3] for each in ranked]
-
-
 def measure_sensitivities(
     objective: Objective, calibrated: Evaluation, candidates: Sequence[Candidate]
 ) -> Sensitivities:
@@ -109,11 +100,14 @@ def screen_candidates(
         offered: sensitivities to the candidates; those of the effects of the base are left out.
         nuisances: linearisation of the nuisance parameters.
         bound: predicted cost from which a candidate is not tried.
-        count: most candidates that are tried.
+        count: most candidates that are tried, each in one structure.
     """
     predicted = _predict(objective, base, offered, nuisances)
-    ranked = sorted(predicted, key=lambda k: predicted[k].cost)
-    shortlist = [k for k in ranked if predicted[k].cost < bound][:count]
+    best_starts: dict[Hashable, int] = {}
+    for k in sorted(predicted, key=lambda k: predicted[k].cost):
+        if predicted[k].cost < bound:
+            best_starts.setdefault(offered.candidates[k].structure, k)
+    shortlist = list(best_starts.values())[:count]
     several = [_starts_around(objective, base.parameters, offered.candidates[k], predicted[k]) for k in shortlist]
     evaluations = iter(objective.evaluate([parameters for starts in several for parameters in starts]))
     best = [min(islice(evaluations, len(starts)), key=lambda each: each.cost) for starts in several]

@@ -14,7 +14,7 @@ from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.fit import fit, search_pattern
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters, scale
 from seatsim.diagnosis.problem import OutOfTimeError
-from seatsim.diagnosis.screen import Sensitivities, measure_sensitivities, name_unstable, pick_starts, screen_candidates
+from seatsim.diagnosis.screen import Sensitivities, measure_sensitivities, name_unstable, screen_candidates
 
 
 class LinearisedRig(NamedTuple):
@@ -89,8 +89,7 @@ def select_effects(
     rig = _linearise_rig(objective, candidates) if rig is None else rig
     nuisances, sensitivities = rig.nuisances, rig.sensitivities
     sets: list[list[Evaluation]] = [[rig.calibrated]]
-    offered = [] if objective.problem.deadline.is_past else pick_starts(candidates)
-    notes = name_unstable(offered, sensitivities.candidates)
+    notes = () if objective.problem.deadline.is_past else name_unstable(candidates, sensitivities.candidates)
     # At the deadline the sets so far are the answer.
     with suppress(OutOfTimeError):
         for size in range(1, largest + 1):
@@ -100,7 +99,8 @@ def select_effects(
                 break
             sets.append(larger)
             if size == 1 and larger[0].excess > settings.nothing_left:
-                again = _restart_effect(objective, larger[0], candidates, nuisances)
+                bases = larger[: settings.beam]
+                again = [each for base in bases for each in _restart_effect(objective, base, candidates, nuisances)]
                 larger[:] = _best_of_each_set([*larger, *again])
             larger[:] = _best_of_each_set([*larger, *_fit_twins(objective, larger[0], candidates, nuisances)])
             if not _gains(objective, sets):
@@ -123,7 +123,7 @@ def _linearise_rig(objective: Objective, candidates: Sequence[Candidate]) -> Lin
     nominal = unhurried.evaluate([Parameters(objective.problem.nominal)])[0]
     nuisances = unhurried.linearise_nuisances(nominal)
     calibrated = fit(unhurried, nominal, nuisances)
-    sensitivities = measure_sensitivities(objective, calibrated, pick_starts(candidates))
+    sensitivities = measure_sensitivities(objective, calibrated, candidates)
     return LinearisedRig(nominal, Linearisation(calibrated, nuisances.jacobian), sensitivities)
 
 
@@ -155,10 +155,10 @@ def _extend(
         else:
             bound = float("inf")
         starts += screen_candidates(objective, base, sensitivities, nuisances, bound, count)
-    starts.sort(key=lambda start: start.charged)
-    most, finalists = settings.further_shortlist, settings.finalists
-    begun = [fit(objective, start, nuisances, settings.begun_steps) for start in starts[:most]]
-    ranked = _best_of_each_set(begun + starts[most:])
+    # Forms of one effect start alike, so that only the best of them is begun.
+    ranked, most, finalists = _best_of_each_set(starts), settings.further_shortlist, settings.finalists
+    begun = [fit(objective, start, nuisances, settings.begun_steps) for start in ranked[:most]]
+    ranked = _best_of_each_set(begun + ranked[most:])
     finished = [fit(objective, evaluation, nuisances) for evaluation in ranked[:finalists]]
     return _best_of_each_set(finished + ranked[finalists:])
 

@@ -85,7 +85,7 @@ class SelectionSettings(NamedTuple):
     Trades off: fewer: an effect that a linear model underrates is missed; more: time.
     Chosen: on simulated rigs."""
     further_shortlist: int = 7
-    """Candidates that are simulated after the screening for a further effect, and most fits of a size that are begun.
+    """Candidates that are simulated after the screening for a further effect, and most effects of which fits are begun.
     Trades off: as `first_shortlist`.
     Chosen: on simulated rigs."""
     finalists: int = 4

@@ -121,6 +121,16 @@ def test_an_effect_of_the_same_form_is_fitted_as_closely_in_the_place_of_the_bes
     assert costs == pytest.approx([costs[0]] * 3, rel=1e-6)
 
 
+def test_forms_of_one_effect_leave_another_its_place():
+    # Both forms of the decoy start at less cost than the effect itself, and two fits are begun.
+    parts = {"true.one": 0.8, "decoy.0": 0.6}
+    few = {"further_shortlist": 2, "begun_steps": 9, "finalists": 1}
+    objective = pose({"true.one": 1.4}, {"decoy.x": parts, "decoy.y": parts}, **few)
+    forms = [offer("decoy.x", "decoy.x", 0.3), offer("decoy.x", "decoy.y", 0.3)]
+    found = select_effects(objective, [*forms, offer("true.one", "true.one", 0.03, cls=Cubed)], lambda _: None, 1)
+    assert names_of(found.sets[1])[0] == {"true.one"}
+
+
 def test_the_best_effect_is_begun_again_in_its_other_forms():
     # The cube gains little in its first steps, so that the form that only imitates the effect is ahead of it.
     objective = pose({"true.one": 1.4}, {"decoy.x": {"true.one": 0.8, "decoy.0": 0.6}}, begun_steps=0, finalists=1)
