@@ -14,7 +14,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.diagnosis.decide import Evidence
 from seatsim.diagnosis.fit import find_step, fit
 from seatsim.diagnosis.movement import is_material
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters
@@ -37,7 +36,7 @@ class _Supported(NamedTuple):
 def select_by_cross_validation(objective: Objective, selection: Selection) -> _Supported:
     """Return the smallest set of effects that no larger one improves on left-out runs, and sets that help as much.
 
-    A larger set is chosen as long as its evidence is higher (see `seatsim.diagnosis.decide`); one without the
+    A larger set is chosen as long as its evidence is higher; one without the
     effect chosen so far, a rival explanation, only where the evidence decides: a tie goes to the simpler explanation.
     """
     settings, problem = objective.settings.cross_validation, objective.problem
@@ -73,10 +72,15 @@ def _list_equals(objective: Objective, tried: Sequence[tuple[Evaluation, float]]
 
 
 def _weigh(objective: Objective, evaluation: Evaluation, left: float) -> float:
-    """Return the logarithm of a set's evidence."""
-    settings = objective.settings.cross_validation
-    evidence = Evidence(objective.settings.decision.prior, settings.prior_of_sensor, settings.power)
-    return evidence.weigh(evaluation.parameters.names, left)
+    """Return the logarithm of a set's evidence, `prior_1 ... prior_n left^-power`.
+
+    It is that of a model whose noise is known but for its level, tempered: of the many numbers that are compared only
+    `2 power` count as independent, since what even a right set leaves is the error of an effect's form.
+    """
+    settings, sensors = objective.settings.cross_validation, _count_sensors(evaluation)
+    others = len(evaluation.parameters.terms) - sensors
+    priors = sensors * math.log(settings.prior_of_sensor) + others * math.log(settings.prior)
+    return priors - settings.power * math.log(left)
 
 
 def _charge(objective: Objective, evaluation: Evaluation, left: float) -> float:

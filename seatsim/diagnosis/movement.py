@@ -26,6 +26,12 @@ def measure_movements(problem: DiagnosisProblem, evaluation: Evaluation) -> list
     return moves
 
 
+def measure_relative_movements(problem: DiagnosisProblem, evaluation: Evaluation) -> list[Array]:
+    """Return the movements relative to what makes one material: a stated size, or the channel's noise if it is more."""
+    least = np.maximum(problem.settings.decision.material, problem.noise / problem.spread)
+    return [move / least for move in measure_movements(problem, evaluation)]
+
+
 def is_material(problem: DiagnosisProblem, evaluation: Evaluation) -> bool:
     """Whether every effect of a set moves some channel by a material size and by more than its noise."""
     return not name_immaterial(problem, evaluation)
@@ -33,11 +39,9 @@ def is_material(problem: DiagnosisProblem, evaluation: Evaluation) -> bool:
 
 def name_immaterial(problem: DiagnosisProblem, evaluation: Evaluation) -> list[str]:
     """Return the names of the effects of a set that move no channel by a material size and by more than its noise."""
-    least = np.maximum(problem.settings.decision.material, problem.noise / problem.spread)
-    moves = measure_movements(problem, evaluation)
-    return [
-        term.effect for term, move in zip(evaluation.parameters.terms, moves, strict=True) if not np.any(move > least)
-    ]
+    moves = measure_relative_movements(problem, evaluation)
+    terms = evaluation.parameters.terms
+    return [term.effect for term, move in zip(terms, moves, strict=True) if not np.any(move > 1.0)]
 
 
 def measure_remainders(problem: DiagnosisProblem, evaluation: Evaluation) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import permutations
 from typing import NamedTuple
 
@@ -57,6 +57,14 @@ class Selection:
     def linearise(self, evaluation: Evaluation) -> Linearisation:
         """Return a set with the sensitivities of the calibrated rig to the nuisance parameters, which hardly change."""
         return Linearisation(evaluation, self.nuisances.jacobian)
+
+    def add(self, evaluation: Evaluation) -> Selection:
+        """Return the selection with one more set, as the first of its size, in the place of any with its effects."""
+        size, names = len(evaluation.parameters.terms), evaluation.parameters.names
+        same = self.sets[size] if size < len(self.sets) else ()
+        others = tuple(each for each in same if each.parameters.names != names)
+        sets = (*self.sets[:size], (evaluation, *others), *self.sets[size + 1 :])
+        return replace(self, sets=sets)
 
     def weigh_again(self, old: Objective, new: Objective) -> LinearisedRig:
         """Return the rig under other weights, its nuisance parameters refitted; nothing is linearised again."""

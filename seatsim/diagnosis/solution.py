@@ -11,10 +11,10 @@ import numpy as np
 from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.decide import Decision, Verdict, decide_verdict, weigh_effects
 from seatsim.diagnosis.localise.discrepancy import Discrepancy
-from seatsim.diagnosis.movement import group_equivalent, is_material, measure_remainders
+from seatsim.diagnosis.movement import group_equivalent, measure_remainders
 from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.problem import DiagnosisProblem
-from seatsim.diagnosis.result import Cause, Share
+from seatsim.diagnosis.result import Share
 from seatsim.diagnosis.select import LinearisedRig, Selection, select_effects
 from seatsim.diagnosis.settings.judging import DecisionSettings
 
@@ -74,7 +74,7 @@ def decide_beside_unknown(
     # Where no effect helps enough to be stated, the single ones are still ranked by how much they help.
     size = max(1, len(chosen.parameters.terms))
     compared = [(each.parameters.names, weight) for each, weight in tried if len(each.parameters.terms) <= size]
-    probabilities = weigh_effects(compared, list(decision.probabilities), settings.effect_bounds)
+    probabilities = weigh_effects(compared, list(decision.probabilities))
     stated = dataclasses.replace(
         decision, chosen=chosen, groups=group_equivalent(chosen, equivalent), probabilities=probabilities
     )
@@ -87,42 +87,12 @@ def decide_without(problem: DiagnosisProblem, decision: Decision, rig: Evaluatio
     Where no effect is left the verdict is `unknown`, or `none` where the rig leaves no channel a material gap.
     """
     settings = problem.settings.decision
-    least = settings.effect_bounds[0]
-    probabilities = {name: least if name in given_up else value for name, value in decision.probabilities.items()}
+    probabilities = {name: 0.0 if name in given_up else value for name, value in decision.probabilities.items()}
     groups = [group for group in decision.groups if not set(group) & set(given_up)]
     left = dataclasses.replace(decision, chosen=rig, groups=groups, probabilities=probabilities)
     if not rig.parameters.terms:
         if np.any(measure_remainders(problem, rig) >= settings.material):
             return call_unknown(settings, left)
-        return dataclasses.replace(left, verdict="none", none=settings.none_least, unknown=settings.unknown_if_none)
+        return dataclasses.replace(left, verdict="none", none=1.0 - decision.unknown)
     verdict: Verdict = "known" if decision.verdict == "ambiguous" and not groups else decision.verdict
     return dataclasses.replace(left, verdict=verdict)
-
-
-def doubt_single(
-    problem: DiagnosisProblem, selection: Selection, decision: Decision, causes: Sequence[Cause]
-) -> Decision:
-    """Return the decision on a single effect, in one group with those of which the held-out run speaks more highly.
-
-    The evidence charges an effect for its parameters, a run left out of the fit does not. Where the evidence is not
-    strong and that run contradicts it, either effect may be the cause.
-    """
-    if len(decision.chosen.parameters.terms) != 1:
-        return decision
-    settings, (name,) = problem.settings.decision, decision.chosen.parameters.names
-    first = next(cause for cause in causes if cause.effect == name)
-    group = next((group for group in decision.groups if name in group), [name])
-    rivals = [
-        cause.effect
-        for cause in causes
-        if cause.effect not in group
-        and cause.effect in selection.singles
-        and cause.probability * settings.strong_evidence > first.probability
-        and cause.shrink > first.shrink + settings.contradicted
-        and is_material(problem, selection.singles[cause.effect])
-    ]
-    if not rivals:
-        return decision
-    groups = [[*group, *rivals], *(each for each in decision.groups if each is not group)]
-    verdict: Verdict = "ambiguous" if decision.verdict == "known" else decision.verdict
-    return dataclasses.replace(decision, verdict=verdict, groups=groups)

@@ -10,7 +10,7 @@ import numpy as np
 
 from seatsim.diagnosis.candidates import list_candidates
 from seatsim.diagnosis.cross_validate import cross_validate, select_by_cross_validation
-from seatsim.diagnosis.decide import explain_after_all, shows_effect
+from seatsim.diagnosis.decide import decide_verdict, shows_effect
 from seatsim.diagnosis.fit import refit_on
 from seatsim.diagnosis.localise.discrepancy import describe_discrepancy
 from seatsim.diagnosis.localise.input_estimate import estimate_nonrepeatable_force
@@ -142,7 +142,9 @@ def _search_by_gap(task: SearchTask, first: Solution) -> Solution:
         decision = decide_beside_unknown(settings.decision, first.decision, refitted, equivalent, tried)
         # Where weak signals weigh most a fit may end far from the set that takes all of the gap.
         if _takes_enough(first.objective, first._replace(decision=decision)):
-            decision = explain_after_all(problem, first.selection.calibrated, refitted, decision)
+            again = decide_verdict(problem, first.selection.add(refitted), task.effects)
+            if again.chosen is refitted and again.verdict in ("known", "ambiguous"):
+                decision = again
     else:
         chosen, decision = evident, call_unknown(settings.decision, first.decision)
     localised = _localise(task, first._replace(decision=decision))

@@ -21,7 +21,7 @@ from seatsim.diagnosis.movement import name_immaterial, share_removable
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters
 from seatsim.diagnosis.result import Cause, DamperForm, Diagnosis, Evidence, Gaps, ProposedExperiment
 from seatsim.diagnosis.select import Selection
-from seatsim.diagnosis.solution import Solution, call_unknown, decide_without, doubt_single
+from seatsim.diagnosis.solution import Solution, call_unknown, decide_without
 from seatsim.diagnosis.validate import (
     ReplayedRun,
     choose_held_out_run,
@@ -147,8 +147,6 @@ def state_diagnosis(
     recording = problem.recording
     rig, channels = recording.header.rig, recording.channels
     decision = solution.decision
-    if not solution.stochastic:
-        decision = doubt_single(problem, solution.selection, decision, causes)
     forms = _list_alternatives(validation, damper_forms, progress)
     none = describe_obstacle(problem) or "No other form of the damper was found to fit its force better."
     asked = [none] if damper_forms and not forms else []

@@ -136,17 +136,9 @@ class SelectionSettings(NamedTuple):
     Trades off: lower: further effects are missed; higher: time.
     Chosen: effects that are far from linear were predicted to leave up to 0.95, and left 0.05."""
     enlarge: float = 0.45
-    """Share of what is left that a further effect must leave at most.
-    Trades off: higher: a second effect is stated where the first has another form than its candidate.
+    """Share of what is left that a last effect leaves at most for the others to be left out in turn.
+    Trades off: higher: time.
     Chosen: on simulated rigs."""
-    enlarge_explained: float = 0.7
-    """The same of a set that explains the recording already, where the gap falls too.
-    Trades off: as `enlarge`.
-    Chosen: on simulated rigs true second effects left up to 0.66, false ones 0.77 and more."""
-    gap_lowered: float = 0.85
-    """Share of the gap beyond noise that it then leaves at most.
-    Trades off: as `enlarge`.
-    Chosen: on simulated rigs true second effects left up to 0.8, false ones 0.9 and more."""
     worthwhile: float = 0.85
     """Larger sets are sought while the last enlargement left less than this share.
     Trades off: higher: time.

@@ -1,0 +1,103 @@
+"""One score for every hypothesis on a gap: that there is none, a fitted set of effects, or an unknown cause.
+
+    score = sum of weight * feature,    P(hypothesis) = exp(score) / sum of exp(score) over all hypotheses
+
+A feature is a figure of the fits that an engineer would look at; `score.yaml` says what each means and holds its
+weight. The weights were fitted, not chosen: to recordings of known causes, by conditional logistic regression
+(`benchmarks/fit_score.py`), so that the probabilities are those with which the hypotheses came true there.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from seatsim.diagnosis.movement import measure_relative_movements, measure_remainders, measure_shares_left
+from seatsim.diagnosis.objective import Evaluation
+from seatsim.diagnosis.problem import DiagnosisProblem
+from seatsim.diagnosis.select import Selection
+from seatsim.schema.arrays import Array
+from seatsim.schema.fields import read_packaged
+
+_LITTLE = 0.02
+"""Excess, its share, or gap in standard deviations, about which differences begin to count."""
+_LEAST_MOVEMENT = 0.01
+"""Movement, in material limits, below which smaller ones count as much."""
+_LEAST_GAP = 0.1
+"""Gap, in material limits, about which differences begin to count."""
+
+
+class Weight(NamedTuple):
+    """What a feature of a hypothesis means, and the weight that was fitted for it."""
+
+    means: str
+    weight: float
+
+
+WEIGHTS = read_packaged(Path(__file__).with_name("score.yaml"), dict[str, Weight])
+"""Weight of each feature, by name."""
+
+
+class Hypothesis(NamedTuple):
+    """A rig that may explain the recording, with its features by name; None stands for an unknown cause."""
+
+    rig: Evaluation | None
+    features: dict[str, float]
+
+    @property
+    def names(self) -> frozenset[str]:
+        """Names of its effects."""
+        return self.rig.parameters.names if self.rig else frozenset()
+
+
+def list_hypotheses(problem: DiagnosisProblem, selection: Selection) -> list[Hypothesis]:
+    """Return that there is no gap, then the best sets of each size, and an unknown cause last."""
+    calibrated, count = selection.calibrated, problem.settings.selection.finalists
+    sets = [_describe_set(problem, selection, each) for sets in selection.sets[1:] for each in sets[:count]]
+    excess, gap = calibrated.excess + _LITTLE, float(np.max(measure_remainders(problem, calibrated)))
+    singles = [each.features["movement"] for each in sets if len(each.names) == 1]
+    none = {
+        "none": 1.0,
+        "none_excess": math.log(excess),
+        "none_gap": math.log(gap / problem.settings.decision.material + _LEAST_GAP),
+        "none_movement": max(singles, default=math.log(_LEAST_MOVEMENT)),
+    }
+    unknown = {"unknown": 1.0, "unknown_excess": min((each.features["excess"] for each in sets), default=0.0)}
+    return [Hypothesis(calibrated, none), *sets, Hypothesis(None, unknown)]
+
+
+def _describe_set(problem: DiagnosisProblem, selection: Selection, rig: Evaluation) -> Hypothesis:
+    """Return a fitted set of effects with its features."""
+    smaller = [each for sets in selection.sets for each in sets if each.parameters.names < rig.parameters.names]
+    excess, gap = rig.excess + _LITTLE, _measure_gap(problem, rig)
+    before, gap_before = selection.calibrated.excess + _LITTLE, _measure_gap(problem, selection.calibrated)
+    worst = max([0.0, *measure_shares_left(problem, selection.calibrated, rig)])
+    moved = min(float(np.max(each)) for each in measure_relative_movements(problem, rig))
+    return Hypothesis(rig, {
+        "effects": float(len(rig.parameters.terms)),
+        "excess": math.log(excess / before),
+        "gain": math.log(excess / (min(each.excess for each in smaller) + _LITTLE)),
+        "gap": math.log(gap / gap_before),
+        "gap_gain": math.log(gap / min(_measure_gap(problem, each) for each in smaller)),
+        "worst": math.log(worst + _LITTLE),
+        "movement": min(0.0, math.log(moved + _LEAST_MOVEMENT)),
+        "prior": float(np.sum((rig.parameters.deviations / problem.settings.fit.prior_std) ** 2)),
+    })  # fmt: skip
+
+
+def _measure_gap(problem: DiagnosisProblem, rig: Evaluation) -> float:
+    """Return the gap beyond noise over all channels, in standard deviations, above the little that does not count."""
+    return float(np.linalg.norm(measure_remainders(problem, rig))) + _LITTLE
+
+
+def weigh_hypotheses(hypotheses: Sequence[Hypothesis]) -> Array:
+    """Return the probabilities of hypotheses, shape (hypotheses,)."""
+    scores = np.array(
+        [sum(WEIGHTS[name].weight * value for name, value in each.features.items()) for each in hypotheses]
+    )
+    shares = np.exp(scores - scores.max())
+    return np.asarray(shares / shares.sum())
