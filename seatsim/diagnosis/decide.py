@@ -1,8 +1,9 @@
 """From fitted sets of effects to a verdict: none, known, ambiguous or unknown, with probabilities.
 
-Every hypothesis has a probability (see `seatsim.diagnosis.score`); that of an effect is the sum over the sets with it.
-The verdict is the answer that is worth most on average. A right answer is worth 1. Each further name that is given
-beside the likeliest, since either may be right, takes its cost off, and so does a set that is wrong.
+There is no gap where nothing material is left. Of a gap every hypothesis has a probability (see
+`seatsim.diagnosis.score`); that of an effect is the sum over the sets with it. The verdict is the answer that is worth
+most on average: a right one is worth 1; each further name that is given beside the likeliest, since either may be
+right, takes its cost off, and so does a set that is wrong.
 """
 
 from __future__ import annotations
@@ -12,7 +13,9 @@ import math
 from collections.abc import Sequence
 from typing import Literal
 
-from seatsim.diagnosis.movement import group_equivalent, is_material
+import numpy as np
+
+from seatsim.diagnosis.movement import group_equivalent, is_material, measure_remainders
 from seatsim.diagnosis.objective import Evaluation
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.score import list_hypotheses, weigh_hypotheses
@@ -49,23 +52,34 @@ class Decision:
 
 def decide_verdict(problem: DiagnosisProblem, selection: Selection, effects: Sequence[str]) -> Decision:
     """Return the verdict on a selection; `effects` are the names that may be at work."""
-    settings, hypotheses = problem.settings.decision, list_hypotheses(problem, selection)
-    none, *_, unknown = weights = weigh_hypotheses(hypotheses).tolist()
-    sets = [(each.rig, weight) for each, weight in zip(hypotheses, weights, strict=True) if each.rig and each.names]
-    chosen, likeliest = max(sets, key=lambda pair: pair[1], default=(selection.calibrated, 0.0))
-    others = [pair for pair in sets if pair[0] is not chosen and pair[1] > settings.further_name]
-    groups = group_equivalent(chosen, [rig for rig, _ in others])
-    named = {name for group in groups for name in group} | chosen.parameters.names
-    covered = [weight for rig, weight in others if rig.parameters.names <= named]
-    right = likeliest + sum(covered)
-    worth = right - settings.further_name * len(covered) - settings.wrong_name * (1.0 - right)
-    named_verdict: Verdict = "ambiguous" if groups else "known"
-    worths: dict[Verdict, float] = {"none": none, "unknown": unknown, named_verdict: worth if sets else -math.inf}
-    verdict = max(worths, key=lambda each: worths[each])
-    if verdict == "none" or none > likeliest:
-        chosen = selection.calibrated
+    settings = problem.settings.decision
+    if _shows_no_gap(problem, selection):
+        rest = (1.0 - settings.none_if_none) / (len(effects) + 1)
+        return Decision("none", selection.calibrated, [], dict.fromkeys(effects, rest), settings.none_if_none, rest)
+    hypotheses = list_hypotheses(problem, selection)
+    *weights, unknown = weigh_hypotheses(hypotheses).tolist()
+    sets = [(each.rig, weight) for each, weight in zip(hypotheses, weights, strict=False) if each.rig]
     probabilities = {name: sum(weight for rig, weight in sets if name in rig.parameters.names) for name in effects}
-    return Decision(verdict, chosen, groups if verdict == "ambiguous" else [], probabilities, none, unknown)
+    chosen, likeliest = max(sets, key=lambda pair: pair[1], default=(selection.calibrated, -math.inf))
+    others = [(rig, weight) for rig, weight in sets if rig is not chosen and weight > settings.further_name]
+    groups = group_equivalent(chosen, [rig for rig, _ in others])
+    named = chosen.parameters.names.union(*groups)
+    beside = [weight for rig, weight in others if rig.parameters.names <= named]
+    right = likeliest + sum(beside)
+    if unknown > right - settings.further_name * len(beside) - settings.wrong_name * (1.0 - right):
+        return Decision("unknown", chosen, [], probabilities, 0.0, unknown)
+    return Decision("ambiguous" if groups else "known", chosen, groups, probabilities, 0.0, unknown)
+
+
+def _shows_no_gap(problem: DiagnosisProblem, selection: Selection) -> bool:
+    """Whether the calibrated rig leaves no gap, or no single effect that reduces the gap is material."""
+    calibrated = selection.calibrated
+    if calibrated.excess < problem.settings.selection.nothing_left:
+        return calibrated.excess == 0.0 or not shows_effect(problem, selection)
+    if np.any(measure_remainders(problem, calibrated) >= problem.settings.decision.material):
+        return False
+    # Where every candidate is withheld there is no set of one effect.
+    return len(selection.sets) == 1 or not is_material(problem, selection.sets[1][0])
 
 
 def shows_effect(problem: DiagnosisProblem, selection: Selection) -> bool:

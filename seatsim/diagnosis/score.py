@@ -1,4 +1,4 @@
-"""One score for every hypothesis on a gap: that there is none, a fitted set of effects, or an unknown cause.
+"""One score for every hypothesis on the cause of a gap: a fitted set of effects, or an unknown cause.
 
     score = sum of weight * feature,    P(hypothesis) = exp(score) / sum of exp(score) over all hypotheses
 
@@ -27,8 +27,6 @@ _LITTLE = 0.02
 """Excess, its share, or gap in standard deviations, about which differences begin to count."""
 _LEAST_MOVEMENT = 0.01
 """Movement, in material limits, below which smaller ones count as much."""
-_LEAST_GAP = 0.1
-"""Gap, in material limits, about which differences begin to count."""
 
 
 class Weight(NamedTuple):
@@ -55,19 +53,11 @@ class Hypothesis(NamedTuple):
 
 
 def list_hypotheses(problem: DiagnosisProblem, selection: Selection) -> list[Hypothesis]:
-    """Return that there is no gap, then the best sets of each size, and an unknown cause last."""
-    calibrated, count = selection.calibrated, problem.settings.selection.finalists
+    """Return the best sets of each size, and an unknown cause last."""
+    count = problem.settings.selection.finalists
     sets = [_describe_set(problem, selection, each) for sets in selection.sets[1:] for each in sets[:count]]
-    excess, gap = calibrated.excess + _LITTLE, float(np.max(measure_remainders(problem, calibrated)))
-    singles = [each.features["movement"] for each in sets if len(each.names) == 1]
-    none = {
-        "none": 1.0,
-        "none_excess": math.log(excess),
-        "none_gap": math.log(gap / problem.settings.decision.material + _LEAST_GAP),
-        "none_movement": max(singles, default=math.log(_LEAST_MOVEMENT)),
-    }
-    unknown = {"unknown": 1.0, "unknown_excess": min((each.features["excess"] for each in sets), default=0.0)}
-    return [Hypothesis(calibrated, none), *sets, Hypothesis(None, unknown)]
+    least = min((each.features["excess"] for each in sets), default=0.0)
+    return [*sets, Hypothesis(None, {"unknown": 1.0, "unknown_excess": least})]
 
 
 def _describe_set(problem: DiagnosisProblem, selection: Selection, rig: Evaluation) -> Hypothesis:

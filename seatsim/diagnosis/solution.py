@@ -93,6 +93,6 @@ def decide_without(problem: DiagnosisProblem, decision: Decision, rig: Evaluatio
     if not rig.parameters.terms:
         if np.any(measure_remainders(problem, rig) >= settings.material):
             return call_unknown(settings, left)
-        return dataclasses.replace(left, verdict="none", none=1.0 - decision.unknown)
+        return dataclasses.replace(left, verdict="none", none=settings.none_if_none)
     verdict: Verdict = "known" if decision.verdict == "ambiguous" and not groups else decision.verdict
     return dataclasses.replace(left, verdict=verdict)

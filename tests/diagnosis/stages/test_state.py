@@ -74,7 +74,7 @@ def test_an_effect_of_negligible_size_is_given_up_with_a_note(folder, truth, sta
     decision, (note,) = found.solution.decision, found.solution.selection.notes
     assert (decision.verdict, sorted(decision.chosen.parameters.names)) == (verdict, stated)
     assert note.startswith(f"{' with '.join(given_up)} was given up, since it moves no channel by a material size")
-    assert [decision.probabilities[name] for name in given_up] == [0.006] * len(given_up)
+    assert [decision.probabilities[name] for name in given_up] == [0.0] * len(given_up)
     assert bool(found.solution.where) is bool(stated)
 
 
