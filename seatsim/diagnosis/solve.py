@@ -50,13 +50,7 @@ def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress)
         without: names of effects that are withheld from the library.
         progress: called with what is being done.
     """
-    effects = [name for name in EFFECTS.names() if name not in without]
-    task = SearchTask(list_candidates(problem, without), effects, progress)
-    progress("weighing the channels")
-    objective = Objective(problem, weigh_noise(problem))
-    forces = None if problem.bench else _estimate_nonrepeatable(objective)
-    if forces is not None:
-        objective = Objective(problem, objective.weights.add(carry_force(problem, forces)))
+    task, objective = pose_search(problem, without, progress)
     first = search(task, objective)
     first = _in_time(_search_at_lower_noise, task, first) or first
     if first.decision.verdict == "unknown":
@@ -71,6 +65,18 @@ def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress)
             return _localise(task, first)
         first = first._replace(decision=call_unknown(problem.settings.decision, first.decision))
     return _in_time(_search_by_gap, task, first) or _localise(task, first)
+
+
+def pose_search(problem: DiagnosisProblem, without: Sequence[str], progress: Progress) -> tuple[SearchTask, Objective]:
+    """Return the first search of a problem: what is sought, and the weights by the noise and by what repeats show."""
+    effects = [name for name in EFFECTS.names() if name not in without]
+    task = SearchTask(list_candidates(problem, without), effects, progress)
+    progress("weighing the channels")
+    objective = Objective(problem, weigh_noise(problem))
+    forces = None if problem.bench else _estimate_nonrepeatable(objective)
+    if forces is not None:
+        objective = Objective(problem, objective.weights.add(carry_force(problem, forces)))
+    return task, objective
 
 
 def _in_time(stage: Callable[P, Solution], *arguments: P.args, **named: P.kwargs) -> Solution | None:

@@ -1,0 +1,133 @@
+"""Weights of the score of a diagnosis, fitted to sealed cases: `python benchmarks/fit_score.py DIR:KEY ...`.
+
+DIR holds the cases of a blind set, DIR.sealed their labels. The first search of each case gives its hypotheses, which
+are kept in `DIR/CASE/hypotheses.json`. With x the features of the hypotheses of a case and t the true one, or the
+unknown cause where no fitted set is right, the weights w minimise
+
+    sum over cases  (log sum exp(x w) - x_t w)  +  RIDGE / 2 |w s|^2
+
+(conditional logistic regression: McFadden 1974), s the standard deviations of the features. A table says how often the
+likeliest hypothesis is the true one in cases left out, a fifth at a time, and how often effects of a probability from
+SURE on are at work. The weights go into `seatsim/diagnosis/score.yaml`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from cases import PROCESSES, Array, show_progress
+from scipy.optimize import minimize
+from scipy.special import logsumexp, softmax
+from threadpoolctl import threadpool_limits
+
+from seatsim.blind.sealed import Label, unseal
+from seatsim.diagnosis import score
+from seatsim.diagnosis.decide import decide_verdict
+from seatsim.diagnosis.problem import pose_problem
+from seatsim.diagnosis.select import select_effects
+from seatsim.diagnosis.solve import pose_search
+from seatsim.recordings.recording import load_recording
+from seatsim.schema.files import write_json, write_text
+from seatsim.schema.processes import run_jobs
+
+RIDGE, SURE, PARTS = 1.0, 0.9, 5
+STOCHASTIC = "floor.unmeasured_input"
+"""Effect that no set holds, since a later search finds it."""
+NAMES = list(score.WEIGHTS)
+
+
+class LabelledCase(NamedTuple):
+    """The hypotheses on a case: their effects, their features, shape (hypotheses, features), and the true one."""
+
+    names: list[set[str]]
+    features: Array
+    true: int
+
+
+def list_hypotheses(case: Path) -> None:
+    """Write the hypotheses of the first search of a case, none where it shows no gap."""
+    file = case / "hypotheses.json"
+    if file.exists():
+        return
+    with ThreadPoolExecutor() as pool, threadpool_limits(1):
+        problem = pose_problem(load_recording(case), pool)
+        task, objective = pose_search(problem, (), lambda _: None)
+        selection = select_effects(objective, task.candidates, task.progress)
+        shown = decide_verdict(problem, selection, task.effects).verdict != "none"
+        found = score.list_hypotheses(problem, selection) if shown else []
+        write_json(file, [{"names": sorted(each.names), "features": each.features} for each in found])
+
+
+def label_case(hypotheses: list[dict[str, Any]], label: Label) -> LabelledCase:
+    """Return the hypotheses of a case with the true one; the unknown cause stands last."""
+    names = [set(each["names"]) for each in hypotheses]
+    effects = set() if label["kind"] == "outside" or STOCHASTIC in label["effects"] else set(label["effects"])
+    true = names.index(effects) if effects and effects in names else len(names) - 1
+    features = np.array([[each["features"].get(name, 0.0) for name in NAMES] for each in hypotheses])
+    return LabelledCase(names, features, true)
+
+
+def fit_weights(cases: list[LabelledCase]) -> Array:
+    """Return the weights of the features."""
+    spread = np.std(np.concatenate([case.features for case in cases]), axis=0)
+    scaled = [case.features / spread for case in cases]
+
+    def cost(weights: Array) -> tuple[float, Array]:
+        value, slope = 0.5 * RIDGE * float(weights @ weights), RIDGE * weights
+        for case, features in zip(cases, scaled, strict=True):
+            scores = features @ weights
+            value += float(logsumexp(scores) - scores[case.true])
+            slope = slope + softmax(scores) @ features - features[case.true]
+        return value, slope
+
+    return np.asarray(minimize(cost, np.zeros(len(NAMES)), jac=True, method="L-BFGS-B").x / spread)
+
+
+def cross_validate(cases: list[LabelledCase]) -> str:
+    """Return a line on what the weights of the other cases say of each case."""
+    right, sure = [], []
+    for part in range(PARTS):
+        weights = fit_weights([case for k, case in enumerate(cases) if k % PARTS != part])
+        for case in cases[part::PARTS]:
+            probabilities = softmax(case.features @ weights)
+            right.append(int(np.argmax(probabilities)) == case.true)
+            true = case.names[case.true]
+            for effect in set().union(*case.names):
+                stated = sum(p for p, names in zip(probabilities, case.names, strict=True) if effect in names)
+                sure += [effect in true] if stated >= SURE else []
+    return (
+        f"left out: {sum(right)} of {len(right)} likeliest are true; effects from {SURE:g}: {sum(sure)} of {len(sure)}"
+    )
+
+
+def main() -> None:
+    """Fit the weights and write them."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("sets", nargs="+", metavar="DIR:KEY")
+    parser.add_argument("--out", type=Path, default=Path(score.__file__).with_name("score.yaml"))
+    arguments = parser.parse_args()
+    cases = []
+    for folder, key in (each.rsplit(":", 1) for each in arguments.sets):
+        base = Path(folder)
+        labels = unseal(base.with_name(base.name + ".sealed"), key, base).labels
+        run_jobs(list_hypotheses, [(base / name,) for name in labels], PROCESSES, show_progress)
+        found = {name: json.loads((base / name / "hypotheses.json").read_text()) for name in labels}
+        cases += [label_case(found[name], label) for name, label in labels.items() if found[name]]
+    print(cross_validate(cases))
+    lines = [
+        f'{name}: {{weight: {weight:.3f}, means: "{score.WEIGHTS[name].means}"}}\n'
+        for name, weight in zip(NAMES, fit_weights(cases), strict=True)
+    ]
+    head = (
+        f"# Weights of the score of a hypothesis, fitted by benchmarks/fit_score.py to {len(cases)} cases with a gap.\n"
+    )
+    write_text(arguments.out, head + "".join(lines))
+
+
+if __name__ == "__main__":
+    main()
