@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
 
-from seatsim.metrics.spectra import AVERAGES, LONGEST, power_spectral_density
+from seatsim.metrics.spectra import LONGEST, power_spectral_density
 from seatsim.plots import style
 from seatsim.schema.arrays import Array
 
@@ -19,7 +19,15 @@ DECADES = 5.0
 """Decades below the highest density that are shown."""
 SHORTEST = 64
 """Samples from which on a signal has a spectrum."""
-METHOD = f"Welch's method in segments of at most {LONGEST:g} s, averaged over 1/{PER_OCTAVE} octave."
+SEGMENTS = 4
+"""Least number of half-overlapping segments: half of what a coherence needs, for lines half as far apart.
+
+What is lost in averages comes back where bands hold several lines.
+"""
+METHOD = (
+    f"Welch's method, {SEGMENTS} half-overlapping segments or more of {LONGEST:g} s at most, averaged over"
+    f" 1/{PER_OCTAVE} octave."
+)
 
 
 def estimate_density(step: float, signals: Sequence[Array]) -> tuple[Array, Array]:
@@ -27,23 +35,45 @@ def estimate_density(step: float, signals: Sequence[Array]) -> tuple[Array, Arra
 
     step: interval of the samples in s. Signals, shape (N,) each, that are too short give none.
     """
-    shortest = min(map(len, signals))
-    if shortest < SHORTEST:
+    length = choose_segment(step, min(map(len, signals)))
+    if not length:
         return np.empty(0), np.empty(0)
-    length = min(round(LONGEST / step), 2 * (shortest // (AVERAGES + 1)))
     found = [power_spectral_density(values, 1 / step, length) for values in signals]
     return average_bands(found[0][0], np.mean([power for _, power in found], axis=0))
+
+
+def choose_segment(step: float, samples: int) -> int:
+    """Return the samples of a segment of a record, 0 where the record is too short."""
+    return min(round(LONGEST / step), 2 * (samples // (SEGMENTS + 1))) if samples >= SHORTEST else 0
+
+
+def find_resolution(records: Iterable[tuple[float, int]]) -> float:
+    """Return the largest distance in Hz between the lines of some records, of a step in s and a number of samples."""
+    segments = [(step, choose_segment(step, samples)) for step, samples in records]
+    return max((1.0 / (step * length) for step, length in segments if length), default=np.inf)
+
+
+def state_method(resolution: float) -> str:
+    """Return how a picture's densities were estimated, whose lines are `resolution` Hz apart."""
+    lines = f"lines {resolution:.2g} Hz apart, " if np.isfinite(resolution) else ""
+    return f"Welch's method, {lines}averaged over 1/{PER_OCTAVE} octave."
+
+
+def find_problem(densities: Sequence[tuple[Array, Array]], highest: float) -> str:
+    """Return why nothing is drawn of densities up to a highest frequency in Hz, empty where something is."""
+    if not any(len(frequency) for frequency, _ in densities):
+        return f"too short for a spectrum, which takes {SHORTEST} samples"
+    return "" if any(np.any(power[frequency <= highest]) for frequency, power in densities) else "at rest"
 
 
 def draw_densities(
     axes: Axes, densities: Sequence[tuple[Array, Array]], looks: Sequence[style.Entry], highest: float
 ) -> None:
     """Draw densities, as frequency and power, up to a highest frequency in Hz; say so where nothing has power."""
+    if problem := find_problem(densities, highest):
+        return style.explain_empty(axes, problem)
     inside = [(frequency[frequency <= highest], power[frequency <= highest]) for frequency, power in densities]
     largest = max(float(np.max(power, initial=0.0)) for _, power in inside)
-    if largest == 0.0:
-        style.explain_empty(axes, "at rest, or too short a record for a spectrum")
-        return
     axes.set_yscale("log")
     for (frequency, power), look in zip(inside, looks, strict=True):
         style.draw_line(axes, frequency, np.where(power > 0, power, np.nan), look)

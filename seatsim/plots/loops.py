@@ -12,6 +12,9 @@ from seatsim.plots.labels import clean_text
 from seatsim.plots.style import Entry, Grid, Page
 from seatsim.simulation.damper_bench import SineTest
 
+SIGNS = "Positive: extension, and the force that opposes it."
+"""What the axes of force, velocity and displacement count from rest."""
+
 
 class Family(NamedTuple):
     """Loops that share their panels: title, that of the legend, named loops, and the colour map of their order."""
@@ -27,7 +30,7 @@ def make_loop_page(title: str, note: str, families: Sequence[Family], more: int 
     letters = [len(name) for family in families for name in (family.legend, *(name for name, _ in family.loops))]
     right = max(0.95, 0.55 + style.LETTER * max(letters, default=0))
     grid = Grid((2.0,) * (len(families) + more), 2, right=right, top=0.3, gap=(0.3, 0.85))
-    page = style.make_page(title, note, grid)
+    page = style.make_page(title, f"{note} {SIGNS}", grid)
     for panels, family in zip(page.rows, families, strict=False):
         picked = style.sample_colours(family.colours, len(family.loops))
         for (name, loop), colour in zip(family.loops, picked, strict=True):

@@ -41,6 +41,8 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#8
 """Okabe and Ito's palette for all kinds of colour vision; wine replaces its yellow, which fades on white."""
 DASHES: tuple[LineStyleType, ...] = ("-", (0.0, (5.0, 1.5)))
 """Every second line is dashed: two that coincide are both seen, and colour is not the only difference."""
+_FADED = 0.65
+"""How much paler the last of several lines in one colour is than the first."""
 _FREQUENCIES = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000)
 """Hz that an axis names."""
 
@@ -95,6 +97,13 @@ def make_entries(labels: Sequence[str]) -> list[Entry]:
     """Return one distinct look for each of up to eight runs; further ones begin anew."""
     looks = zip(labels, cycle(COLOURS), cycle(DASHES), strict=False)
     return [Entry(label, colour, dashes) for label, colour, dashes in looks]
+
+
+def fade_alike(looks: Sequence[Entry]) -> list[Entry]:
+    """Return looks of which those in one colour are the paler the later they come."""
+    colours = [look.colour for look in looks]
+    ranks = [(colours[:k].count(colour), colours.count(colour) - 1) for k, colour in enumerate(colours)]
+    return [look._replace(alpha=1.0 - _FADED * k / max(1, n)) for look, (k, n) in zip(looks, ranks, strict=True)]
 
 
 def sample_colours(name: str, count: int) -> list[str]:
@@ -154,6 +163,19 @@ def add_axes_beside(axes: Axes, gap: float, width: float) -> Axes:
     return axes.figure.add_axes((box.x1 + gap, box.y0, width, box.height))
 
 
+def split_panel(figure: Figure, axes: Axes, lower: float) -> Axes:
+    """Return a new panel in the lower share of one's height, which keeps the rest; it has its ticks on the right."""
+    box = axes.get_position()
+    axes.set_position((box.x0, box.y0 + (lower + 0.05) * box.height, box.width, (0.95 - lower) * box.height))
+    added = _add_panel(figure, (box.x0, box.y0, box.width, lower * box.height))
+    added.sharex(axes)
+    axes.tick_params(labelbottom=False)
+    added.yaxis.tick_right()
+    added.spines["left"].set_visible(False)
+    added.spines["right"].set_visible(True)
+    return added
+
+
 def set_title(axes: Axes, text: str) -> None:
     """Put a title above a panel, as wide as the panel at most."""
     width = axes.get_position().width * WIDTH
@@ -171,7 +193,8 @@ def scale_log(axes: Axes, which: Literal["x", "y"], low: float, high: float) -> 
 
 
 def scale_frequency_axis(axes: Axes, low: float, high: float) -> None:
-    """Make the lower axis of a panel one of frequency in Hz, logarithmic, with both ends named."""
+    """Make the lower axis of a panel one of frequency in Hz, logarithmic, from a named frequency to the highest."""
+    low = max((tick for tick in _FREQUENCIES if tick <= low < high), default=_FREQUENCIES[0])
     scale_log(axes, "x", low, high)
     axes.xaxis.set_major_locator(FixedLocator([tick for tick in _FREQUENCIES if low <= tick <= high]))
     axes.set_xlabel("frequency [Hz]")

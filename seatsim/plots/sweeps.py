@@ -51,10 +51,14 @@ def plot_shares(found: Sequence[Sensitivity], words: str) -> Figure:
     """Return the shares of the variance of a metric that its keys explain, alone and with others."""
     rows = found[:_MOST_KEYS]
     cut = f" The {_MOST_KEYS} strongest of {len(found)} keys." if len(found) > _MOST_KEYS else ""
-    note = f"Bar: the key alone. Line: 95 % interval of its share together with its interactions.{cut}"
+    note = f"Figures: the key alone / with its interactions.{cut}"
+    legend = (
+        Entry("the key alone", COLOURS[0], width=8),
+        Entry("with its interactions, 95 % interval", "black", width=1.6),
+    )
     names = [row.key for row in rows]
     grid = Grid((ROW * len(rows) + 0.1,), left=measure_names(names), right=1.1)
-    figure, [[axes]] = make_page(f"What determines the {words}", note, grid)
+    figure, [[axes]] = make_page(f"What determines the {words}", note, grid, legend)
     name_rows(axes, names, [0])
     colours = [COLOURS[0], *[style.GREY] * (len(rows) - 1)]
     draw_bars(axes, [100 * _clip(row.first) for row in rows], colours, [""] * len(rows))
@@ -71,13 +75,17 @@ def plot_shares(found: Sequence[Sensitivity], words: str) -> Figure:
 def plot_tornado(found: Sequence[Sensitivity], rows: SweepRows) -> Figure:
     """Return from where to where the mean of a metric goes between a low and a high value of each key."""
     shown, strongest = describe_column(found[0].metric, rows.units), found[:_MOST_KEYS]
-    note = "Mean at the key's 5 % (open) and 95 % quantile (full), or at the texts with the smallest and largest mean."
+    note = "Of a key that is a text: at those with the smallest and the largest mean."
+    legend = [
+        Entry(f"mean at the key's {share} % quantile", COLOURS[0], "none", mark="o", hollow=share == 5)
+        for share in (5, 95)
+    ]
     names = []
     for row in strongest:
         unit = format_unit(rows.units.get(row.key, "")).removesuffix("-")
         names.append(f"{row.key}: {format_level(row.low)} to {format_level(row.high)} {unit}".strip())
     grid = Grid((2 * ROW * len(strongest) + 0.1,), left=0.3, right=0.3)
-    figure, [[axes]] = make_page(f"How far each key moves the mean {shown.words}", note, grid)
+    figure, [[axes]] = make_page(f"How far each key moves the mean {shown.words}", note, grid, legend)
     name_rows(axes, [""] * len(strongest))
     for k, (row, name) in enumerate(zip(strongest, names, strict=True)):
         ends = [shown.factor * row.at_low, shown.factor * row.at_high]

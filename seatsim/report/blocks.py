@@ -52,13 +52,21 @@ class Table(NamedTuple):
     kind: str = "table"
 
 
+class Line(NamedTuple):
+    """A line of linked pictures: its name, the number of its look, and its opacity."""
+
+    name: str
+    look: int
+    opacity: float = 1.0
+
+
 class Signals(NamedTuple):
     """Linked pictures over time, packed for the script that draws them; `panels`: title, sentence."""
 
     identity: str
     caption: str
     runs: Sequence[str]
-    lines: Sequence[tuple[str, int]]
+    lines: Sequence[Line]
     panels: Sequence[tuple[str, str]]
     data: Mapping[str, object]
     kind: str = "signals"

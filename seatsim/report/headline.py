@@ -55,8 +55,12 @@ def list_alternatives(runs: Sequence[Run]) -> list[Alternatives]:
 
 
 def find_best(runs: Sequence[Run]) -> list[int]:
-    """Return the places of the most comfortable run of each condition under which several can be relied on."""
-    best = [group.runs[0] for group in list_alternatives(runs) if len(group.runs) > 1]
+    """Return the places of the most comfortable runs of each condition under which several can be relied on.
+
+    Those that are equal to the first are among them, unless all are.
+    """
+    groups = [group for group in list_alternatives(runs) if len(group.runs) > group.leaders]
+    best = [run for group in groups for run in group.runs[: group.leaders]]
     return [k for k, run in enumerate(runs) if any(run is each for each in best)]
 
 

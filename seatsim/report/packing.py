@@ -11,7 +11,7 @@ import numpy as np
 
 from seatsim.plots.labels import describe_channel
 from seatsim.plots.thinning import thin_line
-from seatsim.report.blocks import Signals
+from seatsim.report.blocks import Line, Signals
 from seatsim.schema.arrays import Array
 
 BUDGET = 200_000
@@ -41,7 +41,7 @@ class Panel(NamedTuple):
 
 def pack_signals(
     caption: str,
-    lines: Sequence[tuple[str, int]],
+    lines: Sequence[tuple[str, int] | tuple[str, int, float]],
     time: Mapping[str, Array],
     panels: Sequence[Panel],
     finest: int = FINEST,
@@ -53,12 +53,12 @@ def pack_signals(
 
     Args:
         caption: a sentence on all of them.
-        lines: name and look of each.
+        lines: name and look of each, and its opacity where that is not 1.
         time: in s, equally spaced, shape (N,), of each run.
         panels: the pictures.
         finest: most intervals of a line.
     """
-    longest = max(time.values(), key=len)
+    drawn, longest = [Line(*line) for line in lines], max(time.values(), key=len)
     bins = min(finest, -(-len(longest) // 2))
     shown = [describe_channel(panel.quantity, panel.unit) for panel in panels]
     factors = [each.factor for each in shown]
@@ -71,13 +71,13 @@ def pack_signals(
         interval = 1000.0 * float(longest[-1] - longest[0]) / bins
         caption += f" Drawn are the least and the largest value in every {interval:.3g} ms; figures use all samples."
     data = {
-        "lines": [{"name": name, "look": look} for name, look in lines],
+        "lines": [line._asdict() for line in drawn],
         "runs": [_pack_time(values, bins) for values in time.values()],
         "panels": [{"unit": each.unit, "runs": runs} for each, runs in zip(shown, packed, strict=True)],
     }
     names = [f"{each.axis[:1].upper()}{each.axis[1:]}" for each in shown]
     titles = [(name, panel.sentence) for name, panel in zip(names, panels, strict=True)]
-    return Signals("signals-time", caption, list(time), lines, titles, data)
+    return Signals("signals-time", caption, list(time), drawn, titles, data)
 
 
 def pack_line(values: Array) -> _Line:

@@ -9,6 +9,7 @@ import numpy as np
 from seatsim.metrics.table import SHORT
 from seatsim.plots.labels import describe_channel, format_number, format_unit
 from seatsim.plots.runs.naming import Shown, label_runs, show_runs
+from seatsim.plots.style import COLOURS
 from seatsim.report.blocks import Figures, Report, Signals, Table, show_pictures, tabulate
 from seatsim.report.composing import Closing, compose
 from seatsim.report.credibility import Factor, count_variations, trace_inputs, verify
@@ -119,7 +120,8 @@ def _say_trials(name: str, run: Run, carry_all_effects: bool | None) -> str:
 
 def show_signals(groups: Sequence[Shown], finest: int = FINEST) -> Signals:
     """Return linked pictures of the channels that some run has; of several scenarios the reader chooses one."""
-    names = list(dict.fromkeys(look.label for shown in groups for look in shown.looks))
+    looks = {look.label: look for shown in groups for look in shown.looks}
+    lines, names = [(name, COLOURS.index(look.colour), look.alpha) for name, look in looks.items()], list(looks)
     time = {shown.scenario: max((np.asarray(run["time"]) for run in shown.runs), key=len) for shown in groups}
     panels = []
     for channel in CHANNELS:
@@ -130,7 +132,7 @@ def show_signals(groups: Sequence[Shown], finest: int = FINEST) -> Signals:
             panels.append(Panel(channel, UNITS[channel], _note_equal(known), values))
     caption = "The list above the pictures has every scenario." if len(groups) > 1 else "All runs over time."
     omitted = next((shown.omission for shown in groups if shown.omission), "")
-    return pack_signals(f"{caption}{omitted}", [(name, k % 8) for k, name in enumerate(names)], time, panels, finest)
+    return pack_signals(f"{caption}{omitted}", lines, time, panels, finest)
 
 
 def _note_equal(groups: Sequence[Sequence[Array]]) -> str:
@@ -174,7 +176,8 @@ def _tabulate_figures(runs: Sequence[Run]) -> list[Table]:
         values = (_format_metric(metric, each.factor * read_metric(run, metric)) for metric, each in shown.items())
         rows.append((f"{name} *" if run.unverified else name, *values))
     best = find_best(runs)
-    bold = f" The most comfortable run{' of each condition' * (len(best) > 1)} is in bold." if best else ""
+    several = len({condition_of(run.scenario) for run in runs}) > 1
+    bold = f" In bold: the most comfortable{' of each condition' * several}." if best else ""
     mark = f" {UNVERIFIED}" if any(run.unverified for run in runs) else ""
     head = ["run", *(each.axis for each in shown.values())]
     return tabulate(f"Figures of each run; summary.csv has more.{bold}{mark}", head, rows, 1, best)

@@ -76,14 +76,14 @@ def draw_seat_test():
     return plot_damping(SimpleNamespace(damping=dict.fromkeys(("em1", "em5"), kinds.seat_test().damping["seat"])))
 
 
-def draw_sweep():
+def draw_study():
     return draw_figures(analyse_sensitivity(kinds.sweep()), kinds.sweep())
 
 
 OTHERS = {
     **{f"diagnosis, {name}": lambda make=make: plot_diagnosis(make()) for name, make in diagnoses.CASES.items()},
     "gap": draw_gap, "identification": draw_identification, "bench": draw_bench, "seat test": draw_seat_test,
-    "sweep": draw_sweep, "comfort": lambda: plot_vibration(kinds.working_day()),
+    "study": draw_study, "comfort": lambda: plot_vibration(kinds.working_day()),
 }  # fmt: skip
 DRAWN = []
 

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from seatsim.identification.assessment import Assessment
 from seatsim.identification.identify import Identification
 from seatsim.plots import labels, style
+from seatsim.plots.loops import SIGNS
 from seatsim.plots.style import GREY, Entry, Grid
 from seatsim.plots.thinning import spread_evenly
 
@@ -21,6 +22,7 @@ SHOWN = 1200
 START = 0.3
 """s at the start of a record that are left out: there the state of the damper is not known."""
 MEASURED, _PREDICTED = Entry("measured", GREY, width=3.2), Entry("predicted", style.COLOURS[1], width=1.2)
+_DIFFERENCE = Entry("measured less predicted", style.COLOURS[0], width=1.0)
 PARTS = {"train": "fitted", "test": "held out", "predicted": "predicted only"}
 
 
@@ -33,17 +35,21 @@ def select_records(judged: Sequence[Assessment]) -> list[Assessment]:
 
 
 def plot_predictions(found: Identification) -> Figure:
-    """Return force over velocity, over displacement and over time of some records, held-out ones before fitted ones."""
+    """Return force over velocity, over displacement and over time of some records, and what is left of it over time.
+
+    Held-out records come before fitted ones.
+    """
     chosen = select_records(found.assessments)
-    grid = Grid(heights=(1.6,) * len(chosen), columns=3, top=0.3, gap=(0.2, 0.8))
+    grid = Grid(heights=(1.9,) * len(chosen), columns=3, right=0.62, top=0.3, gap=(0.2, 0.8))
     mean = found.mean("test") or found.mean("train")
-    note = f"{len(chosen)} of {len(found.assessments)} records; mean fit {mean.fit_percent:.1f} %" if mean else ""
-    note += " of held-out records" if found.mean("test") else ""
-    page = style.make_page(f"{found.model}: measured and predicted force", note, grid, (MEASURED, _PREDICTED))
+    note = f"{len(chosen)} of {len(found.assessments)} records"
+    note += f"; mean fit {mean.fit_percent:.1f} %{' of held-out records' * bool(found.mean('test'))}" if mean else ""
+    legend = (MEASURED, _PREDICTED, _DIFFERENCE)
+    page = style.make_page(f"{found.model}: measured and predicted force", f"{note}. {SIGNS}", grid, legend)
     for panels, judged in zip(page.rows, chosen, strict=True):
         title = f"{judged.record.name} ({PARTS[judged.part]}), fit {judged.agreement.fit_percent:.1f} %"
         panels[0].set_title(labels.clean_text(title, 64), loc="left", fontsize=style.FONT)
-        _draw_record(panels, judged)
+        _draw_record([*panels, style.split_panel(page.figure, panels[2], 0.35)], judged)
     return page.figure
 
 
@@ -54,10 +60,13 @@ def _draw_record(panels: Sequence[Axes], judged: Assessment) -> None:
     for axes, across, name in (
         (panels[0], record.velocity, "velocity [m/s]"),
         (panels[1], 1e3 * record.displacement, "displacement [mm]"),
-        (panels[2], record.time, "time [s]"),
+        (panels[2], record.time, ""),
     ):
         style.draw_line(axes, across[part], record.force[part], MEASURED)
         style.draw_line(axes, across[part], judged.predicted[part], _PREDICTED)
         axes.set(xlabel=name, ylim=panels[0].get_ylim())
         axes.tick_params(labelleft=axes is panels[0])
     panels[0].set_ylabel("force [N]")
+    style.draw_line(panels[3], record.time[part], record.force[part] - judged.predicted[part], _DIFFERENCE)
+    panels[3].set(xlabel="time [s]", ylabel="difference [N]")
+    panels[3].yaxis.set_label_position("right")

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from seatsim.metrics.comfort import running_rms
 from seatsim.metrics.exposure import Exposure, Operation
 from seatsim.plots import style
-from seatsim.plots.densities import LOWEST, METHOD, draw_densities, estimate_density
+from seatsim.plots.densities import draw_densities, estimate_density, find_resolution, state_method
 from seatsim.plots.style import GREY, Entry, Grid
 from seatsim.plots.thinning import spread_evenly
 from seatsim.standards.comfort import Comfort
@@ -34,25 +34,28 @@ def plot_vibration(found: Comfort) -> dict[str, Figure]:
 
 def _plot_running_rms(found: Comfort, axes: Sequence[str]) -> Figure:
     """Return the running RMS of each axis, a panel for each stretch."""
-    looks = style.make_entries(axes)
+    highest = {axis: found.axes[axis].dose.mtvv for axis in axes}
+    looks = style.make_entries([f"{axis}, MTVV {value:.3g} m/s²" for axis, value in highest.items()])
     chosen = spread_evenly(range(len(found.stretches[axes[0]])), MOST)
     note = (
-        "RMS of the weighted acceleration over the last second, without multiplying factor; its peak is the MTVV. The"
+        "RMS of the weighted acceleration over the last second, without multiplying factor. Dot: the peak, MTVV. The"
         " first second, in which the window fills, is left out."
     )
     page = style.make_page("Vibration over time", note, Grid((1.5,) * len(chosen), top=0.3), looks)
-    highest = max(found.axes[axis].dose.mtvv for axis in axes)
     for panel, k in zip(page.list_panels(), chosen, strict=True):
         for axis, look in zip(axes, looks, strict=True):
             part = found.stretches[axis][k]
             stride = max(1, round(RASTER * part.sample_rate))
-            values = running_rms(part.weighted, part.sample_rate)[::stride]
-            time = np.arange(len(values)) * stride / part.sample_rate
-            style.draw_line(panel, time[time >= 1.0], values[time >= 1.0], look)
+            values = running_rms(part.weighted, part.sample_rate)
+            time, top = np.arange(len(values)) / part.sample_rate, int(np.argmax(values))
+            shown = slice(round(part.sample_rate), None, stride)
+            style.draw_line(panel, time[shown], values[shown], look)
+            if part.dose.mtvv == highest[axis]:
+                style.draw_line(panel, time[[top]], values[[top]], look._replace(mark="o"))
         style.set_title(panel, found.stretches[axes[0]][k].run)
-        panel.set_ylim(0.0, 1.05 * highest or 1.0)
+        panel.set_ylim(0.0, 1.05 * max(highest.values()) or 1.0)
         panel.set_xlabel("time [s]")
-        panel.set_ylabel("a_w over 1 s [m/s²]")
+        panel.set_ylabel("a$_w$ over 1 s [m/s²]")
     return page.figure
 
 
@@ -60,12 +63,14 @@ def _plot_spectra(found: Comfort, axes: Sequence[str]) -> Figure:
     """Return the power spectral densities, as recorded and weighted, a panel for each axis."""
     looks = [Entry("as recorded", GREY, width=2.0), Entry("weighted", style.COLOURS[0])]
     chosen = spread_evenly(axes, MOST)
-    page = style.make_page("Vibration over frequency", METHOD, Grid((1.7,) * len(chosen), top=0.3), looks)
+    resolution = find_resolution((1.0 / part.sample_rate, len(part.weighted)) for part in found.stretches[axes[0]])
+    grid = Grid((1.7,) * len(chosen), top=0.3)
+    page = style.make_page("Vibration over frequency", state_method(resolution), grid, looks)
     for panel, axis in zip(page.list_panels(), chosen, strict=True):
         stretches = found.stretches[axis]
         signals = [part.acceleration for part in stretches], [part.weighted for part in stretches]
         densities = [estimate_density(1.0 / stretches[0].sample_rate, each) for each in signals]
-        style.scale_frequency_axis(panel, LOWEST, HIGHEST)
+        style.scale_frequency_axis(panel, resolution, HIGHEST)
         panel.set_ylabel("density [(m/s²)²/Hz]")
         style.set_title(panel, f"{axis}, {found.axes[axis].direction.weighting}")
         draw_densities(panel, densities, looks, HIGHEST)

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from seatsim.diagnosis.result import Diagnosis, Trace
 from seatsim.metrics.motion import rms
 from seatsim.plots import style
-from seatsim.plots.densities import estimate_density
+from seatsim.plots.densities import estimate_density, find_resolution
 from seatsim.plots.diagnosis.bins import group_by_channel, nominal_gap
 from seatsim.plots.labels import Quantity, describe_channel, format_number
 from seatsim.plots.style import COLOURS, Entry, Grid
@@ -34,6 +34,7 @@ MEASURED = Entry("measured", "black", width=2.0)
 NOMINAL = Entry("nominal", COLOURS[1], (0.0, (4.0, 3.0)), width=1.3)
 _AFTER = Entry("with effects", COLOURS[0], width=1.1)
 NOISE = Entry("sensor noise", "0.55", ":", width=1.8)
+_EDGE = NOISE._replace(colour="black", width=1.2)
 GRID = Grid((1.5, 1.0, 1.7), left=0.85, gap=(0.0, 0.16), bottom=0.5)
 LETTERS = 19
 """Letters of a label beside a panel that is this low."""
@@ -91,14 +92,20 @@ def _plot_channel(trace: Trace, group: Sequence[Trace], lines: Sequence[Simulate
     density += [estimate_density(step, [each.measured - line.read(each) for each in group]) for line in lines]
     has_spectrum = bool(len(density[0][0]))
     note = f"{window} of {trace.run}, where the difference has most energy; RMS over the whole run."
-    note += f" Grey band: ±{BAND:g} noise." if noise else ""
-    note += " Below: power densities of the measured signal and of the differences." if has_spectrum else ""
+    note += f" Grey band: ±{BAND:g} noise RMS." if noise else ""
+    lines_apart = f"lines {find_resolution([(step, min(len(each.time) for each in group))]):.2g} Hz apart"
+    note += (
+        f" Below: power densities of the measured signal and of the differences, {lines_apart}." if has_spectrum else ""
+    )
     grid = GRID if has_spectrum else GRID._replace(heights=GRID.heights[:2])
     legend = [MEASURED, *(line.look for line in lines), *([NOISE] if noise and has_spectrum else [])]
     page = style.make_page(_make_title(trace, shown, lines), note, grid, legend)
     upper, lower = (row[0] for row in page.rows[:2])
     _draw_time(upper, lower, trace, window, shown, lines)
-    lower.axhspan(-BAND * noise, BAND * noise, color="0.82", linewidth=0, zorder=0)
+    # Its edges stand before the lines, which hide a band that they fill.
+    lower.axhspan(-BAND * noise, BAND * noise, color="0.88", linewidth=0, zorder=0)
+    for edge in {-BAND * noise, BAND * noise} - {0.0}:
+        lower.axhline(edge, color=_EDGE.colour, linestyle=_EDGE.dashes, linewidth=_EDGE.width, zorder=3)
     for [axes] in page.rows[2:]:
         left_edge, bottom, width, height = axes.get_position().bounds
         axes.set_position((left_edge, bottom, width, height * (1 - OWN_AXIS / GRID.heights[2])))

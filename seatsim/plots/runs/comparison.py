@@ -12,14 +12,14 @@ from matplotlib.figure import Figure
 from seatsim.plots import style
 from seatsim.plots.labels import format_number
 from seatsim.plots.runs import naming
-from seatsim.plots.style import COLOURS, DARK, ROW, Entry, Grid
+from seatsim.plots.style import DARK, ROW, Entry, Grid
 from seatsim.scenario.scenario import condition_of
 from seatsim.schema.arrays import Array
 from seatsim.simulation.performance_bounds import PerformanceBounds
 from seatsim.simulation.result import Run
 
 COMFORT, TRAVEL, SEAT = "driver_acceleration_weighted", "suspension_displacement_rms", "seat_factor"
-_PARETO_NOTE = "Over the whole run; on the same floor, lower left is better. The numbers are in the order of comfort."
+_PARETO_NOTE = "Over the whole run; on the same floor, lower left is better. Numbers as in the legend."
 BOUND = Entry("no damper without memory comes below", "black", width=1.6)
 BEST = Entry("best run found of an ideal damper", DARK, (0.0, (5.0, 1.5)), 1.6)
 FLOOR = Entry("as much as the floor (SEAT = 1)", DARK, ":", 1.6)
@@ -35,12 +35,13 @@ _SIDES = (3.3, 2.1)
 
 
 class _RunPoint(NamedTuple):
-    """A run: RMS travel in mm, weighted RMS acceleration in m/s^2, SEAT factor, and its name."""
+    """A run: RMS travel in mm, weighted RMS acceleration in m/s^2, SEAT factor, its name, and its colour."""
 
     travel: float
     comfort: float
     seat: float
     name: str
+    colour: str
 
 
 class Panel(NamedTuple):
@@ -61,46 +62,43 @@ class Panel(NamedTuple):
 def plot_pareto(runs: Sequence[Run], brackets: Mapping[str, PerformanceBounds]) -> Figure:
     """Return weighted acceleration over travel, a panel for each condition (with performance bounds: for each rig).
 
-    Conditions of one run share a panel. Points are numbered; the legend names them, the most comfortable
-    first. A line says where the driver feels as much as the floor moves.
+    Conditions of one run share a panel. Points are numbered; the legend names them, in the order of the runs. A line
+    says where the driver feels as much as the floor moves.
     """
     found = _make_panels(runs, brackets) or [Panel("", [], None)]
     shown = found[:MOST_PANELS]
     points = [point for panel in shown for point in panel.points]
-    # In the order of the runs, in which other pictures colour them.
-    names = list(dict.fromkeys(point.name for point in points))
-    colours = {name: COLOURS[k % len(COLOURS)] for k, name in enumerate(names)}
-    ranked = list(dict.fromkeys(point.name for point in sorted(points, key=lambda point: point.comfort)))
-    columns = min(2, len(shown))
-    legend = [Entry(f"{k + 1}  {name}", colours[name], "none", mark="o") for k, name in enumerate(ranked)]
+    colours, columns = {point.name: point.colour for point in points}, min(2, len(shown))
+    legend = [Entry(f"{k}  {name}", colours[name], "none", mark="o") for k, name in enumerate(colours, 1)]
     legend += [BOUND, BEST] if any(panel.bracket for panel in shown) else []
     legend += [FLOOR] if any(panel.points and np.isfinite(panel.floor) for panel in shown) else []
     note = _PARETO_NOTE + (f" {len(shown)} of {len(found)} rigs are shown." if len(shown) < len(found) else "")
     grid = Grid((_SIDES[columns - 1],) * -(-len(shown) // columns), columns, top=0.3, gap=(0.75, 0.85))
     page = style.make_page(f"Comfort and travel: {naming.make_title(runs)}", note, grid, legend)
     for axes, panel in zip(page.list_panels(len(shown)), shown, strict=True):
-        _draw_panel(axes, panel, ranked, colours)
+        _draw_panel(axes, panel, list(colours))
     return page.figure
 
 
 def _make_panels(runs: Sequence[Run], brackets: Mapping[str, PerformanceBounds]) -> list[Panel]:
-    groups: dict[str, list[Run]] = {}
+    groups, looks = dict[str, list[Run]](), naming.choose_looks(runs)
+
+    def make_points(group: Sequence[Run], names: Sequence[str]) -> list[_RunPoint]:
+        return [_make_point(run, name, looks[id(run)].colour) for run, name in zip(group, names, strict=True)]
+
     for run in runs:
         if all(np.isfinite(run.metrics[name].value) if name in run.metrics else False for name in (COMFORT, TRAVEL)):
             groups.setdefault(run.scenario.rig if brackets else condition_of(run.scenario), []).append(run)
     if not brackets and len(groups) > 1 and any(len(group) < 2 for group in groups.values()):
         alone = [run for group in groups.values() for run in group]
-        return [Panel("", _make_points(alone, naming.label_runs(alone)), None)]
+        return [Panel("", make_points(alone, naming.label_runs(alone)), None)]
     named = [(rig, group, *naming.distinguish_runs(group, runs)) for rig, group in groups.items()]
-    return [Panel(title, _make_points(group, names), brackets.get(rig)) for rig, group, title, names in named]
+    return [Panel(title, make_points(group, names), brackets.get(rig)) for rig, group, title, names in named]
 
 
-def _make_points(runs: Sequence[Run], names: Sequence[str]) -> list[_RunPoint]:
-    found = []
-    for run, name in zip(runs, names, strict=True):
-        seat = run.metrics[SEAT].value if SEAT in run.metrics else np.nan
-        found.append(_RunPoint(1e3 * run.metrics[TRAVEL].value, run.metrics[COMFORT].value, seat, name))
-    return found
+def _make_point(run: Run, name: str, colour: str) -> _RunPoint:
+    seat = run.metrics[SEAT].value if SEAT in run.metrics else np.nan
+    return _RunPoint(1e3 * run.metrics[TRAVEL].value, run.metrics[COMFORT].value, seat, name, colour)
 
 
 def _pad(values: Sequence[float]) -> tuple[float, float]:
@@ -110,7 +108,7 @@ def _pad(values: Sequence[float]) -> tuple[float, float]:
     return max(0.0, low - margin), high + margin
 
 
-def _draw_panel(axes: Axes, panel: Panel, ranked: Sequence[str], colours: Mapping[str, str]) -> None:
+def _draw_panel(axes: Axes, panel: Panel, names: Sequence[str]) -> None:
     if not panel.points:
         return style.explain_empty(axes, "no run with a weighted acceleration: that needs 200 samples a second")
     travel, comfort = [point.travel for point in panel.points], [point.comfort for point in panel.points]
@@ -128,18 +126,18 @@ def _draw_panel(axes: Axes, panel: Panel, ranked: Sequence[str], colours: Mappin
     axes.set(xlim=_pad(travel), ylim=_pad(comfort), xlabel="RMS suspension travel [mm]", ylabel="driver, Wk RMS [m/s²]")
     # The most comfortable one on top of those that it meets.
     for point in sorted(panel.points, key=lambda point: -point.comfort):
-        axes.scatter(point.travel, point.comfort, s=150, color=colours[point.name], edgecolors="1.0", zorder=4)
-    _number_points(axes, panel.points, ranked)
+        axes.scatter(point.travel, point.comfort, s=150, color=point.colour, edgecolors="1.0", zorder=4)
+    _number_points(axes, panel.points, names)
     style.set_title(axes, panel.title)
 
 
-def _number_points(axes: Axes, points: Sequence[_RunPoint], ranked: Sequence[str]) -> None:
+def _number_points(axes: Axes, points: Sequence[_RunPoint], names: Sequence[str]) -> None:
     """Write the number of each point into it; those of points at one place stand beside it."""
-    left = sorted(points, key=lambda point: ranked.index(point.name))
+    left = sorted(points, key=lambda point: names.index(point.name))
     while left:
         places = axes.transData.transform([point[:2] for point in left]) * 72 / axes.figure.dpi
         near = np.linalg.norm(places - places[0], axis=1) < SAME_PLACE
-        numbers = [str(ranked.index(point.name) + 1) for point, close in zip(left, near, strict=True) if close]
+        numbers = [str(names.index(point.name) + 1) for point, close in zip(left, near, strict=True) if close]
         alone = len(numbers) == 1
         axes.annotate(
             " ".join(numbers), left[0][:2], (0 if alone else 8, 0), textcoords="offset points", fontsize=9, zorder=5,
@@ -187,35 +185,24 @@ def find_swept_number(runs: Sequence[Run]) -> str:
 
 def _plot_bars(title: str, runs: Sequence[Run]) -> Figure:
     names = naming.label_runs(runs, 32)
-    colours = _choose_colours(runs)
-    left = style.measure_names(names)
+    looks, left = naming.choose_looks(runs), style.measure_names(names)
     grid = Grid((ROW * len(runs) + 0.1,) * 2, columns=2, left=left, bottom=0.65, gap=(0.2, 0.75))
     page = style.make_page(title, NOTE, grid)
     for k, (axes, compared) in enumerate(zip(page.list_panels(), COMPARED, strict=True)):
         values = _read_metric(runs, compared)
         texts = [format_number(value) for value in values]
         style.name_rows(axes, [""] * len(names) if k % 2 else names)
-        style.draw_bars(axes, values.tolist(), colours, texts)
+        style.draw_bars(axes, values.tolist(), [looks[id(run)].colour for run in runs], texts)
         # Room for the figures at the ends of the bars.
         end = (1.0 + 0.45 / grid.width) * float(np.max(np.nan_to_num(values)))
         axes.set(xlim=(0.0, end or 1.0), xlabel=compared.axis)
     return page.figure
 
 
-def _choose_colours(runs: Sequence[Run]) -> list[str]:
-    """Return the colour of each run in other pictures; of more runs than these show, that of its variant."""
-    looks = [(run, look) for shown in naming.show_runs(runs) for run, look in zip(shown.runs, shown.looks, strict=True)]
-    if len(looks) == len(runs):
-        of_runs = {id(run): look.colour for run, look in looks}
-        return [of_runs[id(run)] for run in runs]
-    of_variants = {run.scenario.label.get("variant"): look.colour for run, look in looks}
-    variants = [run.scenario.label.get("variant") for run in runs]
-    return [of_variants[each] for each in variants] if set(variants) == set(of_variants) else [COLOURS[0]] * len(runs)
-
-
 def _plot_lines(title: str, key: str, series: dict[str, list[Run]]) -> Figure:
     runs = [run for group in series.values() for run in group]
-    looks = style.make_entries(list(series))
+    of_runs = naming.choose_looks(runs)
+    looks = style.fade_alike([of_runs[id(group[0])]._replace(label=name) for name, group in series.items()])
     swept = sorted({float(run.scenario.label[key]) for run in runs})
     page = style.make_page(title, NOTE, Grid((1.8, 1.8), 2, left=0.85, gap=(0.9, 0.65)), looks)
     for axes, compared in zip(page.list_panels(), COMPARED, strict=True):

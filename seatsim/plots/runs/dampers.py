@@ -16,7 +16,7 @@ from seatsim.dampers.base import DamperSpecification
 from seatsim.kernel.generic import DamperModel
 from seatsim.metrics.motion import rms
 from seatsim.plots import style
-from seatsim.plots.loops import Family, make_loop_page
+from seatsim.plots.loops import SIGNS, Family, make_loop_page
 from seatsim.plots.runs import naming
 from seatsim.plots.style import Entry, Grid
 from seatsim.rig.temperature import TemperatureFactors, Thermal
@@ -110,7 +110,7 @@ def plot_force_velocity(run: Run) -> Figure:
     looks = [Entry(name, colour, width=1.8) for (name, _), colour in zip(tests, ("0.45", "black"), strict=False)]
     note = (
         f"Dots: the run. Curves: sine test at {temperature:g} °C, amplitude {1e3 * amplitude:.3g} mm, {FREQUENCY:g} Hz."
-        " Shaded: the damper gives energy back."
+        f" Shaded: the damper gives energy back. {SIGNS}"
     )
     page = style.make_page(f"Damper at work: {naming.make_title([run])}", note, Grid((3.3,), right=1.0), looks)
     axes = page.rows[0][0]

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple, TypeGuard
 
 from seatsim.plots.labels import LONGEST, format_unit, shorten
-from seatsim.plots.style import Entry, make_entries
+from seatsim.plots.style import Entry, fade_alike, make_entries
 from seatsim.plots.thinning import spread_evenly
 from seatsim.scenario.numbers import find_unit
 from seatsim.scenario.scenario import Scenario
@@ -35,18 +35,38 @@ def show_runs(runs: Sequence[Run]) -> list[Shown]:
     A name looks the same in all pictures. Up to eight runs are all drawn. Of more runs, those at the first swept values
     (one for each variant) are drawn, or else eight that are spread evenly over their order, first and last included.
     """
-    scenarios = list(dict.fromkeys(run.scenario.name for run in runs))
-    parts = [list(runs)]
-    if 1 < len(scenarios) < len(runs):
-        parts = [[run for run in runs if run.scenario.name == name] for name in scenarios]
-    chosen, omissions = zip(*map(_select_shown, parts), strict=True)
-    names = [label_runs(part) for part in chosen]
-    looks = {look.label: look for look in make_entries(list(dict.fromkeys(name for part in names for name in part)))}
-    found = []
-    for part, shown, called, omission in zip(parts, chosen, names, omissions, strict=True):
+    parts, colours, found, looks = _divide(runs), choose_looks(runs), [], dict[str, Entry]()
+    for part in parts:
+        shown, omission = _select_shown(part)
+        named = [colours[id(run)]._replace(label=name) for name, run in zip(label_runs(shown), shown, strict=True)]
+        looks |= {look.label: look for look in named if look.label not in looks}
         scenario = part[0].scenario.name if len(parts) > 1 else ""
-        found.append(Shown(scenario, make_title(part), shown, [looks[name] for name in called], omission))
-    return found
+        found.append(Shown(scenario, make_title(part), shown, named, omission))
+    faded = {look.label: look for look in fade_alike(list(looks.values()))}
+    return [shown._replace(looks=[faded[look.label] for look in shown.looks]) for shown in found]
+
+
+def choose_looks(runs: Sequence[Run]) -> dict[int, Entry]:
+    """Return the look of each run, by its identity, in which every picture of the runs shows it.
+
+    A variant has one look; where no variants differ, each run has its own. Looks repeat after eight: those of runs that
+    are drawn over each other come first, so that these differ.
+    """
+    parts = _divide(runs)
+    names = {id(run): name for part in parts for name, run in zip(label_runs(part), part, strict=True)}
+    if len({run.scenario.label.get("variant") for run in runs}) > 1:
+        names = {id(run): str(run.scenario.label.get("variant", run.scenario.name)) for run in runs}
+    shown = [run for part in parts for run in _select_shown(part)[0]]
+    looks = {look.label: look for look in make_entries(list(dict.fromkeys(names[id(run)] for run in [*shown, *runs])))}
+    return {run: looks[name] for run, name in names.items()}
+
+
+def _divide(runs: Sequence[Run]) -> list[list[Run]]:
+    """Return the runs of each scenario where one of several has several, or else all together."""
+    scenarios = dict.fromkeys(run.scenario.name for run in runs)
+    if not 1 < len(scenarios) < len(runs):
+        return [list(runs)]
+    return [[run for run in runs if run.scenario.name == name] for name in scenarios]
 
 
 def label_runs(runs: Sequence[Run], longest: int = LONGEST, without: str = "") -> list[str]:

@@ -11,7 +11,14 @@ from matplotlib.figure import Figure
 
 from seatsim.metrics.spectra import transmissibility
 from seatsim.plots import style
-from seatsim.plots.densities import LOWEST, METHOD, draw_densities, estimate_density
+from seatsim.plots.densities import (
+    LOWEST,
+    draw_densities,
+    estimate_density,
+    find_problem,
+    find_resolution,
+    state_method,
+)
 from seatsim.plots.runs.naming import Shown, distinguish_runs
 from seatsim.plots.style import DASHES, GREY, Entry, Grid
 from seatsim.schema.arrays import Array
@@ -41,39 +48,41 @@ def plot_psd(shown: Shown) -> Figure:
         for k, (name, dashes) in enumerate(zip(names, cycle(DASHES), strict=False))
     ]
     drivers = shown.looks if len(shown.runs) > 1 else [shown.looks[0]._replace(label="driver")]
-    title = f"Driver acceleration over frequency: {shown.title}"
-    figure, axes = _make_page(title, METHOD + shown.omission, [*drivers, *floors])
-    axes.set_ylabel("power density [(m/s²)²/Hz]")
     found = [_estimate(group[0], "floor_acceleration") for group in groups.values()]
     found += [_estimate(run, "driver_acceleration") for run in shown.runs]
+    resolution = find_resolution((run.history.step, len(run.history["time"])) for run in shown.runs)
+    legend = [] if find_problem(found, BAND[1]) else [*drivers, *floors]
+    title = f"Driver acceleration over frequency: {shown.title}"
+    figure, axes = _make_page(title, state_method(resolution) + shown.omission, resolution, legend)
+    axes.set_ylabel("power density [(m/s²)²/Hz]")
     draw_densities(axes, found, [*floors, *drivers], BAND[1])
-    if not axes.lines:
-        figure.legends.clear()
     return figure
 
 
 def plot_transmissibility(shown: Shown) -> Figure:
     """Return the magnitude of the transmissibility from floor to driver where it can be trusted."""
-    looks = shown.looks if len(shown.runs) > 1 else []
-    figure, axes = _make_page(f"Transmissibility, floor to driver: {shown.title}", NOTE + shown.omission, looks)
-    axes.set_ylabel("|driver / floor| [-]")
     gains = [_estimate_gain(run) for run in shown.runs]
-    known = np.concatenate([gain[np.isfinite(gain) & (gain > 0)] for _, gain in gains])
+    known = np.concatenate([gain[np.isfinite(gain) & (gain > 0)] for _, gain, _ in gains])
+    resolution = max((frequency[1] - frequency[0] for frequency, _, _ in gains if len(frequency)), default=np.inf)
+    lines = f" Lines {resolution:.2g} Hz apart." * bool(known.size)
+    legend = shown.looks if known.size and len(shown.runs) > 1 else []
+    title = f"Transmissibility, floor to driver: {shown.title}"
+    figure, axes = _make_page(title, NOTE + lines + shown.omission, resolution, legend)
+    axes.set_ylabel("|driver / floor| [-]")
     if not known.size:
-        style.explain_empty(axes, "no floor motion, no coherence with it, or too short a run")
-        figure.legends.clear()
+        style.explain_empty(axes, "; ".join(dict.fromkeys(problem for _, _, problem in gains)))
         return figure
     axes.axhline(1.0, color=GREY, linewidth=1.0, zorder=1)
     axes.set_yscale("log")
-    for (frequency, gain), look in zip(gains, shown.looks, strict=True):
+    for (frequency, gain, _), look in zip(gains, shown.looks, strict=True):
         style.draw_line(axes, frequency, gain, look)
     style.scale_log(axes, "y", min(0.5, float(known.min())) / 1.2, max(2.0, float(known.max())) * 1.2)
     return figure
 
 
-def _make_page(title: str, note: str, legend: Sequence[Entry]) -> tuple[Figure, Axes]:
+def _make_page(title: str, note: str, resolution: float, legend: Sequence[Entry]) -> tuple[Figure, Axes]:
     figure, [[axes]] = style.make_page(title, note, Grid((2.9,)), legend)
-    style.scale_frequency_axis(axes, *BAND)
+    style.scale_frequency_axis(axes, resolution, BAND[1])
     return figure, axes
 
 
@@ -81,16 +90,19 @@ def _estimate(run: Run, channel: str) -> tuple[Array, Array]:
     return estimate_density(run.history.step, [run.history[channel]])
 
 
-def _estimate_gain(run: Run) -> tuple[Array, Array]:
-    """Return frequency and gain of a run, NaN where it cannot be trusted."""
+def _estimate_gain(run: Run) -> tuple[Array, Array, str]:
+    """Return frequency and gain of a run, NaN where it cannot be trusted, and why that would be everywhere."""
     floor, driver = run.history["floor_acceleration"], run.history["driver_acceleration"]
     try:
         found = transmissibility(floor, driver, 1 / run.history.step)
-    except InputError:
-        return np.empty(0), np.empty(0)
+    except InputError as error:
+        return np.empty(0), np.empty(0), str(error)
     centres, density = _estimate(run, "floor_acceleration")
     inside = (found.frequency >= BAND[0]) & (found.frequency <= BAND[1])
     frequency = found.frequency[inside]
     power = np.interp(frequency, centres, density) if len(centres) else np.zeros(len(frequency))
     strong = power >= POWER * np.max(power, initial=1e-300)
-    return frequency, np.where(strong & (found.coherence[inside] >= _TRUSTED), found.gain[inside], np.nan)
+    problem = (
+        f"the floor explains less than {_TRUSTED:g} of the driver's motion" if np.any(floor) else "no floor motion"
+    )
+    return frequency, np.where(strong & (found.coherence[inside] >= _TRUSTED), found.gain[inside], np.nan), problem
