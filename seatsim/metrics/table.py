@@ -171,6 +171,9 @@ def _energy_residual(run: RunRecord) -> float:
     return motion.energy_residual(run["energy_floor"], [run[name] for name in sinks])
 
 
+COMFORT, UNWEIGHTED = "driver_acceleration_weighted", "driver_acceleration_rms"
+TRAVEL, SEAT = "suspension_displacement_rms", "seat_factor"
+"""Metrics by which seats are compared."""
 _DRIVER = "driver_acceleration"
 METRICS: Mapping[str, _Figure] = {
     "driver_acceleration_rms": _Figure("m/s^2", "RMS acceleration of the driver", _rms_of(_DRIVER)),

@@ -14,8 +14,8 @@ from seatsim.diagnosis.candidates import Candidate, list_candidates
 from seatsim.diagnosis.objective import Parameters
 from seatsim.diagnosis.problem import pose_problem
 from seatsim.metrics.motion import rms
-from seatsim.page.scenario_view import Choice, Slider, Switch, View, read_number
-from seatsim.plots.labels import describe_channel, format_percent
+from seatsim.page.scenario_view import Choice, Slider, Switch, View, make_slider, read_number
+from seatsim.plots.labels import format_percent
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.recording import load_recording
 from seatsim.report.blocks import Signals, Table
@@ -166,18 +166,6 @@ def _name(candidate: Candidate) -> str:
 
 def _make_switch(name: str, candidate: Candidate) -> Switch:
     fields = {field.name: field for field in describe(candidate.cls)}
-    shown = {name: describe_channel(fields[name].meaning, fields[name].unit) for name in candidate.free}
-    sliders = [
-        Slider(name, own.words, own.unit, own.factor * low, own.factor * high, own.factor * start, own.factor)
-        for (name, own), start, (low, high) in zip(shown.items(), candidate.start, _reach(candidate), strict=True)
-    ]
+    ranges = zip(candidate.free, candidate.low, candidate.high, candidate.start, strict=True)
+    sliders = [make_slider(fields[free], low, high, start, REACH) for free, low, high, start in ranges]
     return Switch(name, name.replace(":", ", "), format_sentence(describe_effect(candidate.effect)), sliders)
-
-
-def _reach(candidate: Candidate) -> list[tuple[float, float]]:
-    """Return the range of each slider: within the bounds, from off to some sizes of the effect."""
-    found = []
-    for start, low, high in zip(candidate.start, candidate.low, candidate.high, strict=True):
-        size = REACH * abs(start) or 1.0
-        found.append((max(low, -size if low < 0 else 0.0), min(high, size)))
-    return [(min(a, s), max(b, s)) for (a, b), s in zip(found, candidate.start, strict=True)]

@@ -24,7 +24,7 @@ from seatsim.scenario.loading import load, read_scenario
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.content import plain
 from seatsim.schema.errors import InputError
-from seatsim.schema.fields import bounds, describe
+from seatsim.schema.fields import FieldSpecification, bounds, describe
 from seatsim.schema.validation import is_finite_number
 from seatsim.simulation.result import Run
 from seatsim.simulation.runs import run_one
@@ -60,6 +60,14 @@ class Switch(NamedTuple):
     label: str
     meaning: str
     sliders: Sequence[Slider]
+
+
+def make_slider(field: FieldSpecification, low: float, high: float, start: float, reach: float) -> Slider:
+    """Return the slider of a number in SI units: within its bounds, from off to some times where it starts."""
+    shown, size = describe_channel(field.meaning, field.unit), reach * abs(start) or 1.0
+    ends = (min(start, max(low, -size if low < 0 else 0.0)), max(start, min(high, size)))
+    low, high, start = (shown.factor * value for value in (*ends, start))
+    return Slider(field.name, shown.words, shown.unit, low, high, start, shown.factor)
 
 
 def read_number(request: Mapping[str, object], slider: Slider) -> float:
@@ -215,18 +223,14 @@ def list_gains(scenario: Scenario) -> list[Slider]:
         value = getattr(record, field.name)
         if is_finite_number(value) and field.name != "sample_time":
             low, high = bounds(type(record), field.name)
-            reach = REACH * abs(value) or 1.0
-            own = describe_channel(field.meaning, field.unit)
-            ends = (max(low, -reach if value < 0 else 0.0), min(high, reach))
-            low, high, start = (own.factor * x for x in (*ends, value))
-            found.append(Slider(field.name, own.words, own.unit, low, high, start, own.factor))
+            found.append(make_slider(field, low if value < 0 else max(low, 0.0), high, float(value), REACH))
     return found
 
 
 def _compare(own: Run, run: Run) -> Table:
-    rows = []
-    for name, words in SHORT.items():
-        known = [each.metrics[name] for each in (own, run) if name in each.metrics]
-        if len(known) == 2:
-            rows.append([words, *(format_quantity(metric.value, metric.unit) for metric in known)])
+    rows = [
+        [words, *(format_quantity(each.metrics[name].value, each.metrics[name].unit) for each in (own, run))]
+        for name, words in SHORT.items()
+        if name in own.metrics and name in run.metrics
+    ]
     return Table("First run of the file, and the run as set", ["figure", "as in the file", "as set"], rows)

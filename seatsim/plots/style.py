@@ -41,8 +41,6 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#8
 """Okabe and Ito's palette for all kinds of colour vision; wine replaces its yellow, which fades on white."""
 DASHES: tuple[LineStyleType, ...] = ("-", (0.0, (5.0, 1.5)))
 """Every second line is dashed: two that coincide are both seen, and colour is not the only difference."""
-_FADED = 0.65
-"""How much paler the last of several lines in one colour is than the first."""
 _FREQUENCIES = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000)
 """Hz that an axis names."""
 
@@ -97,13 +95,6 @@ def make_entries(labels: Sequence[str]) -> list[Entry]:
     """Return one distinct look for each of up to eight runs; further ones begin anew."""
     looks = zip(labels, cycle(COLOURS), cycle(DASHES), strict=False)
     return [Entry(label, colour, dashes) for label, colour, dashes in looks]
-
-
-def fade_alike(looks: Sequence[Entry]) -> list[Entry]:
-    """Return looks of which those in one colour are the paler the later they come."""
-    colours = [look.colour for look in looks]
-    ranks = [(colours[:k].count(colour), colours.count(colour) - 1) for k, colour in enumerate(colours)]
-    return [look._replace(alpha=1.0 - _FADED * k / max(1, n)) for look, (k, n) in zip(looks, ranks, strict=True)]
 
 
 def sample_colours(name: str, count: int) -> list[str]:

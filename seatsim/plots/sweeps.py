@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from seatsim.metrics.table import METRICS, SHORT
+from seatsim.metrics.table import COMFORT, METRICS, SHORT, TRAVEL
 from seatsim.plots import style
 from seatsim.plots.labels import Quantity, clean_text, describe_channel, format_number, format_percent, format_unit
 from seatsim.plots.style import COLOURS, DARK, ROW, Entry, Grid, draw_bars, make_page, measure_names, name_rows
@@ -22,7 +22,6 @@ from seatsim.sweeps.sensitivity import Sensitivity
 if TYPE_CHECKING:
     import pandas as pd
 
-COMFORT, TRAVEL = "driver_acceleration_weighted", "suspension_displacement_rms"
 ROAD = "excitation."
 """How the keys of the excitation begin; the first of them with few values gives each value a panel of its own."""
 _MOST_KEYS = 14

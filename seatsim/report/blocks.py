@@ -134,8 +134,3 @@ def tabulate(
     printed = [[format_number(cell) if isinstance(cell, float | None) else str(cell) for cell in row] for row in rows]
     names = head.split(", ") if isinstance(head, str) else head
     return [Table(caption, names, printed, words, strong, folded)] if printed else []
-
-
-def list_notes(texts: Sequence[str]) -> list[Block]:
-    """Return sentences as a list, each once; nothing where there is none."""
-    return [Items(list(dict.fromkeys(texts)))] if texts else []

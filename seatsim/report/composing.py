@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from seatsim.plots.densities import METHOD
 from seatsim.provenance.statement import state_command
-from seatsim.report.blocks import Block, Code, Items, Report, Section, Text, list_notes, tabulate
+from seatsim.report.blocks import Block, Code, Items, Report, Section, Text, tabulate
 from seatsim.report.credibility import Factor, say_doubt, show_card
 from seatsim.report.formatting import format_sentence, read_words
 
@@ -53,8 +53,9 @@ def compose(
     versions = tabulate("Versions", "package, version", [(name, version(name)) for name in _PACKAGES], 2)
     again: list[Block] = [Text("This command makes the report again:"), Code(state_command(command))]
     own = [Section(anchor, words.headings[kind][anchor], blocks) for anchor, blocks in sections.items()]
+    sentences = list(dict.fromkeys(map(format_sentence, notes)))
     ends = [
-        Section("notes", "Notes", list_notes(list(map(format_sentence, notes)))),
+        Section("notes", "Notes", [Items(sentences)] if sentences else []),
         show_card(factors),
         Section("method", "How this was made", [Items(method), *settings, *versions, *again]),
     ]

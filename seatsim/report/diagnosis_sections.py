@@ -9,7 +9,7 @@ from seatsim.diagnosis.result import CalibratedParameter, Cause, Diagnosis, Trac
 from seatsim.plots.diagnosis.answer import STAGES, Key, read_gap, select_stages
 from seatsim.plots.diagnosis.bins import drop_start
 from seatsim.plots.diagnosis.signals import name_last
-from seatsim.plots.labels import UNKNOWN, describe_channel, format_number, format_percent, format_unit
+from seatsim.plots.labels import UNKNOWN, format_number, format_percent, format_unit
 from seatsim.report.blocks import Block, Figures, Items, Table, Text, show_pictures, tabulate
 from seatsim.report.formatting import (
     describe_effect,
@@ -20,6 +20,7 @@ from seatsim.report.formatting import (
     format_sentence,
     format_setting,
     say_noise,
+    scale_row,
 )
 from seatsim.report.packing import MEASURED, Panel, pack_signals
 from seatsim.schema.arrays import Array
@@ -189,10 +190,7 @@ def show_comfort(diagnosis: Diagnosis) -> list[Table]:
 
 def show_budget(diagnosis: Diagnosis) -> list[Block]:
     """Return what the error of the stated scenario is made of on the held-out run, by channel."""
-    rows = []
-    for channel, unit, *parts in diagnosis.error_budget:
-        shown = describe_channel(channel, unit)
-        rows.append([shown.words, shown.unit, *(shown.factor * part for part in parts)])
+    rows = [scale_row(channel, unit, parts) for channel, unit, *parts in diagnosis.error_budget]
     head = "channel, unit, error E, step u_num, inputs u_input, sensor u_D, model form"
     return [*explain("budget"), *tabulate("Parts of the error", head, rows, 2)] if rows else []
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from importlib.resources import files
 from typing import NamedTuple
@@ -24,6 +24,12 @@ def format_quantity(value: float, unit: str) -> str:
     shown = describe_channel("", unit)
     text = format_number(shown.factor * value)
     return text if shown.unit == "-" or text == UNKNOWN else f"{text} {shown.unit}"
+
+
+def scale_row(channel: str, unit: str, figures: Iterable[float]) -> list[object]:
+    """Return the row of a table: a channel in words, the unit shown, and figures, given in SI units, in that."""
+    shown = describe_channel(channel, unit)
+    return [shown.words, shown.unit, *(shown.factor * figure for figure in figures)]
 
 
 def format_noise(share: float | None) -> str:

@@ -14,14 +14,14 @@ from seatsim.metrics.motion import rms
 from seatsim.metrics.objective_rating import GRADES, ObjectiveRating
 from seatsim.plots.diagnosis.answer import SMALLEST, plot_gap
 from seatsim.plots.diagnosis.signals import plot_pairs
-from seatsim.plots.labels import UNKNOWN, describe_channel, format_number, format_percent
+from seatsim.plots.labels import UNKNOWN, format_number, format_percent
 from seatsim.recordings.gap import Gap, ReplayedPair
 from seatsim.recordings.recording import load_recording
 from seatsim.recordings.validation import Validation
-from seatsim.report.blocks import Block, Items, Report, Signals, Table, show_pictures
+from seatsim.report.blocks import Block, Items, Report, Signals, Table, show_pictures, tabulate
 from seatsim.report.composing import Closing, compose
 from seatsim.report.credibility import NEAR_NOISE, Factor, count_variations, state_intervals, trace_inputs, validate
-from seatsim.report.formatting import explain, format_noise, say_noise
+from seatsim.report.formatting import explain, format_noise, format_quantity, say_noise, scale_row
 from seatsim.report.packing import MEASURED, Panel, pack_signals
 from seatsim.scenario.loading import single
 from seatsim.schema.arrays import Array
@@ -115,10 +115,7 @@ def _make_table(found: Gap, pairs: Mapping[str, ReplayedPair]) -> Table:
 
 def _format_small(value: float, unit: str) -> str:
     """Return a difference with its unit; one of a current in mA."""
-    if unit == "A":
-        return f"{format_number(1e3 * value)} mA"
-    shown = describe_channel("", unit)
-    return f"{format_number(shown.factor * value)} {shown.unit}"
+    return f"{format_number(1e3 * value)} mA" if unit == "A" else format_quantity(value, unit)
 
 
 def _subtract(pair: ReplayedPair, name: str) -> Array:
@@ -142,7 +139,7 @@ def show_agreement(found: Gap) -> list[Block]:
         return []
     grades = ", ".join(f"{grade} above {least:g}" for grade, least in GRADES.items() if least > 0)
     meanings = Items([each.text for each in explain("ratings", grades=grades)])
-    return [_show_ratings(found.iso18571), meanings, _show_errors(found.v_and_v), *explain("errors")]
+    return [_show_ratings(found.iso18571), meanings, *_show_errors(found.v_and_v), *explain("errors")]
 
 
 def _show_ratings(ratings: Mapping[str, ObjectiveRating]) -> Table:
@@ -154,11 +151,10 @@ def _show_ratings(ratings: Mapping[str, ObjectiveRating]) -> Table:
     return Table(caption, ["channel", "grade", "overall", *ObjectiveRating._fields[:4], "late by [ms]"], rows, 2)
 
 
-def _show_errors(errors: Mapping[str, Validation]) -> Table:
-    rows = []
-    for name, each in errors.items():
-        shown = describe_channel(name, each.unit)
-        figures = (each.error, each.u_val, each.u_num, each.u_input, each.u_d)
-        rows.append([shown.words, shown.unit, *(format_number(shown.factor * figure) for figure in figures)])
-    head = ["channel", "unit", "error E", "u_val", "step u_num", "inputs u_input", "sensor u_D"]
-    return Table("Comparison error and validation uncertainty after ASME V&V 20, over all runs", head, rows, 2)
+def _show_errors(errors: Mapping[str, Validation]) -> list[Table]:
+    rows = [
+        scale_row(name, each.unit, (each.error, each.u_val, each.u_num, each.u_input, each.u_d))
+        for name, each in errors.items()
+    ]
+    head = "channel, unit, error E, u_val, step u_num, inputs u_input, sensor u_D"
+    return tabulate("Comparison error and validation uncertainty after ASME V&V 20, over all runs", head, rows, 2)

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.metrics.motion import ratio
+from seatsim.metrics.table import COMFORT, SEAT, TRAVEL, UNWEIGHTED
 from seatsim.plots.labels import format_percent
 from seatsim.plots.runs.naming import distinguish_runs
 from seatsim.report.formatting import format_quantity
@@ -16,7 +17,6 @@ from seatsim.scenario.scenario import choice_of, group_by_condition, is_passive
 from seatsim.schema.text import name_some
 from seatsim.simulation.result import Run
 
-COMFORT, _UNWEIGHTED, TRAVEL = "driver_acceleration_weighted", "driver_acceleration_rms", "suspension_displacement_rms"
 SAME = 0.01
 """Difference, as a share, up to which figures count as equal: other phases of the same floor change them by more."""
 EQUAL = "as much"
@@ -64,14 +64,9 @@ def find_best(runs: Sequence[Run]) -> list[int]:
     return [k for k, run in enumerate(runs) if any(run is each for each in best)]
 
 
-def read_metric(run: Run, name: str) -> float:
-    """Return a metric of a run in SI units, NaN where it has none."""
-    return run.metrics[name].value if name in run.metrics else float("nan")
-
-
 def measure_comfort(run: Run) -> float:
     """Return the weighted RMS acceleration of the driver in m/s^2; unweighted where the step is too long to weight."""
-    return read_metric(run, COMFORT if COMFORT in run.metrics else _UNWEIGHTED)
+    return run.read_metric(COMFORT if COMFORT in run.metrics else UNWEIGHTED)
 
 
 def state_comfort(run: Run) -> str:
@@ -112,7 +107,7 @@ def state_best(group: Alternatives) -> str:
 def _compare_runs(run: Run, base: Run) -> tuple[str, str]:
     """Return how the comfort of a run, and how the travel that it takes, compares with those of another."""
     comfort = compare_figures(measure_comfort(run) / measure_comfort(base))
-    change = ratio(read_metric(run, TRAVEL), read_metric(base, TRAVEL))
+    change = ratio(run.read_metric(TRAVEL), base.read_metric(TRAVEL))
     if math.isnan(change):
         return comfort, "more travel than none"
     travel = compare_figures(change)
@@ -125,13 +120,13 @@ def _is_reliable(run: Run) -> bool:
 
 def describe_run(run: Run) -> str:
     """Return in a sentence what a run comes to: comfort, and the travel that it takes."""
-    seat, travel = read_metric(run, "seat_factor"), read_metric(run, "suspension_displacement_peak")
+    seat, travel = run.read_metric(SEAT), run.read_metric("suspension_displacement_peak")
     said = f"{run.scenario.title}: the driver feels {state_comfort(run)}"
     if np.isfinite(seat):
         change = compare_figures(seat)
         said += f", {change} {'as' if change == EQUAL else 'than'} the floor moves"
     said += f"; the suspension travels up to {format_quantity(travel, 'm')} from its rest"
-    hits = read_metric(run, "end_stop_hits")
+    hits = run.read_metric("end_stop_hits")
     if np.isfinite(hits):
         said += f" and meets its end stops {count_times(hits)}" if hits else " and never meets its end stops"
     return f"{said}."

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from seatsim.metrics.table import SHORT
+from seatsim.metrics.table import SEAT, SHORT
 from seatsim.plots.labels import describe_channel, format_number, format_unit
 from seatsim.plots.runs.naming import Shown, label_runs, show_runs
 from seatsim.plots.style import COLOURS
@@ -14,7 +14,7 @@ from seatsim.report.blocks import Figures, Report, Signals, Table, show_pictures
 from seatsim.report.composing import Closing, compose
 from seatsim.report.credibility import Factor, count_variations, trace_inputs, verify
 from seatsim.report.formatting import format_quantity, format_sentence, format_setting
-from seatsim.report.headline import SAME, compare_runs, count_times, describe_run, find_best, read_metric
+from seatsim.report.headline import SAME, compare_runs, count_times, describe_run, find_best
 from seatsim.report.packing import FINEST, Panel, pack_signals
 from seatsim.scenario.numbers import find_unit, list_numbers
 from seatsim.scenario.scenario import Scenario, condition_of
@@ -24,7 +24,7 @@ from seatsim.schema.text import join_names, name_some
 from seatsim.simulation.result import UNITS, Run
 from seatsim.simulation.runs import STRETCH, share_a_loop, try_changes
 
-SEAT, HITS, _PEAK = "seat_factor", "end_stop_hits", "suspension_displacement_peak"
+HITS, _PEAK = "end_stop_hits", "suspension_displacement_peak"
 CHANNELS = (
     "driver_acceleration", "suspension_displacement", "damper_force", "coil_current", "frame_acceleration",
     "floor_acceleration", "damper_temperature",
@@ -60,7 +60,7 @@ def report_runs(
 
 def judge_runs(runs: Sequence[Run]) -> list[Factor]:
     """Return how far simulated runs may be trusted."""
-    energies = [run.metrics["energy_residual"].value for run in runs if "energy_residual" in run.metrics]
+    energies = [run.read_metric("energy_residual") for run in runs if "energy_residual" in run.metrics]
     doubts = dict.fromkeys(text for run in runs for text in run.warnings)
     return [
         verify("up to {} of the energy is unaccounted for", energies),
@@ -75,11 +75,11 @@ def advise_on_runs(runs: Sequence[Run]) -> list[str]:
     found = []
     hitting = _rank_above(named, HITS, 0.0)
     if hitting:
-        counts = [f"{name} ({count_times(read_metric(run, HITS))})" for name, run in hitting]
+        counts = [f"{name} ({count_times(run.read_metric(HITS))})" for name, run in hitting]
         found.append(f"Look at the travel of {name_some(counts)}: the suspension meets its end stops.")
     amplifying = _rank_above(named, SEAT, 1.0 + SAME)
     if amplifying:
-        listed = [f"{name} (SEAT factor {format_number(read_metric(run, SEAT))})" for name, run in amplifying]
+        listed = [f"{name} (SEAT factor {format_number(run.read_metric(SEAT))})" for name, run in amplifying]
         feels = f"The driver feels more than the floor moves in {name_some(listed)}."
         found.append(f"{feels}{_say_trials(*amplifying[0], share_a_loop(run.scenario for run in runs))}")
     if len(runs) == 1:
@@ -91,8 +91,8 @@ def advise_on_runs(runs: Sequence[Run]) -> list[str]:
 
 def _rank_above(named: Sequence[tuple[str, Run]], metric: str, limit: float) -> list[tuple[str, Run]]:
     """Return the runs with a metric above a limit, the largest first."""
-    above = [(name, run) for name, run in named if read_metric(run, metric) > limit]
-    return sorted(above, key=lambda pair: -read_metric(pair[1], metric))
+    above = [(name, run) for name, run in named if run.read_metric(metric) > limit]
+    return sorted(above, key=lambda pair: -pair[1].read_metric(metric))
 
 
 def _say_trials(name: str, run: Run, carry_all_effects: bool | None) -> str:
@@ -173,7 +173,7 @@ def _tabulate_figures(runs: Sequence[Run]) -> list[Table]:
     shown = {name: describe_channel(words, units[name]) for name, words in SHORT.items() if name in units}
     rows = []
     for name, run in zip(label_runs(runs), runs, strict=True):
-        values = (_format_metric(metric, each.factor * read_metric(run, metric)) for metric, each in shown.items())
+        values = (_format_metric(metric, each.factor * run.read_metric(metric)) for metric, each in shown.items())
         rows.append((f"{name} *" if run.unverified else name, *values))
     best = find_best(runs)
     several = len({condition_of(run.scenario) for run in runs}) > 1

@@ -6,17 +6,9 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from seatsim.dampers.base import DAMPERS
+from seatsim.metrics.table import COMFORT, TRAVEL
 from seatsim.plots.labels import format_number, format_percent
-from seatsim.plots.sweeps import (
-    COMFORT,
-    TRAVEL,
-    describe_column,
-    format_level,
-    plot_comfort,
-    plot_means,
-    plot_shares,
-    plot_tornado,
-)
+from seatsim.plots.sweeps import describe_column, format_level, plot_comfort, plot_means, plot_shares, plot_tornado
 from seatsim.report.blocks import Block, Figures, Report, Table, Text, show_pictures, tabulate
 from seatsim.report.composing import Closing, compose
 from seatsim.report.credibility import (

@@ -120,6 +120,10 @@ class Run:
         """What its history is to be read with."""
         return self.history.notes
 
+    def read_metric(self, name: str) -> float:
+        """Return the value of a metric, NaN where the run has none of that name."""
+        return self.metrics[name].value if name in self.metrics else float("nan")
+
     def __repr__(self) -> str:
         """Say which scenario was run, and the figures that the table on the terminal has first."""
         figures = (f"{name} {each.value:.4g} {each.unit}" for name, each in list(self.metrics.items())[:4])

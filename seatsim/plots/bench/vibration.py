@@ -63,17 +63,17 @@ def _plot_spectra(found: Comfort, axes: Sequence[str]) -> Figure:
     """Return the power spectral densities, as recorded and weighted, a panel for each axis."""
     looks = [Entry("as recorded", GREY, width=2.0), Entry("weighted", style.COLOURS[0])]
     chosen = spread_evenly(axes, MOST)
-    resolution = find_resolution((1.0 / part.sample_rate, len(part.weighted)) for part in found.stretches[axes[0]])
-    grid = Grid((1.7,) * len(chosen), top=0.3)
-    page = style.make_page("Vibration over frequency", state_method(resolution), grid, looks)
-    for panel, axis in zip(page.list_panels(), chosen, strict=True):
-        stretches = found.stretches[axis]
+    densities = []
+    for stretches in (found.stretches[axis] for axis in chosen):
         signals = [part.acceleration for part in stretches], [part.weighted for part in stretches]
-        densities = [estimate_density(1.0 / stretches[0].sample_rate, each) for each in signals]
+        densities.append([estimate_density(1.0 / stretches[0].sample_rate, each) for each in signals])
+    resolution, grid = find_resolution(densities[0]), Grid((1.7,) * len(chosen), top=0.3)
+    page = style.make_page("Vibration over frequency", state_method(resolution), grid, looks)
+    for panel, axis, drawn in zip(page.list_panels(), chosen, densities, strict=True):
         style.scale_frequency_axis(panel, resolution, HIGHEST)
         panel.set_ylabel("density [(m/s²)²/Hz]")
         style.set_title(panel, f"{axis}, {found.axes[axis].direction.weighting}")
-        draw_densities(panel, densities, looks, HIGHEST)
+        draw_densities(panel, drawn, looks, HIGHEST)
     return page.figure
 
 

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from seatsim.diagnosis.result import Diagnosis, Trace
 from seatsim.metrics.motion import rms
 from seatsim.plots import style
-from seatsim.plots.densities import estimate_density, find_resolution
+from seatsim.plots.densities import draw_densities, estimate_density, find_resolution, state_method
 from seatsim.plots.diagnosis.bins import group_by_channel, nominal_gap
 from seatsim.plots.labels import Quantity, describe_channel, format_number
 from seatsim.plots.style import COLOURS, Entry, Grid
@@ -28,13 +28,12 @@ SECONDS, RASTER = 2.0, 0.05
 """Length in s of the window that is shown, and the raster on which it begins."""
 BAND = 2.0
 """Standard deviations of the noise that are shaded."""
-DECADES = 1.5
-"""Decades below the noise that a spectrum shows at most."""
+DECADES = 9.0
+"""Decades below the highest density that a spectrum shows: down to the noise of a good sensor."""
 MEASURED = Entry("measured", "black", width=2.0)
 NOMINAL = Entry("nominal", COLOURS[1], (0.0, (4.0, 3.0)), width=1.3)
 _AFTER = Entry("with effects", COLOURS[0], width=1.1)
 NOISE = Entry("sensor noise", "0.55", ":", width=1.8)
-_EDGE = NOISE._replace(colour="black", width=1.2)
 GRID = Grid((1.5, 1.0, 1.7), left=0.85, gap=(0.0, 0.16), bottom=0.5)
 LETTERS = 19
 """Letters of a label beside a panel that is this low."""
@@ -88,28 +87,36 @@ def _plot_channel(trace: Trace, group: Sequence[Trace], lines: Sequence[Simulate
     window = find_loudest(left, step, SECONDS, RASTER)
     window = Window(window.start + trace.time[0], window.end + trace.time[0])
     noise = shown.factor * trace.noise_rms
-    density = [estimate_density(step, [each.measured for each in group])]
-    density += [estimate_density(step, [each.measured - line.read(each) for each in group]) for line in lines]
+    left_over = [[each.measured - line.read(each) for each in group] for line in lines]
+    # The measured signal is drawn last, before the others.
+    density = [estimate_density(step, signals) for signals in (*left_over[::-1], [each.measured for each in group])]
     has_spectrum = bool(len(density[0][0]))
     note = f"{window} of {trace.run}, where the difference has most energy; RMS over the whole run."
     note += f" Grey band: ±{BAND:g} noise RMS." if noise else ""
-    lines_apart = f"lines {find_resolution([(step, min(len(each.time) for each in group))]):.2g} Hz apart"
-    note += (
-        f" Below: power densities of the measured signal and of the differences, {lines_apart}." if has_spectrum else ""
-    )
+    method = state_method(find_resolution(density))
+    note += f" Below: power densities of the measured signal and of the differences. {method}" * has_spectrum
     grid = GRID if has_spectrum else GRID._replace(heights=GRID.heights[:2])
     legend = [MEASURED, *(line.look for line in lines), *([NOISE] if noise and has_spectrum else [])]
     page = style.make_page(_make_title(trace, shown, lines), note, grid, legend)
     upper, lower = (row[0] for row in page.rows[:2])
     _draw_time(upper, lower, trace, window, shown, lines)
-    # Its edges stand before the lines, which hide a band that they fill.
-    lower.axhspan(-BAND * noise, BAND * noise, color="0.88", linewidth=0, zorder=0)
-    for edge in {-BAND * noise, BAND * noise} - {0.0}:
-        lower.axhline(edge, color=_EDGE.colour, linestyle=_EDGE.dashes, linewidth=_EDGE.width, zorder=3)
+    if noise:
+        lower.axhspan(-BAND * noise, BAND * noise, color="0.88", linewidth=0, zorder=0)
+        # Its edges stand before the lines, which hide a band that they fill.
+        lower.axhspan(-BAND * noise, BAND * noise, facecolor="none", edgecolor="black", linestyle=":", zorder=3)
     for [axes] in page.rows[2:]:
         left_edge, bottom, width, height = axes.get_position().bounds
         axes.set_position((left_edge, bottom, width, height * (1 - OWN_AXIS / GRID.heights[2])))
-        _draw_density(axes, density, legend, shown, 2 * noise**2 * step)
+        frequency = density[0][0]
+        drawn = [(places, shown.factor**2 * power) for places, power in density]
+        looks = [*(line.look for line in reversed(lines)), MEASURED]
+        if noise:
+            # The one-sided density of white noise of RMS s is 2 s^2 dt.
+            drawn, looks = [*drawn, (frequency[[0, -1]], np.full(2, 2 * noise**2 * step))], [*looks, NOISE]
+        draw_densities(axes, drawn, looks, decades=DECADES)
+        style.scale_frequency_axis(axes, float(frequency[0]), float(frequency[-1]))
+        axes.set_ylabel(f"power density\n[{shown.square}/Hz]")
+        axes.yaxis.set_label_coords(-0.1, 0.5)
     return page.figure
 
 
@@ -135,24 +142,6 @@ def _draw_time(
     for axes in (upper, lower):
         axes.set_xlim(*window)
         axes.yaxis.set_label_coords(-0.1, 0.5)
-
-
-def _draw_density(
-    axes: Axes, lines: Sequence[tuple[Array, Array]], looks: Sequence[Entry], shown: Quantity, noise: float
-) -> None:
-    """Draw densities, in SI units, and that of the noise, whose one-sided density is 2 s^2 dt where its RMS is s."""
-    frequency = lines[0][0]
-    axes.set_yscale("log")
-    for (places, power), look in reversed([*zip(lines, looks, strict=False)]):
-        style.draw_line(axes, places, np.where(power > 0, shown.factor**2 * power, np.nan), look)
-    if noise:
-        style.draw_line(axes, frequency[[0, -1]], [noise, noise], NOISE)
-    low, high = axes.get_ylim()
-    low = max(low, noise / 10**DECADES if noise else high / 1e8)
-    style.scale_log(axes, "y", low, high)
-    style.scale_frequency_axis(axes, float(frequency[0]), float(frequency[-1]))
-    axes.set_ylabel(f"power density\n[{shown.square}/Hz]")
-    axes.yaxis.set_label_coords(-0.1, 0.5)
 
 
 def _make_title(trace: Trace, shown: Quantity, lines: Sequence[Simulated]) -> str:

@@ -9,24 +9,22 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from seatsim.metrics.table import COMFORT, SEAT, TRAVEL, UNWEIGHTED
 from seatsim.plots import style
 from seatsim.plots.labels import format_number
 from seatsim.plots.runs import naming
 from seatsim.plots.style import DARK, ROW, Entry, Grid
 from seatsim.scenario.scenario import condition_of
-from seatsim.schema.arrays import Array
 from seatsim.simulation.performance_bounds import PerformanceBounds
 from seatsim.simulation.result import Run
 
-COMFORT, TRAVEL, SEAT = "driver_acceleration_weighted", "suspension_displacement_rms", "seat_factor"
-_PARETO_NOTE = "Over the whole run; on the same floor, lower left is better. Numbers as in the legend."
 BOUND = Entry("no damper without memory comes below", "black", width=1.6)
 BEST = Entry("best run found of an ideal damper", DARK, (0.0, (5.0, 1.5)), 1.6)
 FLOOR = Entry("as much as the floor (SEAT = 1)", DARK, ":", 1.6)
 BAND = "0.88"
 """Grey between the bounds."""
-SAME_PLACE = 6.0
-"""Distance in points of print, half a mark, below which one number would cover another."""
+SAME_PLACE = 10.0
+"""Distance in points of print, below which a mark would cover another's number."""
 NEAR = 1.6
 """How far above the greatest acceleration the floor's is still drawn, as a ratio."""
 MOST_PANELS = 12
@@ -72,7 +70,8 @@ def plot_pareto(runs: Sequence[Run], brackets: Mapping[str, PerformanceBounds]) 
     legend = [Entry(f"{k}  {name}", colours[name], "none", mark="o") for k, name in enumerate(colours, 1)]
     legend += [BOUND, BEST] if any(panel.bracket for panel in shown) else []
     legend += [FLOOR] if any(panel.points and np.isfinite(panel.floor) for panel in shown) else []
-    note = _PARETO_NOTE + (f" {len(shown)} of {len(found)} rigs are shown." if len(shown) < len(found) else "")
+    note = "Over the whole run; on the same floor, lower left is better. Numbers as in the legend."
+    note += f" {len(shown)} of {len(found)} rigs are shown." if len(shown) < len(found) else ""
     grid = Grid((_SIDES[columns - 1],) * -(-len(shown) // columns), columns, top=0.3, gap=(0.75, 0.85))
     page = style.make_page(f"Comfort and travel: {naming.make_title(runs)}", note, grid, legend)
     for axes, panel in zip(page.list_panels(len(shown)), shown, strict=True):
@@ -84,21 +83,20 @@ def _make_panels(runs: Sequence[Run], brackets: Mapping[str, PerformanceBounds])
     groups, looks = dict[str, list[Run]](), naming.choose_looks(runs)
 
     def make_points(group: Sequence[Run], names: Sequence[str]) -> list[_RunPoint]:
-        return [_make_point(run, name, looks[id(run)].colour) for run, name in zip(group, names, strict=True)]
+        figures = [[run.read_metric(metric) for metric in (TRAVEL, COMFORT, SEAT)] for run in group]
+        return [
+            _RunPoint(1e3 * travel, comfort, seat, name, looks[id(run)].colour)
+            for (travel, comfort, seat), name, run in zip(figures, names, group, strict=True)
+        ]
 
     for run in runs:
-        if all(np.isfinite(run.metrics[name].value) if name in run.metrics else False for name in (COMFORT, TRAVEL)):
+        if np.isfinite(run.read_metric(COMFORT) + run.read_metric(TRAVEL)):
             groups.setdefault(run.scenario.rig if brackets else condition_of(run.scenario), []).append(run)
     if not brackets and len(groups) > 1 and any(len(group) < 2 for group in groups.values()):
         alone = [run for group in groups.values() for run in group]
         return [Panel("", make_points(alone, naming.label_runs(alone)), None)]
     named = [(rig, group, *naming.distinguish_runs(group, runs)) for rig, group in groups.items()]
     return [Panel(title, make_points(group, names), brackets.get(rig)) for rig, group, title, names in named]
-
-
-def _make_point(run: Run, name: str, colour: str) -> _RunPoint:
-    seat = run.metrics[SEAT].value if SEAT in run.metrics else np.nan
-    return _RunPoint(1e3 * run.metrics[TRAVEL].value, run.metrics[COMFORT].value, seat, name, colour)
 
 
 def _pad(values: Sequence[float]) -> tuple[float, float]:
@@ -153,12 +151,16 @@ class _Compared(NamedTuple):
     axis: str
     factor: float = 1.0
 
+    def read(self, run: Run) -> float:
+        """Return the metric of a run in the unit shown, NaN where it has none."""
+        return self.factor * run.read_metric(self.metric)
+
 
 COMPARED = (
-    _Compared("driver_acceleration_rms", "driver RMS\nacceleration [m/s²]"),
-    _Compared("driver_acceleration_weighted", "driver Wk-weighted\nacceleration [m/s²]"),
-    _Compared("suspension_displacement_rms", "suspension RMS\ndisplacement [mm]", 1e3),
-    _Compared("seat_factor", "SEAT factor\n[-]"),
+    _Compared(UNWEIGHTED, "driver RMS\nacceleration [m/s²]"),
+    _Compared(COMFORT, "driver Wk-weighted\nacceleration [m/s²]"),
+    _Compared(TRAVEL, "suspension RMS\ndisplacement [mm]", 1e3),
+    _Compared(SEAT, "SEAT factor\n[-]"),
 )
 NOTE = "Over the whole run; on the same floor, the smaller the better."
 
@@ -167,7 +169,7 @@ def plot_comparison(runs: Sequence[Run]) -> Figure:
     """Return bars run by run, or lines over the number that is swept, one line for each variant."""
     key = find_swept_number(runs)
     series: dict[str, list[Run]] = {}
-    for name, run in zip(naming.label_runs(runs, without=key), runs, strict=True):
+    for name, run in zip(naming.label_runs(runs, without=[key]), runs, strict=True):
         series.setdefault(name, []).append(run)
     title = f"Comparison: {naming.make_title(runs)}"
     return _plot_lines(title, key, series) if key and len(series) <= naming.MOST else _plot_bars(title, runs)
@@ -189,10 +191,10 @@ def _plot_bars(title: str, runs: Sequence[Run]) -> Figure:
     grid = Grid((ROW * len(runs) + 0.1,) * 2, columns=2, left=left, bottom=0.65, gap=(0.2, 0.75))
     page = style.make_page(title, NOTE, grid)
     for k, (axes, compared) in enumerate(zip(page.list_panels(), COMPARED, strict=True)):
-        values = _read_metric(runs, compared)
+        values = list(map(compared.read, runs))
         texts = [format_number(value) for value in values]
         style.name_rows(axes, [""] * len(names) if k % 2 else names)
-        style.draw_bars(axes, values.tolist(), [looks[id(run)].colour for run in runs], texts)
+        style.draw_bars(axes, values, [looks[id(run)].colour for run in runs], texts)
         # Room for the figures at the ends of the bars.
         end = (1.0 + 0.45 / grid.width) * float(np.max(np.nan_to_num(values)))
         axes.set(xlim=(0.0, end or 1.0), xlabel=compared.axis)
@@ -202,22 +204,16 @@ def _plot_bars(title: str, runs: Sequence[Run]) -> Figure:
 def _plot_lines(title: str, key: str, series: dict[str, list[Run]]) -> Figure:
     runs = [run for group in series.values() for run in group]
     of_runs = naming.choose_looks(runs)
-    looks = style.fade_alike([of_runs[id(group[0])]._replace(label=name) for name, group in series.items()])
+    looks = [of_runs[id(group[0])]._replace(label=name) for name, group in series.items()]
     swept = sorted({float(run.scenario.label[key]) for run in runs})
     page = style.make_page(title, NOTE, Grid((1.8, 1.8), 2, left=0.85, gap=(0.9, 0.65)), looks)
     for axes, compared in zip(page.list_panels(), COMPARED, strict=True):
         for look, group in zip(looks, series.values(), strict=True):
             ordered = sorted(group, key=lambda run: float(run.scenario.label[key]))
             places = [float(run.scenario.label[key]) for run in ordered]
-            style.draw_line(axes, places, _read_metric(ordered, compared), look._replace(width=1.6, mark="o"))
+            style.draw_line(axes, places, list(map(compared.read, ordered)), look._replace(width=1.6, mark="o"))
         axes.set(xlabel=naming.label_axis(runs[0].scenario, key), ylabel=compared.axis)
         axes.set_ylim(0, 1.05 * axes.get_ylim()[1])
         if len(swept) <= 4:
             axes.set_xticks(swept)
     return page.figure
-
-
-def _read_metric(runs: Sequence[Run], compared: _Compared) -> Array:
-    """Return the metric of every run; NaN where it has none."""
-    found = [run.metrics[compared.metric].value if compared.metric in run.metrics else np.nan for run in runs]
-    return compared.factor * np.array(found)

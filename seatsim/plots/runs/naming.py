@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import NamedTuple, TypeGuard
 
 from seatsim.plots.labels import LONGEST, format_unit, shorten
-from seatsim.plots.style import Entry, fade_alike, make_entries
+from seatsim.plots.style import Entry, make_entries
 from seatsim.plots.thinning import spread_evenly
 from seatsim.scenario.numbers import find_unit
 from seatsim.scenario.scenario import Scenario
@@ -14,6 +14,9 @@ from seatsim.simulation.result import Run
 
 MOST = 8
 """Most runs that lines of one panel can tell apart."""
+
+_FADED = 0.65
+"""How much paler the last of several lines in one colour is than the first."""
 
 
 class Shown(NamedTuple):
@@ -35,30 +38,35 @@ def show_runs(runs: Sequence[Run]) -> list[Shown]:
     A name looks the same in all pictures. Up to eight runs are all drawn. Of more runs, those at the first swept values
     (one for each variant) are drawn, or else eight that are spread evenly over their order, first and last included.
     """
-    parts, colours, found, looks = _divide(runs), choose_looks(runs), [], dict[str, Entry]()
+    parts, looks, found = _divide(runs), choose_looks(runs), []
     for part in parts:
         shown, omission = _select_shown(part)
-        named = [colours[id(run)]._replace(label=name) for name, run in zip(label_runs(shown), shown, strict=True)]
-        looks |= {look.label: look for look in named if look.label not in looks}
         scenario = part[0].scenario.name if len(parts) > 1 else ""
-        found.append(Shown(scenario, make_title(part), shown, named, omission))
-    faded = {look.label: look for look in fade_alike(list(looks.values()))}
-    return [shown._replace(looks=[faded[look.label] for look in shown.looks]) for shown in found]
+        found.append(Shown(scenario, make_title(part), shown, [looks[id(run)] for run in shown], omission))
+    return found
 
 
 def choose_looks(runs: Sequence[Run]) -> dict[int, Entry]:
     """Return the look of each run, by its identity, in which every picture of the runs shows it.
 
-    A variant has one look; where no variants differ, each run has its own. Looks repeat after eight: those of runs that
-    are drawn over each other come first, so that these differ.
+    Runs of one variant share its colour, and are the paler the later they come; where no variants differ, each run has
+    its own. Colours repeat after eight: those of runs that are drawn over each other come first, so that these differ.
     """
     parts = _divide(runs)
     names = {id(run): name for part in parts for name, run in zip(label_runs(part), part, strict=True)}
+    families = names
     if len({run.scenario.label.get("variant") for run in runs}) > 1:
-        names = {id(run): str(run.scenario.label.get("variant", run.scenario.name)) for run in runs}
-    shown = [run for part in parts for run in _select_shown(part)[0]]
-    looks = {look.label: look for look in make_entries(list(dict.fromkeys(names[id(run)] for run in [*shown, *runs])))}
-    return {run: looks[name] for run, name in names.items()}
+        families = {id(run): str(run.scenario.label.get("variant", run.scenario.name)) for run in runs}
+    members = dict[str, list[str]]()
+    for run in [*(run for part in parts for run in _select_shown(part)[0]), *runs]:
+        family = members.setdefault(families[id(run)], [])
+        family += [names[id(run)]] * (names[id(run)] not in family)
+    found = {}
+    for look in make_entries(list(members)):
+        for k, name in enumerate(members[look.label]):
+            alpha = 1.0 - _FADED * k / max(1, len(members[look.label]) - 1)
+            found[look.label, name] = look._replace(label=name, alpha=alpha)
+    return {run: found[families[run], name] for run, name in names.items()}
 
 
 def _divide(runs: Sequence[Run]) -> list[list[Run]]:
@@ -69,8 +77,8 @@ def _divide(runs: Sequence[Run]) -> list[list[Run]]:
     return [[run for run in runs if run.scenario.name == name] for name in scenarios]
 
 
-def label_runs(runs: Sequence[Run], longest: int = LONGEST, without: str = "") -> list[str]:
-    """Return what sets each run apart from the others: variant and swept values, less those of one key.
+def label_runs(runs: Sequence[Run], longest: int = LONGEST, without: Collection[str] = ()) -> list[str]:
+    """Return what sets each run apart from the others: variant and swept values, less those of some keys.
 
     Of runs of one scenario its name is left out; names that are alike are numbered.
     """
@@ -87,17 +95,10 @@ def distinguish_runs(group: Sequence[Run], runs: Sequence[Run]) -> tuple[str, li
     keys = [key for key in group[0].scenario.label if len({str(run.scenario.label.get(key)) for run in group}) == 1]
     several = len({run.scenario.name for run in runs}) > 1
     same = len({run.scenario.name for run in group}) == 1
-    shared = [_describe_part(group[0].scenario, key, group[0].scenario.label[key]) for key in keys]
-    own = [
-        [_describe_part(run.scenario, key, value) for key, value in run.scenario.label.items() if key not in keys]
-        for run in group
-    ]
-    heading = ", ".join([group[0].scenario.name] * (several and same) + shared)
-    names = [
-        ", ".join([run.scenario.name] * (not same) + parts) or run.scenario.name
-        for run, parts in zip(group, own, strict=True)
-    ]
-    return shorten(heading, 52), [shorten(name, 52) for name in names]
+    first = group[0].scenario
+    shared = [_describe_part(first, key, first.label[key]) for key in keys]
+    heading = ", ".join([first.name] * (several and same) + shared)
+    return shorten(heading, 52), [shorten(_describe(run.scenario, not same, keys), 52) for run in group]
 
 
 def make_title(runs: Sequence[Run]) -> str:
@@ -130,9 +131,9 @@ def _select_shown(runs: Sequence[Run]) -> tuple[list[Run], str]:
     return spread_evenly(runs, MOST), f" {MOST} of {len(runs)} runs are shown, spread evenly over their order."
 
 
-def _describe(scenario: Scenario, named: bool, without: str = "") -> str:
-    """Return variant and swept values, less those of one key; `named` puts the scenario's name first."""
-    parts = [_describe_part(scenario, key, value) for key, value in scenario.label.items() if key != without]
+def _describe(scenario: Scenario, named: bool, without: Collection[str] = ()) -> str:
+    """Return variant and swept values, less those of some keys; `named` puts the scenario's name first."""
+    parts = [_describe_part(scenario, key, value) for key, value in scenario.label.items() if key not in without]
     return ", ".join([scenario.name] * named + parts) or scenario.name
 
 

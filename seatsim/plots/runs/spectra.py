@@ -50,7 +50,7 @@ def plot_psd(shown: Shown) -> Figure:
     drivers = shown.looks if len(shown.runs) > 1 else [shown.looks[0]._replace(label="driver")]
     found = [_estimate(group[0], "floor_acceleration") for group in groups.values()]
     found += [_estimate(run, "driver_acceleration") for run in shown.runs]
-    resolution = find_resolution((run.history.step, len(run.history["time"])) for run in shown.runs)
+    resolution = find_resolution(found)
     legend = [] if find_problem(found, BAND[1]) else [*drivers, *floors]
     title = f"Driver acceleration over frequency: {shown.title}"
     figure, axes = _make_page(title, state_method(resolution) + shown.omission, resolution, legend)
