@@ -4,12 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_hex
 
 from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.effects.base import EFFECTS
 from seatsim.plots.loops import SIGNS
 from seatsim.plots.runs import histories, naming, spectra
-from seatsim.plots.runs.comparison import find_swept_number, plot_comparison
+from seatsim.plots.runs.comparison import find_swept_number, plot_comparison, plot_pareto
 from seatsim.plots.runs.dampers import choose_amplitude, find_dampers, plot_damper_loops, plot_force_velocity
 from seatsim.plots.runs.histories import CLOSE_UP
 from seatsim.plots.thinning import BINS, thin_line
@@ -197,3 +198,23 @@ def test_more_runs_than_lines_can_tell_apart(made_up):
     spread = [run.scenario.label["seed"] for run in naming.show_runs(many)[0].runs]
     assert len(spread) == 8 and spread[0] == 0 and spread[-1] == 19
     assert "8 of 20 runs are shown, spread evenly over their order." in " ".join(texts(plot_psd(many))[1].split())
+
+
+def test_a_variant_has_one_colour_in_all_pictures(made_up):
+    runs = [made_up({"variant": v, "temperature": t}, name=n) for n in "ab" for v in ("on", "off") for t in (20, 50)]
+    looks = [look for shown in naming.show_runs(runs) for look in shown.looks]
+    colours = [{look.colour for look in looks if look.label.startswith(v)} for v in ("on", "off")]
+    lines = plot_comparison(runs).axes[0].lines
+    points = plot_pareto(runs, {}).axes[0].collections
+    assert [len(each) for each in colours] == [1, 1] and colours[0] != colours[1]
+    assert {line.get_color() for line in lines} == {to_hex(dot.get_facecolor()[0]).upper() for dot in points}
+    assert {line.get_color() for line in lines} == colours[0] | colours[1]
+    assert len({(look.label, look.alpha) for look in looks}) == 4
+
+
+@pytest.mark.parametrize(("change", "reason"), [({"seconds": 0.5}, "needs 4.5 s"), ({}, "explains less than 0.5")])
+def test_an_empty_transmissibility_says_which_cause_empties_it(change, reason, made_up):
+    run = made_up(**change)
+    run = with_channels(run, driver_acceleration=np.zeros(len(run.history["time"])))
+    [axes] = plot_transmissibility([run]).axes
+    assert reason in axes.texts[0].get_text().replace("\n", " ")
