@@ -45,12 +45,14 @@ class ShapingFilter(NamedTuple):
 def fit_shaping_filter(floor: FloorRecord) -> ShapingFilter:
     """Return the model of a floor's acceleration by the Yule-Walker equations, which always give a stable one.
 
+    The record fades in and out: cut ends leak into the model's stop bands, which another draw of the floor then moves.
+
     Raises:
         InputError: the floor rests, or its record is too short.
     """
     rate = 1.0 / floor.step
     acceleration = resample_poly(floor.acceleration, round(_RATE), round(rate))
-    acceleration = acceleration - acceleration.mean()
+    acceleration = (acceleration - acceleration.mean()) * np.hanning(len(acceleration))
     power = float(np.mean(acceleration**2))
     if len(acceleration) < 10 * _ORDER or power == 0.0:
         raise InputError("floor: excitation: the floor rests, or its record is too short to have a spectrum")

@@ -28,6 +28,12 @@ def test_white_noise_through_the_filter_has_unit_power_and_the_spectrum_of_the_f
         assert shares[0] == pytest.approx(shares[1], abs=0.12)
 
 
+def test_another_draw_of_a_minute_gives_the_same_filter():
+    draws = [FloorRecord(0.001, Iso7096("EM1", 60.0).floor(0.001, seed).acceleration) for seed in (12, 24)]
+    first, second = (fit_shaping_filter(draw).coefficients for draw in draws)
+    assert first == pytest.approx(second, rel=0.05)
+
+
 def test_a_floor_at_rest_has_no_spectrum():
     with pytest.raises(InputError, match="the floor rests, or its record is too short"):
         fit_shaping_filter(FloorRecord(0.001, np.zeros(60_000)))
