@@ -7,6 +7,7 @@ Sources: Boyd & Balakrishnan 1990, Syst. Control Lett. 15:1 and Bruinsma & Stein
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -58,31 +59,47 @@ def balance(loop: Loop) -> tuple[Loop, Array]:
     return Loop(loop.A * states / states[:, None], loop.B / states[:, None], loop.C * states, loop.D), states
 
 
-def hinf_norm(
-    loop: Loop, guesses: ArrayLike = (), tolerance: float = 1e-10, enough: float = np.inf, margin: float = 0.0
-) -> Peak:
-    """Return the H-infinity norm and its peak frequency by bisection on the Hamiltonian matrix.
+def hinf_norm(loop: Loop, guesses: ArrayLike = ()) -> Peak:
+    """Return the H-infinity norm of one loop, as `find_highest_norm` does."""
+    return find_highest_norm([loop], guesses)[1]
 
-    The value is attained at the frequency returned; no frequency exceeds it by more than `tolerance` (relative) or the
-    rounding of the Hamiltonian's eigenvalues. `guesses` are frequencies to look at first. The search for a higher peak
-    ends early above `enough`. A loop with a pole right of `-margin` has an infinite norm.
+
+def find_highest_norm(
+    loops: Sequence[Loop],
+    guesses: ArrayLike = (),
+    tolerance: float = 1e-10,
+    enough: float = np.inf,
+    margin: float = 0.0,
+) -> tuple[int, Peak]:
+    """Return which loop has the highest H-infinity norm, and its peak, by bisection on Hamiltonian matrices.
+
+    The value is attained at the frequency returned; no frequency of any loop exceeds it by more than `tolerance`
+    (relative) or the rounding of the Hamiltonian's eigenvalues. `guesses` are frequencies to look at first. The search
+    for a higher peak ends early above `enough`. A loop with a pole right of `-margin` has an infinite norm.
     """
-    loop, _ = balance(loop)
-    poles = np.linalg.eigvals(loop.A)
-    if poles.real.max() >= -margin:
-        return Peak(np.inf, float(abs(poles[poles.real.argmax()].imag)))
-    start = np.concatenate([[0.0, np.inf], np.abs(poles), np.abs(poles.imag), np.ravel(guesses)])
-    best = _find_highest_peak(loop, np.unique(start))
-    for _ in range(_ITERATIONS if best.value > 0 else 0):
-        if best.value > enough:
-            break
-        crossings = _find_crossings(loop, best.value * (1 + tolerance))
-        middles = (crossings[1:] + crossings[:-1]) / 2
-        found = _find_highest_peak(loop, np.concatenate([crossings, middles, [best.frequency]]))
-        if found.value <= best.value * (1 + tolerance):
-            break
-        best = found
-    return best
+    balanced, peaks = [balance(loop)[0] for loop in loops], []
+    for place, loop in enumerate(balanced):
+        poles = np.linalg.eigvals(loop.A)
+        if poles.real.max() >= -margin:
+            return place, Peak(np.inf, float(abs(poles[poles.real.argmax()].imag)))
+        start = np.concatenate([[0.0, np.inf], np.abs(poles), np.abs(poles.imag), np.ravel(guesses)])
+        peaks.append(_find_highest_peak(loop, np.unique(start)))
+    # The highest one is followed first: of the others it is then asked only whether they reach as high.
+    order = sorted(range(len(loops)), key=lambda place: -peaks[place].value)
+    worst, best = order[0], peaks[order[0]]
+    for place in order:
+        for _ in range(_ITERATIONS if best.value > 0 else 0):
+            if best.value > enough:
+                return worst, best
+            crossings = _find_crossings(balanced[place], best.value * (1 + tolerance))
+            if not len(crossings):
+                break
+            middles = (crossings[1:] + crossings[:-1]) / 2
+            found = _find_highest_peak(balanced[place], np.concatenate([crossings, middles]))
+            if found.value <= best.value * (1 + tolerance):
+                break
+            worst, best = place, found
+    return worst, best
 
 
 def _find_highest_peak(loop: Loop, frequencies: Array) -> Peak:

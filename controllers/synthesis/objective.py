@@ -16,7 +16,7 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import ArrayLike, NDArray
 
-from controllers.synthesis.norm import Peak, frequency_response, hinf_norm
+from controllers.synthesis.norm import find_highest_norm, frequency_response
 from controllers.synthesis.plant import GeneralisedPlant, Loop
 from seatsim.schema.arrays import Array
 
@@ -90,22 +90,18 @@ class NormObjective:
 
     def norm(self, entries: Array) -> float:
         """Return the H-infinity norm with these free entries; infinity where not stable enough."""
-        return max(hinf_norm(loop, margin=STABILITY_MARGIN).value for loop in self.loops(entries))
+        return find_highest_norm(self.loops(entries), margin=STABILITY_MARGIN)[1].value
 
     def log_norm(self, theta: Array, ceiling: float = np.inf) -> tuple[float, Array]:
         """Return the logarithm of the H-infinity norm and its gradient by theta; infinity where not stable.
 
         Above `ceiling` the value may be too small, but stays above, and there is no gradient.
         """
-        nothing = np.zeros(self.size)
-        highest, worst, enough = Peak(0.0, 0.0), 0, np.exp(ceiling)
+        nothing, enough = np.zeros(self.size), np.exp(ceiling)
         loops = self.loops(self.entries(theta))
-        for i, loop in enumerate(loops):
-            peak = hinf_norm(loop, tolerance=1e-9, enough=enough, margin=STABILITY_MARGIN)
-            if peak.value > enough or peak.value == np.inf:
-                return max(float(np.log(peak.value)), np.nextafter(ceiling, np.inf)), nothing
-            if peak.value > highest.value:
-                highest, worst = peak, i
+        worst, highest = find_highest_norm(loops, tolerance=1e-9, enough=enough, margin=STABILITY_MARGIN)
+        if highest.value > enough or highest.value == np.inf:
+            return max(float(np.log(highest.value)), np.nextafter(ceiling, np.inf)), nothing
         if highest.value < 1e-300:
             return -np.inf, nothing
         values, slopes = differentiate_singular_values(self.plants[worst], loops[worst], highest.frequency, 1)
