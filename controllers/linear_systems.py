@@ -1,4 +1,4 @@
-"""Linear systems: connected, frequency weightings with states, and sampled with a zero-order hold."""
+"""Linear systems: connected, and frequency weightings with states."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from functools import reduce
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import block_diag, expm
+from scipy.linalg import block_diag
 
 from seatsim.metrics.weighting import sections
 from seatsim.schema.arrays import Array
@@ -61,13 +61,3 @@ def frequency_weighting(weighting: str) -> LinearSystem:
         InputError: no weighting has this name.
     """
     return reduce(connect_in_series, (second_order_section(*factor) for factor in sections(weighting)))
-
-
-def zero_order_hold(A: Array, B: Array, time: float) -> tuple[Array, Array]:
-    """Return the exact (F, G) of `x <- F x + G u` over `time` seconds of `x' = A x + B u` with u held.
-
-    Shapes: A, F (n, n), B, G (n, m).
-    """
-    n, m = B.shape
-    step = expm(np.block([[A, B], [np.zeros((m, n + m))]]) * time)
-    return step[:n, :n], step[:n, n:]

@@ -10,9 +10,15 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
 
 from controllers.linear_systems import LinearSystem
+from controllers.synthesis.norm import frequency_response
+from controllers.synthesis.plant import Loop
 from seatsim.schema.arrays import Array
+
+_ROUNDING = 1e-6
 
 
 class Margins(NamedTuple):
@@ -26,18 +32,28 @@ class Margins(NamedTuple):
 def compute_margins(seat: LinearSystem, gain: Array) -> Margins:
     """Return the margins of the loop `L(s) = -K G(s)`, with G, the `seat`, from the wanted force to what is measured.
 
-    The delay margin is the least phase margin over its crossover frequency (rad/rad/s), over all crossovers.
+    L is real where `L(s) = L(-s)`, and of magnitude 1 where `L(s) L(-s) = 1`: on the imaginary axis, both are the zeros
+    of systems with the states of L twice. The delay margin is the least phase margin over its frequency (rad/rad/s),
+    over all frequencies of magnitude 1.
     """
-    import control
-
-    loop = control.ss(seat.A, seat.B, -np.atleast_2d(gain) @ seat.C, 0.0)
-    gains, phases, _, _, crossings, _ = control.stability_margins(loop, returnall=True)
+    loop = Loop(seat.A, seat.B, -np.atleast_2d(gain) @ seat.C, np.zeros((1, 1)))
+    A, B, C, _ = loop
+    nothing = np.zeros_like(A)
+    odd = np.block([[A, nothing, B], [nothing, -A, B], [C, C, np.zeros((1, 1))]])
+    turns = scipy.linalg.eigvals(odd, np.diag(np.append(np.ones(2 * len(A)), 0.0)))
+    crossings = _find_on_axis(np.linalg.eigvals(np.block([[A, B @ B.T], [-C.T @ C, -A.T]])))
+    at_real = frequency_response(loop, np.append(0.0, _find_on_axis(turns))).real.ravel()
+    phases = np.pi + np.angle(frequency_response(loop, crossings).ravel())
     # Factors below 1 are reductions: the seat without control is stable, so the margin that is asked for is a rise.
-    rising = [g for g in gains if g > 1.0]
-    ahead = np.mod(np.asarray(phases), 360.0)
-    delays = np.radians(ahead) / np.asarray(crossings)
+    rises = -1.0 / at_real[(at_real < 0.0) & (at_real > -1.0)]
     return Margins(
-        float(min(rising, default=math.inf)),
-        float(np.min(np.abs(phases), initial=math.inf)),
-        float(np.min(delays, initial=math.inf)),
+        float(np.min(rises, initial=math.inf)),
+        float(np.degrees(np.min(np.minimum(phases, 2.0 * np.pi - phases), initial=math.inf))),
+        float(np.min(phases / crossings, initial=math.inf)),
     )
+
+
+def _find_on_axis(zeros: NDArray[np.complexfloating]) -> Array:
+    """Return the positive frequencies of zeros on the imaginary axis, to rounding."""
+    found = zeros[np.isfinite(zeros)]
+    return np.asarray(found.imag[(found.imag > 0.0) & (np.abs(found.real) <= _ROUNDING * np.abs(found))])

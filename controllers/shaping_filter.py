@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import solve_toeplitz
-from scipy.signal import resample_poly
 
 from controllers.linear_systems import LinearSystem
 from seatsim.rig.control import FloorRecord
@@ -50,6 +49,9 @@ def fit_shaping_filter(floor: FloorRecord) -> ShapingFilter:
     Raises:
         InputError: the floor rests, or its record is too short.
     """
+    # Imported here: it takes long, and most designs are for a white floor.
+    from scipy.signal import resample_poly
+
     rate = 1.0 / floor.step
     acceleration = resample_poly(floor.acceleration, round(_RATE), round(rate))
     acceleration = (acceleration - acceleration.mean()) * np.hanning(len(acceleration))

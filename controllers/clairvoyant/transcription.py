@@ -21,10 +21,9 @@ from controllers.linear_systems import (
     connect_in_series,
     frequency_weighting,
     pass_through,
-    zero_order_hold,
 )
 from seatsim.metrics.weighting import weight
-from seatsim.rig.plant import Plant, state_space
+from seatsim.rig.plant import Plant, state_space, zero_order_hold
 from seatsim.schema.arrays import Array
 
 

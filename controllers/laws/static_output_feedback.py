@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import numpy as np
 from pydantic import Field
-from scipy.signal import lsim
 
 from controllers.linear_systems import LinearSystem
 from controllers.margins import compute_margins
@@ -180,6 +179,9 @@ class StaticOutputFeedback(NamedTuple):
 
     def promise(self, plant: Plant, coil: Coil, gain: Array, floor: FloorRecord) -> Array:
         """Return zc'' in m/s^2, shape (N,), on a floor if the damper delivered all that is wanted, behind the coil."""
+        # Imported here: a run does not need it, and it takes long.
+        from scipy.signal import lsim
+
         lag = ActuatorLag(coil.rate, coil.delay)
         seat = build_generalised_plant(plant, Weights(1.0, 1.0), lag, measures=self.measures).close(gain)
         time = floor.step * np.arange(len(floor.acceleration))

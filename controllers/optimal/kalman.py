@@ -7,11 +7,10 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from scipy.linalg import expm, solve_discrete_are
 
-from controllers.linear_systems import zero_order_hold
 from controllers.optimal.regulator import solving
 from seatsim.compilation.jit import jit
 from seatsim.rig.control import Measurement, State
-from seatsim.rig.plant import Plant, PlantMatrices, state_space
+from seatsim.rig.plant import Plant, PlantMatrices, state_space, zero_order_hold
 from seatsim.schema.arrays import Array
 from seatsim.schema.fields import param
 

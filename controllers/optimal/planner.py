@@ -8,9 +8,8 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from scipy.linalg import solve_discrete_are
 
-from controllers.linear_systems import zero_order_hold
 from controllers.optimal.regulator import QuadraticWeights, solving
-from seatsim.rig.plant import Plant, state_space
+from seatsim.rig.plant import Plant, state_space, zero_order_hold
 from seatsim.schema.arrays import Array
 from seatsim.schema.fields import param
 

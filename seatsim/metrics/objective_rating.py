@@ -10,7 +10,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.signal import correlate
 
 from seatsim.compilation.cached import compiled
 from seatsim.metrics.motion import as_pair, require_finite, require_positive
@@ -109,6 +108,9 @@ def _find_shift(T: Array, C: Array) -> int:
 
 def _correlate(T: Array, C: Array, most: int) -> Array:
     """Return Pearson's correlation of the first samples of T with C from 0 to `most` samples on, 0 where one rests."""
+    # Imported here: it takes long, and what imports this module rarely rates.
+    from scipy.signal import correlate
+
     T, C = T - np.mean(T), C - np.mean(C)
     overlap = T.size - np.arange(most + 1)
     sums = correlate(C, T, "full", "fft")[T.size - 1 : T.size + most]

@@ -16,7 +16,7 @@ from seatsim.report import diagnosis_sections
 from seatsim.report.blocks import Block, Report, show_pictures
 from seatsim.report.composing import Closing, compose
 from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs, validate, verify
-from seatsim.report.formatting import format_sentence, read_words, say_action, say_cause, say_noise
+from seatsim.report.formatting import format_sentence, read_words, say_noise
 from seatsim.schema.fields import UNUSUAL
 from seatsim.schema.text import join_names
 
@@ -85,7 +85,7 @@ def say_diagnosis(diagnosis: Diagnosis) -> str:
     if not causes:
         where = f", in the {diagnosis.where[0].block}" if diagnosis.where else ""
         return f"Something that no known effect explains makes the gap of {size}{where}; {noise}."
-    clauses = join_names([say_cause(cause) for cause in causes])
+    clauses = join_names([diagnosis_sections.say_cause(cause) for cause in causes])
     if diagnosis.verdict == "ambiguous":
         others = [name for group in diagnosis.indistinguishable for name in group if name not in diagnosis.selected]
         if others:
@@ -97,7 +97,7 @@ def advise(diagnosis: Diagnosis) -> list[str]:
     """Return what to do next: look at the rig, decide between equals, use the scenario."""
     if diagnosis.verdict == "none":
         return ["Use the nominal scenario as it is; test it on a recording of another road or driver."]
-    found = [say_action(name) for name in diagnosis.selected]
+    found = [diagnosis_sections.say_action(name) for name in diagnosis.selected]
     experiment = diagnosis.experiment
     if experiment is not None:
         file = "; its scenario is experiment.yaml beside this report" if experiment.scenario is not None else ""

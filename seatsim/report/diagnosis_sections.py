@@ -1,24 +1,27 @@
-"""Sections of a diagnosis: causes of the gap, its way to the noise floor, signals, what is missing, what is left."""
+"""Sections of a diagnosis: causes of the gap, its way to the noise floor, signals, what is missing, what is left.
+
+Here stand also the words in which a cause and its parameters are told.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
-from seatsim.diagnosis.result import CalibratedParameter, Cause, Diagnosis, Trace
+from seatsim.diagnosis.result import CalibratedParameter, Cause, Diagnosis, Estimate, Trace
 from seatsim.plots.diagnosis.answer import STAGES, Key, read_gap, select_stages
 from seatsim.plots.diagnosis.bins import drop_start
 from seatsim.plots.diagnosis.signals import name_last
-from seatsim.plots.labels import UNKNOWN, format_number, format_percent, format_unit
+from seatsim.plots.labels import MINUS, UNKNOWN, describe_channel, format_number, format_percent, format_unit
 from seatsim.report.blocks import Block, Figures, Items, Table, Text, show_pictures, tabulate
 from seatsim.report.formatting import (
     describe_effect,
     explain,
-    format_estimate,
     format_noise,
     format_quantity,
     format_sentence,
     format_setting,
+    read_words,
     say_noise,
     scale_row,
 )
@@ -31,6 +34,38 @@ LIKELY = 0.05
 _ALIKE, _MOST_PAIRS = 0.5, 12
 """Collinearity from which on two effects are named as similar, and the most pairs that are."""
 EXPLAINED = "Refitted is the nominal scenario with its parameters moved inside their tolerance."
+
+
+def format_estimate(value: Estimate | str) -> str:
+    """Return a parameter with its standard deviation, rounded to two digits of that, its unit, and whether it ends."""
+    if isinstance(value, str):
+        return value
+    if value.at_bound:
+        return f"{format_estimate(value._replace(at_bound=False))} (the end of its range)"
+    shown = describe_channel("", value.unit)
+    unit = "" if shown.unit == "-" else f" {shown.unit}"
+    value = value._replace(value=shown.factor * value.value, std=shown.factor * value.std)
+    if not math.isfinite(value.std) or value.std <= 0:
+        return f"{format_number(value.value, 4)}{unit}"
+    decimals = max(0, 1 - math.floor(math.log10(value.std)))
+    # With more than seven decimals, leading zeros would hide the significant digits.
+    if decimals > 7:
+        return f"{format_number(value.value, 4)} ± {format_number(value.std, 2)}{unit}"
+    return f"{value.value:.{decimals}f} ± {value.std:.{decimals}f}{unit}".replace("-", MINUS)
+
+
+def say_cause(cause: Cause) -> str:
+    """Return what is the matter in a clause; of an effect of the reader's own, its documentation."""
+    words = read_words().effects.get(cause.effect)
+    if words is None:
+        return f"{cause.effect} is at work ({describe_effect(cause.effect) or 'an effect of your own'})"
+    return words.clause.format(_say_size(cause.parameters, words.parameter), **_say_rest(cause.parameters))
+
+
+def say_action(effect: str) -> str:
+    """Return what to do about an effect."""
+    words = read_words().effects.get(effect)
+    return words.action if words else format_sentence(f"look at what {effect} describes on the rig")
 
 
 def show_causes(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
@@ -216,3 +251,19 @@ def _format_error(value: float, truth: float) -> str:
         return UNKNOWN
     error = value / truth - 1
     return f"{'+' if error >= 0 else ''}{format_percent(error)}"
+
+
+def _say_size(parameters: Mapping[str, Estimate | str], name: str) -> str:
+    found = parameters.get(name)
+    if not isinstance(found, Estimate):
+        return "some amount"
+    if found.unit == "s":
+        return f"{format_quantity(abs(1e3 * found.value), '-')} ms"
+    return format_quantity(abs(found.value), found.unit)
+
+
+def _say_rest(parameters: Mapping[str, Estimate | str]) -> dict[str, str]:
+    channel, shift = parameters.get("channel"), parameters.get("shift")
+    ahead = isinstance(shift, Estimate) and shift.value < 0
+    name = channel.replace("_", " ") if isinstance(channel, str) else "of one sensor"
+    return {"channel": name, "side": "early" if ahead else "late"}

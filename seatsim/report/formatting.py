@@ -1,16 +1,14 @@
-"""What reports say: numbers and names as they are printed, how figures are made, what an effect means to an owner."""
+"""What reports say: numbers and names as they are printed, how figures are made, what an effect is."""
 
 from __future__ import annotations
 
 import inspect
-import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from importlib.resources import files
 from typing import NamedTuple
 
-from seatsim.diagnosis.result import Cause, Estimate
 from seatsim.plots.labels import MINUS, UNKNOWN, describe_channel, format_number, format_percent
 from seatsim.report.blocks import Text
 from seatsim.schema import registry
@@ -45,24 +43,6 @@ def say_noise(share: float) -> str:
 def format_setting(value: float) -> str:
     """Return a number that somebody chose, with no more digits than it has."""
     return f"{value:.6g}".replace("-", MINUS)
-
-
-def format_estimate(value: Estimate | str) -> str:
-    """Return a parameter with its standard deviation, rounded to two digits of that, its unit, and whether it ends."""
-    if isinstance(value, str):
-        return value
-    if value.at_bound:
-        return f"{format_estimate(value._replace(at_bound=False))} (the end of its range)"
-    shown = describe_channel("", value.unit)
-    unit = "" if shown.unit == "-" else f" {shown.unit}"
-    value = value._replace(value=shown.factor * value.value, std=shown.factor * value.std)
-    if not math.isfinite(value.std) or value.std <= 0:
-        return f"{format_number(value.value, 4)}{unit}"
-    decimals = max(0, 1 - math.floor(math.log10(value.std)))
-    # With more than seven decimals, leading zeros would hide the significant digits.
-    if decimals > 7:
-        return f"{format_number(value.value, 4)} ± {format_number(value.std, 2)}{unit}"
-    return f"{value.value:.{decimals}f} ± {value.std:.{decimals}f}{unit}".replace("-", MINUS)
 
 
 def format_sentence(text: str) -> str:
@@ -120,33 +100,3 @@ def read_words() -> Words:
 def explain(name: str, **facts: str) -> list[Text]:
     """Return the paragraphs that explain some figures; `facts` are what they leave open."""
     return [Text(text.format(**facts)) for text in read_words().explanations[name]]
-
-
-def say_cause(cause: Cause) -> str:
-    """Return what is the matter in a clause; of an effect of the reader's own, its documentation."""
-    words = read_words().effects.get(cause.effect)
-    if words is None:
-        return f"{cause.effect} is at work ({describe_effect(cause.effect) or 'an effect of your own'})"
-    return words.clause.format(_say_size(cause.parameters, words.parameter), **_say_rest(cause.parameters))
-
-
-def say_action(effect: str) -> str:
-    """Return what to do about an effect."""
-    words = read_words().effects.get(effect)
-    return words.action if words else format_sentence(f"look at what {effect} describes on the rig")
-
-
-def _say_size(parameters: Mapping[str, Estimate | str], name: str) -> str:
-    found = parameters.get(name)
-    if not isinstance(found, Estimate):
-        return "some amount"
-    if found.unit == "s":
-        return f"{format_quantity(abs(1e3 * found.value), '-')} ms"
-    return format_quantity(abs(found.value), found.unit)
-
-
-def _say_rest(parameters: Mapping[str, Estimate | str]) -> dict[str, str]:
-    channel, shift = parameters.get("channel"), parameters.get("shift")
-    ahead = isinstance(shift, Estimate) and shift.value < 0
-    name = channel.replace("_", " ") if isinstance(channel, str) else "of one sensor"
-    return {"channel": name, "side": "early" if ahead else "late"}

@@ -1,4 +1,4 @@
-"""The 2-DOF seat/driver plant: its parameters, its state-space matrices and the paper's variant of them."""
+"""The 2-DOF seat/driver plant: its parameters, its state-space matrices, the paper's variant of them, and sampling."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 
 import numpy as np
+from scipy.linalg import expm
 
 from seatsim.schema.arrays import Array
 from seatsim.schema.fields import param
@@ -94,6 +95,16 @@ def state_space(plant: Plant, variant: Literal["exact", "yu2019"] = "exact") -> 
     b1 = np.array([[0.0], [-1.0], [0.0], [0.0]])
     b2 = np.array([[0.0], [-ratio / ms], [0.0], [ratio / ms]])
     return PlantMatrices(a, b1, b2, c1, c2)
+
+
+def zero_order_hold(A: Array, B: Array, time: float) -> tuple[Array, Array]:
+    """Return the exact (F, G) of `x <- F x + G u` over `time` seconds of `x' = A x + B u` with u held.
+
+    Shapes: A, F (n, n), B, G (n, m).
+    """
+    n, m = B.shape
+    step = expm(np.block([[A, B], [np.zeros((m, n + m))]]) * time)
+    return step[:n, :n], step[:n, n:]
 
 
 def control_system(plant: Plant) -> control.StateSpace:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import CompiledLaw, ForceLaw, LawWithMemory, Measurement, State
-from seatsim.rig.plant import Plant, state_space
+from seatsim.rig.plant import Plant, state_space, zero_order_hold
 from seatsim.rig.sensors import READINGS, Sensors, at_rest
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
@@ -144,10 +144,7 @@ def _sample_period(
 ) -> _Period:
     """Return the function that carries (z, command) over one sample and says what the law wants at its beginning."""
     A, B = build_seat_with_coil(plant, coil)
-    # Imported here: a run does not need it, and it takes long.
-    from scipy.signal import cont2discrete
-
-    transition, input_gain, *_ = cont2discrete((A, B, np.eye(5), np.zeros((5, 1))), step)
+    transition, input_gain = zero_order_hold(A, B, step)
     instruments = sensors.instruments(step, every * step) if sensors else None
 
     def advance(z: Array, command: float) -> tuple[Array, float]:

@@ -8,11 +8,11 @@ from controllers.linear_systems import (
     connect_in_parallel,
     frequency_weighting,
     second_order_section,
-    zero_order_hold,
 )
 from controllers.synthesis.norm import frequency_response
 from controllers.synthesis.plant import Loop
 from seatsim.metrics import weighting
+from seatsim.rig.plant import zero_order_hold
 
 OMEGA = np.geomspace(0.5, 300.0, 40)
 

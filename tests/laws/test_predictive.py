@@ -5,10 +5,9 @@ from scipy.linalg import solve_discrete_are
 from scipy.optimize import lsq_linear
 
 import seatsim
-from controllers.linear_systems import zero_order_hold
 from controllers.optimal.planner import DeliverableForces, Planner
 from controllers.optimal.regulator import QuadraticWeights
-from seatsim.rig.plant import state_space
+from seatsim.rig.plant import state_space, zero_order_hold
 
 from .records import SEAT
 

@@ -19,7 +19,8 @@ from seatsim.diagnosis.result import (
 )
 from seatsim.plots.labels import format_percent
 from seatsim.report.diagnosis import advise, report_diagnosis, say_diagnosis
-from seatsim.report.formatting import format_estimate, format_sentence, read_words, say_action, say_cause
+from seatsim.report.diagnosis_sections import format_estimate, say_action, say_cause
+from seatsim.report.formatting import format_sentence, read_words
 from seatsim.report.rendering import render_report
 from seatsim.schema.registry import names
 
