@@ -6,6 +6,7 @@ module imports next to nothing itself.
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
@@ -36,6 +37,8 @@ def begin() -> NoReturn:
     for number in SIGNALS:
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, _end)
+    # Imports make many objects that stay; to look for garbage among them again and again takes a tenth of a short run.
+    gc.set_threshold(100_000)
     from seatsim.cli.interrupts import end, watch_signals
 
     watch_signals()

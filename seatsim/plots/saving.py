@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 from urllib.parse import quote
@@ -29,11 +30,14 @@ OPTIONS: dict[str, dict[str, Any]] = {
 _SHORTER = (
     (r"(?s)^.*?(?=<svg)|<metadata>.*?</metadata>|\s*\n\s*", " "),
     (r' id="[\w.]+_\d+"| transform="rotate\(-0 [^"]*"', ""),
-    (r"(\.\d)\d{2,}(?=[^<>]*>)", r"\1"),
-    (r"(px|font-family:)[^;:\"]*sans-serif", r"\1 sans-serif"),
-    (r"([:;]) (?=[^<>]*>)", r"\1"),
 )
-"""What is left out of an SVG of matplotlib: all beside the drawing, names, digits of tags, certain fonts."""
+_SHORTER_TAGS = (
+    (r"(\.\d)\d{2,}", r"\1"),
+    (r"(px|font-family:)[^;:\"]*sans-serif", r"\1 sans-serif"),
+    (r"([:;]) ", r"\1"),
+)
+"""What is left out of an SVG of matplotlib: all beside the drawing, names; in tags digits, certain fonts, spaces."""
+_TAG = re.compile("<[^>]*>")
 
 
 class Inline(NamedTuple):
@@ -65,9 +69,14 @@ def render_inline(figure: Figure) -> Inline:
         figure.savefig(file, format="svg", metadata=_NO_DATE, transparent=True, dpi=110, bbox_inches=part)
     for text in texts:
         text.set_visible(True)
-    drawing = file.getvalue()
-    for pattern, shorter in _SHORTER:
-        drawing = re.sub(pattern, shorter, drawing)
+    drawing = _shorten(file.getvalue(), _SHORTER)
+    drawing = _TAG.sub(lambda tag: _shorten(tag[0], _SHORTER_TAGS), drawing)
     source = f"data:image/svg+xml,{quote(drawing.strip(), safe=' /:=;,()-')}"
     words = [text.get_text().replace("\n", " ").replace(r"\$", "$") for text in texts]
     return Inline(words[0], words[1], source)
+
+
+def _shorten(text: str, patterns: Iterable[tuple[str, str]]) -> str:
+    for pattern, shorter in patterns:
+        text = re.sub(pattern, shorter, text)
+    return text
