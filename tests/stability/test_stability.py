@@ -2,6 +2,7 @@
 
 import bisect
 
+import control
 import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
@@ -51,6 +52,21 @@ def test_the_delay_margin_is_where_the_sampled_loop_loses_stability(mass, confor
     lost = bisect.bisect_left(range(400), 1.0, key=lambda late: radius(mass, step, late)) * step
     claim = f"delay margin of the gain [2, 2147.6] at {mass:g} kg, s"
     conform(claim, "delay at which the loop sampled at 0.5 ms is unstable", found.delay, lost, tolerance=0.03 * lost)
+
+
+@pytest.mark.parametrize("gain", [(2.0, 2147.6), (-4000.0, 400.0), (9000.0, -300.0), (-6000.0, 1e4), (0.0, -50.0)])
+@pytest.mark.parametrize("mass", [40.0, 150.0])
+def test_the_margins_are_those_of_the_polynomials_of_the_loop(mass, gain):
+    designed = build_generalised_plant(seat(mass), Weights(), ActuatorLag(COIL.rate))
+    found = compute_margins(LinearSystem(designed.A, designed.B2, designed.C2, np.zeros((2, 1))), np.array([gain]))
+    loop = control.ss(designed.A, designed.B2, -np.array([gain]) @ designed.C2, 0.0)
+    gains, phases, _, _, crossings, _ = control.stability_margins(loop, returnall=True)
+    expected = (
+        min((each for each in gains if each > 1.0), default=np.inf),
+        np.min(np.abs(phases), initial=np.inf),
+        np.min(np.radians(np.mod(phases, 360.0)) / crossings, initial=np.inf),
+    )
+    assert found == pytest.approx(expected, rel=1e-4)
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ import pytest
 from scipy.linalg import block_diag
 
 from controllers.synthesis import norm as module
-from controllers.synthesis.norm import grid_norm, hinf_norm, largest_singular_values
+from controllers.synthesis.norm import find_highest_norm, grid_norm, hinf_norm, largest_singular_values
 from controllers.synthesis.plant import Loop
 
 METHODS = [hinf_norm, grid_norm]
@@ -92,6 +92,16 @@ def test_the_higher_of_two_resonances_counts_where_the_poles_tell_of_the_lower(l
     peak = hinf_norm(joint)
     assert peak.value == pytest.approx(1.0, rel=1e-9)
     assert peak.frequency == pytest.approx(1000.0 * np.sqrt(0.5), rel=1e-4)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_of_several_loops_the_highest_is_found_and_one_above_enough_ends_the_search(seed):
+    several = [random_loop(10 * seed + k, n=2 + k, nw=2, nz=2) for k in range(4)]
+    norms = [grid_norm(each).value for each in several]
+    worst, peak = find_highest_norm(several)
+    assert (worst, peak.value) == (np.argmax(norms), pytest.approx(max(norms), rel=1e-8))
+    place, above = find_highest_norm(several, enough=0.5 * max(norms))
+    assert 0.5 * max(norms) < above.value <= norms[place] * (1 + 1e-9)
 
 
 @pytest.mark.parametrize("rate", [1e-5, 1.0, 1e5])
