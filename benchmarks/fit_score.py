@@ -58,8 +58,8 @@ def list_hypotheses(case: Path) -> None:
         problem = pose_problem(load_recording(case), pool)
         task, objective = pose_search(problem, (), lambda _: None)
         selection = select_effects(objective, task.candidates, task.progress)
-        shown = decide_verdict(problem, selection, task.effects).verdict != "none"
-        found = score.list_hypotheses(problem, selection) if shown else []
+        shown = decide_verdict(objective, selection, task.effects).verdict != "none"
+        found = score.list_hypotheses(objective, selection) if shown else []
         write_json(file, [{"names": sorted(each.names), "features": each.features} for each in found])
 
 

@@ -56,7 +56,9 @@ def select_by_cross_validation(objective: Objective, selection: Selection) -> _S
             break
         is_rival = not chosen.parameters.names <= best[0][0].parameters.names
         margin = math.log(settings.equivalent) if is_rival else 0.0
-        if _weigh(objective, *best[0]) < _weigh(objective, chosen, before) + margin:
+        # Sets that help as much are one answer, worth all of their evidence.
+        weight = np.logaddexp.reduce([_weigh(objective, *each) for each in best])
+        if weight < _weigh(objective, chosen, before) + margin:
             break
         (chosen, before), equivalent = best[0], [evaluation for evaluation, _ in best[1:]]
     return _Supported(chosen, equivalent, [(each, _weigh(objective, each, left)) for each, left in found])

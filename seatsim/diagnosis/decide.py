@@ -16,7 +16,7 @@ from typing import Literal
 import numpy as np
 
 from seatsim.diagnosis.movement import group_equivalent, is_material, measure_remainders
-from seatsim.diagnosis.objective import Evaluation
+from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.score import list_hypotheses, weigh_hypotheses
 from seatsim.diagnosis.select import Selection
@@ -50,13 +50,13 @@ class Decision:
     unknown: float
 
 
-def decide_verdict(problem: DiagnosisProblem, selection: Selection, effects: Sequence[str]) -> Decision:
+def decide_verdict(objective: Objective, selection: Selection, effects: Sequence[str]) -> Decision:
     """Return the verdict on a selection; `effects` are the names that may be at work."""
-    settings = problem.settings.decision
-    if _shows_no_gap(problem, selection):
+    settings = objective.settings.decision
+    if _shows_no_gap(objective.problem, selection):
         rest = (1.0 - settings.none_if_none) / (len(effects) + 1)
         return Decision("none", selection.calibrated, [], dict.fromkeys(effects, rest), settings.none_if_none, rest)
-    hypotheses = list_hypotheses(problem, selection)
+    hypotheses = list_hypotheses(objective, selection)
     *weights, unknown = weigh_hypotheses(hypotheses).tolist()
     sets = [(each.rig, weight) for each, weight in zip(hypotheses, weights, strict=False) if each.rig]
     probabilities = {name: sum(weight for rig, weight in sets if name in rig.parameters.names) for name in effects}

@@ -82,12 +82,12 @@ def share_removable(objective: Objective, before: float, after: float) -> float:
     of a right model; 1 where noise alone makes the gap.
     """
     problem = objective.problem
-    left = np.sqrt(np.mean([_expect_power(objective, run) / problem.spread**2 for run in problem.runs]))
+    left = np.sqrt(np.mean([expect_power(objective, run) / problem.spread**2 for run in problem.runs]))
     removable = float(before - left)
     return (before - after) / removable if removable > problem.settings.decision.least_removable else 1.0
 
 
-def _expect_power(objective: Objective, run: str) -> Array:
+def expect_power(objective: Objective, run: str) -> Array:
     """Return the mean square that a right model leaves of each channel in a run, shape (channels,).
 
     Above the frequencies that are compared the spectrum goes on as it ends there.

@@ -16,9 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.diagnosis.movement import measure_relative_movements, measure_remainders, measure_shares_left
-from seatsim.diagnosis.objective import Evaluation
-from seatsim.diagnosis.problem import DiagnosisProblem
+from seatsim.diagnosis.movement import expect_power, measure_relative_movements, measure_shares_left
+from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.select import Selection
 from seatsim.schema.arrays import Array
 from seatsim.schema.fields import read_packaged
@@ -52,36 +51,41 @@ class Hypothesis(NamedTuple):
         return self.rig.parameters.names if self.rig else frozenset()
 
 
-def list_hypotheses(problem: DiagnosisProblem, selection: Selection) -> list[Hypothesis]:
+def list_hypotheses(objective: Objective, selection: Selection) -> list[Hypothesis]:
     """Return the best sets of each size, and an unknown cause last."""
-    count = problem.settings.selection.finalists
-    sets = [_describe_set(problem, selection, each) for sets in selection.sets[1:] for each in sets[:count]]
+    count = objective.settings.selection.finalists
+    sets = [_describe_set(objective, selection, each) for sets in selection.sets[1:] for each in sets[:count]]
     least = min((each.features["excess"] for each in sets), default=0.0)
     return [*sets, Hypothesis(None, {"unknown": 1.0, "unknown_excess": least})]
 
 
-def _describe_set(problem: DiagnosisProblem, selection: Selection, rig: Evaluation) -> Hypothesis:
+def _describe_set(objective: Objective, selection: Selection, rig: Evaluation) -> Hypothesis:
     """Return a fitted set of effects with its features."""
     smaller = [each for sets in selection.sets for each in sets if each.parameters.names < rig.parameters.names]
-    excess, gap = rig.excess + _LITTLE, _measure_gap(problem, rig)
-    before, gap_before = selection.calibrated.excess + _LITTLE, _measure_gap(problem, selection.calibrated)
-    worst = max([0.0, *measure_shares_left(problem, selection.calibrated, rig)])
-    moved = min(float(np.max(each)) for each in measure_relative_movements(problem, rig))
+    excess, gap = rig.excess + _LITTLE, _measure_gap(objective, rig)
+    before, gap_before = selection.calibrated.excess + _LITTLE, _measure_gap(objective, selection.calibrated)
+    worst = max([0.0, *measure_shares_left(objective.problem, selection.calibrated, rig)])
+    moved = min(float(np.max(each)) for each in measure_relative_movements(objective.problem, rig))
     return Hypothesis(rig, {
         "effects": float(len(rig.parameters.terms)),
         "excess": math.log(excess / before),
         "gain": math.log(excess / (min(each.excess for each in smaller) + _LITTLE)),
         "gap": math.log(gap / gap_before),
-        "gap_gain": math.log(gap / min(_measure_gap(problem, each) for each in smaller)),
+        "gap_gain": math.log(gap / min(_measure_gap(objective, each) for each in smaller)),
         "worst": math.log(worst + _LITTLE),
         "movement": min(0.0, math.log(moved + _LEAST_MOVEMENT)),
-        "prior": float(np.sum((rig.parameters.deviations / problem.settings.fit.prior_std) ** 2)),
+        "prior": float(np.sum((rig.parameters.deviations / objective.settings.fit.prior_std) ** 2)),
     })  # fmt: skip
 
 
-def _measure_gap(problem: DiagnosisProblem, rig: Evaluation) -> float:
-    """Return the gap beyond noise over all channels, in standard deviations, above the little that does not count."""
-    return float(np.linalg.norm(measure_remainders(problem, rig))) + _LITTLE
+def _measure_gap(objective: Objective, rig: Evaluation) -> float:
+    """Return the gap beyond what the weights expect of a right rig, over all channels, above the little without weight.
+
+    It is in standard deviations of the channels. A random disturbance that counts as noise is no part of it.
+    """
+    problem = objective.problem
+    left = [np.mean(rig.residuals[run] ** 2, axis=1) - expect_power(objective, run) for run in problem.runs]
+    return float(np.linalg.norm(np.sqrt(np.maximum(np.mean(left, axis=0), 0.0)) / problem.spread)) + _LITTLE
 
 
 def weigh_hypotheses(hypotheses: Sequence[Hypothesis]) -> Array:

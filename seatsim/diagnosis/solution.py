@@ -46,7 +46,7 @@ class Solution(NamedTuple):
 def search(task: SearchTask, objective: Objective, rig: LinearisedRig | None = None) -> Solution:
     """Select effects under the weights of an objective and decide; `rig` is the linearised rig where it is known."""
     selection = select_effects(objective, task.candidates, task.progress, rig=rig)
-    decision = decide_verdict(objective.problem, selection, task.effects)
+    decision = decide_verdict(objective, selection, task.effects)
     return Solution(objective, selection, decision)
 
 

@@ -148,7 +148,7 @@ def _search_by_gap(task: SearchTask, first: Solution) -> Solution:
         decision = decide_beside_unknown(settings.decision, first.decision, refitted, equivalent, tried)
         # Where weak signals weigh most a fit may end far from the set that takes all of the gap.
         if _takes_enough(first.objective, first._replace(decision=decision)):
-            again = decide_verdict(problem, first.selection.add(refitted), task.effects)
+            again = decide_verdict(first.objective, first.selection.add(refitted), task.effects)
             if again.chosen is refitted and again.verdict in ("known", "ambiguous"):
                 decision = again
     else:
