@@ -67,9 +67,7 @@ def _describe_set(objective: Objective, selection: Selection, rig: Evaluation) -
     worst = max([0.0, *measure_shares_left(objective.problem, selection.calibrated, rig)])
     moved = min(float(np.max(each)) for each in measure_relative_movements(objective.problem, rig))
     return Hypothesis(rig, {
-        "effects": float(len(rig.parameters.terms)),
         "excess": math.log(excess / before),
-        "gain": math.log(excess / (min(each.excess for each in smaller) + _LITTLE)),
         "gap": math.log(gap / gap_before),
         "gap_gain": math.log(gap / min(_measure_gap(objective, each) for each in smaller)),
         "worst": math.log(worst + _LITTLE),
