@@ -82,20 +82,22 @@ def share_removable(objective: Objective, before: float, after: float) -> float:
     of a right model; 1 where noise alone makes the gap.
     """
     problem = objective.problem
-    left = np.sqrt(np.mean([expect_power(objective, run) / problem.spread**2 for run in problem.runs]))
+    left = np.sqrt(np.mean([expect_power(objective, run)[0] / problem.spread**2 for run in problem.runs]))
     removable = float(before - left)
     return (before - after) / removable if removable > problem.settings.decision.least_removable else 1.0
 
 
-def expect_power(objective: Objective, run: str) -> Array:
-    """Return the mean square that a right model leaves of each channel in a run, shape (channels,).
+def expect_power(objective: Objective, run: str) -> tuple[Array, Array]:
+    """Return the mean square that a right model leaves of each channel in a run, and its standard deviation by chance.
 
-    Above the frequencies that are compared the spectrum goes on as it ends there.
+    Both have the shape (channels,). Above the frequencies that are compared the spectrum goes on as it ends there. The
+    power of noise at a frequency has as large a standard deviation as its mean.
     """
     samples = objective.problem.measured[run].shape[1]
     power = 2.0 / objective.weights.weights[run] ** 2
-    beyond = samples // 2 + 1 - power.shape[1]
-    return np.asarray((np.sum(power, axis=1) + beyond * power[:, -1]) * 2.0 / samples**2)
+    counts = np.ones(power.shape[1])
+    counts[-1] += samples // 2 + 1 - power.shape[1]
+    return power @ counts * 2.0 / samples**2, np.sqrt(power**2 @ counts) * 2.0 / samples**2
 
 
 def group_equivalent(chosen: Evaluation, equivalent: Sequence[Evaluation]) -> list[list[str]]:

@@ -79,11 +79,14 @@ def _describe_set(objective: Objective, selection: Selection, rig: Evaluation) -
 def _measure_gap(objective: Objective, rig: Evaluation) -> float:
     """Return the gap beyond what the weights expect of a right rig, over all channels, above the little without weight.
 
-    It is in standard deviations of the channels. A random disturbance that counts as noise is no part of it.
+    It is in standard deviations of the channels. A random disturbance that counts as noise is no part of it, nor what
+    its power may be by chance.
     """
     problem = objective.problem
-    left = [np.mean(rig.residuals[run] ** 2, axis=1) - expect_power(objective, run) for run in problem.runs]
-    return float(np.linalg.norm(np.sqrt(np.maximum(np.mean(left, axis=0), 0.0)) / problem.spread)) + _LITTLE
+    expected, deviations = np.mean([expect_power(objective, run) for run in problem.runs], axis=0)
+    power = np.mean([np.mean(rig.residuals[run] ** 2, axis=1) for run in problem.runs], axis=0)
+    chance = objective.settings.validation.by_chance * deviations / math.sqrt(len(problem.runs))
+    return float(np.linalg.norm(np.sqrt(np.maximum(power - expected - chance, 0.0)) / problem.spread)) + _LITTLE
 
 
 def weigh_hypotheses(hypotheses: Sequence[Hypothesis]) -> Array:

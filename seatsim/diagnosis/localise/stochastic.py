@@ -92,7 +92,8 @@ def add_to_noise(problem: DiagnosisProblem, weights: NoiseWeights, effect: str, 
     """Return the weights with the signal added to the noise of the recording."""
     smoothing = problem.settings.noise.smoothing
     if effect == FORCE_FROM_OUTSIDE:
-        return weights.add(carry_force(problem, found.signals))
+        regained = problem.settings.reconstruction.regained
+        return weights.add(carry_force(problem, {run: regained * signal for run, signal in found.signals.items()}))
     if found.channel not in problem.channels:
         objective = Objective(problem, weights)
         return weights.add({run: _carry_floor_motion(objective, run, each) for run, each in found.signals.items()})

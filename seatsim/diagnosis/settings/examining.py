@@ -37,7 +37,7 @@ class ReconstructionSettings(NamedTuple):
     """Fractions of a correction that are tried in turn.
     Chosen: numerically."""
     regained: float = 1.2
-    """Factor on a force that repeated runs show, for what its filter takes.
+    """Factor on a random force that was estimated, for what its filter takes.
     Chosen: on simulated rigs."""
 
 
