@@ -21,20 +21,6 @@ from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.score import list_hypotheses, weigh_hypotheses
 from seatsim.diagnosis.select import Selection
 
-
-def weigh_effects(sets: Sequence[tuple[frozenset[str], float]], effects: Sequence[str]) -> dict[str, float]:
-    """Return the probability of each effect.
-
-    Args:
-        sets: names of the effects of each set, with the logarithm of its weight.
-        effects: names of all effects.
-    """
-    largest = max((log for _, log in sets), default=0.0)
-    weights = [(names, math.exp(log - largest)) for names, log in sets]
-    total = sum(weight for _, weight in weights) or 1.0
-    return {name: sum(weight for names, weight in weights if name in names) / total for name in effects}
-
-
 Verdict = Literal["none", "known", "ambiguous", "unknown"]
 
 

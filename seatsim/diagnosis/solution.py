@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from seatsim.diagnosis.candidates import Candidate
-from seatsim.diagnosis.decide import Decision, Verdict, decide_verdict, weigh_effects
+from seatsim.diagnosis.decide import Decision, Verdict, decide_verdict
 from seatsim.diagnosis.localise.discrepancy import Discrepancy
 from seatsim.diagnosis.movement import group_equivalent, measure_remainders
 from seatsim.diagnosis.objective import Evaluation, Objective
@@ -79,6 +80,14 @@ def decide_beside_unknown(
         decision, chosen=chosen, groups=group_equivalent(chosen, equivalent), probabilities=probabilities
     )
     return call_unknown(settings, stated)
+
+
+def weigh_effects(sets: Sequence[tuple[frozenset[str], float]], effects: Sequence[str]) -> dict[str, float]:
+    """Return the probability of each effect, from the names of sets with the logarithm of the weight of each."""
+    largest = max((log for _, log in sets), default=0.0)
+    weights = [(names, math.exp(log - largest)) for names, log in sets]
+    total = sum(weight for _, weight in weights) or 1.0
+    return {name: sum(weight for names, weight in weights if name in names) / total for name in effects}
 
 
 def decide_without(problem: DiagnosisProblem, decision: Decision, rig: Evaluation, given_up: Sequence[str]) -> Decision:

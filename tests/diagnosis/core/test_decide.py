@@ -6,10 +6,10 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.decide import decide_verdict, weigh_effects
+from seatsim.diagnosis.decide import decide_verdict
 from seatsim.diagnosis.score import WEIGHTS, list_hypotheses, weigh_hypotheses
 from seatsim.diagnosis.select import Selection
-from seatsim.diagnosis.solution import decide_without
+from seatsim.diagnosis.solution import decide_without, weigh_effects
 
 from .toy import offer, place, pose_tones
 
