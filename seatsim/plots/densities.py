@@ -55,7 +55,7 @@ def find_resolution(densities: Densities) -> float:
 
 def state_method(resolution: float) -> str:
     """Return how a picture's densities were estimated, whose lines are `resolution` Hz apart."""
-    lines = f"lines {resolution:.2g} Hz apart, " * bool(np.isfinite(resolution))
+    lines = f"lines up to {resolution:.2g} Hz apart, " * bool(np.isfinite(resolution))
     return f"Welch's method, {lines}averaged over 1/{PER_OCTAVE} octave."
 
 

@@ -96,7 +96,8 @@ def _plot_channel(trace: Trace, group: Sequence[Trace], lines: Sequence[Simulate
     method = state_method(find_resolution(density))
     note += f" Below: power densities of the measured signal and of the differences. {method}" * has_spectrum
     grid = GRID if has_spectrum else GRID._replace(heights=GRID.heights[:2])
-    legend = [MEASURED, *(line.look for line in lines), *([NOISE] if noise and has_spectrum else [])]
+    below = [line.look._replace(label=f"{line.look.label} (below: difference)") for line in lines]
+    legend = [MEASURED, *below, *([NOISE] if noise and has_spectrum else [])]
     page = style.make_page(_make_title(trace, shown, lines), note, grid, legend)
     upper, lower = (row[0] for row in page.rows[:2])
     _draw_time(upper, lower, trace, window, shown, lines)

@@ -64,7 +64,7 @@ def plot_transmissibility(shown: Shown) -> Figure:
     gains = [_estimate_gain(run) for run in shown.runs]
     known = np.concatenate([gain[np.isfinite(gain) & (gain > 0)] for _, gain, _ in gains])
     resolution = max((frequency[1] - frequency[0] for frequency, _, _ in gains if len(frequency)), default=np.inf)
-    lines = f" Lines {resolution:.2g} Hz apart." * bool(known.size)
+    lines = f" Lines up to {resolution:.2g} Hz apart." * bool(known.size)
     legend = shown.looks if known.size and len(shown.runs) > 1 else []
     title = f"Transmissibility, floor to driver: {shown.title}"
     figure, axes = _make_page(title, NOTE + lines + shown.omission, resolution, legend)
