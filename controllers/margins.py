@@ -19,6 +19,7 @@ from controllers.synthesis.plant import Loop
 from seatsim.schema.arrays import Array
 
 _ROUNDING = 1e-6
+"""Real part of a zero, as a share of its size, up to which it lies on the imaginary axis."""
 
 
 class Margins(NamedTuple):

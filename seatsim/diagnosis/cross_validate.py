@@ -36,8 +36,8 @@ class _Supported(NamedTuple):
 def select_by_cross_validation(objective: Objective, selection: Selection) -> _Supported:
     """Return the smallest set of effects that no larger one improves on left-out runs, and sets that help as much.
 
-    A larger set is chosen as long as its evidence is higher; one without the
-    effect chosen so far, a rival explanation, only where the evidence decides: a tie goes to the simpler explanation.
+    A larger set is chosen as long as its evidence is higher; one without the effect chosen so far, a rival explanation,
+    only where the evidence decides: a tie goes to the simpler explanation.
     """
     settings, problem = objective.settings.cross_validation, objective.problem
     chosen, equivalent = selection.calibrated, list[Evaluation]()

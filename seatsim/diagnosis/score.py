@@ -10,11 +10,12 @@ weight. The weights were fitted, not chosen: to recordings of known causes, by c
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import softmax
 
 from seatsim.diagnosis.movement import expect_power, measure_relative_movements, measure_shares_left
 from seatsim.diagnosis.objective import Evaluation, Objective
@@ -54,22 +55,27 @@ class Hypothesis(NamedTuple):
 def list_hypotheses(objective: Objective, selection: Selection) -> list[Hypothesis]:
     """Return the best sets of each size, and an unknown cause last."""
     count = objective.settings.selection.finalists
-    sets = [_describe_set(objective, selection, each) for sets in selection.sets[1:] for each in sets[:count]]
+    gaps = {each.parameters.names: _measure_gap(objective, each) for sets in selection.sets for each in sets}
+    sets = [
+        _describe_set(objective, selection.calibrated, each, gaps)
+        for sets in selection.sets[1:]
+        for each in sets[:count]
+    ]
     least = min((each.features["excess"] for each in sets), default=0.0)
     return [*sets, Hypothesis(None, {"unknown": 1.0, "unknown_excess": least})]
 
 
-def _describe_set(objective: Objective, selection: Selection, rig: Evaluation) -> Hypothesis:
-    """Return a fitted set of effects with its features."""
-    smaller = [each for sets in selection.sets for each in sets if each.parameters.names < rig.parameters.names]
-    excess, gap = rig.excess + _LITTLE, _measure_gap(objective, rig)
-    before, gap_before = selection.calibrated.excess + _LITTLE, _measure_gap(objective, selection.calibrated)
-    worst = max([0.0, *measure_shares_left(objective.problem, selection.calibrated, rig)])
+def _describe_set(
+    objective: Objective, calibrated: Evaluation, rig: Evaluation, gaps: Mapping[frozenset[str], float]
+) -> Hypothesis:
+    """Return a fitted set of effects with its features; `gaps` are those of all sets by the names of their effects."""
+    names = rig.parameters.names
+    worst = max([0.0, *measure_shares_left(objective.problem, calibrated, rig)])
     moved = min(float(np.max(each)) for each in measure_relative_movements(objective.problem, rig))
     return Hypothesis(rig, {
-        "excess": math.log(excess / before),
-        "gap": math.log(gap / gap_before),
-        "gap_gain": math.log(gap / min(_measure_gap(objective, each) for each in smaller)),
+        "excess": math.log((rig.excess + _LITTLE) / (calibrated.excess + _LITTLE)),
+        "gap": math.log(gaps[names] / gaps[calibrated.parameters.names]),
+        "gap_gain": math.log(gaps[names] / min(gap for smaller, gap in gaps.items() if smaller < names)),
         "worst": math.log(worst + _LITTLE),
         "movement": min(0.0, math.log(moved + _LEAST_MOVEMENT)),
         "prior": float(np.sum((rig.parameters.deviations / objective.settings.fit.prior_std) ** 2)),
@@ -91,8 +97,5 @@ def _measure_gap(objective: Objective, rig: Evaluation) -> float:
 
 def weigh_hypotheses(hypotheses: Sequence[Hypothesis]) -> Array:
     """Return the probabilities of hypotheses, shape (hypotheses,)."""
-    scores = np.array(
-        [sum(WEIGHTS[name].weight * value for name, value in each.features.items()) for each in hypotheses]
-    )
-    shares = np.exp(scores - scores.max())
-    return np.asarray(shares / shares.sum())
+    weighted = ([WEIGHTS[name].weight * value for name, value in each.features.items()] for each in hypotheses)
+    return np.asarray(softmax([sum(each) for each in weighted]))

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import softmax
 
 from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.decide import Decision, Verdict, decide_verdict
@@ -84,10 +84,9 @@ def decide_beside_unknown(
 
 def weigh_effects(sets: Sequence[tuple[frozenset[str], float]], effects: Sequence[str]) -> dict[str, float]:
     """Return the probability of each effect, from the names of sets with the logarithm of the weight of each."""
-    largest = max((log for _, log in sets), default=0.0)
-    weights = [(names, math.exp(log - largest)) for names, log in sets]
-    total = sum(weight for _, weight in weights) or 1.0
-    return {name: sum(weight for names, weight in weights if name in names) / total for name in effects}
+    weights = softmax([log for _, log in sets]).tolist() if sets else []
+    known = [(names, weight) for (names, _), weight in zip(sets, weights, strict=True)]
+    return {name: sum(weight for names, weight in known if name in names) for name in effects}
 
 
 def decide_without(problem: DiagnosisProblem, decision: Decision, rig: Evaluation, given_up: Sequence[str]) -> Decision:

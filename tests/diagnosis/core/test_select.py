@@ -138,3 +138,14 @@ def test_the_best_effect_is_begun_again_in_its_other_forms():
     found = select_effects(objective, forms, lambda _: None, 1)
     (amount,) = found.sets[1][0].parameters.values[0]
     assert found.sets[1][0].parameters.terms[0].cls is Cubed and amount**3 == pytest.approx(1.4, rel=0.01)
+
+
+def test_a_set_that_is_added_stands_first_of_its_size_and_once():
+    found, _ = search(pose({"true.one": 1.4, "true.two": -0.6}), largest=2)
+    last = found.sets[1][-1]
+    added = found.add(last)
+    assert added.sets[1][0] is last and sorted(map(sorted, names_of(added.sets[1]))) == sorted(
+        map(sorted, names_of(found.sets[1]))
+    )
+    assert (added.sets[0], added.sets[2:]) == (found.sets[0], found.sets[2:])
+    assert dataclasses.replace(found, sets=found.sets[:1]).add(last).sets == (found.sets[0], (last,))
