@@ -1,10 +1,10 @@
 """Weights of the score of a diagnosis, fitted to sealed cases: `python benchmarks/fit_score.py DIR:KEY ...`.
 
 DIR holds the cases of a blind set, DIR.sealed their labels. The first search of each case gives its hypotheses, which
-are kept in `DIR/CASE/hypotheses.json`. With x the features of the hypotheses of a case and t the true one, or the
-unknown cause where no fitted set is right, the weights w minimise
+are kept in `DIR/CASE/hypotheses.json`. With x the features of the hypotheses of a case and t those that are true, or
+the unknown cause where no fitted set is, the weights w minimise
 
-    sum over cases  (log sum exp(x w) - x_t w)  +  RIDGE / 2 |w s|^2
+    sum over cases  (log sum exp(x w) - log sum over t exp(x_t w))  +  RIDGE / 2 |w s|^2
 
 (conditional logistic regression: McFadden 1974), s the standard deviations of the features. A table says how often the
 likeliest hypothesis is the true one in cases left out, a fifth at a time, and how often effects of a probability from
@@ -21,53 +21,55 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from cases import PROCESSES, Array, show_progress
+from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.special import logsumexp, softmax
 from threadpoolctl import threadpool_limits
 
 from seatsim.blind.sealed import Label, unseal
 from seatsim.diagnosis import score
-from seatsim.diagnosis.decide import decide_verdict
+from seatsim.diagnosis.localise.disturbance import find_disturbance
 from seatsim.diagnosis.problem import pose_problem
-from seatsim.diagnosis.select import select_effects
-from seatsim.diagnosis.solve import pose_search
+from seatsim.diagnosis.solution import search
+from seatsim.diagnosis.solve import pose_search, search_beside
 from seatsim.recordings.recording import load_recording
 from seatsim.schema.files import write_json, write_text
 from seatsim.schema.processes import run_jobs
 
 RIDGE, SURE, PARTS = 1.0, 0.9, 5
-STOCHASTIC = "floor.unmeasured_input"
-"""Effect that no set holds, since a later search finds it."""
 NAMES = list(score.WEIGHTS)
 
 
 class LabelledCase(NamedTuple):
-    """The hypotheses on a case: their effects, their features, shape (hypotheses, features), and the true one."""
+    """The hypotheses on a case: their effects, their features, shape (hypotheses, features), and which are true."""
 
     names: list[set[str]]
     features: Array
-    true: int
+    true: NDArray[np.bool_]
 
 
 def list_hypotheses(case: Path) -> None:
-    """Write the hypotheses of the first search of a case, none where it shows no gap."""
+    """Write the hypotheses on a case without a disturbance and beside one, none where it shows no gap."""
     file = case / "hypotheses.json"
     if file.exists():
         return
     with ThreadPoolExecutor() as pool, threadpool_limits(1):
         problem = pose_problem(load_recording(case), pool)
         task, objective = pose_search(problem, (), lambda _: None)
-        selection = select_effects(objective, task.candidates, task.progress)
-        shown = decide_verdict(objective, selection, task.effects).verdict != "none"
-        found = score.list_hypotheses(objective, selection) if shown else []
+        first, found = search(task, objective), list[score.Hypothesis]()
+        if first.decision.verdict != "none":
+            searches = [score.Search(objective, first.selection)]
+            if disturbance := find_disturbance(objective, first.selection):
+                searches.append(search_beside(task, objective, first.selection, disturbance))
+            found = score.list_hypotheses(searches)
         write_json(file, [{"names": sorted(each.names), "features": each.features} for each in found])
 
 
 def label_case(hypotheses: list[dict[str, Any]], label: Label) -> LabelledCase:
-    """Return the hypotheses of a case with the true one; the unknown cause stands last."""
+    """Return the hypotheses of a case with the true ones; the unknown cause, which stands last, where none else is."""
     names = [set(each["names"]) for each in hypotheses]
-    effects = set() if label["kind"] == "outside" or STOCHASTIC in label["effects"] else set(label["effects"])
-    true = names.index(effects) if effects and effects in names else len(names) - 1
+    true = np.array([label["kind"] != "outside" and each == set(label["effects"]) for each in names])
+    true[-1] = not true.any()
     features = np.array([[each["features"].get(name, 0.0) for name in NAMES] for each in hypotheses])
     return LabelledCase(names, features, true)
 
@@ -81,8 +83,8 @@ def fit_weights(cases: list[LabelledCase]) -> Array:
         value, slope = 0.5 * RIDGE * float(weights @ weights), RIDGE * weights
         for case, features in zip(cases, scaled, strict=True):
             scores = features @ weights
-            value += float(logsumexp(scores) - scores[case.true])
-            slope = slope + softmax(scores) @ features - features[case.true]
+            value += float(logsumexp(scores) - logsumexp(scores[case.true]))
+            slope = slope + softmax(scores) @ features - softmax(scores[case.true]) @ features[case.true]
         return value, slope
 
     return np.asarray(minimize(cost, np.zeros(len(NAMES)), jac=True, method="L-BFGS-B").x / spread)
@@ -95,8 +97,8 @@ def cross_validate(cases: list[LabelledCase]) -> str:
         weights = fit_weights([case for k, case in enumerate(cases) if k % PARTS != part])
         for case in cases[part::PARTS]:
             probabilities = softmax(case.features @ weights)
-            right.append(int(np.argmax(probabilities)) == case.true)
-            true = case.names[case.true]
+            right.append(bool(case.true[np.argmax(probabilities)]))
+            true = case.names[int(np.argmax(case.true))]
             for effect in set().union(*case.names):
                 stated = sum(p for p, names in zip(probabilities, case.names, strict=True) if effect in names)
                 sure += [effect in true] if stated >= SURE else []

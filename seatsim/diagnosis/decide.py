@@ -9,16 +9,15 @@ right, takes its cost off, and so does a set that is wrong.
 from __future__ import annotations
 
 import dataclasses
-import math
 from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
 
 from seatsim.diagnosis.movement import group_equivalent, is_material, measure_remainders
-from seatsim.diagnosis.objective import Evaluation, Objective
+from seatsim.diagnosis.objective import Evaluation
 from seatsim.diagnosis.problem import DiagnosisProblem
-from seatsim.diagnosis.score import list_hypotheses, weigh_hypotheses
+from seatsim.diagnosis.score import Search, list_hypotheses, weigh_hypotheses
 from seatsim.diagnosis.select import Selection
 
 Verdict = Literal["none", "known", "ambiguous", "unknown"]
@@ -26,7 +25,10 @@ Verdict = Literal["none", "known", "ambiguous", "unknown"]
 
 @dataclasses.dataclass(frozen=True)
 class Decision:
-    """The verdict with the chosen set, groups of equivalent effects, and probabilities: by effect, none, unknown."""
+    """The verdict with the chosen set, groups of equivalent effects, and probabilities: by effect, none, unknown.
+
+    `search` is the one that found the set.
+    """
 
     verdict: Verdict
     chosen: Evaluation
@@ -34,27 +36,32 @@ class Decision:
     probabilities: dict[str, float]
     none: float
     unknown: float
+    search: Search | None = None
 
 
-def decide_verdict(objective: Objective, selection: Selection, effects: Sequence[str]) -> Decision:
-    """Return the verdict on a selection; `effects` are the names that may be at work."""
+def decide_verdict(searches: Sequence[Search], effects: Sequence[str]) -> Decision:
+    """Return the verdict on searches, the first without a disturbance; `effects` are the names that may be at work."""
+    objective, selection, _ = searches[0]
     settings = objective.settings.decision
     if _shows_no_gap(objective.problem, selection):
         rest = (1.0 - settings.none_if_none) / (len(effects) + 1)
         return Decision("none", selection.calibrated, [], dict.fromkeys(effects, rest), settings.none_if_none, rest)
-    hypotheses = list_hypotheses(objective, selection)
+    hypotheses = list_hypotheses(searches)
     *weights, unknown = weigh_hypotheses(hypotheses).tolist()
-    sets = [(each.rig, weight) for each, weight in zip(hypotheses, weights, strict=False) if each.rig]
-    probabilities = {name: sum(weight for rig, weight in sets if name in rig.parameters.names) for name in effects}
-    chosen, likeliest = max(sets, key=lambda pair: pair[1], default=(selection.calibrated, -math.inf))
-    others = [(rig, weight) for rig, weight in sets if rig is not chosen and weight > settings.further_name]
-    groups = group_equivalent(chosen, [rig for rig, _ in others])
-    named = chosen.parameters.names.union(*groups)
-    beside = [weight for rig, weight in others if rig.parameters.names <= named]
+    known = list(zip(hypotheses, weights, strict=False))
+    probabilities = {name: sum(weight for each, weight in known if name in each.names) for name in effects}
+    if not known:
+        return Decision("unknown", selection.calibrated, [], probabilities, 0.0, unknown)
+    chosen, likeliest = max(known, key=lambda pair: pair[1])
+    others = [(each, weight) for each, weight in known if each is not chosen and weight > settings.further_name]
+    groups = group_equivalent(chosen.names, [each.names for each, _ in others if each.search is chosen.search])
+    named = chosen.names.union(*groups)
+    beside = [weight for each, weight in others if each.names <= named]
     right = likeliest + sum(beside)
+    verdict: Verdict = "ambiguous" if groups else "known"
     if unknown > right - settings.further_name * len(beside) - settings.wrong_name * (1.0 - right):
-        return Decision("unknown", chosen, [], probabilities, 0.0, unknown)
-    return Decision("ambiguous" if groups else "known", chosen, groups, probabilities, 0.0, unknown)
+        verdict, groups = "unknown", []
+    return Decision(verdict, chosen.rig or selection.calibrated, groups, probabilities, 0.0, unknown, chosen.search)
 
 
 def _shows_no_gap(problem: DiagnosisProblem, selection: Selection) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -28,8 +28,12 @@ def measure_movements(problem: DiagnosisProblem, evaluation: Evaluation) -> list
 
 def measure_relative_movements(problem: DiagnosisProblem, evaluation: Evaluation) -> list[Array]:
     """Return the movements relative to what makes one material: a stated size, or the channel's noise if it is more."""
-    least = np.maximum(problem.settings.decision.material, problem.noise / problem.spread)
-    return [move / least for move in measure_movements(problem, evaluation)]
+    return [relate_to_material(problem, move) for move in measure_movements(problem, evaluation)]
+
+
+def relate_to_material(problem: DiagnosisProblem, movements: Array) -> Array:
+    """Return movements of the channels relative to what is material, shape (channels,)."""
+    return movements / np.maximum(problem.settings.decision.material, problem.noise / problem.spread)
 
 
 def is_material(problem: DiagnosisProblem, evaluation: Evaluation) -> bool:
@@ -94,22 +98,20 @@ def expect_power(objective: Objective, run: str) -> tuple[Array, Array]:
     power of noise at a frequency has as large a standard deviation as its mean.
     """
     samples = objective.problem.measured[run].shape[1]
-    power = 2.0 / objective.weights.weights[run] ** 2
+    power = objective.weights.expect(run)
     counts = np.ones(power.shape[1])
     counts[-1] += samples // 2 + 1 - power.shape[1]
     return power @ counts * 2.0 / samples**2, np.sqrt(power**2 @ counts) * 2.0 / samples**2
 
 
-def group_equivalent(chosen: Evaluation, equivalent: Sequence[Evaluation]) -> list[list[str]]:
+def group_equivalent(names: frozenset[str], equivalent: Iterable[frozenset[str]]) -> list[list[str]]:
     """Return groups of effects that could stand for each other: equivalent sets that differ in one effect.
 
-    An effect that stands for one of the chosen counts as that one in the other sets.
+    An effect that stands for one of `names`, the chosen, counts as that one in the other sets.
     """
-    names = set(chosen.parameters.names)
     groups: dict[str, list[str]] = {}
-    others = [set(evaluation.parameters.names) for evaluation in equivalent]
     # Sets that differ least come first: the substitutes found there are known when sets that differ more are compared.
-    for other in sorted(others, key=lambda other: len(other - names)):
+    for other in sorted(equivalent, key=lambda other: len(other - names)):
         stands_for = {member: name for name, group in groups.items() for member in group}
         missing, added = names - {stands_for.get(name, name) for name in other}, other - names - set(stands_for)
         if len(other) == len(names) and len(missing) == len(added) == 1:

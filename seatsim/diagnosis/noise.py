@@ -18,7 +18,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -26,10 +26,13 @@ from scipy.fft import rfft
 from scipy.interpolate import LSQUnivariateSpline
 
 from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
-from seatsim.diagnosis.spectra import randomise_phases, smooth_spectrum
+from seatsim.diagnosis.spectra import Spectra, as_complex, randomise_phases, smooth_spectrum
 from seatsim.schema.arrays import Array
 from seatsim.simulation.inputs import BenchInputs, Forces, RigInputs, SeatInputs
 from seatsim.simulation.respond import fit_motion
+
+_TINY = 1e-30
+"""Least size of a weighted amplitude, so that nothing is divided by zero."""
 
 
 def carry_input_noise(problem: DiagnosisProblem, run: str) -> Array:
@@ -108,7 +111,12 @@ def _draw_force(problem: DiagnosisProblem, inputs: SeatInputs, force: Array, rng
 
 @dataclass(frozen=True)
 class NoiseWeights:
-    """Turns residuals into whitened numbers, by the power of the noise: `power[run]`, shape (channels, frequencies).
+    """Turns residuals into whitened numbers, by the covariance of the noise at every frequency.
+
+    That is `diag(power) + force force*`: `power[run]` is the power of noise that the channels have independently of
+    each other, and `force[run]` the complex amplitude that a random force leaves in all of them together; both have the
+    shape (channels, frequencies). Numbers are whitened by the symmetric root of the covariance, so that what the force
+    cannot have done keeps its full weight.
 
     `independent` is the share of these numbers that count as independent of each other, `parameter_cost` the logarithm
     of the factor by which a further parameter of an effect has to lower the cost.
@@ -117,6 +125,7 @@ class NoiseWeights:
     power: dict[str, Array]
     independent: float = 1.0
     parameter_cost: float = 0.0
+    force: Mapping[str, Spectra] = field(default_factory=dict)
 
     @cached_property
     def weights(self) -> dict[str, Array]:
@@ -129,19 +138,61 @@ class NoiseWeights:
         """How many frequencies of each run are compared."""
         return {run: power.shape[1] for run, power in self.power.items()}
 
+    @cached_property
+    def _directions(self) -> dict[str, tuple[Spectra, Array]]:
+        """The unit vector of the weighted force by run, and its power relative to the other noise along it."""
+        found = {}
+        for run, amplitude in self.force.items():
+            weighted = self.weights[run] * amplitude
+            size = np.linalg.norm(weighted, axis=0)
+            found[run] = (weighted / np.maximum(size, _TINY), 0.5 * size**2 / self.independent)
+        return found
+
+    @cached_property
+    def charge(self) -> float:
+        """Minus twice the log evidence per number compared that the force costs, `log det` of what it adds."""
+        cost = sum(2.0 * float(np.sum(np.log1p(power))) for _, power in self._directions.values())
+        return cost / sum(2 * power.size for power in self.power.values())
+
     def __call__(self, residuals: Array, run: str) -> Array:
         """Return whitened residuals, shape (channels, 2 frequencies), mean square `independent` for noise alone."""
         spectrum = rfft(residuals, axis=1)[:, : self.bins[run]] * self.weights[run]
+        spectrum = self._turn(spectrum, run, -0.5)
         return np.concatenate([spectrum.real, spectrum.imag], axis=1)
+
+    def _turn(self, weighted: Spectra, run: str, exponent: float) -> Spectra:
+        """Return weighted spectra, shape (..., channels, frequencies), times this power of `I + force force*`."""
+        if run not in self.force:
+            return weighted
+        direction, power = self._directions[run]
+        along = np.sum(direction.conj() * weighted, axis=-2, keepdims=True)
+        return np.asarray(weighted + direction * along * ((1.0 + power) ** exponent - 1.0))
+
+    def expect(self, run: str) -> Array:
+        """Return the power of all noise in a run, shape (channels, frequencies)."""
+        power = self.power[run] / self.independent
+        return power + np.abs(self.force[run]) ** 2 if run in self.force else power
+
+    def convert(self, whitened: Array, run: str, old: NoiseWeights) -> Array:
+        """Return numbers that other weights whitened, shape (..., channels, 2 frequencies), as these whiten them."""
+        spectra = old._turn(as_complex(whitened), run, 0.5) * (self.weights[run] / old.weights[run])
+        spectra = self._turn(spectra, run, -0.5)
+        return np.concatenate([spectra.real, spectra.imag], axis=-1)
 
     def add(self, disturbance: Mapping[str, Array]) -> NoiseWeights:
         """Return the weights with the power of one more disturbance, (channels, frequencies) or (channels, 1)."""
         summed = {run: power + disturbance[run][:, : power.shape[1]] for run, power in self.power.items()}
         return dataclasses.replace(self, power=summed)
 
+    def add_force(self, amplitudes: Mapping[str, Spectra]) -> NoiseWeights:
+        """Return the weights with a random force that leaves these amplitudes, shape (channels, frequencies) by run."""
+        return dataclasses.replace(self, force=amplitudes)
+
     def scale(self, factor: float) -> NoiseWeights:
         """Return the weights with this factor on all power."""
-        return dataclasses.replace(self, power={run: factor * power for run, power in self.power.items()})
+        power = {run: factor * each for run, each in self.power.items()}
+        force = {run: math.sqrt(factor) * each for run, each in self.force.items()}
+        return dataclasses.replace(self, power=power, force=force)
 
 
 def weigh_noise(problem: DiagnosisProblem) -> NoiseWeights:

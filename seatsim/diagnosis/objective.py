@@ -242,8 +242,9 @@ def scale(whitened: dict[str, Array], old: Objective, new: Objective) -> dict[st
 
     Their last axis, or the last two, hold channels and both parts of each frequency, as residuals do.
     """
-    ratios = {run: np.tile(new.weights.weights[run] / old.weights.weights[run], 2) for run in whitened}
-    return {
-        run: (values.reshape(-1, *ratios[run].shape) * ratios[run]).reshape(values.shape)
-        for run, values in whitened.items()
-    }
+    channels = len(new.problem.channels)
+    converted = {}
+    for run, values in whitened.items():
+        apart = values.reshape(-1, channels, 2 * new.weights.bins[run])
+        converted[run] = new.weights.convert(apart, run, old.weights).reshape(values.shape)
+    return converted

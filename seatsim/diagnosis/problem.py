@@ -25,7 +25,7 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import Record
 from seatsim.simulation.augment import read_sensors
-from seatsim.simulation.inputs import RigInputs
+from seatsim.simulation.inputs import Forces, RigInputs, SeatInputs
 from seatsim.simulation.respond import FINER, SEAT_OUTPUTS, respond
 
 
@@ -78,8 +78,9 @@ class DiagnosisProblem:
     `measured` holds the compared channels of each run without its first second, shape (channels, samples), `inputs` the
     inputs of each run, `parameters` those that the stated tolerance lets vary; `pool` runs simulations in parallel.
     Fits end at the `deadline`. `current_falls` says whether the current falls anywhere, by which memory of it shows,
-    `reached` how far the rig went towards a limit of its travel or current, by the limit's unit. `motions` holds the
-    last outputs of rigs some of whose sensors err.
+    `reached` how far the rig went towards a limit of its travel or current, by the limit's unit. `traces` are what
+    forces among the inputs leave in the channels, by run (see `about`). `motions` holds the last outputs of rigs some
+    of whose sensors err.
     """
 
     recording: Recording
@@ -94,6 +95,7 @@ class DiagnosisProblem:
     deadline: Deadline = field(default=NEVER, kw_only=True)
     current_falls: bool = field(default=True, kw_only=True)
     reached: Mapping[str, float] = field(default_factory=dict, kw_only=True)
+    traces: Mapping[str, Array] = field(default_factory=dict, kw_only=True)
     motions: dict[Hashable, Mapping[str, Array]] = field(default_factory=dict, kw_only=True, repr=False, compare=False)
 
     @property
@@ -148,6 +150,28 @@ class DiagnosisProblem:
         """Return the problem with another deadline of its fits."""
         return dataclasses.replace(self, deadline=deadline)
 
+    def about(self, forces: Mapping[str, Array], traces: Mapping[str, Array]) -> DiagnosisProblem:
+        """Return the problem linearised about forces on the frame of a seat, in N, shape (samples,) by run.
+
+        The rig is driven by them, and their `traces` in the channels, shape (channels, samples), are taken off again,
+        so that the damper slips as it does under the forces.
+        """
+        inputs = dict[str, RigInputs]()
+        for run, driven in self.inputs.items():
+            assert isinstance(driven, SeatInputs)
+            rows = np.arange(len(driven.floor.acceleration)) / self.parts
+            force = np.interp(rows, self.skip + np.arange(len(forces[run])), forces[run], left=0.0, right=0.0)
+            inputs[run] = driven._replace(forces=Forces(force))
+        return dataclasses.replace(self, inputs=inputs, traces=traces, motions={})
+
+    def as_recorded(self) -> DiagnosisProblem:
+        """Return the problem without forces about which it was linearised."""
+        if not self.traces:
+            return self
+        seats = {run: each for run, each in self.inputs.items() if isinstance(each, SeatInputs)}
+        inputs = dict[str, RigInputs]({run: each._replace(forces=Forces()) for run, each in seats.items()})
+        return dataclasses.replace(self, inputs=inputs, traces={}, motions={})
+
     def augmented(self, deviations: Array, effects: Sequence[Record]) -> Scenario:
         """Return the nominal scenario with other parameters, and effects, which replace its own of the same kind."""
         varied = vary(self.scenario, self.parameters, deviations)
@@ -167,7 +191,8 @@ class DiagnosisProblem:
         scenario = self.scenario_of(run, deviations, effects)
         outputs = _respond(scenario, inputs) if inputs else self._replay(run, deviations, scenario)
         end = self.skip + self.measured[run].shape[1]
-        return np.array([outputs[name][self.skip : end] for name in self.channels])
+        simulated = np.array([outputs[name][self.skip : end] for name in self.channels])
+        return simulated - self.traces[run] if run in self.traces and inputs is None else simulated
 
     def _replay(self, run: str, deviations: Array, scenario: Scenario) -> Mapping[str, Array]:
         """Return what the sensors say in a run; a motion that only sensors read otherwise is not simulated again."""

@@ -17,7 +17,14 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import softmax
 
-from seatsim.diagnosis.movement import expect_power, measure_relative_movements, measure_shares_left
+from seatsim.diagnosis.localise.discrepancy import measure_unsteadiness
+from seatsim.diagnosis.localise.disturbance import Disturbance
+from seatsim.diagnosis.movement import (
+    expect_power,
+    measure_relative_movements,
+    measure_shares_left,
+    relate_to_material,
+)
 from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.select import Selection
 from seatsim.schema.arrays import Array
@@ -40,46 +47,89 @@ WEIGHTS = read_packaged(Path(__file__).with_name("score.yaml"), dict[str, Weight
 """Weight of each feature, by name."""
 
 
-class Hypothesis(NamedTuple):
-    """A rig that may explain the recording, with its features by name; None stands for an unknown cause."""
+class Search(NamedTuple):
+    """Fitted sets of effects under the weights of an objective, beside a disturbance, if any."""
 
-    rig: Evaluation | None
+    objective: Objective
+    selection: Selection
+    disturbance: Disturbance | None = None
+
+    @property
+    def effect(self) -> frozenset[str]:
+        """The name of the effect that the disturbance is; empty without one."""
+        return frozenset([self.disturbance.effect] if self.disturbance else [])
+
+
+class Hypothesis(NamedTuple):
+    """What may explain the recording: a rig and a search, beside whose disturbance it stands, with features by name.
+
+    Without a rig it stands for an unknown cause.
+    """
+
     features: dict[str, float]
+    rig: Evaluation | None = None
+    search: Search | None = None
 
     @property
     def names(self) -> frozenset[str]:
         """Names of its effects."""
-        return self.rig.parameters.names if self.rig else frozenset()
+        return self.rig.parameters.names | self.search.effect if self.rig and self.search else frozenset()
 
 
-def list_hypotheses(objective: Objective, selection: Selection) -> list[Hypothesis]:
-    """Return the best sets of each size, and an unknown cause last."""
-    count = objective.settings.selection.finalists
-    gaps = {each.parameters.names: _measure_gap(objective, each) for sets in selection.sets for each in sets}
-    sets = [
-        _describe_set(objective, selection.calibrated, each, gaps)
-        for sets in selection.sets[1:]
-        for each in sets[:count]
+def list_hypotheses(searches: Sequence[Search]) -> list[Hypothesis]:
+    """Return the best sets of each size of some searches, and an unknown cause last.
+
+    All are compared with the calibrated rig of the first search, which has no disturbance.
+    """
+    first, *_ = searches
+    count = first.objective.settings.selection.finalists
+    fitted = [(search, rig) for search in searches for sets in search.selection.sets for rig in sets]
+    gaps = {rig.parameters.names | search.effect: _measure_gap(search.objective, rig) for search, rig in fitted}
+    hypotheses = [
+        Hypothesis(_describe_set(first.selection.calibrated, search, rig, gaps), rig, search)
+        for search in searches
+        for sets in search.selection.sets[0 if search.disturbance else 1 :]
+        for rig in sets[:count]
     ]
-    least = min((each.features["excess"] for each in sets), default=0.0)
-    return [*sets, Hypothesis(None, {"unknown": 1.0, "unknown_excess": least})]
+    least = min((each.features["excess"] for each in hypotheses), default=0.0)
+    return [*hypotheses, Hypothesis({"unknown": 1.0, "unknown_excess": least})]
 
 
 def _describe_set(
-    objective: Objective, calibrated: Evaluation, rig: Evaluation, gaps: Mapping[frozenset[str], float]
-) -> Hypothesis:
-    """Return a fitted set of effects with its features; `gaps` are those of all sets by the names of their effects."""
-    names = rig.parameters.names
-    worst = max([0.0, *measure_shares_left(objective.problem, calibrated, rig)])
-    moved = min(float(np.max(each)) for each in measure_relative_movements(objective.problem, rig))
-    return Hypothesis(rig, {
-        "excess": math.log((rig.excess + _LITTLE) / (calibrated.excess + _LITTLE)),
+    calibrated: Evaluation, search: Search, rig: Evaluation, gaps: Mapping[frozenset[str], float]
+) -> dict[str, float]:
+    """Return the features of a fitted set of effects; `gaps` are those of all sets by the names of their effects."""
+    objective, names = search.objective, rig.parameters.names | search.effect
+    problem = objective.problem
+    worst = max([0.0, *measure_shares_left(problem, calibrated, rig)])
+    movements = measure_relative_movements(problem, rig)
+    features = {
+        "excess": _compare(rig.excess, calibrated.excess),
         "gap": math.log(gaps[names] / gaps[calibrated.parameters.names]),
         "gap_gain": math.log(gaps[names] / min(gap for smaller, gap in gaps.items() if smaller < names)),
         "worst": math.log(worst + _LITTLE),
-        "movement": min(0.0, math.log(moved + _LEAST_MOVEMENT)),
         "prior": float(np.sum((rig.parameters.deviations / objective.settings.fit.prior_std) ** 2)),
-    })  # fmt: skip
+    }
+    if search.disturbance:
+        movements = [*movements, relate_to_material(problem, search.disturbance.measure_movements(problem))]
+        features |= _describe_disturbance(calibrated, search, search.disturbance)
+    moved = min(float(np.max(each)) for each in movements)
+    return features | {"movement": min(0.0, math.log(moved + _LEAST_MOVEMENT))}
+
+
+def _describe_disturbance(calibrated: Evaluation, search: Search, disturbance: Disturbance) -> dict[str, float]:
+    """Return the features that the sets beside a disturbance have in common."""
+    return {
+        "disturbance": 1.0,
+        "disturbance_charge": _compare(search.objective.weights.charge, calibrated.excess),
+        "predicted": disturbance.found.shares["everything"],
+        "unsteady": measure_unsteadiness(search.objective.problem, disturbance.found),
+    }
+
+
+def _compare(after: float, before: float) -> float:
+    """Return the logarithm of a share of an excess."""
+    return math.log((after + _LITTLE) / (before + _LITTLE))
 
 
 def _measure_gap(objective: Objective, rig: Evaluation) -> float:

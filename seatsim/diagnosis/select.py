@@ -68,7 +68,7 @@ class Selection:
 
     def weigh_again(self, old: Objective, new: Objective) -> LinearisedRig:
         """Return the rig under other weights, its nuisance parameters refitted; nothing is linearised again."""
-        nominal, calibrated = (new.weigh(each.parameters, each.residuals) for each in (self.nominal, self.calibrated))
+        nominal, calibrated = new.unhurried.evaluate([self.nominal.parameters, self.calibrated.parameters])
         jacobian = scale(self.nuisances.jacobian, old, new)
         nearest = min(nominal, calibrated, key=lambda each: each.cost)
         refitted = fit(new.unhurried, nearest, Linearisation(calibrated, jacobian))

@@ -16,6 +16,7 @@ from seatsim.diagnosis.movement import group_equivalent, measure_remainders
 from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import Share
+from seatsim.diagnosis.score import Search
 from seatsim.diagnosis.select import LinearisedRig, Selection, select_effects
 from seatsim.diagnosis.settings.judging import DecisionSettings
 
@@ -47,7 +48,7 @@ class Solution(NamedTuple):
 def search(task: SearchTask, objective: Objective, rig: LinearisedRig | None = None) -> Solution:
     """Select effects under the weights of an objective and decide; `rig` is the linearised rig where it is known."""
     selection = select_effects(objective, task.candidates, task.progress, rig=rig)
-    decision = decide_verdict(objective, selection, task.effects)
+    decision = decide_verdict([Search(objective, selection)], task.effects)
     return Solution(objective, selection, decision)
 
 
@@ -76,9 +77,8 @@ def decide_beside_unknown(
     size = max(1, len(chosen.parameters.terms))
     compared = [(each.parameters.names, weight) for each, weight in tried if len(each.parameters.terms) <= size]
     probabilities = weigh_effects(compared, list(decision.probabilities))
-    stated = dataclasses.replace(
-        decision, chosen=chosen, groups=group_equivalent(chosen, equivalent), probabilities=probabilities
-    )
+    groups = group_equivalent(chosen.parameters.names, [each.parameters.names for each in equivalent])
+    stated = dataclasses.replace(decision, chosen=chosen, groups=groups, probabilities=probabilities)
     return call_unknown(settings, stated)
 
 

@@ -13,20 +13,15 @@ from seatsim.diagnosis.cross_validate import cross_validate, select_by_cross_val
 from seatsim.diagnosis.decide import decide_verdict, shows_effect
 from seatsim.diagnosis.fit import refit_on
 from seatsim.diagnosis.localise.discrepancy import describe_discrepancy
+from seatsim.diagnosis.localise.disturbance import Disturbance, find_bias_drift, find_disturbance, put_beside
 from seatsim.diagnosis.localise.input_estimate import estimate_nonrepeatable_force
 from seatsim.diagnosis.localise.localisation import localise_remainder, share_gap
-from seatsim.diagnosis.localise.stochastic import (
-    add_to_noise,
-    find_bias_drift,
-    find_disturbance,
-    merge_effect,
-    name_stochastic_effect,
-)
 from seatsim.diagnosis.movement import is_material, measure_gap_taken
 from seatsim.diagnosis.noise import carry_force, measure_broadband, weigh_gap, weigh_noise
 from seatsim.diagnosis.objective import Evaluation, Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, OutOfTimeError
 from seatsim.diagnosis.result import Share
+from seatsim.diagnosis.score import Search
 from seatsim.diagnosis.select import Selection, select_effects
 from seatsim.diagnosis.solution import (
     Progress,
@@ -56,7 +51,7 @@ def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress)
     if first.decision.verdict == "unknown":
         first = _in_time(_search_beyond_broadband, task, first) or first
     if not problem.bench:
-        first = _in_time(_search_beside_disturbance, task, first, without) or first
+        first = _in_time(_decide_beside_disturbance, task, first, without) or first
     # A random signal takes nothing off the gap, however right it is.
     if first.decision.verdict == "none" or first.stochastic:
         return first
@@ -148,7 +143,7 @@ def _search_by_gap(task: SearchTask, first: Solution) -> Solution:
         decision = decide_beside_unknown(settings.decision, first.decision, refitted, equivalent, tried)
         # Where weak signals weigh most a fit may end far from the set that takes all of the gap.
         if _takes_enough(first.objective, first._replace(decision=decision)):
-            again = decide_verdict(first.objective, first.selection.add(refitted), task.effects)
+            again = decide_verdict([Search(first.objective, first.selection.add(refitted))], task.effects)
             if again.chosen is refitted and again.verdict in ("known", "ambiguous"):
                 decision = again
     else:
@@ -204,32 +199,36 @@ def _localise(task: SearchTask, solution: Solution) -> Solution:
     return solution._replace(decision=decision, where=share_gap(objective, rig, remainder), discrepancy=found)
 
 
-def _search_beside_disturbance(task: SearchTask, first: Solution, without: Sequence[str]) -> Solution:
-    """Search again beside a stochastic disturbance, added to the noise, where one of the best sets leaves one.
+def _decide_beside_disturbance(task: SearchTask, first: Solution, without: Sequence[str]) -> Solution:
+    """Return the solution of both searches, without a disturbance and beside one that one of the best sets leaves.
 
     Of a set that explains the gap only a drift of a sensor may be left; of others, whatever such a signal may be.
     """
-    objective, verdict = first.objective, first.decision.verdict
-    problem = objective.problem
+    objective, selection, verdict = first.objective, first.selection, first.decision.verdict
     if verdict == "none":
         return first
     if verdict == "unknown":
         task.progress("asking whether a disturbance hides the effects")
-        found = find_disturbance(objective, first.selection)
+        disturbance = find_disturbance(objective, selection)
     else:
-        found = find_bias_drift(problem, first.decision.chosen)
-    effect = name_stochastic_effect(problem, found) if found else ""
-    if found is None or not effect or effect in without:
+        disturbance = find_bias_drift(objective, first.decision.chosen)
+    if disturbance is None or disturbance.effect in without:
         return first
-    task.progress(f"counting {effect} as noise")
-    noisy = Objective(problem, add_to_noise(problem, objective.weights, effect, found))
-    others = task._replace(candidates=[each for each in task.candidates if each.effect != effect])
-    rig = first.selection.weigh_again(objective, noisy)
-    rig = rig._replace(sensitivities=rig.sensitivities.without(effect))
-    second = _search_at_lower_noise(others, search(others, noisy, rig))
-    if second.decision.verdict == "unknown":
-        return first
-    localised = _localise(others, second)
-    decision, where = merge_effect(problem.settings, second.decision, localised.where, effect)
-    found = found._replace(block=effect.partition(".")[0])
-    return second._replace(decision=decision, where=where, discrepancy=found, stochastic=effect)
+    second = search_beside(task, objective, selection, disturbance)
+    decision = decide_verdict([Search(objective, selection), second], task.effects)
+    if decision.verdict == "unknown" or decision.search is not second:
+        return first._replace(decision=decision)
+    effect, problem = disturbance.effect, second.objective.problem
+    moved = {effect.partition(".")[0]: disturbance.measure_movements(problem)}
+    where = share_gap(second.objective, decision.chosen, None, moved)
+    return Solution(second.objective, second.selection, decision, where, disturbance.found, effect)
+
+
+def search_beside(task: SearchTask, objective: Objective, selection: Selection, disturbance: Disturbance) -> Search:
+    """Return the search beside a disturbance that was found in what a selection leaves."""
+    task.progress(f"searching beside {disturbance.effect}")
+    beside = put_beside(objective, disturbance)
+    others = [each for each in task.candidates if each.effect != disturbance.effect]
+    rig = selection.weigh_again(objective, beside)
+    rig = rig._replace(sensitivities=rig.sensitivities.without(disturbance.effect))
+    return Search(beside, select_effects(beside, others, task.progress, rig=rig), disturbance)

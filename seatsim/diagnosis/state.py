@@ -16,7 +16,7 @@ from seatsim.diagnosis.design.separability import measure_collinearity
 from seatsim.diagnosis.estimates import compare_comfort, estimate_causes, trace_motion, trace_replayed, trace_run
 from seatsim.diagnosis.fit import fit
 from seatsim.diagnosis.localise.discrepancy import show_discrepancy
-from seatsim.diagnosis.localise.stochastic import add_strength
+from seatsim.diagnosis.localise.disturbance import add_strength
 from seatsim.diagnosis.movement import name_immaterial, share_removable
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters
 from seatsim.diagnosis.result import Cause, DamperForm, Diagnosis, Evidence, Gaps, ProposedExperiment
@@ -215,7 +215,7 @@ def _propose_experiment(
 def _collect_evidence(validation: _Validation, causes: Sequence[Cause]) -> Evidence:
     """Return the content of the report's figures, on the held-out run."""
     solution, run = validation.solution, validation.run
-    problem, settings = solution.objective.problem, solution.objective.settings.design
+    problem, settings = solution.objective.problem.as_recorded(), solution.objective.settings.design
     traces = trace_run(problem, validation.rigs, run)
     found = solution.discrepancy
     shown = None if found is None else show_discrepancy(problem, found, run)

@@ -62,7 +62,7 @@ def search_wider(first: Solution, without: Sequence[str], progress: Progress) ->
 
     def search() -> Solution:
         progress("searching again with a wider tolerance of parameters at their bounds")
-        return solve(judge.problem, without, progress)
+        return solve(judge.problem.as_recorded(), without, progress)
 
     attempt = _leave_less if best.excess > problem.settings.selection.nothing_left else _need_fewer
     notes = ["at the bound of their tolerance: " + ", ".join(held.values())]

@@ -18,7 +18,6 @@ from seatsim.diagnosis.localise.localisation import FaultHypothesis
 from seatsim.diagnosis.objective import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import DiscrepancySignal
-from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.diagnosis.settings.examining import LocalisationSettings
 from seatsim.schema.arrays import Array
 
@@ -157,28 +156,23 @@ def describe_discrepancy(
     )
 
 
-def is_from_outside(settings: DiagnosisSettings, found: Discrepancy, rate: float) -> bool:
-    """Whether a force comes from outside the rig: it is not predicted, and as strong in every run but for chance.
+def measure_unsteadiness(problem: DiagnosisProblem, found: Discrepancy) -> float:
+    """Return the logarithm of the ratio of a signal's RMS in its strongest run to its weakest, 0 where chance makes it.
 
-    `rate` is the sample rate of the signals in Hz.
+    A few knocks make a force whose RMS differs from run to run by chance: as much as the power of its blocks of time,
+    of a second or so, lets expect.
     """
-    steady = _is_steady(settings.localisation, found, settings.validation.block_length * rate)
-    return steady and found.shares["everything"] <= settings.localisation.predicted
-
-
-def _is_steady(settings: LocalisationSettings, found: Discrepancy, length: float) -> bool:
-    """Whether the RMS of a signal is about the same in every run, or differs by no more than in its blocks of time.
-
-    A few knocks make a force whose RMS differs from run to run by chance. `length` is that of a block in samples.
-    """
+    settings, length = problem.settings, problem.settings.validation.block_length * problem.rate
     powers = [
         [float(np.mean(block**2)) for block in np.array_split(values, max(2, round(len(values) / length)))]
         for values in (signal - signal.mean() for signal in found.comparable.values())
     ]
+    if not powers:
+        return 0.0
     means, errors = np.array([(np.mean(each), np.var(each, ddof=1) / len(each)) for each in powers]).T
     low, high = np.argmin(means), np.argmax(means)
-    chance = settings.steady_by_chance * np.sqrt(errors[low] + errors[high])
-    return bool(means[high] <= max(settings.steady**2 * means[low], means[low] + chance))
+    chance = settings.validation.by_chance * np.sqrt(errors[low] + errors[high])
+    return max(0.0, 0.5 * float(np.log(means[high] / (means[low] + chance))))
 
 
 def is_bias_drift(settings: LocalisationSettings, found: Discrepancy, rate: float, noise: float) -> bool:

@@ -29,7 +29,7 @@ from seatsim.diagnosis.localise.reconstruction import PORTS
 from seatsim.diagnosis.movement import measure_movements
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
 from seatsim.diagnosis.result import Share
-from seatsim.diagnosis.spectra import as_complex
+from seatsim.diagnosis.spectra import Spectra, as_complex
 from seatsim.recordings.quality.sensors import FLOOR, follows_floor
 from seatsim.schema.arrays import Array
 
@@ -42,7 +42,9 @@ class FaultHypothesis(NamedTuple):
 
     `negative_log_evidence` is minus twice the log evidence per number compared, less 1. `signals[run]`, shape
     (samples,), is the input above its noise, a quantity in its unit; `channel` is the one that errs, for a sensor.
-    `comparable` is, for a port, the part of that input at the frequencies at which every run shows it.
+    `comparable` is, for a port, the part of that input at the frequencies at which every run shows it, `traces[run]`
+    what it leaves in the channels, shape (channels, samples), and `amplitudes[run]`, shape (channels, frequencies), the
+    frequency response of the channels times the root of the input's power.
     """
 
     negative_log_evidence: float
@@ -51,6 +53,8 @@ class FaultHypothesis(NamedTuple):
     signals: dict[str, Array]
     channel: str = ""
     comparable: Mapping[str, Array] = MappingProxyType({})
+    amplitudes: Mapping[str, Spectra] = MappingProxyType({})
+    traces: Mapping[str, Array] = MappingProxyType({})
 
 
 def evaluate_hypotheses(
@@ -72,8 +76,15 @@ def evaluate_hypotheses(
         signals = {run: estimate.signal for run, estimate in estimates.items()}
         quantity, unit = _QUANTITIES.get(name, ("force", "N"))
         evidence = _negative_log_evidence(objective, nuisances, estimates)
-        comparable = _make_comparable(estimates) if name in PORTS else {}
-        hypotheses[name] = FaultHypothesis(evidence, quantity, unit, signals, comparable=comparable)
+        hypothesis = FaultHypothesis(evidence, quantity, unit, signals)
+        if name in PORTS:
+            weights = objective.weights.weights
+            responses = {run: each.response / weights[run] for run, each in estimates.items()}
+            amplitudes = {run: responses[run] * np.sqrt(each.power) for run, each in estimates.items()}
+            traces = {run: _pass(responses[run], each.signal) for run, each in estimates.items()}
+            comparable = _make_comparable(estimates)
+            hypothesis = hypothesis._replace(comparable=comparable, amplitudes=amplitudes, traces=traces)
+        hypotheses[name] = hypothesis
     errors = [
         hypotheses.pop(name)._replace(
             quantity=f"error of {name}", unit=problem.recording.channels[name].unit, channel=name
@@ -84,6 +95,14 @@ def evaluate_hypotheses(
     if "floor" in hypotheses and not follows_floor(problem.recording):
         errors.append(_as_sensor_error(hypotheses.pop("floor")))
     return hypotheses | {"sensor": min(errors, key=lambda hypothesis: hypothesis.negative_log_evidence)}
+
+
+def _pass(response: Spectra, signal: Array) -> Array:
+    """Return what a signal leaves in the channels, shape (channels, samples), at the frequencies of its response."""
+    spectrum = np.fft.rfft(signal)
+    passed = np.zeros((len(response), len(spectrum)), dtype=complex)
+    passed[:, : response.shape[1]] = response * spectrum[: response.shape[1]]
+    return np.fft.irfft(passed, len(signal))
 
 
 def _make_comparable(estimates: Mapping[str, InputEstimate]) -> dict[str, Array]:
@@ -156,6 +175,7 @@ def _negative_log_evidence(
 
 _ON_FRAME = ("damper", "suspension", "floor")
 """Blocks whose unknown input is a force on the frame."""
+_NOTHING: Mapping[str, Array] = MappingProxyType({})
 _LEAST_DIFFERENCE = 1e-6
 """Least difference in evidence that is divided by, where no block explains anything."""
 
@@ -177,9 +197,14 @@ class Remainder(NamedTuple):
         return self.hypotheses[self.block]
 
 
-def share_gap(objective: Objective, chosen: Evaluation, remainder: Remainder | None) -> list[Share]:
-    """Return the blocks, ranked by their share of the gap; with an unexplained remainder its block comes first."""
-    shares: dict[str, float] = {}
+def share_gap(
+    objective: Objective, chosen: Evaluation, remainder: Remainder | None, beside: Mapping[str, Array] = _NOTHING
+) -> list[Share]:
+    """Return the blocks, ranked by their share of the gap; with an unexplained remainder its block comes first.
+
+    `beside` are movements of the channels by what is no effect of the rig, shape (channels,), by block.
+    """
+    shares = {block: float(np.mean(move**2)) for block, move in beside.items()}
     for term, move in zip(chosen.parameters.terms, measure_movements(objective.problem, chosen), strict=True):
         shares[term.block] = shares.get(term.block, 0.0) + float(np.mean(move**2))
     if remainder is not None:

@@ -1,0 +1,125 @@
+"""Effects that are a random signal: a force from outside, or the drift of a sensor's zero, beside what else is wrong.
+
+Their signal differs from run to run, so that no fit finds it. It is estimated in what the best sets of effects leave,
+and the search for effects goes on beside it. A drift counts as noise of the channels. A force is taken out: the rig is
+linearised about the force that was estimated, and what a force can do to the channels at a frequency, all of them
+together, weighs as little as its power says; what it cannot do keeps its full weight.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import NamedTuple
+
+import numpy as np
+
+from seatsim.diagnosis.localise.discrepancy import Discrepancy, describe_discrepancy, is_bias_drift
+from seatsim.diagnosis.localise.localisation import FaultHypothesis, evaluate_hypotheses
+from seatsim.diagnosis.localise.reconstruction import PORTS, reconstruct
+from seatsim.diagnosis.movement import measure_remainders
+from seatsim.diagnosis.objective import Evaluation, Objective, Parameters
+from seatsim.diagnosis.problem import DiagnosisProblem
+from seatsim.diagnosis.result import Cause, Estimate
+from seatsim.diagnosis.select import Selection
+from seatsim.diagnosis.spectra import Spectra, smooth_spectrum
+from seatsim.schema.arrays import Array
+
+FORCE_FROM_OUTSIDE, BIAS_DRIFT = "floor.unmeasured_input", "sensor.bias"
+
+
+class Disturbance(NamedTuple):
+    """A random signal with the effect that it is, and what it leaves in the channels, shape (channels, samples) by run.
+
+    `amplitudes` are the spectra of that where the signal is a force, shape (channels, frequencies).
+    """
+
+    effect: str
+    found: Discrepancy
+    traces: Mapping[str, Array]
+    amplitudes: Mapping[str, Spectra] = MappingProxyType({})
+
+    def measure_movements(self, problem: DiagnosisProblem) -> Array:
+        """Return by how much it moves each channel, in the channel's standard deviations, shape (channels,)."""
+        traces = np.concatenate([self.traces[run] for run in problem.runs], axis=1)
+        return np.asarray(np.sqrt(np.mean(traces**2, axis=1)) / problem.spread)
+
+
+def find_disturbance(objective: Objective, selection: Selection) -> Disturbance | None:
+    """Return the random signal beside which one of the best sets leaves least, None where it is no such effect.
+
+    A disturbance shows only about a rig with the effects beside it, and they are found only where the disturbance is
+    expected. Sets are therefore judged by what they leave beyond a disturbance, not by all that they leave.
+    """
+    slight = objective.settings.localisation.slight * selection.calibrated.excess
+    tried = []
+    for sets in selection.sets:
+        hypotheses = evaluate_hypotheses(objective, selection.linearise(sets[0]), ["suspension"])
+        block, likeliest = min(hypotheses.items(), key=lambda pair: pair[1].negative_log_evidence)
+        charged = likeliest.negative_log_evidence + slight * len(sets[0].parameters.terms)
+        tried.append((charged, sets[0], block, likeliest))
+    _, rig, block, likeliest = min(tried, key=lambda each: each[0])
+    problem = objective.problem
+    found = describe_discrepancy(problem, rig.parameters, block, likeliest)
+    if block == "suspension":
+        found = found._replace(block="floor")
+        return Disturbance(FORCE_FROM_OUTSIDE, found, likeliest.traces, likeliest.amplitudes)
+    # An input that was reconstructed, as the floor's motion, does not hold the noise of its sensor.
+    noise = float(problem.noise[problem.channels.index(found.channel)]) if found.channel in problem.channels else 0.0
+    if is_bias_drift(problem.settings.localisation, found, problem.rate, noise):
+        return Disturbance(BIAS_DRIFT, found, _trace_error(objective, found))
+    return None
+
+
+def find_bias_drift(objective: Objective, evaluation: Evaluation) -> Disturbance | None:
+    """Return the remainder of the one channel with a material gap as a drift of its sensor, None where it is none.
+
+    The travel is excluded: a slow force on the rig would move it, and creep moves it alone.
+    """
+    problem = objective.problem
+    settings = problem.settings
+    gaps = measure_remainders(problem, evaluation)
+    k = int(np.argmax(gaps))
+    name, others = problem.channels[k], np.delete(gaps, k)
+    is_alone = not np.any(others > gaps[k] / settings.localisation.drift_alone)
+    if gaps[k] < settings.decision.material or not is_alone or name == "suspension_displacement":
+        return None
+    signals = {run: values[k] for run, values in evaluation.residuals.items()}
+    error = FaultHypothesis(0.0, f"error of {name}", problem.recording.channels[name].unit, signals, name)
+    found = describe_discrepancy(problem, evaluation.parameters, "sensor", error)
+    if not is_bias_drift(settings.localisation, found, problem.rate, float(problem.noise[k])):
+        return None
+    return Disturbance(BIAS_DRIFT, found, _trace_error(objective, found))
+
+
+def _trace_error(objective: Objective, found: Discrepancy) -> dict[str, Array]:
+    """Return what an error of a sensor leaves in the channels, shape (channels, samples) by run."""
+    problem = objective.problem
+    if found.channel in problem.channels:
+        row = np.array([[name == found.channel] for name in problem.channels], dtype=float)
+        return {run: row * signal for run, signal in found.signals.items()}
+    traces = {}
+    for run, signal in found.signals.items():
+        rig = reconstruct(objective, Parameters(problem.nominal), run, PORTS["floor"])
+        traces[run] = rig.simulate_with(signal) - problem.simulated(run, problem.nominal, ())
+    return traces
+
+
+def put_beside(objective: Objective, disturbance: Disturbance) -> Objective:
+    """Return the objective beside a disturbance."""
+    problem, weights = objective.problem, objective.weights
+    if disturbance.amplitudes:
+        about = problem.about(disturbance.found.signals, disturbance.traces)
+        return Objective(about, weights.add_force(disturbance.amplitudes))
+    smoothing = problem.settings.noise.smoothing
+    powers = {
+        run: smooth_spectrum(np.abs(np.fft.rfft(trace, axis=1)) ** 2, smoothing)
+        for run, trace in disturbance.traces.items()
+    }
+    return Objective(problem, weights.add(powers))
+
+
+def add_strength(cause: Cause, found: Discrepancy) -> Cause:
+    """Return the cause with the RMS of its signal, and the channel that errs."""
+    place: dict[str, Estimate | str] = {"channel": found.channel} if found.channel else {}
+    return cause._replace(parameters=place | {"rms": Estimate(found.rms, 0.0, found.unit)})
