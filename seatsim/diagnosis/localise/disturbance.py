@@ -67,7 +67,7 @@ def find_disturbance(objective: Objective, selection: Selection) -> Disturbance 
     # An input that was reconstructed, as the floor's motion, does not hold the noise of its sensor.
     noise = float(problem.noise[problem.channels.index(found.channel)]) if found.channel in problem.channels else 0.0
     if is_bias_drift(problem.settings.localisation, found, problem.rate, noise):
-        return Disturbance(BIAS_DRIFT, found, _trace_error(objective, found))
+        return Disturbance(BIAS_DRIFT, found, trace_error(objective, found))
     return None
 
 
@@ -89,10 +89,10 @@ def find_bias_drift(objective: Objective, evaluation: Evaluation) -> Disturbance
     found = describe_discrepancy(problem, evaluation.parameters, "sensor", error)
     if not is_bias_drift(settings.localisation, found, problem.rate, float(problem.noise[k])):
         return None
-    return Disturbance(BIAS_DRIFT, found, _trace_error(objective, found))
+    return Disturbance(BIAS_DRIFT, found, trace_error(objective, found))
 
 
-def _trace_error(objective: Objective, found: Discrepancy) -> dict[str, Array]:
+def trace_error(objective: Objective, found: Discrepancy) -> dict[str, Array]:
     """Return what an error of a sensor leaves in the channels, shape (channels, samples) by run."""
     problem = objective.problem
     if found.channel in problem.channels:

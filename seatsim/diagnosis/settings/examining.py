@@ -71,9 +71,6 @@ class LocalisationSettings(NamedTuple):
     """Factor by which the gap left in a channel exceeds those of all others where its zero drifts.
     Trades off: lower: an error of the model is taken for drift.
     Chosen: on simulated rigs."""
-    stochastic_share: float = 0.6
-    """Share of the gap that an effect with a stochastic signal is said to make beside others.
-    Chosen: by convention."""
     regression_rate: float = 100.0
     """Rate at which signals are regressed [Hz].
     Chosen: numerically."""
@@ -87,18 +84,6 @@ class LocalisationSettings(NamedTuple):
     least_ridge: float = 1e-9
     """Least ridge, for regressors that are all at rest, such as a current that never flows.
     Chosen: numerically."""
-    predicted: float = 0.12
-    """Share of the variance on left-out runs (R2) from which a force belongs to the rig.
-    Trades off: higher: rattles are taken for forces from outside.
-    Chosen: on simulated rigs."""
-    steady: float = 1.4
-    """Ratio of its RMS in two runs up to which a force may come from outside.
-    Trades off: higher: forces that follow the motion are taken for forces from outside.
-    Chosen: on simulated rigs."""
-    steady_by_chance: float = 2.0
-    """Standard deviations by which its power may differ beyond that, as it differs between blocks of time.
-    Trades off: higher: rattles are taken for forces from outside; lower: a few knocks are not.
-    Chosen: two, as in a test at 5 %."""
     slow_slip: float = 0.03
     """Velocity scale of the smooth friction among the regressors [m/s].
     Chosen: on simulated rigs."""

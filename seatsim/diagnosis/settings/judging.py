@@ -42,9 +42,6 @@ class DecisionSettings(NamedTuple):
     """Removable gap, in standard deviations, below which its share is not asked for.
     Trades off: lower: the share of a small number decides.
     Chosen: numerically."""
-    stochastic: tuple[float, float, float] = (0.9, 0.01, 0.1)
-    """Probability of an effect with a stochastic signal, and then of `none` and of `unknown`.
-    Chosen: calibrated on simulated rigs."""
 
 
 class CrossValidationSettings(NamedTuple):

@@ -118,7 +118,7 @@ def having(names):
     ],
 )
 def test_effects_that_stand_for_each_other_are_grouped(chosen, equivalent, groups):
-    found = group_equivalent(having(chosen), [having(names) for names in equivalent])
+    found = group_equivalent(frozenset(chosen), map(frozenset, equivalent))
     assert [[group[0], *sorted(group[1:])] for group in found] == groups
 
 

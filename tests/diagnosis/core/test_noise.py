@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.noise import carry_force, weigh_noise
+from seatsim.diagnosis.noise import NoiseWeights, carry_force, weigh_noise
 from seatsim.diagnosis.spectra import smooth_spectrum
 
 from .noisy import RUNS, draw, mean_squares, pose
@@ -72,3 +72,28 @@ def test_what_repeats_differ_by_counts_where_it_is_more_than_the_noise_and_there
         np.testing.assert_allclose(power[1, far], NOISE[1] ** 2)
         # Half of the tone's power, 1/4 N of |X|^2 / N at one of the two sides, spread over 19 bins of 300 rows.
         assert power[1, np.argmin(np.abs(frequency - 40.0))] == pytest.approx(0.5 * 300 / 4 / 19, rel=0.01)
+
+
+def test_what_a_force_may_have_done_to_all_channels_weighs_as_little_as_its_power_says():
+    rng, count = np.random.default_rng(2), 40
+    power, force = (
+        rng.uniform(0.5, 2.0, (2, count)),
+        rng.standard_normal((2, count)) + 1j * rng.standard_normal((2, count)),
+    )
+    weights = NoiseWeights({"first": power}).add_force({"first": 3.0 * force})
+    white = NoiseWeights({"first": np.full((2, count), 2.0)})
+
+    def draw(*shape):
+        return (rng.standard_normal(shape) + 1j * rng.standard_normal(shape)) / np.sqrt(2.0)
+
+    drawn = np.sqrt(power) * draw(4000, 2, count) + 3.0 * force * draw(4000, 1, count)
+    parts = np.concatenate([drawn.real, drawn.imag], axis=-1)
+    whitened = weights.convert(parts, "first", white)
+    np.testing.assert_allclose(np.mean(whitened**2, axis=0), 1.0, atol=0.15)
+    np.testing.assert_allclose(np.mean(whitened[:, 0] * whitened[:, 1], axis=0), 0.0, atol=0.1)
+    np.testing.assert_allclose(white.convert(whitened, "first", weights), parts, atol=1e-9)
+    np.testing.assert_allclose(weights.expect("first"), power + 9.0 * np.abs(force) ** 2)
+    covariance = np.einsum("if,jf->fij", 3.0 * force, 3.0 * force.conj())
+    covariance += np.einsum("if,ij->fij", power, np.eye(2))
+    determinants = np.log(np.linalg.det(covariance).real / np.prod(power, axis=0))
+    assert weights.charge == pytest.approx(2.0 * np.sum(determinants) / (4.0 * count))

@@ -1,0 +1,121 @@
+"""Effects with a random signal: how they are found, and how the search goes on beside them."""
+
+import numpy as np
+import pytest
+
+from seatsim.diagnosis.localise.discrepancy import Discrepancy
+from seatsim.diagnosis.localise.disturbance import (
+    BIAS_DRIFT,
+    FORCE_FROM_OUTSIDE,
+    add_strength,
+    find_bias_drift,
+    find_disturbance,
+    put_beside,
+    trace_error,
+)
+from seatsim.diagnosis.objective import Evaluation
+from seatsim.diagnosis.result import Cause, Estimate
+from seatsim.diagnosis.select import Selection
+from seatsim.diagnosis.spectra import smooth_spectrum
+
+from .toy import CHANNELS, SKIP, Added, add_taps, offer, place, pose, push, record, slow_signal, weigh_stated
+
+
+@pytest.fixture(scope="module")
+def problem(folder):
+    return pose(record(folder, runs={"first": 800, "second": 600}, channels=CHANNELS[:4], noise=0.01))
+
+
+def left(problem, *gaps, cycles=1):
+    """Return a rig that leaves a tone of so many cycles a run, its RMS in standard deviations of the channels."""
+    rng, residuals = np.random.default_rng(1), {}
+    for run, values in problem.measured.items():
+        noise = rng.standard_normal(values.shape)
+        wave = np.cos(2.0 * np.pi * cycles * np.linspace(0.0, 1.0, values.shape[1], endpoint=False))
+        noise /= np.sqrt(np.mean(noise**2, axis=1, keepdims=True))
+        slow = np.outer(np.array(gaps) * problem.spread, wave / np.sqrt(np.mean(wave**2)))
+        residuals[run] = slow + problem.noise[:, None] * noise
+    return Evaluation(place(problem), residuals, {}, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("gaps", "channel"),
+    [
+        ((0.1, 0.0, 0.0, 0.048), "frame_acceleration"),
+        ((0.1, 0.0, 0.0, 0.053), None),
+        ((0.0, 0.02, 0.0, 0.055), "damper_force"),
+        # Not material.
+        ((0.047, 0.0, 0.0, 0.0), None),
+        ((0.053, 0.0, 0.0, 0.0), "frame_acceleration"),
+        # A slow error of the travel is creep.
+        ((0.0, 0.0, 0.3, 0.0), None),
+        ((0.1, 0.1, 0.0, 0.0), None),
+    ],
+)
+def test_a_drift_is_sought_in_the_one_channel_that_stays_open(problem, gaps, channel):
+    objective, evaluation = weigh_stated(problem), left(problem, *gaps)
+    drift = find_bias_drift(objective, evaluation)
+    if channel is None:
+        assert drift is None
+        return
+    k, found = CHANNELS.index(channel), drift.found
+    assert (drift.effect, found.block, found.channel) == (BIAS_DRIFT, "sensor", channel)
+    assert (found.quantity, found.unit) == (f"error of {channel}", problem.recording.channels[channel].unit)
+    assert "everything" in found.shares
+    for run in problem.runs:
+        assert np.array_equal(drift.traces[run][k], evaluation.residuals[run][k])
+        assert not np.any(np.delete(drift.traces[run], k, axis=0))
+    assert find_bias_drift(objective, left(problem, *gaps, cycles=20)) is None
+
+
+def test_a_drift_counts_as_noise_of_its_channel(problem):
+    objective = weigh_stated(problem)
+    drift = find_bias_drift(objective, left(problem, 0.0, 0.2, 0.0, 0.0))
+    beside = put_beside(objective, drift)
+    for run, trace in drift.traces.items():
+        added = smooth_spectrum(np.abs(np.fft.rfft(trace)) ** 2, 0.15)
+        power = objective.weights.power[run]
+        np.testing.assert_allclose(beside.weights.power[run], power + added[:, : power.shape[1]])
+
+
+def test_a_drift_of_the_floors_sensor_leaves_what_its_motion_does_in_all_channels(problem):
+    signals = {run: 0.3 * slow_signal(values.shape[1], 1.0, corner=0.2) for run, values in problem.measured.items()}
+    found = Discrepancy("sensor", "error", "m/s^2", signals, {"everything": 0.0}, "floor_acceleration")
+    for run, trace in trace_error(weigh_stated(problem), found).items():
+        whole = np.zeros(len(problem.recording.table(run)["floor_acceleration"]))
+        whole[SKIP : SKIP + len(signals[run])] = signals[run]
+        np.testing.assert_allclose(trace, add_taps("floor", whole)[:4, SKIP : SKIP + len(signals[run])], atol=1e-9)
+
+
+@pytest.fixture(scope="module")
+def pushed(folder):
+    """A rig with an effect and a random force on its frame, and what the search for the effect alone leaves."""
+    recording = record(folder, (Added("one", 0.8),), {"first": 1200, "second": 1000}, CHANNELS[:4], 0.01)
+    problem = pose(recording)
+    added = push(problem, 3.0, "suspension")
+    for run, change in added.items():
+        problem.measured[run] += np.array(list(change.values()))
+    objective = weigh_stated(problem)
+    calibrated, one = (objective.evaluate([place(problem, *terms)])[0] for terms in ((), ((offer("a", "one"), 0.8),)))
+    return objective, Selection(calibrated, ((calibrated,), (one,)), objective.linearise_nuisances(calibrated))
+
+
+def test_a_force_is_found_beside_the_effect_that_leaves_least(pushed):
+    objective, selection = pushed
+    disturbance = find_disturbance(objective, selection)
+    assert (disturbance.effect, disturbance.found.block) == (FORCE_FROM_OUTSIDE, "floor")
+    beside = put_beside(objective, disturbance)
+    calibrated, one = beside.evaluate([sets[0].parameters for sets in selection.sets])
+    # Of what the force did nothing is left, of what the effect did, most.
+    assert selection.sets[1][0].excess > 10.0 and abs(one.cost / one.rows - 1.0) < 0.15
+    assert calibrated.excess > 3.0
+
+
+def test_a_cause_has_the_strength_of_its_signal_and_the_channel_that_errs():
+    cause = Cause(BIAS_DRIFT, 0.9, 0.1, {"share": Estimate(1.0, 0.1, "-")})
+    found = Discrepancy("sensor", "error", "N", {"a": np.full(3, 3.0), "b": np.full(3, -4.0)}, {}, "damper_force")
+    strong = add_strength(cause, found)
+    assert strong[:3] == cause[:3] and list(strong.parameters) == ["channel", "rms"]
+    assert strong.parameters["channel"] == "damper_force"
+    assert strong.parameters["rms"] == Estimate(pytest.approx(np.sqrt(12.5)), 0.0, "N")
+    assert list(add_strength(cause, found._replace(channel="")).parameters) == ["rms"]
