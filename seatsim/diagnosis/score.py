@@ -113,6 +113,7 @@ def _describe_set(
     if search.disturbance:
         movements = [*movements, relate_to_material(problem, search.disturbance.measure_movements(problem))]
         features |= _describe_disturbance(calibrated, search, search.disturbance)
+        features["disturbance_gap_gain"] = features["gap_gain"]
     moved = min(float(np.max(each)) for each in movements)
     return features | {"movement": min(0.0, math.log(moved + _LEAST_MOVEMENT))}
 
