@@ -148,12 +148,6 @@ class NoiseWeights:
             found[run] = (weighted / np.maximum(size, _TINY), 0.5 * size**2 / self.independent)
         return found
 
-    @cached_property
-    def charge(self) -> float:
-        """Minus twice the log evidence per number compared that the force costs, `log det` of what it adds."""
-        cost = sum(2.0 * float(np.sum(np.log1p(power))) for _, power in self._directions.values())
-        return cost / sum(2 * power.size for power in self.power.values())
-
     def __call__(self, residuals: Array, run: str) -> Array:
         """Return whitened residuals, shape (channels, 2 frequencies), mean square `independent` for noise alone."""
         spectrum = rfft(residuals, axis=1)[:, : self.bins[run]] * self.weights[run]

@@ -79,7 +79,8 @@ class Hypothesis(NamedTuple):
 def list_hypotheses(searches: Sequence[Search]) -> list[Hypothesis]:
     """Return the best sets of each size of some searches, and an unknown cause last.
 
-    All are compared with the calibrated rig of the first search, which has no disturbance.
+    All are compared with the calibrated rig of the first search, which has no disturbance. Of sets with the same
+    effects, as an offset of a sensor and its drift, the one that leaves least is listed.
     """
     first, *_ = searches
     count = first.objective.settings.selection.finalists
@@ -91,8 +92,10 @@ def list_hypotheses(searches: Sequence[Search]) -> list[Hypothesis]:
         for sets in search.selection.sets[0 if search.disturbance else 1 :]
         for rig in sets[:count]
     ]
-    least = min((each.features["excess"] for each in hypotheses), default=0.0)
-    return [*hypotheses, Hypothesis({"unknown": 1.0, "unknown_excess": least})]
+    least = min((each.features["excess"] for each in hypotheses if each.search is first), default=0.0)
+    best = {each.names: each for each in sorted(hypotheses, key=lambda each: -each.features["excess"])}
+    listed = [each for each in hypotheses if best[each.names] is each]
+    return [*listed, Hypothesis({"unknown": 1.0, "unknown_excess": least})]
 
 
 def _describe_set(
@@ -104,33 +107,24 @@ def _describe_set(
     worst = max([0.0, *measure_shares_left(problem, calibrated, rig)])
     movements = measure_relative_movements(problem, rig)
     features = {
-        "excess": _compare(rig.excess, calibrated.excess),
+        "excess": math.log((rig.excess + _LITTLE) / (calibrated.excess + _LITTLE)),
         "gap": math.log(gaps[names] / gaps[calibrated.parameters.names]),
-        "gap_gain": math.log(gaps[names] / min(gap for smaller, gap in gaps.items() if smaller < names)),
         "worst": math.log(worst + _LITTLE),
         "prior": float(np.sum((rig.parameters.deviations / objective.settings.fit.prior_std) ** 2)),
     }
     if search.disturbance:
+        # A random signal takes any gap, so that what a set takes beside it is judged by the excess.
         movements = [*movements, relate_to_material(problem, search.disturbance.measure_movements(problem))]
-        features |= _describe_disturbance(calibrated, search, search.disturbance)
-        features["disturbance_gap_gain"] = features["gap_gain"]
+        features |= {
+            "disturbance": 1.0,
+            "predicted": search.disturbance.found.shares["everything"],
+            "unsteady": measure_unsteadiness(problem, search.disturbance.found),
+        }
+    else:
+        smaller = min(gap for others, gap in gaps.items() if others < names)
+        features["gap_gain"] = math.log(gaps[names] / smaller)
     moved = min(float(np.max(each)) for each in movements)
     return features | {"movement": min(0.0, math.log(moved + _LEAST_MOVEMENT))}
-
-
-def _describe_disturbance(calibrated: Evaluation, search: Search, disturbance: Disturbance) -> dict[str, float]:
-    """Return the features that the sets beside a disturbance have in common."""
-    return {
-        "disturbance": 1.0,
-        "disturbance_charge": _compare(search.objective.weights.charge, calibrated.excess),
-        "predicted": disturbance.found.shares["everything"],
-        "unsteady": measure_unsteadiness(search.objective.problem, disturbance.found),
-    }
-
-
-def _compare(after: float, before: float) -> float:
-    """Return the logarithm of a share of an excess."""
-    return math.log((after + _LITTLE) / (before + _LITTLE))
 
 
 def _measure_gap(objective: Objective, rig: Evaluation) -> float:

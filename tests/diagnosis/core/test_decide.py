@@ -122,7 +122,7 @@ def test_a_search_beside_a_disturbance_adds_its_sets_and_the_disturbance_alone(r
     assert [each.names for each in (alone, disturbed, with_effects, unknown)] == [
         {"b.two"}, {"b.two", "z.other"}, {"a.one", "b.two", "z.other"}, set()
     ]  # fmt: skip
-    assert {*with_effects.features, *unknown.features} == set(WEIGHTS)
+    assert {*alone.features, *with_effects.features, *unknown.features} == set(WEIGHTS)
     assert "predicted" not in alone.features and with_effects.features["predicted"] == 0.2
     decision = decide_verdict([first, beside], EFFECTS)
     weights = weigh_hypotheses([alone, disturbed, with_effects, unknown])

@@ -93,7 +93,3 @@ def test_what_a_force_may_have_done_to_all_channels_weighs_as_little_as_its_powe
     np.testing.assert_allclose(np.mean(whitened[:, 0] * whitened[:, 1], axis=0), 0.0, atol=0.1)
     np.testing.assert_allclose(white.convert(whitened, "first", weights), parts, atol=1e-9)
     np.testing.assert_allclose(weights.expect("first"), power + 9.0 * np.abs(force) ** 2)
-    covariance = np.einsum("if,jf->fij", 3.0 * force, 3.0 * force.conj())
-    covariance += np.einsum("if,ij->fij", power, np.eye(2))
-    determinants = np.log(np.linalg.det(covariance).real / np.prod(power, axis=0))
-    assert weights.charge == pytest.approx(2.0 * np.sum(determinants) / (4.0 * count))

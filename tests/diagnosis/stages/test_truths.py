@@ -284,12 +284,13 @@ def test_noise_that_is_expected_too_large_hides_no_effect(solved):
     assert chosen.cost == pytest.approx(chosen.rows, rel=0.05)
 
 
-@pytest.mark.parametrize(("repeats", "verdict"), [(None, "unknown"), ({"again": "first"}, "known")])
-def test_a_force_by_which_repeats_differ_counts_as_noise(folder, repeats, verdict):
+@pytest.mark.parametrize(("repeats", "named"), [(None, "floor.unmeasured_input"), ({"again": "first"}, "")])
+def test_a_force_is_named_unless_repeats_show_that_it_is_noise(folder, repeats, named):
     floor = np.random.default_rng(4).standard_normal(SKIP + 400)
     runs, row = {"first": floor, "again": floor}, Row((Mass(30.0),), "known", disturb=pushed(20.0, "suspension"))
     found = solve(pose(record_row(folder, row._replace(runs=runs), repeats), 1), (), lambda _: None)
-    assert (found.decision.verdict, found.decision.chosen.parameters.names) == (verdict, {"driver.mass"})
+    assert (found.decision.verdict, found.decision.chosen.parameters.names) == ("known", {"driver.mass"})
+    assert found.stochastic == named
 
 
 def test_on_a_bench_what_is_unexplained_lies_in_the_damper(folder):
