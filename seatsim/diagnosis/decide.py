@@ -17,7 +17,7 @@ import numpy as np
 from seatsim.diagnosis.movement import group_equivalent, is_material, measure_remainders
 from seatsim.diagnosis.objective import Evaluation
 from seatsim.diagnosis.problem import DiagnosisProblem
-from seatsim.diagnosis.score import Search, list_hypotheses, weigh_hypotheses
+from seatsim.diagnosis.score import Hypothesis, Search, list_hypotheses, weigh_hypotheses
 from seatsim.diagnosis.select import Selection
 
 Verdict = Literal["none", "known", "ambiguous", "unknown"]
@@ -48,12 +48,12 @@ def decide_verdict(searches: Sequence[Search], effects: Sequence[str]) -> Decisi
         return Decision("none", selection.calibrated, [], dict.fromkeys(effects, rest), settings.none_if_none, rest)
     hypotheses = list_hypotheses(searches)
     *weights, unknown = weigh_hypotheses(hypotheses).tolist()
-    known = list(zip(hypotheses, weights, strict=False))
-    probabilities = {name: sum(weight for each, weight in known if name in each.names) for name in effects}
-    if not known:
+    answers = _merge_same(list(zip(hypotheses, weights, strict=False)))
+    probabilities = {name: sum(weight for each, weight in answers if name in each.names) for name in effects}
+    if not answers:
         return Decision("unknown", selection.calibrated, [], probabilities, 0.0, unknown)
-    chosen, likeliest = max(known, key=lambda pair: pair[1])
-    others = [(each, weight) for each, weight in known if each is not chosen and weight > settings.further_name]
+    chosen, likeliest = max(answers, key=lambda pair: pair[1])
+    others = [(each, weight) for each, weight in answers if each is not chosen and weight > settings.further_name]
     groups = group_equivalent(chosen.names, [each.names for each, _ in others if each.search is chosen.search])
     named = chosen.names.union(*groups)
     beside = [weight for each, weight in others if each.names <= named]
@@ -62,6 +62,15 @@ def decide_verdict(searches: Sequence[Search], effects: Sequence[str]) -> Decisi
     if unknown > right - settings.further_name * len(beside) - settings.wrong_name * (1.0 - right):
         verdict, groups = "unknown", []
     return Decision(verdict, chosen.rig or selection.calibrated, groups, probabilities, 0.0, unknown, chosen.search)
+
+
+def _merge_same(weighed: Sequence[tuple[Hypothesis, float]]) -> list[tuple[Hypothesis, float]]:
+    """Return one hypothesis for the same effects, as an offset of a sensor and its drift: that which leaves least."""
+    merged: dict[frozenset[str], tuple[Hypothesis, float]] = {}
+    for each, weight in sorted(weighed, key=lambda pair: -pair[0].features["excess"]):
+        _, before = merged.get(each.names, (each, 0.0))
+        merged[each.names] = each, before + weight
+    return list(merged.values())
 
 
 def _shows_no_gap(problem: DiagnosisProblem, selection: Selection) -> bool:

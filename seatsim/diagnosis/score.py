@@ -79,8 +79,7 @@ class Hypothesis(NamedTuple):
 def list_hypotheses(searches: Sequence[Search]) -> list[Hypothesis]:
     """Return the best sets of each size of some searches, and an unknown cause last.
 
-    All are compared with the calibrated rig of the first search, which has no disturbance. Of sets with the same
-    effects, as an offset of a sensor and its drift, the one that leaves least is listed.
+    All are compared with the calibrated rig of the first search, which has no disturbance.
     """
     first, *_ = searches
     count = first.objective.settings.selection.finalists
@@ -93,9 +92,7 @@ def list_hypotheses(searches: Sequence[Search]) -> list[Hypothesis]:
         for rig in sets[:count]
     ]
     least = min((each.features["excess"] for each in hypotheses if each.search is first), default=0.0)
-    best = {each.names: each for each in sorted(hypotheses, key=lambda each: -each.features["excess"])}
-    listed = [each for each in hypotheses if best[each.names] is each]
-    return [*listed, Hypothesis({"unknown": 1.0, "unknown_excess": least})]
+    return [*hypotheses, Hypothesis({"unknown": 1.0, "unknown_excess": least})]
 
 
 def _describe_set(
@@ -105,24 +102,24 @@ def _describe_set(
     objective, names = search.objective, rig.parameters.names | search.effect
     problem = objective.problem
     worst = max([0.0, *measure_shares_left(problem, calibrated, rig)])
+    # A random signal takes any gap, so that only sets beside it are compared, and it has no gain alone.
+    smaller = [gap for others, gap in gaps.items() if search.effect <= others < names]
     movements = measure_relative_movements(problem, rig)
     features = {
         "excess": math.log((rig.excess + _LITTLE) / (calibrated.excess + _LITTLE)),
         "gap": math.log(gaps[names] / gaps[calibrated.parameters.names]),
+        "gap_gain": math.log(gaps[names] / min(smaller, default=gaps[names])),
         "worst": math.log(worst + _LITTLE),
         "prior": float(np.sum((rig.parameters.deviations / objective.settings.fit.prior_std) ** 2)),
     }
     if search.disturbance:
-        # A random signal takes any gap, so that what a set takes beside it is judged by the excess.
         movements = [*movements, relate_to_material(problem, search.disturbance.measure_movements(problem))]
         features |= {
             "disturbance": 1.0,
+            "disturbance_effects": float(len(movements)),
             "predicted": search.disturbance.found.shares["everything"],
             "unsteady": measure_unsteadiness(problem, search.disturbance.found),
         }
-    else:
-        smaller = min(gap for others, gap in gaps.items() if others < names)
-        features["gap_gain"] = math.log(gaps[names] / smaller)
     moved = min(float(np.max(each)) for each in movements)
     return features | {"movement": min(0.0, math.log(moved + _LEAST_MOVEMENT))}
 

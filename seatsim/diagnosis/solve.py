@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import ParamSpec
 
 import numpy as np
@@ -14,10 +14,10 @@ from seatsim.diagnosis.decide import decide_verdict, shows_effect
 from seatsim.diagnosis.fit import refit_on
 from seatsim.diagnosis.localise.discrepancy import describe_discrepancy
 from seatsim.diagnosis.localise.disturbance import Disturbance, find_bias_drift, find_disturbance, put_beside
-from seatsim.diagnosis.localise.input_estimate import estimate_nonrepeatable_force
+from seatsim.diagnosis.localise.input_estimate import expect_nonrepeatable_force
 from seatsim.diagnosis.localise.localisation import localise_remainder, share_gap
 from seatsim.diagnosis.movement import is_material, measure_gap_taken
-from seatsim.diagnosis.noise import carry_force, measure_broadband, weigh_gap, weigh_noise
+from seatsim.diagnosis.noise import measure_broadband, weigh_gap, weigh_noise
 from seatsim.diagnosis.objective import Evaluation, Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, OutOfTimeError
 from seatsim.diagnosis.result import Share
@@ -32,7 +32,6 @@ from seatsim.diagnosis.solution import (
     search,
 )
 from seatsim.effects.base import EFFECTS
-from seatsim.schema.arrays import Array
 
 P = ParamSpec("P")
 
@@ -68,9 +67,10 @@ def pose_search(problem: DiagnosisProblem, without: Sequence[str], progress: Pro
     task = SearchTask(list_candidates(problem, without), effects, progress)
     progress("weighing the channels")
     objective = Objective(problem, weigh_noise(problem))
-    forces = None if problem.bench else _estimate_nonrepeatable(objective)
-    if forces is not None:
-        objective = Objective(problem, objective.weights.add(carry_force(problem, forces)))
+    if not problem.bench:
+        nominal = objective.unhurried.evaluate([Parameters(problem.nominal)])[0]
+        force = expect_nonrepeatable_force(objective, nominal)
+        objective = Objective(problem, objective.weights.add(force)) if force else objective
     return task, objective
 
 
@@ -80,12 +80,6 @@ def _in_time(stage: Callable[P, Solution], *arguments: P.args, **named: P.kwargs
         return stage(*arguments, **named)
     except OutOfTimeError:
         return None
-
-
-def _estimate_nonrepeatable(objective: Objective) -> Mapping[str, Array] | None:
-    """Return the force on the frame by which repeated runs of the nominal rig differ, None without repeats."""
-    nominal = objective.unhurried.evaluate([Parameters(objective.problem.nominal)])[0]
-    return estimate_nonrepeatable_force(objective, nominal)
 
 
 def _search_at_lower_noise(task: SearchTask, first: Solution) -> Solution:

@@ -9,20 +9,18 @@ together, weighs as little as its power says; what it cannot do keeps its full w
 from __future__ import annotations
 
 from collections.abc import Mapping
-from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
 
 from seatsim.diagnosis.localise.discrepancy import Discrepancy, describe_discrepancy, is_bias_drift
 from seatsim.diagnosis.localise.localisation import FaultHypothesis, evaluate_hypotheses
-from seatsim.diagnosis.localise.reconstruction import PORTS, reconstruct
 from seatsim.diagnosis.movement import measure_remainders
-from seatsim.diagnosis.objective import Evaluation, Objective, Parameters
+from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import Cause, Estimate
 from seatsim.diagnosis.select import Selection
-from seatsim.diagnosis.spectra import Spectra, smooth_spectrum
+from seatsim.diagnosis.spectra import Spectra, measure_power
 from seatsim.schema.arrays import Array
 
 FORCE_FROM_OUTSIDE, BIAS_DRIFT = "floor.unmeasured_input", "sensor.bias"
@@ -31,13 +29,14 @@ FORCE_FROM_OUTSIDE, BIAS_DRIFT = "floor.unmeasured_input", "sensor.bias"
 class Disturbance(NamedTuple):
     """A random signal with the effect that it is, and what it leaves in the channels, shape (channels, samples) by run.
 
-    `amplitudes` are the spectra of that where the signal is a force, shape (channels, frequencies).
+    `amplitudes[run]`, shape (channels, frequencies), is the frequency response of the channels to the signal times the
+    root of its power.
     """
 
     effect: str
     found: Discrepancy
     traces: Mapping[str, Array]
-    amplitudes: Mapping[str, Spectra] = MappingProxyType({})
+    amplitudes: Mapping[str, Spectra]
 
     def measure_movements(self, problem: DiagnosisProblem) -> Array:
         """Return by how much it moves each channel, in the channel's standard deviations, shape (channels,)."""
@@ -55,6 +54,9 @@ def find_disturbance(objective: Objective, selection: Selection) -> Disturbance 
     tried = []
     for sets in selection.sets:
         hypotheses = evaluate_hypotheses(objective, selection.linearise(sets[0]), ["suspension"])
+        if BIAS_DRIFT in sets[0].parameters.names:
+            # An offset of a sensor has taken a part of its drift.
+            hypotheses.pop("sensor")
         block, likeliest = min(hypotheses.items(), key=lambda pair: pair[1].negative_log_evidence)
         charged = likeliest.negative_log_evidence + slight * len(sets[0].parameters.terms)
         tried.append((charged, sets[0], block, likeliest))
@@ -67,7 +69,7 @@ def find_disturbance(objective: Objective, selection: Selection) -> Disturbance 
     # An input that was reconstructed, as the floor's motion, does not hold the noise of its sensor.
     noise = float(problem.noise[problem.channels.index(found.channel)]) if found.channel in problem.channels else 0.0
     if is_bias_drift(problem.settings.localisation, found, problem.rate, noise):
-        return Disturbance(BIAS_DRIFT, found, trace_error(objective, found))
+        return Disturbance(BIAS_DRIFT, found, likeliest.traces, likeliest.amplitudes)
     return None
 
 
@@ -89,34 +91,22 @@ def find_bias_drift(objective: Objective, evaluation: Evaluation) -> Disturbance
     found = describe_discrepancy(problem, evaluation.parameters, "sensor", error)
     if not is_bias_drift(settings.localisation, found, problem.rate, float(problem.noise[k])):
         return None
-    return Disturbance(BIAS_DRIFT, found, trace_error(objective, found))
-
-
-def trace_error(objective: Objective, found: Discrepancy) -> dict[str, Array]:
-    """Return what an error of a sensor leaves in the channels, shape (channels, samples) by run."""
-    problem = objective.problem
-    if found.channel in problem.channels:
-        row = np.array([[name == found.channel] for name in problem.channels], dtype=float)
-        return {run: row * signal for run, signal in found.signals.items()}
-    traces = {}
-    for run, signal in found.signals.items():
-        rig = reconstruct(objective, Parameters(problem.nominal), run, PORTS["floor"])
-        traces[run] = rig.simulate_with(signal) - problem.simulated(run, problem.nominal, ())
-    return traces
+    row = np.arange(len(problem.channels))[:, None] == k
+    smoothing, bins = settings.noise.smoothing, objective.weights.bins
+    amplitudes = {
+        run: row * np.sqrt(measure_power(np.fft.rfft(signal)[: bins[run]], smoothing))
+        for run, signal in signals.items()
+    }
+    return Disturbance(BIAS_DRIFT, found, {run: row * signal for run, signal in signals.items()}, amplitudes)
 
 
 def put_beside(objective: Objective, disturbance: Disturbance) -> Objective:
     """Return the objective beside a disturbance."""
     problem, weights = objective.problem, objective.weights
-    if disturbance.amplitudes:
+    if disturbance.effect == FORCE_FROM_OUTSIDE:
         about = problem.about(disturbance.found.signals, disturbance.traces)
         return Objective(about, weights.add_force(disturbance.amplitudes))
-    smoothing = problem.settings.noise.smoothing
-    powers = {
-        run: smooth_spectrum(np.abs(np.fft.rfft(trace, axis=1)) ** 2, smoothing)
-        for run, trace in disturbance.traces.items()
-    }
-    return Objective(problem, weights.add(powers))
+    return Objective(problem, weights.add({run: np.abs(each) ** 2 for run, each in disturbance.amplitudes.items()}))
 
 
 def add_strength(cause: Cause, found: Discrepancy) -> Cause:

@@ -76,15 +76,14 @@ def evaluate_hypotheses(
         signals = {run: estimate.signal for run, estimate in estimates.items()}
         quantity, unit = _QUANTITIES.get(name, ("force", "N"))
         evidence = _negative_log_evidence(objective, nuisances, estimates)
-        hypothesis = FaultHypothesis(evidence, quantity, unit, signals)
-        if name in PORTS:
-            weights = objective.weights.weights
-            responses = {run: each.response / weights[run] for run, each in estimates.items()}
-            amplitudes = {run: responses[run] * np.sqrt(each.power) for run, each in estimates.items()}
-            traces = {run: _pass(responses[run], each.signal) for run, each in estimates.items()}
-            comparable = _make_comparable(estimates)
-            hypothesis = hypothesis._replace(comparable=comparable, amplitudes=amplitudes, traces=traces)
-        hypotheses[name] = hypothesis
+        weights = objective.weights.weights
+        responses = {run: each.response / weights[run] for run, each in estimates.items()}
+        hypotheses[name] = FaultHypothesis(
+            evidence, quantity, unit, signals,
+            comparable=_make_comparable(estimates) if name in PORTS else {},
+            traces={run: _pass(responses[run], each.signal) for run, each in estimates.items()},
+            amplitudes={run: responses[run] * np.sqrt(each.power) for run, each in estimates.items()},
+        )  # fmt: skip
     errors = [
         hypotheses.pop(name)._replace(
             quantity=f"error of {name}", unit=problem.recording.channels[name].unit, channel=name

@@ -116,7 +116,9 @@ def test_a_search_beside_a_disturbance_adds_its_sets_and_the_disturbance_alone(r
     signals = {run: np.sin(np.arange(count)) for run, count in RUNS.items()}
     found = Discrepancy("floor", "force", "N", signals, {"everything": 0.2}, comparable=signals)
     traces = {run: np.outer((0.4, 0.0), values) for run, values in signals.items()}
-    beside = Search(rig, Selection(calibrated, ((one,), (both_,)), nuisances), Disturbance("z.other", found, traces))
+    beside = Search(
+        rig, Selection(calibrated, ((one,), (both_,)), nuisances), Disturbance("z.other", found, traces, {})
+    )
     first = Search(rig, selected(rig, 10.0, [({"b.two": 1.0}, 6.0)]))
     alone, disturbed, with_effects, unknown = list_hypotheses([first, beside])
     assert [each.names for each in (alone, disturbed, with_effects, unknown)] == [
