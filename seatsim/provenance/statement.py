@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import cache
-from importlib.metadata import distribution
+from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 from typing import NamedTuple
 
@@ -27,7 +27,7 @@ from seatsim.schema.guarded import expect, is_there, read_json, watch_reads
 from seatsim.schema.modules import import_named, shipped_packages, used_files
 from seatsim.schema.text import explain_bad_name
 
-_LIBRARIES = ("numpy", "scipy", "numba", "pyarrow", "pandas", "matplotlib", "cvxpy", "clarabel", "cma")
+_LIBRARIES = ("numpy", "scipy", "numba", "pyarrow", "pandas", "matplotlib", "cvxpy-base", "clarabel", "cma")
 """Libraries that a figure, or the bytes of a file, may hang on."""
 
 
@@ -40,10 +40,13 @@ def list_versions(libraries: Iterable[str] = _LIBRARIES, files: Iterable[Path] =
 
 @cache
 def _read_version(name: str) -> str:
-    """Return the version of an installed library; `importlib.metadata.version` parses its long description, too."""
-    text = distribution(name).read_text("METADATA") or ""
-    found = re.search(r"^Version: (.+)$", text, re.MULTILINE)
-    return found[1].strip() if found else distribution(name).version
+    """Return the version of a library; `importlib.metadata.version` parses its long description, too."""
+    try:
+        installed = distribution(name)
+    except PackageNotFoundError:  # the same modules came in another package, such as `cvxpy` in place of `cvxpy-base`
+        return "unknown"
+    found = re.search(r"^Version: (.+)$", installed.read_text("METADATA") or "", re.MULTILINE)
+    return found[1].strip() if found else installed.version
 
 
 @cache

@@ -132,6 +132,6 @@ def test_every_dependency_of_the_core_is_needed_and_says_what_for():
     source = "\n".join(path.read_text(encoding="utf-8") for path in files)
     imported = re.findall(r"^\s*(?:import|from) ([\w.]+)", source, re.MULTILINE)
     for name in names:
-        module = {"pyyaml": "yaml"}.get(name, name.replace("-", "_"))
+        module = {"pyyaml": "yaml", "cvxpy-base": "cvxpy"}.get(name, name.replace("-", "_"))
         # A solver of cvxpy is named, not imported.
         assert any(f"{each}.".startswith(f"{module}.") for each in imported) or module.upper() in source, name
