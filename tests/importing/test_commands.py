@@ -26,19 +26,6 @@ def test_import_shows_its_map_and_writes_a_recording(noisy_table, tmp_path, seat
     )
 
 
-def test_import_prints_one_json_object(noisy_table, tmp_path, seatsim_command):
-    path = write_csv(tmp_path / "a.csv", noisy_table)
-    nominal = RECORDING / "nominal.yaml"
-    words = ("import", path, "--out", tmp_path / "out", "--nominal", nominal, "--json")
-    told = json.loads(seatsim_command(*words)[1])
-    assert told["runs"] == ["run-a"]
-    assert told["proposed"] is True
-    assert told["channels"]["damper_force"]["unit"] == "N"
-    assert set(told["doubts"][0]) == {"severity", "kind", "sentence", "channel", "run"}
-    recording = {"run-a.csv.gz", "nominal.yaml", "map.yaml", "recording.yaml"}
-    assert set(told["written"]) == {*recording, "manifest.json"}
-
-
 def test_bad_input_is_one_line_and_exit_2(tmp_path, seatsim_command):
     (tmp_path / "a.csv").write_text("")
     status, out, err = seatsim_command("import", tmp_path / "a.csv", "--out", tmp_path / "out")

@@ -93,29 +93,6 @@ def test_a_current_that_is_asked_for_is_clipped(current, top, command):
     assert np.all(np.isnan(h["wanted_force"])) and np.all(np.isnan(h["force_served"]))
 
 
-@pytest.mark.parametrize("delay", [0.0, 0.002, 0.0025, 0.003 - 1e-14])
-def test_the_coil_follows_its_command_late(delay):
-    h, _ = run(Commanded(0.9), coil=COIL._replace(delay=delay), start_current=0.2)
-    time = STEP * np.arange(40) - delay
-    expected = np.where(time <= 1e-9, 0.2, 0.9 - 0.7 * np.exp(-150.0 * np.maximum(time, 0.0)))
-    assert h["coil_current"] == pytest.approx(expected, rel=1e-9)
-
-
-def test_a_damper_warms_by_its_work_and_its_coil():
-    thermal = Thermal(start=30.0, ambient=20.0, heat_capacity=0.5, conductance=2.0)
-    h, _ = run(
-        Commanded(0.6), rows=100, thermal=thermal, heating=True, temperature=np.full(100, 30.0), start_current=0.6
-    )
-    T, work = h["damper_temperature"], h["energy_damper"]
-    assert T[0] == 30.0
-    gain = np.diff(work) + 5.0 * 0.36 * STEP - 2.0 * (T[:-1] - 20.0) * STEP
-    assert np.diff(T) == pytest.approx(gain / 0.5, rel=1e-9)
-    factor = np.exp(-0.01 * (np.concatenate([[30.0], T[:-1]]) - 20.0))
-    assert h["damper_force"] == pytest.approx(
-        (800.0 * factor + 180.0 * factor) * 0.8 * h["suspension_velocity"], rel=1e-9
-    )
-
-
 class Charged(NamedTuple):
     """A damper whose state is the integral of its current: `F = (c + 500 i + 2000 z) v`."""
 

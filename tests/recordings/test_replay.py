@@ -1,6 +1,5 @@
 """Replays: a rig's own recording leaves no gap, recordings of others leave one that is well defined."""
 
-import json
 import shutil
 
 import numpy as np
@@ -65,13 +64,6 @@ def test_the_gap_of_one_run_only(recorded):
     assert gap.overall < 1e-3
     with pytest.raises(seatsim.InputError, match="did you mean 'run-2'"):
         seatsim.gap(recorded / "nominal.yaml", recorded, runs=["run-3"])
-
-
-def test_the_command_writes_the_gap(recorded, tmp_path, seatsim_command):
-    assert seatsim_command("gap", recorded / "nominal.yaml", recorded, "--out", tmp_path / "gap")[0] == 0
-    written = json.loads((tmp_path / "gap" / "gap.json").read_text())
-    assert set(written) == {"overall", "channels", "floor", "notes", "iso18571", "v_and_v"}
-    assert set(written["floor"]) == {"overall", "channels"}
 
 
 def test_a_table_that_is_not_there_is_named(recorded):

@@ -25,24 +25,6 @@ def ask(plants, limit=1e3, seconds=SEAT_TIME_BUDGET, lines=None):
     return search(plants, (-limits, limits), 0, TimeBudget(time.monotonic(), seconds), lines.append)
 
 
-def test_a_budget_is_spent_by_shares():
-    begin = time.monotonic()
-    clock = TimeBudget(begin - 2.0, 10.0)
-    assert clock.after(0.5) == pytest.approx(begin + 3.0)
-    part = clock.part(0.25)
-    assert begin <= part.begin <= time.monotonic()
-    assert part.budget == pytest.approx(0.25 * (begin + 8.0 - part.begin))
-    assert TimeBudget(begin - 20.0, 10.0).part(0.5).budget == 0.0
-
-
-def test_the_optimum_of_state_feedback():
-    # gamma^2 = (q^2 + k^2) / (p + k)^2 is least at k = q^2 / p.
-    for pole, weight in ((-1.0, 1.0), (-2.0, 3.0)):
-        assert ask([state_feedback(pole, weight)]) == pytest.approx(weight**2 / pole, rel=1e-2)
-    # With an unstable pole the infimum lies at infinite gain.
-    assert ask([state_feedback(1.0, 2.0)]) == -1000.0
-
-
 def test_the_plant_in_the_middle_joins_where_it_is_worst():
     plants, lines = [state_feedback(-1.0), state_feedback(-1.0, 6.0), state_feedback(-1.2)], []
     gain = ask(plants, lines=lines)

@@ -12,7 +12,7 @@ from seatsim.recordings.replay import recorded_inputs
 from seatsim.simulation.augment import read_sensors
 from seatsim.simulation.respond import respond
 
-from ...faulty_recordings import late, rewrite, scaled, without_time
+from ...faulty_recordings import rewrite, scaled
 from ...text import parse
 
 LARGE = parse("""
@@ -126,11 +126,6 @@ def test_a_force_that_play_makes_late_is_a_doubt_that_says_so(bench):
     tables = with_effect(recording, "damper.free_play", {"gap": 0.002, "stiffness": 1e5})
     (doubt,) = [issue for issue in examined(recording, tables).issues if issue.kind == "late"]
     assert doubt.severity == "warning" and "an effect may do this too" in doubt.sentence
-
-
-def test_a_delay_of_many_frequencies_is_a_fault_on_a_seat(copy):
-    rewrite(copy, without_time(late(0.1, "driver_acceleration")))
-    assert [issue.kind for issue in examine(load_recording(copy)).errors] == ["late"]
 
 
 @pytest.mark.parametrize(("factor", "severity"), [(1e-3, "error"), (0.1, "warning")])
