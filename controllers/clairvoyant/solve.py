@@ -8,11 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from controllers.clairvoyant.bound import LowerBound, find_lower_bound
-from controllers.clairvoyant.envelope import TOP, DamperEnvelope, fit_envelope
-from controllers.clairvoyant.feasible import find_best_run
-from controllers.clairvoyant.problem import ClairvoyantRun, HeldForceProblem
-from controllers.clairvoyant.transcription import Transcription, transcribe
+from controllers.clairvoyant.bound import TOP, DamperEnvelope, LowerBound, find_lower_bound, fit_envelope
+from controllers.clairvoyant.problem import ClairvoyantRun, HeldForceProblem, Transcription, transcribe
+from controllers.clairvoyant.recursion import ForceBand
 from seatsim.effects.base import ON_DAMPER, ON_SEAT, acts_on
 from seatsim.rig.drivers import SINGLE_MASS
 from seatsim.scenario.scenario import Scenario
@@ -20,6 +18,34 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.content import Unwritten, written
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import name_of, register
+
+# Most passes. The proximity grows from next to nothing to where no force changes any more, and the search ends.
+PASSES = 80
+_FIRST_PROXIMITY, _LAST_PROXIMITY, _SETTLED = 1e-13, 1e-7, 1e-7  # of the criterion, 1/N^2
+
+
+def find_best_run(problem: HeldForceProblem, band: ForceBand, start: Array | None = None) -> ClairvoyantRun:
+    """Return a locally best run under forces between the lines, from the law `start`, or from the weakest damper.
+
+    From a run, the law that is best where every interval stays on what sets its force (a line of the damper,
+    standstill, or nothing) follows from one Riccati recursion. The seat is then run under what the damper delivers of
+    that law: where the wanted force cannot be had, the closest one, which is the best for the cost-to-go. Intervals
+    change sides by themselves. Repeated, with a growing proximity term to the last forces where a pass does not
+    improve. The idea: control-limited differential dynamic programming, Tassa, Mansard and Todorov 2014 (ICRA), with
+    limits here that depend on the state.
+    """
+    gain = np.zeros((problem.intervals, len(problem.transcription.velocity))) if start is None else start
+    best, proximity = problem.simulate(band, gain), 0.0
+    for _ in range(PASSES):
+        tried = problem.simulate(band, problem.improve_law(band, best, proximity))
+        if tried.cost < best.cost * (1 - _SETTLED):
+            best, proximity = tried, (0.2 * proximity if proximity > _FIRST_PROXIMITY else 0.0)
+        elif proximity > _LAST_PROXIMITY:
+            break
+        else:
+            proximity = max(4 * proximity, _FIRST_PROXIMITY)
+    return best
+
 
 WEIGHTS = tuple(float(w) ** 2 for w in np.geomspace(12.0, 150.0, 7))
 """Weights of the squared travel in 1/s^4, from a soft seat to short travel."""

@@ -12,10 +12,16 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 import numpy as np
 from pydantic import Field
 
-from controllers.linear_systems import LinearSystem
-from controllers.margins import compute_margins
-from controllers.seat_plant import TRAVEL_AND_RATE, ActuatorLag, Measure, Weights, build_generalised_plant
-from controllers.shaping_filter import ShapingFilter, fit_shaping_filter
+from controllers.linear_systems import LinearSystem, compute_margins
+from controllers.seat_plant import (
+    TRAVEL_AND_RATE,
+    ActuatorLag,
+    Measure,
+    ShapingFilter,
+    Weights,
+    build_generalised_plant,
+    fit_shaping_filter,
+)
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import FloorRecord, Floors, Measurement, State, law, no_floors
 from seatsim.rig.designs import unit_of_gain

@@ -6,10 +6,9 @@ verify for what is true of it, and bound for what no controller can beat.
 """
 
 from controllers.synthesis.certify import Certificate
-from controllers.synthesis.design import ClosedLoop, Design
+from controllers.synthesis.design import ClosedLoop, Design, verify
 from controllers.synthesis.plant import GeneralisedPlant
 from controllers.synthesis.solve import SEAT_TIME_BUDGET, find_gain, synthesise
-from controllers.synthesis.verify import verify
 
 __all__ = [
     "SEAT_TIME_BUDGET",

@@ -22,7 +22,8 @@ it; where one loop has a pole right of it, all have. Source: zero exclusion and 
 New Tools for Robustness of Linear Systems, chapters 7 and 14.
 
 A third holds for all gains. Where p* P12(s) = 0, control leaves p* T(s) = p* P11(s) as it is; so does it T(s) q where
-P21(s) q = 0 (`controllers.synthesis.bound`). Where that is as large as the level, no controller is better.
+P21(s) q = 0 (`controllers.synthesis.solve.compute_pointwise_bound`). Where that is as large as the level, no controller
+is better.
 """
 
 from __future__ import annotations

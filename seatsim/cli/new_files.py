@@ -7,14 +7,13 @@ from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 
-from seatsim.cli import templates
 from seatsim.cli.outputs.answers import FILES
 from seatsim.scenario.loading import EXAMPLES
 from seatsim.schema.errors import InputError, permit
 from seatsim.schema.files import write_together
 from seatsim.schema.registry import names
 
-_TEMPLATES = Path(templates.__file__).parent
+_TEMPLATES = Path(__file__).with_name("templates")
 REGISTERED = {"damper": "damper", "controller": "law", "effect": "effect", "excitation": "excitation"}
 """Kinds that are Python files, and what their classes are registered as."""
 KINDS = ("scenario", "recording", *REGISTERED)

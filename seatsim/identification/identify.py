@@ -15,19 +15,26 @@ from seatsim.dampers.base import DAMPERS, find_confidence
 from seatsim.identification.assessment import (
     Agreement,
     Assessment,
+    Information,
     PredictionData,
     VisitedRanges,
     assess_fit,
     assess_predictions,
+    compute_information,
     load_prediction_data,
     mean_agreement,
     measure_coverage,
     note_limits,
 )
 from seatsim.identification.damper_record import find_model
-from seatsim.identification.information import Information, compute_information
-from seatsim.identification.prediction import BenchModel, RecordInputs, predict_force
-from seatsim.identification.problem import IdentificationProblem, find_origin, state_problem
+from seatsim.identification.problem import (
+    BenchModel,
+    IdentificationProblem,
+    RecordInputs,
+    find_origin,
+    predict_force,
+    state_problem,
+)
 from seatsim.identification.search import Progress, ignore_progress, search_parameters
 from seatsim.identification.settings import IdentificationSettings, split_records
 from seatsim.recordings.bench_tables import BenchRecord, load_bench, note_unused

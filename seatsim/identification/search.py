@@ -9,8 +9,14 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.identification.damper_record import rescale_damper
-from seatsim.identification.prediction import BenchModel, predict_force
-from seatsim.identification.problem import COIL_RATE, MOST_PARTS_IN_SEARCH, IdentificationProblem, compute_jacobian
+from seatsim.identification.problem import (
+    COIL_RATE,
+    MOST_PARTS_IN_SEARCH,
+    BenchModel,
+    IdentificationProblem,
+    compute_jacobian,
+    predict_force,
+)
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.arrays import Array
 

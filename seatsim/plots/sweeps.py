@@ -16,7 +16,7 @@ from seatsim.plots import style
 from seatsim.plots.labels import Quantity, clean_text, describe_channel, format_number, format_percent, format_unit
 from seatsim.plots.style import COLOURS, DARK, ROW, Entry, Grid, draw_bars, make_page, measure_names, name_rows
 from seatsim.schema.arrays import Array
-from seatsim.sweeps.rows import SweepRows, is_number
+from seatsim.sweeps.parts import SweepRows, is_number
 from seatsim.sweeps.sensitivity import Sensitivity
 
 if TYPE_CHECKING:

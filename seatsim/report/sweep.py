@@ -23,7 +23,7 @@ from seatsim.report.credibility import (
 from seatsim.report.formatting import format_quantity
 from seatsim.scenario.scenario import is_condition
 from seatsim.sweeps.outcome import FAILED, UNVERIFIED
-from seatsim.sweeps.rows import NAMES, Exceedance, SweepRows
+from seatsim.sweeps.parts import NAMES, Exceedance, SweepRows
 from seatsim.sweeps.sensitivity import Sensitivities, Sensitivity, choose_key
 
 if TYPE_CHECKING:

@@ -15,8 +15,7 @@ from seatsim.importing.readers.reading import read_file
 from seatsim.importing.signals import DataFile, Group, Signal
 from seatsim.importing.time_axis import Clock, check_is_history, find_clock
 from seatsim.metrics.exposure import DIRECTIONS
-from seatsim.recordings.bench_columns import constants
-from seatsim.recordings.bench_tables import stem
+from seatsim.recordings.bench_tables import constants, stem
 from seatsim.recordings.recording import HEADER, load_recording
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest, placed

@@ -28,8 +28,7 @@ from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, list_sentences, raise_all
 from seatsim.schema.yaml_source import Source
-from seatsim.sweeps.axes import SPECIMENS, Axis
-from seatsim.sweeps.definition import MOST_RUNS, SweepDefinition
+from seatsim.sweeps.definition import MOST_RUNS, SPECIMENS, Axis, SweepDefinition
 
 _Columns = Mapping[str, list[object]]
 """The values of every varied key, a list over the points each."""

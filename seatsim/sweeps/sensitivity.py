@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.schema.arrays import Array
-from seatsim.sweeps.rows import SweepRows, is_number
+from seatsim.sweeps.parts import SweepRows, is_number
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -8,10 +8,8 @@ import pytest
 from rich.console import Console
 
 from seatsim.blind.carrier.recorded import encode_carrier
-from seatsim.blind.score.rates import Rate, calibration_error, reliability
-from seatsim.blind.score.score import score, score_verdicts
-from seatsim.blind.score.shrink import score_shrink
-from seatsim.blind.score.verdicts import Verdict, is_right, read_verdict
+from seatsim.blind.score.score import score, score_shrink, score_verdicts
+from seatsim.blind.score.verdicts import Rate, Verdict, calibration_error, is_right, read_verdict, reliability
 from seatsim.blind.sealed import Sealed, new_key, seal
 from seatsim.cli.outputs.diagnosis_results import make_score_tables
 from seatsim.schema.content import to_content

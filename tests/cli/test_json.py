@@ -7,10 +7,8 @@ from pathlib import Path
 import pytest
 from typer.main import get_command
 
-from seatsim.blind.score.rates import Rate
-from seatsim.blind.score.score import score_verdicts
-from seatsim.blind.score.shrink import ShrinkScore
-from seatsim.blind.score.verdicts import Verdict
+from seatsim.blind.score.score import ShrinkScore, score_verdicts
+from seatsim.blind.score.verdicts import Rate, Verdict
 from seatsim.cli.app import app
 from seatsim.cli.outputs.answers import list_answers
 from seatsim.recordings.gap import Forecast, GapFigures, MeasuredShrink

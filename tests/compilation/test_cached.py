@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from seatsim.compilation import cached
-from seatsim.compilation.checked_cache import CheckedCache, find_foreign
+from seatsim.compilation.cached import CheckedCache, find_foreign
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ from functools import partial
 import numba
 import pytest
 
-from seatsim.compilation.checked_cache import CheckedCache, _CheckedFile
+from seatsim.compilation.cached import CheckedCache, _CheckedFile
 
 
 def double(x):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from controllers.shaping_filter import fit_shaping_filter
+from controllers.seat_plant import fit_shaping_filter
 from controllers.synthesis.norm import frequency_response
 from controllers.synthesis.plant import Loop
 from seatsim.excitations.iso7096 import Iso7096, acceleration_density

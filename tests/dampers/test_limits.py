@@ -2,7 +2,7 @@
 
 import pytest
 
-from seatsim.dampers.bouc_wen_current import AMPLITUDE, LEAST_AMPLITUDE, excitation_factor
+from seatsim.dampers.bouc_wen_variants import AMPLITUDE, LEAST_AMPLITUDE, excitation_factor
 from seatsim.dampers.pieces import limited
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.registry import find, names

@@ -13,8 +13,7 @@ from seatsim.effects.base import EFFECTS, ON_DAMPER, ON_SEAT, acts_on
 from seatsim.exchange.block import list_variables
 from seatsim.exchange.blocks.controller import controller_block
 from seatsim.exchange.blocks.damper import damper_block
-from seatsim.exchange.blocks.held import nothing_held
-from seatsim.exchange.blocks.rig_motion import rig_block
+from seatsim.exchange.blocks.rig_motion import nothing_held, rig_block
 from seatsim.exchange.c_source import print_c, print_model
 from seatsim.exchange.export import write_mat
 from seatsim.exchange.fmu import find_compiler, identifier, make_files

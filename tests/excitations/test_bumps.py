@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatsim.excitations.bumps import Bumps
+from seatsim.excitations.road import Bumps
 from seatsim.schema.errors import InputError
 
 HALF = Bumps("half_sine", 0.04, 1.0, 5.0, 3.0, patch=0.05, through="direct")

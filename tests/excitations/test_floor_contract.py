@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 from scipy.integrate import cumulative_trapezoid
 
-from seatsim.excitations.bumps import Bumps
 from seatsim.excitations.iso7096 import Iso7096
 from seatsim.excitations.periodic import Chirp, Sine, SteppedSine
-from seatsim.excitations.road import Road
+from seatsim.excitations.road import Bumps, Road
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import adapter, describe
 from seatsim.schema.registry import find, names, specification_of

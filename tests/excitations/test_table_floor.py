@@ -7,8 +7,8 @@ import pandas as pd
 import pytest
 from scipy.signal import welch
 
+from seatsim.excitations.recording import Table
 from seatsim.excitations.road import Road, profile
-from seatsim.excitations.table import Table
 from seatsim.schema.errors import InputError
 
 ROOT = Path(__file__).parents[2]

@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from seatsim.excitations.bumps import Bumps
 from seatsim.excitations.road import (
     LONGEST,
     SHORTEST,
     TRUCK,
+    Bumps,
     Road,
     Vehicle,
     displacement_density,

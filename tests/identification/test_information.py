@@ -5,8 +5,8 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
+from seatsim.identification.assessment import compute_information, correlation_length
 from seatsim.identification.damper_record import find_model
-from seatsim.identification.information import compute_information, correlation_length
 from seatsim.identification.problem import state_problem
 from seatsim.identification.settings import IdentificationSettings as Settings
 

@@ -14,7 +14,7 @@ from seatsim.identification.assessment import (
     load_prediction_data,
     mean_agreement,
 )
-from seatsim.identification.prediction import BenchModel, predict_force, prepare_inputs, sharpen, smooth
+from seatsim.identification.problem import BenchModel, predict_force, prepare_inputs, sharpen, smooth
 from seatsim.identification.settings import IdentificationSettings as Settings
 from seatsim.identification.settings import split_records
 from seatsim.recordings.bench_tables import BenchRecord

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from seatsim.identification.damper_record import find_model
-from seatsim.identification.prediction import BenchModel, predict_force
-from seatsim.identification.problem import find_origin, state_problem
+from seatsim.identification.problem import BenchModel, find_origin, predict_force, state_problem
 from seatsim.identification.search import search_globally
 from seatsim.identification.settings import IdentificationSettings as Settings
 from seatsim.rig.temperature import TemperatureFactors

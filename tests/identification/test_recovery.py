@@ -9,7 +9,7 @@ from ruamel.yaml import YAML
 import seatsim
 from seatsim.identification.assessment import assess_fit
 from seatsim.identification.identify import identify_records
-from seatsim.identification.prediction import BenchModel
+from seatsim.identification.problem import BenchModel
 from seatsim.identification.settings import IdentificationSettings as Settings
 from seatsim.identification.settings import split_records
 from seatsim.recordings.bench_tables import load_bench

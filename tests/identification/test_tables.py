@@ -4,8 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from seatsim.recordings.bench_columns import meaning
-from seatsim.recordings.bench_tables import load_bench
+from seatsim.recordings.bench_tables import load_bench, meaning
 from seatsim.schema.errors import InputError
 
 from .benches import columns, made

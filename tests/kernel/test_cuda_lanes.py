@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from seatsim.scenario.loading import load
-from seatsim.simulation.device import as_device_lane
+from seatsim.sweeps.device import as_device_lane
 
 from ..conftest import SEAT
 

@@ -5,9 +5,8 @@ import numpy as np
 import pytest
 
 import seatsim
-from controllers.laws.gaussian import Lqg
-from controllers.laws.quadratic import Lqr
-from controllers.optimal.regulator import QuadraticWeights
+from controllers.laws.quadratic import Lqg, Lqr
+from controllers.optimal import QuadraticWeights
 from seatsim.kernel.generic import evaluate_law, update
 from seatsim.rig.control import Measurement, prepare_law
 from seatsim.schema.errors import SynthesisError

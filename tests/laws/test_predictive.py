@@ -5,8 +5,8 @@ from scipy.linalg import solve_discrete_are
 from scipy.optimize import lsq_linear
 
 import seatsim
-from controllers.optimal.planner import DeliverableForces, Planner
-from controllers.optimal.regulator import QuadraticWeights
+from controllers.laws.model_predictive import DeliverableForces, Planner
+from controllers.optimal import QuadraticWeights
 from seatsim.rig.plant import state_space, zero_order_hold
 
 from .records import SEAT

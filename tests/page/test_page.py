@@ -10,9 +10,8 @@ import pytest
 import uvicorn
 from uvicorn.server import ServerState
 
-from seatsim.page.app import make_app
+from seatsim.page.app import Impatient, find_target, make_app, open_target
 from seatsim.page.scenario_view import Choice, Slider, View, read_choice, read_number
-from seatsim.page.serve import Impatient, find_target, open_target
 from seatsim.report.blocks import Table
 from seatsim.report.packing import Panel, pack_signals
 from seatsim.scenario.loading import EXAMPLES, load, single
@@ -157,7 +156,7 @@ def test_a_target_with_a_fault_is_said(tmp_path):
 
 def test_large_files_and_requests_are_refused(tmp_path, monkeypatch, app):
     (tmp_path / "large.yaml").write_text("x" * 2000)
-    monkeypatch.setattr("seatsim.page.serve._LARGEST", 1000)
+    monkeypatch.setattr("seatsim.page.app._LARGEST", 1000)
     with pytest.raises(InputError, match="larger than"):
         find_target(tmp_path)
     assert ask(app, "POST", "/view", json={"x": "y" * 200_000}).status_code == 413

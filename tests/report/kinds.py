@@ -11,8 +11,7 @@ from seatsim.characterisation.response import Response
 from seatsim.characterisation.rows import Row
 from seatsim.characterisation.summary import Characterisation
 from seatsim.characterisation.tabulate import make_sheet
-from seatsim.identification.assessment import Agreement, Assessment
-from seatsim.identification.information import Information, ParameterEstimate
+from seatsim.identification.assessment import Agreement, Assessment, Information, ParameterEstimate
 from seatsim.metrics.table import METRICS
 from seatsim.plots.bench.characterisation import plot_characterisation
 from seatsim.plots.bench.identification import plot_predictions
@@ -34,7 +33,7 @@ from seatsim.simulation.result import Result
 from seatsim.simulation.runs import run_one
 from seatsim.standards.comfort import comfort
 from seatsim.standards.seat_rows import DampingRow, DampingTest, SeatRow, SeatTest
-from seatsim.sweeps.rows import SweepRows, count_exceedances, tabulate_quantiles
+from seatsim.sweeps.parts import SweepRows, count_exceedances, tabulate_quantiles
 from seatsim.sweeps.sensitivity import analyse_sensitivity
 
 from ..text import parse

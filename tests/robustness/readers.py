@@ -29,7 +29,7 @@ from seatsim.scenario.loading import load, single
 from seatsim.sweeps.engines import Work
 from seatsim.sweeps.execute import execute, prepare
 from seatsim.sweeps.outcome import DONE, Outcome
-from seatsim.sweeps.rows import count_exceedances, read_rows, tabulate_quantiles
+from seatsim.sweeps.parts import count_exceedances, read_rows, tabulate_quantiles
 from seatsim.sweeps.sensitivity import analyse_sensitivity
 
 from ..importing import exports

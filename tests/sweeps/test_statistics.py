@@ -7,7 +7,7 @@ from scipy.stats import qmc
 
 from seatsim.plots.sweeps import find_front, plot_comfort
 from seatsim.report.sweep import advise_on_keys, tabulate_best
-from seatsim.sweeps.rows import SweepRows, count_exceedances
+from seatsim.sweeps.parts import SweepRows, count_exceedances
 from seatsim.sweeps.sensitivity import analyse_sensitivity, choose_key
 
 COMFORT, HITS = "driver_acceleration_weighted", "end_stop_hits"

@@ -132,7 +132,7 @@ def explore(
         no_browser: Print the address and open no browser.
     """
     try:
-        from seatsim.page.serve import find_target, serve
+        from seatsim.page.app import find_target, serve
     except ModuleNotFoundError as error:
         if error.name is None or error.name.partition(".")[0] not in ("starlette", "uvicorn"):
             raise

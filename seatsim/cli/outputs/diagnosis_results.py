@@ -24,8 +24,8 @@ from seatsim.schema.registry import is_own
 from seatsim.schema.yaml_text import dump
 
 if TYPE_CHECKING:
-    from seatsim.blind.score.rates import Rate
     from seatsim.blind.score.score import Failure, Score
+    from seatsim.blind.score.verdicts import Rate
 
 _LISTED = 6
 """Causes in the table."""

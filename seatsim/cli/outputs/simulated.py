@@ -17,7 +17,7 @@ from seatsim.schema.files import write_together
 from seatsim.simulation.performance_bounds import RigBounds, place_runs
 from seatsim.simulation.result import Result
 from seatsim.simulation.runs import write_histories
-from seatsim.sweeps.rows import Exceedance
+from seatsim.sweeps.parts import Exceedance
 from seatsim.sweeps.sensitivity import Sensitivity
 
 _MOST_KEPT = 400_000
@@ -99,7 +99,7 @@ def write_sweep_report(folder: str | Path, out: str | Path | None = None) -> Swe
         InputError: the folder holds no sweep, or none of its runs has ended.
     """
     from seatsim.report.sweep import report_sweep, state_importance
-    from seatsim.sweeps.rows import count_exceedances, read_rows, tabulate_quantiles
+    from seatsim.sweeps.parts import count_exceedances, read_rows, tabulate_quantiles
     from seatsim.sweeps.sensitivity import analyse_sensitivity, tabulate_sensitivities
 
     folder = Path(folder)

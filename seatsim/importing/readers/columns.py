@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from seatsim.importing.names import read_name
-from seatsim.importing.readers.dialect import CLOCK, DATE, LISTED_UNITS, PLAIN, SIGN, THOUSANDS, WITH_UNIT
+from seatsim.importing.readers.header import CLOCK, DATE, LISTED_UNITS, PLAIN, SIGN, THOUSANDS, WITH_UNIT
 from seatsim.importing.signals import Group, Signal
 from seatsim.importing.time_axis import measured_axis
 from seatsim.schema.arrays import Array

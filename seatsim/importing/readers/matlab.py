@@ -14,8 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.importing.readers.mat_elements import AnyArray
-from seatsim.importing.readers.mat_values import Value, read_values
+from seatsim.importing.readers.mat_elements import AnyArray, Value, read_values
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.signals import (
     TIME,

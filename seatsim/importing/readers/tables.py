@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from seatsim.importing.readers.columns import read_column
-from seatsim.importing.readers.dialect import check_header, find_first_row
-from seatsim.importing.readers.header import split_header
+from seatsim.importing.readers.header import check_header, find_first_row, split_header
 from seatsim.importing.readers.reading import TextLayout, need
 from seatsim.importing.signals import TIME, DataFile, Group, Signal, note_left_out, stated_unit
 from seatsim.schema.arrays import Array, open_parquet

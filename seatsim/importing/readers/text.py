@@ -11,8 +11,19 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from seatsim.importing.readers.columns import part_by_time, read_column
-from seatsim.importing.readers.dialect import BLANKS, COMMENT, MISSING, Dialect, check_header, find_first_row, quote
-from seatsim.importing.readers.header import Rows, count_columns, fit_names, split_header
+from seatsim.importing.readers.header import (
+    BLANKS,
+    COMMENT,
+    MISSING,
+    Dialect,
+    Rows,
+    check_header,
+    count_columns,
+    find_first_row,
+    fit_names,
+    quote,
+    split_header,
+)
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.signals import DataFile, Signal, find_rate, note_left_out
 from seatsim.schema.errors import InputError

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from controllers.clairvoyant.problem import HeldForceProblem
+from controllers.clairvoyant.problem import HeldForceProblem, transcribe
 from controllers.clairvoyant.recursion import ForceBand
-from controllers.clairvoyant.transcription import transcribe
 from seatsim.rig.plant import Plant
 
 SEAT = Plant(20.0, 80.0, 4600.0, 150.0, 60000.0, 1500.0, damper_ratio=0.8)

@@ -8,8 +8,8 @@ import pytest
 import seatsim
 from controllers.clairvoyant import clairvoyant
 from controllers.clairvoyant.bound import find_lower_bound
-from controllers.clairvoyant.feasible import find_best_run
 from controllers.clairvoyant.recursion import ForceBand
+from controllers.clairvoyant.solve import find_best_run
 from seatsim.metrics.comfort import weighted_rms
 from seatsim.schema.errors import InputError
 from seatsim.simulation.inputs import Forces

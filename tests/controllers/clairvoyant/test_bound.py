@@ -3,7 +3,7 @@
 import numpy as np
 
 from controllers.clairvoyant.bound import find_lower_bound
-from controllers.clairvoyant.feasible import find_best_run
+from controllers.clairvoyant.solve import find_best_run
 
 
 def test_the_bound_lies_below_every_run_and_above_what_no_limit_allows(problem, band, dense):

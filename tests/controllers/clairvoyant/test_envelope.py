@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from controllers.clairvoyant import envelope as module
-from controllers.clairvoyant.envelope import SPEEDS, fit_envelope
+from controllers.clairvoyant import bound as module
+from controllers.clairvoyant.bound import SPEEDS, fit_envelope
 from controllers.clairvoyant.recursion import ForceBand
 from seatsim.schema.errors import InputError
 

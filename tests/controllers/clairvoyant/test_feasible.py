@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from controllers.clairvoyant.feasible import find_best_run
+from controllers.clairvoyant.solve import find_best_run
 
 
 def constant_laws(problem):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import lsim
 
-from controllers.clairvoyant.transcription import transcribe
+from controllers.clairvoyant.problem import transcribe
 from seatsim.metrics.weighting import weight
 from seatsim.rig.plant import Plant, state_space
 

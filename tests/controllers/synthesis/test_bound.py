@@ -5,10 +5,10 @@ import time
 import numpy as np
 import pytest
 
-from controllers.synthesis.bound import compute_lower_bound, compute_pointwise_bound
 from controllers.synthesis.certify import certify
 from controllers.synthesis.norm import hinf_norm
 from controllers.synthesis.plant import GeneralisedPlant
+from controllers.synthesis.solve import compute_lower_bound, compute_pointwise_bound
 
 ZERO = np.zeros((1, 2))
 REST = ("B1", "B2", "C1", "C2", "D11", "D12", "D21")

@@ -5,8 +5,8 @@ import csv
 import pytest
 
 from controllers import synthesise
-from controllers.synthesis.modes import require_stabilisable
 from controllers.synthesis.scaling import scale
+from controllers.synthesis.search import require_stabilisable
 from seatsim.schema.errors import SynthesisError
 
 

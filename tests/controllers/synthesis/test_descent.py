@@ -5,10 +5,9 @@ import time
 import numpy as np
 import pytest
 
-from controllers.synthesis.descent import Descent, StabilisingGain, explore, improve
+from controllers.synthesis.descent import Descent, StabilisingGain, StartingGain, explore, improve
 from controllers.synthesis.objective import NormObjective
 from controllers.synthesis.plant import GeneralisedPlant
-from controllers.synthesis.starts import StartingGain
 
 ONE, COLUMN = np.eye(1), np.zeros((2, 1))
 # x' = -x + w + u, z = (x, u), y = x: gamma^2 = (1 + k^2) / (1 - k)^2 is least, 1/2, at k = -1.

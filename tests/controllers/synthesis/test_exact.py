@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from controllers.synthesis.exact import ExactMatrix, close_exactly
+from controllers.synthesis.certify import ExactMatrix, close_exactly
 
 A = np.array([[1e-200, 1e200], [3.0, -0.1]])
 B = np.array([[0.1, -7.25], [1e-17, 1.0]])

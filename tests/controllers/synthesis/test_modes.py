@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from controllers.synthesis.modes import require_stabilisable
 from controllers.synthesis.plant import GeneralisedPlant
 from controllers.synthesis.scaling import scale
+from controllers.synthesis.search import require_stabilisable
 from seatsim.schema.errors import SynthesisError
 
 

@@ -5,7 +5,7 @@ from itertools import islice
 import numpy as np
 from scipy.linalg import solve_continuous_are
 
-from controllers.synthesis.starts import generate_starting_gains, project_state_feedback
+from controllers.synthesis.descent import generate_starting_gains, project_state_feedback
 
 UNIT = np.full((2, 2), 8.0)
 

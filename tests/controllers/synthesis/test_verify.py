@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from controllers.synthesis.design import disk_margin, verify
 from controllers.synthesis.plant import GeneralisedPlant
-from controllers.synthesis.verify import disk_margin, verify
 
 # Three lags 1 / (s + 1)^3 from u to y: with u = -k y stable up to k = 8.
 A = np.array([[-1.0, 1.0, 0.0], [0.0, -1.0, 1.0], [0.0, 0.0, -1.0]])
