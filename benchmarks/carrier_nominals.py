@@ -16,13 +16,14 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
-from rig_records import Addition, Array, CarrierRecords, Nominal, RigRecords, Runs
+from rig_records import Addition, CarrierRecords, Nominal, RigRecords, Runs
 from ruamel.yaml import YAML
 from scipy.optimize import least_squares
 
 from seatsim.recordings.gap import pool_runs
 from seatsim.recordings.recording import BENCH_CHANNELS, SEAT_CHANNELS, ChannelEntry, Recording, load_recording
 from seatsim.scenario.loading import single
+from seatsim.schema.arrays import Array
 from seatsim.schema.fields import bounds
 from seatsim.schema.files import write_whole
 from seatsim.schema.registry import find
@@ -39,6 +40,13 @@ LARGEST_CURRENT = 2.0
 SHARED = ("A", "beta", "gamma")
 """Parameters that are scaled together, so that the yield stays at |z| = 1."""
 STEPS = 12
+
+
+def require_data(folder: Path) -> Path:
+    """Return the folder of the measured data, or end where it is not there."""
+    if not folder.is_dir():
+        raise SystemExit(f"{folder}: the measured data are not there; state their folder with --data")
+    return folder
 
 
 class Fit(NamedTuple):

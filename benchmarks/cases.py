@@ -7,17 +7,18 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from seatsim.diagnosis.design.isolability import find_isolable_groups
+from seatsim.diagnosis.diagnose import diagnose
 from seatsim.diagnosis.noise import NoiseWeights, weigh_uniformly
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.recordings.recording import Recording
+from seatsim.schema.content import to_content
 from seatsim.schema.errors import SeatsimError
 from seatsim.schema.files import write_json
+from seatsim.schema.processes import run_jobs
 
-Array = NDArray[np.float64]
 EncodedDiagnosis = Mapping[str, object]
 """The content of `diagnosis.json`."""
 Diagnoser = Callable[[Path], EncodedDiagnosis]
@@ -56,6 +57,16 @@ def rank_by_figure(pairs: Sequence[tuple[str, float]]) -> Ranked:
 def show_progress(done: int, total: int) -> None:
     """Tell how many jobs are done."""
     print(f"{done}/{total}", file=sys.stderr, flush=True)
+
+
+def diagnose_without(without: Sequence[str], case: Path) -> EncodedDiagnosis:
+    """Return seatsim's diagnosis of a case by a library without some effects."""
+    return to_content(diagnose(case, without=without))
+
+
+def diagnose_missing(wanted: Sequence[tuple[Path, Diagnoser]], processes: int = PROCESSES) -> None:
+    """Write what methods say of cases into folders, each as `write_verdict`; a folder that is there is skipped."""
+    run_jobs(write_verdict, [each for each in wanted if not each[0].is_dir()], processes, show_progress)
 
 
 def write_verdict(out: Path, method: Diagnoser) -> None:

@@ -14,14 +14,12 @@ import importlib
 import warnings
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import signal
 
 from seatsim.metrics.comfort import dose
 from seatsim.metrics.spine import spinal_dose, spine_response
 from seatsim.metrics.weighting import WEIGHTINGS, sections, weight
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 RATE, SECONDS, OVERSAMPLED = 500.0, 120.0, 32
 

@@ -30,21 +30,17 @@ import numpy as np
 import pandas as pd
 from cases import (
     LEAST_NOISE,
-    PROCESSES,
-    Array,
     Diagnoser,
     EncodedDiagnosis,
     Ranked,
+    diagnose_missing,
     encode_verdict,
     rank_by_figure,
-    show_progress,
     weigh_stated_noise,
-    write_verdict,
 )
 
-from seatsim.blind.score.rates import Rate
 from seatsim.blind.score.score import score_verdicts
-from seatsim.blind.score.verdicts import read_verdict
+from seatsim.blind.score.verdicts import Rate, read_verdict
 from seatsim.blind.sealed import KINDS, Label, unseal
 from seatsim.diagnosis.candidates import list_candidates
 from seatsim.diagnosis.fit import fit
@@ -54,7 +50,7 @@ from seatsim.diagnosis.problem import DiagnosisProblem, pose_problem
 from seatsim.diagnosis.select import select_effects
 from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.recordings.recording import load_recording
-from seatsim.schema.processes import run_jobs
+from seatsim.schema.arrays import Array
 
 NAMED, NAMED_NEXT, LARGE = 0.85, 0.8, 0.02
 MISFIT = 8.0
@@ -214,8 +210,7 @@ def main() -> None:
     options = parser.parse_args()
     labels = unseal(options.sealed, options.key, options.folder).labels
     wanted = [(options.folder / case / name, method) for case in labels for name, method in BASELINES.items()]
-    todo = [(out, method) for out, method in wanted if not (out / "diagnosis.json").exists()]
-    run_jobs(write_verdict, todo, PROCESSES, show_progress)
+    diagnose_missing(wanted)
     show_scores(options.folder, labels)
 
 

@@ -19,7 +19,6 @@ from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 from scipy.signal import butter, sosfilt
 from threadpoolctl import threadpool_limits
 from typical_effects import CHANNELS
@@ -35,27 +34,22 @@ from seatsim.recordings.nuisance import vary
 from seatsim.recordings.recording import SEAT_CHANNELS, ChannelEntry, Recording
 from seatsim.recordings.replay import recorded_inputs
 from seatsim.scenario.loading import single
+from seatsim.schema.arrays import Array
 from seatsim.schema.fields import replace_fields
 from seatsim.schema.files import write_text, write_whole
 from seatsim.simulation.inputs import Forces, SeatInputs
 from seatsim.simulation.respond import respond
 
-Array = NDArray[np.float64]
 RATE, SECONDS, RUNS, TOLERANCE = 500.0, 12.0, 3, 0.02
 NOMINAL = Path(__file__).with_name("diagnosis_intervals_nominal.yaml")
 SIZES = {
-    ("sensor.gain", "error"): (0.03, 0.12), ("sensor.bias", "share"): (0.05, 0.3),
-    ("sensor.lag", "time"): (0.003, 0.012),
-    ("coil.delay", "time"): (0.004, 0.016), ("coil.lag", "time"): (0.003, 0.01),
-    ("coil.current_limit", "limit"): (0.5, 0.8), ("suspension.friction", "force"): (15.0, 60.0),
-    ("driver.mass", "change"): (4.0, 12.0), ("damper.gas_spring", "preload"): (20.0, 80.0),
+    "sensor.gain": ("error", 0.03, 0.12), "sensor.bias": ("share", 0.05, 0.3), "sensor.lag": ("time", 0.003, 0.012),
+    "coil.delay": ("time", 0.004, 0.016), "coil.lag": ("time", 0.003, 0.01), "coil.current_limit": ("limit", 0.5, 0.8),
+    "suspension.friction": ("force", 15.0, 60.0), "driver.mass": ("change", 4.0, 12.0),
+    "damper.gas_spring": ("preload", 20.0, 80.0),
 }  # fmt: skip
-"""Effect and parameter, with the range that its size is drawn from."""
-CHANNEL = {
-    "sensor.gain": "driver_acceleration",
-    "sensor.bias": "frame_acceleration",
-    "sensor.lag": "driver_acceleration",
-}
+"""The parameter of each effect, with the range that its size is drawn from."""
+CHANNEL = dict.fromkeys(("sensor.gain", "sensor.lag"), "driver_acceleration") | {"sensor.bias": "frame_acceleration"}
 QUANTILE = 1.645
 
 
@@ -96,8 +90,8 @@ def draw_inputs(rng: np.random.Generator) -> dict[str, Array]:
 
 def make_recording(folder: Path, rng: np.random.Generator, effect: str) -> tuple[TabledRecording, Candidate, float]:
     """Return a recording of a rig with an effect, the candidate that has its form, and the true size."""
-    parameter = next(name for known, name in SIZES if known == effect)
-    size = rng.uniform(*SIZES[effect, parameter])
+    parameter, low, high = SIZES[effect]
+    size = rng.uniform(low, high)
     write_text(folder / "nominal.yaml", NOMINAL.read_text(encoding="utf-8"))
     header = Header("seat", RATE, "nominal.yaml", TOLERANCE)
     channels = {name: ChannelEntry(SEAT_CHANNELS[name], noise) for name, noise in CHANNELS.items()}
@@ -135,9 +129,7 @@ def draw_force(rng: np.random.Generator, steps: int) -> Array:
 def pose_blank(recording: TabledRecording) -> DiagnosisProblem:
     """Return the problem of inputs alone, with outputs made up, which names parameters and candidates."""
     rows = round(RATE * SECONDS)
-    made_up = {
-        name: np.random.default_rng(0).standard_normal(rows) for name in CHANNELS if name != "floor_acceleration"
-    }
+    made_up = {name: np.random.default_rng(0).standard_normal(rows) for name in CHANNELS}
     tables = {run: {**made_up, **table} for run, table in recording.tables.items()}
     loud = {name: entry._replace(noise_rms=0.0) for name, entry in recording.channels.items()}
     with ThreadPoolExecutor() as pool:
@@ -153,14 +145,14 @@ def is_form(candidate: Candidate, effect: str, parameter: str) -> bool:
 def run_case(folder: Path, seed: int, pool: Executor) -> IntervalCase:
     """Return what was estimated of one case."""
     rng = np.random.default_rng([seed, 19])
-    effect = list(SIZES)[seed % len(SIZES)][0]
+    effect = list(SIZES)[seed % len(SIZES)]
     recording, candidate, size = make_recording(folder, rng, effect)
     problem = pose_problem(recording, pool)
     objective = Objective(problem, weigh_noise(problem))
     start = Parameters(problem.nominal).add(candidate, np.asarray(candidate.start))
     fitted = refit_closely(objective, objective.linearise_nuisances(objective.evaluate([start])[0]))
     (term,), (values,) = fitted.parameters.terms, fitted.parameters.values
-    index = term.free.index(next(name for known, name in SIZES if known == effect))
+    index = term.free.index(SIZES[effect][0])
     deviations = estimate_standard_deviations(objective, fitted, objective.linearise_nuisances(fitted))
     std = deviations[len(fitted.parameters.deviations) + index] * term.scale[index]
     return IntervalCase(effect, term.free[index], size, float(values[index]), float(std))

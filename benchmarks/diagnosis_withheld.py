@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import NamedTuple, cast
 
 import pandas as pd
-from cases import PROCESSES, Diagnoser, EncodedDiagnosis, show_progress, write_verdict
+from cases import PROCESSES, diagnose_missing, diagnose_without, show_progress
 from threadpoolctl import threadpool_limits
 
 from seatsim.blind.make.compose import CaseSpecification
@@ -31,14 +31,12 @@ from seatsim.blind.make.make import case_name, draw_files, make_case
 from seatsim.blind.score.verdicts import Verdict, is_right, read_verdict
 from seatsim.blind.sealed import Label
 from seatsim.diagnosis.candidates import list_candidates
-from seatsim.diagnosis.diagnose import diagnose
 from seatsim.diagnosis.noise import weigh_noise
 from seatsim.diagnosis.objective import Objective
 from seatsim.diagnosis.problem import DiagnosisProblem, pose_problem
 from seatsim.diagnosis.select import select_effects
 from seatsim.diagnosis.settings.judging import DecisionSettings
 from seatsim.recordings.recording import load_recording
-from seatsim.schema.content import to_content
 from seatsim.schema.files import write_json
 from seatsim.schema.processes import run_jobs
 from seatsim.schema.registry import names
@@ -54,11 +52,6 @@ class WithheldCase(NamedTuple):
     without: Verdict
     imitators: dict[str, float]
     right: bool
-
-
-def diagnose_without(without: Sequence[str], case: Path) -> EncodedDiagnosis:
-    """Return the diagnosis of a case by a library without some effects."""
-    return to_content(diagnose(case, without=without))
 
 
 def write_imitators(case: Path, effect: str) -> None:
@@ -93,10 +86,6 @@ def load_label(out: Path, case: str) -> Label:
 def work(out: Path, wanted: Sequence[str], count: int, seed: int) -> list[str]:
     """Make and diagnose what is not there yet of the effects wanted; return the names of the cases."""
     (out / "labels").mkdir(parents=True, exist_ok=True)
-    note = out / "seed.json"
-    if note.exists() and json.loads(note.read_text(encoding="utf-8")) != seed:
-        raise SystemExit(f"{out}: holds cases of another seed; give that, or another --out")
-    write_json(note, seed)
     effects = names("effect")
     # A case keeps its number, and with it its draws, however many cases and whichever effects are asked for.
     orders = {k: effects[k % len(effects)] for k in range(count * len(effects)) if effects[k % len(effects)] in wanted}
@@ -108,22 +97,11 @@ def work(out: Path, wanted: Sequence[str], count: int, seed: int) -> list[str]:
     cases = [case_name(k) for k in orders]
     open_cases = [case for case in cases if not (out / case / "imitated.json").exists()]
     run_jobs(write_imitators, [(out / case, _effect(out, case)) for case in open_cases], PROCESSES, show_progress)
-    run_jobs(write_verdict, _list_diagnoses(out, cases), PROCESSES, show_progress)
+    whole = [(out / case / "diagnosis", partial(diagnose_without, ())) for case in cases]
+    diagnose_missing(
+        whole + [(out / case / "withheld", partial(diagnose_without, (_effect(out, case),))) for case in cases]
+    )
     return cases
-
-
-def _list_diagnoses(out: Path, cases: Sequence[str]) -> list[tuple[Path, Diagnoser]]:
-    """Return folder and method of each diagnosis that is not there yet."""
-    wanted = [
-        (out / case / name, without)
-        for case in cases
-        for name, without in (("diagnosis", ()), ("withheld", (_effect(out, case),)))
-    ]
-    return [
-        (folder, partial(diagnose_without, without))
-        for folder, without in wanted
-        if not (folder / "diagnosis.json").exists()
-    ]
 
 
 def _effect(out: Path, case: str) -> str:
@@ -150,18 +128,11 @@ def tabulate(cases: Sequence[WithheldCase]) -> pd.DataFrame:
         alone += own if all(2 * times < len(own) for times in imitators.values()) else []
         others = ", ".join(f"{name} {times}" for name, times in imitators.most_common())
         mistaken = ", ".join(f"{name} {times}" for name, times in taken.most_common())
-        rows.append((effect, *_count(own), mistaken, others, _nearest(own)))
+        rows.append((effect, *_count(own), mistaken, others))
     imitable = [case for case in cases if case not in alone]
-    rows += [(name, *_count(some), "", "", "") for name, some in (("not imitable", alone), ("imitable", imitable))]
-    headings = ["effect", "cases", "named", "refused as unknown", "taken for", "imitable by", "most like"]
+    rows += [(name, *_count(some), "", "") for name, some in (("not imitable", alone), ("imitable", imitable))]
+    headings = ["effect", "cases", "named", "refused as unknown", "taken for", "imitable by"]
     return pd.DataFrame(rows, columns=headings)
-
-
-def _nearest(cases: Sequence[WithheldCase]) -> str:
-    """Return the effect with the largest share on average, with that."""
-    sums = {name: sum(case.imitators.get(name, 0.0) for case in cases) for name in cases[0].imitators}
-    nearest = max(sums, key=lambda name: sums[name], default=None)
-    return f"{nearest} {sums[nearest] / len(cases):.2f}" if nearest else "-"
 
 
 def _count(cases: Sequence[WithheldCase]) -> tuple[int, int, int]:

@@ -136,10 +136,15 @@ def work(case: FormCase, out: Path) -> None:
     write_verdict(folder / "diagnosis", lambda recording: to_content(seatsim.diagnose(recording, budget=math.inf)))
 
 
+def is_done(case: FormCase, out: Path) -> bool:
+    """Whether there is a diagnosis of a case, or why it was refused."""
+    return (out / case.folder / "diagnosis").is_dir()
+
+
 def load_found(case: FormCase, out: Path) -> FoundForm:
     """Return what came of a case."""
     folder, left, refused = out / case.folder, 1.0, ""
-    answer = json.loads(find_answer(case, out).read_text(encoding="utf-8"))
+    answer = json.loads(next((folder / "diagnosis").glob("*.json")).read_text(encoding="utf-8"))
     if gap := answer.get("gap"):
         pairs = ((after, gap["floor"]["channels"][name]) for name, after in gap["calibrated"]["channels"].items())
         left = max(math.sqrt(max(after**2 - floor**2, 0.0)) for after, floor in pairs)
@@ -147,12 +152,6 @@ def load_found(case: FormCase, out: Path) -> FoundForm:
         refused = answer["error"]
     moved = json.loads((folder / "moved.json").read_text(encoding="utf-8"))
     return FoundForm(case, read_verdict(folder / "diagnosis" / "diagnosis.json"), moved, left, refused)
-
-
-def find_answer(case: FormCase, out: Path) -> Path:
-    """Return the file that holds the diagnosis of a case, or why it was refused; none is there before."""
-    folder = out / case.folder / "diagnosis"
-    return next(folder.glob("*.json"), folder / "diagnosis.json")
 
 
 def list_cases(effects: Sequence[str], factors: Sequence[float]) -> list[FormCase]:
@@ -182,11 +181,11 @@ def main() -> None:
     options = parser.parse_args()
     cases = list_cases(options.effects, options.factors)
     write_text(options.out / "seat.yaml", SEAT.read_text(encoding="utf-8"))
-    missing = [(case, options.out) for case in cases if not find_answer(case, options.out).exists()]
+    missing = [(case, options.out) for case in cases if not is_done(case, options.out)]
     try:
         run_jobs(work, missing, options.processes, show_progress)
     finally:
-        show_table([load_found(case, options.out) for case in cases if find_answer(case, options.out).exists()])
+        show_table([load_found(case, options.out) for case in cases if is_done(case, options.out)])
 
 
 if __name__ == "__main__":

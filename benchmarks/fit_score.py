@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from cases import PROCESSES, Array, show_progress
+from cases import PROCESSES, show_progress
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.special import logsumexp, softmax
@@ -33,6 +33,7 @@ from seatsim.diagnosis.problem import pose_problem
 from seatsim.diagnosis.solution import search
 from seatsim.diagnosis.solve import pose_search, search_beside
 from seatsim.recordings.recording import load_recording
+from seatsim.schema.arrays import Array
 from seatsim.schema.files import write_json, write_text
 from seatsim.schema.processes import run_jobs
 

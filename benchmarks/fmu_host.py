@@ -9,12 +9,11 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.exchange.block import Block, list_variables
 from seatsim.exchange.fmu import find_compiler, write_fmu
+from seatsim.schema.arrays import Array
 
-Array = NDArray[np.float64]
 HERE = Path(__file__).parent
 
 

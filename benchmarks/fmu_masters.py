@@ -20,15 +20,14 @@ from pathlib import Path
 
 import numpy as np
 from fmu_host import run_unit
-from numpy.typing import NDArray
 
 from seatsim.exchange.block import Block, list_variables
 from seatsim.exchange.blocks.damper import damper_block
 from seatsim.exchange.blocks.rig_motion import rig_block
 from seatsim.scenario.loading import load
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.arrays import Array
 
-Array = NDArray[np.float64]
 STEP = 1e-3
 
 
@@ -107,11 +106,7 @@ def shake_rig(scenario: Scenario) -> dict[str, Array]:
     """Return samples of the inputs of a rig whose sensors have no noise, one fewer than its history has."""
     floor = scenario.excitation.floor(scenario.solver.step, scenario.seed)
     jerk = np.diff(floor.acceleration) / scenario.solver.step
-    return {
-        "floor_acceleration": floor.acceleration[:-1],
-        "floor_velocity": floor.velocity[:-1],
-        "floor_jerk": jerk,
-    }
+    return {"floor_acceleration": floor.acceleration[:-1], "floor_velocity": floor.velocity[:-1], "floor_jerk": jerk}
 
 
 def main() -> None:

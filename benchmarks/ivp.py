@@ -1,7 +1,7 @@
-"""The same run with `scipy.integrate.solve_ivp`, written as a user would, in plain Python or compiled with numba.
+"""The same run with `scipy.integrate.solve_ivp`, written as a user would and compiled with numba.
 
 The command is held between the law's samples, so the integration restarts at each of them. The functions are scalar
-Python: faster than numpy on seven states, and numba compiles them as they stand.
+Python: faster than numpy on seven states, and numba compiles them as they stand. The damper's inverse is seatsim's.
 """
 
 from __future__ import annotations
@@ -11,25 +11,26 @@ from typing import Literal, TypeVar
 
 import numba
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from seat_run import DAMPER, GAIN, PLANT, STEP
 
+from seatsim.dampers.base import DAMPERS
+from seatsim.kernel.inverse import CELLS, invert
 from seatsim.rig.coil import Coil
+from seatsim.rig.temperature import TemperatureScaling
+from seatsim.schema.arrays import Array
 
 MS, M, KF, CF, KC, CC = PLANT[:6]
 C0, C1, ALPHA, K0, K1, X0, F0, A, BETA, GAMMA = DAMPER[:10]
 KX, KV = GAIN
 RATE, TOP = Coil().rate, Coil().max_current
-CELLS = 16
-"""Cells of the current within which the inverse looks for a change of sign, as seatsim does."""
-ACCELERATIONS = ("frame_acceleration", "driver_acceleration")
-CHANNELS = (*ACCELERATIONS, "suspension_displacement", "suspension_velocity", "damper_force", "coil_current")
-Array = NDArray[np.float64]
+CHANNELS = (
+    "frame_acceleration", "driver_acceleration", "suspension_displacement", "suspension_velocity", "damper_force",
+    "coil_current",
+)  # fmt: skip
 Number = TypeVar("Number", float, Array)
 Size = Callable[[float], float]
 Force = Callable[[float, float, float, float, float], tuple[float, float]]
-Root = Callable[[Force, float, float, float, float, float, float, float, float], float]
 
 
 def damper(x: Number, v: Number, i: Number, y: Number, z: Number) -> tuple[Number, Number]:
@@ -48,20 +49,9 @@ def interpolate(floor: Array, t: float) -> float:
     return acceleration
 
 
-def rates(
-    damper: Force,
-    size: Size,
-    x: float,
-    v: float,
-    xc: float,
-    vc: float,
-    y: float,
-    z: float,
-    i: float,
-    command: float,
-    floor: float,
-) -> tuple[float, ...]:
-    """Return the time derivative of (x, v, xc, vc, y, z, i); `size` is what returns an absolute value."""
+def rates(damper: Force, size: Size, s: Sequence[float], command: float, floor: float) -> tuple[float, ...]:
+    """Return the time derivative of `s` = (x, v, xc, vc, y, z, i); `size` is what returns an absolute value."""
+    x, v, xc, vc, y, z, i = s[0], s[1], s[2], s[3], s[4], s[5], s[6]
     force, flow = damper(x, v, i, y, z)
     cushion = KC * xc + CC * vc
     frame = (cushion - KF * x - CF * v - force) / MS
@@ -70,49 +60,15 @@ def rates(
     return v, frame - floor, vc, -cushion / M - frame, flow, hysteresis, RATE * (command - i)
 
 
-def find_root(
-    damper: Force, wanted: float, x: float, v: float, y: float, z: float, left: float, f_left: float, right: float
-) -> float:
-    """Return the current between `left` and `right` that gives the wanted force, to 1e-9 A."""
-    while right - left > 1e-9:
-        middle = 0.5 * (left + right)
-        if (damper(x, v, middle, y, z)[0] - wanted) * f_left > 0.0:
-            left = middle
-        else:
-            right = middle
-    return 0.5 * (left + right)
-
-
-def invert(damper: Force, find_root: Root, x: float, v: float, y: float, z: float) -> float:
-    """Return the least current that gives the wanted force, or the one that comes closest."""
-    wanted = KX * x + KV * v
-    if wanted * v <= 0.0:
-        return 0.0
-    f = [damper(x, v, TOP * j / CELLS, y, z)[0] - wanted for j in range(CELLS + 1)]
-    for j in range(CELLS):
-        if f[j] * f[j + 1] <= 0.0:
-            return find_root(damper, wanted, x, v, y, z, TOP * j / CELLS, f[j], TOP * (j + 1) / CELLS)
-    best = 0
-    for j in range(1, CELLS + 1):
-        if abs(f[j]) < abs(f[best]):
-            best = j
-    if best in (0, CELLS):
-        return TOP * best / CELLS
-    a, b = f[best - 1] - f[best], f[best + 1] - f[best]
-    turn = TOP * (best + 0.5 * (a - b) / (a + b)) / CELLS
-    f_turn = damper(x, v, turn, y, z)[0] - wanted
-    if f[best] * f_turn <= 0.0:
-        return find_root(damper, wanted, x, v, y, z, TOP * (best - 1) / CELLS, f[best - 1], turn)
-    return turn if abs(f_turn) < abs(f[best]) else TOP * best / CELLS
-
-
 def compile_model() -> tuple[Callable[..., Sequence[float]], Callable[[float, float, float, float], float]]:
-    """Return the seat's rates as `solve_ivp` wants them, and the inverse, compiled with numba."""
-    force, slope, root, solve, excite = map(numba.njit, (damper, rates, find_root, invert, interpolate))
-    return (
-        numba.njit(lambda t, s, u, f: slope(force, abs, s[0], s[1], s[2], s[3], s[4], s[5], s[6], u, excite(f, t))),
-        numba.njit(lambda x, v, y, z: solve(force, root, x, v, y, z)),
-    )
+    """Return the seat's rates as `solve_ivp` wants them, and the commanded current, compiled with numba."""
+    force, slope, excite = map(numba.njit, (damper, rates, interpolate))
+    order, cold = DAMPERS.specification_of(type(DAMPER)).current_order, TemperatureScaling()
+
+    def command(x: float, v: float, y: float, z: float) -> float:
+        return invert(DAMPER, order, KX * x + KV * v, x, v, cold, (y, z), TOP, np.empty(CELLS + 1)).current
+
+    return numba.njit(lambda t, s, u, f: slope(force, abs, s, u, excite(f, t))), numba.njit(command)
 
 
 MethodName = Literal["RK23", "RK45", "DOP853", "Radau", "LSODA"]

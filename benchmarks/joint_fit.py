@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 from carrier_nominals import quick
-from cases import Array, EncodedDiagnosis, Ranked, encode_verdict, rank_by_figure
+from cases import EncodedDiagnosis, Ranked, encode_verdict, rank_by_figure
 from ruamel.yaml import YAML
 from scipy.optimize import least_squares
 
@@ -22,6 +22,7 @@ from seatsim.recordings.recording import Recording, load_recording
 from seatsim.recordings.replay import replay_table, select_compared
 from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.arrays import Array
 
 NAMED = 0.05
 """Standard deviations of a channel that a parameter must move, below which nothing is named: the material limit."""

@@ -19,10 +19,11 @@ from pathlib import Path
 import ivp
 import numpy as np
 from c_loop import native_run
-from seat_run import Array, make_floor, make_setup, prepare_run
+from seat_run import make_floor, make_setup, prepare_run
 
 from seatsim.dampers.base import DAMPERS
 from seatsim.kernel.loop_data import CHANNELS
+from seatsim.schema.arrays import Array
 
 AGREEMENT = {"loop.c": 1e-7, "lean.c": 1e-2}
 """Largest difference of a channel from seatsim's, over its largest value.

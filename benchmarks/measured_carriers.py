@@ -14,36 +14,30 @@ missed  neither, and none is selected
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from carrier_nominals import DATA, read_gap, write_carrier
-from cases import Diagnoser, show_progress, write_verdict
+from carrier_nominals import DATA, read_gap, require_data, write_carrier
+from cases import Diagnoser, diagnose_missing, diagnose_without, show_progress
 from diagnosis_baselines import BASELINES
 from joint_fit import diagnose_by_joint_fit
 from rig_records import list_carriers
 
-import seatsim
 from seatsim.blind.carrier.make import make_on_carrier
 from seatsim.blind.score.score import score_verdicts
 from seatsim.blind.score.verdicts import Verdict, is_right, is_wrong_name, read_verdict
 from seatsim.blind.sealed import Label, unseal
-from seatsim.schema.content import to_content
-from seatsim.schema.processes import run_jobs
 
 OUTCOMES = ("first", "pair", "wrong", "missed")
 Labels = dict[Path, Label]
 """Of every case, by its folder."""
 
 
-def diagnose_by_seatsim(case: Path) -> Mapping[str, object]:
-    """Return the verdict of seatsim."""
-    return to_content(seatsim.diagnose(case))
-
-
-METHODS: dict[str, Diagnoser] = {"diagnosis": diagnose_by_seatsim, "joint-fit": diagnose_by_joint_fit, **BASELINES}
+METHODS: dict[str, Diagnoser] = {"diagnosis": partial(diagnose_without, ()), "joint-fit": diagnose_by_joint_fit}
+METHODS |= BASELINES
 
 
 def make_sets(data: Path, out: Path, only: Sequence[str] | None, cases: int, seed: int, jobs: int) -> Labels:
@@ -110,12 +104,9 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=2, help="cases that are worked on at once")
     parser.add_argument("--methods", nargs="+", choices=METHODS, default=["diagnosis"])
     args = parser.parse_args()
-    if not args.data.is_dir():
-        raise SystemExit(f"{args.data}: the measured data are not there; state their folder with --data")
-    labels = make_sets(args.data, args.out, args.only, args.cases, args.seed, args.jobs)
+    labels = make_sets(require_data(args.data), args.out, args.only, args.cases, args.seed, args.jobs)
     wanted = [(case / name, METHODS[name]) for name in args.methods for case in labels]
-    todo = [(out, method) for out, method in wanted if not out.is_dir()]
-    run_jobs(write_verdict, todo, args.jobs, show_progress)
+    diagnose_missing(wanted, args.jobs)
     print_results(labels, args.out / "carriers")
 
 

@@ -1,6 +1,6 @@
 """Recordings of rigs that nobody here built, and what the diagnosis says of them: `python benchmarks/real_rigs.py`.
 
-Out of `../shared/data` are written, into `--out` or a folder that is thrown away, never into the repository, folders
+Out of `../shared/data` are written into `--out` folders
 `NAME`, `NAME-fit` (the records that the nominal was fitted to) and `NAME-unseen`, all with the same nominal: a plain
 model without what the data are known to show. `rig_records` says what they are.
 """
@@ -8,14 +8,13 @@ model without what the data are known to show. `rig_records` says what they are.
 from __future__ import annotations
 
 import argparse
-import tempfile
 import time
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from carrier_nominals import DATA, fit, quick, write_part
+from carrier_nominals import DATA, fit, quick, require_data, write_part
 from rig_records import RigRecords, list_rigs
 from ruamel.yaml import YAML
 
@@ -46,21 +45,18 @@ def main() -> None:
     """Write the recordings, diagnose them, and print the table."""
     parser = argparse.ArgumentParser(description="recordings of real rigs, and what the diagnosis says of them")
     parser.add_argument("--data", type=Path, default=DATA)
-    parser.add_argument("--out", type=Path, help="folder for the recordings; without it they are thrown away")
+    parser.add_argument("--out", type=Path, required=True, help="folder for the recordings")
     parser.add_argument("--only", nargs="*", metavar="RIG", help="names of rigs")
     options = parser.parse_args()
-    if not options.data.is_dir():
-        raise SystemExit(f"{options.data}: the measured data are not there; state their folder with --data")
     rows = []
-    with tempfile.TemporaryDirectory() as temporary:
-        for rig in list_rigs(options.data):
-            if options.only and rig.name not in options.only:
-                continue
-            folder, start = write(rig, options.out or Path(temporary)), time.perf_counter()
-            gap, found = seatsim.gap(folder / "nominal.yaml", folder), seatsim.diagnose(folder)
-            where = ", ".join(f"{share.block} {share.share:.2f}" for share in found.where)
-            cells = f"{gap.overall:.3f}", found.verdict, ", ".join(found.selected), where, f"{found.gap.shrink:.2f}"
-            rows.append((rig.name, *cells, f"{time.perf_counter() - start:.0f}", rig.known))
+    for rig in list_rigs(require_data(options.data)):
+        if options.only and rig.name not in options.only:
+            continue
+        folder, start = write(rig, options.out), time.perf_counter()
+        gap, found = seatsim.gap(folder / "nominal.yaml", folder), seatsim.diagnose(folder)
+        where = ", ".join(f"{share.block} {share.share:.2f}" for share in found.where)
+        cells = f"{gap.overall:.3f}", found.verdict, ", ".join(found.selected), where, f"{found.gap.shrink:.2f}"
+        rows.append((rig.name, *cells, f"{time.perf_counter() - start:.0f}", rig.known))
     headings = ["rig", "gap", "verdict", "selected", "where", "shrink", "s", "known to show"]
     print(pd.DataFrame(rows, columns=headings).to_string(index=False))
 

@@ -35,7 +35,8 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy.signal import butter, sosfiltfilt, welch
 
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
+
 Table = Mapping[str, Array]
 """Channels of a run, each of shape (N,)."""
 Runs = dict[str, Table]

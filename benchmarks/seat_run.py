@@ -6,7 +6,6 @@ from collections.abc import Callable
 from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.compilation.cached import compiled
 from seatsim.dampers.base import DAMPERS
@@ -21,9 +20,9 @@ from seatsim.rig.coil import Coil
 from seatsim.rig.control import LAWS, Law, prepare_law
 from seatsim.rig.plant import Plant
 from seatsim.rig.temperature import TemperatureFactors, Thermal
+from seatsim.schema.arrays import Array
 from seatsim.schema.registry import initial_state
 
-Array = NDArray[np.float64]
 STEP = 1e-3
 GAIN = (2.0, 2147.6)
 PLANT = Plant(20.0, 80.0, 4600.0, 150.0, 60000.0, 1500.0)

@@ -3,8 +3,8 @@
     python benchmarks/sweep_speed.py [RUNS] [--growth]
 
 Runs of 10 s at 1 kHz of the H-infinity seat of `road-d` and its two passive variants, with drawn masses and
-stiffnesses. Measured are the compiled loop alone; in one process, three times, runs without an engine, from their drawn
-values to their metrics, a sweep of RUNS runs (10 000 by default), one at once, and the runs again; then two at once.
+stiffnesses. Measured are, in one process, three times, runs without an engine, from their drawn values to their
+metrics, a sweep of RUNS runs (10 000 by default), one at once, and the runs again; then two at once.
 Given are the time of processors and on the clock for each run, and the largest memory of all processes together. What a
 sweep adds is the median of the three, since a machine that others use is now faster, now slower.
 
@@ -31,8 +31,6 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.cli.outputs.simulated import write_sweep_report
-from seatsim.scenario.scenario import Scenario
-from seatsim.simulation import simulate as simulation
 from seatsim.sweeps.engines import LocalEngine, simulate_one
 from seatsim.sweeps.execute import execute, prepare
 from seatsim.sweeps.plan import Plan
@@ -48,9 +46,8 @@ vary:
 """
 VARIANTS = 3
 SIZES = (100, 300, 1000, 3000, 10_000, 30_000, 100_000)
-SAMPLE, LOOPS, ROUNDS = 2400, 90, 3
-"""Runs over which the cost of one is averaged, runs whose arguments are kept for calls of the loop alone, and how often
-a sweep is compared with its runs."""
+SAMPLE, ROUNDS = 2400, 3
+"""Runs over which the cost of one is averaged, and how often a sweep is compared with its runs."""
 
 
 class Cost(NamedTuple):
@@ -83,7 +80,6 @@ def main() -> None:
 
 def compare_parts(runs: int) -> None:
     """Print what a sweep adds to its runs, and what a second processor gives."""
-    show("loop", runs)
     added = []
     for _ in range(ROUNDS):
         before, one, after = show("runs-and-sweep", runs)
@@ -129,8 +125,6 @@ def measure(what: str, runs: int, folder: Path | None) -> dict[str, Cost]:
             return {what: cost_of(runs, partial(write_sweep_report, out, out))}
         # What loads what is compiled is left out, as it is the same for any number of runs.
         run_all(prepared.plan, VARIANTS)
-        if what == "loop":
-            return {what: cost_of(few, prepare_loops(prepared.plan, few))}
         if what == "sweep-2":
             return {what: cost_of(runs, partial(execute, prepared, out, LocalEngine(2)))}
         return {
@@ -147,34 +141,6 @@ def cost_of(runs: int, work: Callable[[], object]) -> Cost:
     clock, processors = time.perf_counter() - clock, sum(os.times()[:4]) - processors
     usages = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
     return Cost(runs, processors, clock, sum(usage.ru_maxrss for usage in usages) / 1024)
-
-
-def loop_of(scenario: Scenario, carry_all_effects: bool | None = None) -> Callable[[], object]:
-    """Simulate a scenario, and return what calls its compiled loop again."""
-    calls: list[Callable[[], object]] = []
-    compiled = simulation.__dict__["compiled"]
-
-    def record(function: object, parts: object) -> Callable[..., object]:
-        loop = compiled(function, parts)
-
-        def call(*arguments: object) -> object:
-            calls.append(lambda: loop(*arguments))
-            return loop(*arguments)
-
-        return call
-
-    simulation.__dict__["compiled"] = record
-    try:
-        simulation.simulate(scenario, carry_all_effects=carry_all_effects)
-    finally:
-        simulation.__dict__["compiled"] = compiled
-    return calls[0]
-
-
-def prepare_loops(plan: Plan, runs: int) -> Callable[[], object]:
-    """Return what calls the compiled loop alone so many times, with all of its arguments at hand."""
-    calls = [loop_of(plan.scenario(number)) for number in range(LOOPS)]
-    return lambda: [calls[number % LOOPS]() for number in range(runs)]
 
 
 def run_all(plan: Plan, runs: int) -> None:
