@@ -38,24 +38,31 @@ gc.set_threshold(100_000, 50, 100)
 """Importing and collecting make many objects that stay; looking for garbage among them took a quarter of the time."""
 
 
+LONG = ("tests/diagnosis/test_", "tests/robustness/")
+"""Modules that take minutes and share no rig."""
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """Leave the checks of the shipped scenarios, most of which design a law, to the slow tests."""
+    """Leave the checks of the shipped scenarios, most of which design a law, to the slow tests; long modules first."""
     for item in items:
         if item.path.is_relative_to(ROOT / "scenarios"):
             item.add_marker(pytest.mark.slow)
+    items.sort(key=lambda item: not item.nodeid.startswith(LONG))
 
 
 class _ByFolder(LoadScopeScheduling):
     """Gives the tests of a folder to one worker, since they share rigs: each is compiled and simulated once."""
 
     def _split_scope(self, nodeid):
-        return nodeid.partition("::")[0].rpartition("/")[0]
+        file = nodeid.partition("::")[0]
+        return file if file.startswith(LONG) else file.rpartition("/")[0]
 
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config, log):
-    """Share out folders of tests."""
+    """Share out folders of tests, and long modules one by one, in their order: many tests need not take long."""
+    config.option.loadscopereorder = False
     return _ByFolder(config, log)
 
 
