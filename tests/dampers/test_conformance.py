@@ -131,14 +131,6 @@ def test_the_force_is_the_polynomial_in_the_current_that_the_card_says(model, sp
             assert law(i) == pytest.approx(got, rel=1e-10, abs=1e-9)
 
 
-def test_the_force_scales_with_all_temperature_factors_together(model, specification):
-    for s in states(model, specification):
-        whole = whole_force(model, s, s.i)
-        assert whole_force(model, s, s.i, TemperatureScaling(0.6, 0.6, 0.6)) == pytest.approx(
-            0.6 * whole, rel=1e-10, abs=1e-9
-        )
-
-
 def test_steps_converge_at_the_order_of_the_model(model, specification):
     """Halving the step divides the error by 2 where the rates switch, by 8 or more where they are smooth.
 

@@ -73,21 +73,7 @@ def bench(effects, x, v, current=0.5, temperature=20.0, damper=BINGHAM, step=STE
     return bench_force(augmented, x, v, current, temperature, step, augment_factors(effects, factors), rest)
 
 
-def strokes(speed=0.1, length=0.01, count=3, step=STEP):
-    """Displacement and velocity of strokes there and back at one speed, every half step."""
-    rows = round(length / speed / step)
-    v = np.repeat(speed * (-1.0) ** np.arange(count), 2 * rows)
-    x = np.concatenate([[0.0], np.cumsum(v) * 0.5 * step])
-    return x, np.append(v, v[-1])
-
-
 def cycles(amplitude=0.005, frequency=1.0, count=3, step=STEP):
     """Displacement and velocity of a sine, every half step."""
     phase = 2 * np.pi * frequency * 0.5 * step * np.arange(round(2 * count / frequency / step) + 1)
     return amplitude * np.sin(phase), amplitude * 2 * np.pi * frequency * np.cos(phase)
-
-
-def work(force, v):
-    """Work in J done on a damper until each row, by the trapezoidal rule."""
-    power = force * v[::2]
-    return np.concatenate([[0.0], np.cumsum(0.5 * STEP * (power[1:] + power[:-1]))])

@@ -1,4 +1,6 @@
-"""Effects in the scenario of a damper bench."""
+"""Effects on a damper bench."""
+
+import math
 
 import numpy as np
 import pandas as pd
@@ -10,7 +12,7 @@ from seatsim.recordings.gap import measure_gap
 from seatsim.rig.coil import Coil, relax
 from seatsim.schema.registry import find
 
-from .rigs import BINGHAM, NAMES, STEP, bench, cycles, record, starts
+from .rigs import BINGHAM, INERT, NAMES, STEP, bench, cycles, record, starts
 
 RIG = f"""\
 damper: {{model: bingham, parameters: {BINGHAM._asdict()}}}
@@ -67,3 +69,13 @@ def test_effects_of_the_seat_are_refused_on_a_bench(folder, tmp_path):
             (tmp_path / "rig.yaml").write_text(RIG.replace("[]", f"[{{effect: {name}, parameters: {{{listed}}}}}]"))
             with pytest.raises(seatsim.InputError, match=f"no part on which {name} acts"):
                 measure_gap(tmp_path / "rig.yaml", folder)
+
+
+def test_an_elastic_mount_and_a_dashpot_are_a_maxwell_element():
+    """S + T S' = c v with T = c / K, and 1 / 5000 s more in which the piston's speed settles."""
+    stiffness, c, hertz = 2e5, 600.0, 5.0
+    x, v = cycles(frequency=hertz, count=10)
+    force = bench([record("damper.free_play", gap=0.0, stiffness=stiffness)], x, v, damper=INERT._replace(c_a=c))
+    settled = slice(len(force) // 2, None)
+    expected = np.max(v) * c / math.hypot(1.0, 2.0 * math.pi * hertz * (c / stiffness + 2e-4))
+    assert np.max(np.abs(force[settled])) == pytest.approx(expected, rel=0.01)

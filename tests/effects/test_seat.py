@@ -42,31 +42,6 @@ def linkage(scenario, history):
     )
 
 
-@pytest.mark.parametrize("values", [{}, {"presliding": 5e-4}, {"presliding": 1e-3, "lubrication": 20.0}])
-def test_friction_of_the_linkage_is_not_in_the_damper_force(bingham, values):
-    history = shaken(bingham, record("suspension.friction", force=60.0, **values))
-    d, v, i = bingham.damper.record, history["suspension_velocity"], history["coil_current"]
-    factor = np.exp(-0.004 * 20.0)
-    expected = factor * ((d.c_a + d.c_b * i) * v + (d.fc_a + d.fc_b * i) * np.tanh(v / d.v_ref))
-    assert history["damper_force"] == pytest.approx(expected, rel=1e-9, abs=1e-6)
-    friction = linkage(bingham, history)
-    assert 20.0 < np.max(np.abs(friction)) <= 60.0 * (1 + 1e-6)
-
-
-@pytest.mark.parametrize("power", [1.0, 2.0])
-def test_an_end_stop_pushes_back_from_the_ends_only_and_dissipates(loose, power):
-    stop = record("suspension.end_stop", low=-0.01, high=0.01, stiffness=3e4, damping=1.0, power=power)
-    history = shaken(loose, stop)
-    x, push = history["suspension_displacement"], linkage(loose, history)
-    assert np.max(np.abs(push[np.abs(x) < 0.01])) < 1e-6
-    assert np.min(push[x > 0.01]) >= -1e-6 and np.max(push[x < -0.01]) <= 1e-6
-    assert np.max(push) > 50.0 and np.min(push) < -50.0
-    energy = history["energy_suspension"]
-    assert np.min(energy) > -1e-6
-    apart = energy[np.abs(x) < 0.01]
-    assert np.all(np.diff(apart) > -1e-3) and apart[-1] > 0.1
-
-
 def test_a_body_of_its_own_has_no_energy_balance_and_is_not_marked_for_it(tmp_path):
     effect = record("driver.biodynamics", share=0.3, frequency=5.0, damping=0.2)
     scenario = replace(seat(tmp_path), effects=(effect,))

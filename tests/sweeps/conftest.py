@@ -9,6 +9,32 @@ from seatsim.sweeps.execute import execute, prepare
 from ..conftest import SEAT
 
 MASSES = {"plant.driver_mass": {"normal": [80, 12], "low": 50, "high": 120}}
+FLOOR = '''
+"""An excitation of a user."""
+import os, signal, time
+from multiprocessing import parent_process
+from pathlib import Path
+from typing import Annotated, NamedTuple
+
+from seatsim.excitations.base import Floor, excitation
+from seatsim.excitations.iso7096 import Iso7096
+from seatsim.schema.fields import param
+
+@excitation("{name}", source="a test")
+class Own(NamedTuple):
+    """Class EM5."""
+    duration: Annotated[float, param("s", "length of the run", above=0, high=60)] = 0.5
+
+    def floor(self, step: float, seed: int) -> Floor:
+        """Return the motion of the floor."""
+{first}
+        return Iso7096(spectral_class="EM5", duration=self.duration).floor(step, seed)
+'''
+
+
+def floor_code(name, first):
+    """Return the source of an excitation of class EM5 that does something else first."""
+    return FLOOR.format(name=name, first=first)
 
 
 @pytest.fixture

@@ -15,33 +15,20 @@ import pytest
 
 from seatsim.sweeps import parts
 
-from .conftest import bytes_of
+from .conftest import bytes_of, floor_code
 
-FLOORS = '''
-"""A floor that says which process makes it for which seed; the first one for a seed takes a minute."""
-import os, time
-from pathlib import Path
-from typing import Annotated, NamedTuple
-
-from seatsim.excitations.base import Floor, excitation
-from seatsim.excitations.iso7096 import Iso7096
-from seatsim.schema.fields import param
-
-@excitation("logged", source="a test")
-class Logged(NamedTuple):
-    """Class EM5."""
-    duration: Annotated[float, param("s", "length of the run", above=0, high=60)] = 0.5
-
-    def floor(self, step: float, seed: int) -> Floor:
-        """Return the motion of the floor."""
+FLOORS = floor_code(
+    "logged",
+    """
         if folder := os.environ.get("LOGGED_FLOORS"):
             with open(f"{folder}/{os.getpid()}.log", "a") as log:
                 log.write(f"{seed}\\n")
             if seed == 15 and not (stuck := Path(folder, "stuck")).exists():
                 stuck.write_text(str(os.getpid()))
                 time.sleep(60)
-        return Iso7096(spectral_class="EM5", duration=self.duration).floor(step, seed)
-'''
+""",
+)
+"""A floor that says which process makes it for which seed; the first one for a seed takes a minute."""
 TASK = 10
 """Runs of a task; there are more tasks than are sent at once."""
 

@@ -12,7 +12,7 @@ import seatsim
 from seatsim.schema.errors import RunError
 from seatsim.sweeps.engines import LocalEngine
 
-from .conftest import bytes_of
+from .conftest import bytes_of, floor_code
 
 EAGER = LocalEngine(2, worth_a_process=1e-9)
 """Starts a process whatever is left."""
@@ -24,30 +24,16 @@ from seatsim.sweeps.execute import execute, prepare
 
 execute(prepare(Path(sys.argv[1])), Path(sys.argv[2]), LocalEngine(2, worth_a_process=1e-9))
 """
-DEADLY = '''
-"""A floor whose making ends the process, where this is not the one of the command, as often as is left of it."""
-import os, signal
-from multiprocessing import parent_process
-from pathlib import Path
-from typing import Annotated, NamedTuple
-
-from seatsim.excitations.base import Floor, excitation
-from seatsim.excitations.iso7096 import Iso7096
-from seatsim.schema.fields import param
-
-@excitation("deadly", source="a test")
-class Deadly(NamedTuple):
-    """Class EM5."""
-    duration: Annotated[float, param("s", "length of the run", above=0, high=60)] = 0.5
-
-    def floor(self, step: float, seed: int) -> Floor:
-        """Return the motion of the floor."""
+DEADLY = floor_code(
+    "deadly",
+    """
         if parent_process():
             for life in Path(__file__).parent.glob("*.life"):
                 life.unlink()
                 os.kill(os.getpid(), signal.SIGKILL)
-        return Iso7096(spectral_class="EM5", duration=self.duration).floor(step, seed)
-'''
+""",
+)
+"""A floor whose making ends the process, where this is not the one of the command, as often as is left of it."""
 
 
 @pytest.fixture
