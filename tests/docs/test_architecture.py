@@ -22,7 +22,7 @@ DIAGRAMS = dict(re.findall(r"<!-- contract: (.+?) -->\n```text\n(.*?)```", PAGE,
 HOUSE = "values flow one way through the house"
 DIAGNOSIS = "a recording passes the stages of the diagnosis one way"
 MOST_ROOMS = 12
-FURTHER = {"yaml", "pydantic_core", "annotated_types", "llvmlite"}
+FURTHER = {"cvxpy", "yaml", "pydantic_core", "annotated_types", "llvmlite"}
 """What dependencies of the core install under another name, or with them."""
 ENTRY_POINTS = "seatsim.plugins"
 DOTTED = re.compile(r"`((?:seatsim|controllers)(?:\.\w+)+)[`(]")
