@@ -1,8 +1,9 @@
-"""Static output feedback whose gain follows the measured temperature, or how far the seat travels."""
+"""Static output feedback whose gain follows the damper's temperature, and the frequency and amplitude of the travel."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Annotated, NamedTuple
 
@@ -11,6 +12,7 @@ from pydantic import Field
 
 from controllers.laws.static_output_feedback import Factor, Gain, Mass, StaticOutputFeedback
 from controllers.seat_plant import TRAVEL_AND_RATE, ActuatorLag, Measure, Weights
+from seatsim.compilation.jit import jit
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import Floors, Measurement, State, law
 from seatsim.rig.plant import Plant
@@ -18,20 +20,45 @@ from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param
 
 Temperature = Annotated[float, param("degC", "temperature of a gain", low=-60, high=250)]
-Travel = Annotated[float, param("m", "level of the travel of a gain", low=0, high=1)]
+Frequency = Annotated[float, param("Hz", "frequency of a gain", above=0, high=100)]
+Travel = Annotated[float, param("m", "amplitude of the travel of a gain", low=0, high=1)]
+
+_SLOWEST = 0.1
+"""Hz."""
+
+
+@jit
+def share_of(points: tuple[float, ...], place: int, where: float) -> float:
+    """Return the share that the gain at one of rising points has where the schedule stands, 0 to 1.
+
+    Linear between neighbouring points; the outer points keep the share of 1 beyond them.
+    """
+    neighbour = place - 1 if where < points[place] else place + 1
+    if neighbour < 0 or neighbour == len(points):
+        return 1.0
+    return max(0.0, 1.0 - (where - points[place]) / (points[neighbour] - points[place]))
+
+
+@jit
+def find_frequency(points: tuple[float, ...], state: State) -> float:
+    """Return the frequency of the travel in Hz, RMS rate over 2 pi RMS travel, not beyond the outer points."""
+    _, square, square_of_rate = state
+    frequency = math.sqrt(square_of_rate / square) / (2.0 * math.pi) if square > 0.0 else 0.0
+    return min(max(frequency, points[0]), points[-1])
 
 
 class Schedule(NamedTuple):
-    """Compiled form of the law: each gain is linear between the points of the schedule and held beyond them.
+    """Compiled form of the law: gains on a grid of points, with the share of each from where the schedule stands.
 
-    Fields named as measurements hold the gain on them, one at each point. The state is the level of the travel: |x|
-    through a filter that follows a rise by the share `rise` a sample and a fall by the share `fall`.
+    Fields named as measurements hold the gain on them, one at each point of the grid; the last axis varies fastest, and
+    an axis that is not scheduled has one point. The state is the amplitude of the travel in m and the mean squares of
+    the travel and of its rate, all with the forgetting factor `forgotten` a sample.
     """
 
-    points: tuple[float, ...]
-    by_temperature: bool
-    rise: float
-    fall: float
+    temperatures: tuple[float, ...]
+    frequencies: tuple[float, ...]
+    travels: tuple[float, ...]
+    forgotten: float
     displacement: tuple[float, ...]
     velocity: tuple[float, ...]
     frame_velocity: tuple[float, ...]
@@ -41,57 +68,79 @@ class Schedule(NamedTuple):
 
     def wanted_force(self, y: Measurement, state: State) -> float:
         """Return the wanted damper force in N."""
-        where = y.temperature if self.by_temperature else state[0]
-        where = min(max(where, self.points[0]), self.points[-1])
-        i = 1
-        while where > self.points[i]:
-            i += 1
-        b = (where - self.points[i - 1]) / (self.points[i] - self.points[i - 1])
-        a = 1.0 - b
-        return (
-            (a * self.displacement[i - 1] + b * self.displacement[i]) * y.displacement
-            + (a * self.velocity[i - 1] + b * self.velocity[i]) * y.velocity
-            + (a * self.frame_velocity[i - 1] + b * self.frame_velocity[i]) * y.frame_velocity
-            + (a * self.driver_velocity[i - 1] + b * self.driver_velocity[i]) * y.driver_velocity
-            + (a * self.frame_acceleration[i - 1] + b * self.frame_acceleration[i]) * y.frame_acceleration
-            + (a * self.driver_acceleration[i - 1] + b * self.driver_acceleration[i]) * y.driver_acceleration
-        )
+        frequency = find_frequency(self.frequencies, state)
+        force, i = 0.0, 0
+        for a in range(len(self.temperatures)):
+            for b in range(len(self.frequencies)):
+                for c in range(len(self.travels)):
+                    share = (
+                        share_of(self.temperatures, a, y.temperature)
+                        * share_of(self.frequencies, b, frequency)
+                        * share_of(self.travels, c, state[0])
+                    )
+                    force += share * (
+                        self.displacement[i] * y.displacement
+                        + self.velocity[i] * y.velocity
+                        + self.frame_velocity[i] * y.frame_velocity
+                        + self.driver_velocity[i] * y.driver_velocity
+                        + self.frame_acceleration[i] * y.frame_acceleration
+                        + self.driver_acceleration[i] * y.driver_acceleration
+                    )
+                    i += 1
+        return force
 
     def update(self, y: Measurement, state: State) -> State:
-        """Return the level of the travel at the next sample; 0 for ever where the temperature decides."""
-        if self.by_temperature:
-            return (0.0,)
-        change = abs(y.displacement) - state[0]
-        return (state[0] + (self.rise if change > 0 else self.fall) * change,)
+        """Return amplitude and mean squares at the next sample."""
+        amplitude, square, square_of_rate = state
+        rate = y.velocity / (2.0 * math.pi * find_frequency(self.frequencies, state))
+        return (
+            max(math.hypot(y.displacement, rate), (1.0 - self.forgotten) * amplitude),
+            square + self.forgotten * (y.displacement**2 - square),
+            square_of_rate + self.forgotten * (y.velocity**2 - square_of_rate),
+        )
 
 
-@law("scheduled_output_feedback", initial=(0.0,), source="static_output_feedback at every point; schedule made up here")
+@law(
+    "scheduled_output_feedback",
+    initial=(0.0, 0.0, 0.0),
+    source="static_output_feedback at every point; schedule made up here",
+)
 class ScheduledOutputFeedback(NamedTuple):
-    """Wanted force `Fd = K . measures`, K interpolated between the points of a measured schedule.
+    """Wanted force `Fd = K . measures`, K linear between the points of a schedule over one or more quantities.
 
-    The points are either `temperatures` of the damper or `travels`, levels of the travel: |x| through a filter that
-    rises within `rise` and falls within `fall` seconds. A soft gain at a small and a firm one at a large level keep the
-    seat off its stops on rough floors and soft on smooth ones. One gain a point is stated under `gains`, or synthesised
-    from `weights` with one of `force_factors` a temperature, or from `weights_at_travels` with all of `force_factors`
-    at every level. The other keys are those of `static_output_feedback`. Each gain is proven stable where the schedule
-    stays there, not between points or while it moves.
+    - `temperatures` of the damper, as measured.
+    - `frequencies` of the travel x: f = RMS(x') / (2 pi RMS(x)). On a floor that moves the seat at its resonance the
+      ride asks for damping, above it for skyhook.
+    - `travels`: amplitudes sqrt(x^2 + (x' / (2 pi f))^2), which rise before the travel does; a firm gain at a large one
+      keeps the seat off its stops. f is the seat's natural frequency where no frequencies are scheduled.
+
+    Amplitude and mean squares are forgotten with the time constant `memory`. Of several quantities every combination is
+    a point, in the order of this list, the last one varying fastest. One gain a point is stated under `gains`, or
+    synthesised from one of `weights_at_points`, or from `weights` for all. `force_factors` has one entry a temperature;
+    where no temperatures are scheduled, every gain serves all of them. The other keys are those of
+    `static_output_feedback`. Each gain is proven stable where the schedule stays there, not between points or while it
+    moves.
     """
 
     temperatures: Annotated[tuple[Temperature, ...] | None, Field(description="temperatures, rising")] = None
-    travels: Annotated[tuple[Travel, ...] | None, Field(description="levels of the travel, rising")] = None
+    frequencies: Annotated[
+        tuple[Frequency, ...] | None, Field(description="frequencies of the travel in Hz, rising")
+    ] = None
+    travels: Annotated[tuple[Travel, ...] | None, Field(description="amplitudes of the travel in m, rising")] = None
     gains: Annotated[
         tuple[tuple[Gain, ...], ...] | None, Field(description="gain on what is measured, one entry each, one a point")
     ] = None
     weights: Annotated[Weights | None, Field(description="weights of the syntheses at the start of the run")] = None
+    weights_at_points: Annotated[
+        tuple[Weights, ...] | None, Field(description="weights of the synthesis at each point")
+    ] = None
     force_factors: Annotated[
         tuple[Factor, ...] | None,
-        Field(description="delivered over wanted force, one a temperature; all of them at every level"),
+        Field(description="delivered over wanted force, one a temperature; without temperatures all at every point"),
     ] = None
-    weights_at_travels: Annotated[
-        tuple[Weights, ...] | None, Field(description="weights of the synthesis at each level of the travel")
-    ] = None
-    rise: Annotated[float, param("s", "time constant of a rising level", low=0, high=100)] = 0.3
-    fall: Annotated[float, param("s", "time constant of a falling level", low=0, high=100)] = 2.0
+    memory: Annotated[
+        float, param("s", "time constant with which amplitude and frequency forget", above=0, high=1e3)
+    ] = 3.0
     measures: Annotated[tuple[Measure, ...], Field(min_length=1, description="what is measured")] = TRAVEL_AND_RATE
     masses: Annotated[tuple[Mass, ...] | None, Field(description="drivers to design for in kg")] = None
     displacement_gain: Annotated[bool, Field(description="whether the gain on x is free")] = True
@@ -105,55 +154,62 @@ class ScheduledOutputFeedback(NamedTuple):
         Raises:
             InputError: keys that exclude or need each other, points that do not rise, or not one entry a point.
         """
-        points = self._require_points()
-        laws = [self._law_at(place) for place in range(len(points))]
-        gains = [law.on_floors(plant, coil, sample_time, floors) for law in laws]
+        gains = [law.on_floors(plant, coil, sample_time, floors) for law in self._list_laws()]
         return Schedule(
-            tuple(float(point) for point in points),
-            self.temperatures is not None,
-            _find_share(self.rise, sample_time),
-            _find_share(self.fall, sample_time),
+            tuple(map(float, self.temperatures or (0.0,))),
+            tuple(map(float, self.frequencies or (_find_natural_frequency(plant),))),
+            tuple(map(float, self.travels or (0.0,))),
+            -math.expm1(-sample_time / self.memory),
             *(tuple(column) for column in np.array(gains, dtype=np.float64).T.tolist()),
         )
 
-    def _require_points(self) -> tuple[float, ...]:
-        if (self.temperatures is None) == (self.travels is None):
-            raise InputError("give exactly one of 'temperatures' and 'travels'")
-        if self.temperatures is not None:
-            variable, weights, varied, foreign = "temperatures", "weights", "force_factors", "weights_at_travels"
-        else:
-            variable, weights, foreign = "travels", "weights_at_travels", "weights"
-            varied = weights
-        stated = self._asdict()
-        if (self.gains is None) == (stated[weights] is None):
-            raise InputError(f"give exactly one of 'gains' and '{weights}'")
-        if stated[foreign] is not None:
-            raise InputError("weights belong to 'temperatures', and weights_at_travels to 'travels'")
-        points: tuple[float, ...] = stated[variable]
-        if len(points) < 2 or any(high <= low for low, high in pairwise(points)):
-            raise InputError(f"{variable} {list(points)} must be two or more, and must rise")
-        name = varied if self.gains is None else "gains"
-        count = len(stated[name] or ())
-        if count != len(points):
-            raise InputError(f"{name} has {count} entries; one for each of the {len(points)} {variable}")
-        return points
+    def _count_points(self) -> int:
+        """Return the number of combinations of what is scheduled, after a check of each quantity."""
+        axes = {name: getattr(self, name) for name in ("temperatures", "frequencies", "travels")}
+        scheduled = {name: points for name, points in axes.items() if points is not None}
+        if not scheduled:
+            raise InputError(f"give at least one of {', '.join(axes)}")
+        for name, points in scheduled.items():
+            if len(points) < 2 or any(high <= low for low, high in pairwise(points)):
+                raise InputError(f"{name} {list(points)} must be two or more, and must rise")
+        return math.prod(map(len, scheduled.values()))
 
-    def _law_at(self, place: int) -> StaticOutputFeedback:
-        """Return the law with one gain that is at work where the schedule stays at a point."""
+    def _list_laws(self) -> list[StaticOutputFeedback]:
+        """Return the law with one gain that is at work where the schedule stays at a point, for every point."""
+        count = self._count_points()
+        if [self.gains, self.weights, self.weights_at_points].count(None) != 2:
+            raise InputError("give exactly one of 'gains', 'weights' and 'weights_at_points'")
         if self.gains is not None:
-            return StaticOutputFeedback(gain=self.gains[place], measures=self.measures)
-        factors = self.force_factors or (1.0,)
-        at_level = self.weights_at_travels
-        return StaticOutputFeedback(
-            weights=self.weights if at_level is None else at_level[place],
-            measures=self.measures,
-            masses=self.masses,
-            force_factors=(factors[place],) if at_level is None else factors,
-            displacement_gain=self.displacement_gain,
-            lag=self.lag,
-        )
+            _require_count("gains", self.gains, count, "points")
+            return [StaticOutputFeedback(gain=gain, measures=self.measures) for gain in self.gains]
+        weights = self.weights_at_points or (self.weights,) * count
+        _require_count("weights_at_points", weights, count, "points")
+        factors: list[tuple[float, ...]] = [self.force_factors or (1.0,)] * count
+        if self.temperatures is not None:
+            stated = self.force_factors or ()
+            _require_count("force_factors", stated, len(self.temperatures), "temperatures")
+            factors = [(factor,) for factor in stated for _ in range(count // len(stated))]
+        elif self.weights is not None:
+            raise InputError("weights alone make every gain the same: give temperatures, or weights_at_points")
+        return [
+            StaticOutputFeedback(
+                weights=at_point,
+                measures=self.measures,
+                masses=self.masses,
+                force_factors=served,
+                displacement_gain=self.displacement_gain,
+                lag=self.lag,
+            )
+            for at_point, served in zip(weights, factors, strict=True)
+        ]
 
 
-def _find_share(time_constant: float, sample_time: float) -> float:
-    """Return the share of a change that a first-order filter follows within a sample."""
-    return -math.expm1(-sample_time / time_constant) if time_constant else 1.0
+def _find_natural_frequency(plant: Plant) -> float:
+    """Return the frequency in Hz of frame and driver on the suspension, at least `_SLOWEST`."""
+    rate = math.sqrt(plant.suspension_stiffness / (plant.frame_mass + plant.driver_mass))
+    return max(rate / (2.0 * math.pi), _SLOWEST)
+
+
+def _require_count(name: str, entries: Sequence[object], count: int, of: str) -> None:
+    if len(entries) != count:
+        raise InputError(f"{name} has {len(entries)} entries; one for each of the {count} {of}")
