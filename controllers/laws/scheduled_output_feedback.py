@@ -43,7 +43,9 @@ def share_of(points: tuple[float, ...], place: int, where: float) -> float:
 def find_frequency(points: tuple[float, ...], state: State) -> float:
     """Return the frequency of the travel in Hz, RMS rate over 2 pi RMS travel, not beyond the outer points."""
     _, square, square_of_rate = state
-    frequency = math.sqrt(square_of_rate / square) / (2.0 * math.pi) if square > 0.0 else 0.0
+    # At rest there is no frequency, and analyses that vary the state about it make it negative.
+    moves = square > 0.0 and square_of_rate > 0.0
+    frequency = math.sqrt(square_of_rate / square) / (2.0 * math.pi) if moves else 0.0
     return min(max(frequency, points[0]), points[-1])
 
 
@@ -90,7 +92,9 @@ class Schedule(NamedTuple):
         return force
 
     def update(self, y: Measurement, state: State) -> State:
-        """Return amplitude and mean squares at the next sample."""
+        """Return amplitude and mean squares at the next sample; 0 for ever where the temperature alone decides."""
+        if len(self.frequencies) * len(self.travels) == 1:
+            return (0.0, 0.0, 0.0)
         amplitude, square, square_of_rate = state
         rate = y.velocity / (2.0 * math.pi * find_frequency(self.frequencies, state))
         return (
