@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from seatsim.metrics.table import METRICS, SHORT
+
 LONGEST = 44
 """Letters of a label; longer ones are cut in the middle, so that its ends stay legible."""
 _PRETTY = {"degC": "°C", "^1.75": "¹·⁷⁵", "^2": "²", "^3": "³", "ohm": "Ω", " s/m": "·s/m", " s/(m A)": "·s/(m·A)"}
@@ -39,6 +41,11 @@ def describe_channel(name: str, unit: str) -> Quantity:
     """Return how a channel in SI units is shown."""
     factor, shown = FACTORS.get(unit, (1.0, format_unit(unit)))
     return Quantity(name.replace("_", " "), shown or "-", factor)
+
+
+def describe_metric(name: str) -> Quantity:
+    """Return how a metric of a run is shown, in few words."""
+    return describe_channel(SHORT.get(name, name), METRICS[name].unit)
 
 
 def format_unit(text: str) -> str:

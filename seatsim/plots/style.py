@@ -6,7 +6,7 @@ as wide as a telephone shows it legibly; a screen shows two side by side.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import cycle
 from textwrap import wrap
 from typing import Literal, NamedTuple
@@ -14,6 +14,8 @@ from typing import Literal, NamedTuple
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import ListedColormap, to_hex
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
@@ -22,11 +24,12 @@ from matplotlib.typing import LineStyleType
 from numpy.typing import ArrayLike
 
 from seatsim.plots.labels import LONGEST, RAISED, clean_text
+from seatsim.schema.text import name_some
 
 WIDTH = 5.8
 """Width of a page in inches."""
 _MARGIN = 0.12
-LETTER, _BOLD = 0.078, 0.104
+LETTER, _BOLD = 0.074, 0.1
 """Width of a letter of 9.5 points, and of one of a title, in inches, on average."""
 SAMPLE = 0.62
 """Width of a legend's sample of a line, with the gaps around it, in inches."""
@@ -34,13 +37,17 @@ LINE = 0.21
 """Height of a line of text in inches."""
 ROW = 0.27
 """Height of a row of bars in inches."""
+NOTE = int(WIDTH / 0.0715)
+"""Letters of a line of a note, in which few are wide."""
 FONT = 9.5
 """Size of text in points."""
 GREY, DARK = "0.6", "0.25"
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#882255", "#000000")
 """Okabe and Ito's palette for all kinds of colour vision; wine replaces its yellow, which fades on white."""
-DASHES: tuple[LineStyleType, ...] = ("-", (0.0, (5.0, 1.5)))
-"""Every second line is dashed: two that coincide are both seen, and colour is not the only difference."""
+DASHES: tuple[LineStyleType, ...] = ("-", (0.0, (5.0, 1.5)), (0.0, (7.0, 1.5, 1.5, 1.5)))
+"""Neighbours differ in their dashes, and so do the two blues and the two reds: colour is not the only difference."""
+AREA = "0.91"
+"""Grey of areas, such as a band of noise; a wide line of a legend names one."""
 _FREQUENCIES = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000)
 """Hz that an axis names."""
 
@@ -92,16 +99,19 @@ class Grid(NamedTuple):
 
 
 def make_entries(labels: Sequence[str]) -> list[Entry]:
-    """Return one distinct look for each of up to eight runs; further ones begin anew."""
+    """Return a look for each of some lines: after eight the colours begin anew, with other dashes."""
     looks = zip(labels, cycle(COLOURS), cycle(DASHES), strict=False)
     return [Entry(label, colour, dashes) for label, colour, dashes in looks]
 
 
+def shade(name: str) -> ListedColormap:
+    """Return a colour map without its light end, which is pale on white."""
+    return ListedColormap(colormaps[name](np.linspace(0.0, 0.85, 256)))
+
+
 def sample_colours(name: str, count: int) -> list[str]:
-    """Return `count` colours of a colour map in the order of a quantity; its light end, pale on white, is left out."""
-    last = max(1, count - 1)
-    codes = [colormaps[name](0.85 * index / last, bytes=True) for index in range(count)]
-    return ["#" + "".join(f"{int(part):02x}" for part in code[:3]) for code in codes]
+    """Return `count` colours of a colour map in the order of a quantity."""
+    return [to_hex(code) for code in shade(name)(np.linspace(0.0, 1.0, count))]
 
 
 def make_page(title: str, note: str, grid: Grid, legend: Sequence[Entry] = ()) -> Page:
@@ -110,7 +120,7 @@ def make_page(title: str, note: str, grid: Grid, legend: Sequence[Entry] = ()) -
     The height follows from what stands on the page, so that no panel shrinks where a legend grows. The two texts of the
     figure are title and note: a report takes them out, and prints them beside the picture.
     """
-    lines = [wrap(clean_text(text, 400), int(WIDTH / wide)) for text, wide in ((title, _BOLD), (note, LETTER))]
+    lines = [_break(clean_text(text, 400), most) for text, most in ((title, int(WIDTH / _BOLD)), (note, NOTE))]
     head, columns = measure_head(*map(len, lines)), _count_columns(legend)
     top = head + LINE * -(-len(legend) // columns) + grid.top
     height = top + sum(grid.heights) + grid.gap[1] * (len(grid.heights) - 1) + grid.bottom
@@ -127,6 +137,11 @@ def make_page(title: str, note: str, grid: Grid, legend: Sequence[Entry] = ()) -
             fontsize=FONT, borderaxespad=0, borderpad=0, columnspacing=1.2, handlelength=2.0, labelspacing=0.35,
         )  # fmt: skip
     return Page(figure, _add_panels(figure, grid, height - top))
+
+
+def _break(text: str, letters: int) -> list[str]:
+    """Return the lines of a cleaned text; a figure keeps its per cent sign."""
+    return wrap(text.replace(" %", "\u00a0%"), letters)
 
 
 def measure_head(title: int, note: int) -> float:
@@ -148,10 +163,66 @@ def draw_legend_beside(axes: Axes, title: str) -> Legend:
     )  # fmt: skip
 
 
-def add_axes_beside(axes: Axes, gap: float, width: float) -> Axes:
-    """Return new axes to the right of a panel, as tall as it, for a bar of colours; sizes over the figure's width."""
+def add_colour_bar(axes: Axes, drawn: ScalarMappable, label: str) -> Axes:
+    """Return the axes of a new bar of the colours in which something is drawn, to the right of a panel."""
     box = axes.get_position()
-    return axes.figure.add_axes((box.x1 + gap, box.y0, width, box.height))
+    beside = axes.figure.add_axes((box.x1 + 0.025, box.y0, 0.025, box.height))
+    bar = axes.figure.colorbar(drawn, cax=beside, label=label)
+    if bar.solids is not None:
+        # Dots may be translucent.
+        bar.solids.set_alpha(1.0)
+    return beside
+
+
+def name_coincident(figure: Figure) -> Figure:
+    """Return a finished figure; its note says which lines lie on each other in every panel that shows them."""
+    panels = [{str(line.get_label()): line for line in axes.lines if _is_named(line)} for axes in figure.axes]
+    groups: dict[str, list[str]] = {}
+    for name in dict.fromkeys(name for panel in panels for name in panel):
+        first = next((first for first in groups if _coincide(panels, first, name)), name)
+        groups.setdefault(first, []).append(f"“{name.strip()}”")
+    said = [f"{name_some(names)} coincide." for names in groups.values() if len(names) > 1]
+    if said:
+        _lengthen_note(figure, " ".join(said))
+    return figure
+
+
+def _is_named(line: Line2D) -> bool:
+    # matplotlib gives lines of its own a label that begins with an underscore.
+    label = str(line.get_label())
+    return len(np.asarray(line.get_xdata())) > 1 and label.strip() != "" and label[0] != "_"
+
+
+def _coincide(panels: Sequence[Mapping[str, Line2D]], one: str, other: str) -> bool:
+    shared = [(panel[one], panel[other]) for panel in panels if one in panel and other in panel]
+    return bool(shared) and all(_lie_on_each_other(*lines) for lines in shared)
+
+
+def _lie_on_each_other(one: Line2D, other: Line2D) -> bool:
+    """Return whether two lines of as many points differ by no more than the width of the wider one."""
+    first, second = (line.get_transform().transform(line.get_xydata()) * 72 / line.figure.dpi for line in (one, other))
+    known = np.isfinite(first)
+    if first.shape != second.shape or np.any(known != np.isfinite(second)):
+        return False
+    return bool(np.max(np.abs(first - second)[known], initial=0.0) <= max(one.get_linewidth(), other.get_linewidth()))
+
+
+def _lengthen_note(figure: Figure, sentence: str) -> None:
+    """Put a sentence behind the note of a figure, which grows by the new lines; nothing else changes its size."""
+    note, old = figure.texts[1], float(figure.get_figheight())
+    before = note.get_text().splitlines()
+    lines = _break(" ".join([*before, clean_text(sentence, 400)]), NOTE)
+    new = old + LINE * (len(lines) - len(before))
+    anchors = [legend.get_bbox_to_anchor().transformed(figure.transFigure.inverted()) for legend in figure.legends]
+    note.set_text("\n".join(lines))
+    figure.set_figheight(new)
+    for axes in figure.axes:
+        left, bottom, width, height = axes.get_position().bounds
+        axes.set_position((left, bottom * old / new, width, height * old / new))
+    for text in figure.texts:
+        text.set_y(1 - (1 - text.get_position()[1]) * old / new)
+    for legend, anchor in zip(figure.legends, anchors, strict=True):
+        legend.set_bbox_to_anchor((anchor.x0, anchor.y0 * old / new))
 
 
 def split_panel(figure: Figure, axes: Axes, lower: float) -> Axes:
@@ -174,12 +245,16 @@ def set_title(axes: Axes, text: str) -> None:
 
 
 def scale_log(axes: Axes, which: Literal["x", "y"], low: float, high: float) -> None:
-    """Make an axis logarithmic from `low` to `high`, in plain numbers: 1, 2, 5 of each decade, or decades of many."""
+    """Make an axis logarithmic from `low` to `high`: 1, 2, 5 or 1, 3 of each decade where there is room, or decades."""
     axes.set(**{f"{which}scale": "log", f"{which}lim": (low, high)})
-    axis = axes.xaxis if which == "x" else axes.yaxis
-    most = 12 if which == "x" else 8
-    axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high / low < 300 else (1,), numticks=most))
-    axis.set_major_formatter(lambda value, _: _write_plainly(value))
+    axis, length = (axes.xaxis, axes.bbox.width) if which == "x" else (axes.yaxis, axes.bbox.height)
+    is_plain = low > 2e-4 and high < 5e4
+    most = int(length / axes.figure.dpi / (0.42 if which == "x" else 0.2))
+    # Powers of ten with a factor read badly: they stand where decades alone would be too few.
+    room = np.log10(high / low) / (most if is_plain else 0.5 * most)
+    subs = next((subs for subs in ((1, 2, 5), (1, 3)) if room * len(subs) <= 1), (1,))
+    axis.set_major_locator(LogLocator(subs=subs, numticks=max(2, most)))
+    axis.set_major_formatter(_write_plainly if is_plain else _write_power)
     axis.set_minor_locator(NullLocator())
 
 
@@ -228,9 +303,14 @@ def _dress(line: Line2D, look: Entry, longest: int) -> Line2D:
     return line
 
 
-def _write_plainly(value: float) -> str:
-    exponent = round(np.log10(value))
-    if -4 < exponent < 4:
+def _write_plainly(value: float, _position: object) -> str:
+    return f"{value:g}"
+
+
+def _write_power(value: float, _position: object) -> str:
+    """Return a number in powers of ten, as all numbers of an axis of many decades are."""
+    exponent = int(np.floor(np.log10(value) + 1e-9))
+    if exponent == 0:
         return f"{value:g}"
     return f"{value / 10.0**exponent:g}×10".removeprefix("1×") + str(exponent).translate(RAISED)
 

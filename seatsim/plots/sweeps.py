@@ -11,9 +11,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from seatsim.metrics.table import COMFORT, METRICS, SHORT, TRAVEL
+from seatsim.metrics.table import COMFORT, METRICS, TRAVEL
 from seatsim.plots import style
-from seatsim.plots.labels import Quantity, clean_text, describe_channel, format_number, format_percent, format_unit
+from seatsim.plots.labels import (
+    Quantity,
+    clean_text,
+    describe_channel,
+    describe_metric,
+    format_number,
+    format_percent,
+    format_unit,
+)
 from seatsim.plots.style import COLOURS, DARK, ROW, Entry, Grid, draw_bars, make_page, measure_names, name_rows
 from seatsim.schema.arrays import Array
 from seatsim.sweeps.parts import SweepRows, is_number
@@ -37,8 +45,7 @@ _FRONT = Entry("Pareto front", "black", width=1.6)
 
 def describe_column(name: str, units: Mapping[str, str]) -> Quantity:
     """Return how a key, by its name, or a metric, in words, is shown."""
-    shown = describe_channel(SHORT.get(name, name), units.get(name, ""))
-    return shown if name in METRICS else shown._replace(words=name)
+    return describe_metric(name) if name in METRICS else describe_channel("", units.get(name, ""))._replace(words=name)
 
 
 def format_level(value: object) -> str:
@@ -74,7 +81,7 @@ def plot_shares(found: Sequence[Sensitivity], words: str) -> Figure:
 def plot_tornado(found: Sequence[Sensitivity], rows: SweepRows) -> Figure:
     """Return from where to where the mean of a metric goes between a low and a high value of each key."""
     shown, strongest = describe_column(found[0].metric, rows.units), found[:_MOST_KEYS]
-    note = "Of a key that is a text: at those with the smallest and the largest mean."
+    note = "Keys that are texts: at the values with the smallest and with the largest mean."
     legend = [
         Entry(f"mean at the key's {share} % quantile", COLOURS[0], "none", mark="o", hollow=share == 5)
         for share in (5, 95)
@@ -129,7 +136,7 @@ def plot_comfort(rows: SweepRows, order: Sequence[str]) -> Figure | None:
         front = find_front(travel, comfort)
         style.draw_line(axes, 1e3 * travel[front], comfort[front], _FRONT)
         style.set_title(axes, title)
-        axes.set(xlabel=f"{SHORT[TRAVEL]} [mm]", ylabel=f"{SHORT[COMFORT]} [m/s²]")
+        axes.set(xlabel=describe_metric(TRAVEL).axis, ylabel=describe_metric(COMFORT).axis)
     return page.figure
 
 
@@ -174,7 +181,7 @@ def plot_means(rows: SweepRows, order: Sequence[str], metric: str) -> Figure | N
     for (row, column), value in np.ndenumerate(values):
         if np.isfinite(value):
             # Black and white stay so on dark paper, since the cells do.
-            ink = "#fffffe" if value > 0.5 * (low + high) else "#000001"
+            ink = "#fffffe" if value > low + 0.62 * (high - low) else "#000001"
             axes.text(column + 0.5, row + 0.5, format_number(value), ha="center", va="center", fontsize=9, color=ink)
     axes.set_xticks(np.arange(values.shape[1]) + 0.5, [clean_text(str(name), 12) for name in table.columns], fontsize=9)
     axes.set_yticks(np.arange(len(names)) + 0.5, [clean_text(name, 32) for name in names], fontsize=9)

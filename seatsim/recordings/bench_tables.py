@@ -216,7 +216,7 @@ class BenchRecord(NamedTuple):
 
     `current` is in A, zero where it was negative. Where `commanded`, it is the command to the driver, which the coil
     follows with a lag; where `in_volts`, that is a voltage, of which 1 V counts as 1 A. `temperature` is in degC, None
-    where it was not recorded. `unused` are the columns of its file that hold no known quantity.
+    where it was not recorded. `unused` are the columns of its file, in `folder`, that hold no known quantity.
     """
 
     name: str
@@ -230,6 +230,7 @@ class BenchRecord(NamedTuple):
     temperature: Array | None
     unused: tuple[str, ...] = ()
     in_volts: bool = False
+    folder: str = ""
 
     @property
     def time(self) -> Array:
@@ -388,7 +389,7 @@ def _record(table: Mapping[str, Array], file: Path) -> BenchRecord:
     commanded = drive in ("command", "voltage") and bool(np.ptp(current) > 0.0)
     name, warmth = stem(file.name), table.get("temperature")
     record = BenchRecord(name, file.name, rate, x, velocity, table["force"], current, commanded, warmth)
-    return record._replace(in_volts=drive == "voltage")
+    return record._replace(in_volts=drive == "voltage", folder=str(file.parent))
 
 
 def _slope(x: Array, rate: float) -> Array:

@@ -15,7 +15,7 @@ from seatsim.dampers.base import DAMPERS
 from seatsim.identification.assessment import Assessment
 from seatsim.identification.identify import Identification
 from seatsim.metrics.motion import ratio
-from seatsim.plots.bench.identification import PARTS, select_records
+from seatsim.plots.bench.identification import FIT, PARTS, name_records, select_records
 from seatsim.plots.labels import format_number, format_unit
 from seatsim.report.blocks import Block, Code, Figures, Report, Table, Text, show_pictures, tabulate
 from seatsim.report.composing import Closing, compose
@@ -88,21 +88,24 @@ def _advise_on_fit(found: Identification) -> list[str]:
 def tabulate_fit(found: Identification) -> list[Table]:
     """Return the table of the agreement on each record, and of its means."""
     every = found.assessments
-    judged = [(each.record.name, PARTS[each.part], each.record.mean_current, each.agreement) for each in every]
+    judged = [
+        (name, PARTS[each.part], each.record.mean_current, each.agreement)
+        for name, each in zip(name_records(every), every, strict=True)
+    ]
     means = [(f"mean, {words}", words, "", mean) for part, words in PARTS.items() if (mean := found.mean(part))]
     rows = [
         (*name, agreement.fit_percent, format_number(agreement.r2, 5), agreement.rmse, agreement.md)
         for *name, agreement in [*judged, *means]
     ]
-    caption = "Agreement of the predicted force with the measured one"
+    caption = f"Agreement of the predicted force with the measured one. {FIT}"
     head = "record, part, current [A], fit [%], R², RMS error [N], mean deviation"
     return tabulate(caption, head, rows, 2, range(len(judged), len(rows)))
 
 
 def _show_time(chosen: Sequence[Assessment]) -> Block:
     times, force, current = {}, {}, {}
-    for k, each in enumerate(chosen):
-        name, part = f"{k + 1}: {each.record.name}", slice(*each.record.liveliest(ROWS))
+    for k, (each, called) in enumerate(zip(chosen, name_records(chosen), strict=True), 1):
+        name, part = f"{k}: {called}", slice(*each.record.liveliest(ROWS))
         times[name] = each.record.time[part]
         force[name] = [each.record.force[part], each.predicted[part]]
         current[name] = [each.record.current[part], None]

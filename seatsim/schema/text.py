@@ -47,6 +47,17 @@ def name_some(names: Sequence[str], most: int = 3, last: str = "and") -> str:
     return join_names([*names[:most], *others], last)
 
 
+def shorten_paths(paths: Sequence[tuple[str, ...]]) -> list[str]:
+    """Return the shortest end of each path that no other one has, its last part at least: `rig-2/sine` and `chirp`."""
+
+    def shorten(path: tuple[str, ...]) -> str:
+        others = {other for other in paths if other != path}
+        ends = (path[-length:] for length in range(1, len(path)))
+        return "/".join(next((end for end in ends if all(other[-len(end) :] != end for other in others)), path))
+
+    return list(map(shorten, paths))
+
+
 def split_source(text: str) -> tuple[str, str]:
     """Return a docstring without its last paragraph `Source: ...`, and what that says, in one line."""
     words, _, source = text.partition("\n\nSource: ")

@@ -42,9 +42,9 @@ def test_panels_are_titled_and_points_named_by_what_sets_them_apart(runs):
     figure = plot_pareto(runs(["soft", "hard"], (20.0, 80.0)), {})
     assert [axes.get_title(loc="left") for axes in figure.axes] == ["20 °C", "80 °C"]
     named = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert sorted(name.partition("  ")[2] for name in named if name[0].isdigit()) == ["hard", "soft"]
-    numbers = {text.get_text(): text.xy[1] for text in figure.axes[0].texts}
-    assert set(numbers) == {"1", "2"}
+    assert sorted(name.partition("  ")[2] for name in named if name[1] == " ") == ["hard", "soft"]
+    letters = {text.get_text(): text.xy[1] for text in figure.axes[0].texts}
+    assert set(letters) == {"A", "B"}
 
 
 def test_bracket_is_drawn_where_there_is_one(runs):

@@ -159,7 +159,9 @@ def test_force_velocity_shows_the_run_within_the_dampers_curves(made_up):
     every = -(-len(run.history["time"]) // len(dots))
     np.testing.assert_allclose(dots[:, 1], run.history["damper_force"][::every])
     assert axes.lines[1].get_xdata().max() == pytest.approx(np.abs(run.history["suspension_velocity"]).max())
-    assert legend(figure) == ["damper at 0 A", "damper at 1 A"]
+    assert legend(figure) == ["the run", "sine test at 0 A", "sine test at 1 A", "the damper gives energy back"]
+    # One scale of colours for the run and the tests, which ends at the largest current of both.
+    assert axes.collections[0].get_clim() == (0.0, 1.0) and figure.axes[1].get_ylim() == (0.0, 1.0)
 
 
 def test_a_sweep_is_compared_over_its_number(made_up):

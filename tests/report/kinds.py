@@ -96,7 +96,10 @@ def identification(parts):
     force = 500 * np.gradient(x) * 500
     record = BenchRecord("sine, 1 A", "sine.csv", 500.0, x, np.gradient(x) * 500, force, np.ones(900), False, None)
     judged = [
-        Assessment(record, part, force + rng.standard_normal(900), Agreement(0.99, 0.02, 5.0, 93.2)) for part in parts
+        Assessment(
+            record._replace(folder=f"rig-{k}"), part, force + rng.standard_normal(900), Agreement(0.99, 0.02, 5.0, 93.2)
+        )
+        for k, part in enumerate(parts)
     ]
     known = [ParameterEstimate("c_a", 500.0, 2.0, "N s/m", True), ParameterEstimate("k0", 3.0, 30.0, "N/m", False)]
     return SimpleNamespace(

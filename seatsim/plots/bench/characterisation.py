@@ -16,6 +16,7 @@ from seatsim.plots import style
 from seatsim.plots.bench.loops import plot_loops
 from seatsim.plots.bench.trends import plot_asymmetry, plot_energy, plot_warm_up
 from seatsim.plots.style import GREY, Entry, Grid
+from seatsim.plots.thinning import spread_evenly
 
 MOST = 6
 """Most responses in a panel."""
@@ -46,13 +47,14 @@ def plot_steps(found: Characterisation) -> Figure:
     answers = [answer for answer in found.responses if answer.share is not None]
     known = list(zip(answers, found.sheet.response, strict=True))
     speeds = {f"{answer.speed:.3g} m/s" for answer in answers if math.isfinite(answer.speed)}
-    at = f" at {speeds.pop()}" if len(speeds) == 1 else ""
-    note = (
-        f"Share of its change that the force{at} has covered, where the current falls, too. t10, t63 and t90 are those"
-        " of all steps of a panel, from the current's own 10 % or, where only a command was recorded, from its step."
-    )
+    at = f", at {speeds.pop()}" if len(speeds) == 1 else ""
+    starts = {True: "the current's own 10 %", False: "the commanded step"}
+    start = " or ".join(starts[own] for own in sorted({math.isfinite(each.current_t10) for each in answers}))
+    note = f"Share of the force's change that is covered{at}. Time counts from {start}."
     title = f"Response to steps of current: {found.name}"
-    shown = [[pair for pair in known if pair[0].rises == rises][:MOST] for rises in (True, False)]
+    shown = [spread_evenly([pair for pair in known if pair[0].rises == rises], MOST) for rises in (True, False)]
+    if (count := sum(map(len, shown))) < len(known):
+        note += f" {count} of {len(known)} steps are shown."
     # The legends stand below the panels, where they cover nothing.
     room = 0.75 + style.LINE * max(map(len, shown))
     page = style.make_page(title, note, Grid((3.0,), columns=2, top=0.3, bottom=room, gap=(0.3, 0.0)))
@@ -61,7 +63,7 @@ def plot_steps(found: Characterisation) -> Figure:
         style.set_title(axes, f"current {words}")
     page.rows[0][0].set_ylabel("share of the change [-]")
     page.rows[0][1].tick_params(labelleft=False)
-    return page.figure
+    return style.name_coincident(page.figure)
 
 
 def _draw_responses(axes: Axes, shown: list[tuple[Response, StepResponse]]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,6 +15,7 @@ from seatsim.plots import labels, style
 from seatsim.plots.loops import SIGNS
 from seatsim.plots.style import GREY, Entry, Grid
 from seatsim.plots.thinning import spread_evenly
+from seatsim.schema.text import shorten_paths
 
 MOST = 6
 """Most records that are drawn."""
@@ -23,6 +25,7 @@ START = 0.3
 """s at the start of a record that are left out: there the state of the damper is not known."""
 MEASURED, _PREDICTED = Entry("measured", GREY, width=3.2), Entry("predicted", style.COLOURS[1], width=1.2)
 _DIFFERENCE = Entry("measured less predicted", style.COLOURS[0], width=1.0)
+FIT = "Fit (normalised RMS): 100 % less the RMS error as a share of the measured force's standard deviation."
 PARTS = {"train": "fitted", "test": "held out", "predicted": "predicted only"}
 
 
@@ -32,6 +35,11 @@ def select_records(judged: Sequence[Assessment]) -> list[Assessment]:
     Held-out records come first because only they show how well the model predicts.
     """
     return spread_evenly([each for each in judged if each.part != "train"] or list(judged), MOST)
+
+
+def name_records(judged: Sequence[Assessment]) -> list[str]:
+    """Return the names of records, with as much of their folders as sets those apart that are called the same."""
+    return shorten_paths([(*Path(each.record.folder).parts, each.record.name) for each in judged])
 
 
 def plot_predictions(found: Identification) -> Figure:
@@ -45,12 +53,12 @@ def plot_predictions(found: Identification) -> Figure:
     note = f"{len(chosen)} of {len(found.assessments)} records"
     note += f"; mean fit {mean.fit_percent:.1f} %{' of held-out records' * bool(found.mean('test'))}" if mean else ""
     legend = (MEASURED, _PREDICTED, _DIFFERENCE)
-    page = style.make_page(f"{found.model}: measured and predicted force", f"{note}. {SIGNS}", grid, legend)
-    for panels, judged in zip(page.rows, chosen, strict=True):
-        title = f"{judged.record.name} ({PARTS[judged.part]}), fit {judged.agreement.fit_percent:.1f} %"
+    page = style.make_page(f"{found.model}: measured and predicted force", f"{note}. {FIT} {SIGNS}", grid, legend)
+    for panels, judged, name in zip(page.rows, chosen, name_records(chosen), strict=True):
+        title = f"{name} ({PARTS[judged.part]}), fit {judged.agreement.fit_percent:.1f} %"
         panels[0].set_title(labels.clean_text(title, 64), loc="left", fontsize=style.FONT)
         _draw_record([*panels, style.split_panel(page.figure, panels[2], 0.35)], judged)
-    return page.figure
+    return style.name_coincident(page.figure)
 
 
 def _draw_record(panels: Sequence[Axes], judged: Assessment) -> None:

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from matplotlib import colormaps
 from matplotlib.axes import Axes
-from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from seatsim.characterisation.rows import WARMER, Row, group_rows
@@ -66,7 +64,13 @@ def order_by_current(group: Sequence[Row]) -> Family:
     if len(set(names)) < len(rows):
         if all(np.diff([row.temperature for row in rows]) > WARMER):
             return order_by_temperature(group)
-        legend, names = "record", [clean_text(row.record.rsplit(",", 1)[0], _LONGEST) for row in rows]
+        full = [row.record for row in rows]
+        # The current, or the time in the record, stands behind the last comma; it may be all that differs.
+        short = [name.rpartition(",")[0] or name for name in full]
+        legend, names = (
+            "record",
+            [clean_text(name, _LONGEST) for name in (short if len(set(short)) == len(rows) else full)],
+        )
     at = f", {rows[0].temperature:.0f} °C" if np.isfinite(rows[0].temperature) and legend == "current" else ""
     return Family(describe_setting(rows[0]) + at, legend, list(zip(names, map(_centre_loop, rows), strict=True)))
 
@@ -119,22 +123,17 @@ def _moves_alike(a: Row, b: Row) -> bool:
 
 def _draw_clouds(panels: Sequence[Axes], group: Sequence[Row]) -> None:
     """Draw samples of records without cycles, coloured by current, with a bar of colours."""
-    most = max(float(np.percentile(row.cloud.current, 99)) for row in group if row.cloud is not None)
-    # As in `style.sample_colours`, the light end of the map is left out.
-    norm = Normalize(0.0, max(most, 1e-9) / 0.85)
+    most = max(float(np.max(row.cloud.current)) for row in group if row.cloud is not None)
     # The largest current first: its cloud is the widest and would cover the others.
     for row in sorted(group, key=lambda row: -row.current):
         assert row.cloud is not None
         x, v, force, current = (values[:: max(1, len(row.cloud.force) // DOTS)] for values in row.cloud)
         for axes, across in ((panels[0], v), (panels[1], 1e3 * x)):
             dots = axes.scatter(
-                across, force, c=current, s=5, alpha=0.6, cmap=colormaps["viridis"], norm=norm, linewidths=0,
-                rasterized=True,
+                across, force, c=current, s=5, alpha=0.6, cmap=style.shade("viridis"), vmin=0.0, vmax=most or 1.0,
+                linewidths=0, rasterized=True,
             )  # fmt: skip
     names = list(dict.fromkeys(row.record.split(",")[0] for row in group))
     label_panels(panels, f"{names[0]}{f' and {len(names) - 1} more' * (len(names) > 1)}, not cyclic")
     if most > 0:
-        bar = panels[1].figure.colorbar(dots, cax=style.add_axes_beside(panels[1], 0.02, 0.02), label="current [A]")
-        bar.ax.set_ylim(0.0, most)
-        if bar.solids is not None:
-            bar.solids.set_alpha(1.0)
+        style.add_colour_bar(panels[1], dots, "current [A]")

@@ -67,7 +67,7 @@ def plot_energy(found: Characterisation) -> Figure:
 
 def plot_asymmetry(found: Characterisation) -> Figure:
     """Return the asymmetric part of the loops over the same."""
-    note = "Asymmetric part: difference from the centrosymmetric loop, (F(t) + F(t + T/2)) / 2; RMS over a cycle. "
+    note = "Asymmetric part: difference from the centrosymmetric loop, ½\u00a0(F(t)\u00a0+\u00a0F(t\u00a0+\u00a0T/2)); RMS over a cycle. "
     return _plot_trends(f"Asymmetry: {found.name}", note, found, _ASYMMETRY)
 
 
@@ -88,7 +88,7 @@ def plot_warm_up(found: Characterisation) -> Figure:
             panel.text(energy[-1], share[-1], f" {cycles[-1].temperature:.0f} °C", fontsize=style.FONT, va="center")
     panel.set_xlabel("absorbed energy [kJ]")
     panel.set_ylabel("force / that of the first cycle [-]")
-    return page.figure
+    return style.name_coincident(page.figure)
 
 
 def _name_warm_up(cycles: Sequence[WarmUp]) -> str:
@@ -98,15 +98,20 @@ def _name_warm_up(cycles: Sequence[WarmUp]) -> str:
 
 
 def _plot_trends(title: str, note: str, found: Characterisation, figures: Sequence[_Figure]) -> Figure:
-    blocks = choose_abscissas([row for row in found.rows if row.loop is not None])
+    rows = [row for row in found.rows if row.loop is not None]
+    blocks = choose_abscissas(rows)
     looks, fixed = choose_looks(blocks)
+    if any(np.isfinite(getattr(row, f"{figure.name}_sd", np.nan)) for row in rows for figure in figures):
+        fixed += " Error bars: standard deviation over the cycles."
+    if any(row.temperature_range > WARMER and row.cycle_values for row in rows):
+        fixed += " Small dots: each cycle."
     grid = Grid((1.9,) * (len(figures) // 2 * len(blocks)), columns=2, left=0.9, gap=(0.9, 0.65))
     page = style.make_page(title, note + fixed, grid, list(looks.values()))
     panels = iter(page.list_panels())
     for across, groups in blocks:
         for figure in figures:
             _draw_trend(next(panels), across, figure, groups, looks)
-    return page.figure
+    return style.name_coincident(page.figure)
 
 
 def choose_abscissas(rows: Sequence[Row]) -> list[tuple[Abscissa, list[list[Row]]]]:
@@ -129,7 +134,7 @@ def choose_abscissas(rows: Sequence[Row]) -> list[tuple[Abscissa, list[list[Row]
 def choose_looks(blocks: Sequence[tuple[Abscissa, list[list[Row]]]]) -> tuple[dict[str, Entry], str]:
     """Return the look of each setting, and a note on what is held fixed and what is left out."""
     names = list(dict.fromkeys(describe_setting(group[0]) for _, groups in blocks for group in groups))
-    looks = {entry.label: entry for entry in style.make_entries(names[:MOST])}
+    looks = {entry.label: entry._replace(mark="o") for entry in style.make_entries(names[:MOST])}
     parts = []
     for across, groups in blocks:
         fixed = {across.fixed(group[0]).strip(", ") for group in groups}
@@ -144,18 +149,22 @@ def _draw_trend(
     axes: Axes, across: Abscissa, figure: _Figure, groups: Sequence[Sequence[Row]], looks: dict[str, Entry]
 ) -> None:
     """Draw a figure of some groups of rows over a quantity: a line where no two rows are at the same place."""
+    size = 4.0 + 1.2 * len(looks)
     for group in groups:
         look = looks.get(describe_setting(group[0]))
         if look is None:
             continue
+        # Of marks at one place each is seen, since later ones are smaller.
+        size -= 1.2
         ordered = sorted(group, key=across.value)
         places = [across.value(row) for row in ordered]
         values, spreads, cycles = zip(*map(figure.read, ordered), strict=True)
         apart = bool(np.all(np.diff(places) > (WARMER if across is BY_TEMPERATURE else 0.0)))
+        drawn = look if apart else look._replace(dashes="none")
+        style.draw_line(axes, places, values, drawn).set_markersize(size)
         axes.errorbar(
-            places, values, np.nan_to_num(spreads), color=look.colour, linestyle=look.dashes if apart else "none",
-            linewidth=1.4, marker="o", markersize=4.5, capsize=2.5, elinewidth=0.9,
-        )  # fmt: skip
+            places, values, np.nan_to_num(spreads), fmt="none", ecolor=look.colour, capsize=2.5, elinewidth=0.9
+        )
         for row, each in zip(ordered, cycles, strict=True):
             if across is BY_TEMPERATURE and row.temperature_range > WARMER and len(each):
                 warmth = (row.cycle_values or {})["temperature"]

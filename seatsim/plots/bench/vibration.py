@@ -38,10 +38,11 @@ def _plot_running_rms(found: Comfort, axes: Sequence[str]) -> Figure:
     looks = style.make_entries([f"{axis}, MTVV {value:.3g} m/s²" for axis, value in highest.items()])
     chosen = spread_evenly(range(len(found.stretches[axes[0]])), MOST)
     note = (
-        "RMS of the weighted acceleration over the last second, without multiplying factor. Dot: the peak, MTVV. The"
-        " first second, in which the window fills, is left out."
+        "RMS of the weighted acceleration over the last second, without multiplying factor. The first second, in which"
+        " the window fills, is left out."
     )
-    page = style.make_page("Vibration over time", note, Grid((1.5,) * len(chosen), top=0.3), looks)
+    legend = [*looks, Entry("the peak, MTVV", style.DARK, "none", mark="o")]
+    page = style.make_page("Vibration over time", note, Grid((1.5,) * len(chosen), top=0.3), legend)
     for panel, k in zip(page.list_panels(), chosen, strict=True):
         for axis, look in zip(axes, looks, strict=True):
             part = found.stretches[axis][k]
@@ -56,7 +57,7 @@ def _plot_running_rms(found: Comfort, axes: Sequence[str]) -> Figure:
         panel.set_ylim(0.0, 1.05 * max(highest.values()) or 1.0)
         panel.set_xlabel("time [s]")
         panel.set_ylabel("a$_w$ over 1 s [m/s²]")
-    return page.figure
+    return style.name_coincident(page.figure)
 
 
 def _plot_spectra(found: Comfort, axes: Sequence[str]) -> Figure:
@@ -74,7 +75,7 @@ def _plot_spectra(found: Comfort, axes: Sequence[str]) -> Figure:
         panel.set_ylabel("density [(m/s²)²/Hz]")
         style.set_title(panel, f"{axis}, {found.axes[axis].direction.weighting}")
         draw_densities(panel, drawn, looks, HIGHEST)
-    return page.figure
+    return style.name_coincident(page.figure)
 
 
 def _plot_operations(day: Exposure, operations: Sequence[Operation]) -> Figure:

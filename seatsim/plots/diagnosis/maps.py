@@ -9,9 +9,9 @@ from matplotlib.figure import Figure
 
 from seatsim.diagnosis.result import Diagnosis
 from seatsim.plots import style
-from seatsim.plots.diagnosis.bins import bin_edges, find_worst, map_rms, varies
+from seatsim.plots.diagnosis.bins import FEWEST, bin_edges, find_worst, map_rms, varies
 from seatsim.plots.diagnosis.signals import name_last
-from seatsim.plots.labels import Quantity, describe_channel
+from seatsim.plots.labels import Quantity, describe_channel, format_number
 from seatsim.plots.style import COLOURS, Entry, Grid
 from seatsim.plots.thinning import thin_line
 
@@ -47,9 +47,10 @@ def plot_maps(diagnosis: Diagnosis) -> Figure | None:
     if not known.size or not known.max() > 0:
         return None
     title = f"Error of the {shown.words} over velocity and {other.replace('_', ' ')}"
-    note = f"RMS of measured less simulated on {trace.run}; cells of too few samples stay empty."
-    figure, [panels] = style.make_page(title, note, Grid((2.2,), 2, right=0.95, top=0.3, gap=(0.15, 0.0)))
+    note = f"RMS of measured less simulated on {trace.run}; cells of fewer than {FEWEST} samples stay empty."
     low, high = max(float(known.min()), float(known.max()) / 100), float(known.max())
+    note += f" The darkest cells: {format_number(low)} {shown.unit} or less." if known.min() < low else ""
+    figure, [panels] = style.make_page(title, note, Grid((2.2,), 2, right=0.95, top=0.3, gap=(0.15, 0.0)))
     norm = LogNorm(low, high)
     for axes, name, values in zip(panels, ("nominal", name_last(diagnosis)), cells, strict=True):
         mesh = axes.pcolormesh(*borders, values, norm=norm, cmap=colormaps["viridis"], rasterized=True)
@@ -57,9 +58,7 @@ def plot_maps(diagnosis: Diagnosis) -> Figure | None:
         style.set_title(axes, name)
     panels[0].set_ylabel(MOTIONS[other].axis)
     panels[1].tick_params(labelleft=False)
-    beside = style.add_axes_beside(panels[1], 0.02, 0.025)
-    bar = figure.colorbar(mesh, cax=beside, label=f"error [{shown.unit}]")
-    style.scale_log(bar.ax, "y", low, high)
+    style.scale_log(style.add_colour_bar(panels[1], mesh, f"error [{shown.unit}]"), "y", low, high)
     return figure
 
 

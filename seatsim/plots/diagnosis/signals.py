@@ -34,6 +34,7 @@ MEASURED = Entry("measured", "black", width=2.0)
 NOMINAL = Entry("nominal", COLOURS[1], (0.0, (4.0, 3.0)), width=1.3)
 _AFTER = Entry("with effects", COLOURS[0], width=1.1)
 NOISE = Entry("sensor noise", "0.55", ":", width=1.8)
+_BAND = Entry(f"±{BAND:g} RMS of the noise", style.AREA, width=8)
 GRID = Grid((1.5, 1.0, 1.7), left=0.85, gap=(0.0, 0.16), bottom=0.5)
 LETTERS = 19
 """Letters of a label beside a panel that is this low."""
@@ -92,17 +93,16 @@ def _plot_channel(trace: Trace, group: Sequence[Trace], lines: Sequence[Simulate
     density = [estimate_density(step, signals) for signals in (*left_over[::-1], [each.measured for each in group])]
     has_spectrum = bool(len(density[0][0]))
     note = f"{window} of {trace.run}, where the difference has most energy; RMS over the whole run."
-    note += f" Grey band: ±{BAND:g} noise RMS." if noise else ""
     method = state_method(find_resolution(density))
     note += f" Below: power densities of the measured signal and of the differences. {method}" * has_spectrum
     grid = GRID if has_spectrum else GRID._replace(heights=GRID.heights[:2])
     below = [line.look._replace(label=f"{line.look.label} (below: difference)") for line in lines]
-    legend = [MEASURED, *below, *([NOISE] if noise and has_spectrum else [])]
+    legend = [MEASURED, *below, *([NOISE] if noise and has_spectrum else []), *([_BAND] if noise else [])]
     page = style.make_page(_make_title(trace, shown, lines), note, grid, legend)
     upper, lower = (row[0] for row in page.rows[:2])
     _draw_time(upper, lower, trace, window, shown, lines)
     if noise:
-        lower.axhspan(-BAND * noise, BAND * noise, color="0.88", linewidth=0, zorder=0)
+        lower.axhspan(-BAND * noise, BAND * noise, color=style.AREA, linewidth=0, zorder=0)
         # Its edges stand before the lines, which hide a band that they fill.
         lower.axhspan(-BAND * noise, BAND * noise, facecolor="none", edgecolor="black", linestyle=":", zorder=3)
     for [axes] in page.rows[2:]:
@@ -118,7 +118,7 @@ def _plot_channel(trace: Trace, group: Sequence[Trace], lines: Sequence[Simulate
         style.scale_frequency_axis(axes, float(frequency[0]), float(frequency[-1]))
         axes.set_ylabel(f"power density\n[{shown.square}/Hz]")
         axes.yaxis.set_label_coords(-0.1, 0.5)
-    return page.figure
+    return style.name_coincident(page.figure)
 
 
 def _draw_time(
@@ -148,7 +148,7 @@ def _draw_time(
 def _make_title(trace: Trace, shown: Quantity, lines: Sequence[Simulated]) -> str:
     sizes = [rms(trace.measured - line.read(trace)) for line in lines]
     words = shown.words[:1].upper() + shown.words[1:]
-    named = [f"{line.look.label} " for line in lines] if len(lines) > 1 else [""]
-    known = [*zip(named, sizes, strict=True), *([("noise ", trace.noise_rms)] if trace.noise_rms > 0 else [])]
-    figures = [f"{name}{format_number(shown.factor * size)}\u00a0{shown.unit}" for name, size in known]
+    named = [line.look.label for line in lines] if len(lines) > 1 else [""]
+    known = [*zip(named, sizes, strict=True), *([("noise", trace.noise_rms)] if trace.noise_rms > 0 else [])]
+    figures = [f"{name} {format_number(shown.factor * size)}\u00a0{shown.unit}".strip() for name, size in known]
     return f"{words}, RMS difference: {', '.join(figures)}"

@@ -7,7 +7,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
@@ -18,8 +17,9 @@ from seatsim.metrics.motion import rms
 from seatsim.plots import style
 from seatsim.plots.loops import SIGNS, Family, make_loop_page
 from seatsim.plots.runs import naming
-from seatsim.plots.style import Entry, Grid
+from seatsim.plots.style import COLOURS, Entry, Grid
 from seatsim.rig.temperature import TemperatureFactors, Thermal
+from seatsim.schema.arrays import Array
 from seatsim.schema.registry import name_of, specification_of
 from seatsim.simulation.damper_bench import SineTest, sine_test
 from seatsim.simulation.result import Run
@@ -106,15 +106,17 @@ def plot_force_velocity(run: Run) -> Figure:
     velocity = _stroke_ratio(run) * run.history["suspension_velocity"]
     amplitude = max(_SLOWEST, float(np.max(np.abs(velocity)))) / (2 * math.pi * FREQUENCY)
     currents = (0.0, damper.max_current)
-    tests = _drop_equal((f"damper at {i:g} A", damper.loop(amplitude, i, temperature)) for i in currents)
-    looks = [Entry(name, colour, width=1.8) for (name, _), colour in zip(tests, ("0.45", "black"), strict=False)]
-    note = (
-        f"Dots: the run. Curves: sine test at {temperature:g} °C, amplitude {1e3 * amplitude:.3g} mm, {FREQUENCY:g} Hz."
-        f" Shaded: the damper gives energy back. {SIGNS}"
-    )
-    page = style.make_page(f"Damper at work: {naming.make_title([run])}", note, Grid((3.3,), right=1.0), looks)
+    tests = _drop_equal((f"sine test at {i:g} A", damper.loop(amplitude, i, temperature)) for i in currents)
+    changes = float(np.ptp(run.history["coil_current"])) > 0
+    colours = style.sample_colours("viridis", len(currents)) if changes else ("0.5", "black")
+    looks = [Entry(name, colour, width=1.8) for (name, _), colour in zip(tests, colours, strict=False)]
+    dots = Entry("the run", style.sample_colours("viridis", 3)[1] if changes else COLOURS[0], "none", mark="o")
+    areas = Entry("the damper gives energy back", style.AREA, width=8)
+    note = f"Sine tests at {temperature:g} °C, amplitude {1e3 * amplitude:.3g} mm, {FREQUENCY:g} Hz. {SIGNS}"
+    title = f"Damper at work: {naming.make_title([run])}"
+    page = style.make_page(title, note, Grid((3.3,), right=1.0), [dots, *looks, areas])
     axes = page.rows[0][0]
-    _draw_samples(axes, velocity, run)
+    _draw_samples(axes, velocity, run, damper.max_current if changes else 0.0)
     for look, (_, test) in zip(looks, tests, strict=True):
         style.draw_line(axes, test.velocity, test.force, look)
     _shade_active_quadrants(axes)
@@ -161,14 +163,16 @@ def _choose_temperatures(damper: _InstalledDamper) -> list[float]:
     return [low, 0.5 * (low + high), high]
 
 
-def _draw_samples(axes: Axes, velocity: np.ndarray, run: Run) -> None:
+def _draw_samples(axes: Axes, velocity: Array, run: Run, largest: float) -> None:
+    """Draw samples of a run, coloured by a current that changes, on the scale of the tests: from 0 to its largest."""
     every = -(-len(velocity) // _MOST_SAMPLES)
     force, current = run.history["damper_force"][::every], run.history["coil_current"][::every]
-    changes = float(np.ptp(current)) > 0
-    scale, colours = colormaps["viridis"] if changes else None, current if changes else style.COLOURS[0]
-    dots = axes.scatter(velocity[::every], force, s=7, c=colours, cmap=scale, linewidths=0, rasterized=True)
-    if changes:
-        axes.figure.colorbar(dots, cax=style.add_axes_beside(axes, 0.03, 0.025), label="coil current [A]")
+    look = {"c": current, "cmap": style.shade("viridis"), "vmin": 0.0, "vmax": largest}
+    dots = axes.scatter(
+        velocity[::every], force, s=7, linewidths=0, rasterized=True, **(look if largest else {"color": COLOURS[0]})
+    )
+    if largest:
+        style.add_colour_bar(axes, dots, "coil current [A]")
 
 
 def _shade_active_quadrants(axes: Axes) -> None:
@@ -176,4 +180,4 @@ def _shade_active_quadrants(axes: Axes) -> None:
     right, top = (max(abs(end) for end in ends) for ends in (axes.get_xlim(), axes.get_ylim()))
     axes.set(xlim=(-right, right), ylim=(-top, top))
     for corner in ((-right, 0.0), (0.0, -top)):
-        axes.add_patch(Rectangle(corner, right, top, facecolor="0.95", zorder=0))
+        axes.add_patch(Rectangle(corner, right, top, facecolor=style.AREA, zorder=0))

@@ -56,14 +56,15 @@ def plot_time_histories(shown: Shown) -> Figure:
     first, single = shown.runs[0].history, len(shown.runs) == 1
     common = min(run.history["time"][-1] for run in shown.runs)
     window = find_loudest(first["driver_acceleration"][first["time"] <= common], first.step, CLOSE_UP, RASTER)
+    whole = Window(0.0, float(common))
     note = f"{window}, where the driver's RMS acceleration is largest{' in the first run' * (not single)}."
     views = [window]
-    if single and window.end - window.start < common:
-        views, note = [Window(0.0, float(common)), window], f"Left: whole run. Right: {note}"
+    if not np.any(first["driver_acceleration"]):
+        views, note = [whole], "The whole run, at rest."
     elif window.end >= common:
         note = "The whole run."
-    if not np.any(first["driver_acceleration"]):
-        note = "At rest."
+    elif single:
+        views, note = [whole, window], f"Left: whole run. Right (grey on the left): {note}"
     limits, warms = _find_limits(shown.runs), any(np.ptp(run.history[TEMPERATURE.name]) > 0 for run in shown.runs)
     channels = (*CHANNELS, TEMPERATURE) if warms else CHANNELS
     legend = [] if single else [*shown.looks, *[LIMIT] * bool(limits)]
@@ -82,7 +83,7 @@ def plot_time_histories(shown: Shown) -> Figure:
         axes.tick_params(labelbottom=False)
     for axes in page.rows[-1]:
         axes.set_xlabel("time [s]")
-    return page.figure
+    return style.name_coincident(page.figure)
 
 
 def _draw_view(axes: Axes, shown: Shown, channel: _ChannelPanel, view: Window) -> None:
@@ -105,7 +106,7 @@ def _draw_view(axes: Axes, shown: Shown, channel: _ChannelPanel, view: Window) -
 def _join_views(row: Sequence[Axes], window: Window, single: bool) -> None:
     """Give the close-up the scale of the whole run, mark it there; put the legend of a single run above the row."""
     for close in row[1:]:
-        row[0].axvspan(*window, color="0.93", zorder=0)
+        row[0].axvspan(*window, color=style.AREA, zorder=0)
         close.set_ylim(row[0].get_ylim())
         close.tick_params(labelleft=False)
     # matplotlib gives lines of its own a label that begins with an underscore.

@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 from typing import NamedTuple, TypeGuard
 
 from seatsim.plots.labels import LONGEST, format_unit, shorten
-from seatsim.plots.style import Entry, make_entries
+from seatsim.plots.style import GREY, Entry, make_entries
 from seatsim.plots.thinning import spread_evenly
 from seatsim.scenario.numbers import find_unit
 from seatsim.scenario.scenario import Scenario
@@ -50,22 +50,23 @@ def choose_looks(runs: Sequence[Run]) -> dict[int, Entry]:
     """Return the look of each run, by its identity, in which every picture of the runs shows it.
 
     Runs of one variant share its colour, and are the paler the later they come; where no variants differ, each run has
-    its own. Colours repeat after eight: those of runs that are drawn over each other come first, so that these differ.
+    its own. Those that no picture draws as a line are grey: there are not enough colours for all.
     """
     parts = _divide(runs)
     names = {id(run): name for part in parts for name, run in zip(label_runs(part), part, strict=True)}
     families = names
     if len({run.scenario.label.get("variant") for run in runs}) > 1:
         families = {id(run): str(run.scenario.label.get("variant", run.scenario.name)) for run in runs}
-    members = dict[str, list[str]]()
-    for run in [*(run for part in parts for run in _select_shown(part)[0]), *runs]:
+    members, drawn = dict[str, list[str]](), [run for part in parts for run in _select_shown(part)[0]]
+    for run in [*drawn, *runs]:
         family = members.setdefault(families[id(run)], [])
         family += [names[id(run)]] * (names[id(run)] not in family)
-    found = {}
+    found, coloured = {}, {families[id(run)] for run in drawn}
     for look in make_entries(list(members)):
+        colour = look.colour if look.label in coloured else GREY
         for k, name in enumerate(members[look.label]):
             alpha = 1.0 - _FADED * k / max(1, len(members[look.label]) - 1)
-            found[look.label, name] = look._replace(label=name, alpha=alpha)
+            found[look.label, name] = look._replace(label=name, colour=colour, alpha=alpha)
     return {run: found[families[run], name] for run, name in names.items()}
 
 

@@ -31,6 +31,7 @@ _TRUSTED = 0.5
 """Least coherence of a transmissibility: below it most of the driver's motion is not the floor's."""
 POWER = 1e-3
 """Least density of the floor over its highest at which it has power enough for a transmissibility."""
+SAME = Entry("driver moves as much as the floor", GREY, width=1.0)
 NOTE = (
     f"Drawn where the floor has power ({POWER:g} of its highest density or more) and explains most of the driver's"
     f" motion (coherence {_TRUSTED:g} or more)."
@@ -56,7 +57,7 @@ def plot_psd(shown: Shown) -> Figure:
     figure, axes = _make_page(title, state_method(resolution) + shown.omission, resolution, legend)
     axes.set_ylabel("power density [(m/s²)²/Hz]")
     draw_densities(axes, found, [*floors, *drivers], BAND[1])
-    return figure
+    return style.name_coincident(figure)
 
 
 def plot_transmissibility(shown: Shown) -> Figure:
@@ -65,19 +66,19 @@ def plot_transmissibility(shown: Shown) -> Figure:
     known = np.concatenate([gain[np.isfinite(gain) & (gain > 0)] for _, gain, _ in gains])
     resolution = max((frequency[1] - frequency[0] for frequency, _, _ in gains if len(frequency)), default=np.inf)
     lines = f" Lines up to {resolution:.2g} Hz apart." * bool(known.size)
-    legend = shown.looks if known.size and len(shown.runs) > 1 else []
+    legend = [*(shown.looks if len(shown.runs) > 1 else []), SAME] if known.size else []
     title = f"Transmissibility, floor to driver: {shown.title}"
     figure, axes = _make_page(title, NOTE + lines + shown.omission, resolution, legend)
     axes.set_ylabel("|driver / floor| [-]")
     if not known.size:
         style.explain_empty(axes, "; ".join(dict.fromkeys(problem for _, _, problem in gains)))
         return figure
-    axes.axhline(1.0, color=GREY, linewidth=1.0, zorder=1)
+    axes.axhline(1.0, color=SAME.colour, linewidth=SAME.width, zorder=1)
     axes.set_yscale("log")
     for (frequency, gain, _), look in zip(gains, shown.looks, strict=True):
         style.draw_line(axes, frequency, gain, look)
     style.scale_log(axes, "y", min(0.5, float(known.min())) / 1.2, max(2.0, float(known.max())) * 1.2)
-    return figure
+    return style.name_coincident(figure)
 
 
 def _make_page(title: str, note: str, resolution: float, legend: Sequence[Entry]) -> tuple[Figure, Axes]:
