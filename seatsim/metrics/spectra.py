@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -39,6 +40,44 @@ def power_spectral_density(x: Array, sample_rate: float, length: int) -> tuple[A
     """
     frequency, power = cross_spectral_density(x, x, sample_rate, length)
     return frequency, power.real
+
+
+LOWEST = 0.1
+"""Hz from which on a density is averaged over bands: the distance of the lines of the longest segment."""
+PER_OCTAVE = 12
+"""Bands in an octave, finer than the resonance of a seat is wide."""
+LEAST_SAMPLES = 64
+"""Samples from which on a signal has a density."""
+SEGMENTS = 4
+"""Least number of half-overlapping segments: half of what a coherence needs, for lines half as far apart.
+
+What is lost in averages comes back where bands hold several lines.
+"""
+
+
+def estimate_density(step: float, signals: Sequence[Array]) -> tuple[Array, Array]:
+    """Return frequency in Hz and power spectral density, averaged over narrow bands and several runs, shape (F,) each.
+
+    step: interval of the samples in s. Signals, shape (N,) each, that are too short give none.
+    """
+    shortest = min(map(len, signals))
+    if shortest < LEAST_SAMPLES:
+        return np.empty(0), np.empty(0)
+    length = min(round(LONGEST / step), 2 * (shortest // (SEGMENTS + 1)))
+    found = [power_spectral_density(values, 1 / step, length) for values in signals]
+    return _average_bands(found[0][0], np.mean([power for _, power in found], axis=0))
+
+
+def _average_bands(frequency: Array, power: Array) -> tuple[Array, Array]:
+    """Return mean frequency and mean density of bands of equal width on a logarithmic axis.
+
+    Otherwise the many lines of the high decades would make a drawn line thick and noisy.
+    """
+    # Segments have their means removed, so that the first line holds nothing.
+    inside = frequency >= max(LOWEST, frequency[1])
+    band = np.floor(PER_OCTAVE * np.log2(frequency[inside] / LOWEST) + 1e-9).astype(int)
+    _, index, count = np.unique(band, return_inverse=True, return_counts=True)
+    return np.bincount(index, frequency[inside]) / count, np.bincount(index, power[inside]) / count
 
 
 def _segments(values: Array, length: int) -> Array:
@@ -102,6 +141,25 @@ def transmissibility(floor: ArrayLike, driver: ArrayLike, sample_rate: float) ->
     coherence = _quotient(np.abs(cross) ** 2, floor_psd * driver_psd)
     segments = 2 * x.size // length - 1
     return Transmissibility(frequency, response, coherence, segments)
+
+
+TRUSTED = 0.5
+"""Least coherence of a transmissibility: below it most of the driver's motion is not the floor's."""
+POWER = 1e-3
+"""Least density of the floor over its highest at which it has power enough for a transmissibility."""
+
+
+def trusted_gain(floor: Array, driver: Array, sample_rate: float, highest: float) -> tuple[Array, Array]:
+    """Return frequency in Hz and transmissibility, shape (F,) each, NaN where `TRUSTED` and `POWER` forbid it.
+
+    Frequencies are those from `LOWEST` to `highest` Hz; the other arguments, and errors, are of `transmissibility`.
+    """
+    found = transmissibility(floor, driver, sample_rate)
+    inside = (found.frequency >= LOWEST) & (found.frequency <= highest)
+    centres, density = estimate_density(1 / sample_rate, [floor])
+    power = np.interp(found.frequency[inside], centres, density) if len(centres) else np.zeros(int(np.sum(inside)))
+    strong = power >= POWER * np.max(power, initial=1e-300)
+    return found.frequency[inside], np.where(strong & (found.coherence >= TRUSTED)[inside], found.gain[inside], np.nan)
 
 
 def _segment(samples: int, sample_rate: float) -> int:

@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from seatsim.diagnosis.answer import write_augmented
-from seatsim.diagnosis.candidates import Candidate, list_candidates
+from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.objective import Parameters
-from seatsim.diagnosis.problem import pose_problem
+from seatsim.diagnosis.trial import Trial, name_candidate
 from seatsim.metrics.motion import rms
 from seatsim.page.scenario_view import Choice, Slider, Switch, View, make_slider, read_number
 from seatsim.plots.labels import format_percent
-from seatsim.recordings.quality.examination import examine, refuse
-from seatsim.recordings.recording import load_recording
 from seatsim.report.blocks import Signals, Table
 from seatsim.report.formatting import describe_effect, format_noise, format_sentence, say_noise
 from seatsim.report.packing import MEASURED, QUICK, Panel, pack_signals
@@ -27,9 +23,6 @@ from seatsim.schema.fields import describe
 
 REACH = 4.0
 """How far a slider reaches, in sizes of the effect as a fit would start with it."""
-PROCESSES = 2
-_DIFFERENCE = 1e-2
-"""Step of a difference in a fit, relative."""
 
 
 class RecordingView:
@@ -45,16 +38,10 @@ class RecordingView:
             InputError: the recording has a fault.
             RunError: the nominal scenario cannot be replayed.
         """
-        recording = load_recording(folder)
-        refuse(examine(recording))
-        self.name = folder.resolve().name
-        self.problem = pose_problem(recording, ThreadPoolExecutor(PROCESSES))
-        first: dict[str, Candidate] = {}
-        for candidate in list_candidates(self.problem):
-            first.setdefault(_name(candidate), candidate)
-        self.candidates = first
-        self.switches = [_make_switch(name, candidate) for name, candidate in first.items()]
-        self.nominal = self._simulate(Parameters(self.problem.nominal))
+        self.name, self.trial = folder.resolve().name, Trial(folder)
+        self.problem = problem = self.trial.problem
+        self.before, self.floor = self.trial.measure(self.trial.nominal), problem.noise / problem.spread
+        self.switches = [_make_switch(name, candidate) for name, candidate in self.trial.candidates.items()]
 
     def show(self, request: Mapping[str, object]) -> View:
         """Return the gap with the effects of a request, at its values or, where it says so, fitted to the recording.
@@ -65,10 +52,11 @@ class RecordingView:
         """
         parameters, fitted = self.choose(request), {}
         if request.get("fit") and parameters.terms:
-            parameters = self._fit(parameters)
+            parameters = self.trial.fit(parameters)
             fitted = self._read_sliders(parameters)
-        after = self._simulate(parameters) if parameters.terms else self.nominal
-        return View(self._say(parameters, after), [self._tabulate(after)], self._pack(after), fitted=fitted)
+        after = self.trial.simulate(parameters) if parameters.terms else self.trial.nominal
+        gaps = self.trial.measure(after)
+        return View(self._say(len(parameters.terms), gaps), [self._tabulate(gaps)], self._pack(after), fitted=fitted)
 
     def choose(self, request: Mapping[str, object]) -> Parameters:
         """Return the effects of a request with their values."""
@@ -81,65 +69,35 @@ class RecordingView:
             if name not in switches or not isinstance(values, dict):
                 raise InputError(f"{name!r} is no effect that this recording can show")
             numbers = [read_number(values, slider) for slider in switches[name].sliders]
-            found = found.add(self.candidates[name], np.array(numbers))
+            found = found.add(self.trial.candidates[name], np.array(numbers))
         return found
 
     def encode(self, request: Mapping[str, object]) -> dict[str, object]:
         """Return the nominal scenario with the effects of a request, as the content of a file."""
         return write_augmented(self.problem, self.choose(request))
 
-    def _simulate(self, parameters: Parameters) -> dict[str, Array]:
-        problem = self.problem
-        change = (parameters.deviations, parameters.effects)
-        jobs = {run: problem.pool.submit(problem.simulated, run, *change) for run in problem.runs}
-        return {run: job.result() for run, job in jobs.items()}
-
-    def _fit(self, start: Parameters) -> Parameters:
-        """Return the parameters of the effects with which the squared gap is least, found by least squares."""
-        low, high = start.limits
-        own = slice(len(start.deviations), None)
-
-        def move_to(vector: Array) -> Parameters:
-            return start.move_to(np.concatenate([start.deviations, vector]))
-
-        def subtract(vector: Array) -> Array:
-            simulated, problem = self._simulate(move_to(vector)), self.problem
-            left = [(problem.measured[run] - simulated[run]) / problem.spread[:, None] for run in problem.runs]
-            return np.concatenate(left, axis=None)
-
-        bounds = (low[own], high[own])
-        return move_to(least_squares(subtract, start.vector[own], bounds=bounds, diff_step=[_DIFFERENCE]).x)
-
     def _read_sliders(self, parameters: Parameters) -> dict[str, dict[str, float]]:
         """Return where the sliders of the effects stand at these parameters."""
         switches = {switch.name: switch.sliders for switch in self.switches}
         found: dict[str, dict[str, float]] = {}
-        for name, values in zip(map(_name, parameters.terms), parameters.values, strict=True):
+        for name, values in zip(map(name_candidate, parameters.terms), parameters.values, strict=True):
             moved = zip(switches[name], values, strict=True)
             found[name] = {own.name: float(np.clip(own.factor * value, own.low, own.high)) for own, value in moved}
         return found
 
-    def _measure(self, simulated: Mapping[str, Array]) -> Array:
-        """Return the gap of each channel over all runs, shape (channels,)."""
-        problem = self.problem
-        left = np.concatenate([problem.measured[run] - simulated[run] for run in problem.runs], axis=1)
-        return np.array([rms(row) for row in left]) / problem.spread
-
-    def _say(self, parameters: Parameters, after: Mapping[str, Array]) -> str:
-        before, now = (float(np.sqrt(np.mean(self._measure(each) ** 2))) for each in (self.nominal, after))
-        noise = say_noise(float(np.sqrt(np.mean((self.problem.noise / self.problem.spread) ** 2))))
-        if not parameters.terms:
-            return f"The nominal simulation is off by {format_percent(before)}; {noise}."
+    def _say(self, effects: int, gaps: Array) -> str:
+        before, now, floor = map(rms, (self.before, gaps, self.floor))
+        if not effects:
+            return f"The nominal simulation is off by {format_percent(before)}; {say_noise(floor)}."
         change = "shrinks" if now < before else "grows"
         return (
-            f"With {len(parameters.terms)} effect{'s' * (len(parameters.terms) > 1)} the gap {change} from"
-            f" {format_percent(before)} to {format_percent(now)}; {noise}."
+            f"With {effects} effect{'s' * (effects > 1)} the gap {change} from {format_percent(before)} to"
+            f" {format_percent(now)}; {say_noise(floor)}."
         )
 
-    def _tabulate(self, after: Mapping[str, Array]) -> Table:
-        before, now, floor = self._measure(self.nominal), self._measure(after), self.problem.noise / self.problem.spread
+    def _tabulate(self, gaps: Array) -> Table:
         rows = []
-        for channel, old, new, noise in zip(self.problem.channels, before, now, floor, strict=True):
+        for channel, old, new, noise in zip(self.problem.channels, self.before, gaps, self.floor, strict=True):
             first, second, shrink = map(format_percent, (old, new, 1 - new / old))
             rows.append([channel.replace("_", " "), first, second, format_noise(noise), shrink])
         return Table(
@@ -152,16 +110,13 @@ class RecordingView:
         problem = self.problem
         panels = []
         for k, channel in enumerate(problem.channels):
-            shown = {run: [each[run][k] for each in (problem.measured, self.nominal, after)] for run in problem.runs}
+            shown = {
+                run: [each[run][k] for each in (problem.measured, self.trial.nominal, after)] for run in problem.runs
+            }
             panels.append(Panel(channel, problem.recording.channels[channel].unit, "", shown))
         time = {run: (problem.skip + np.arange(problem.measured[run].shape[1])) / problem.rate for run in problem.runs}
         lines = [("measured", MEASURED), ("nominal", 1), ("with effects", 0)]
         return pack_signals("Every run.", lines, time, panels, QUICK)
-
-
-def _name(candidate: Candidate) -> str:
-    channel = candidate.fixed.get("channel")
-    return f"{candidate.effect}:{channel}" if channel else candidate.effect
 
 
 def _make_switch(name: str, candidate: Candidate) -> Switch:

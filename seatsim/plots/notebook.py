@@ -11,8 +11,7 @@ from matplotlib.figure import Figure
 from seatsim.diagnosis.result import Diagnosis
 from seatsim.identification.identify import Identification
 from seatsim.plots.bench.identification import plot_predictions
-from seatsim.plots.diagnosis.answer import plot_gap
-from seatsim.plots.diagnosis.draw import plot_diagnosis
+from seatsim.plots.diagnosis.draw import plot_all_of_gap, plot_diagnosis
 from seatsim.plots.runs.draw import plot_result
 from seatsim.recordings.gap import Gap
 from seatsim.schema.errors import InputError, nearest
@@ -53,7 +52,7 @@ def _list_figures(value: object) -> dict[str, Figure]:
         case Result():
             return plot_result(value)
         case Gap():
-            return {"gap": plot_gap(value)}
+            return plot_all_of_gap(value)
         case Identification():
             return {"loops": plot_predictions(value)}
         case Diagnosis():

@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 from seatsim.plots.densities import METHOD
 from seatsim.provenance.statement import state_command
-from seatsim.report.blocks import Block, Code, Items, Report, Section, Text, tabulate
+from seatsim.report.blocks import Block, Code, Items, Report, Section, Text
 from seatsim.report.credibility import Factor, say_doubt, show_card
-from seatsim.report.formatting import format_sentence, read_words
+from seatsim.report.formatting import format_sentence, read_words, show_table
 
 _PACKAGES = ("seatsim", "numpy", "scipy", "numba")
 
@@ -50,7 +50,7 @@ def compose(
     """
     words, (notes, factors, command, settings) = read_words(), closing
     method = [text.format(density=METHOD, **facts) for text in words.methods[kind]]
-    versions = tabulate("Versions", "package, version", [(name, version(name)) for name in _PACKAGES], 2)
+    versions = show_table("versions", [(name, version(name)) for name in _PACKAGES], 2)
     again: list[Block] = [Text("This command makes the report again:"), Code(state_command(command))]
     own = [Section(anchor, words.headings[kind][anchor], blocks) for anchor, blocks in sections.items()]
     sentences = list(dict.fromkeys(map(format_sentence, notes)))

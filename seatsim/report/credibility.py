@@ -15,8 +15,8 @@ from typing import NamedTuple
 from seatsim.dampers.base import CONFIDENCE, DAMPERS, find_confidence
 from seatsim.plots.labels import UNKNOWN, format_number, format_percent
 from seatsim.provenance.statement import current_invocation
-from seatsim.report.blocks import Section, tabulate
-from seatsim.report.formatting import explain, format_sentence, read_words
+from seatsim.report.blocks import Section
+from seatsim.report.formatting import explain, format_sentence, read_words, show_table
 from seatsim.schema.registry import name_of
 from seatsim.schema.text import join_names
 
@@ -64,8 +64,9 @@ def show_card(factors: Sequence[Factor]) -> Section:
         (each.name, f"{each.level}\u00a0of\u00a0{len(each.holds)}", format_sentence(each.evidence), each.next_condition)
         for each in factors
     ]
-    table = tabulate("Credibility of the figures of this report", "factor, level, evidence, next level if", rows, 4)
-    return Section("credibility", "How far to trust this", [*explain("credibility"), *table])
+    return Section(
+        "credibility", "How far to trust this", [*explain("credibility"), *show_table("credibility", rows, 4)]
+    )
 
 
 def say_doubt(factors: Sequence[Factor]) -> str:

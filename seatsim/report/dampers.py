@@ -15,12 +15,12 @@ from seatsim.dampers.base import DAMPERS
 from seatsim.identification.assessment import Assessment
 from seatsim.identification.identify import Identification
 from seatsim.metrics.motion import ratio
-from seatsim.plots.bench.identification import FIT, PARTS, name_records, select_records
+from seatsim.plots.bench.identification import PARTS, name_records, select_records
 from seatsim.plots.labels import format_number, format_unit
 from seatsim.report.blocks import Block, Code, Figures, Report, Table, Text, show_pictures, tabulate
 from seatsim.report.composing import Closing, compose
 from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs, validate
-from seatsim.report.formatting import format_quantity, read_words
+from seatsim.report.formatting import format_quantity, read_words, show_table
 from seatsim.report.packing import MEASURED, Panel, pack_signals
 from seatsim.schema.content import list_written
 from seatsim.schema.fields import head_columns
@@ -97,9 +97,7 @@ def tabulate_fit(found: Identification) -> list[Table]:
         (*name, agreement.fit_percent, format_number(agreement.r2, 5), agreement.rmse, agreement.md)
         for *name, agreement in [*judged, *means]
     ]
-    caption = f"Agreement of the predicted force with the measured one. {FIT}"
-    head = "record, part, current [A], fit [%], R², RMS error [N], mean deviation"
-    return tabulate(caption, head, rows, 2, range(len(judged), len(rows)))
+    return show_table("fit", rows, 2, range(len(judged), len(rows)))
 
 
 def _show_time(chosen: Sequence[Assessment]) -> Block:
@@ -122,12 +120,7 @@ def tabulate_parameters(found: Identification) -> list[Table]:
         figures = (format_number(each.value, 5), format_number(1.96 * each.std, 2))
         rows.append((each.name + " (not determined)" * (not each.identified), format_unit(each.unit), *figures))
     strong = [k for k, each in enumerate(known.estimates) if not each.identified]
-    caption = "Fitted values, ± 1.96 standard deviations; in bold those that the data do not determine"
-    pairs = "Pairs of parameters that can replace each other"
-    return [
-        *tabulate(caption, "parameter, unit, value, ±", rows, 2, strong),
-        *tabulate(pairs, "one, other, correlation", known.correlated, 2),
-    ]
+    return [*show_table("parameters", rows, 2, strong), *show_table("pairs", known.correlated, 2)]
 
 
 MOST_ROWS = 60
@@ -248,12 +241,4 @@ def tabulate_steps(answers: Sequence[Response]) -> list[Table]:
         times = (1e3 * time for time in (each.t5, each.t90, each.t95, each.t95_sd, each.delay, each.current_t95))
         how = each.method or each.note or "not determined"
         rows.append((each.record or "model", each.before, each.after, each.steps, *times, each.rate_95, each.rate, how))
-    caption = (
-        "Time from the step of the current to 5, 90 and 95 % of the change of force; rates ln 20 / t95, and behind a"
-        " delay ln 19 / (t95 - t5)"
-    )
-    head = (
-        "record, from [A], to [A], steps, t5 [ms], t90 [ms], t95 [ms], ± [ms], delay [ms], t95 of current [ms],"
-        " rate [1/s], rate behind delay [1/s], how"
-    )
-    return tabulate(caption, head, rows)
+    return show_table("steps", rows)

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
-from seatsim.diagnosis.result import CalibratedParameter, Cause, Diagnosis, Estimate, Trace
+from seatsim.diagnosis.residuals import drop_start
+from seatsim.diagnosis.result import CalibratedParameter, Cause, Diagnosis, Estimate
 from seatsim.plots.diagnosis.answer import STAGES, Key, read_gap, select_stages
-from seatsim.plots.diagnosis.bins import drop_start
 from seatsim.plots.diagnosis.signals import name_last
 from seatsim.plots.labels import MINUS, UNKNOWN, describe_channel, format_number, format_percent, format_unit
 from seatsim.report.blocks import Block, Figures, Items, Table, Text, show_pictures, tabulate
@@ -24,9 +25,9 @@ from seatsim.report.formatting import (
     read_words,
     say_noise,
     scale_row,
+    show_table,
 )
-from seatsim.report.packing import MEASURED, Panel, pack_signals
-from seatsim.schema.arrays import Array
+from seatsim.report.packing import MEASURED, pack_traces
 from seatsim.schema.text import join_names
 
 LIKELY = 0.05
@@ -77,9 +78,7 @@ def show_causes(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
         shares = (format_percent(cause.probability), format_percent(cause.shrink))
         rows.append((cause.effect, meaning, _list_parameters(cause), *shares))
     strong = [row for row, cause in enumerate(shown) if cause.effect in diagnosis.selected]
-    head = "effect, what it is, parameters, probability, alone takes off the refitted gap"
-    table = tabulate("The likely effects, their parameters ± one standard deviation", head, rows, 3, strong)
-    return [*show_pictures(figures, "location", "ranking"), *table]
+    return [*show_pictures(figures, "location", "ranking"), *show_table("causes", rows, 3, strong)]
 
 
 def show_confusions(diagnosis: Diagnosis) -> list[Block]:
@@ -92,32 +91,22 @@ def show_confusions(diagnosis: Diagnosis) -> list[Block]:
     found = diagnosis.experiment
     if found is not None:
         row = (found.name.replace("_", " "), found.kind, found.likeness_now, found.likeness_then)
-        head = "what would decide, kind, likeness now, likeness then"
-        blocks += tabulate("Likeness: 1 is alike, 0 has nothing in common", head, [row], 2)
-        blocks.append(Text(format_sentence(found.reason)))
+        blocks += [*show_table("experiment", [row], 2), Text(format_sentence(found.reason))]
     names, matrix = diagnosis.evidence.collinearity
     known = ((float(matrix[i][j]), names[i], names[j]) for i in range(len(names)) for j in range(i))
     pairs = sorted(known, reverse=True)
     rows = [(one, other, format_number(value, 2)) for value, one, other in pairs[:_MOST_PAIRS] if value >= _ALIKE]
-    caption = "Effects whose signs in these channels are alike: 1 cannot be told apart, 0 has nothing in common"
-    return [*blocks, *tabulate(caption, "effect, and, likeness", rows, 2)]
+    return [*blocks, *show_table("alike", rows, 2)]
 
 
 def show_forms(diagnosis: Diagnosis) -> list[Table]:
     """Return the table of other forms of the damper, where they were tried."""
     forms = diagnosis.alternatives
-    if not forms:
-        return []
-    own = forms[0].replaces
-    lead = (
-        f"Other models of the damper in the place of {own}, fitted to the damper force without the held-out run, free"
-        f" of the tolerance. Shares are of the refitted gap on that run; the last column is {own}, fitted as freely."
-    )
-    rows = []
-    for form in forms:
-        shares = (format_percent(form.shrink), format_percent(form.refitted))
-        rows.append((form.model, join_names(form.beside or ["no effect"]), *shares))
-    return tabulate(lead, f"model, together with, shrinks the gap by, {own} fitted as freely", rows, 2, [0])
+    rows = [
+        (form.model, join_names(form.beside or ["no effect"]), *map(format_percent, (form.shrink, form.refitted)))
+        for form in forms
+    ]
+    return show_table("forms", rows, 2, [0], own=forms[0].replaces) if forms else []
 
 
 def _list_parameters(cause: Cause) -> str:
@@ -176,27 +165,24 @@ def _tabulate_parameters(parameters: Sequence[CalibratedParameter]) -> list[Tabl
         name = f"{each.name} (at its bound)" if each.at_bound else each.name
         rows.append((name, format_unit(each.unit), nominal, format_number(each.value, 4), f"{low} to {high}"))
     strong = [k for k, each in enumerate(ranked) if each.at_bound]
-    caption = "Parameters refitted within their tolerance"
-    return tabulate(caption, "parameter, unit, nominal, refitted, bounds", rows, 2, strong)
+    return show_table("refit", rows, 2, strong)
 
 
 def show_signals(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
     """Return the held-out signals with what is left of them, then every run over time, the held-out one first."""
-    groups: dict[str, list[Trace]] = {}
-    for trace in map(drop_start, [*diagnosis.evidence.traces, *diagnosis.evidence.other_traces]):
-        if len(trace.time) > 1:
-            groups.setdefault(f"{trace.run}{' (held out)' * (trace.run in diagnosis.held_out)}", []).append(trace)
-    if not groups:
+    gaps, evidence = diagnosis.gap.before.channels, diagnosis.evidence
+    known = [trace for trace in map(drop_start, [*evidence.traces, *evidence.other_traces]) if len(trace.time) > 1]
+    if not known:
         return []
-    lines = [("measured", MEASURED), ("nominal", 1), (name_last(diagnosis), 0 if diagnosis.selected else 2)]
-    gaps = diagnosis.gap.before.channels
-    first = sorted(next(iter(groups.values())), key=lambda trace: -gaps.get(trace.channel, 0.0))
-    panels = [
-        Panel(each.channel, each.unit, "", {run: _read_lines(group, each.channel) for run, group in groups.items()})
-        for each in first
-    ]
-    time = {run: group[0].time for run, group in groups.items()}
-    packed = pack_signals("Every run is in the list above the pictures.", lines, time, panels)
+    named = [replace(each, run=f"{each.run}{' (held out)' * (each.run in diagnosis.held_out)}") for each in known]
+    lines = {
+        "measured": ("measured", MEASURED),
+        "nominal": ("nominal", 1),
+        "after": (name_last(diagnosis), 0 if diagnosis.selected else 2),
+    }
+    ordered = sorted(named, key=lambda trace: -gaps.get(trace.channel, 0.0))
+    runs = list(dict.fromkeys(trace.run for trace in named))
+    packed = pack_traces(sorted(ordered, key=lambda trace: runs.index(trace.run)), lines)
     return [*show_pictures(figures, "signal_"), packed]
 
 
@@ -219,15 +205,13 @@ def show_comfort(diagnosis: Diagnosis) -> list[Table]:
         measured, nominal, after = (format_quantity(x, each.unit) for x in (each.measured, each.nominal, each.after))
         errors = [_format_error(value, each.measured) for value in (each.nominal, each.after)]
         rows.append((each.quantity.replace("_", " "), measured, nominal, errors[0], after, errors[1]))
-    head = f"figure, measured, nominal, error, {name_last(diagnosis)}, error of that"
-    return tabulate("On the held-out run", head, rows)
+    return show_table("comfort", rows, last=name_last(diagnosis))
 
 
 def show_budget(diagnosis: Diagnosis) -> list[Block]:
     """Return what the error of the stated scenario is made of on the held-out run, by channel."""
     rows = [scale_row(channel, unit, parts) for channel, unit, *parts in diagnosis.error_budget]
-    head = "channel, unit, error E, step u_num, inputs u_input, sensor u_D, model form"
-    return [*explain("budget"), *tabulate("Parts of the error", head, rows, 2)] if rows else []
+    return [*explain("budget"), *show_table("budget", rows, 2)] if rows else []
 
 
 def list_notes(diagnosis: Diagnosis) -> list[str]:
@@ -239,11 +223,6 @@ def list_notes(diagnosis: Diagnosis) -> list[str]:
     if groups:
         sentences.append(f"These channels can distinguish these groups of blocks: {'; '.join(groups)}.")
     return sentences
-
-
-def _read_lines(group: Sequence[Trace], channel: str) -> list[Array | None]:
-    trace = next((each for each in group if each.channel == channel), None)
-    return [None, None, None] if trace is None else [trace.measured, trace.nominal, trace.after]
 
 
 def _format_error(value: float, truth: float) -> str:

@@ -10,7 +10,7 @@ from importlib.resources import files
 from typing import NamedTuple
 
 from seatsim.plots.labels import MINUS, UNKNOWN, describe_channel, format_number, format_percent
-from seatsim.report.blocks import Text
+from seatsim.report.blocks import Table, Text, tabulate
 from seatsim.schema import registry
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import validated
@@ -77,14 +77,15 @@ class _EffectWords(NamedTuple):
 class Words(NamedTuple):
     """The content of `assets/words.yaml`.
 
-    By kind of report the headings of its sections and sentences on its method; paragraphs that explain figures;
-    captions of the tables of a bench sheet, in their order; conditions of each level of credibility; name and
-    explanation of each verdict; words for each effect.
+    By kind of report the headings of its sections and sentences on its method; paragraphs that explain figures; caption
+    and headings of tables; captions of the tables of a bench sheet, in their order; conditions of each level of
+    credibility; name and explanation of each verdict; words for each effect.
     """
 
     headings: Mapping[str, Mapping[str, str]]
     methods: Mapping[str, Sequence[str]]
     explanations: Mapping[str, Sequence[str]]
+    tables: Mapping[str, tuple[str, str]]
     captions: Mapping[str, str]
     conditions: Mapping[str, Sequence[str]]
     verdicts: Mapping[str, tuple[str, str]]
@@ -95,6 +96,19 @@ class Words(NamedTuple):
 def read_words() -> Words:
     """Return the words of all reports."""
     return validated(Words, parse_value(files(__package__).joinpath("assets/words.yaml").read_text(encoding="utf-8")))
+
+
+def show_table(
+    name: str,
+    rows: Iterable[Iterable[object]],
+    words: int = 1,
+    strong: Sequence[int] = (),
+    folded: bool = False,
+    **facts: str,
+) -> list[Table]:
+    """Return a table as `tabulate` does, with caption and headings of its name; `facts` are what these leave open."""
+    caption, head = (text.format(**facts) for text in read_words().tables[name])
+    return tabulate(caption, head, rows, words, strong, folded)
 
 
 def explain(name: str, **facts: str) -> list[Text]:

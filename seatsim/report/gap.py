@@ -10,40 +10,36 @@ from pathlib import Path
 
 import numpy as np
 
+from seatsim.diagnosis.residuals import group_by_channel, list_traces, nominal_gap
 from seatsim.metrics.motion import rms
 from seatsim.metrics.objective_rating import GRADES, ObjectiveRating
-from seatsim.plots.diagnosis.answer import SMALLEST, plot_gap
-from seatsim.plots.diagnosis.signals import plot_pairs
+from seatsim.plots.diagnosis.answer import SMALLEST
+from seatsim.plots.diagnosis.draw import plot_all_of_gap
 from seatsim.plots.labels import UNKNOWN, format_number, format_percent
-from seatsim.recordings.gap import Gap, ReplayedPair
+from seatsim.recordings.gap import Gap
 from seatsim.recordings.recording import load_recording
 from seatsim.recordings.validation import Validation
-from seatsim.report.blocks import Block, Items, Report, Signals, Table, show_pictures, tabulate
+from seatsim.report.blocks import Block, Items, Report, Table, show_pictures
 from seatsim.report.composing import Closing, compose
 from seatsim.report.credibility import NEAR_NOISE, Factor, count_variations, state_intervals, trace_inputs, validate
-from seatsim.report.formatting import explain, format_noise, format_quantity, say_noise, scale_row
-from seatsim.report.packing import MEASURED, Panel, pack_signals
+from seatsim.report.formatting import explain, format_noise, format_quantity, say_noise, scale_row, show_table
+from seatsim.report.packing import MEASURED, pack_traces
 from seatsim.scenario.loading import single
-from seatsim.schema.arrays import Array
 
 
-def report_gap(
-    name: str, found: Gap, pairs: Mapping[str, ReplayedPair], factors: Sequence[Factor], command: str
-) -> Report:
-    """Return the report of a gap.
+def report_gap(name: str, found: Gap, factors: Sequence[Factor], command: str) -> Report:
+    """Return the report of a gap with the runs that were compared.
 
     Args:
         name: of scenario and recording, for the head.
         found: the gap.
-        pairs: measured and simulated channels of every run.
         factors: of the credibility of the figures.
         command: what makes the report again.
     """
-    figures = {"gaps": plot_gap(found), **plot_pairs(found, pairs)}
-    tables = [_make_table(found, pairs), *([_compare_runs(found, pairs)] if len(pairs) > 1 else [])]
+    figures, lines = plot_all_of_gap(found), {"measured": ("measured", MEASURED), "nominal": ("simulated", 1)}
     sections = {
-        "gaps": [*show_pictures(figures, "gaps"), *tables],
-        "signals": [*show_pictures(figures, "signal_"), _show_pairs(found, pairs)],
+        "gaps": [*show_pictures(figures, "gap"), *_tabulate_gaps(found)],
+        "signals": [*show_pictures(figures, "signal_"), pack_traces(list_traces(found), lines)],
         "agreement": show_agreement(found),
     }
     closing = Closing(found.notes, factors, command)
@@ -87,50 +83,28 @@ def _advise(found: Gap) -> list[str]:
     return ["Find the cause with seatsim diagnose: it names the effect, and says how far the gap shrinks with it."]
 
 
-def _show_pairs(found: Gap, pairs: Mapping[str, ReplayedPair]) -> Signals:
-    """Return linked pictures of the measured and the simulated channels of every run."""
-    units = next(iter(pairs.values())).units
-    panels = []
-    for name in found.channels:
-        lines_of_runs = {run: [pair.measured.get(name), pair.simulated.get(name)] for run, pair in pairs.items()}
-        panels.append(Panel(name, units[name], "", lines_of_runs))
-    lines = [("measured", MEASURED), ("simulated", 1)]
-    time = {run: pair.time for run, pair in pairs.items()}
-    return pack_signals("Every run is in the list above the pictures.", lines, time, panels)
-
-
-def _make_table(found: Gap, pairs: Mapping[str, ReplayedPair]) -> Table:
+def _tabulate_gaps(found: Gap) -> list[Table]:
+    """Return the gaps over all runs, then, where there are several, those of each."""
     rows = [["overall", format_percent(found.overall), format_noise(found.floor.overall), UNKNOWN, UNKNOWN]]
-    units = next(iter(pairs.values())).units
-    for name, value in found.channels.items():
-        left = np.concatenate([_subtract(pair, name) for pair in pairs.values()])
-        figures = [_format_small(size, units[name]) for size in (rms(left), float(np.mean(left)))]
-        noise = format_noise(found.floor.channels[name])
-        rows.append([name.replace("_", " "), format_percent(value), noise, *figures])
-    caption = (
-        "Gap over all runs, in per cent of the standard deviation of the measured signal, and the difference itself"
-    )
-    return Table(caption, ["channel", "gap", "noise floor", "RMS difference", "bias"], rows, 1, [0])
+    each_run: list[list[str]] = []
+    runs, groups = list(found.replayed), group_by_channel(list_traces(found))
+    for name, traces in groups.items():
+        words, unit = name.replace("_", " "), traces[0].unit
+        left = np.concatenate([trace.measured - trace.nominal for trace in traces])
+        sizes = [_format_small(size, unit) for size in (rms(left), float(np.mean(left)))]
+        rows.append([words, format_percent(found.channels[name]), format_noise(found.floor.channels[name]), *sizes])
+        gaps = {trace.run: nominal_gap(trace) for trace in traces if np.ptp(trace.measured) > 0}
+        each_run.append([words, *(format_percent(gaps.get(run)) for run in runs)])
+    tables = show_table("gap", rows, 1, [0])
+    if len(runs) > 1:
+        caption = "Gap of each run, in per cent of the standard deviation of the signal in the run"
+        tables.append(Table(caption, ["channel", *runs], each_run))
+    return tables
 
 
 def _format_small(value: float, unit: str) -> str:
     """Return a difference with its unit; one of a current in mA."""
     return f"{format_number(1e3 * value)} mA" if unit == "A" else format_quantity(value, unit)
-
-
-def _subtract(pair: ReplayedPair, name: str) -> Array:
-    return pair.measured[name] - pair.simulated[name] if name in pair.measured else np.empty(0)
-
-
-def _compare_runs(found: Gap, pairs: Mapping[str, ReplayedPair]) -> Table:
-    rows = []
-    for name in found.channels:
-        spreads = [float(np.std(pair.measured.get(name, np.zeros(1)))) for pair in pairs.values()]
-        left = [_subtract(pair, name) for pair in pairs.values()]
-        gaps = [rms(each) / spread if spread > 0 else np.nan for each, spread in zip(left, spreads, strict=True)]
-        rows.append([name.replace("_", " "), *map(format_percent, gaps)])
-    caption = "Gap of each run, in per cent of the standard deviation of the signal in the run"
-    return Table(caption, ["channel", *pairs], rows)
 
 
 def show_agreement(found: Gap) -> list[Block]:
@@ -156,5 +130,4 @@ def _show_errors(errors: Mapping[str, Validation]) -> list[Table]:
         scale_row(name, each.unit, (each.error, each.u_val, each.u_num, each.u_input, each.u_d))
         for name, each in errors.items()
     ]
-    head = "channel, unit, error E, u_val, step u_num, inputs u_input, sensor u_D"
-    return tabulate("Comparison error and validation uncertainty after ASME V&V 20, over all runs", head, rows, 2)
+    return show_table("errors", rows, 2)

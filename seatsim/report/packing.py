@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import base64
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
+from seatsim.diagnosis.result import Trace
 from seatsim.plots.labels import describe_channel
 from seatsim.plots.thinning import thin_line
 from seatsim.report.blocks import Line, Signals
@@ -78,6 +79,26 @@ def pack_signals(
     names = [f"{each.axis[:1].upper()}{each.axis[1:]}" for each in shown]
     titles = [(name, panel.sentence) for name, panel in zip(names, panels, strict=True)]
     return Signals("signals-time", caption, list(time), drawn, titles, data)
+
+
+def pack_traces(traces: Iterable[Trace], lines: Mapping[str, tuple[str, int]]) -> Signals:
+    """Return linked pictures of compared channels, of every run.
+
+    traces: in the order of runs and channels. lines: name and look of what is drawn, by its name in a trace.
+    """
+    runs: dict[str, dict[str, Trace]] = {}
+    for trace in traces:
+        runs.setdefault(trace.run, {})[trace.channel] = trace
+    units = {channel: trace.unit for found in runs.values() for channel, trace in found.items()}
+    panels = [
+        Panel(channel, unit, "", {
+            run: [getattr(found[channel], name) if channel in found else None for name in lines]
+            for run, found in runs.items()
+        })
+        for channel, unit in units.items()
+    ]  # fmt: skip
+    time = {run: next(iter(found.values())).time for run, found in runs.items()}
+    return pack_signals("Every run is in the list above the pictures.", list(lines.values()), time, panels)
 
 
 def pack_line(values: Array) -> _Line:

@@ -13,7 +13,7 @@ from seatsim.plots.style import COLOURS
 from seatsim.report.blocks import Figures, Report, Signals, Table, show_pictures, tabulate
 from seatsim.report.composing import Closing, compose
 from seatsim.report.credibility import Factor, count_variations, trace_inputs, verify
-from seatsim.report.formatting import format_quantity, format_sentence, format_setting
+from seatsim.report.formatting import format_quantity, format_sentence, format_setting, show_table
 from seatsim.report.headline import SAME, compare_runs, count_times, describe_run, find_best
 from seatsim.report.packing import FINEST, Panel, pack_signals
 from seatsim.scenario.numbers import find_unit, list_numbers
@@ -168,7 +168,7 @@ def _tabulate_figures(runs: Sequence[Run]) -> list[Table]:
     if len(runs) == 1:
         figures = runs[0].metrics.values()
         every = [(format_sentence(x.meaning).rstrip("."), format_quantity(x.value, x.unit)) for x in figures]
-        return tabulate("Every figure of the run", "figure, value", every)
+        return show_table("run", every)
     units = {name: each.unit for run in reversed(runs) for name, each in run.metrics.items()}
     shown = {name: describe_channel(words, units[name]) for name, words in SHORT.items() if name in units}
     rows = []
@@ -199,4 +199,4 @@ def _list_settings(scenario: Scenario) -> list[Table]:
         (key, format_unit(find_unit(scenario, key)) or "-", format_setting(value))
         for key, value in list_numbers(scenario).items()
     ]
-    return tabulate(f"Settings of {scenario.title}", "key, unit, value", rows, 2, folded=True)
+    return show_table("settings", rows, 2, folded=True, title=str(scenario.title))

@@ -12,7 +12,7 @@ from seatsim.plots.labels import format_percent
 from seatsim.report.blocks import Block, Figures, Report, Table, show_pictures, tabulate
 from seatsim.report.composing import Closing, compose
 from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs
-from seatsim.report.formatting import format_sentence
+from seatsim.report.formatting import format_sentence, show_table
 from seatsim.schema.text import join_names
 from seatsim.standards.comfort import Comfort
 from seatsim.standards.seat_rows import ACCEPTANCE, DAMPING, LIMITS, RECALLED, DampingRow, SeatRow, SeatTest
@@ -140,12 +140,8 @@ def tabulate_axes(found: Comfort) -> list[Table]:
         k, dose = each.direction, each.dose
         figures = (dose.rms, dose.vdv, dose.estimated_vdv, dose.mtvv, dose.crest_factor)
         rows.append((axis, each.column, k.weighting, each.method, k.comfort, k.health, *figures))
-    head = (
-        "axis, column, weighting, method, k for comfort, k for health, a_w [m/s²], VDV [m/s¹·⁷⁵], estimated VDV"
-        " [m/s¹·⁷⁵], MTVV [m/s²], crest factor"
-    )
     over = "over the hours of the day" if found.operations else f"over {found.duration:.3g} s"
-    return tabulate(f"Weighted vibration of each axis, {over}; rotation in rad/s²", head, rows, 4)
+    return show_table("axes", rows, 4, over=over)
 
 
 def tabulate_seat(found: Comfort) -> list[Table]:
@@ -156,8 +152,7 @@ def tabulate_seat(found: Comfort) -> list[Table]:
          format_percent(each.spread))
         for axis, each in found.seat.items()
     ]  # fmt: skip
-    head = "axis, SEAT of each run, three runs within 5 %, SEAT by RMS, SEAT by VDV, spread of runs"
-    return tabulate("SEAT factor: weighted vibration on the seat over that at its base (ISO 10326-1)", head, rows, 3)
+    return show_table("seat", rows, 3)
 
 
 PASSED = ("no", "yes")
@@ -226,12 +221,7 @@ def tabulate_classes(rows: Sequence[SeatRow]) -> list[Table]:
         tested = (row.run, row.spectral_class, LIMITS[row.spectral_class].machines, PASSED[row.passed])
         figures = (f"{row.mass:g}", row.seat, row.limit, row.corrected, format_percent(row.spread), row.end_stop_hits)
         lines.append((*tested, *figures))
-    caption = f"Each class with a light and a heavy driver, by {ACCEPTANCE}; in bold what is above its limit"
-    head = (
-        "run, class, machine, passed, driver [kg], SEAT factor, limit, a_w at the intended input [m/s²], spread of"
-        " runs, end-stop hits"
-    )
-    return tabulate(caption, head, lines, 4, [k for k, row in enumerate(rows) if not row.passed])
+    return show_table("classes", lines, 4, [k for k, row in enumerate(rows) if not row.passed], clause=ACCEPTANCE)
 
 
 def tabulate_damping(rows: Sequence[DampingRow]) -> list[Table]:
@@ -240,6 +230,4 @@ def tabulate_damping(rows: Sequence[DampingRow]) -> list[Table]:
         (row.run, row.spectral_class, PASSED[row.passed], row.resonance, row.transmissibility, row.limit)
         for row in rows
     ]
-    caption = f"Transmissibility at the resonance, by {DAMPING}; in bold what is above its limit"
-    head = "run, class, passed, resonance [Hz], transmissibility, limit"
-    return tabulate(caption, head, lines, 3, [k for k, row in enumerate(rows) if not row.passed])
+    return show_table("damping", lines, 3, [k for k, row in enumerate(rows) if not row.passed], clause=DAMPING)

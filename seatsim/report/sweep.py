@@ -20,7 +20,7 @@ from seatsim.report.credibility import (
     trace_inputs,
     verify,
 )
-from seatsim.report.formatting import format_quantity
+from seatsim.report.formatting import format_quantity, show_table
 from seatsim.scenario.scenario import is_condition
 from seatsim.sweeps.outcome import FAILED, UNVERIFIED
 from seatsim.sweeps.parts import NAMES, Exceedance, SweepRows
@@ -267,4 +267,4 @@ def _show_states(rows: SweepRows) -> list[Table]:
     reasons = doubtful.groupby(["state", "reason"]).run.agg(["size", "first"]).sort_values("size", ascending=False)
     counted = reasons.head(_MOST_REASONS).itertuples(name=None)
     lines = [(state, str(count), str(first), reason) for (state, reason), count, first in counted]
-    return tabulate("Reasons, the most frequent first", "state, runs, first run, reason", lines, 4)
+    return show_table("states", lines, 4)

@@ -17,15 +17,14 @@ from PIL import Image
 
 from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
 from seatsim.characterisation.sheet import WarmUp
+from seatsim.diagnosis.residuals import drop_start, find_worst
 from seatsim.plots.bench.characterisation import plot_characterisation
 from seatsim.plots.bench.identification import plot_predictions
 from seatsim.plots.bench.resonance import plot_damping
 from seatsim.plots.bench.trends import plot_warm_up
 from seatsim.plots.bench.vibration import plot_vibration
-from seatsim.plots.diagnosis.answer import plot_gap, select_stages
-from seatsim.plots.diagnosis.bins import drop_start, find_worst
-from seatsim.plots.diagnosis.draw import plot_diagnosis
-from seatsim.plots.diagnosis.signals import plot_pairs
+from seatsim.plots.diagnosis.answer import select_stages
+from seatsim.plots.diagnosis.draw import plot_all_of_gap, plot_diagnosis
 from seatsim.plots.runs.draw import plot_result
 from seatsim.plots.saving import render_inline
 from seatsim.plots.style import WIDTH
@@ -53,8 +52,10 @@ def draw_gap():
     traces, found = diagnoses.known().evidence.traces, diagnoses.known().gap.before
     names, units, measured, nominal = zip(*((t.channel, t.unit, t.measured, t.nominal) for t in traces), strict=True)
     signals = (dict(zip(names, each, strict=True)) for each in (measured, nominal, units))
-    gap = Gap(found.overall, found.channels, GapFigures(0.0, dict.fromkeys(names, 0.0)), ())
-    return {"gap": plot_gap(gap), **plot_pairs(gap, {"run-c": ReplayedPair(traces[0].time, *signals)})}
+    runs = {"run-c": ReplayedPair(traces[0].time, *signals)}
+    return plot_all_of_gap(
+        Gap(found.overall, found.channels, GapFigures(0.0, dict.fromkeys(names, 0.0)), replayed=runs)
+    )
 
 
 def draw_identification():

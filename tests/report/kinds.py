@@ -86,8 +86,9 @@ def pair(noise):
     return ReplayedPair(time, measured, simulated, {"damper_force": "N"})
 
 
-def gap(size, floor=0.02):
-    return Gap(size, {"damper_force": size}, GapFigures(floor, {"damper_force": floor}), ("a note",))
+def gap(size, floor=0.02, **runs):
+    figures = {"damper_force": size}, GapFigures(floor, {"damper_force": floor})
+    return Gap(size, *figures, ("a note",), replayed=runs)
 
 
 def identification(parts):
@@ -184,7 +185,7 @@ def render(kind):
 KINDS = {
     "runs": lambda: report_runs(runs(), pictures(), "seatsim compare seat.yaml", "seat"),
     "sweep": _report_sweep,
-    "gap": lambda: report_gap("a against b", gap(0.3), {"a": pair(20.0), "b": pair(5.0)}, JUDGED, "seatsim gap a b"),
+    "gap": lambda: report_gap("a against b", gap(0.3, a=pair(20.0), b=pair(5.0)), JUDGED, "seatsim gap a b"),
     "diagnosis": lambda: report_diagnosis(with_every_run()),
     "identification": _report_identification,
     "characterisation": _report_characterisation,

@@ -74,8 +74,8 @@ def test_a_gap_says_where_it_is_largest_and_what_to_do():
 
 
 def test_noise_that_is_not_stated_is_not_printed_as_none():
-    found = gap(0.3, floor=0.0)
-    outline = Outline(render_report(report_gap("x", found, {"run-a": pair(20.0)}, JUDGED, "seatsim gap a b")))
+    found = gap(0.3, floor=0.0, run=pair(20.0))
+    outline = Outline(render_report(report_gap("x", found, JUDGED, "seatsim gap a b")))
     assert "no sensor noise is stated" in outline.headings[0]
     shown = make_plain(make_gap_table(found)), found._repr_html_()
     assert outline.rows("Gap over all runs")["damper force"][:2] == ["30 %", "not stated"]
@@ -88,7 +88,7 @@ def test_a_short_recording_has_no_spectrum():
         time=short.time[:40], measured={"damper_force": short.measured["damper_force"][:40]},
         simulated={"damper_force": short.simulated["damper_force"][:40]},
     )  # fmt: skip
-    outline = Outline(render_report(report_gap("x", gap(0.3), {"run-a": short}, JUDGED, "seatsim gap a b")))
+    outline = Outline(render_report(report_gap("x", gap(0.3, run=short), JUDGED, "seatsim gap a b")))
     assert "frequency [Hz]" not in outline.words and "time [s]" in outline.words
 
 
@@ -120,7 +120,7 @@ def test_text_of_files_stays_text_in_every_kind(text):
     empty = Characterisation(text, text, True, [], [], [text], make_sheet([], []))
     pages = [
         render_report(report_identification(hostile, {"loops": plot_predictions(hostile)}, text)),
-        render_report(report_gap(text, gap(0.3), {text: pair(3.0)}, JUDGED, text)),
+        render_report(report_gap(text, gap(0.3, **{text: pair(3.0)}), JUDGED, text)),
         render_report(report_characterisation(empty, {}, [text], text)),
     ]
     for page in pages:

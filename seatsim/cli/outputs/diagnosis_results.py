@@ -40,7 +40,7 @@ def present_gap(found: Gap, scenario: str, recording: Path, folder: Path) -> Non
         name = f"{Path(scenario).stem} against {recording.resolve().name}"
         command = f"seatsim gap {Path(scenario).name} {recording.name}"
         factors = judge_gap(scenario, recording, found)
-        contents["report.html"] = report_gap(name, found, found.replayed, factors, command)
+        contents["report.html"] = report_gap(name, found, factors, command)
     conclude(found, folder, write_outputs(folder, contents))
 
 

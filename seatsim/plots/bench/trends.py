@@ -67,7 +67,8 @@ def plot_energy(found: Characterisation) -> Figure:
 
 def plot_asymmetry(found: Characterisation) -> Figure:
     """Return the asymmetric part of the loops over the same."""
-    note = "Asymmetric part: difference from the centrosymmetric loop, ½\u00a0(F(t)\u00a0+\u00a0F(t\u00a0+\u00a0T/2)); RMS over a cycle. "
+    formula = "½ (F(t) + F(t + T/2))".replace(" ", "\u00a0")
+    note = f"Asymmetric part: difference from the centrosymmetric loop, {formula}; RMS over a cycle. "
     return _plot_trends(f"Asymmetry: {found.name}", note, found, _ASYMMETRY)
 
 

@@ -9,8 +9,9 @@ from matplotlib.figure import Figure
 
 from seatsim.metrics.comfort import running_rms
 from seatsim.metrics.exposure import Exposure, Operation
+from seatsim.metrics.spectra import estimate_density
 from seatsim.plots import style
-from seatsim.plots.densities import draw_densities, estimate_density, find_resolution, state_method
+from seatsim.plots.densities import draw_densities, find_resolution, state_method
 from seatsim.plots.style import GREY, Entry, Grid
 from seatsim.plots.thinning import spread_evenly
 from seatsim.standards.comfort import Comfort

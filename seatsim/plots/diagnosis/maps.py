@@ -7,9 +7,9 @@ from matplotlib import colormaps
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
+from seatsim.diagnosis.residuals import FEWEST, bin_edges, find_worst, map_rms, varies
 from seatsim.diagnosis.result import Diagnosis
 from seatsim.plots import style
-from seatsim.plots.diagnosis.bins import FEWEST, bin_edges, find_worst, map_rms, varies
 from seatsim.plots.diagnosis.signals import name_last
 from seatsim.plots.labels import Quantity, describe_channel, format_number
 from seatsim.plots.style import COLOURS, Entry, Grid

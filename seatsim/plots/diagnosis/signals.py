@@ -5,7 +5,7 @@ The same picture shows a gap, with one simulation, and a diagnosis, with two.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from textwrap import fill
 from typing import NamedTuple
 
@@ -13,15 +13,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from seatsim.diagnosis.residuals import group_by_channel, list_traces, nominal_gap
 from seatsim.diagnosis.result import Diagnosis, Trace
 from seatsim.metrics.motion import rms
+from seatsim.metrics.spectra import estimate_density
 from seatsim.plots import style
-from seatsim.plots.densities import draw_densities, estimate_density, find_resolution, state_method
-from seatsim.plots.diagnosis.bins import group_by_channel, nominal_gap
+from seatsim.plots.densities import draw_densities, find_resolution, state_method
 from seatsim.plots.labels import Quantity, describe_channel, format_number
 from seatsim.plots.style import COLOURS, Entry, Grid
 from seatsim.plots.thinning import BINS, Window, find_loudest, thin_line
-from seatsim.recordings.gap import Gap, ReplayedPair
+from seatsim.recordings.gap import Gap
 from seatsim.schema.arrays import Array
 
 SECONDS, RASTER = 2.0, 0.05
@@ -61,17 +62,10 @@ def plot_signals(diagnosis: Diagnosis) -> dict[str, Figure]:
     return _plot_channels(diagnosis.evidence.traces, lines)
 
 
-def plot_pairs(found: Gap, pairs: Mapping[str, ReplayedPair]) -> dict[str, Figure]:
+def plot_gap_signals(found: Gap) -> dict[str, Figure]:
     """Return a picture of each channel of a gap, the channel with the largest gap first."""
-    traces = []
-    for name in found.channels:
-        recorded = {run: pair for run, pair in pairs.items() if name in pair.measured}
-        spread = float(np.std(np.concatenate([pair.measured[name] for pair in recorded.values()])))
-        for run, pair in recorded.items():
-            noise, simulated = found.floor.channels[name] * spread, [pair.simulated[name]] * 3
-            traces.append(Trace(run, name, pair.units[name], noise, pair.time, pair.measured[name], *simulated))
     look = NOMINAL._replace(label="simulated", dashes="-")
-    return _plot_channels(traces, [Simulated(look, lambda trace: trace.nominal)])
+    return _plot_channels(list_traces(found), [Simulated(look, lambda trace: trace.nominal)])
 
 
 def _plot_channels(traces: Sequence[Trace], lines: Sequence[Simulated]) -> dict[str, Figure]:

@@ -9,32 +9,21 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from seatsim.metrics.spectra import transmissibility
+from seatsim.metrics.spectra import POWER, TRUSTED, estimate_density, trusted_gain
 from seatsim.plots import style
-from seatsim.plots.densities import (
-    LOWEST,
-    draw_densities,
-    estimate_density,
-    find_problem,
-    find_resolution,
-    state_method,
-)
+from seatsim.plots.densities import draw_densities, find_problem, find_resolution, state_method
 from seatsim.plots.runs.naming import Shown, distinguish_runs
 from seatsim.plots.style import DASHES, GREY, Entry, Grid
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.simulation.result import Run
 
-BAND = (LOWEST, 50.0)
+HIGHEST = 50.0
 """Hz; what the seat can change, and more than the driver feels."""
-_TRUSTED = 0.5
-"""Least coherence of a transmissibility: below it most of the driver's motion is not the floor's."""
-POWER = 1e-3
-"""Least density of the floor over its highest at which it has power enough for a transmissibility."""
 SAME = Entry("driver moves as much as the floor", GREY, width=1.0)
 NOTE = (
     f"Drawn where the floor has power ({POWER:g} of its highest density or more) and explains most of the driver's"
-    f" motion (coherence {_TRUSTED:g} or more)."
+    f" motion (coherence {TRUSTED:g} or more)."
 )
 
 
@@ -52,11 +41,11 @@ def plot_psd(shown: Shown) -> Figure:
     found = [_estimate(group[0], "floor_acceleration") for group in groups.values()]
     found += [_estimate(run, "driver_acceleration") for run in shown.runs]
     resolution = find_resolution(found)
-    legend = [] if find_problem(found, BAND[1]) else [*drivers, *floors]
+    legend = [] if find_problem(found, HIGHEST) else [*drivers, *floors]
     title = f"Driver acceleration over frequency: {shown.title}"
     figure, axes = _make_page(title, state_method(resolution) + shown.omission, resolution, legend)
     axes.set_ylabel("power density [(m/s²)²/Hz]")
-    draw_densities(axes, found, [*floors, *drivers], BAND[1])
+    draw_densities(axes, found, [*floors, *drivers], HIGHEST)
     return style.name_coincident(figure)
 
 
@@ -83,7 +72,7 @@ def plot_transmissibility(shown: Shown) -> Figure:
 
 def _make_page(title: str, note: str, resolution: float, legend: Sequence[Entry]) -> tuple[Figure, Axes]:
     figure, [[axes]] = style.make_page(title, note, Grid((2.9,)), legend)
-    style.scale_frequency_axis(axes, resolution, BAND[1])
+    style.scale_frequency_axis(axes, resolution, HIGHEST)
     return figure, axes
 
 
@@ -95,15 +84,8 @@ def _estimate_gain(run: Run) -> tuple[Array, Array, str]:
     """Return frequency and gain of a run, NaN where it cannot be trusted, and why that would be everywhere."""
     floor, driver = run.history["floor_acceleration"], run.history["driver_acceleration"]
     try:
-        found = transmissibility(floor, driver, 1 / run.history.step)
+        known = trusted_gain(floor, driver, 1 / run.history.step, HIGHEST)
     except InputError as error:
         return np.empty(0), np.empty(0), str(error)
-    centres, density = _estimate(run, "floor_acceleration")
-    inside = (found.frequency >= BAND[0]) & (found.frequency <= BAND[1])
-    frequency = found.frequency[inside]
-    power = np.interp(frequency, centres, density) if len(centres) else np.zeros(len(frequency))
-    strong = power >= POWER * np.max(power, initial=1e-300)
-    problem = (
-        f"the floor explains less than {_TRUSTED:g} of the driver's motion" if np.any(floor) else "no floor motion"
-    )
-    return frequency, np.where(strong & (found.coherence[inside] >= _TRUSTED), found.gain[inside], np.nan), problem
+    problem = f"the floor explains less than {TRUSTED:g} of the driver's motion" if np.any(floor) else "no floor motion"
+    return *known, problem

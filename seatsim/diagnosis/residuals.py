@@ -1,4 +1,7 @@
-"""Figures behind the pictures of a diagnosis: signals without their start, levels in bins."""
+"""What simulations leave of measured signals: without the start of a run, by channel, in bins of the motion.
+
+A gap and a diagnosis are shown by the same signals: the gap has one simulation, in the place of each of the others.
+"""
 
 from __future__ import annotations
 
@@ -9,11 +12,25 @@ import numpy as np
 
 from seatsim.diagnosis.result import Diagnosis, Trace
 from seatsim.metrics.motion import rms
+from seatsim.recordings.gap import Gap
 from seatsim.recordings.replay import LEFT_OUT
 from seatsim.schema.arrays import Array
 
 FEWEST = 20
 """Samples below which a bin is left empty: the standard error of an RMS is 1 / sqrt(2 n), a sixth of it at 20."""
+
+
+def list_traces(found: Gap) -> list[Trace]:
+    """Return the channels of a gap, of every run in which each was recorded."""
+    traces = []
+    for name in found.channels:
+        recorded = {run: pair for run, pair in found.replayed.items() if name in pair.measured}
+        spread = float(np.std(np.concatenate([pair.measured[name] for pair in recorded.values()])))
+        noise = found.floor.channels[name] * spread
+        for run, pair in recorded.items():
+            simulated = [pair.simulated[name]] * 3
+            traces.append(Trace(run, name, pair.units[name], noise, pair.time, pair.measured[name], *simulated))
+    return traces
 
 
 def group_by_channel(traces: Sequence[Trace]) -> dict[str, list[Trace]]:

@@ -1,0 +1,80 @@
+"""Effects tried by hand on a recording: the gap with them, and their sizes fitted to it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from seatsim.diagnosis.candidates import Candidate, list_candidates
+from seatsim.diagnosis.objective import Parameters
+from seatsim.diagnosis.problem import pose_problem
+from seatsim.metrics.motion import rms
+from seatsim.recordings.quality.examination import examine, refuse
+from seatsim.recordings.recording import load_recording
+from seatsim.schema.arrays import Array
+
+PROCESSES = 2
+_DIFFERENCE = 1e-2
+"""Step of a difference in a fit, relative."""
+
+
+class Trial:
+    """A recording, its nominal scenario replayed, and the effects that it could lack, by name."""
+
+    def __init__(self, folder: Path) -> None:
+        """Read a recording and replay its nominal scenario.
+
+        Raises:
+            InputError: the recording has a fault.
+            RunError: the nominal scenario cannot be replayed.
+        """
+        recording = load_recording(folder)
+        refuse(examine(recording))
+        self.problem = pose_problem(recording, ThreadPoolExecutor(PROCESSES))
+        self.candidates: dict[str, Candidate] = {}
+        for candidate in list_candidates(self.problem):
+            self.candidates.setdefault(name_candidate(candidate), candidate)
+        self.nominal = self.simulate(Parameters(self.problem.nominal))
+
+    def simulate(self, parameters: Parameters) -> dict[str, Array]:
+        """Return the compared channels of each run with some effects, shape (channels, samples).
+
+        Raises:
+            RunError: a replay cannot be carried to its end.
+        """
+        problem = self.problem
+        change = (parameters.deviations, parameters.effects)
+        jobs = {run: problem.pool.submit(problem.simulated, run, *change) for run in problem.runs}
+        return {run: job.result() for run, job in jobs.items()}
+
+    def fit(self, start: Parameters) -> Parameters:
+        """Return the parameters of the effects with which the squared gap is least, found by least squares."""
+        low, high = start.limits
+        own = slice(len(start.deviations), None)
+
+        def move_to(vector: Array) -> Parameters:
+            return start.move_to(np.concatenate([start.deviations, vector]))
+
+        def subtract(vector: Array) -> Array:
+            simulated, problem = self.simulate(move_to(vector)), self.problem
+            left = [(problem.measured[run] - simulated[run]) / problem.spread[:, None] for run in problem.runs]
+            return np.concatenate(left, axis=None)
+
+        bounds = (low[own], high[own])
+        return move_to(least_squares(subtract, start.vector[own], bounds=bounds, diff_step=[_DIFFERENCE]).x)
+
+    def measure(self, simulated: Mapping[str, Array]) -> Array:
+        """Return the gap of each channel over all runs, shape (channels,)."""
+        problem = self.problem
+        left = np.concatenate([problem.measured[run] - simulated[run] for run in problem.runs], axis=1)
+        return np.array([rms(row) for row in left]) / problem.spread
+
+
+def name_candidate(candidate: Candidate) -> str:
+    """Return the name of an effect, with its channel where it is one of a sensor."""
+    channel = candidate.fixed.get("channel")
+    return f"{candidate.effect}:{channel}" if channel else candidate.effect
