@@ -6,7 +6,7 @@ as wide as a telephone shows it legibly; a screen shows two side by side.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import cycle
 from textwrap import wrap
 from typing import Literal, NamedTuple
@@ -176,10 +176,16 @@ def add_colour_bar(axes: Axes, drawn: ScalarMappable, label: str) -> Axes:
 
 def name_coincident(figure: Figure) -> Figure:
     """Return a finished figure; its note says which lines lie on each other in every panel that shows them."""
-    panels = [{str(line.get_label()): line for line in axes.lines if _is_named(line)} for axes in figure.axes]
+    panels = [{str(line.get_label()): line for line in axes.lines} for axes in figure.axes]
+
+    def coincide(one: str, other: str) -> bool:
+        shared = [(panel[one], panel[other]) for panel in panels if one in panel and other in panel]
+        return bool(shared) and all(_lie_on_each_other(*lines) for lines in shared)
+
     groups: dict[str, list[str]] = {}
-    for name in dict.fromkeys(name for panel in panels for name in panel):
-        first = next((first for first in groups if _coincide(panels, first, name)), name)
+    # matplotlib gives lines of its own a label that begins with an underscore.
+    for name in dict.fromkeys(name for panel in panels for name in panel if name.strip() and name[0] != "_"):
+        first = next((first for first in groups if coincide(first, name)), name)
         groups.setdefault(first, []).append(f"“{name.strip()}”")
     said = [f"{name_some(names)} coincide." for names in groups.values() if len(names) > 1]
     if said:
@@ -187,22 +193,11 @@ def name_coincident(figure: Figure) -> Figure:
     return figure
 
 
-def _is_named(line: Line2D) -> bool:
-    # matplotlib gives lines of its own a label that begins with an underscore.
-    label = str(line.get_label())
-    return len(np.asarray(line.get_xdata())) > 1 and label.strip() != "" and label[0] != "_"
-
-
-def _coincide(panels: Sequence[Mapping[str, Line2D]], one: str, other: str) -> bool:
-    shared = [(panel[one], panel[other]) for panel in panels if one in panel and other in panel]
-    return bool(shared) and all(_lie_on_each_other(*lines) for lines in shared)
-
-
 def _lie_on_each_other(one: Line2D, other: Line2D) -> bool:
     """Return whether two lines of as many points differ by no more than the width of the wider one."""
     first, second = (line.get_transform().transform(line.get_xydata()) * 72 / line.figure.dpi for line in (one, other))
     known = np.isfinite(first)
-    if first.shape != second.shape or np.any(known != np.isfinite(second)):
+    if first.shape != second.shape or len(first) < 2 or np.any(known != np.isfinite(second)):
         return False
     return bool(np.max(np.abs(first - second)[known], initial=0.0) <= max(one.get_linewidth(), other.get_linewidth()))
 

@@ -23,8 +23,8 @@ from seatsim.report.credibility import (
 from seatsim.report.formatting import format_quantity, show_table
 from seatsim.scenario.scenario import is_condition
 from seatsim.sweeps.outcome import FAILED, UNVERIFIED
-from seatsim.sweeps.parts import NAMES, Exceedance, SweepRows
-from seatsim.sweeps.sensitivity import Sensitivities, Sensitivity, choose_key
+from seatsim.sweeps.parts import NAMES, Exceedance, SweepRows, find_best_choices
+from seatsim.sweeps.sensitivity import Sensitivities, Sensitivity, choose_choice, choose_key
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -60,7 +60,7 @@ def report_sweep(
 
 def state_importance(found: Sensitivities, rows: SweepRows) -> list[str]:
     """Return in a few sentences which key matters most to comfort, or to the first metric that varies."""
-    here = found.of(_choose_metric(found)) if found.rows else []
+    here = found.leading
     chosen = choose_key(here, rows)
     if chosen is None:
         return [f"Which key matters most cannot be said: {found.problem or 'no key but the variant varies'}."]
@@ -82,11 +82,6 @@ def state_importance(found: Sensitivities, rows: SweepRows) -> list[str]:
         share = format_percent(choice.total)
         texts.append(f"It is a condition; of the choices {choice.key} matters most and explains {share}.")
     return texts
-
-
-def choose_choice(found: Sequence[Sensitivity], rows: SweepRows) -> Sensitivity | None:
-    """Return which of the keys that a designer chooses matters most to a metric."""
-    return choose_key([row for row in found if not is_condition(row.key)], rows)
 
 
 def advise_on_keys(found: Sequence[Sensitivity], rows: SweepRows) -> list[str]:
@@ -113,28 +108,18 @@ def advise_on_keys(found: Sequence[Sensitivity], rows: SweepRows) -> list[str]:
 
 
 def tabulate_best(rows: SweepRows) -> list[Table]:
-    """Return the most comfortable choice under each condition, the worst condition first; nothing of random points.
-
-    Figures are means over seeds. Only a design with every choice under every condition can be compared so.
-    """
-    conditions = [key for key in rows.keys if is_condition(key)]
-    choices = [key for key in rows.keys if key not in conditions]
-    if not conditions or not choices or rows.is_random or COMFORT not in rows.metrics:
+    """Return the most comfortable choice under each condition, the worst condition first; nothing of random points."""
+    keys, best = find_best_choices(rows)
+    if best is None:
         return []
-    means = rows.usable.groupby([*conditions, *choices], as_index=False)[COMFORT].mean()
-    counts = means.groupby(conditions)[COMFORT].size()
-    if counts.min() < 2:
-        return []
-    best = means.loc[means.groupby(conditions)[COMFORT].idxmin()].sort_values(COMFORT, ascending=False)
     lines = [
-        [*(format_level(value) for value in line[:-1]), format_number(float(line[-1]))]
+        [*map(format_level, line[:-1]), format_number(float(line[-1]))]
         for line in best.head(MOST_LINES).itertuples(index=False, name=None)
     ]
     left = len(best) - len(lines)
     others = f"; and {left} other conditions" if left else ""
-    shown = describe_column(COMFORT, rows.units)
     caption = f"Most comfortable choice under each condition, the worst condition first{others}"
-    return tabulate(caption, [*conditions, *choices, shown.axis], lines, len(conditions) + len(choices))
+    return tabulate(caption, [*keys, describe_column(COMFORT, rows.units).axis], lines, len(keys))
 
 
 def _judge(rows: SweepRows, found: Sensitivities, exceeded: Sequence[Exceedance]) -> list[Factor]:
@@ -143,7 +128,7 @@ def _judge(rows: SweepRows, found: Sensitivities, exceeded: Sequence[Exceedance]
     damper = stated["scenario"].get("damper", {}) if isinstance(stated.get("scenario"), dict) else {}
     model = damper.get("model") if isinstance(damper, dict) else None
     models = [DAMPERS.find(model)] if model in DAMPERS.names() else []
-    explained = next((row.explained for row in found.of(COMFORT) or found.rows), None)
+    explained = next((row.explained for row in found.leading), None)
     said = f", {len(rows.drawn)} of them drawn from distributions" if rows.drawn else ""
     said += "" if explained is None else f"; they explain {format_percent(max(0.0, explained))} of comfort"
     intervals = ["shares of the variance"] * bool(found.rows) + ["shares above limits"] * bool(exceeded)
@@ -183,28 +168,21 @@ def _advise(found: Sensitivities, exceeded: Sequence[Exceedance], rows: SweepRow
         limit = format_quantity(worst.limit, rows.units[worst.metric])
         above = f"{worst.exceeding} of {worst.runs} runs are above the limit of {limit}"
         texts.append(f"Begin with the {words}{f' of {where}' * bool(where)}: {above}.")
-    if found.rows:
-        texts += advise_on_keys(found.of(_choose_metric(found)), rows)
+    texts += advise_on_keys(found.leading, rows)
     if len(rows.every) < rows.manifest["counts"]["runs"]:
         texts.append("Go on with the sweep: seatsim sweep with --resume.")
     return texts
 
 
-def _choose_metric(found: Sensitivities) -> str:
-    """Return comfort where it varies, else the first metric."""
-    metrics = dict.fromkeys(row.metric for row in found.rows)
-    return COMFORT if COMFORT in metrics else next(iter(metrics))
-
-
 def _list_metrics(found: Sensitivities, rows: SweepRows) -> list[str]:
     """Return the metrics whose sensitivities are shown: comfort, travel and each limited one, or else the first."""
     known = dict.fromkeys(name for name in (COMFORT, TRAVEL, *rows.manifest["limits"]) if found.of(name))
-    return list(known) or ([_choose_metric(found)] if found.rows else [])
+    return list(known) or [row.metric for row in found.leading[:1]]
 
 
 def draw_figures(found: Sensitivities, rows: SweepRows) -> Figures:
     """Return the figures of a sweep by name."""
-    ranked = [row.key for row in found.of(_choose_metric(found))] if found.rows else []
+    ranked = [row.key for row in found.leading]
     order = [*ranked, *(key for key in rows.keys if key not in ranked)]
     figures: dict[str, Any] = {}
     for metric in _list_metrics(found, rows):

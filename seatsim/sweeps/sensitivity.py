@@ -20,6 +20,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.metrics.table import COMFORT
+from seatsim.scenario.scenario import is_condition
 from seatsim.schema.arrays import Array
 from seatsim.sweeps.parts import SweepRows, is_number
 
@@ -101,6 +103,11 @@ class Sensitivities(NamedTuple):
     def of(self, metric: str) -> list[Sensitivity]:
         """Return those of one metric."""
         return [row for row in self.rows if row.metric == metric]
+
+    @property
+    def leading(self) -> list[Sensitivity]:
+        """Those of comfort where it varies, else of the first metric."""
+        return self.of(COMFORT) or (self.of(self.rows[0].metric) if self.rows else [])
 
 
 def analyse_sensitivity(rows: SweepRows) -> Sensitivities:
@@ -279,6 +286,11 @@ def choose_key(found: Sequence[Sensitivity], rows: SweepRows) -> Sensitivity | N
     """Return what matters most to a metric: of the keys that are drawn if there are some, else of all but `variant`."""
     candidates = [row for row in found if row.key in rows.drawn] or [row for row in found if row.key != "variant"]
     return max(candidates, key=lambda row: row.total, default=None)
+
+
+def choose_choice(found: Sequence[Sensitivity], rows: SweepRows) -> Sensitivity | None:
+    """Return which of the keys that a designer chooses matters most to a metric."""
+    return choose_key([row for row in found if not is_condition(row.key)], rows)
 
 
 def tabulate_sensitivities(found: Sensitivities) -> pd.DataFrame:

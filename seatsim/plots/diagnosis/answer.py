@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from seatsim.diagnosis.result import Diagnosis, Gaps
 from seatsim.plots import style
 from seatsim.plots.style import COLOURS, ROW, Entry, Grid, draw_bars, make_page, measure_names, name_rows
-from seatsim.recordings.gap import Gap
+from seatsim.recordings.gap import Gap, GapFigures
 
 MOST = 10
 """Causes that are shown."""
@@ -41,7 +41,7 @@ def select_stages(diagnosis: Diagnosis) -> list[Key]:
 
 def read_gap(gaps: Gaps, key: Key, channel: str) -> float | None:
     """Return the gap of a channel, or of all ("overall"), over the signal's standard deviation; None if unknown."""
-    figures = {"floor": gaps.floor, "before": gaps.before, "calibrated": gaps.calibrated, "after": gaps.after}[key]
+    figures: GapFigures = getattr(gaps, key)
     return figures.overall if channel == "overall" else figures.channels.get(channel)
 
 
@@ -114,16 +114,6 @@ def plot_location(diagnosis: Diagnosis) -> Figure | None:
     return figure
 
 
-class _Row(NamedTuple):
-    """An effect: its name, probability and shrink in per cent, colour, and the text of the first."""
-
-    name: str
-    probability: float
-    shrink: float
-    colour: str
-    text: str
-
-
 def plot_ranking(diagnosis: Diagnosis) -> Figure | None:
     """Return how probable the first causes are, and what each alone takes off the gap; equal rows are one."""
     if not diagnosis.causes:
@@ -154,27 +144,21 @@ def plot_ranking(diagnosis: Diagnosis) -> Figure | None:
     return figure
 
 
-def _list_rows(diagnosis: Diagnosis) -> list[_Row]:
-    alike = _find_equivalent(diagnosis)
-    ranked = [each for each in diagnosis.causes if each.effect in diagnosis.selected or each.probability >= LIKELY]
-    rows = []
-    for each in ranked[:MOST]:
-        colour = _EQUIVALENT if each.effect in alike else OTHER
-        colour = _CHOSEN if each.effect in diagnosis.selected else colour
-        rows.append(_make_row(each.effect, each.probability, colour, 100 * each.shrink))
-    rest = [each.probability for each in diagnosis.causes if each not in ranked[:MOST]]
-    if rest:
-        row = _make_row(f"{len(rest)} other effect{'s' * (len(rest) > 1)}", max(rest), OTHER)
-        most = f"at most {row.text}" if max(rest) >= LIKELY else f"below {100 * LIKELY:g} %"
-        rows.append(row._replace(text=most))
-    ends = (("no effect at all", diagnosis.probability_none), ("another cause", diagnosis.probability_unknown))
-    likelier = max(value for _, value in ends)
-    answers = [_CHOSEN if value == likelier and not diagnosis.selected else REST for _, value in ends]
-    return [*rows, *(_make_row(name, value, colour) for (name, value), colour in zip(ends, answers, strict=True))]
-
-
-def _make_row(name: str, probability: float, colour: str, shrink: float = np.nan) -> _Row:
-    return _Row(name, 100 * probability, shrink, colour, _format_percent(100 * probability))
+def _list_rows(diagnosis: Diagnosis) -> list[tuple[str, float, float, str, str]]:
+    """Return of each row its name, probability and shrink in per cent, the colour, and the text of the probability."""
+    looks = dict.fromkeys(_find_equivalent(diagnosis), _EQUIVALENT) | dict.fromkeys(diagnosis.selected, _CHOSEN)
+    likely = [each for each in diagnosis.causes if each.effect in diagnosis.selected or each.probability >= LIKELY]
+    shown = likely[:MOST]
+    rows = [(each.effect, each.probability, each.shrink, looks.get(each.effect, OTHER), "") for each in shown]
+    if rest := [each.probability for each in diagnosis.causes if each not in shown]:
+        most = f"at most {_format_percent(100 * max(rest))}" if max(rest) >= LIKELY else f"below {100 * LIKELY:g} %"
+        rows.append((f"{len(rest)} other effect{'s' * (len(rest) > 1)}", max(rest), np.nan, OTHER, most))
+    ends = {"no effect at all": diagnosis.probability_none, "another cause": diagnosis.probability_unknown}
+    answer = "" if diagnosis.selected else max(ends, key=lambda name: ends[name])
+    rows += [(name, value, np.nan, _CHOSEN if name == answer else REST, "") for name, value in ends.items()]
+    return [
+        (name, 100 * p, 100 * shrink, look, text or _format_percent(100 * p)) for name, p, shrink, look, text in rows
+    ]
 
 
 def _find_equivalent(diagnosis: Diagnosis) -> list[str]:
