@@ -19,7 +19,7 @@ from rich.table import Column, Table
 from rich.text import Text
 
 from seatsim.cli.terminal import out, say
-from seatsim.plots.labels import MINUS, UNKNOWN
+from seatsim.schema.printing import MINUS, UNKNOWN
 
 if TYPE_CHECKING:
     from seatsim.report.blocks import Table as ReportTable

@@ -96,6 +96,11 @@ class Identification(NamedTuple):
         return self.mean("test")
 
     @property
+    def assessed(self) -> Agreement | None:
+        """Mean agreement on the records that were held out, on the fitted ones where none were."""
+        return self.test or self.train
+
+    @property
     @written(if_any=True)
     def predicted(self) -> Agreement | None:
         """Mean agreement over the records that were predicted only."""

@@ -13,13 +13,13 @@ from seatsim.diagnosis.objective import Parameters
 from seatsim.diagnosis.trial import Trial, name_candidate
 from seatsim.metrics.motion import rms
 from seatsim.page.scenario_view import Choice, Slider, Switch, View, make_slider, read_number
-from seatsim.plots.labels import format_percent
 from seatsim.report.blocks import Signals, Table
 from seatsim.report.formatting import describe_effect, format_noise, format_sentence, say_noise
 from seatsim.report.packing import MEASURED, QUICK, Panel, pack_signals
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import describe
+from seatsim.schema.printing import format_percent
 
 REACH = 4.0
 """How far a slider reaches, in sizes of the effect as a fit would start with it."""

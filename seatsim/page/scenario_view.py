@@ -11,8 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from seatsim.metrics.table import SHORT
-from seatsim.plots.labels import describe_channel
-from seatsim.plots.runs.naming import Shown
+from seatsim.plots.runs.looks import Shown
 from seatsim.plots.runs.spectra import plot_psd, plot_transmissibility
 from seatsim.plots.style import make_entries
 from seatsim.report.blocks import Block, Signals, Table, show_pictures
@@ -25,6 +24,7 @@ from seatsim.scenario.scenario import Scenario
 from seatsim.schema.content import plain
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import FieldSpecification, bounds, describe
+from seatsim.schema.printing import describe_channel
 from seatsim.schema.validation import is_finite_number
 from seatsim.simulation.result import Run
 from seatsim.simulation.runs import run_one

@@ -23,7 +23,8 @@ from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator, NullLocator
 from matplotlib.typing import LineStyleType
 from numpy.typing import ArrayLike
 
-from seatsim.plots.labels import LONGEST, RAISED, clean_text
+from seatsim.plots.labels import clean_text
+from seatsim.schema.printing import LONGEST, RAISED
 from seatsim.schema.text import name_some
 
 WIDTH = 5.8

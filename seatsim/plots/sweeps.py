@@ -13,17 +13,10 @@ from numpy.typing import NDArray
 
 from seatsim.metrics.table import COMFORT, METRICS, TRAVEL
 from seatsim.plots import style
-from seatsim.plots.labels import (
-    Quantity,
-    clean_text,
-    describe_channel,
-    describe_metric,
-    format_number,
-    format_percent,
-    format_unit,
-)
+from seatsim.plots.labels import clean_text, describe_metric
 from seatsim.plots.style import COLOURS, DARK, ROW, Entry, Grid, draw_bars, make_page, measure_names, name_rows
 from seatsim.schema.arrays import Array
+from seatsim.schema.printing import Quantity, describe_channel, format_number, format_percent, format_unit
 from seatsim.sweeps.parts import SweepRows, is_number
 from seatsim.sweeps.sensitivity import Sensitivity
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
-from seatsim.plots.labels import format_number
 from seatsim.plots.saving import Inline, render_inline
+from seatsim.schema.printing import format_number
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -81,6 +81,8 @@ class Pictures(NamedTuple):
 
 Figures: TypeAlias = "Mapping[str, Figure]"
 """Figures by name."""
+Rows: TypeAlias = Iterable[Iterable[object]]
+"""Rows of a table: texts, which are printed as they stand, and numbers."""
 Block = Text | Items | Code | Table | Signals | Pictures
 
 
@@ -116,7 +118,7 @@ def show_pictures(figures: Figures, *starts: str) -> list[Block]:
 def tabulate(
     caption: str,
     head: str | Sequence[str],
-    rows: Iterable[Iterable[object]],
+    rows: Rows,
     words: int = 1,
     strong: Sequence[int] = (),
     folded: bool = False,
@@ -126,7 +128,7 @@ def tabulate(
     Args:
         caption: what it shows.
         head: of the columns; as one text they are separated by commas.
-        rows: texts, which are printed as they stand, and numbers.
+        rows: of texts and numbers.
         words: as for `Table`.
         strong: the same.
         folded: the same.

@@ -13,10 +13,10 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from seatsim.dampers.base import CONFIDENCE, DAMPERS, find_confidence
-from seatsim.plots.labels import UNKNOWN, format_number, format_percent
 from seatsim.provenance.statement import current_invocation
 from seatsim.report.blocks import Section
 from seatsim.report.formatting import explain, format_sentence, read_words, show_table
+from seatsim.schema.printing import UNKNOWN, format_number, format_percent
 from seatsim.schema.registry import name_of
 from seatsim.schema.text import join_names
 

@@ -16,7 +16,6 @@ from seatsim.identification.assessment import Assessment
 from seatsim.identification.identify import Identification
 from seatsim.metrics.motion import ratio
 from seatsim.plots.bench.identification import PARTS, name_records, select_records
-from seatsim.plots.labels import format_number, format_unit
 from seatsim.report.blocks import Block, Code, Figures, Report, Table, Text, show_pictures, tabulate
 from seatsim.report.composing import Closing, compose
 from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs, validate
@@ -24,6 +23,7 @@ from seatsim.report.formatting import format_quantity, read_words, show_table
 from seatsim.report.packing import MEASURED, Panel, pack_signals
 from seatsim.schema.content import list_written
 from seatsim.schema.fields import head_columns
+from seatsim.schema.printing import format_number, format_unit
 from seatsim.schema.text import join_names
 
 ROWS = 3000
@@ -46,7 +46,7 @@ def report_identification(found: Identification, figures: Figures, command: str)
 
 def _judge_fit(found: Identification) -> list[Factor]:
     """Return how far an identified damper may be trusted, on held-out records where there are some."""
-    mean, parts = found.mean("test") or found.mean("train"), [each.part for each in found.assessments]
+    mean, parts = found.assessed, [each.part for each in found.assessments]
     error = None if mean is None else 1.0 - mean.fit_percent / 100.0
     loose = [each.name for each in found.information.estimates if not each.identified]
     return [
@@ -59,12 +59,15 @@ def _judge_fit(found: Identification) -> list[Factor]:
 
 def _say_fit(found: Identification) -> str:
     """Return in a sentence how well a model predicts the force, on held-out records where there are some."""
-    test, train = found.mean("test"), found.mean("train")
-    mean = test or train
+    mean = found.assessed
     if mean is None:
         return f"{found.model} was fitted, but no record assesses it."
     word = "well" if mean.fit_percent >= GOOD else "usably" if mean.fit_percent >= FAIR else "poorly"
-    where = "on records that took no part in the fit" if test else "on the records it was fitted to; none was held out"
+    where = (
+        "on records that took no part in the fit"
+        if found.mean("test")
+        else "on the records it was fitted to; none was held out"
+    )
     return (
         f"{found.model} predicts the damper's force {word}: a fit of {format_number(mean.fit_percent)} %, an error of"
         f" {format_quantity(mean.rmse, 'N')} RMS, {where}."
@@ -76,8 +79,7 @@ def _advise_on_fit(found: Identification) -> list[str]:
     loose = [each.name for each in found.information.estimates if not each.identified]
     if found.mean("test") is None:
         texts.append("Hold out records with --test, or the last part of each with --test-fraction, before trusting it.")
-    mean = found.mean("test") or found.mean("train")
-    if mean is not None and mean.fit_percent < FAIR:
+    if found.assessed is not None and found.assessed.fit_percent < FAIR:
         texts.append("Try other models: --model all compares them on the same records.")
     if loose:
         texts.append(f"The data do not determine {join_names(loose)}: fix them with --fix, or record other motions.")
@@ -124,6 +126,7 @@ def tabulate_parameters(found: Identification) -> list[Table]:
 
 
 MOST_ROWS = 60
+PASSED = {True: "pass", False: "FAIL"}
 ROUNDING = 1e-9
 """Share of the peak force below which an offset is no finding."""
 
@@ -224,14 +227,11 @@ def _tabulate_sheet(sheet: BenchSheet, captions: Mapping[str, str]) -> list[Bloc
     for name, caption in captions.items():
         record, rows = tables[name]
         head = [text.replace("_", " ") for text in head_columns(record, format_unit)]
-        lines = [[_say(getattr(row, each.name)) for each in list_written(record)] for row in rows[:MOST_ROWS]]
+        values = [[getattr(row, each.name) for each in list_written(record)] for row in rows[:MOST_ROWS]]
+        lines = [[PASSED.get(value, value) if isinstance(value, bool) else value for value in row] for row in values]
         more = f"; {len(rows) - MOST_ROWS} more in characterisation.xlsx" if len(rows) > MOST_ROWS else ""
         blocks += tabulate(f"{caption}{more}", head, lines)
     return blocks
-
-
-def _say(value: object) -> object:
-    return ("pass" if value else "FAIL") if isinstance(value, bool) else value
 
 
 def tabulate_steps(answers: Sequence[Response]) -> list[Table]:

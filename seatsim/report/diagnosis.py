@@ -10,7 +10,6 @@ import numpy as np
 from seatsim.dampers.base import DAMPERS
 from seatsim.diagnosis.result import Cause, Diagnosis
 from seatsim.plots.diagnosis.draw import plot_diagnosis
-from seatsim.plots.labels import format_percent
 from seatsim.recordings.header import NOT_STATED
 from seatsim.report import diagnosis_sections
 from seatsim.report.blocks import Block, Report, show_pictures
@@ -18,6 +17,7 @@ from seatsim.report.composing import Closing, compose
 from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs, validate, verify
 from seatsim.report.formatting import format_sentence, read_words, say_noise
 from seatsim.schema.fields import UNUSUAL
+from seatsim.schema.printing import format_percent
 from seatsim.schema.text import join_names
 
 _NEARLY_ALL = 0.98

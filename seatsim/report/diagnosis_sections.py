@@ -10,10 +10,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from seatsim.diagnosis.residuals import drop_start
-from seatsim.diagnosis.result import CalibratedParameter, Cause, Diagnosis, Estimate
+from seatsim.diagnosis.result import CalibratedParameter, Cause, Diagnosis, Estimate, Gaps, RunGaps
 from seatsim.plots.diagnosis.answer import STAGES, Key, read_gap, select_stages
 from seatsim.plots.diagnosis.signals import name_last
-from seatsim.plots.labels import MINUS, UNKNOWN, describe_channel, format_number, format_percent, format_unit
 from seatsim.report.blocks import Block, Figures, Items, Table, Text, show_pictures, tabulate
 from seatsim.report.formatting import (
     describe_effect,
@@ -28,6 +27,7 @@ from seatsim.report.formatting import (
     show_table,
 )
 from seatsim.report.packing import MEASURED, pack_traces
+from seatsim.schema.printing import MINUS, UNKNOWN, describe_channel, format_number, format_percent, format_unit
 from seatsim.schema.text import join_names
 
 LIKELY = 0.05
@@ -76,7 +76,8 @@ def show_causes(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
     for cause in shown:
         meaning = format_sentence(describe_effect(cause.effect)) or UNKNOWN
         shares = (format_percent(cause.probability), format_percent(cause.shrink))
-        rows.append((cause.effect, meaning, _list_parameters(cause), *shares))
+        sizes = "; ".join(f"{name} {format_estimate(value)}" for name, value in cause.parameters.items()) or UNKNOWN
+        rows.append((cause.effect, meaning, sizes, *shares))
     strong = [row for row, cause in enumerate(shown) if cause.effect in diagnosis.selected]
     return [*show_pictures(figures, "location", "ranking"), *show_table("causes", rows, 3, strong)]
 
@@ -109,40 +110,29 @@ def show_forms(diagnosis: Diagnosis) -> list[Table]:
     return show_table("forms", rows, 2, [0], own=forms[0].replaces) if forms else []
 
 
-def _list_parameters(cause: Cause) -> str:
-    return "; ".join(f"{name} {format_estimate(value)}" for name, value in cause.parameters.items()) or UNKNOWN
-
-
 def show_gaps(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
     """Return picture and tables of the gaps by channel and by run, and of the refitted parameters."""
     gap, keys = diagnosis.gap, select_stages(diagnosis)
     held = ", ".join(diagnosis.held_out) or "all runs"
-    rows = [_make_row(diagnosis, name, keys) for name in ("overall", *gap.before.channels)]
+    rows = [_make_row(gap, name, name.replace("_", " "), keys) for name in ("overall", *gap.before.channels)]
     head = ["channel", *(STAGES[key].label for key in keys), "shrinks by"]
     blocks = [Text(f"{_describe_shrink(diagnosis)} {EXPLAINED}"), *show_pictures(figures, "gaps")]
     blocks += tabulate(f"Gaps on {held}", head, rows, 1, [0])
     if len(gap.by_run) > 1:
-        lines = [
-            [each.run, *(_format_gap(key, getattr(each, key).overall) for key in keys), format_percent(each.shrink)]
-            for each in gap.by_run
-        ]
+        rows = [_make_row(each, "overall", each.run, keys) for each in gap.by_run]
         strong = [k for k, each in enumerate(gap.by_run) if each.run in diagnosis.held_out]
-        blocks += tabulate("Gaps of every run, overall; held out in bold", ["run", *head[1:]], lines, 1, strong)
+        blocks += tabulate("Gaps of every run, overall; held out in bold", ["run", *head[1:]], rows, 1, strong)
     return [*blocks, *_tabulate_parameters(diagnosis.parameters)]
 
 
-def _make_row(diagnosis: Diagnosis, name: str, keys: Sequence[Key]) -> list[str]:
-    gap = diagnosis.gap
-    before, after = read_gap(gap, "before", name), read_gap(gap, "after", name)
+def _make_row(gaps: Gaps | RunGaps, channel: str, name: str, keys: Sequence[Key]) -> list[str]:
+    sizes = {key: read_gap(gaps, key, channel) for key in (*keys, "before", "after")}
+    before, after = sizes["before"], sizes["after"]
     change = 1 - after / before if after is not None and before else None
-    if name == "overall" and math.isfinite(gap.shrink):
-        change = gap.shrink
-    gaps = [_format_gap(key, read_gap(gap, key, name)) for key in keys]
-    return [name.replace("_", " "), *gaps, format_percent(change)]
-
-
-def _format_gap(key: Key, gap: float | None) -> str:
-    return format_noise(gap) if key == "floor" else format_percent(gap)
+    if channel == "overall" and math.isfinite(gaps.shrink):
+        change = gaps.shrink
+    shown = [format_noise(sizes[key]) if key == "floor" else format_percent(sizes[key]) for key in keys]
+    return [name, *shown, format_percent(change)]
 
 
 def _describe_shrink(diagnosis: Diagnosis) -> str:

@@ -9,11 +9,11 @@ from functools import lru_cache
 from importlib.resources import files
 from typing import NamedTuple
 
-from seatsim.plots.labels import MINUS, UNKNOWN, describe_channel, format_number, format_percent
-from seatsim.report.blocks import Table, Text, tabulate
+from seatsim.report.blocks import Rows, Table, Text, tabulate
 from seatsim.schema import registry
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import validated
+from seatsim.schema.printing import MINUS, UNKNOWN, describe_channel, format_number, format_percent
 from seatsim.schema.yaml_text import parse_value
 
 
@@ -99,12 +99,7 @@ def read_words() -> Words:
 
 
 def show_table(
-    name: str,
-    rows: Iterable[Iterable[object]],
-    words: int = 1,
-    strong: Sequence[int] = (),
-    folded: bool = False,
-    **facts: str,
+    name: str, rows: Rows, words: int = 1, strong: Sequence[int] = (), folded: bool = False, **facts: str
 ) -> list[Table]:
     """Return a table as `tabulate` does, with caption and headings of its name; `facts` are what these leave open."""
     caption, head = (text.format(**facts) for text in read_words().tables[name])

@@ -12,19 +12,18 @@ import numpy as np
 
 from seatsim.diagnosis.residuals import group_by_channel, list_traces, nominal_gap
 from seatsim.metrics.motion import rms
-from seatsim.metrics.objective_rating import GRADES, ObjectiveRating
+from seatsim.metrics.objective_rating import GRADES
 from seatsim.plots.diagnosis.answer import SMALLEST
 from seatsim.plots.diagnosis.draw import plot_all_of_gap
-from seatsim.plots.labels import UNKNOWN, format_number, format_percent
 from seatsim.recordings.gap import Gap
 from seatsim.recordings.recording import load_recording
-from seatsim.recordings.validation import Validation
 from seatsim.report.blocks import Block, Items, Report, Table, show_pictures
 from seatsim.report.composing import Closing, compose
 from seatsim.report.credibility import NEAR_NOISE, Factor, count_variations, state_intervals, trace_inputs, validate
 from seatsim.report.formatting import explain, format_noise, format_quantity, say_noise, scale_row, show_table
 from seatsim.report.packing import MEASURED, pack_traces
 from seatsim.scenario.loading import single
+from seatsim.schema.printing import UNKNOWN, format_number, format_percent
 
 
 def report_gap(name: str, found: Gap, factors: Sequence[Factor], command: str) -> Report:
@@ -111,23 +110,14 @@ def show_agreement(found: Gap) -> list[Block]:
     """Return the ratings and the errors of the channels with what each figure means, nothing where there are none."""
     if not found.iso18571:
         return []
+    ratings = [
+        (name.replace("_", " "), each.grade, *map("{:.3f}".format, (each.overall, *each[:4])), 1e3 * each.shift)
+        for name, each in found.iso18571.items()
+    ]
     grades = ", ".join(f"{grade} above {least:g}" for grade, least in GRADES.items() if least > 0)
     meanings = Items([each.text for each in explain("ratings", grades=grades)])
-    return [_show_ratings(found.iso18571), meanings, *_show_errors(found.v_and_v), *explain("errors")]
-
-
-def _show_ratings(ratings: Mapping[str, ObjectiveRating]) -> Table:
-    rows = []
-    for name, rating in ratings.items():
-        shares = (f"{each:.3f}" for each in (rating.overall, *rating[:4]))
-        rows.append([name.replace("_", " "), rating.grade, *shares, format_number(1e3 * rating.shift)])
-    caption = "Objective rating after ISO/TS 18571 against the measured signal, mean over the runs; 1 is identical"
-    return Table(caption, ["channel", "grade", "overall", *ObjectiveRating._fields[:4], "late by [ms]"], rows, 2)
-
-
-def _show_errors(errors: Mapping[str, Validation]) -> list[Table]:
-    rows = [
+    errors = [
         scale_row(name, each.unit, (each.error, each.u_val, each.u_num, each.u_input, each.u_d))
-        for name, each in errors.items()
+        for name, each in found.v_and_v.items()
     ]
-    return show_table("errors", rows, 2)
+    return [*show_table("ratings", ratings, 2), meanings, *show_table("errors", errors, 2), *explain("errors")]

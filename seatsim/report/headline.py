@@ -10,11 +10,11 @@ import numpy as np
 
 from seatsim.metrics.motion import ratio
 from seatsim.metrics.table import COMFORT, SEAT, TRAVEL, UNWEIGHTED
-from seatsim.plots.labels import format_percent
-from seatsim.plots.runs.naming import distinguish_runs
 from seatsim.report.formatting import format_quantity
 from seatsim.scenario.scenario import choice_of, group_by_condition, is_passive
+from seatsim.schema.printing import format_percent
 from seatsim.schema.text import name_some
+from seatsim.simulation.naming import distinguish_runs
 from seatsim.simulation.result import Run
 
 SAME = 0.01

@@ -10,10 +10,10 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from seatsim.diagnosis.result import Trace
-from seatsim.plots.labels import describe_channel
 from seatsim.plots.thinning import thin_line
 from seatsim.report.blocks import Line, Signals
 from seatsim.schema.arrays import Array
+from seatsim.schema.printing import describe_channel
 
 BUDGET = 200_000
 """Bytes that the lines of one group of pictures take on the page together."""

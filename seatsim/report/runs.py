@@ -7,8 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from seatsim.metrics.table import SEAT, SHORT
-from seatsim.plots.labels import describe_channel, format_number, format_unit
-from seatsim.plots.runs.naming import Shown, label_runs, show_runs
+from seatsim.plots.runs.looks import Shown, show_runs
 from seatsim.plots.style import COLOURS
 from seatsim.report.blocks import Figures, Report, Signals, Table, show_pictures, tabulate
 from seatsim.report.composing import Closing, compose
@@ -20,7 +19,9 @@ from seatsim.scenario.numbers import find_unit, list_numbers
 from seatsim.scenario.scenario import Scenario, condition_of
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import RunError
+from seatsim.schema.printing import describe_channel, format_number, format_unit
 from seatsim.schema.text import join_names, name_some
+from seatsim.simulation.naming import label_runs
 from seatsim.simulation.result import UNITS, Run
 from seatsim.simulation.runs import STRETCH, share_a_loop, try_changes
 

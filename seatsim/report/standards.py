@@ -7,12 +7,12 @@ from collections.abc import Iterator, Sequence
 
 from seatsim.metrics.exposure import DAY, Exposure, ValueReached
 from seatsim.metrics.spine import SpinalLoad
-from seatsim.plots.bench.resonance import plot_damping
-from seatsim.plots.labels import format_percent
+from seatsim.plots.bench.vibration import plot_damping
 from seatsim.report.blocks import Block, Figures, Report, Table, show_pictures, tabulate
 from seatsim.report.composing import Closing, compose
 from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs
 from seatsim.report.formatting import format_sentence, show_table
+from seatsim.schema.printing import format_percent
 from seatsim.schema.text import join_names
 from seatsim.standards.comfort import Comfort
 from seatsim.standards.seat_rows import ACCEPTANCE, DAMPING, LIMITS, RECALLED, DampingRow, SeatRow, SeatTest

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 from seatsim.dampers.base import DAMPERS
 from seatsim.metrics.table import COMFORT, TRAVEL
-from seatsim.plots.labels import format_number, format_percent
 from seatsim.plots.sweeps import describe_column, format_level, plot_comfort, plot_means, plot_shares, plot_tornado
 from seatsim.report.blocks import Block, Figures, Report, Table, Text, show_pictures, tabulate
 from seatsim.report.composing import Closing, compose
@@ -22,6 +21,7 @@ from seatsim.report.credibility import (
 )
 from seatsim.report.formatting import format_quantity, show_table
 from seatsim.scenario.scenario import is_condition
+from seatsim.schema.printing import format_number, format_percent
 from seatsim.sweeps.outcome import FAILED, UNVERIFIED
 from seatsim.sweeps.parts import NAMES, Exceedance, SweepRows, find_best_choices
 from seatsim.sweeps.sensitivity import Sensitivities, Sensitivity, choose_choice, choose_key

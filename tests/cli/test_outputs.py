@@ -13,8 +13,8 @@ from seatsim.cli.outputs.diagnosis_results import write_diagnosis
 from seatsim.cli.outputs.writing import write_outputs
 from seatsim.cli.show_table import format_number
 from seatsim.diagnosis.diagnose import BUDGET
-from seatsim.plots.labels import shorten
 from seatsim.schema.errors import InputError
+from seatsim.schema.printing import shorten
 from seatsim.schema.yaml_source import Source
 
 

@@ -20,9 +20,8 @@ from seatsim.characterisation.sheet import WarmUp
 from seatsim.diagnosis.residuals import drop_start, find_worst
 from seatsim.plots.bench.characterisation import plot_characterisation
 from seatsim.plots.bench.identification import plot_predictions
-from seatsim.plots.bench.resonance import plot_damping
 from seatsim.plots.bench.trends import plot_warm_up
-from seatsim.plots.bench.vibration import plot_vibration
+from seatsim.plots.bench.vibration import plot_damping, plot_vibration
 from seatsim.plots.diagnosis.answer import select_stages
 from seatsim.plots.diagnosis.draw import plot_all_of_gap, plot_diagnosis
 from seatsim.plots.runs.draw import plot_result

@@ -9,14 +9,15 @@ from matplotlib.colors import to_hex
 from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.effects.base import EFFECTS
 from seatsim.plots.loops import SIGNS
-from seatsim.plots.runs import histories, naming, spectra
-from seatsim.plots.runs.comparison import find_swept_number, plot_comparison, plot_pareto
+from seatsim.plots.runs import histories, looks, spectra
+from seatsim.plots.runs.comparison import plot_comparison, plot_pareto
 from seatsim.plots.runs.dampers import choose_amplitude, find_dampers, plot_damper_loops, plot_force_velocity
 from seatsim.plots.runs.histories import CLOSE_UP
 from seatsim.plots.thinning import BINS, thin_line
 from seatsim.rig.coil import Coil
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.simulation.damper_bench import sine_test
+from seatsim.simulation.naming import find_swept_number
 from seatsim.simulation.result import History
 
 
@@ -25,15 +26,15 @@ def texts(figure):
 
 
 def plot_time_histories(runs):
-    return histories.plot_time_histories(*naming.show_runs(runs))
+    return histories.plot_time_histories(*looks.show_runs(runs))
 
 
 def plot_psd(runs):
-    return spectra.plot_psd(*naming.show_runs(runs))
+    return spectra.plot_psd(*looks.show_runs(runs))
 
 
 def plot_transmissibility(runs):
-    return spectra.plot_transmissibility(*naming.show_runs(runs))
+    return spectra.plot_transmissibility(*looks.show_runs(runs))
 
 
 def legend(figure):
@@ -81,7 +82,7 @@ def test_the_end_stops_of_the_rig_stand_where_its_buffers_are(made_up):
 
 def test_a_force_is_wanted_only_where_a_law_wants_one(made_up):
     with_force, without = (plot_time_histories([made_up(wanted=wanted)]).axes[4] for wanted in (True, False))
-    assert [line.get_label() for line in with_force.lines] == ["wanted", "delivered"]
+    assert [line.get_label() for line in with_force.lines] == ["wanted force, commanded current", "the run"]
     assert len(without.lines) == 1
 
 
@@ -195,23 +196,23 @@ def test_only_numbers_that_change_in_every_run_are_swept(made_up):
 def test_more_runs_than_lines_can_tell_apart(made_up):
     mass = "plant.driver_mass"
     sweep = [made_up({"variant": v, mass: m}, seconds=0.1) for v in "abc" for m in (50, 60, 70)]
-    assert [look.label for look in naming.show_runs(sweep)[0].looks] == [f"{v}, driver mass 50 kg" for v in "abc"]
+    assert [look.label for look in looks.show_runs(sweep)[0].looks] == [f"{v}, driver mass 50 kg" for v in "abc"]
     many = [made_up({"seed": n}, seconds=0.1) for n in range(20)]
-    spread = [run.scenario.label["seed"] for run in naming.show_runs(many)[0].runs]
+    spread = [run.scenario.label["seed"] for run in looks.show_runs(many)[0].runs]
     assert len(spread) == 8 and spread[0] == 0 and spread[-1] == 19
     assert "8 of 20 runs are shown, spread evenly over their order." in " ".join(texts(plot_psd(many))[1].split())
 
 
 def test_a_variant_has_one_colour_in_all_pictures(made_up):
     runs = [made_up({"variant": v, "temperature": t}, name=n) for n in "ab" for v in ("on", "off") for t in (20, 50)]
-    looks = [look for shown in naming.show_runs(runs) for look in shown.looks]
-    colours = [{look.colour for look in looks if look.label.startswith(v)} for v in ("on", "off")]
+    drawn = [look for shown in looks.show_runs(runs) for look in shown.looks]
+    colours = [{look.colour for look in drawn if look.label.startswith(v)} for v in ("on", "off")]
     lines = plot_comparison(runs).axes[0].lines
     points = plot_pareto(runs, {}).axes[0].collections
     assert [len(each) for each in colours] == [1, 1] and colours[0] != colours[1]
     assert {line.get_color() for line in lines} == {to_hex(dot.get_facecolor()[0]).upper() for dot in points}
     assert {line.get_color() for line in lines} == colours[0] | colours[1]
-    assert len({(look.label, look.alpha) for look in looks}) == 4
+    assert len({(look.label, look.alpha) for look in drawn}) == 4
 
 
 @pytest.mark.parametrize(("change", "reason"), [({"seconds": 0.5}, "needs 4.5 s"), ({}, "explains less than 0.5")])

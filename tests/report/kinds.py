@@ -105,7 +105,7 @@ def identification(parts):
     known = [ParameterEstimate("c_a", 500.0, 2.0, "N s/m", True), ParameterEstimate("k0", 3.0, 30.0, "N/m", False)]
     return SimpleNamespace(
         model="bouc_wen", bench=SimpleNamespace(damper=None), assessments=judged,
-        information=Information(known, [("c_a", "k0", 0.99)], 100.0), notes=[],
+        information=Information(known, [("c_a", "k0", 0.99)], 100.0), notes=[], assessed=judged[0].agreement,
         mean=lambda part: Agreement(0.99, 0.02, 5.0, 93.2) if part in parts else None,
     )  # fmt: skip
 

@@ -17,11 +17,11 @@ from seatsim.diagnosis.result import (
     ProposedExperiment,
     Share,
 )
-from seatsim.plots.labels import format_percent
 from seatsim.report.diagnosis import advise, report_diagnosis, say_diagnosis
 from seatsim.report.diagnosis_sections import format_estimate, say_action, say_cause
 from seatsim.report.formatting import format_sentence, read_words
 from seatsim.report.rendering import render_report
+from seatsim.schema.printing import format_percent
 from seatsim.schema.registry import names
 
 from ..text import words

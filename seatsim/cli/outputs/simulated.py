@@ -14,6 +14,7 @@ from seatsim.provenance.statement import write_documented
 from seatsim.report.runs import report_runs
 from seatsim.schema.content import IfAny, Joined, Unwritten
 from seatsim.schema.files import write_together
+from seatsim.simulation.naming import make_title
 from seatsim.simulation.performance_bounds import RigBounds, place_runs
 from seatsim.simulation.result import Result
 from seatsim.simulation.runs import write_histories
@@ -47,7 +48,6 @@ class RunAnswer(NamedTuple):
 def write_result(result: Result, folder: Path) -> list[Path]:
     """Write `summary.csv`, `summary.json`, `history.parquet`, `report.html` and the pictures; return their paths."""
     from seatsim.plots.runs.draw import plot_result
-    from seatsim.plots.runs.naming import make_title
 
     figures = plot_result(result)
     report = report_runs(result.runs, figures, "seatsim run SCENARIO", make_title(result.runs), result.failures)

@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 
 from seatsim.identification.assessment import Assessment
 from seatsim.identification.identify import Identification
-from seatsim.plots import labels, style
+from seatsim.plots import style
+from seatsim.plots.labels import clean_text
 from seatsim.plots.loops import SIGNS
 from seatsim.plots.style import GREY, Entry, Grid
 from seatsim.plots.thinning import spread_evenly
@@ -49,14 +50,13 @@ def plot_predictions(found: Identification) -> Figure:
     """
     chosen = select_records(found.assessments)
     grid = Grid(heights=(1.9,) * len(chosen), columns=3, right=0.62, top=0.3, gap=(0.2, 0.8))
-    mean = found.mean("test") or found.mean("train")
-    note = f"{len(chosen)} of {len(found.assessments)} records"
+    note, mean = f"{len(chosen)} of {len(found.assessments)} records", found.assessed
     note += f"; mean fit {mean.fit_percent:.1f} %{' of held-out records' * bool(found.mean('test'))}" if mean else ""
     legend = (MEASURED, _PREDICTED, _DIFFERENCE)
     page = style.make_page(f"{found.model}: measured and predicted force", f"{note}. {FIT} {SIGNS}", grid, legend)
     for panels, judged, name in zip(page.rows, chosen, name_records(chosen), strict=True):
         title = f"{name} ({PARTS[judged.part]}), fit {judged.agreement.fit_percent:.1f} %"
-        panels[0].set_title(labels.clean_text(title, 64), loc="left", fontsize=style.FONT)
+        panels[0].set_title(clean_text(title, 64), loc="left", fontsize=style.FONT)
         _draw_record([*panels, style.split_panel(page.figure, panels[2], 0.35)], judged)
     return style.name_coincident(page.figure)
 

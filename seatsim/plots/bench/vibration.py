@@ -1,4 +1,4 @@
-"""Measured vibration of a person: its course, its spectrum, and what each operation adds to a day."""
+"""Measured vibration of a person: its course, its spectrum, what each operation adds to a day; a seat's damping."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from seatsim.plots.densities import draw_densities, find_resolution, state_metho
 from seatsim.plots.style import GREY, Entry, Grid
 from seatsim.plots.thinning import spread_evenly
 from seatsim.standards.comfort import Comfort
+from seatsim.standards.seat_rows import SeatTest
 
 MOST = 4
 """Stretches, and axes, that have a panel of their own; more are chosen evenly."""
@@ -98,3 +99,19 @@ def _plot_operations(day: Exposure, operations: Sequence[Operation]) -> Figure:
         panel.axvline(level, color=look.colour, linestyle=look.dashes, linewidth=1.2, zorder=1)
     panel.set_xlabel("A(8) [m/s²]")
     return page.figure
+
+
+def plot_damping(found: SeatTest) -> dict[str, Figure]:
+    """Return the transmissibility of the mass on the seat over the floor, where it was tested."""
+    if not found.damping:
+        return {}
+    looks = [each._replace(mark=".", width=1.6) for each in style.make_entries(list(found.damping))]
+    note = "Sines from half to twice the resonance."
+    figure, [[axes]] = style.make_page(
+        "Damping test: motion of the mass over that of the floor", note, Grid((2.6,)), looks
+    )
+    for look, test in zip(looks, found.damping.values(), strict=True):
+        style.draw_line(axes, test.frequencies, test.transmissibilities, look)
+    axes.set_ylim(bottom=0.0)
+    axes.set(xlabel="frequency [Hz]", ylabel="transmissibility [-]")
+    return {"damping": style.name_coincident(figure)}

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from matplotlib.figure import Figure
 
-from seatsim.diagnosis.result import Diagnosis, Gaps
+from seatsim.diagnosis.result import Diagnosis, Gaps, RunGaps
 from seatsim.plots import style
 from seatsim.plots.style import COLOURS, ROW, Entry, Grid, draw_bars, make_page, measure_names, name_rows
 from seatsim.recordings.gap import Gap, GapFigures
@@ -39,7 +39,7 @@ def select_stages(diagnosis: Diagnosis) -> list[Key]:
     return ["before", "calibrated", *after, "floor"]
 
 
-def read_gap(gaps: Gaps, key: Key, channel: str) -> float | None:
+def read_gap(gaps: Gaps | RunGaps, key: Key, channel: str) -> float | None:
     """Return the gap of a channel, or of all ("overall"), over the signal's standard deviation; None if unknown."""
     figures: GapFigures = getattr(gaps, key)
     return figures.overall if channel == "overall" else figures.channels.get(channel)

@@ -11,9 +11,9 @@ from seatsim.diagnosis.residuals import FEWEST, bin_edges, find_worst, map_rms, 
 from seatsim.diagnosis.result import Diagnosis
 from seatsim.plots import style
 from seatsim.plots.diagnosis.signals import name_last
-from seatsim.plots.labels import Quantity, describe_channel, format_number
 from seatsim.plots.style import COLOURS, Entry, Grid
 from seatsim.plots.thinning import thin_line
+from seatsim.schema.printing import Quantity, describe_channel, format_number
 
 BINS = (22, 13)
 """Bins of a map over velocity and over the other quantity."""

@@ -5,9 +5,9 @@ The same picture shows a gap, with one simulation, and a diagnosis, with two.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from textwrap import fill
-from typing import NamedTuple
+from typing import TypeAlias
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,11 +19,11 @@ from seatsim.metrics.motion import rms
 from seatsim.metrics.spectra import estimate_density
 from seatsim.plots import style
 from seatsim.plots.densities import draw_densities, find_resolution, state_method
-from seatsim.plots.labels import Quantity, describe_channel, format_number
 from seatsim.plots.style import COLOURS, Entry, Grid
 from seatsim.plots.thinning import BINS, Window, find_loudest, thin_line
 from seatsim.recordings.gap import Gap
 from seatsim.schema.arrays import Array
+from seatsim.schema.printing import Quantity, describe_channel, format_number
 
 SECONDS, RASTER = 2.0, 0.05
 """Length in s of the window that is shown, and the raster on which it begins."""
@@ -37,17 +37,12 @@ _AFTER = Entry("with effects", COLOURS[0], width=1.1)
 NOISE = Entry("sensor noise", "0.55", ":", width=1.8)
 _BAND = Entry(f"±{BAND:g} RMS of the noise", style.AREA, width=8)
 GRID = Grid((1.5, 1.0, 1.7), left=0.85, gap=(0.0, 0.16), bottom=0.5)
+Looks: TypeAlias = dict[str, Entry]
+"""Looks of simulations that are compared with a measurement, by their names in a trace."""
 LETTERS = 19
 """Letters of a label beside a panel that is this low."""
 OWN_AXIS = 0.42
 """Room in inches above the spectrum for the axis of time."""
-
-
-class Simulated(NamedTuple):
-    """A simulation that is compared with a measurement: how it looks, and its signal of a trace."""
-
-    look: Entry
-    read: Callable[[Trace], Array]
 
 
 def name_last(diagnosis: Diagnosis) -> str:
@@ -58,43 +53,41 @@ def name_last(diagnosis: Diagnosis) -> str:
 def plot_signals(diagnosis: Diagnosis) -> dict[str, Figure]:
     """Return a picture of each held-out channel, the channel with the largest nominal gap first."""
     look = _AFTER._replace(label=name_last(diagnosis), colour=COLOURS[0 if diagnosis.selected else 2])
-    lines = [Simulated(NOMINAL, lambda trace: trace.nominal), Simulated(look, lambda trace: trace.after)]
-    return _plot_channels(diagnosis.evidence.traces, lines)
+    return _plot_channels(diagnosis.evidence.traces, {"nominal": NOMINAL, "after": look})
 
 
 def plot_gap_signals(found: Gap) -> dict[str, Figure]:
     """Return a picture of each channel of a gap, the channel with the largest gap first."""
-    look = NOMINAL._replace(label="simulated", dashes="-")
-    return _plot_channels(list_traces(found), [Simulated(look, lambda trace: trace.nominal)])
+    return _plot_channels(list_traces(found), {"nominal": NOMINAL._replace(label="simulated", dashes="-")})
 
 
-def _plot_channels(traces: Sequence[Trace], lines: Sequence[Simulated]) -> dict[str, Figure]:
+def _plot_channels(traces: Sequence[Trace], looks: Looks) -> dict[str, Figure]:
     groups = group_by_channel(traces).values()
     worst = [(max(group, key=lambda each: rms(each.measured - each.nominal)), group) for group in groups]
     ordered = sorted(worst, key=lambda pair: -nominal_gap(pair[0]))
-    return {f"signal_{trace.channel}": _plot_channel(trace, group, lines) for trace, group in ordered}
+    return {f"signal_{trace.channel}": _plot_channel(trace, group, looks) for trace, group in ordered}
 
 
-def _plot_channel(trace: Trace, group: Sequence[Trace], lines: Sequence[Simulated]) -> Figure:
+def _plot_channel(trace: Trace, group: Sequence[Trace], looks: Looks) -> Figure:
     """Return a picture of a channel: of its worst run over time, and of all of its runs over frequency."""
-    shown, left = describe_channel(trace.channel, trace.unit), trace.measured - lines[0].read(trace)
+    shown, left = describe_channel(trace.channel, trace.unit), _subtract(trace, next(iter(looks)))
     step = (trace.time[-1] - trace.time[0]) / (len(trace.time) - 1)
     window = find_loudest(left, step, SECONDS, RASTER)
     window = Window(window.start + trace.time[0], window.end + trace.time[0])
     noise = shown.factor * trace.noise_rms
-    left_over = [[each.measured - line.read(each) for each in group] for line in lines]
+    left_over = [[_subtract(each, name) for each in group] for name in reversed(looks)]
     # The measured signal is drawn last, before the others.
-    density = [estimate_density(step, signals) for signals in (*left_over[::-1], [each.measured for each in group])]
+    density = [estimate_density(step, signals) for signals in (*left_over, [each.measured for each in group])]
     has_spectrum = bool(len(density[0][0]))
     note = f"{window} of {trace.run}, where the difference has most energy; RMS over the whole run."
     method = state_method(find_resolution(density))
     note += f" Below: power densities of the measured signal and of the differences. {method}" * has_spectrum
     grid = GRID if has_spectrum else GRID._replace(heights=GRID.heights[:2])
-    below = [line.look._replace(label=f"{line.look.label} (below: difference)") for line in lines]
+    below = [look._replace(label=f"{look.label} (below: difference)") for look in looks.values()]
     legend = [MEASURED, *below, *([NOISE] if noise and has_spectrum else []), *([_BAND] if noise else [])]
-    page = style.make_page(_make_title(trace, shown, lines), note, grid, legend)
+    page = style.make_page(_make_title(trace, shown, looks), note, grid, legend)
     upper, lower = (row[0] for row in page.rows[:2])
-    _draw_time(upper, lower, trace, window, shown, lines)
+    _draw_time(upper, lower, trace, window, shown, looks)
     if noise:
         lower.axhspan(-BAND * noise, BAND * noise, color=style.AREA, linewidth=0, zorder=0)
         # Its edges stand before the lines, which hide a band that they fill.
@@ -104,20 +97,18 @@ def _plot_channel(trace: Trace, group: Sequence[Trace], lines: Sequence[Simulate
         axes.set_position((left_edge, bottom, width, height * (1 - OWN_AXIS / GRID.heights[2])))
         frequency = density[0][0]
         drawn = [(places, shown.factor**2 * power) for places, power in density]
-        looks = [*(line.look for line in reversed(lines)), MEASURED]
         if noise:
             # The one-sided density of white noise of RMS s is 2 s^2 dt.
-            drawn, looks = [*drawn, (frequency[[0, -1]], np.full(2, 2 * noise**2 * step))], [*looks, NOISE]
-        draw_densities(axes, drawn, looks, decades=DECADES)
+            drawn.append((frequency[[0, -1]], np.full(2, 2 * noise**2 * step)))
+        entries = [*reversed(looks.values()), MEASURED, NOISE][: len(drawn)]
+        draw_densities(axes, drawn, entries, decades=DECADES)
         style.scale_frequency_axis(axes, float(frequency[0]), float(frequency[-1]))
         axes.set_ylabel(f"power density\n[{shown.square}/Hz]")
         axes.yaxis.set_label_coords(-0.1, 0.5)
     return style.name_coincident(page.figure)
 
 
-def _draw_time(
-    upper: Axes, lower: Axes, trace: Trace, window: Window, shown: Quantity, lines: Sequence[Simulated]
-) -> None:
+def _draw_time(upper: Axes, lower: Axes, trace: Trace, window: Window, shown: Quantity, looks: Looks) -> None:
     inside = (trace.time >= window.start) & (trace.time <= window.end)
 
     def draw(axes: Axes, values: Array, look: Entry) -> None:
@@ -125,9 +116,9 @@ def _draw_time(
 
     draw(upper, trace.measured, MEASURED)
     # The first one, which is dashed, last: where two agree, both are seen.
-    for line in reversed(lines):
-        draw(upper, line.read(trace), line.look)
-        draw(lower, trace.measured - line.read(trace), line.look)
+    for name, look in reversed(looks.items()):
+        draw(upper, getattr(trace, name), look)
+        draw(lower, _subtract(trace, name), look)
     lower.axhline(0.0, color="0.6", linewidth=0.8, zorder=0.5)
     upper.tick_params(labelbottom=False)
     upper.set_ylabel(fill(f"{shown.words} [{shown.unit}]", LETTERS))
@@ -139,10 +130,14 @@ def _draw_time(
         axes.yaxis.set_label_coords(-0.1, 0.5)
 
 
-def _make_title(trace: Trace, shown: Quantity, lines: Sequence[Simulated]) -> str:
-    sizes = [rms(trace.measured - line.read(trace)) for line in lines]
+def _subtract(trace: Trace, name: str) -> Array:
+    left: Array = trace.measured - getattr(trace, name)
+    return left
+
+
+def _make_title(trace: Trace, shown: Quantity, looks: Looks) -> str:
+    sizes = {look.label if len(looks) > 1 else "": rms(_subtract(trace, name)) for name, look in looks.items()}
+    sizes |= {"noise": trace.noise_rms} if trace.noise_rms > 0 else {}
     words = shown.words[:1].upper() + shown.words[1:]
-    named = [line.look.label for line in lines] if len(lines) > 1 else [""]
-    known = [*zip(named, sizes, strict=True), *([("noise", trace.noise_rms)] if trace.noise_rms > 0 else [])]
-    figures = [f"{name} {format_number(shown.factor * size)}\u00a0{shown.unit}".strip() for name, size in known]
+    figures = [f"{name} {format_number(shown.factor * size)}\u00a0{shown.unit}".strip() for name, size in sizes.items()]
     return f"{words}, RMS difference: {', '.join(figures)}"

@@ -12,11 +12,14 @@ from matplotlib.figure import Figure
 
 from seatsim.metrics.table import COMFORT, SEAT, TRAVEL, UNWEIGHTED
 from seatsim.plots import style
-from seatsim.plots.labels import describe_metric, format_number
-from seatsim.plots.runs import naming
+from seatsim.plots.labels import describe_metric
+from seatsim.plots.runs.looks import MOST as MOST_LINES
+from seatsim.plots.runs.looks import choose_looks
 from seatsim.plots.style import DARK, ROW, Entry, Grid
 from seatsim.scenario.scenario import condition_of
 from seatsim.schema.arrays import Array
+from seatsim.schema.printing import format_number
+from seatsim.simulation import naming
 from seatsim.simulation.performance_bounds import PerformanceBounds
 from seatsim.simulation.result import Run
 
@@ -60,7 +63,7 @@ def plot_pareto(runs: Sequence[Run], brackets: Mapping[str, PerformanceBounds]) 
     Conditions of one run share a panel. Points have letters; the legend names them, in the order of the runs. A line
     says where the driver feels as much as the floor moves.
     """
-    found, looks = _make_panels(runs, brackets) or [Panel("", [], [])], naming.choose_looks(runs)
+    found, looks = _make_panels(runs, brackets) or [Panel("", [], [])], choose_looks(runs)
     shown, columns = found[:MOST_PANELS], min(2, len(found))
     colours = {
         name: looks[id(run)].colour for panel in shown for name, run in zip(panel.names, panel.runs, strict=True)
@@ -150,27 +153,17 @@ NOTE = "Over the whole run; on the same floor, the smaller the better."
 
 def plot_comparison(runs: Sequence[Run]) -> Figure:
     """Return bars run by run, or lines over the number that is swept, one line for each variant."""
-    key = find_swept_number(runs)
+    key = naming.find_swept_number(runs)
     series: dict[str, list[Run]] = {}
     for name, run in zip(naming.label_runs(runs, without=[key]), runs, strict=True):
         series.setdefault(name, []).append(run)
     title = f"Comparison: {naming.make_title(runs)}"
-    return _plot_lines(title, key, series) if key and len(series) <= naming.MOST else _plot_bars(title, runs)
-
-
-def find_swept_number(runs: Sequence[Run]) -> str:
-    """Return the key with the most different values among those that are numbers in every run, or nothing."""
-    counts = {"": 1}
-    for key in runs[0].scenario.label:
-        values = [run.scenario.label.get(key) for run in runs]
-        if all(map(naming.is_number, values)):
-            counts[key] = len(set(values))
-    return max(counts, key=lambda key: counts[key])
+    return _plot_lines(title, key, series) if key and len(series) <= MOST_LINES else _plot_bars(title, runs)
 
 
 def _plot_bars(title: str, runs: Sequence[Run]) -> Figure:
     names = naming.label_runs(runs, 32)
-    looks, left = naming.choose_looks(runs), style.measure_names(names)
+    looks, left = choose_looks(runs), style.measure_names(names)
     grid = Grid((ROW * len(runs) + 0.1,) * 2, columns=2, left=left, gap=(0.2, 0.6))
     page = style.make_page(title, NOTE, grid)
     for k, (axes, metric) in enumerate(zip(page.list_panels(), COMPARED, strict=True)):
@@ -187,7 +180,7 @@ def _plot_bars(title: str, runs: Sequence[Run]) -> Figure:
 
 def _plot_lines(title: str, key: str, series: dict[str, list[Run]]) -> Figure:
     runs = [run for group in series.values() for run in group]
-    of_runs = naming.choose_looks(runs)
+    of_runs = choose_looks(runs)
     looks = [of_runs[id(group[0])]._replace(label=name) for name, group in series.items()]
     swept = sorted({float(run.scenario.label[key]) for run in runs})
     page = style.make_page(title, NOTE, Grid((1.8, 1.8), 2, left=0.85, gap=(0.9, 0.65)), looks)

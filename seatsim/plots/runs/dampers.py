@@ -16,11 +16,11 @@ from seatsim.kernel.generic import DamperModel
 from seatsim.metrics.motion import rms
 from seatsim.plots import style
 from seatsim.plots.loops import SIGNS, Family, make_loop_page
-from seatsim.plots.runs import naming
 from seatsim.plots.style import COLOURS, Entry, Grid
 from seatsim.rig.temperature import TemperatureFactors, Thermal
 from seatsim.schema.arrays import Array
 from seatsim.schema.registry import name_of, specification_of
+from seatsim.simulation import naming
 from seatsim.simulation.damper_bench import SineTest, sine_test
 from seatsim.simulation.result import Run
 

@@ -12,10 +12,11 @@ from matplotlib.figure import Figure
 from seatsim.metrics.spectra import POWER, TRUSTED, estimate_density, trusted_gain
 from seatsim.plots import style
 from seatsim.plots.densities import draw_densities, find_problem, find_resolution, state_method
-from seatsim.plots.runs.naming import Shown, distinguish_runs
+from seatsim.plots.runs.looks import Shown
 from seatsim.plots.style import DASHES, GREY, Entry, Grid
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
+from seatsim.simulation.naming import distinguish_runs
 from seatsim.simulation.result import Run
 
 HIGHEST = 50.0

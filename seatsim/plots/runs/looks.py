@@ -1,15 +1,13 @@
-"""What runs and swept values are called in a picture, which of many runs it shows, and how each of them looks."""
+"""Which of many runs a picture shows, and how each of them looks."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
-from typing import NamedTuple, TypeGuard
+from collections.abc import Sequence
+from typing import NamedTuple
 
-from seatsim.plots.labels import LONGEST, format_unit, shorten
 from seatsim.plots.style import GREY, Entry, make_entries
 from seatsim.plots.thinning import spread_evenly
-from seatsim.scenario.numbers import find_unit
-from seatsim.scenario.scenario import Scenario
+from seatsim.simulation import naming
 from seatsim.simulation.result import Run
 
 MOST = 8
@@ -42,7 +40,7 @@ def show_runs(runs: Sequence[Run]) -> list[Shown]:
     for part in parts:
         shown, omission = _select_shown(part)
         scenario = part[0].scenario.name if len(parts) > 1 else ""
-        found.append(Shown(scenario, make_title(part), shown, [looks[id(run)] for run in shown], omission))
+        found.append(Shown(scenario, naming.make_title(part), shown, [looks[id(run)] for run in shown], omission))
     return found
 
 
@@ -53,7 +51,7 @@ def choose_looks(runs: Sequence[Run]) -> dict[int, Entry]:
     its own. Those that no picture draws as a line are grey: there are not enough colours for all.
     """
     parts = _divide(runs)
-    names = {id(run): name for part in parts for name, run in zip(label_runs(part), part, strict=True)}
+    names = {id(run): name for part in parts for name, run in zip(naming.label_runs(part), part, strict=True)}
     families = names
     if len({run.scenario.label.get("variant") for run in runs}) > 1:
         families = {id(run): str(run.scenario.label.get("variant", run.scenario.name)) for run in runs}
@@ -78,47 +76,6 @@ def _divide(runs: Sequence[Run]) -> list[list[Run]]:
     return [[run for run in runs if run.scenario.name == name] for name in scenarios]
 
 
-def label_runs(runs: Sequence[Run], longest: int = LONGEST, without: Collection[str] = ()) -> list[str]:
-    """Return what sets each run apart from the others: variant and swept values, less those of some keys.
-
-    Of runs of one scenario its name is left out; names that are alike are numbered.
-    """
-    several = len({run.scenario.name for run in runs}) > 1
-    names = [shorten(_describe(run.scenario, several, without), longest) for run in runs]
-    return [
-        f"{name} ({names[: k + 1].count(name)})" if not without and names.count(name) > 1 else name
-        for k, name in enumerate(names)
-    ]
-
-
-def distinguish_runs(group: Sequence[Run], runs: Sequence[Run]) -> tuple[str, list[str]]:
-    """Return what sets some of the runs apart from the others, and what sets each of these apart from the rest."""
-    keys = [key for key in group[0].scenario.label if len({str(run.scenario.label.get(key)) for run in group}) == 1]
-    several = len({run.scenario.name for run in runs}) > 1
-    same = len({run.scenario.name for run in group}) == 1
-    first = group[0].scenario
-    shared = [_describe_part(first, key, first.label[key]) for key in keys]
-    heading = ", ".join([first.name] * (several and same) + shared)
-    return shorten(heading, 52), [shorten(_describe(run.scenario, not same, keys), 52) for run in group]
-
-
-def make_title(runs: Sequence[Run]) -> str:
-    """Return the name of one run with what sets it apart, or the names of the scenarios of several."""
-    if len(runs) == 1:
-        return shorten(_describe(runs[0].scenario, True), 64)
-    return shorten(", ".join(dict.fromkeys(run.scenario.name for run in runs)), 64)
-
-
-def is_number(value: object) -> TypeGuard[float]:
-    """Tell whether a swept value is a number; true and false are not, though Python counts them as integers."""
-    return isinstance(value, int | float) and not isinstance(value, bool)
-
-
-def label_axis(scenario: Scenario, key: str) -> str:
-    """Return the label of an axis over the swept key, with its unit."""
-    return f"{_name_key(key)} [{format_unit(find_unit(scenario, key)) or '-'}]"
-
-
 def _select_shown(runs: Sequence[Run]) -> tuple[list[Run], str]:
     """Return the runs that are drawn, and a sentence on how they were chosen where there are more."""
     if len(runs) <= MOST:
@@ -127,30 +84,9 @@ def _select_shown(runs: Sequence[Run]) -> tuple[list[Run], str]:
     first = _swept_values(runs[0])
     group = [run for run in runs if _swept_values(run) == first]
     if 1 < len(group) <= MOST:
-        at = ", ".join(_describe_part(runs[0].scenario, key, value) for key, value in first.items())
+        at = ", ".join(naming.describe_swept(runs[0].scenario, key, value) for key, value in first.items())
         return group, f" {len(group)} of {len(runs)} runs are shown: {at}."
     return spread_evenly(runs, MOST), f" {MOST} of {len(runs)} runs are shown, spread evenly over their order."
-
-
-def _describe(scenario: Scenario, named: bool, without: Collection[str] = ()) -> str:
-    """Return variant and swept values, less those of some keys; `named` puts the scenario's name first."""
-    parts = [_describe_part(scenario, key, value) for key, value in scenario.label.items() if key not in without]
-    return ", ".join([scenario.name] * named + parts) or scenario.name
-
-
-def _describe_part(scenario: Scenario, key: str, value: object) -> str:
-    if key == "variant":
-        return str(value)
-    if isinstance(value, str):
-        # The last word tells enough of a key whose value is a name: class EM2.
-        return f"{_name_key(key).rpartition(' ')[2]} {value}"
-    text = f"{value:g}" if is_number(value) else str(value)
-    unit = format_unit(find_unit(scenario, key)).removesuffix("-")
-    return f"{text} {unit}" if key == "temperature" else f"{_name_key(key)} {text} {unit}".strip()
-
-
-def _name_key(key: str) -> str:
-    return "damper temperature" if key == "temperature" else key.rpartition(".")[2].replace("_", " ")
 
 
 def _swept_values(run: Run) -> dict[str, object]:
