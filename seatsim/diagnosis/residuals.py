@@ -25,8 +25,8 @@ def list_traces(found: Gap) -> list[Trace]:
     traces = []
     for name in found.channels:
         recorded = {run: pair for run, pair in found.replayed.items() if name in pair.measured}
-        spread = float(np.std(np.concatenate([pair.measured[name] for pair in recorded.values()])))
-        noise = found.floor.channels[name] * spread
+        every = [pair.measured[name] for pair in recorded.values()]
+        noise = found.floor.channels[name] * float(np.std(np.concatenate(every))) if every else 0.0
         for run, pair in recorded.items():
             simulated = [pair.simulated[name]] * 3
             traces.append(Trace(run, name, pair.units[name], noise, pair.time, pair.measured[name], *simulated))

@@ -12,6 +12,7 @@ from scipy.optimize import least_squares
 from seatsim.diagnosis.candidates import Candidate, list_candidates
 from seatsim.diagnosis.objective import Parameters
 from seatsim.diagnosis.problem import pose_problem
+from seatsim.diagnosis.result import Trace
 from seatsim.metrics.motion import rms
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.recording import load_recording
@@ -72,6 +73,17 @@ class Trial:
         problem = self.problem
         left = np.concatenate([problem.measured[run] - simulated[run] for run in problem.runs], axis=1)
         return np.array([rms(row) for row in left]) / problem.spread
+
+    def list_traces(self, after: Mapping[str, Array]) -> list[Trace]:
+        """Return the compared channels of every run beside those without and with effects."""
+        problem, signals = self.problem, (self.problem.measured, self.nominal, after, after)
+        traces = []
+        for run in problem.runs:
+            time = (problem.skip + np.arange(problem.measured[run].shape[1])) / problem.rate
+            for k, channel in enumerate(problem.channels):
+                unit = problem.recording.channels[channel].unit
+                traces.append(Trace(run, channel, unit, 0.0, time, *(each[run][k] for each in signals)))
+        return traces
 
 
 def name_candidate(candidate: Candidate) -> str:

@@ -13,9 +13,9 @@ from seatsim.diagnosis.objective import Parameters
 from seatsim.diagnosis.trial import Trial, name_candidate
 from seatsim.metrics.motion import rms
 from seatsim.page.scenario_view import Choice, Slider, Switch, View, make_slider, read_number
-from seatsim.report.blocks import Signals, Table
-from seatsim.report.formatting import describe_effect, format_noise, format_sentence, say_noise
-from seatsim.report.packing import MEASURED, QUICK, Panel, pack_signals
+from seatsim.report.blocks import Table
+from seatsim.report.formatting import describe_effect, format_noise, format_sentence, say_noise, show_table
+from seatsim.report.packing import MEASURED, QUICK, pack_traces
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import describe
@@ -56,7 +56,9 @@ class RecordingView:
             fitted = self._read_sliders(parameters)
         after = self.trial.simulate(parameters) if parameters.terms else self.trial.nominal
         gaps = self.trial.measure(after)
-        return View(self._say(len(parameters.terms), gaps), [self._tabulate(gaps)], self._pack(after), fitted=fitted)
+        lines = {"measured": ("measured", MEASURED), "nominal": ("nominal", 1), "after": ("with effects", 0)}
+        signals = pack_traces(self.trial.list_traces(after), lines, QUICK)
+        return View(self._say(len(parameters.terms), gaps), [*self._tabulate(gaps)], signals, fitted=fitted)
 
     def choose(self, request: Mapping[str, object]) -> Parameters:
         """Return the effects of a request with their values."""
@@ -95,28 +97,12 @@ class RecordingView:
             f" {format_percent(now)}; {say_noise(floor)}."
         )
 
-    def _tabulate(self, gaps: Array) -> Table:
+    def _tabulate(self, gaps: Array) -> list[Table]:
         rows = []
         for channel, old, new, noise in zip(self.problem.channels, self.before, gaps, self.floor, strict=True):
             first, second, shrink = map(format_percent, (old, new, 1 - new / old))
             rows.append([channel.replace("_", " "), first, second, format_noise(noise), shrink])
-        return Table(
-            "Gap of each channel, RMS of measured less simulated over the spread of the measured signal, over all runs",
-            ["channel", "nominal", "with effects", "noise floor", "shrinks by"],
-            rows,
-        )
-
-    def _pack(self, after: Mapping[str, Array]) -> Signals:
-        problem = self.problem
-        panels = []
-        for k, channel in enumerate(problem.channels):
-            shown = {
-                run: [each[run][k] for each in (problem.measured, self.trial.nominal, after)] for run in problem.runs
-            }
-            panels.append(Panel(channel, problem.recording.channels[channel].unit, "", shown))
-        time = {run: (problem.skip + np.arange(problem.measured[run].shape[1])) / problem.rate for run in problem.runs}
-        lines = [("measured", MEASURED), ("nominal", 1), ("with effects", 0)]
-        return pack_signals("Every run.", lines, time, panels, QUICK)
+        return show_table("trial", rows)
 
 
 def _make_switch(name: str, candidate: Candidate) -> Switch:

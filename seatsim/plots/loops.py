@@ -39,7 +39,10 @@ def make_loop_page(title: str, note: str, families: Sequence[Family], more: int 
             style.draw_line(panels[1], 1e3 * loop.displacement, loop.force, look)
         label_panels(panels, family.title)
         if len(family.loops) > 1:
-            style.draw_legend_beside(panels[1], family.legend)
+            panels[1].legend(
+                title=family.legend, alignment="left", loc="upper left", bbox_to_anchor=(1.02, 1.0), frameon=False,
+                borderaxespad=0, fontsize=style.FONT, title_fontsize=style.FONT, handlelength=1.2, handletextpad=0.5,
+            )  # fmt: skip
     return page
 
 

@@ -17,7 +17,6 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, to_hex
 from matplotlib.figure import Figure
-from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator, NullLocator
 from matplotlib.typing import LineStyleType
@@ -156,14 +155,6 @@ def draw_line(axes: Axes, x: ArrayLike, y: ArrayLike, look: Entry) -> Line2D:
     return _dress(line, look, LONGEST)
 
 
-def draw_legend_beside(axes: Axes, title: str) -> Legend:
-    """Put the legend of a panel to its right."""
-    return axes.legend(
-        title=title, alignment="left", loc="upper left", bbox_to_anchor=(1.02, 1.0), frameon=False,
-        borderaxespad=0, fontsize=FONT, title_fontsize=FONT, handlelength=1.2, handletextpad=0.5,
-    )  # fmt: skip
-
-
 def add_colour_bar(axes: Axes, drawn: ScalarMappable, label: str) -> Axes:
     """Return the axes of a new bar of the colours in which something is drawn, to the right of a panel."""
     box = axes.get_position()
@@ -204,10 +195,10 @@ def _lie_on_each_other(one: Line2D, other: Line2D) -> bool:
 
 
 def _lengthen_note(figure: Figure, sentence: str) -> None:
-    """Put a sentence behind the note of a figure, which grows by the new lines; nothing else changes its size."""
+    """Put a sentence of cleaned names behind the note of a figure, which grows; all else keeps its size."""
     note, old = figure.texts[1], float(figure.get_figheight())
     before = note.get_text().splitlines()
-    lines = _break(" ".join([*before, clean_text(sentence, 400)]), NOTE)
+    lines = _break(" ".join([*before, sentence]), NOTE)
     new = old + LINE * (len(lines) - len(before))
     anchors = [legend.get_bbox_to_anchor().transformed(figure.transFigure.inverted()) for legend in figure.legends]
     note.set_text("\n".join(lines))
@@ -306,7 +297,7 @@ def _write_plainly(value: float, _position: object) -> str:
 def _write_power(value: float, _position: object) -> str:
     """Return a number in powers of ten, as all numbers of an axis of many decades are."""
     exponent = int(np.floor(np.log10(value) + 1e-9))
-    if exponent == 0:
+    if exponent in (0, 1):
         return f"{value:g}"
     return f"{value / 10.0**exponent:g}×10".removeprefix("1×") + str(exponent).translate(RAISED)
 

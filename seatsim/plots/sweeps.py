@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib import colormaps
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
@@ -124,7 +123,11 @@ def plot_comfort(rows: SweepRows, order: Sequence[str]) -> Figure | None:
     note = f"A point for each run; lower left is better.{said}{some}"
     page = make_page("Comfort against travel", note, grid, [*looks, _FRONT])
     for axes, (title, part) in zip(page.list_panels(len(parts)), parts, strict=True):
-        _draw_runs(axes, part.sample(most, random_state=0) if len(part) > most else part, colour, values)
+        dots = part.sample(most, random_state=0) if len(part) > most else part
+        for k, group in enumerate([dots] if colour is None else [dots[dots[colour] == value] for value in values]):
+            axes.scatter(
+                1e3 * group[TRAVEL], group[COMFORT], s=14, linewidths=0, alpha=0.7, color=COLOURS[k], rasterized=True
+            )
         travel, comfort = (part[name].to_numpy(float) for name in (TRAVEL, COMFORT))
         front = find_front(travel, comfort)
         style.draw_line(axes, 1e3 * travel[front], comfort[front], _FRONT)
@@ -140,13 +143,6 @@ def find_front(travel: Array, comfort: Array) -> NDArray[np.intp]:
     keep = np.concatenate([[True], comfort[order][1:] < best[:-1]])
     front: NDArray[np.intp] = order[keep]
     return front
-
-
-def _draw_runs(axes: Axes, drawn: pd.DataFrame, colour: str | None, values: Sequence[object]) -> None:
-    groups = [drawn] if colour is None else [drawn[drawn[colour] == value] for value in values]
-    for k, part in enumerate(groups):
-        travel, comfort = (part[name].to_numpy(float) for name in (TRAVEL, COMFORT))
-        axes.scatter(1e3 * travel, comfort, s=14, linewidths=0, alpha=0.7, color=COLOURS[k], rasterized=True)
 
 
 def plot_means(rows: SweepRows, order: Sequence[str], metric: str) -> Figure | None:

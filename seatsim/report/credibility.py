@@ -43,11 +43,6 @@ class Factor(NamedTuple):
         """The number of conditions that hold before the first that does not."""
         return [*map(bool, self.holds), False].index(False)
 
-    @property
-    def next_condition(self) -> str:
-        """What the next level asks for, where this kind of result can reach one."""
-        return read_conditions()[self.name][self.level] if self.level < len(self.holds) else UNKNOWN
-
 
 @lru_cache(maxsize=1)
 def read_conditions() -> Mapping[str, Sequence[str]]:
@@ -60,10 +55,11 @@ def read_conditions() -> Mapping[str, Sequence[str]]:
 
 def show_card(factors: Sequence[Factor]) -> Section:
     """Return the section on how far the figures of a report may be trusted."""
-    rows = [
-        (each.name, f"{each.level}\u00a0of\u00a0{len(each.holds)}", format_sentence(each.evidence), each.next_condition)
-        for each in factors
-    ]
+    rows = []
+    for each in factors:
+        # What the next level asks for, where this kind of result can reach one.
+        asked = [*read_conditions()[each.name][: len(each.holds)], UNKNOWN][each.level]
+        rows.append((each.name, f"{each.level}\u00a0of\u00a0{len(each.holds)}", format_sentence(each.evidence), asked))
     return Section(
         "credibility", "How far to trust this", [*explain("credibility"), *show_table("credibility", rows, 4)]
     )

@@ -228,7 +228,7 @@ def _tabulate_sheet(sheet: BenchSheet, captions: Mapping[str, str]) -> list[Bloc
         record, rows = tables[name]
         head = [text.replace("_", " ") for text in head_columns(record, format_unit)]
         values = [[getattr(row, each.name) for each in list_written(record)] for row in rows[:MOST_ROWS]]
-        lines = [[PASSED.get(value, value) if isinstance(value, bool) else value for value in row] for row in values]
+        lines = [[PASSED[value] if isinstance(value, bool) else value for value in row] for row in values]
         more = f"; {len(rows) - MOST_ROWS} more in characterisation.xlsx" if len(rows) > MOST_ROWS else ""
         blocks += tabulate(f"{caption}{more}", head, lines)
     return blocks

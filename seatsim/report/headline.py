@@ -46,7 +46,8 @@ def list_alternatives(runs: Sequence[Run]) -> list[Alternatives]:
     found, is_weighted = [], any(COMFORT in run.metrics for run in runs)
     for group in group_by_condition((run.scenario, run) for run in runs):
         condition, names = distinguish_runs(group, runs)
-        named = [pair for pair in zip(group, names, strict=True) if _is_reliable(pair[0])]
+        pairs = zip(group, names, strict=True)
+        named = [pair for pair in pairs if np.isfinite(measure_comfort(pair[0])) and not pair[0].unverified]
         known = [pair for pair in named if COMFORT in pair[0].metrics or not is_weighted]
         if known:
             ordered = sorted(known, key=lambda pair: measure_comfort(pair[0]))
@@ -112,10 +113,6 @@ def _compare_runs(run: Run, base: Run) -> tuple[str, str]:
         return comfort, "more travel than none"
     travel = compare_figures(change)
     return comfort, "equal travel" if travel == EQUAL else f"{travel} travel (RMS)"
-
-
-def _is_reliable(run: Run) -> bool:
-    return bool(np.isfinite(measure_comfort(run))) and not run.unverified
 
 
 def describe_run(run: Run) -> str:

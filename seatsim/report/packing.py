@@ -81,10 +81,11 @@ def pack_signals(
     return Signals("signals-time", caption, list(time), drawn, titles, data)
 
 
-def pack_traces(traces: Iterable[Trace], lines: Mapping[str, tuple[str, int]]) -> Signals:
+def pack_traces(traces: Iterable[Trace], lines: Mapping[str, tuple[str, int]], finest: int = FINEST) -> Signals:
     """Return linked pictures of compared channels, of every run.
 
-    traces: in the order of runs and channels. lines: name and look of what is drawn, by its name in a trace.
+    traces: in the order of runs and channels. lines: name and look of what is drawn, by its name in a trace. finest: as
+    for `pack_signals`.
     """
     runs: dict[str, dict[str, Trace]] = {}
     for trace in traces:
@@ -98,7 +99,7 @@ def pack_traces(traces: Iterable[Trace], lines: Mapping[str, tuple[str, int]]) -
         for channel, unit in units.items()
     ]  # fmt: skip
     time = {run: next(iter(found.values())).time for run, found in runs.items()}
-    return pack_signals("Every run is in the list above the pictures.", list(lines.values()), time, panels)
+    return pack_signals("Every run is in the list above the pictures.", list(lines.values()), time, panels, finest)
 
 
 def pack_line(values: Array) -> _Line:

@@ -13,6 +13,7 @@ from seatsim.plots.runs import histories, looks, spectra
 from seatsim.plots.runs.comparison import plot_comparison, plot_pareto
 from seatsim.plots.runs.dampers import choose_amplitude, find_dampers, plot_damper_loops, plot_force_velocity
 from seatsim.plots.runs.histories import CLOSE_UP
+from seatsim.plots.style import GREY
 from seatsim.plots.thinning import BINS, thin_line
 from seatsim.rig.coil import Coil
 from seatsim.rig.temperature import TemperatureFactors
@@ -213,6 +214,14 @@ def test_a_variant_has_one_colour_in_all_pictures(made_up):
     assert {line.get_color() for line in lines} == {to_hex(dot.get_facecolor()[0]).upper() for dot in points}
     assert {line.get_color() for line in lines} == colours[0] | colours[1]
     assert len({(look.label, look.alpha) for look in drawn}) == 4
+
+
+def test_a_colour_is_of_one_run_and_those_that_are_no_line_are_grey(made_up):
+    many = [made_up({"variant": f"law {n}"}, seconds=0.1) for n in range(12)]
+    colours = [each.colour for each in looks.choose_looks(many).values()]
+    shown = [look.colour for look in looks.show_runs(many)[0].looks]
+    assert len(set(shown)) == len(shown) == 8
+    assert sorted(colours) == sorted([*shown, *[GREY] * 4])
 
 
 @pytest.mark.parametrize(("change", "reason"), [({"seconds": 0.5}, "needs 4.5 s"), ({}, "explains less than 0.5")])

@@ -23,6 +23,38 @@ def test_ticks_of_a_logarithmic_axis_are_plain_numbers():
     assert len(axes.xaxis.get_minorticklocs()) == 0
 
 
+def test_a_logarithmic_axis_of_many_decades_has_powers_of_ten():
+    axes = Figure().add_subplot()
+    style.scale_log(axes, "y", 1e-6, 1e2)
+    named = [axes.yaxis.get_major_formatter()(tick, 0) for tick in axes.get_yticks() if 1e-6 <= tick <= 1e2]
+    assert named[:2] == ["10⁻⁶", "10⁻⁵"] and named[-3:] == ["1", "10", "10²"]
+    style.scale_log(axes, "y", 1e-6, 9e-6)
+    assert axes.yaxis.get_major_formatter()(2e-6, 0) == "2×10⁻⁶"
+
+
+def test_lines_that_coincide_are_named_in_the_note_and_nothing_else_changes():
+    looks = style.make_entries(["a", "$b$", "other"])
+    figure, [[left], [right]] = style.make_page("title", "A note that is a line long." * 3, Grid((1.0, 1.0)), looks)
+    x = np.linspace(0.0, 1.0, 50)
+    for axes, shift in ((left, 0.0), (right, 1e-3)):
+        for look, values in zip(looks, (x, x + shift, 1.0 - x), strict=True):
+            style.draw_line(axes, x, values, look)
+    height = figure.get_figheight()
+    before = [axes.get_position().height * height for axes in figure.axes]
+    style.name_coincident(figure)
+    assert " ".join(figure.texts[1].get_text().split()).endswith(r"“a” and “\$b\$” coincide.")
+    grown = figure.get_figheight()
+    assert grown == height + style.LINE
+    np.testing.assert_allclose([axes.get_position().height * grown for axes in figure.axes], before)
+    right.lines[1].set_ydata(x + 0.1)
+    assert "coincide" not in style.name_coincident(_without_note(figure)).texts[1].get_text()
+
+
+def _without_note(figure):
+    figure.texts[1].set_text("")
+    return figure
+
+
 def test_an_empty_panel_says_why():
     axes = style.make_page("title", "note", Grid((2.0,))).rows[0][0]
     style.explain_empty(axes, "nothing was recorded")

@@ -2,7 +2,7 @@
 
 import pytest
 
-from seatsim.schema.text import disarm, make_printable
+from seatsim.schema.text import disarm, make_printable, shorten_paths
 
 
 @pytest.mark.parametrize("cell", ['=HYPERLINK("http://x")', "+cmd|' /C calc'!A0", "-2+3", "@SUM(A1)", "\t=1", "=1"])
@@ -24,3 +24,9 @@ def test_other_cells_stay_as_they_are(cell):
 )  # fmt: skip
 def test_a_terminal_obeys_no_sign_of_a_text(text, shown):
     assert make_printable(text) == shown
+
+
+def test_a_path_is_as_short_as_tells_it_from_others():
+    paths = [("data", "rig-1", "sine"), ("data", "rig-2", "sine"), ("data", "rig-2", "chirp"), ("old", "rig-1", "sine")]
+    assert shorten_paths(paths) == ["data/rig-1/sine", "rig-2/sine", "chirp", "old/rig-1/sine"]
+    assert shorten_paths([("a", "sine"), ("a", "sine"), ("sine",)]) == ["a/sine", "a/sine", "sine"]

@@ -56,7 +56,8 @@ def plot_transmissibility(shown: Shown) -> Figure:
     known = np.concatenate([gain[np.isfinite(gain) & (gain > 0)] for _, gain, _ in gains])
     resolution = max((frequency[1] - frequency[0] for frequency, _, _ in gains if len(frequency)), default=np.inf)
     lines = f" Lines up to {resolution:.2g} Hz apart." * bool(known.size)
-    legend = [*(shown.looks if len(shown.runs) > 1 else []), SAME] if known.size else []
+    looks = shown.looks if len(shown.runs) > 1 else [shown.looks[0]._replace(label="the run")]
+    legend = [*looks, SAME] if known.size else []
     title = f"Transmissibility, floor to driver: {shown.title}"
     figure, axes = _make_page(title, NOTE + lines + shown.omission, resolution, legend)
     axes.set_ylabel("|driver / floor| [-]")
@@ -65,7 +66,7 @@ def plot_transmissibility(shown: Shown) -> Figure:
         return figure
     axes.axhline(1.0, color=SAME.colour, linewidth=SAME.width, zorder=1)
     axes.set_yscale("log")
-    for (frequency, gain, _), look in zip(gains, shown.looks, strict=True):
+    for (frequency, gain, _), look in zip(gains, looks, strict=True):
         style.draw_line(axes, frequency, gain, look)
     style.scale_log(axes, "y", min(0.5, float(known.min())) / 1.2, max(2.0, float(known.max())) * 1.2)
     return style.name_coincident(figure)
