@@ -114,13 +114,14 @@ def plot_comfort(rows: SweepRows, order: Sequence[str]) -> Figure | None:
         parts = [(f"{road.removeprefix(ROAD)} {format_level(value)}", part) for value, part in shown.groupby(road)]
     values = [] if colour is None else sorted(shown[colour].unique())
     looks = [Entry(format_level(value), COLOURS[k], "none", mark="o") for k, value in enumerate(values)]
+    looks = looks or [Entry("a run", COLOURS[0], "none", mark="o")]
     most = _MOST_POINTS // len(parts)
     drawn = sum(min(most, len(part)) for _, part in parts)
     some = f" {drawn} of {len(shown)} runs are drawn." if drawn < len(shown) else ""
     said = "" if colour in (None, "variant") else f" The colours are values of {colour}."
     columns = min(2, len(parts))
     grid = Grid((3.2 if columns == 1 else 2.0,) * -(-len(parts) // columns), columns, top=0.3, gap=(0.7, 0.85))
-    note = f"A point for each run; lower left is better.{said}{some}"
+    note = f"Lower left is better.{said}{some}"
     page = make_page("Comfort against travel", note, grid, [*looks, _FRONT])
     for axes, (title, part) in zip(page.list_panels(len(parts)), parts, strict=True):
         dots = part.sample(most, random_state=0) if len(part) > most else part
