@@ -241,7 +241,7 @@ def scale_log(axes: Axes, which: Literal["x", "y"], low: float, high: float) -> 
     room = np.log10(high / low) / (most if is_plain else 0.5 * most)
     subs = next((subs for subs in ((1, 2, 5), (1, 3)) if room * len(subs) <= 1), (1,))
     axis.set_major_locator(LogLocator(subs=subs, numticks=max(2, most)))
-    axis.set_major_formatter(_write_plainly if is_plain else _write_power)
+    axis.set_major_formatter("{x:g}" if is_plain else _write_power)
     axis.set_minor_locator(NullLocator())
 
 
@@ -288,10 +288,6 @@ def _dress(line: Line2D, look: Entry, longest: int) -> Line2D:
     line.set(label=clean_text(look.label, longest), solid_capstyle="butt")
     line.set(fillstyle="none" if look.hollow else "full", markeredgewidth=1.8 if look.hollow else 1.0)
     return line
-
-
-def _write_plainly(value: float, _position: object) -> str:
-    return f"{value:g}"
 
 
 def _write_power(value: float, _position: object) -> str:

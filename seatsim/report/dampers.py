@@ -126,7 +126,6 @@ def tabulate_parameters(found: Identification) -> list[Table]:
 
 
 MOST_ROWS = 60
-PASSED = {True: "pass", False: "FAIL"}
 ROUNDING = 1e-9
 """Share of the peak force below which an offset is no finding."""
 
@@ -228,7 +227,7 @@ def _tabulate_sheet(sheet: BenchSheet, captions: Mapping[str, str]) -> list[Bloc
         record, rows = tables[name]
         head = [text.replace("_", " ") for text in head_columns(record, format_unit)]
         values = [[getattr(row, each.name) for each in list_written(record)] for row in rows[:MOST_ROWS]]
-        lines = [[PASSED[value] if isinstance(value, bool) else value for value in row] for row in values]
+        lines = [[("FAIL", "pass")[value] if isinstance(value, bool) else value for value in row] for row in values]
         more = f"; {len(rows) - MOST_ROWS} more in characterisation.xlsx" if len(rows) > MOST_ROWS else ""
         blocks += tabulate(f"{caption}{more}", head, lines)
     return blocks

@@ -137,10 +137,7 @@ def _pack_panels(
     """Return the lines of each run of each panel, times the factor of the panel."""
 
     def pack(line: Array | None, factor: float) -> _Line | None:
-        if line is None:
-            return None
-        values = np.asarray(line, dtype=float)
-        return pack_line(factor * thin_line(values, values, bins)[1])
+        return None if line is None else pack_line(factor * thin_line(line, line, bins)[1])
 
     scaled = zip(panels, factors, strict=True)
     return [[[pack(line, factor) for line in panel.values[run]] for run in runs] for panel, factor in scaled]

@@ -188,8 +188,8 @@ def draw_figures(found: Sensitivities, rows: SweepRows) -> Figures:
     for metric in _list_metrics(found, rows):
         shares, words = found.of(metric), describe_column(metric, rows.units).words
         figures |= {f"shares_{metric}": plot_shares(shares, words), f"tornado_{metric}": plot_tornado(shares, rows)}
-    figures |= {"comfort": plot_comfort(rows, order)}
-    figures |= {f"means_{metric}": plot_means(rows, order, metric) for metric in (COMFORT, TRAVEL)}
+    means = {f"means_{metric}": plot_means(rows, order, metric) for metric in (COMFORT, TRAVEL)}
+    figures |= {"comfort": plot_comfort(rows, order), **means}
     return {name: figure for name, figure in figures.items() if figure is not None}
 
 

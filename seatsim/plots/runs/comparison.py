@@ -28,6 +28,8 @@ BEST = Entry("best run found of an ideal damper", DARK, (0.0, (5.0, 1.5)), 1.6)
 FLOOR = Entry("as much as the floor (SEAT = 1)", DARK, ":", 1.6)
 SAME_PLACE = 10.0
 """Distance in points of print, below which a mark would cover another's number."""
+ENOUGH = 25.0
+"""Distance in points of print, at which a mark disturbs no letters."""
 NEAR = 1.6
 """How far above the greatest acceleration the floor's is still drawn, as a ratio."""
 MOST_PANELS = 12
@@ -133,18 +135,23 @@ def _draw_panel(axes: Axes, panel: Panel, looks: Mapping[str, Entry]) -> None:
 
 
 def _write_letters(axes: Axes, points: Array, letters: Sequence[str]) -> None:
-    """Write the letter of each point into it; those of points at one place stand beside it."""
+    """Write the letter of each point into it; those of points at one place stand where other points are far."""
     places = axes.transData.transform(points) * 72 / axes.figure.dpi
     left = sorted(range(len(letters)), key=lambda k: letters[k])
     while left:
         near = [k for k in left if np.linalg.norm(places[k] - places[left[0]]) < SAME_PLACE]
-        alone = len(near) == 1
-        axes.annotate(
-            " ".join(letters[k] for k in near), points[near[0]], (0 if alone else 8, 0), textcoords="offset points",
-            fontsize=9, zorder=5, fontweight="bold", ha="center" if alone else "left", va="center_baseline",
-            color="1.0" if alone else "0.0",
-        )  # fmt: skip
         left = [k for k in left if k not in near]
+        text, others = " ".join(letters[k] for k in near), np.delete(places, near, axis=0)
+        aside = 8.0 + 4.0 * len(text)
+        spots = (
+            np.array([(aside, 0.0), (0.0, 15.0), (0.0, -15.0), (-aside, 0.0)]) if len(near) > 1 else np.zeros((1, 2))
+        )
+        gaps = np.linalg.norm(places[near[0]] + spots[:, None] - others, axis=2)
+        spot = spots[np.argmax(np.min(gaps, axis=1, initial=ENOUGH))]
+        axes.annotate(
+            text, points[near[0]], tuple(spot), textcoords="offset points", fontsize=9, zorder=5, fontweight="bold",
+            ha="center", va="center_baseline", color="0.0" if len(near) > 1 else "1.0",
+        )  # fmt: skip
 
 
 COMPARED = (UNWEIGHTED, COMFORT, TRAVEL, SEAT)
