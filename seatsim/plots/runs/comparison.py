@@ -28,7 +28,7 @@ BEST = Entry("best run found of an ideal damper", DARK, (0.0, (5.0, 1.5)), 1.6)
 FLOOR = Entry("as much as the floor (SEAT = 1)", DARK, ":", 1.6)
 SAME_PLACE = 10.0
 """Distance in points of print, below which a mark would cover another's number."""
-ENOUGH = 25.0
+ENOUGH = 15.0
 """Distance in points of print, at which a mark disturbs no letters."""
 NEAR = 1.6
 """How far above the greatest acceleration the floor's is still drawn, as a ratio."""
