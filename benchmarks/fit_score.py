@@ -38,6 +38,7 @@ from seatsim.schema.files import write_json, write_text
 from seatsim.schema.processes import run_jobs
 
 RIDGE, SURE, PARTS = 1.0, 0.9, 5
+HYPOTHESES = "hypotheses.json"
 NAMES = list(score.WEIGHTS)
 
 
@@ -51,9 +52,6 @@ class LabelledCase(NamedTuple):
 
 def list_hypotheses(case: Path) -> None:
     """Write the hypotheses on a case without a disturbance and beside one, none where it shows no gap."""
-    file = case / "hypotheses.json"
-    if file.exists():
-        return
     with ThreadPoolExecutor() as pool, threadpool_limits(1):
         problem = pose_problem(load_recording(case), pool)
         task, objective = pose_search(problem, (), lambda _: None)
@@ -63,7 +61,7 @@ def list_hypotheses(case: Path) -> None:
             if disturbance := find_disturbance(objective, first.selection):
                 searches.append(search_beside(task, objective, first.selection, disturbance))
             found = score.list_hypotheses(searches)
-        write_json(file, [{"names": sorted(each.names), "features": each.features} for each in found])
+        write_json(case / HYPOTHESES, [{"names": sorted(each.names), "features": each.features} for each in found])
 
 
 def label_case(hypotheses: list[dict[str, Any]], label: Label) -> LabelledCase:
@@ -103,23 +101,21 @@ def cross_validate(cases: list[LabelledCase]) -> str:
             for effect in set().union(*case.names):
                 stated = sum(p for p, names in zip(probabilities, case.names, strict=True) if effect in names)
                 sure += [effect in true] if stated >= SURE else []
-    return (
-        f"left out: {sum(right)} of {len(right)} likeliest are true; effects from {SURE:g}: {sum(sure)} of {len(sure)}"
-    )
+    return f"left out: {sum(right)} of {len(right)} likeliest true; effects from {SURE:g}: {sum(sure)} of {len(sure)}"
 
 
 def main() -> None:
     """Fit the weights and write them."""
     parser = argparse.ArgumentParser()
     parser.add_argument("sets", nargs="+", metavar="DIR:KEY")
-    parser.add_argument("--out", type=Path, default=Path(score.__file__).with_name("score.yaml"))
     arguments = parser.parse_args()
     cases = []
     for folder, key in (each.rsplit(":", 1) for each in arguments.sets):
         base = Path(folder)
         labels = unseal(base.with_name(base.name + ".sealed"), key, base).labels
-        run_jobs(list_hypotheses, [(base / name,) for name in labels], PROCESSES, show_progress)
-        found = {name: json.loads((base / name / "hypotheses.json").read_text()) for name in labels}
+        missing = [(base / name,) for name in labels if not (base / name / HYPOTHESES).exists()]
+        run_jobs(list_hypotheses, missing, PROCESSES, show_progress)
+        found = {name: json.loads((base / name / HYPOTHESES).read_text()) for name in labels}
         cases += [label_case(found[name], label) for name, label in labels.items() if found[name]]
     print(cross_validate(cases))
     lines = [
@@ -129,7 +125,7 @@ def main() -> None:
     head = (
         f"# Weights of the score of a hypothesis, fitted by benchmarks/fit_score.py to {len(cases)} cases with a gap.\n"
     )
-    write_text(arguments.out, head + "".join(lines))
+    write_text(Path(score.__file__).with_name("score.yaml"), head + "".join(lines))
 
 
 if __name__ == "__main__":
