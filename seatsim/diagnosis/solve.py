@@ -14,10 +14,10 @@ from seatsim.diagnosis.decide import decide_verdict, shows_effect
 from seatsim.diagnosis.fit import refit_on
 from seatsim.diagnosis.localise.discrepancy import describe_discrepancy
 from seatsim.diagnosis.localise.disturbance import Disturbance, find_bias_drift, find_disturbance, put_beside
-from seatsim.diagnosis.localise.input_estimate import expect_nonrepeatable_force
+from seatsim.diagnosis.localise.input_estimate import estimate_nonrepeatable_force
 from seatsim.diagnosis.localise.localisation import localise_remainder, share_gap
 from seatsim.diagnosis.movement import is_material, measure_gap_taken
-from seatsim.diagnosis.noise import measure_broadband, weigh_gap, weigh_noise
+from seatsim.diagnosis.noise import carry_force, measure_broadband, weigh_gap, weigh_noise
 from seatsim.diagnosis.objective import Evaluation, Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, OutOfTimeError
 from seatsim.diagnosis.result import Share
@@ -69,8 +69,8 @@ def pose_search(problem: DiagnosisProblem, without: Sequence[str], progress: Pro
     objective = Objective(problem, weigh_noise(problem))
     if not problem.bench:
         nominal = objective.unhurried.evaluate([Parameters(problem.nominal)])[0]
-        force = expect_nonrepeatable_force(objective, nominal)
-        objective = Objective(problem, objective.weights.add(force)) if force else objective
+        if forces := estimate_nonrepeatable_force(objective, nominal):
+            objective = Objective(problem, objective.weights.add(carry_force(problem, forces)))
     return task, objective
 
 

@@ -127,37 +127,24 @@ def respond_to_error(weights: Array, k: int) -> Spectra:
     return np.asarray(np.eye(len(weights))[:, k : k + 1] * weights, dtype=complex)
 
 
-def expect_nonrepeatable_force(objective: Objective, evaluation: Evaluation) -> dict[str, Array] | None:
-    """Return by run the power that a random force on the frame leaves, (channels, frequencies); None without repeats.
+def estimate_nonrepeatable_force(objective: Objective, evaluation: Evaluation) -> dict[str, Array] | None:
+    """Return a random force on the frame by run, shape (samples,), by which repeated runs differ; None without repeats.
 
-    It is the force by which the first repeat differs from its run: residuals of the two differ by twice its power.
-    Residuals, because each repeat has a floor and a command of its own, which a real rig does not repeat exactly.
+    The residuals of two repeats differ by twice the power of the non-repeatable disturbance. Residuals, because each
+    repeat has a floor and a command of its own, which a real rig does not repeat exactly.
     """
-    problem, residuals = objective.problem, evaluation.residuals
-    repeats = [(run, entry.repeat_of) for run, entry in problem.recording.runs.items() if entry.repeat_of in residuals]
-    pair = next((each for each in repeats if residuals[each[0]].shape == residuals[each[1]].shape), None)
-    if pair is None:
-        return None
-    responses = {run: _respond_at_nominal(objective, evaluation, run) for run in problem.runs}
-    run, repeated = pair
-    rig, response = responses[run]
-    whitened = as_complex(objective.weights((residuals[repeated] - residuals[run]) / np.sqrt(2.0), run))
-    size = np.sum(np.abs(response) ** 2, axis=0)
-    spectrum = np.sum(response.conj() * whitened, axis=0) / (size + 2.0 / rig.plausible_power())
-    power = measure_power(spectrum, objective.settings.noise.smoothing)
-    density = power * wiener_share(size * power) / rig.samples
-    return {run: _carry(*responses[run], density) for run in problem.runs}
-
-
-def _respond_at_nominal(objective: Objective, evaluation: Evaluation, run: str) -> tuple[Reconstruction, Spectra]:
-    """Return a run with a force on the frame, and the response to it, shape (channels, frequencies), about none."""
-    rig = reconstruct(objective, evaluation.parameters, run, PORTS["suspension"])
-    outputs = objective.problem.measured[run] - evaluation.residuals[run]
-    return rig, rig.measure_response(np.zeros(rig.samples), outputs)
-
-
-def _carry(rig: Reconstruction, response: Spectra, density: Array) -> Array:
-    """Return the power that an input of a power per sample leaves in a run, shape (channels, frequencies)."""
-    count = response.shape[1]
-    there = np.interp(np.linspace(0.0, 1.0, count), np.linspace(0.0, 1.0, len(density)), density)
-    return np.asarray(np.abs(response / rig.weights.weights[rig.run]) ** 2 * there * rig.samples)
+    problem, settings = objective.problem, objective.settings
+    for run, entry in problem.recording.runs.items():
+        first = evaluation.residuals.get(entry.repeat_of or "", np.zeros(0))
+        second = evaluation.residuals[run]
+        if first.shape == second.shape:
+            rig = reconstruct(objective, evaluation.parameters, run, PORTS["suspension"])
+            response = rig.measure_response(np.zeros(rig.samples), problem.measured[run] - second)
+            residuals = as_complex(objective.weights((first - second) / np.sqrt(2.0), run))
+            size = np.sum(np.abs(response) ** 2, axis=0)
+            spectrum = np.sum(response.conj() * residuals, axis=0) / (size + 2.0 / rig.plausible_power())
+            power = measure_power(spectrum, settings.noise.smoothing)
+            spectrum *= settings.reconstruction.regained * wiener_share(size * power)
+            force = np.fft.irfft(spectrum, rig.samples)
+            return {name: np.resize(force, values.shape[1]) for name, values in problem.measured.items()}
+    return None

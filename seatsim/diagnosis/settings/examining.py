@@ -36,6 +36,9 @@ class ReconstructionSettings(NamedTuple):
     backtracking: tuple[float, ...] = (1.0, 0.4, 0.15, 0.05)
     """Fractions of a correction that are tried in turn.
     Chosen: numerically."""
+    regained: float = 1.2
+    """Factor on a random force that was estimated, for what its filter takes.
+    Chosen: on simulated rigs."""
 
 
 class LocalisationSettings(NamedTuple):

@@ -101,11 +101,12 @@ class Edge(NamedTuple):
 class LinearProblem(DiagnosisProblem):
     """A problem whose rig is linear; `signals[run][name]` has shape (channels, samples), `calls` lists simulations.
 
-    The floor's acceleration enters the channels by `floor_gain`.
+    The floor's acceleration and a force on the frame enter the channels by `floor_gain` and `force_gain`.
     """
 
     signals: dict = field(default_factory=dict)
     floor_gain: tuple = (0.0, 0.0)
+    force_gain: tuple = (0.0, 0.0)
     calls: list = field(default_factory=list)
 
     def simulated(self, run, deviations, effects, inputs=None):
@@ -123,7 +124,8 @@ class LinearProblem(DiagnosisProblem):
             return values[:: self.parts][self.skip : self.skip + samples]
 
         floor = read(inputs.floor.acceleration - self.inputs[run].floor.acceleration)
-        return np.outer(self.floor_gain, floor)
+        added = np.outer(self.floor_gain, floor)
+        return added + np.outer(self.force_gain, read(inputs.forces.frame)) if len(inputs.forces.frame) else added
 
 
 def make_recording(runs, noise=NOISE, floor_noise=0.0, repeats=None):
