@@ -1,8 +1,8 @@
 """Weights of the score of a diagnosis, fitted to sealed cases: `python benchmarks/fit_score.py DIR:KEY ...`.
 
-DIR holds the cases of a blind set, DIR.sealed their labels. The first search of each case gives its hypotheses, which
-are kept in `DIR/CASE/hypotheses.json`. With x the features of the hypotheses of a case and t those that are true, or
-the unknown cause where no fitted set is, the weights w minimise
+DIR holds the cases of a blind set, DIR.sealed their labels. The searches of each case, without a random signal and
+beside one, give its hypotheses, which are kept in `DIR/CASE/hypotheses.json`. With x the features of the hypotheses
+of a case and t those that are true, or the unknown cause where no fitted set is, the weights w minimise
 
     sum over cases  (log sum exp(x w) - log sum over t exp(x_t w))  +  RIDGE / 2 |w s|^2
 

@@ -159,10 +159,13 @@ class DiagnosisProblem:
         inputs = dict[str, RigInputs]()
         for run, driven in self.inputs.items():
             assert isinstance(driven, SeatInputs)
-            rows = np.arange(len(driven.floor.acceleration)) / self.parts
-            force = np.interp(rows, self.skip + np.arange(len(forces[run])), forces[run], left=0.0, right=0.0)
-            inputs[run] = driven._replace(forces=Forces(force))
+            inputs[run] = driven._replace(forces=Forces(self.spread_over_steps(driven, forces[run])))
         return dataclasses.replace(self, inputs=inputs, traces=traces, motions={})
+
+    def spread_over_steps(self, inputs: SeatInputs, signal: Array) -> Array:
+        """Return a signal of the rows that are compared on the simulation's steps, linear between rows, 0 outside."""
+        rows = np.arange(len(inputs.floor.acceleration)) / self.parts
+        return np.interp(rows, self.skip + np.arange(len(signal)), signal, left=0.0, right=0.0)
 
     def as_recorded(self) -> DiagnosisProblem:
         """Return the problem without forces about which it was linearised."""

@@ -37,7 +37,7 @@ P = ParamSpec("P")
 
 
 def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress) -> Solution:
-    """Search for the causes; where the remainder is a stochastic disturbance, add it to the noise and search again.
+    """Search for the causes; where a random signal may hide them, search beside it too.
 
     Args:
         problem: a recording beside its nominal scenario.

@@ -39,12 +39,6 @@ if TYPE_CHECKING:
     from seatsim.page.recording_view import RecordingView
     from seatsim.page.scenario_view import ScenarioView, View
 
-
-if TYPE_CHECKING:
-    from seatsim.page.recording_view import RecordingView
-    from seatsim.page.scenario_view import ScenarioView
-
-
 POLICY = (
     "default-src 'none'; img-src data:; script-src {script}; style-src {style}; connect-src 'self'; form-action 'none';"
     " frame-ancestors 'none'; base-uri 'none'"

@@ -31,11 +31,6 @@ if TYPE_CHECKING:
     import pandas as pd
     import pyarrow as pa
 
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-
 RUNS_OF_PART = 200
 """A part of runs of 10 s takes about a second, which is what a task of a cluster should take at least."""
 LEADING = ("run", "state", "reason", "seed")

@@ -65,12 +65,30 @@ def find_disturbance(objective: Objective, selection: Selection) -> Disturbance 
     found = describe_discrepancy(problem, rig.parameters, block, likeliest)
     if block == "suspension":
         found = found._replace(block="floor")
-        return Disturbance(FORCE_FROM_OUTSIDE, found, likeliest.traces, likeliest.amplitudes)
+        return _disturb(objective, FORCE_FROM_OUTSIDE, found, likeliest)
     # An input that was reconstructed, as the floor's motion, does not hold the noise of its sensor.
     noise = float(problem.noise[problem.channels.index(found.channel)]) if found.channel in problem.channels else 0.0
     if is_bias_drift(problem.settings.localisation, found, problem.rate, noise):
-        return Disturbance(BIAS_DRIFT, found, likeliest.traces, likeliest.amplitudes)
+        return _disturb(objective, BIAS_DRIFT, found, likeliest)
     return None
+
+
+def _disturb(objective: Objective, effect: str, found: Discrepancy, cause: FaultHypothesis) -> Disturbance:
+    """Return an input that explains what a rig leaves as a disturbance, with what it leaves in the channels."""
+    traces, amplitudes = {}, {}
+    for run, estimate in cause.estimates.items():
+        response = estimate.response / objective.weights.weights[run]
+        traces[run] = _pass(response, estimate.signal)
+        amplitudes[run] = response * np.sqrt(estimate.power)
+    return Disturbance(effect, found, traces, amplitudes)
+
+
+def _pass(response: Spectra, signal: Array) -> Array:
+    """Return what a signal leaves in the channels, shape (channels, samples), at the frequencies of its response."""
+    spectrum = np.fft.rfft(signal)
+    passed = np.zeros((len(response), len(spectrum)), dtype=complex)
+    passed[:, : response.shape[1]] = response * spectrum[: response.shape[1]]
+    return np.fft.irfft(passed, len(signal))
 
 
 def find_bias_drift(objective: Objective, evaluation: Evaluation) -> Disturbance | None:

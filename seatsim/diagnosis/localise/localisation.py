@@ -29,7 +29,7 @@ from seatsim.diagnosis.localise.reconstruction import PORTS
 from seatsim.diagnosis.movement import measure_movements
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
 from seatsim.diagnosis.result import Share
-from seatsim.diagnosis.spectra import Spectra, as_complex
+from seatsim.diagnosis.spectra import as_complex
 from seatsim.recordings.quality.sensors import FLOOR, follows_floor
 from seatsim.schema.arrays import Array
 
@@ -42,9 +42,8 @@ class FaultHypothesis(NamedTuple):
 
     `negative_log_evidence` is minus twice the log evidence per number compared, less 1. `signals[run]`, shape
     (samples,), is the input above its noise, a quantity in its unit; `channel` is the one that errs, for a sensor.
-    `comparable` is, for a port, the part of that input at the frequencies at which every run shows it, `traces[run]`
-    what it leaves in the channels, shape (channels, samples), and `amplitudes[run]`, shape (channels, frequencies), the
-    frequency response of the channels times the root of the input's power.
+    `comparable` is, for a port, the part of that input at the frequencies at which every run shows it, `estimates`
+    what it was found by.
     """
 
     negative_log_evidence: float
@@ -53,8 +52,7 @@ class FaultHypothesis(NamedTuple):
     signals: dict[str, Array]
     channel: str = ""
     comparable: Mapping[str, Array] = MappingProxyType({})
-    amplitudes: Mapping[str, Spectra] = MappingProxyType({})
-    traces: Mapping[str, Array] = MappingProxyType({})
+    estimates: Mapping[str, InputEstimate] = MappingProxyType({})
 
 
 def evaluate_hypotheses(
@@ -76,14 +74,9 @@ def evaluate_hypotheses(
         signals = {run: estimate.signal for run, estimate in estimates.items()}
         quantity, unit = _QUANTITIES.get(name, ("force", "N"))
         evidence = _negative_log_evidence(objective, nuisances, estimates)
-        weights = objective.weights.weights
-        responses = {run: each.response / weights[run] for run, each in estimates.items()}
-        hypotheses[name] = FaultHypothesis(
-            evidence, quantity, unit, signals,
-            comparable=_make_comparable(estimates) if name in PORTS else {},
-            traces={run: _pass(responses[run], each.signal) for run, each in estimates.items()},
-            amplitudes={run: responses[run] * np.sqrt(each.power) for run, each in estimates.items()},
-        )  # fmt: skip
+        comparable = _make_comparable(estimates) if name in PORTS else {}
+        found = FaultHypothesis(evidence, quantity, unit, signals, comparable=comparable, estimates=estimates)
+        hypotheses[name] = found
     errors = [
         hypotheses.pop(name)._replace(
             quantity=f"error of {name}", unit=problem.recording.channels[name].unit, channel=name
@@ -94,14 +87,6 @@ def evaluate_hypotheses(
     if "floor" in hypotheses and not follows_floor(problem.recording):
         errors.append(_as_sensor_error(hypotheses.pop("floor")))
     return hypotheses | {"sensor": min(errors, key=lambda hypothesis: hypothesis.negative_log_evidence)}
-
-
-def _pass(response: Spectra, signal: Array) -> Array:
-    """Return what a signal leaves in the channels, shape (channels, samples), at the frequencies of its response."""
-    spectrum = np.fft.rfft(signal)
-    passed = np.zeros((len(response), len(spectrum)), dtype=complex)
-    passed[:, : response.shape[1]] = response * spectrum[: response.shape[1]]
-    return np.fft.irfft(passed, len(signal))
 
 
 def _make_comparable(estimates: Mapping[str, InputEstimate]) -> dict[str, Array]:

@@ -75,8 +75,7 @@ class Reconstruction:
     def simulate_with(self, signal: Array) -> Array:
         """Return the channels with a signal at the port, shape (channels, samples)."""
         problem, port, floor = self.problem, self.port, self.recorded.floor
-        rows = np.arange(len(floor.acceleration)) / problem.parts
-        full = np.interp(rows, problem.skip + np.arange(self.samples), signal, left=0.0, right=0.0)
+        full = problem.spread_over_steps(self.recorded, signal)
         floor = floor._replace(acceleration=floor.acceleration + port.base_acceleration * full)
         if port.current:
             floor = floor._replace(command=None, coil_current=np.maximum(self.current + port.current * full, 0.0))
