@@ -1,16 +1,15 @@
-"""YAML texts as plain values with the line of every key, read event by event within stated limits.
+"""YAML texts as plain values with the line of every key, composed within stated limits.
 
-Nothing of a text is constructed before it is within them: its size, how deeply it nests, how many values it has once
-every alias (`*name`) stands for what it refers to, and how long its whole numbers are. Scalars are those of YAML 1.2
-(`yes` and `on` are texts, as is a date), keys are texts, and a tag (`!name`) is an error, since it asks for an object.
+Of a text no more is composed than is within them: its size, how deeply it nests, how many values it has once every
+alias (`*name`) stands for what it refers to, and how long its whole numbers are. Scalars are those of YAML 1.2 (`yes`
+and `on` are texts, as is a date), keys are texts, and a tag (`!name`) is an error, since it asks for an object.
 """
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator
-from typing import NamedTuple, TypeAlias, cast
+from typing import NamedTuple, TypeAlias
 
 import yaml
 
@@ -24,6 +23,14 @@ _MOST_VALUES = 300_000
 _LONGEST_NUMBER = 40
 """Digits of a whole number: twice what any seed has."""
 _TOO_DEEP = f"lists and mappings nest more than {DEEPEST} deep"
+_PROBLEMS = {
+    "maximum nesting depth": _TOO_DEEP,
+    "found another document": "a second document begins; write one to a file",
+    "undefined alias": "an alias (*name) refers to nothing that stands before it",
+}
+"""What the library says of a text, and what is said of it here."""
+_PLAIN, _QUOTED = "plain", "quoted"
+"""Tags of nodes that state none: a scalar that may be a number, and one that is a text."""
 
 _Scalar: TypeAlias = str | int | float | bool | None
 KeyPath = tuple[str | int, ...]
@@ -54,26 +61,15 @@ class _Content(NamedTuple):
     lines: dict[KeyPath, int]
 
 
-class _Node(NamedTuple):
-    """A value with its line; mappings hold (line of the key, value), and `merged` the mappings of their `<<`.
-
-    `size` counts the values in it once every alias and every `<<` stands for what it refers to.
-    """
-
-    line: int
-    value: _Scalar | list[_Node] | dict[str, tuple[int, _Node]]
-    merged: tuple[_Node, ...] = ()
-    size: int = 1
-
-
 def parse(text: str) -> _Content:
     """Return the value of a text.
 
     Raises:
         YamlError: it is no YAML, or beyond the limits.
     """
-    lines: dict[KeyPath, int] = {}
-    return _Content(_plain(_Composer(text).compose(), (), lines), lines)
+    reader = _Reader()
+    node = _compose(text)
+    return _Content(None if node is None else reader.read(node, ()), reader.lines)
 
 
 def parse_value(text: str) -> object:
@@ -81,129 +77,105 @@ def parse_value(text: str) -> object:
     return parse(text).value
 
 
-def _plain(node: _Node, keys: KeyPath, lines: dict[KeyPath, int]) -> object:
-    """Return the plain value of a node, a new one for every alias, and note the lines of what is in it."""
-    if isinstance(node.value, list):
-        for index, entry in enumerate(node.value):
-            lines[(*keys, index)] = entry.line
-        return [_plain(entry, (*keys, index), lines) for index, entry in enumerate(node.value)]
-    if not isinstance(node.value, dict):
-        return node.value
-    entries = {key: (node.line, entry) for merged in reversed(node.merged) for key, (_, entry) in _all(merged).items()}
-    # The mapping's own keys first, and in their order.
-    entries = node.value | {key: entry for key, entry in entries.items() if key not in node.value}
-    for key, (line, _) in entries.items():
-        lines[(*keys, key)] = line
-    return {key: _plain(entry, (*keys, key), lines) for key, (_, entry) in entries.items()}
+class _Composer(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]  # its types are not known
+    """Composes the nodes of a text, by the library in C where it is installed, until they are beyond the limits.
+
+    The library tells it where it goes down to a node and comes up again, and asks it for the tag of what states none.
+    """
+
+    count = depth = 0
+
+    def descend_resolver(self, parent: yaml.Node | None, index: object) -> None:
+        """Count a node within its parent."""
+        self.count, self.depth = self.count + 1, self.depth + 1
+        if self.count > 2 * _MOST_VALUES:  # keys are nodes, too
+            raise YamlError(f"more than {_MOST_VALUES} values", _line(parent))
+        if self.depth > DEEPEST + 1:
+            raise YamlError(_TOO_DEEP, _line(parent))
+
+    def ascend_resolver(self) -> None:
+        """Come back to the parent."""
+        self.depth -= 1
+
+    def resolve(self, kind: type, value: object, implicit: tuple[bool, bool]) -> str:
+        """Return whether what states no tag may be another value than a text."""
+        return _QUOTED if kind is yaml.ScalarNode and not implicit[0] else _PLAIN
 
 
-def _all(node: _Node) -> dict[str, tuple[int, _Node]]:
-    """Return the keys of a mapping with those merged into it."""
-    own = cast("dict[str, tuple[int, _Node]]", node.value)  # `_Composer` merges mappings alone
-    merged = {key: entry for each in reversed(node.merged) for key, entry in _all(each).items()}
-    return merged | own
-
-
-class _Composer:
-    """Makes nodes of the events of a text."""
-
-    def __init__(self, text: str) -> None:
-        if len(text) > LARGEST:
-            raise YamlError(f"{len(text) / 2**20:.3g} million characters; permitted: {LARGEST / 2**20:g} million", 1)
-        self.events = _events(text)
-        self.anchors: dict[str, _Node] = {}
-        self.count = 0
-
-    def compose(self) -> _Node:
-        """Return the node of the only document."""
-        node = _Node(1, None)
-        documents = 0
-        for event in self.events:
-            if isinstance(event, yaml.DocumentStartEvent):
-                documents += 1
-                if documents > 1:
-                    raise YamlError("a second document begins; write one to a file", _line(event))
-                node = self._node(next(self.events), 0)
-        return node
-
-    def _node(self, event: yaml.Event, depth: int) -> _Node:
-        line = _line(event)
-        self.count += 1
-        if self.count > _MOST_VALUES:
-            raise YamlError(f"more than {_MOST_VALUES} values", line)
-        if isinstance(event, yaml.AliasEvent):
-            if event.anchor not in self.anchors:
-                raise YamlError(f"*{event.anchor} refers to nothing that ends before it", line)
-            return self.anchors[event.anchor]._replace(line=line)
-        if event.tag is not None:
-            raise YamlError(f"the tag '{event.tag}' is not permitted; write the plain value", line)
-        if isinstance(event, yaml.ScalarEvent):
-            _check_signs(event.value, line)
-            node = _Node(line, _read_scalar(event.value, line) if event.implicit[0] else event.value)
-        elif depth >= DEEPEST:
-            raise YamlError(_TOO_DEEP, line)
-        elif isinstance(event, yaml.SequenceStartEvent):
-            entries = list(self._entries(depth))
-            node = _Node(line, entries, size=_sum_sizes(line, entries))
-        else:
-            node = self._mapping(line, depth)
-        if event.anchor is not None:
-            self.anchors[event.anchor] = node
-        return node
-
-    def _entries(self, depth: int) -> Iterator[_Node]:
-        while not isinstance(event := next(self.events), yaml.SequenceEndEvent):
-            yield self._node(event, depth + 1)
-
-    def _mapping(self, line: int, depth: int) -> _Node:
-        entries: dict[str, tuple[int, _Node]] = {}
-        merged: list[_Node] = []
-        while not isinstance(event := next(self.events), yaml.MappingEndEvent):
-            at = _line(event)
-            if not isinstance(event, yaml.ScalarEvent) or event.tag is not None:
-                raise YamlError("a key is no text; write each key as 'key: value'", at)
-            _check_signs(event.value, at)
-            key, value = event.value, self._node(next(self.events), depth + 1)
-            if key == "<<" and event.implicit[0]:
-                merged += _mappings(value)
-            elif key in entries:
-                raise YamlError(f"found duplicate key '{cut(key)}'; write each key once, as 'key: value'", at)
-            else:
-                entries[key] = (at, value)
-        return _Node(line, entries, tuple(merged), _sum_sizes(line, [*merged, *(each for _, each in entries.values())]))
-
-
-def _sum_sizes(line: int, nodes: Iterable[_Node]) -> int:
-    """Return the size of a node that holds others."""
-    size = 1 + sum(node.size for node in nodes)
-    if size > _MOST_VALUES:
-        raise YamlError(f"more than {_MOST_VALUES} values once its aliases are put in", line)
-    return size
-
-
-def _mappings(node: _Node) -> list[_Node]:
-    """Return the mappings that a `<<` puts in: one, or a list of them."""
-    nodes = node.value if isinstance(node.value, list) else [node]
-    if not all(isinstance(each.value, dict) for each in nodes):
-        raise YamlError("'<<' takes a mapping; write '<<: *name' of one that has an anchor", node.line)
-    return nodes
-
-
-def _events(text: str) -> Iterator[yaml.Event]:
-    """Yield the events of a text, read by the library in C where it is installed."""
+def _compose(text: str) -> yaml.Node | None:
+    """Return the node of the only document, None where there is none."""
+    if len(text) > LARGEST:
+        raise YamlError(f"{len(text) / 2**20:.3g} million characters; permitted: {LARGEST / 2**20:g} million", 1)
     try:
-        yield from yaml.parse(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+        return _Composer(text).get_single_node()
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
-        line = mark.line + 1 if mark else 1
         problem = (error.problem or "not YAML").split("\n")[0]
-        # The library reads ahead, so at brackets by the thousand its own limit stands before the one stated here.
-        if "maximum nesting depth" in problem:
-            raise YamlError(_TOO_DEEP, line) from error
-        raise YamlError(f"{problem}; write each key once, as 'key: value'", line) from error
+        plain = f"{problem}; write each key once, as 'key: value'"
+        said = next((ours for theirs, ours in _PROBLEMS.items() if theirs in problem), plain)
+        raise YamlError(said, mark.line + 1 if mark else 1) from error
     except yaml.reader.ReaderError as error:
         line = text.count("\n", 0, error.position) + 1
         raise YamlError(f"character {error.character!r} is not permitted in YAML", line) from error
+
+
+class _Reader:
+    """Makes plain values of nodes, new ones for every alias, and notes the line of every key and entry."""
+
+    def __init__(self) -> None:
+        self.lines: dict[KeyPath, int] = {}
+        self.count = 0
+
+    def read(self, node: yaml.Node, keys: KeyPath) -> object:
+        """Return the value of a node, which stands under these keys."""
+        self._enter(node, len(keys))
+        if isinstance(node, yaml.ScalarNode):
+            _check_signs(node.value, _line(node))
+            return _read_scalar(node.value, _line(node)) if node.tag == _PLAIN else node.value
+        if isinstance(node, yaml.SequenceNode):
+            self.lines |= {(*keys, index): _line(entry) for index, entry in enumerate(node.value)}
+            return [self.read(entry, (*keys, index)) for index, entry in enumerate(node.value)]
+        entries = self._entries(node, len(keys))
+        self.lines |= {(*keys, key): line for key, (line, _) in entries.items()}
+        return {key: self.read(entry, (*keys, key)) for key, (_, entry) in entries.items()}
+
+    def _enter(self, node: yaml.Node, depth: int) -> None:
+        """Check a node that is about to be read; an alias may hold itself."""
+        self.count += 1
+        if self.count > _MOST_VALUES:
+            raise YamlError(f"more than {_MOST_VALUES} values once its aliases are put in", _line(node))
+        if node.tag not in (_PLAIN, _QUOTED):
+            raise YamlError(f"the tag '{node.tag}' is not permitted; write the plain value", _line(node))
+        if depth > DEEPEST:
+            raise YamlError(_TOO_DEEP, _line(node))
+
+    def _entries(self, node: yaml.MappingNode, depth: int) -> dict[str, tuple[int, yaml.Node]]:
+        """Return line and value by key: the mapping's own ones, then those of the mappings that `<<` puts in."""
+        own: dict[str, tuple[int, yaml.Node]] = {}
+        merged: dict[str, tuple[int, yaml.Node]] = {}
+        for key, value in node.value:
+            line = _line(key)
+            if not isinstance(key, yaml.ScalarNode) or key.tag not in (_PLAIN, _QUOTED):
+                raise YamlError("a key is no text; write each key as 'key: value'", line)
+            _check_signs(key.value, line)
+            if key.value == "<<" and key.tag == _PLAIN:
+                for each in _mappings(value, line):
+                    self._enter(each, depth + 1)
+                    found = self._entries(each, depth + 1)
+                    merged |= {name: (line, entry) for name, (_, entry) in found.items() if name not in merged}
+            elif key.value in own:
+                raise YamlError(f"found duplicate key '{cut(key.value)}'; write each key once, as 'key: value'", line)
+            else:
+                own[key.value] = (line, value)
+        return own | {key: entry for key, entry in merged.items() if key not in own}
+
+
+def _mappings(node: yaml.Node, line: int) -> list[yaml.MappingNode]:
+    """Return the mappings that a `<<` puts in: one, or a list of them."""
+    nodes = node.value if isinstance(node, yaml.SequenceNode) else [node]
+    if not all(isinstance(each, yaml.MappingNode) for each in nodes):
+        raise YamlError("'<<' takes a mapping; write '<<: *name' of one that has an anchor", line)
+    return nodes
 
 
 def _read_scalar(text: str, line: int) -> _Scalar:
@@ -223,8 +195,8 @@ def _check_signs(text: str, line: int) -> None:
         raise YamlError(f"{cut(text)!r} holds a zero byte; leave it out", line)
 
 
-def _line(event: yaml.Event) -> int:
-    return int(event.start_mark.line) + 1
+def _line(node: yaml.Node | None) -> int:
+    return int(node.start_mark.line) + 1 if node else 1
 
 
 def dump(content: object, line_each: bool = False) -> str:
