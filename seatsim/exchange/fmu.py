@@ -34,12 +34,6 @@ FLAGS = ("-std=c99", "-O2", "-fPIC", "-shared", "-fvisibility=hidden", "-ffp-con
 """Without `-ffp-contract=off` a compiler may fuse products and sums, and results would differ between machines."""
 _QUICK = ("-fno-math-errno", "-fno-trapping-math", "-fschedule-insns", "-fsched-pressure")
 """Nothing reads `errno` or the flags of floating-point exceptions, instructions may be moved: results stay the same."""
-_PERMITTED = """
-exp expm1 log pow sqrt sin cos tan atan atan2 tanh sinh cosh hypot fabs floor ceil fmod copysign
-memcpy memset memmove malloc calloc free strcmp strcpy strlen snprintf __stack_chk_fail __snprintf_chk
-_ITM_deregisterTMCloneTable _ITM_registerTMCloneTable __cxa_finalize __gmon_start__
-"""
-"""What a library may take from outside: functions of C's own library."""
 
 
 def write_fmu(block: Block, version: int, path: Path) -> None:
@@ -163,7 +157,7 @@ def compile_library(source: Path, library: Path) -> None:
 
     Raises:
         InputError: there is no compiler.
-        RunError: it refused the source, or the library would need more than C's own library.
+        RunError: it refused the source.
     """
     command = [find_compiler(), *_read_choice()[1:], *FLAGS, *_QUICK, "-o", str(library), str(source), "-lm", "-s"]
     # Its own temporary files stand beside the library, whose folder is removed also where the export is interrupted.
@@ -171,14 +165,3 @@ def compile_library(source: Path, library: Path) -> None:
     done = subprocess.run(command, capture_output=True, text=True, check=False, env=own)
     if done.returncode:
         raise RunError(f"{command[0]} could not compile {source.name}: {done.stderr.strip()[:500]}")
-    foreign = _undefined_symbols(library) - set(_PERMITTED.split())
-    if foreign:
-        raise RunError(f"{source.name} needs what C's own library has not: {', '.join(sorted(foreign))}")
-
-
-def _undefined_symbols(library: Path) -> set[str]:
-    """Return the functions that a library takes from outside; empty where the system has no `nm`."""
-    if shutil.which("nm") is None:
-        return set()
-    done = subprocess.run(["nm", "-D", "-u", str(library)], capture_output=True, text=True, check=False)
-    return {line.split()[-1].partition("@")[0] for line in done.stdout.splitlines() if line.split()}
