@@ -13,7 +13,7 @@ from seatsim.effects.base import EFFECTS, ON_DAMPER, ON_SEAT, acts_on
 from seatsim.exchange.block import list_variables
 from seatsim.exchange.blocks.controller import controller_block
 from seatsim.exchange.blocks.damper import damper_block
-from seatsim.exchange.blocks.rig_motion import nothing_held, rig_block
+from seatsim.exchange.blocks.rig_motion import rig_block
 from seatsim.exchange.c_source import print_c, print_model
 from seatsim.exchange.export import write_mat
 from seatsim.exchange.fmu import find_compiler, identifier, make_files
@@ -112,21 +112,6 @@ def test_a_rig_with_effects_passes_its_test_vector(seat_file, tmp_path):
     (tmp_path / "rig.c").write_text(print_c(rig_block(load(seat_file, {"effects": effects})[0])))
     done = run_vector(tmp_path / "rig.c")
     assert done.returncode == 0, done.stdout
-
-
-@pytest.mark.parametrize(
-    "part, changed",
-    [("coil", {"rate": 90.0}), ("coil", {"rate_fall": 60.0}), ("temperature_factors", {"yield_force": -0.005})],
-)
-def test_what_a_rig_holds_follows_a_parameter_that_is_tuned(seat_file, part, changed):
-    block = rig_block(load(seat_file)[0])
-    p, u = block.parameters, block.inputs._replace(floor_acceleration=1.0, temperature=50.0)
-    state = block.start(p, u, block.rest)
-    for _ in range(3):
-        state, _ = block.advance(p, u, state, 0.0, block.step)
-    p = p._replace(**{part: getattr(p, part)._replace(**changed)})
-    held, computed = (block.advance(p, u, s, 0.0, block.step) for s in (state, state._replace(held=nothing_held())))
-    assert held == computed and held[0].held != state.held
 
 
 @pytest.mark.parametrize("name", ["2 seats @MODEL@ */ int evil; /* @FED@ \\", "ä" * 300])

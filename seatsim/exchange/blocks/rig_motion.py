@@ -34,47 +34,6 @@ from seatsim.schema.registry import initial_state, specification_of
 from seatsim.simulation.simulate import set_up
 
 
-class Held(NamedTuple):
-    """Shares of a current that remain after half a step where it rises and falls, and temperature factors.
-
-    `rate` and `rate_fall` in 1/s are those of the coil that the shares hold for; the scaling holds for `factors` at a
-    `temperature` in degC.
-    """
-
-    rate: float
-    rate_fall: float
-    kept: tuple[float, float]
-    factors: TemperatureFactors
-    temperature: float
-    scaling: TemperatureScaling
-
-
-def nothing_held() -> Held:
-    """Return what agrees with no numbers, so that the first step computes everything."""
-    return Held(math.nan, math.nan, (0.0, 0.0), TemperatureFactors(), math.nan, TemperatureScaling())
-
-
-@jit
-def hold(coil: Coil, step: float, factors: TemperatureFactors, temperature: float, held: Held) -> Held:
-    """Return what is held for a coil at a step in s, and for temperature factors at a temperature in degC."""
-    if coil.rate != held.rate or coil.rate_fall != held.rate_fall:
-        kept = (1.0 - relaxed(coil, 0.0, 1.0, 0.5 * step), relaxed(coil, 1.0, 0.0, 0.5 * step))
-        held = Held(coil.rate, coil.rate_fall, kept, held.factors, held.temperature, held.scaling)
-    if temperature != held.temperature or _differ(factors, held.factors):
-        held = Held(held.rate, held.rate_fall, held.kept, factors, temperature, scaling_at(factors, temperature))
-    return held
-
-
-@jit
-def _differ(a: TemperatureFactors, b: TemperatureFactors) -> bool:
-    return (
-        a.viscous != b.viscous
-        or a.stiffness != b.stiffness
-        or a.yield_force != b.yield_force
-        or (a.reference != b.reference)
-    )
-
-
 class GivenFloor(NamedTuple):
     """What is known of the floor at a communication point.
 
@@ -179,7 +138,6 @@ class RigState(NamedTuple):
     expected: Disturbance
     sample: int
     floor: GivenFloor
-    held: Held
 
 
 class RigOutputs(NamedTuple):
@@ -200,11 +158,11 @@ class RigOutputs(NamedTuple):
 def start(p: RigParameters, u: RigInputs, rest: RigState) -> RigState:
     """Return the state at time zero, of a rig that moves as the floor begins to."""
     temperature = p.thermal.start if p.self_heating else u.temperature
-    held = hold(p.coil, p.step, p.temperature_factors, temperature, rest.held)
-    now = _restart(p, u, rest.now, u.floor_acceleration, rest.current, held.scaling)
+    factors = scaling_at(p.temperature_factors, temperature)
+    now = _restart(p, u, rest.now, u.floor_acceleration, rest.current, factors)
     expected = Disturbance(u.floor_acceleration, u.frame_force, u.driver_force)
     floor = rest.floor._replace(acceleration=u.floor_acceleration)
-    return rest._replace(now=now, temperature=temperature, expected=expected, held=held, floor=floor)
+    return rest._replace(now=now, temperature=temperature, expected=expected, floor=floor)
 
 
 def advance(p: RigParameters, u: RigInputs, state: RigState, age: float, length: float) -> tuple[RigState, bool]:
@@ -215,8 +173,7 @@ def advance(p: RigParameters, u: RigInputs, state: RigState, age: float, length:
     given = follow_floor(u, state.floor, age, state.sample, p.step)
     floor = u.floor_acceleration + given.rate * age
     temperature = state.temperature if p.self_heating else u.temperature
-    held = hold(p.coil, p.step, p.temperature_factors, temperature, state.held)
-    factors, now = held.scaling, state.now
+    factors, now = scaling_at(p.temperature_factors, temperature), state.now
     if _differs(Disturbance(floor, u.frame_force, u.driver_force), state.expected):
         now = _restart(p, u, now, floor, state.current, factors)
     sensed = advance_filters(p.sensors, floor, now.state[DISPLACEMENT], now.rates, state.sensed)
@@ -236,7 +193,7 @@ def advance(p: RigParameters, u: RigInputs, state: RigState, age: float, length:
         law_state = update(p.law, y, law_state)
     # The oldest command of the state is of no use any more.
     commands = (command,) + state.commands[:-1]
-    acting = _step_inputs(p, u, commands, floor, given.rate, state.current, held.kept)
+    acting = _step_inputs(p, u, commands, floor, given.rate, state.current)
     later, current, good = advance_rig(p.rig, p.coil, acting, factors, now, p.tolerance)
     # A state without elements is one that nobody asks for.
     followed = state.followed
@@ -248,7 +205,7 @@ def advance(p: RigParameters, u: RigInputs, state: RigState, age: float, length:
     expected = Disturbance(floor + given.rate * p.step, u.frame_force, u.driver_force)
     next_state = RigState(
         later, current, temperature, command, sensed, followed, law_state, commands, expected, state.sample + 1,
-        leave_floor(given, floor, p.step), held,
+        leave_floor(given, floor, p.step),
     )  # fmt: skip
     return next_state, good
 
@@ -273,13 +230,7 @@ def _follow(
 
 @jit
 def _step_inputs(
-    p: RigParameters,
-    u: RigInputs,
-    commands: State,
-    floor: float,
-    rate: float,
-    current: float,
-    kept: tuple[float, float],
+    p: RigParameters, u: RigInputs, commands: State, floor: float, rate: float, current: float
 ) -> StepInputs:
     """Return what acts on the rig for one step: the commands of `late` and of one more step ago."""
     late = len(commands) - 2
@@ -287,6 +238,7 @@ def _step_inputs(
     split = split if split >= ROUNDING * p.step else 0.0
     most = p.coil.max_current
     before, after = min(commands[late + 1], most), min(commands[late], most)
+    kept = (1.0 - relaxed(p.coil, 0.0, 1.0, 0.5 * p.step), relaxed(p.coil, 1.0, 0.0, 0.5 * p.step))
     return StepInputs(
         p.step, floor, rate * p.step, current, before, after, split, False, kept,
         u.frame_force, 0.0, u.driver_force, 0.0,
@@ -367,7 +319,7 @@ def _rest(scenario: Scenario, control: Control, p: RigParameters, u: RigInputs, 
     followed: State = initial_state(type(p.inverse_model.damper)) if is_followed else ()
     law_state, commands = initial_state(type(control.law)), (0.0,) * (late + 2)
     states = sensed, followed, law_state, commands
-    return RigState(now, 0.0, u.temperature, 0.0, *states, none, 0, GivenFloor(), nothing_held())
+    return RigState(now, 0.0, u.temperature, 0.0, *states, none, 0, GivenFloor())
 
 
 def _left_out(scenario: Scenario) -> list[str]:
