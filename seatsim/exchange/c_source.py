@@ -11,7 +11,7 @@ from numba import types
 from seatsim.exchange.block import RATES, Block, Variable, list_variables
 from seatsim.exchange.printing.functions import print_function
 from seatsim.exchange.printing.program import Program
-from seatsim.exchange.printing.values import REAL, Signature, is_empty, is_row, is_tuple, number
+from seatsim.exchange.printing.values import REAL, Signature, is_empty, is_row, number
 
 _SAMPLES = 200
 """Samples of the test vector."""
@@ -91,7 +91,7 @@ def _call(
     if printed.passed is not None:
         return codes[printed.passed]
     pairs = zip(codes, kinds, strict=True)
-    listed = [f"&{code}" if is_tuple(kind.type) else code for code, kind in pairs if not is_empty(kind.type)]
+    listed = [code for code, kind in pairs if not is_empty(kind.type)]
     return f"{printed.name}({', '.join(listed)})"
 
 

@@ -93,21 +93,8 @@ def _print_own(function: FunctionType, values: list[Value], scope: Scope, evalua
         return values[printed.passed]
     if Value("", printed.result).is_empty:
         return Value("", printed.result)
-    listed = ", ".join(
-        _address(scope, value) if scope.program.takes_address(function, value.type) else value.code
-        for value in values
-        if not value.is_empty
-    )
+    listed = ", ".join(value.code for value in values if not value.is_empty)
     return Value(f"{printed.name}({listed})", printed.result, plain=False)
-
-
-def _address(scope: Scope, record: Value) -> str:
-    """Return the address of a record, which is put into memory of its own where it is in none."""
-    if record.code.startswith("*"):
-        return record.code[1:]
-    if record.plain:
-        return f"&{record.code}"
-    return f"(const {scope.program.types.name(record.type)}[1]){{{record.code}}}"
 
 
 def _print_library(  # noqa: PLR0911 - one return per function

@@ -13,7 +13,6 @@ from seatsim.exchange.printing.values import (
     NOTHING,
     REAL,
     NotPrintableError,
-    Rank,
     Signature,
     Value,
     is_empty,
@@ -60,16 +59,8 @@ def _parameter(scope: Scope, name: str, argument: Signature) -> str:
         scope.variables[name] = Value("", kind)
         return ""
     code, written = scope.name(name), scope.program.types.name(kind)
-    if not scope.program.takes_address(scope.function, kind):
-        scope.variables[name] = Value(code, kind, shape=argument.shape)
-        return f"{written} {code}".replace("* ", "*")
-    if scope.assigned[name] == 1:
-        scope.variables[name] = Value(f"*{code}", kind, rank=Rank.UNARY)
-        return f"const {written} *{code}"
-    given = scope.name(f"{name}_given")
-    scope.write(f"{written} {code} = *{given};")
-    scope.variables[name] = Value(code, kind)
-    return f"const {written} *{given}"
+    scope.variables[name] = Value(code, kind, shape=argument.shape)
+    return f"{written} {code}".replace("* ", "*")
 
 
 def _definition(

@@ -55,14 +55,6 @@ class Program:
             self._printed[key] = self.translate(self, function, name, arguments)
         return self._printed[key]
 
-    def takes_address(self, function: Callable[..., object], kind: types.Type) -> bool:
-        """Return whether a function takes the address of an argument of this type.
-
-        What is inlined takes addresses of records, and nothing is copied. What is called takes copies: a caller whose
-        records a function might see has to keep them in memory.
-        """
-        return values.is_tuple(kind) and not values.is_empty(kind) and function not in self.apart
-
     def form(self, generic: Callable[..., object], arguments: tuple[types.Type, ...]) -> Callable[..., object] | None:
         """Return the form of a generic function for arguments of these types, the same one every time."""
         key = (generic, arguments)
@@ -199,7 +191,7 @@ def element(scope: Scope, owner: Value, index: int | Value, node: ast.AST | None
     if isinstance(index, Value):
         if not values.is_row(owner.type):
             raise scope.refuse(node or ast.Pass(), "the position in a tuple of several types must be a constant")
-        return Value(f"{_member(scope.keep(owner))}at[{index.code}]", owner.type.dtype)
+        return Value(f"{scope.keep(owner).code}.at[{index.code}]", owner.type.dtype)
     index %= len(owner.type)
     if isinstance(owner.known, tuple):
         return _known_element(scope, owner, index)
@@ -208,13 +200,8 @@ def element(scope: Scope, owner: Value, index: int | Value, node: ast.AST | None
         return Value("", kind)
     held = scope.keep(owner)
     if values.is_row(owner.type):
-        return Value(f"{_member(held)}at[{index}]", kind)
-    return Value(f"{_member(held)}{values.field_names(owner.type)[index]}", kind)
-
-
-def _member(owner: Value) -> str:
-    """Return what stands before the name of a member of a record or of what a pointer points to."""
-    return f"{owner.code[1:]}->" if owner.code.startswith("*") else f"{owner.code}."
+        return Value(f"{held.code}.at[{index}]", kind)
+    return Value(f"{held.code}.{values.field_names(owner.type)[index]}", kind)
 
 
 def _known_element(scope: Scope, owner: Value, index: int) -> Value:
