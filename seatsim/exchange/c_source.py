@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from importlib.resources import files
 from typing import SupportsFloat, SupportsInt
 
 import numba
@@ -30,11 +29,6 @@ _SIZES = {
 _KINDS = {bool: "BOOLEAN_VARIABLE", int: "INTEGER_VARIABLE", float: "REAL_VARIABLE"}
 
 
-def resource(name: str) -> str:
-    """Return the text of a file of C that comes with this package."""
-    return (files("seatsim.exchange") / "c" / name).read_text(encoding="utf-8")
-
-
 def fill(name: str, **words: object) -> str:
     """Return a file of this package with its words put in; those of an XML file are escaped."""
     import jinja2
@@ -45,6 +39,7 @@ def fill(name: str, **words: object) -> str:
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
+        keep_trailing_newline=True,
     )
     return environment.get_template(name).render(words)
 
@@ -72,7 +67,7 @@ def print_model(block: Block) -> str:
         )
     ]
     model = fill("c/model.h", START=start, OBSERVE=observe, ADVANCE=advance, block=block, **names)
-    return "\n".join([resource("prelude.h"), program.source(), *constants, "", model, ""])
+    return "\n".join([fill("c/prelude.h"), program.source(), *constants, "", model, ""])
 
 
 def print_variables(variables: Sequence[Variable]) -> str:
@@ -80,7 +75,7 @@ def print_variables(variables: Sequence[Variable]) -> str:
     names = [v.name for v in variables]
     rates = [names.index(RATES[v.name]) if RATES.get(v.name) in names else -1 for v in variables]
     kinds = [_KINDS[type(v.value)] for v in variables]
-    return fill("c/variables.h", variables=variables, kinds=kinds, rates=rates, limit=_limit) + "\n"
+    return fill("c/variables.h", variables=variables, kinds=kinds, rates=rates, limit=_limit)
 
 
 def _call(
@@ -122,7 +117,7 @@ def print_c(block: Block) -> str:
     # A name must not end the comment in which it stands.
     title = f"{block.name}: {block.summary}".replace("*/", "* /").replace("/*", "/ *")
     words = {"inputs": inputs, "outputs": outputs, "fed": fed, "expected": expected, "samples": _SAMPLES}
-    return fill("c/file.c", title=title, block=block, model=print_model(block), **words) + "\n"
+    return fill("c/file.c", title=title, block=block, model=print_model(block), **words)
 
 
 def _test_vector(

@@ -19,7 +19,7 @@ from pathlib import Path
 import seatsim
 from seatsim.cosimulation.description import name_library
 from seatsim.exchange.block import Block, Variable, list_variables
-from seatsim.exchange.c_source import fill, print_model, print_variables, resource
+from seatsim.exchange.c_source import fill, print_model, print_variables
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.files import write_whole
 from seatsim.schema.guarded import temporary_folder
@@ -65,7 +65,7 @@ def make_files(block: Block, version: int) -> dict[str, bytes]:
     model = print_model(block) + "\n" + print_variables(variables)
     token = f"{{{uuid.UUID(sha256(model.encode()).hexdigest()[:32])}}}"
     model += f'\n#define TOKEN "{token}"\n'
-    sources = {"model.h": model, "instance.h": resource("instance.h"), f"fmi{version}.c": resource(f"fmi{version}.c")}
+    sources = {"model.h": model} | {name: fill(f"c/{name}") for name in ("instance.h", f"fmi{version}.c")}
     files = {"modelDescription.xml": _describe(block, variables, version, token)}
     files |= {f"sources/{name}": text.encode() for name, text in sources.items()}
     if version == 3:

@@ -107,12 +107,9 @@ def _even(channel: Channel, rate: float) -> Array:
 
 def _lag(a: Array, b: Array, rate: float, about: float | None) -> tuple[float, float]:
     """Return by how many s the second is later, near a given lag where there is one, and their correlation there."""
-    size = 1 << (len(a) + len(b)).bit_length()
-    product = np.fft.irfft(np.conj(np.fft.rfft(a, size)) * np.fft.rfft(b, size), size)
-    rows = np.concatenate([np.arange(len(b)), np.arange(-len(a) + 1, 0)])
-    values = np.concatenate([product[: len(b)], product[size - len(a) + 1 :]])
-    order = np.argsort(rows)
-    rows, values = rows[order], values[order]
+    from scipy.signal import correlate, correlation_lags
+
+    rows, values = correlation_lags(len(b), len(a)), correlate(b, a, method="fft")
     if about is not None:
         near = np.abs(rows / rate - about) <= _AHEAD
         rows, values = rows[near], values[near]

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from seatsim.compilation.jit import jit
-from seatsim.exchange.c_source import resource
+from seatsim.exchange.c_source import fill
 from seatsim.exchange.fmu import find_compiler
 from seatsim.exchange.printing.functions import print_function
 from seatsim.exchange.printing.program import Program
@@ -122,7 +122,7 @@ def compiled(tmp_path_factory):
     names = [program.function(function, (number, number)).name for function in FUNCTIONS]
     wrappers = [f"double c_{n}(double a, double b) {{ return {n}(a, b); }}" for n in names]
     folder = tmp_path_factory.mktemp("printed")
-    source = "\n".join([resource("prelude.h"), program.source(), *wrappers])
+    source = "\n".join([fill("c/prelude.h"), program.source(), *wrappers])
     (folder / "all.c").write_text(source)
     flags = ["-std=c99", "-Wall", "-Werror", "-O2", "-ffp-contract=off", "-shared", "-fPIC"]
     command = [find_compiler(), *flags, "-o", str(folder / "all.so"), str(folder / "all.c"), "-lm"]

@@ -105,25 +105,15 @@ def inspect_data(
         data: A data file, or the folder of a recording.
         map_file: Show the channels that this map makes of a file.
     """
-    found = _inspected(data, map_file)
+    from seatsim.importing.inspection import inspect_file, inspect_mapped, inspect_recording
+
+    if map_file is not None:
+        found = inspect_mapped(data, map_file)
+    else:
+        found = inspect_recording(data) if data.is_dir() else inspect_file(data)
     _show(found)
     _doubt(found.doubts)
     answer(found)
-
-
-def _inspected(data: Path, map_file: Path | None) -> Inspection:
-    """Return what a file or a recording holds; what a recording needs is not loaded for a file."""
-    if map_file is not None:
-        from seatsim.importing.inspection import inspect_mapped
-
-        return inspect_mapped(data, map_file)
-    if data.is_dir():
-        from seatsim.importing.inspection import inspect_recording
-
-        return inspect_recording(data)
-    from seatsim.importing.inspection import inspect_file
-
-    return inspect_file(data)
 
 
 def _show(found: Inspection) -> None:
