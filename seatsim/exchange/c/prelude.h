@@ -48,14 +48,11 @@ typedef double real;
 #define R_NAN ((real)NAN)
 #define R_INFINITY ((real)INFINITY)
 
-/* Most functions are small and are put where they are called; what is seldom called stays apart, so that the rest keeps
-   to the registers. */
+/* Functions are small and are put where they are called. */
 #if defined(__GNUC__)
 #define INLINED static inline __attribute__((always_inline))
-#define CALLED static __attribute__((noinline))
 #else
 #define INLINED static inline
-#define CALLED static
 #endif
 
 static inline real least(real a, real b) { return b < a ? b : a; }

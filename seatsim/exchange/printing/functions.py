@@ -73,9 +73,7 @@ def _definition(
 ) -> str:
     """Return the text of a function."""
     listed = ", ".join(filter(None, parameters))
-    # What is compiled apart for Python is so here: it is seldom called.
-    kind = "CALLED" if function in program.apart else "INLINED"
-    head = f"{kind} {program.types.name(result)} {name}({listed or 'void'})"
+    head = f"INLINED {program.types.name(result)} {name}({listed or 'void'})"
     lines = [*scope.declared, *_used(scope.lines)]
     return "\n".join([f"/* {origin(function)} */", head, "{", *_unused(parameters, lines), *lines, "}", ""])
 

@@ -43,7 +43,6 @@ class Program:
         self._printed: dict[tuple[object, tuple[Signature, ...]], Printed] = {}
         self._forms: dict[tuple[object, tuple[types.Type, ...]], Callable[..., object] | None] = {}
         self._names: set[str] = set()
-        self.apart: set[object] = set()  # functions that are called, not put where they are called
         self._table_names: dict[bytes, str] = {}
 
     def function(self, function: Callable[..., object], arguments: tuple[Signature, ...]) -> Printed:
