@@ -34,7 +34,7 @@ from seatsim.diagnosis.validate import (
     shrink_by_run,
     state_model_error,
 )
-from seatsim.recordings.quality.coverage import measure_coverage
+from seatsim.recordings.quality.coverage import list_unvisited
 from seatsim.recordings.validation import budget_errors
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import RunError
@@ -161,7 +161,7 @@ def state_diagnosis(
         held_out=[validation.run], isolable=find_isolable_groups(rig, channels), gap=validation.gaps,
         notes=[
             *notes, *solution.selection.notes, *describe_missing_sensors(rig, channels), *asked,
-            *measure_coverage(recording).missing,
+            *list_unvisited(recording),
         ],
         augmented=write_augmented(problem, validation.augmented.parameters),
         evidence=_collect_evidence(validation, causes), alternatives=forms,

@@ -1,4 +1,4 @@
-"""Operating range of a recording: velocities, travels, currents, temperatures and frequencies, and what is missing.
+"""What of the operating range a recording did not visit: velocities, travels, currents, temperatures, frequencies.
 
 An effect outside the recorded range cannot be assessed, however good the data are. The velocity is the slope of
 the displacement below the frequency at which its spectrum meets its noise (a density of 2 noise^2 / sample_rate), or,
@@ -15,7 +15,8 @@ from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
 
-_PERCENTILES = (0.1, 5.0, 50.0, 95.0, 99.9)
+_ENDS = (0.1, 99.9)
+"""Percentiles of a quantity between which it was seen for more than an instant."""
 _WARM = 5.0
 """K; least warming above the temperature of the nominal scenario at which thermal fade can be seen."""
 _DROP, _DROP_TIME = 0.1, 0.2
@@ -29,45 +30,38 @@ _TRUNK = (3.0, 8.0)
 
 
 class _VisitedRange(NamedTuple):
-    """The range of a quantity over all runs, and the values at its `_PERCENTILES`."""
+    """The least and the greatest value of a quantity over all runs in SI units, and those at its `_ENDS`."""
 
-    quantity: str
-    unit: str
     low: float
     high: float
-    percentiles: tuple[float, ...]
+    lower: float
+    upper: float
 
 
 _Visited = dict[str, _VisitedRange]
 """Ranges by quantity."""
 
 
-class Coverage(NamedTuple):
-    """Seconds recorded, ranges by quantity, band of the excitation in Hz, and sentences on what is missing."""
-
-    seconds: float
-    visited: _Visited
-    band: tuple[float, float] | None
-    missing: list[str]
-
-
-def measure_coverage(recording: Recording) -> Coverage:
-    """Return the operating range of the runs, and a sentence for each thing that they cannot show.
+def list_unvisited(recording: Recording) -> Iterator[str]:
+    """Yield a sentence for each part of the operating range that the runs did not visit, with what it leaves undecided.
 
     Raises:
         InputError: a table or the nominal scenario cannot be read.
     """
     tables = [recording.table(run) for run in recording.runs]
-    rate = recording.header.sample_rate
-    pools: dict[str, tuple[str, list[Array]]] = {}
+    pools: dict[str, list[Array]] = {}
     for table in tables:
-        for name, (unit, values) in _quantities(recording, table).items():
-            pools.setdefault(name, (unit, []))[1].append(values)
-    visited = {name: _visited(name, unit, np.concatenate(parts)) for name, (unit, parts) in pools.items()}
-    drop = _largest_drop(pools.get("current", ("A", []))[1], rate)
-    seconds = sum(len(next(iter(table.values()))) for table in tables) / rate
+        for name, values in _quantities(recording, table).items():
+            pools.setdefault(name, []).append(values)
+    visited = {name: _measure_range(np.concatenate(parts)) for name, parts in pools.items()}
+    yield from _missing_motion(recording, visited)
+    drop = _largest_drop(pools.get("current", []), recording.header.sample_rate)
+    yield from _missing_current(recording.nominal, visited.get("current"), drop)
+    yield from _missing_temperature(recording.nominal, visited.get("temperature"))
     band = _band(recording, tables)
-    return Coverage(seconds, visited, band, [*_missing(recording, visited, drop, band)])
+    if recording.header.rig == "seat" and band is not None and not (band[0] < _TRUNK[0] and band[1] > _TRUNK[1]):
+        place = f"the floor shakes between {band[0]:.2g} and {band[1]:.2g} Hz only"
+        yield f"{place}: a driver's inner resonance between {_TRUNK[0]:g} and {_TRUNK[1]:g} Hz is hard to assess"
 
 
 def shows_falling_current(recording: Recording) -> bool:
@@ -78,16 +72,16 @@ def shows_falling_current(recording: Recording) -> bool:
     return not recorded or _largest_drop(recorded, recording.header.sample_rate) >= least
 
 
-def _quantities(recording: Recording, table: dict[str, Array]) -> dict[str, tuple[str, Array]]:
-    """Return unit and values of the quantities of one run by name."""
+def _quantities(recording: Recording, table: dict[str, Array]) -> dict[str, Array]:
+    """Return the values of the quantities of one run by name."""
     found = {
-        "travel": ("m", table.get("suspension_displacement", table.get("displacement"))),
-        "velocity": ("m/s", _velocity(recording, table)),
-        "current": ("A", _current(recording, table)),
-        "temperature": ("degC", table.get("damper_temperature")),
-        "driver": ("m/s^2", table.get("driver_acceleration")),
+        "travel": table.get("suspension_displacement", table.get("displacement")),
+        "velocity": _velocity(recording, table),
+        "current": _current(recording, table),
+        "temperature": table.get("damper_temperature"),
+        "driver": table.get("driver_acceleration"),
     }
-    return {name: (unit, values) for name, (unit, values) in found.items() if values is not None}
+    return {name: values for name, values in found.items() if values is not None}
 
 
 def _current(recording: Recording, table: dict[str, Array]) -> Array | None:
@@ -130,9 +124,8 @@ def _slope(values: Array, noise: float, rate: float) -> Array:
     return np.asarray(np.gradient(smooth, 1.0 / rate))
 
 
-def _visited(name: str, unit: str, values: Array) -> _VisitedRange:
-    percentiles = tuple(float(p) for p in np.percentile(values, _PERCENTILES))
-    return _VisitedRange(name, unit, float(np.min(values)), float(np.max(values)), percentiles)
+def _measure_range(values: Array) -> _VisitedRange:
+    return _VisitedRange(float(np.min(values)), float(np.max(values)), *np.percentile(values, _ENDS).tolist())
 
 
 def _largest_drop(currents: Sequence[Array], rate: float) -> float:
@@ -159,16 +152,6 @@ def _band(recording: Recording, tables: list[dict[str, Array]]) -> tuple[float, 
     return low, high
 
 
-def _missing(recording: Recording, visited: _Visited, drop: float, band: tuple[float, float] | None) -> Iterator[str]:
-    """Yield a sentence for each part of the operating range that is missing, with what it leaves undecided."""
-    yield from _missing_motion(recording, visited)
-    yield from _missing_current(recording.nominal, visited.get("current"), drop)
-    yield from _missing_temperature(recording.nominal, visited.get("temperature"))
-    if recording.header.rig == "seat" and band is not None and not (band[0] < _TRUNK[0] and band[1] > _TRUNK[1]):
-        place = f"the floor shakes between {band[0]:.2g} and {band[1]:.2g} Hz only"
-        yield f"{place}: a driver's inner resonance between {_TRUNK[0]:g} and {_TRUNK[1]:g} Hz is hard to assess"
-
-
 def _missing_motion(recording: Recording, visited: _Visited) -> Iterator[str]:
     travel, velocity, driver = (visited.get(name) for name in ("travel", "velocity", "driver"))
     if travel is None:
@@ -176,7 +159,7 @@ def _missing_motion(recording: Recording, visited: _Visited) -> Iterator[str]:
     elif recording.header.rig == "seat" and max(-travel.low, travel.high) < _LARGE_TRAVEL:
         place = f"travel stays within {1e3 * travel.low:.0f} to {1e3 * travel.high:.0f} mm"
         yield f"{place}: end stops and progressive springs beyond that cannot be assessed"
-    reached = max(-velocity.percentiles[0], velocity.percentiles[-1]) if velocity is not None else _FAST
+    reached = max(-velocity.lower, velocity.upper) if velocity is not None else _FAST
     if reached < _FAST:
         yield f"velocity hardly exceeds {reached:.2g} m/s: the damper's force at speed cannot be assessed"
     if driver is not None and driver.low > -_LIFT:
@@ -189,7 +172,7 @@ def _missing_current(nominal: Scenario, current: _VisitedRange | None, drop: flo
     if current is None:
         yield "no current is recorded: what the coil does cannot be assessed apart from the damper"
         return
-    low, high = current.percentiles[0], current.percentiles[-1]
+    low, high = current.lower, current.upper
     if high - low < _DROP * most:
         yield f"current stays at {low:.2g} to {high:.2g} A: coil, remanence and saturation cannot be assessed"
         return
@@ -203,5 +186,5 @@ def _missing_temperature(nominal: Scenario, temperature: _VisitedRange | None) -
     stated = nominal.temperature.start if isinstance(nominal.temperature, Thermal) else nominal.temperature
     if temperature is None:
         yield "no temperature is recorded: thermal fade can only be seen as a weaker damper, not be told by its warmth"
-    elif temperature.percentiles[-1] - stated < _WARM:
-        yield f"no run is warmer than {temperature.percentiles[-1]:.0f} degC: thermal fade cannot be assessed"
+    elif temperature.upper - stated < _WARM:
+        yield f"no run is warmer than {temperature.upper:.0f} degC: thermal fade cannot be assessed"
