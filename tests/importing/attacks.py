@@ -6,8 +6,9 @@ import zipfile
 import zlib
 from functools import partial
 
+import h5py
 import numpy as np
-import pytest
+import pandas as pd
 
 from ..text import words
 from . import exports
@@ -24,20 +25,19 @@ def _written(write, name, folder):
 
 
 def _hdf5(fill):
-    h5py = pytest.importorskip("h5py")
     content = io.BytesIO()
     with h5py.File(content, "w") as file:
         file["force"] = ROWS
-        fill(file, h5py)
+        fill(file)
     return content.getvalue()
 
 
 def hdf5_group_in_itself(folder):
-    return _hdf5(lambda file, _: file.create_group("inner").__setitem__("outer", file["/"]))
+    return _hdf5(lambda file: file.create_group("inner").__setitem__("outer", file["/"]))
 
 
 def hdf5_doubling_links(folder):
-    def fill(file, _):
+    def fill(file):
         group = file.create_group("g0")
         group["force"] = ROWS
         for number in range(1, DOUBLINGS):
@@ -49,15 +49,15 @@ def hdf5_doubling_links(folder):
 
 
 def hdf5_never_written(folder):
-    return _hdf5(lambda file, _: file.create_dataset("x", (6 * 10**8,), "f8", chunks=(10**6,), compression="gzip"))
+    return _hdf5(lambda file: file.create_dataset("x", (6 * 10**8,), "f8", chunks=(10**6,), compression="gzip"))
 
 
 def hdf5_large_attribute_type(folder):
-    return _hdf5(lambda file, _: file.create_dataset("x", (10,), np.dtype(("u1", (2**30,))), chunks=(1,)))
+    return _hdf5(lambda file: file.create_dataset("x", (10,), np.dtype(("u1", (2**30,))), chunks=(1,)))
 
 
 def hdf5_virtual_of_itself(folder):
-    def fill(file, h5py):
+    def fill(file):
         layout = h5py.VirtualLayout((100,), "f8")
         layout[:] = h5py.VirtualSource(".", "v", (100,))
         file.create_virtual_dataset("v", layout)
@@ -66,15 +66,14 @@ def hdf5_virtual_of_itself(folder):
 
 
 def _mat73(folder, fill):
-    h5py = pytest.importorskip("h5py")
     path = folder / "a.mat"
     with h5py.File(path, "w", userblock_size=512) as file:
-        fill(file, h5py)
+        fill(file)
     return b"MATLAB 7.3 MAT-file".ljust(124) + b"\0\2IM" + path.read_bytes()[128:]
 
 
 def mat73_doubling_references(folder):
-    def fill(file, h5py):
+    def fill(file):
         cell = file.create_dataset("#refs#/a", data=ROWS[None, :])
         cell.attrs["MATLAB_class"] = np.bytes_("double")
         for number in range(DOUBLINGS):
@@ -88,7 +87,7 @@ def mat73_doubling_references(folder):
 
 
 def mat73_cell_in_itself(folder):
-    def fill(file, h5py):
+    def fill(file):
         cell = file.create_dataset("cells", (1, 1), h5py.ref_dtype)
         cell[0, 0] = cell.ref
         cell.attrs["MATLAB_class"] = np.bytes_("cell")
@@ -97,7 +96,7 @@ def mat73_cell_in_itself(folder):
 
 
 def mat73_large_empty_array(folder):
-    def fill(file, _):
+    def fill(file):
         empty = file.create_dataset("empty", data=np.array([2**28, 1], np.uint64))
         empty.attrs["MATLAB_class"], empty.attrs["MATLAB_empty"] = np.bytes_("double"), np.uint8(1)
 
@@ -193,35 +192,18 @@ def _mdf3_in_a_circle(kind, folder):
 
 
 def sheet(rows, dimension="A1:H201"):
-    pytest.importorskip("openpyxl")
-    content = io.BytesIO()
-    with zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as book:
-        book.writestr("[Content_Types].xml", CONTENT_TYPES)
-        book.writestr("_rels/.rels", RELATIONS.format("officeDocument", "xl/workbook.xml"))
-        book.writestr("xl/workbook.xml", WORKBOOK)
-        book.writestr("xl/_rels/workbook.xml.rels", RELATIONS.format("worksheet", "worksheets/sheet1.xml"))
-        head = f'<worksheet xmlns="{MAIN}"><dimension ref="{dimension}"/><sheetData>'
-        book.writestr("xl/worksheets/sheet1.xml", head + rows + "</sheetData></worksheet>")
+    """Return a workbook with these rows in the place of those of its only sheet."""
+    written, content = io.BytesIO(), io.BytesIO()
+    pd.DataFrame().to_excel(written)
+    head = f'<worksheet xmlns="{SHEET}"><dimension ref="{dimension}"/><sheetData>'
+    with zipfile.ZipFile(written) as book, zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as changed:
+        for name in book.namelist():
+            is_sheet = name == "xl/worksheets/sheet1.xml"
+            changed.writestr(name, f"{head}{rows}</sheetData></worksheet>" if is_sheet else book.read(name))
     return content.getvalue()
 
 
-MAIN = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
-OFFICE = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
-PACKAGE = "http://schemas.openxmlformats.org/package/2006"
-SHEETS = "application/vnd.openxmlformats-officedocument.spreadsheetml"
-CONTENT_TYPES = (
-    f'<Types xmlns="{PACKAGE}/content-types"><Default Extension="rels"'
-    ' ContentType="application/vnd.openxmlformats-package.relationships+xml"/><Default Extension="xml"'
-    f' ContentType="application/xml"/><Override PartName="/xl/workbook.xml" ContentType="{SHEETS}.sheet.main+xml"/>'
-    f'<Override PartName="/xl/worksheets/sheet1.xml" ContentType="{SHEETS}.worksheet+xml"/></Types>'
-)
-RELATIONS = (
-    f'<Relationships xmlns="{PACKAGE}/relationships"><Relationship Id="rId1" Type="{OFFICE}/{{}}" Target="{{}}"/>'
-    "</Relationships>"
-)
-WORKBOOK = (
-    f'<workbook xmlns="{MAIN}" xmlns:r="{OFFICE}"><sheets><sheet name="a" sheetId="1" r:id="rId1"/></sheets></workbook>'
-)
+SHEET = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
 
 
 def xlsx_last_column_in_every_row(folder):

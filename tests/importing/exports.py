@@ -4,9 +4,13 @@ import gzip
 import json
 import warnings
 
+import asammdf
+import h5py
+import nptdms
 import numpy as np
 import pandas as pd
 import pytest
+import pyuff
 
 from ..text import parse
 
@@ -47,14 +51,12 @@ def feather(path, table):
 
 
 def xlsx(path, table):
-    pytest.importorskip("openpyxl")
     frame = pd.DataFrame(table)
     frame.columns = [f"{name} [{UNITS.get(name, 's')}]" for name in frame]
     frame.to_excel(path, index=False)
 
 
 def hdf5(path, table):
-    h5py = pytest.importorskip("h5py")
     with h5py.File(path, "w") as file:
         group = file.create_group("daq")
         group.attrs["sample_rate"] = 500.0
@@ -72,7 +74,6 @@ def mat5(path, table):
 
 def mat73(path, table):
     """What MATLAB writes: a block of 512 bytes before an HDF5 file."""
-    h5py = pytest.importorskip("h5py")
     with h5py.File(path, "w", userblock_size=512) as file:
         for name, values in table.items():
             file[name] = values[None, :]
@@ -84,7 +85,7 @@ def mat73(path, table):
 
 def mat_timetable(path, table):
     """What MATLAB writes of a timetable, as mat-io does."""
-    matio = pytest.importorskip("matio")
+    matio = pytest.importorskip("matio")  # on import it changes how pandas keeps texts
     frame = pd.DataFrame({name: values for name, values in table.items() if name != "time"})
     frame.index = pd.to_timedelta(table["time"], unit="s")
     with warnings.catch_warnings():
@@ -122,7 +123,6 @@ def lvm(path, table):
 
 
 def mdf(path, table):
-    asammdf = pytest.importorskip("asammdf")
     signals = [
         asammdf.Signal(samples=values, timestamps=table["time"], name=name, unit=UNITS[name])
         for name, values in table.items()
@@ -134,7 +134,6 @@ def mdf(path, table):
 
 
 def tdms(path, table):
-    nptdms = pytest.importorskip("nptdms")
     with nptdms.TdmsWriter(path) as writer:
         writer.write_segment(
             [
@@ -146,7 +145,6 @@ def tdms(path, table):
 
 
 def uff(path, table):
-    pyuff = pytest.importorskip("pyuff")
     file = pyuff.UFF(str(path))
     for name, values in table.items():
         if name != "time":
@@ -190,7 +188,6 @@ def rpc(path, table):
 
 
 def sep005(path, table):
-    pytest.importorskip("sdypy_sep005")
     channels = [(name, values.tolist()) for name, values in table.items() if name != "time"]
     listed = [{"data": values, "name": name, "unit_str": UNITS[name], "fs": 500.0} for name, values in channels]
     path.write_text(json.dumps(listed))

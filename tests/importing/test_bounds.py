@@ -5,7 +5,7 @@ import time
 import pytest
 
 from seatsim.importing.readers.reading import read_file
-from seatsim.schema.bounds import LEAST, TIMES, Part, TooMuchError, check_made, check_parts
+from seatsim.schema.bounds import LEAST, TIMES, TooMuchError, check_made
 from seatsim.schema.errors import InputError
 
 from .attacks import ATTACKS, sheet
@@ -34,16 +34,6 @@ def test_what_a_file_may_make_grows_with_its_size_between_two_limits():
     for made, size in ((LEAST + 1, 1), (TIMES * 2**20 + 1, 2**20), (2**30 + 1, 2**26), (2**31 + 1, 2**28)):
         with pytest.raises(TooMuchError, match="of memory; permitted"):
             check_made(made, size)
-
-
-def test_parts_count_as_often_as_something_refers_to_them():
-    chain = {number: Part(8, (number + 1,)) for number in range(1000)} | {1000: Part(8)}
-    check_parts([0], chain.__getitem__, 1)
-    doubling = {number: Part(8, (number + 1, number + 1)) for number in range(1000)} | {1000: Part(8)}
-    with pytest.raises(TooMuchError, match="of memory"):
-        check_parts([0], doubling.__getitem__, 1)
-    with pytest.raises(TooMuchError, match="refers to itself"):
-        check_parts([0], (chain | {1000: Part(8, (3,))}).__getitem__, 1)
 
 
 def test_stated_dimensions_of_a_sheet_do_not_count(tmp_path):

@@ -1,5 +1,6 @@
 """Where the numbers of an HDF5 file come from: no stranger's file, and no zeros in place of a missing source."""
 
+import h5py
 import numpy as np
 import pytest
 
@@ -8,7 +9,6 @@ from seatsim.schema.errors import InputError
 
 from ..text import parse
 
-h5py = pytest.importorskip("h5py")
 ROWS = 1.0 + np.arange(100.0)
 
 

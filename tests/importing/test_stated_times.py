@@ -1,5 +1,6 @@
 """The time that a file states counts: starts of channels, columns of x, indices of dates, abscissas."""
 
+import nptdms
 import numpy as np
 import pandas as pd
 import pytest
@@ -20,7 +21,6 @@ MORNING = np.datetime64("2026-03-01T09:51:40.500")
 
 def tdms(path, starts):
     """Write a motion that every channel records from its own start on, in s."""
-    nptdms = pytest.importorskip("nptdms")
     channels = []
     for name, (start, stated) in starts.items():
         properties = {"unit_string": "m/s^2", "wf_increment": 0.002} | ({"wf_start_time": stated} if stated else {})
@@ -54,7 +54,6 @@ def test_a_start_that_is_missing_or_was_never_set_is_said(tmp_path):
 
 @pytest.mark.parametrize("step", [0.0, -0.002, 1e-310, np.nan, 1e300])
 def test_a_rate_that_no_logger_has_is_refused(tmp_path, step):
-    nptdms = pytest.importorskip("nptdms")
     with nptdms.TdmsWriter(tmp_path / "a.tdms") as writer:
         writer.write_segment([nptdms.ChannelObject("A", "force", TIME, {"wf_increment": step})])
     if step:

@@ -2,6 +2,8 @@
 
 import struct
 
+import asammdf
+import h5py
 import numpy as np
 import pandas as pd
 import pytest
@@ -24,7 +26,6 @@ def found_in(file):
 
 
 def test_a_matrix_of_hdf5_has_names_and_units_in_attributes(tmp_path):
-    h5py = pytest.importorskip("h5py")
     with h5py.File(tmp_path / "a.h5", "w") as file:
         matrix = file.create_dataset("run/data", data=np.column_stack([FAST, band_limited(1, FAST)]))
         matrix.attrs["columns"] = ["time", "acc floor"]
@@ -37,7 +38,6 @@ def test_a_matrix_of_hdf5_has_names_and_units_in_attributes(tmp_path):
 
 
 def test_groups_of_other_rates_and_starts_share_the_clock_of_their_file(tmp_path):
-    asammdf = pytest.importorskip("asammdf")
     slow = SLOW[:1500] + 0.25
     with asammdf.MDF(version="4.10") as file:
         file.append(
@@ -65,7 +65,6 @@ def test_groups_of_other_rates_and_starts_share_the_clock_of_their_file(tmp_path
 
 
 def test_every_sheet_of_a_workbook_with_numbers_is_a_group(tmp_path):
-    pytest.importorskip("openpyxl")
     frame = pd.DataFrame({"time": FAST[:500], "floor_acceleration": band_limited(1, FAST[:500])})
     with pd.ExcelWriter(tmp_path / "a.xlsx") as book:
         pd.DataFrame({"remark": ["a", "b"]}).to_excel(book, sheet_name="notes", index=False)
@@ -118,7 +117,6 @@ def test_variables_of_mat_files_are_those_that_scipy_reads(tmp_path, packed):
 
 @pytest.mark.parametrize("name", ["a.mf4", "a.mdf"])
 def test_a_channel_beyond_its_rows_and_rows_beyond_the_file_are_refused(name, tmp_path):
-    asammdf = pytest.importorskip("asammdf")
     signals = [asammdf.Signal(band_limited(k, FAST), FAST, name=f"channel {k}") for k in range(3)]
     with asammdf.MDF(version="3.30" if name == "a.mdf" else "4.10") as file:
         file.append(signals, common_timebase=True)
