@@ -73,8 +73,20 @@ def test_every_sheet_of_a_workbook_with_numbers_is_a_group(tmp_path):
     assert [group.name for group in file.groups] == ["run 1"]
     assert file.groups[0].rows == 500
     assert [signal.name for signal in file.groups[0].signals] == ["time", "floor_acceleration"]
-    with pytest.raises(InputError, match=r"csv\.header 999"):
+    with pytest.raises(InputError, match=r"sheet run 1: has .* lines; csv\.header 999"):
         read_file(tmp_path / "a.xlsx", TextLayout(header=999))
+
+
+def test_cells_of_a_sheet_may_be_dates_and_texts_of_several_lines(tmp_path):
+    moments = pd.Timestamp("2026-03-01 09:51:40") + pd.to_timedelta(FAST[:500], unit="s")
+    sheet = {"Zeit": moments, "a_Sitz\n[g]": [f"{value:.3f} g" for value in FAST[:500]], "remark": "two\nlines"}
+    pd.DataFrame(sheet).to_excel(tmp_path / "a.xlsx", index=False)
+    file = read_file(tmp_path / "a.xlsx")
+    time, seat = file.groups[0].signals
+    assert (time.unit, seat.name, seat.unit) == ("s", "a_Sitz", "g")
+    np.testing.assert_allclose(time.values, FAST[:500], atol=1e-6)
+    np.testing.assert_allclose(seat.values, FAST[:500], atol=1e-9)
+    assert file.notes == ("sheet Sheet1: columns that hold no numbers: remark",)
 
 
 def test_units_stand_in_the_metadata_of_parquet(tmp_path):

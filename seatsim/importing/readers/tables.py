@@ -1,4 +1,4 @@
-"""Tables of other programs: the sheets of Excel workbooks, and Parquet and Feather files.
+"""Tables of other programs: the sheets of Excel workbooks, read as text tables are, and Parquet and Feather files.
 
 How much the messages of a Feather file make once they are unpacked is taken from their heads alone. A message is a flat
 buffer: a table begins with the distance back to a list of 2-byte offsets, one for each field, and a field that is a
@@ -7,22 +7,21 @@ table or a list holds the distance forward to it.
 
 from __future__ import annotations
 
+import csv
 import datetime
 import io
 import struct
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
+from seatsim.importing.readers import text
 from seatsim.importing.readers.columns import read_column
-from seatsim.importing.readers.header import check_header, find_first_row, split_header
 from seatsim.importing.readers.reading import TextLayout, need
 from seatsim.importing.signals import TIME, DataFile, Group, Signal, note_left_out, stated_unit
-from seatsim.schema.arrays import Array, open_parquet
+from seatsim.schema.arrays import open_parquet
 from seatsim.schema.bounds import BYTES_OF_NUMBER, TooMuchError, check_made
-from seatsim.schema.errors import InputError
+from seatsim.schema.errors import InputError, gathered, raise_all
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -48,18 +47,16 @@ def read_xlsx(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     """Return the sheets of a workbook that hold rows of numbers."""
     openpyxl = need("openpyxl", "XLSX")
     book = openpyxl.load_workbook(io.BytesIO(content), read_only=True, data_only=True)
-    groups, notes = [], []
+    groups, notes, refused = list[Group](), list[str](), list[InputError]()
     for sheet in book.worksheets:
-        try:
-            group, left_out = _group(sheet.title, _rows(sheet, len(content)), f"{path}, sheet {sheet.title}", layout)
-        except InputError as error:
-            notes.append(str(error))
-            continue
-        groups.append(group)
-        notes += note_left_out(f"columns of the sheet {sheet.title} that hold no numbers", left_out)
-    if not groups and notes:
-        raise InputError(notes[0])
-    return DataFile(path, "", tuple(groups), tuple(notes))
+        place = f"{path}, sheet {sheet.title}"
+        with gathered(refused):
+            read = text.read_cells(Path(place), _as_csv(_rows(sheet, len(content))), layout)
+            groups += [group._replace(name=f"{sheet.title} {group.name}".strip()) for group in read.groups]
+            notes += [f"sheet {sheet.title}: {note}" for note in read.notes]
+    if not groups:
+        raise_all(refused)
+    return DataFile(path, "", tuple(groups), (*notes, *map(str, refused)))
 
 
 def _rows(sheet: ReadOnlyWorksheet, size: int) -> list[Sequence[_Cell]]:
@@ -84,41 +81,12 @@ def _rows(sheet: ReadOnlyWorksheet, size: int) -> list[Sequence[_Cell]]:
     return [(*row, *[None] * (width - len(row))) for row in rows]
 
 
-def _group(title: str, rows: Sequence[Sequence[_Cell]], place: str, layout: TextLayout) -> tuple[Group, list[str]]:
-    """Return the columns of numbers, and the names of the others."""
-    first = layout.header
-    if first is None:
-        first = find_first_row([[_is_number(cell) for cell in row] for row in rows], place)
-    check_header(first, len(rows), place)
-    above = [["" if cell is None else str(cell) for cell in row] for row in rows[:first]]
-    columns = zip(split_header(above, len(rows[first])), zip(*rows[first:], strict=True), strict=True)
-    signals = [Signal(*named, _values(cells)) for named, cells in columns]
-    empty = [signal.name for signal in signals if np.isnan(signal.values).all()]
-    left_out = [name for name in empty if not name.startswith("column ")]
-    return Group(title, tuple(signal for signal in signals if signal.name not in empty)), left_out
-
-
-def _is_number(cell: _Cell) -> bool:
-    return isinstance(cell, int | float | datetime.datetime | datetime.time) and not isinstance(cell, bool)
-
-
-def _values(cells: Sequence[_Cell]) -> Array:
-    """Return cells as numbers, times in s since the first of them, NaN for what is neither."""
-    first = next((cell for cell in cells if isinstance(cell, datetime.datetime)), None)
-    return np.array([_number(cell, first) for cell in cells], dtype=np.float64)
-
-
-def _number(cell: _Cell, first: datetime.datetime | None) -> float:
-    if isinstance(cell, datetime.datetime) and first is not None:
-        return (cell - first).total_seconds()
-    if isinstance(cell, datetime.time):
-        return 3600.0 * cell.hour + 60.0 * cell.minute + cell.second + 1e-6 * cell.microsecond
-    if isinstance(cell, str):
-        try:
-            return float(cell.strip().replace(",", "."))
-        except ValueError:
-            return np.nan
-    return float(cell) if isinstance(cell, int | float) else np.nan
+def _as_csv(rows: Iterable[Sequence[_Cell]]) -> bytes:
+    """Return rows as a text table; a cell of several lines stands in one."""
+    content = io.StringIO()
+    lines = (["" if cell is None else " ".join(str(cell).splitlines()) for cell in row] for row in rows)
+    csv.writer(content, lineterminator="\n").writerows(lines)
+    return content.getvalue().encode()
 
 
 def read_arrow(path: Path, content: bytes, layout: TextLayout) -> DataFile:

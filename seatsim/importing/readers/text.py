@@ -58,7 +58,22 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
             columns than the others.
     """
     content = as_utf8(content, layout.encoding)
-    head = _read_head(path, content, layout)
+    lines = _sample(content)
+    dialect = Dialect.find([lines[index] for index in _list_used(lines)], layout.delimiter, layout.decimal)
+    if dialect is None:
+        is_stated = layout.delimiter or layout.decimal
+        reason = "csv.delimiter and csv.decimal are wrong" if is_stated else "csv.delimiter has to be stated in a map"
+        raise InputError(f"{path}: holds no row of numbers; it is no table, or {reason}")
+    return _read_table(path, content, _read_head(path, lines, dialect, layout.header))
+
+
+def read_cells(place: Path, content: bytes, layout: TextLayout) -> DataFile:
+    """Return the columns of a table that was written with commas and decimal points, as `read` does."""
+    head = _read_head(place, _sample(content), Dialect(",", "."), layout.header)
+    return _read_table(place, content, head)
+
+
+def _read_table(path: Path, content: bytes, head: _Head) -> DataFile:
     body, notes = _clean(_without_lines(content, len(head.above)), head)
     columns, (delimiter, decimal) = [str(index) for index in range(len(head.columns))], head.dialect
     table, bad = parse_rows(body, path, columns, delimiter=delimiter, decimal=decimal, missing=MISSING)
@@ -93,26 +108,26 @@ def _encoding(content: bytes) -> str:
     return "utf-8"
 
 
-def _read_head(path: Path, content: bytes, layout: TextLayout) -> _Head:
-    lines = _sample(content)
-    used = [index for index, line in enumerate(lines) if line.strip() and not COMMENT.match(line)]
-    dialect = Dialect.find([lines[index] for index in used], layout.delimiter, layout.decimal)
-    if dialect is None:
-        is_stated = layout.delimiter or layout.decimal
-        reason = "csv.delimiter and csv.decimal are wrong" if is_stated else "csv.delimiter has to be stated in a map"
-        raise InputError(f"{path}: holds no row of numbers; it is no table, or {reason}")
+def _list_used(lines: Sequence[str]) -> list[int]:
+    """Return which lines hold something, and no remark."""
+    return [index for index, line in enumerate(lines) if line.strip() and not COMMENT.match(line)]
+
+
+def _read_head(path: Path, lines: Sequence[str], dialect: Dialect, header: int | None) -> _Head:
+    """Return what stands above the rows, which begin below `header` lines where that is stated."""
+    used = _list_used(lines)
     rows = [dialect.split(lines[index]) for index in used]
     kinds = dialect.kinds(rows)
-    if layout.header is None:
+    if header is None:
         first = find_first_row(kinds, str(path))
         first += first == 0 and len(rows) > 1 and count_columns(rows[0])
     else:
-        first = sum(index < layout.header for index in used)
-        check_header(layout.header, used[-1] + 1, str(path))
-    above = used[first] if layout.header is None else layout.header
+        first = sum(index < header for index in used)
+        check_header(header, used[-1] + 1, str(path))
+    above = used[first] if header is None else header
     table = Rows(lines[used[first]], rows[first:], kinds[first:])
-    names = fit_names(path, lines[:above], table, dialect, layout.header is not None)
-    return _Head(dialect, split_header(names, len(rows[first])), lines[:above])
+    names = fit_names(path, lines[:above], table, dialect, header is not None)
+    return _Head(dialect, split_header(names, len(rows[first])), list(lines[:above]))
 
 
 def _sample(content: bytes) -> list[str]:
