@@ -56,7 +56,7 @@ class _Format(NamedTuple):
 FORMATS = (
     _Format("Parquet", "tables.read_arrow", (b"PAR1",), (".parquet", ".pq")),
     _Format("Feather", "tables.read_arrow", (b"ARROW1", b"FEA1"), (".feather", ".arrow")),
-    _Format("XLSX", "tables.read_xlsx", (), (".xlsx", ".xlsm")),
+    _Format("XLSX", "text.read_xlsx", (), (".xlsx", ".xlsm")),
     _Format("MAT v7.3", "matlab.read", (b"MATLAB 7.3 MAT-file",), ()),
     _Format("MAT v5", "matlab.read", (b"MATLAB 5.0 MAT-file",), (".mat",)),
     _Format("HDF5", "hdf5.read", (HDF5,), (".h5", ".hdf5", ".hdf")),

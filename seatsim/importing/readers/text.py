@@ -1,16 +1,21 @@
-"""Text tables: CSV and TSV with any delimiter, decimal sign, encoding, lines above the names, and a row of units."""
+"""Text tables: CSV and TSV with any delimiter, decimal sign, encoding, lines above the names, and a row of units.
+
+The sheets of a workbook are read as such tables of their cells.
+"""
 
 from __future__ import annotations
 
+import csv
+import io
 import re
-from collections.abc import Sequence
-from itertools import takewhile
+from collections.abc import Iterable, Sequence
+from itertools import pairwise, takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from seatsim.importing.readers.columns import part_by_time, read_column
+from seatsim.importing.names import read_name
 from seatsim.importing.readers.header import (
     BLANKS,
     COMMENT,
@@ -24,13 +29,17 @@ from seatsim.importing.readers.header import (
     quote,
     split_header,
 )
-from seatsim.importing.readers.reading import TextLayout
-from seatsim.importing.signals import DataFile, Signal, find_rate, note_left_out
-from seatsim.schema.errors import InputError
+from seatsim.importing.readers.reading import TextLayout, need
+from seatsim.importing.readers.tables import read_column
+from seatsim.importing.signals import DataFile, Group, Signal, find_rate, note_left_out
+from seatsim.importing.time_axis import measured_axis
+from seatsim.schema.bounds import TooMuchError, check_made
+from seatsim.schema.errors import InputError, gathered, raise_all
 from seatsim.schema.tables import parse_rows
 
 if TYPE_CHECKING:
     import pyarrow as pa
+    from openpyxl.worksheet._read_only import ReadOnlyWorksheet
 
 _SAMPLE = 65536
 """Bytes from which delimiter, decimal sign and header are found."""
@@ -40,6 +49,9 @@ _WHOLE_LINE = re.compile(rb'"[^"]*[,;\t|][^"]*"')
 """A line that stands in quotation marks as a whole; a table that begins with some lines of this kind has no others."""
 _LONGEST_NAME = 8
 """Lines over which a name in quotation marks may go."""
+_MOST_ROWS = 2**20
+_BYTES_OF_CELL = 64
+"""Bytes that a cell takes in memory as Python holds it."""
 
 
 class _Head(NamedTuple):
@@ -67,12 +79,6 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     return _read_table(path, content, _read_head(path, lines, dialect, layout.header))
 
 
-def read_cells(place: Path, content: bytes, layout: TextLayout) -> DataFile:
-    """Return the columns of a table that was written with commas and decimal points, as `read` does."""
-    head = _read_head(place, _sample(content), Dialect(",", "."), layout.header)
-    return _read_table(place, content, head)
-
-
 def _read_table(path: Path, content: bytes, head: _Head) -> DataFile:
     body, notes = _clean(_without_lines(content, len(head.above)), head)
     columns, (delimiter, decimal) = [str(index) for index in range(len(head.columns))], head.dialect
@@ -83,7 +89,7 @@ def _read_table(path: Path, content: bytes, head: _Head) -> DataFile:
     _check_texts(path, table, signals)
     if not content.endswith((b"\n", b"\r")):
         notes.append("the last line has no end; if the file was cut there, its last number is wrong")
-    return DataFile(path, "CSV", part_by_time(signals, find_rate(head.above)), tuple(notes))
+    return DataFile(path, "CSV", _part_by_time(signals, find_rate(head.above)), tuple(notes))
 
 
 def as_utf8(content: bytes, stated: str | None) -> bytes:
@@ -249,3 +255,88 @@ def _signals(table: pa.Table, head: _Head, notes: list[str]) -> list[Signal]:
             notes += [f"{name}: {found.parted} is read with its thousands parted"] if found.parted else []
     notes += note_left_out("columns that hold no numbers", left_out)
     return signals
+
+
+def _part_by_time(signals: Sequence[Signal], rate: float | None) -> tuple[Group, ...]:
+    """Return one group, or one for each column of time where every one has others behind it.
+
+    Columns whose times are alike share a group. Rows that have no time end a group.
+    """
+    begins = [index for index, signal in enumerate(signals) if _is_clock(signal)]
+    ends = [*begins[1:], len(signals)]
+    if len(begins) < 2 or any(end - begin < 2 for begin, end in zip(begins, ends, strict=True)):
+        return (Group("", tuple(signals), rate),)
+    parts: list[list[Signal]] = []
+    for begin, end in pairwise([0, *begins[1:], len(signals)]):
+        part = list(signals[begin:end])
+        clock = _clock(part)
+        same = next((each for each in parts if np.array_equal(_clock(each).values, clock.values, equal_nan=True)), None)
+        if same is None:
+            parts.append(part)
+        else:
+            same += [signal for signal in part if signal is not clock]
+    if len(parts) == 1:
+        return (Group("", tuple(parts[0]), rate),)
+    clocked = [(_clock(part), Group("", tuple(part))) for part in parts]
+    return tuple(group.take(np.isfinite(clock.values))._replace(name=clock.name) for clock, group in clocked)
+
+
+def _is_clock(signal: Signal) -> bool:
+    is_named = read_name(signal.name, signal.unit).quantity == "time"
+    return is_named and measured_axis(signal.values[np.isfinite(signal.values)]) is not None
+
+
+def _clock(part: Sequence[Signal]) -> Signal:
+    return next(signal for signal in part if _is_clock(signal))
+
+
+def read_xlsx(path: Path, content: bytes, layout: TextLayout) -> DataFile:
+    """Return the sheets of a workbook that hold rows of numbers."""
+    openpyxl = need("openpyxl", "XLSX")
+    book = openpyxl.load_workbook(io.BytesIO(content), read_only=True, data_only=True)
+    groups, notes, refused = list[Group](), list[str](), list[InputError]()
+    for sheet in book.worksheets:
+        place = f"{path}, sheet {sheet.title}"
+        with gathered(refused):
+            read = _read_cells(Path(place), _as_csv(_rows(sheet, len(content))), layout)
+            groups += [group._replace(name=f"{sheet.title} {group.name}".strip()) for group in read.groups]
+            notes += [f"sheet {sheet.title}: {note}" for note in read.notes]
+    if not groups:
+        raise_all(refused)
+    return DataFile(path, "", tuple(groups), (*notes, *map(str, refused)))
+
+
+def _rows(sheet: ReadOnlyWorksheet, size: int) -> list[Sequence[object]]:
+    """Return the rows of a sheet that hold something, of equal length.
+
+    Raises:
+        TooMuchError: the sheet has more rows or cells than one of a file of `size` bytes may have.
+    """
+    # The stated dimensions may be anything; without them a row is as long as its last cell.
+    sheet.reset_dimensions()
+    rows: list[Sequence[object]] = []
+    cells = 0
+    for number, row in enumerate(sheet.iter_rows(values_only=True)):
+        if number >= _MOST_ROWS:
+            raise TooMuchError(f"the sheet {sheet.title} states more than {_MOST_ROWS} rows, the most that Excel has")
+        if any(cell is not None for cell in row):
+            rows.append(row)
+            cells += len(row)
+            check_made(_BYTES_OF_CELL * cells, size, f"the sheet {sheet.title}")
+    width = max((len(row) for row in rows), default=0)
+    check_made(_BYTES_OF_CELL * width * len(rows), size, f"the sheet {sheet.title}")
+    return [(*row, *[None] * (width - len(row))) for row in rows]
+
+
+def _as_csv(rows: Iterable[Sequence[object]]) -> bytes:
+    """Return rows as a text table; a cell of several lines stands in one."""
+    content = io.StringIO()
+    lines = (["" if cell is None else " ".join(str(cell).splitlines()) for cell in row] for row in rows)
+    csv.writer(content, lineterminator="\n").writerows(lines)
+    return content.getvalue().encode()
+
+
+def _read_cells(place: Path, content: bytes, layout: TextLayout) -> DataFile:
+    """Return the columns of a table that was written with commas and decimal points, as `read` does."""
+    head = _read_head(place, _sample(content), Dialect(",", "."), layout.header)
+    return _read_table(place, content, head)
