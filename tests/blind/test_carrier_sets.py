@@ -9,13 +9,14 @@ from seatsim import load_recording
 from seatsim.blind.carrier.make import UNTOUCHED, make_on_carrier
 from seatsim.blind.carrier.recorded import read_carrier
 from seatsim.blind.score.score import score_verdicts
-from seatsim.blind.score.verdicts import Verdict, is_right, is_wrong_name
+from seatsim.blind.score.verdicts import Verdict
 from seatsim.blind.sealed import EFFECTS, unseal
 from seatsim.cli.outputs.diagnosis_results import make_score_tables
 from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
 
 from .carriers import bench_carrier, write_carrier
+from .test_score import CARRIED
 
 
 @pytest.fixture(scope="module")
@@ -54,32 +55,6 @@ def test_labels_beside_the_recordings_and_short_runs_are_refused(recording, tmp_
     short = write_carrier(type(carrier)(carrier.header, carrier.nominal, cut), tmp_path / "short")
     with pytest.raises(InputError, match="shorter than"):
         read_carrier(short)
-
-
-CARRIED = {
-    "kind": "carried",
-    "effects": ["coil.delay"],
-    "blocks": ["coil"],
-    "materialities": [2.0],
-    "shapes": [{"time": 0.01}],
-    "forms": ["command advanced"],
-}
-
-
-@pytest.mark.parametrize(
-    ("said", "right", "wrong"),
-    [
-        (Verdict("unknown", causes=("coil.delay",)), True, False),
-        (Verdict("known", causes=("coil.delay",), selected=("coil.delay",)), True, False),
-        (Verdict("ambiguous", causes=("coil.lag",), groups=(("coil.lag", "coil.delay"),)), True, False),
-        (Verdict("unknown", causes=("coil.lag",), selected=("coil.lag",)), False, True),
-        (Verdict("unknown", causes=("coil.lag",)), False, False),
-        (Verdict("none", causes=("coil.delay",)), False, False),
-        (Verdict("missing"), False, False),
-    ],
-)
-def test_what_is_right_on_a_measured_background(said, right, wrong):
-    assert (is_right(CARRIED, said), is_wrong_name(CARRIED, said)) == (right, wrong)
 
 
 def test_a_score_counts_wrong_names_and_sizes_and_leaves_the_untouched_out():

@@ -87,8 +87,10 @@ def test_wrong_keys_and_changed_files_are_refused(whole, tmp_path):
         make(1, 1, folder, folder / "sealed", processes=1)
 
 
-def test_the_composition():
-    orders = compose(400, "mixed", np.random.default_rng(0))
+@pytest.mark.parametrize("preset", ["mixed", "varied"])
+def test_the_composition(preset):
+    orders = compose(400, preset, np.random.default_rng(0))
+    assert {order.varied for order in orders} == {preset == "varied"}
     counts = {kind: sum(order.kind == kind for order in orders) for kind in ("none", "one", "two", "outside")}
     assert counts == {"none": 80, "one": 160, "two": 80, "outside": 80}
     singles = [order.names[0] for order in orders if order.kind == "one"]

@@ -9,7 +9,15 @@ from rich.console import Console
 
 from seatsim.blind.carrier.recorded import encode_carrier
 from seatsim.blind.score.score import score, score_shrink, score_verdicts
-from seatsim.blind.score.verdicts import Rate, Verdict, calibration_error, is_right, read_verdict, reliability
+from seatsim.blind.score.verdicts import (
+    Rate,
+    Verdict,
+    calibration_error,
+    is_right,
+    is_wrong_name,
+    read_verdict,
+    reliability,
+)
 from seatsim.blind.sealed import Sealed, new_key, seal
 from seatsim.cli.outputs.diagnosis_results import make_score_tables
 from seatsim.schema.content import to_content
@@ -20,6 +28,14 @@ from .carriers import bench_carrier, offset, seat_carrier, write_carrier, write_
 ONE = {"kind": "one", "effects": ["damper.remanence"], "blocks": ["damper"], "forms": ["remanence-decay"]}
 TWO = {"kind": "two", "effects": ["coil.lag", "driver.mass"], "blocks": ["coil", "driver"]}
 NONE = {"kind": "none", "effects": [], "blocks": []}
+CARRIED = {
+    "kind": "carried",
+    "effects": ["coil.delay"],
+    "blocks": ["coil"],
+    "materialities": [2.0],
+    "shapes": [{"time": 0.01}],
+    "forms": ["command advanced"],
+}
 OUT = {"kind": "outside", "effects": [], "blocks": ["suspension"], "forms": ["maxwell-bushing"]}
 
 
@@ -39,10 +55,19 @@ OUT = {"kind": "outside", "effects": [], "blocks": ["suspension"], "forms": ["ma
         (TWO, Verdict("known", selected=("coil.lag", "driver.mass", "sensor.gain")), False),
         (OUT, Verdict("unknown", blocks=("damper",)), True),
         (OUT, Verdict("known", causes=("driver.mass",)), False),
+        (CARRIED, Verdict("unknown", causes=("coil.delay",)), True),
+        (CARRIED, Verdict("known", causes=("coil.delay",), selected=("coil.delay",)), True),
+        (CARRIED, Verdict("ambiguous", causes=("coil.lag",), groups=(("coil.lag", "coil.delay"),)), True),
+        (CARRIED, Verdict("unknown", causes=("coil.lag",), selected=("coil.lag",)), False),
+        (CARRIED, Verdict("unknown", causes=("coil.lag",)), False),
+        (CARRIED, Verdict("none", causes=("coil.delay",)), False),
+        (CARRIED, Verdict("missing"), False),
     ],
 )
-def test_what_is_right(label, said, right):
+def test_what_is_right_and_what_a_wrong_name(label, said, right):
     assert is_right(label, said) is right
+    if label is CARRIED:
+        assert is_wrong_name(label, said) == (bool(said.selected) and not right)
 
 
 def test_figures_of_a_small_set():

@@ -9,10 +9,8 @@ from scipy.signal import welch
 
 import seatsim
 from seatsim.blind.make import draw_experiment
-from seatsim.blind.make.compose import compose
 from seatsim.blind.make.folder import encode_recording, recording_header, write_folder
 from seatsim.blind.make.materiality import CommandedRuns
-from seatsim.blind.sealed import KINDS
 from seatsim.blind.truth import excitation
 from seatsim.blind.truth.excitation import NoiseColour, colour_noise, coloured_noise
 from seatsim.blind.truth.experiment import CHANNELS, read_channels, simulate_run
@@ -126,12 +124,6 @@ def test_floors_of_vehicles_are_broad_and_not_stationary():
         total = np.sum(power)
         assert share[1] > 0.02 * total and share[6] > 0.05 * total
         assert share[0] < 0.05 * total and share[120] < 0.02 * total
-
-
-def test_a_varied_set_has_the_mix_of_kinds():
-    orders = compose(100, "varied", np.random.default_rng(0))
-    assert [sum(order.kind == kind for order in orders) for kind in KINDS] == [20, 40, 20, 20]
-    assert all(order.varied for order in orders)
 
 
 def test_coloured_noise_has_unit_variance_and_its_slope():

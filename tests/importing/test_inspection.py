@@ -77,6 +77,10 @@ def test_a_recording_is_examined_and_its_noise_is_offered(tmp_path, sound):
     assert all(each.channel == each.name for held in found.channels.values() for each in held)
 
 
+def say_noise(folder):
+    return {each.channel: each.sentence for each in inspect_recording(folder).doubts if each.kind == "noise"}
+
+
 def test_the_noise_of_a_recording_that_states_none_is_offered_from_its_floor_and_from_repeats(noisy_table, tmp_path):
     generator = np.random.default_rng(11)
     again = {**noisy_table, "damper_force": noisy_table["damper_force"] + 2.0 * generator.standard_normal(5001)}
@@ -87,17 +91,11 @@ def test_the_noise_of_a_recording_that_states_none_is_offered_from_its_floor_and
     )
     stated.write_text(text)
     import_files(files, tmp_path / "once", stated)
-    said = {
-        issue.channel: issue.sentence for issue in inspect_recording(tmp_path / "once").doubts if issue.kind == "noise"
-    }
+    said = say_noise(tmp_path / "once")
     offered = {name: float(sentence.rpartition(" ")[2]) for name, sentence in said.items()}
     assert offered["floor_acceleration"] == pytest.approx(0.01, rel=0.2)
     assert offered["damper_force"] == pytest.approx(2.5, rel=0.2)
     stated.write_text(text + "repeats: {b: a}\n")
     import_files(files, tmp_path / "repeated", stated)
-    said = {
-        issue.channel: issue.sentence
-        for issue in inspect_recording(tmp_path / "repeated").doubts
-        if issue.kind == "noise"
-    }
+    said = say_noise(tmp_path / "repeated")
     assert "repeats of one excitation differ by noise_rms: 1.4" in said["damper_force"]
