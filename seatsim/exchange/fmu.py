@@ -69,8 +69,8 @@ def make_files(block: Block, version: int) -> dict[str, bytes]:
     files = {"modelDescription.xml": _describe(block, variables, version, token)}
     files |= {f"sources/{name}": text.encode() for name, text in sources.items()}
     if version == 3:
-        described = _fill_xml("buildDescription.xml", identifier=identifier(block), system=platform.system())
-        files["sources/buildDescription.xml"] = described
+        described = fill("fmi/buildDescription.xml", identifier=identifier(block), system=platform.system())
+        files["sources/buildDescription.xml"] = described.encode()
     return files
 
 
@@ -91,12 +91,7 @@ def _describe(block: Block, variables: Sequence[Variable], version: int, token: 
         for v in variables
     ]
     words["outputs"] = [k for k, v in enumerate(variables) if v.causality == "output"]
-    return _fill_xml("modelDescription.xml", **words)
-
-
-def _fill_xml(name: str, **words: object) -> bytes:
-    """Return an XML file of this package; an apostrophe needs no escape between quotation marks."""
-    return fill(f"fmi/{name}", **words).replace("&#39;", "'").replace("&#34;", "&quot;").encode()
+    return fill("fmi/modelDescription.xml", **words).encode()
 
 
 def _unit_name(v: Variable) -> str:
