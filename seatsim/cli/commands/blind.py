@@ -22,23 +22,23 @@ blind = typer.Typer(help="Check diagnoses on recordings whose effects are sealed
 @with_options("own_code")
 def blind_make(
     out_folder: NewFolder,
-    sealed: Annotated[Path, typer.Option("--sealed", help="File for the encrypted labels.")],
-    cases: Annotated[
-        int | None, typer.Option("--cases", min=1, help="How many recordings; of a public set the first ones.")
-    ] = None,
-    public: Annotated[
-        str | None,
-        typer.Option("--set", metavar="NAME", help="The public set of this name, the same everywhere: 60 varied rigs."),
-    ] = None,
-    seed: Annotated[int | None, typer.Option("--seed", help="Seed of the draw; drawn and sealed where absent.")] = None,
-    kinds: Annotated[
-        str, typer.Option("--kinds", help="mixed, varied, none, one, two, outside, null or background.")
-    ] = "mixed",
-    carrier: Annotated[
-        Path | None, typer.Option("--carrier", help="A measured recording into which the effects are put instead.")
-    ] = None,
+    sealed: Annotated[Path, typer.Option("--sealed")],
+    cases: Annotated[int | None, typer.Option("--cases", min=1)] = None,
+    public: Annotated[str | None, typer.Option("--set", metavar="NAME")] = None,
+    seed: Annotated[int | None, typer.Option("--seed")] = None,
+    kinds: Annotated[str, typer.Option("--kinds")] = "mixed",
+    carrier: Annotated[Path | None, typer.Option("--carrier")] = None,
 ) -> None:
-    """Draw rigs with hidden effects, write recordings of them and seal the labels; the key is printed once."""
+    """Draw rigs with hidden effects, write recordings of them and seal the labels; the key is printed once.
+
+    Options:
+        sealed: File for the encrypted labels.
+        cases: How many recordings; of a public set the first ones.
+        public: The public set of this name, the same everywhere: 60 varied rigs.
+        seed: Seed of the draw; drawn and sealed where absent.
+        kinds: mixed, varied, none, one, two, outside, null or background.
+        carrier: A measured recording into which the effects are put instead.
+    """
     from seatsim.blind.carrier.make import make_on_carrier
     from seatsim.blind.make.make import PUBLIC_CASES, make, make_public
     from seatsim.cli.outputs.answers import BlindMakeAnswer
@@ -65,14 +65,19 @@ def blind_make(
 @blind.command("score")
 @with_options("own_code")
 def blind_score(
-    folder: Annotated[Path, typer.Argument(help="Folder of `blind make`; undiagnosed cases are diagnosed first.")],
-    sealed: Annotated[Path, typer.Option("--sealed", help="File of the encrypted labels.")],
-    key: Annotated[str, typer.Option("--key", help="The key that `blind make` printed.")],
-    out_folder: Annotated[
-        Path | None, typer.Option("--out", help="Folder for score.json, FOLDER by default.", callback=check_out)
-    ] = None,
+    folder: Annotated[Path, typer.Argument()],
+    sealed: Annotated[Path, typer.Option("--sealed")],
+    key: Annotated[str, typer.Option("--key")],
+    out_folder: Annotated[Path | None, typer.Option("--out", callback=check_out)] = None,
 ) -> None:
-    """Diagnose every recording of a sealed set and score the verdicts against the labels."""
+    """Diagnose every recording of a sealed set and score the verdicts against the labels.
+
+    Options:
+        folder: Folder of `blind make`; undiagnosed cases are diagnosed first.
+        sealed: File of the encrypted labels.
+        key: The key that `blind make` printed.
+        out_folder: Folder for score.json, FOLDER by default.
+    """
     from seatsim.blind.score.score import score
     from seatsim.blind.sealed import unseal
     from seatsim.cli.outputs.diagnosis_results import make_score_tables
