@@ -7,16 +7,22 @@ travel in the H-infinity synthesis. The points are runs of the quickstart at 20 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import yaml
+from matplotlib.figure import Figure
 
 import seatsim
+from seatsim.metrics.table import COMFORT, SEAT, TRAVEL
 from seatsim.plots import style
-from seatsim.plots.style import DARK, Entry, Grid
-from seatsim.simulation.performance_bounds import compute_performance_bounds
+from seatsim.plots.labels import describe_metric
+from seatsim.plots.runs.comparison import BEST, BOUND, FLOOR, draw_bounds
+from seatsim.plots.saving import save_figure
+from seatsim.plots.style import Entry, Grid
+from seatsim.simulation.performance_bounds import PerformanceBounds, compute_performance_bounds
 from seatsim.simulation.result import Run
 
 HERE = Path(__file__).parent
@@ -38,9 +44,9 @@ CURVES = (
     Curve(SYNTHESISED, "H-infinity", "controller.weights.travel", (1.6, 2.0, 2.3, 2.7, 3.2, 5.0)),
 )
 PUBLISHED = Entry("gain of Yu et al. 2019", "black", "none", mark="D")
-BOUND = Entry("no damper without memory comes below", "black", width=1.6)
-REACHED = Entry("best found of an ideal damper that knows the floor ahead", DARK, (0.0, (5.0, 1.5)), 1.6)
-FLOOR = Entry("as much as the floor (SEAT = 1)", DARK, ":", 1.6)
+QUICKSTART = Entry("travel of the quickstart", style.GREY, width=1.0)
+ACROSS = np.linspace(5.0, 19.0, 200)
+"""RMS travel in mm of the bounds."""
 
 
 def run_variant(variant: str, **settings: object) -> Run:
@@ -53,8 +59,25 @@ def run_variant(variant: str, **settings: object) -> Run:
 
 def place(run: Run) -> tuple[float, float]:
     """Return RMS travel in mm and Wk-weighted RMS acceleration in m/s^2 of a run."""
-    found = run.metrics
-    return 1e3 * found["suspension_displacement_rms"].value, found["driver_acceleration_weighted"].value
+    return 1e3 * run.read_metric(TRAVEL), run.read_metric(COMFORT)
+
+
+def draw(curves: Sequence[Sequence[Run]], published: Run, ours: Run, bounds: PerformanceBounds) -> Figure:
+    """Return the picture of the runs of each curve, those of the two gains, and the bounds of the rig."""
+    title = "An H-infinity gain that measures travel alone comes near the skyhook"
+    note = "Scraper (ISO 7096 EM2), damper at 20 °C, no end stops; lower left is better."
+    legend = [*(curve.entry for curve in CURVES), PUBLISHED, QUICKSTART, BEST, BOUND, FLOOR]
+    figure, [[axes]] = style.make_page(title, note, Grid((3.4,)), legend)
+    draw_bounds(axes, ACROSS, bounds)
+    axes.axvline(place(ours)[0], color=QUICKSTART.colour, linewidth=QUICKSTART.width)
+    axes.axhline(place(ours)[1] / ours.read_metric(SEAT), color=FLOOR.colour, linestyle=FLOOR.dashes)
+    for curve, runs in zip(CURVES, curves, strict=True):
+        travel, comfort = zip(*map(place, runs), strict=True)
+        style.draw_line(axes, travel, comfort, curve.entry._replace(mark="."))
+    style.draw_line(axes, [place(published)[0]], [place(published)[1]], PUBLISHED)
+    axes.set(xlim=(ACROSS[0], ACROSS[-1]), ylim=(0.4, 1.6))
+    axes.set(xlabel=describe_metric(TRAVEL).axis, ylabel=describe_metric(COMFORT).axis)
+    return figure
 
 
 def main() -> None:
@@ -63,30 +86,7 @@ def main() -> None:
     published = run_variant("H-infinity", controller={"law": "static_output_feedback", "gain": [2.0, 2147.6]})
     ours = run_variant("H-infinity")
     ((_, bounds),) = compute_performance_bounds([ours], print)
-    legend = [PASSIVE, SKYHOOK, SYNTHESISED, PUBLISHED, REACHED, BOUND, FLOOR]
-    title = "An H-infinity gain that measures travel alone comes near the skyhook"
-    note = (
-        "Scraper (ISO 7096 EM2), damper at 20 °C, no end stops; lower left is better. Grey: travel of the quickstart."
-    )
-    page = style.make_page(title, note, Grid((3.4,)), legend)
-    axes = page.rows[0][0]
-    for curve, runs in zip(CURVES, curves, strict=True):
-        travel, comfort = zip(*map(place, runs), strict=True)
-        style.draw_line(axes, travel, comfort, curve.entry)
-        axes.plot(travel, comfort, "o", color=curve.entry.colour, markersize=4)
-    axes.plot(*place(published), "D", color=PUBLISHED.colour)
-    across = np.linspace(5.0, 19.0, 200)
-    style.draw_line(axes, across, bounds.bound(1e-3 * across), BOUND)
-    style.draw_line(axes, across, bounds.best(1e-3 * across), REACHED)
-    axes.axvline(place(ours)[0], color=style.GREY, linewidth=1.0)
-    axes.axhline(
-        ours.metrics["driver_acceleration_weighted"].value / ours.metrics["seat_factor"].value, color=DARK, ls=":"
-    )
-    axes.set_xlim(across[0], across[-1])
-    axes.set_ylim(0.4, 1.6)
-    axes.set_xlabel("RMS suspension travel [mm]")
-    axes.set_ylabel("driver, Wk RMS [m/s²]")
-    page.figure.savefig(HERE / "images" / "frontier.png")
+    save_figure(draw(curves, published, ours, bounds), HERE / "images" / "frontier.png")
 
 
 if __name__ == "__main__":

@@ -6,10 +6,12 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from matplotlib.axes import Axes
+from matplotlib.collections import PathCollection
 
 from seatsim.plots import style
 from seatsim.plots.labels import clean_text
 from seatsim.plots.style import Entry, Grid, Page
+from seatsim.schema.arrays import Array
 from seatsim.simulation.damper_bench import SineTest
 
 SIGNS = "Positive: extension, and the force that opposes it."
@@ -44,6 +46,12 @@ def make_loop_page(title: str, note: str, families: Sequence[Family], more: int 
                 borderaxespad=0, fontsize=style.FONT, title_fontsize=style.FONT, handlelength=1.2, handletextpad=0.5,
             )  # fmt: skip
     return page
+
+
+def draw_samples(axes: Axes, across: Array, force: Array, current: Array, most: float) -> PathCollection:
+    """Draw samples of a force coloured by the current, from 0 to the most in A; return them."""
+    colours, end = style.shade("viridis"), most or 1.0
+    return axes.scatter(across, force, 6, current, cmap=colours, vmin=0.0, vmax=end, linewidths=0, rasterized=True)
 
 
 def label_panels(panels: Sequence[Axes], title: str) -> None:

@@ -18,7 +18,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator, NullLocator
+from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 from matplotlib.typing import LineStyleType
 from numpy.typing import ArrayLike
 
@@ -48,8 +48,10 @@ DASHES: tuple[LineStyleType, ...] = ("-", (0.0, (5.0, 1.5)), (0.0, (7.0, 1.5, 1.
 """Neighbours differ in their dashes, and so do the two blues and the two reds: colour is not the only difference."""
 AREA = "0.91"
 """Grey of areas, such as a band of noise; a wide line of a legend names one."""
+_TICK = (0.4, 0.2)
+"""Least distance of the numbers of an axis in inches, along and up: wide enough for a sign and three digits."""
 _FREQUENCIES = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000)
-"""Hz that an axis names."""
+"""Hz at which an axis begins."""
 
 
 class Entry(NamedTuple):
@@ -65,6 +67,11 @@ class Entry(NamedTuple):
     alpha: float = 1.0
     mark: str = ""
     hollow: bool = False
+
+
+OWN_SCALES = " Each panel has its own scales."
+MEASURED = Entry("measured", GREY, width=3.2)
+"""Wide and pale: a simulation that agrees lies upon it, and both are seen."""
 
 
 class Page(NamedTuple):
@@ -86,8 +93,8 @@ class Grid(NamedTuple):
 
     heights: Sequence[float]
     columns: int = 1
-    left: float = 0.8
-    right: float = 0.15
+    left: float = 0.9
+    right: float = 0.2
     top: float = 0.12
     bottom: float = 0.5
     gap: tuple[float, float] = (0.75, 0.7)
@@ -96,6 +103,10 @@ class Grid(NamedTuple):
     def width(self) -> float:
         """Width of a panel in inches."""
         return (WIDTH - self.left - self.right - self.gap[0] * (self.columns - 1)) / self.columns
+
+
+ROWS = Grid((), right=0.5)
+"""One panel of rows, with room for a figure behind the longest bar."""
 
 
 def make_entries(labels: Sequence[str]) -> list[Entry]:
@@ -212,19 +223,6 @@ def _lengthen_note(figure: Figure, sentence: str) -> None:
         legend.set_bbox_to_anchor((anchor.x0, anchor.y0 * old / new))
 
 
-def split_panel(figure: Figure, axes: Axes, lower: float) -> Axes:
-    """Return a new panel in the lower share of one's height, which keeps the rest; it has its ticks on the right."""
-    box = axes.get_position()
-    axes.set_position((box.x0, box.y0 + (lower + 0.05) * box.height, box.width, (0.95 - lower) * box.height))
-    added = _add_panel(figure, (box.x0, box.y0, box.width, lower * box.height))
-    added.sharex(axes)
-    axes.tick_params(labelbottom=False)
-    added.yaxis.tick_right()
-    added.spines["left"].set_visible(False)
-    added.spines["right"].set_visible(True)
-    return added
-
-
 def set_title(axes: Axes, text: str) -> None:
     """Put a title above a panel, as wide as the panel at most."""
     width = axes.get_position().width * WIDTH
@@ -234,13 +232,12 @@ def set_title(axes: Axes, text: str) -> None:
 def scale_log(axes: Axes, which: Literal["x", "y"], low: float, high: float) -> None:
     """Make an axis logarithmic from `low` to `high`: 1, 2, 5 or 1, 3 of each decade where there is room, or decades."""
     axes.set(**{f"{which}scale": "log", f"{which}lim": (low, high)})
-    axis, length = (axes.xaxis, axes.bbox.width) if which == "x" else (axes.yaxis, axes.bbox.height)
+    axis, most = (axes.xaxis, _count_ticks(axes)[0]) if which == "x" else (axes.yaxis, _count_ticks(axes)[1])
     is_plain = low > 2e-4 and high < 5e4
-    most = int(length / axes.figure.dpi / (0.42 if which == "x" else 0.2))
     # Powers of ten with a factor read badly: they stand where decades alone would be too few.
     room = np.log10(high / low) / (most if is_plain else 0.5 * most)
     subs = next((subs for subs in ((1, 2, 5), (1, 3)) if room * len(subs) <= 1), (1,))
-    axis.set_major_locator(LogLocator(subs=subs, numticks=max(2, most)))
+    axis.set_major_locator(LogLocator(subs=subs, numticks=most))
     axis.set_major_formatter("{x:g}" if is_plain else _write_power)
     axis.set_minor_locator(NullLocator())
 
@@ -249,7 +246,6 @@ def scale_frequency_axis(axes: Axes, low: float, high: float) -> None:
     """Make the lower axis of a panel one of frequency in Hz, logarithmic, from a named frequency to the highest."""
     low = max((tick for tick in _FREQUENCIES if tick <= low < high), default=_FREQUENCIES[0])
     scale_log(axes, "x", low, high)
-    axes.xaxis.set_major_locator(FixedLocator([tick for tick in _FREQUENCIES if low <= tick <= high]))
     axes.set_xlabel("frequency [Hz]")
 
 
@@ -262,6 +258,20 @@ def name_rows(axes: Axes, names: Sequence[str], strong: Sequence[int] = ()) -> N
     axes.grid(False, axis="y")
     axes.tick_params(axis="y", length=0)
     axes.spines["left"].set_visible(False)
+
+
+def make_rows(
+    title: str, note: str, names: Sequence[str], legend: Sequence[Entry], strong: Sequence[int], grid: Grid = ROWS
+) -> tuple[Figure, list[Axes]]:
+    """Return a figure of panels beside each other, of rows that are named once; those in `strong` stand out.
+
+    The grid says all but the height and the left margin, which follow from the names.
+    """
+    grid = grid._replace(heights=(ROW * len(names) + 0.1,), left=measure_names(names))
+    figure, [panels] = make_page(title, note, grid, legend)
+    for axes in panels:
+        name_rows(axes, names if axes is panels[0] else [""] * len(names), strong)
+    return figure, panels
 
 
 def measure_names(names: Sequence[str]) -> float:
@@ -304,7 +314,8 @@ def _count_columns(legend: Sequence[Entry]) -> int:
     for count in range(len(letters), 1, -1):
         widths = [LETTER * max(column) + SAMPLE for column in np.array_split(letters, count)]
         if sum(widths) <= WIDTH - 2 * _MARGIN:
-            return count
+            # No more columns than the rows need: an order by columns is read wrong where some are much shorter.
+            return -(-len(letters) // -(-len(letters) // count))
     return 1
 
 
@@ -325,7 +336,17 @@ def _add_panel(figure: Figure, place: tuple[float, float, float, float]) -> Axes
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
     axes.tick_params(labelsize=FONT)
-    wide, tall = place[2] * WIDTH, place[3] * float(figure.get_figheight())
-    axes.xaxis.set_major_locator(MaxNLocator(max(2, int(wide / 0.5)), steps=(1, 2, 5, 10)))
-    axes.yaxis.set_major_locator(MaxNLocator(max(2, int(tall / 0.3)), steps=(1, 2, 5, 10)))
+    _place_ticks(axes)
     return axes
+
+
+def _place_ticks(axes: Axes) -> None:
+    """Put numbers along the axes of a panel, at multiples of 1, 2 or 5, as many as there is room for."""
+    for axis, most in zip((axes.xaxis, axes.yaxis), _count_ticks(axes), strict=True):
+        axis.set_major_locator(MaxNLocator(most, steps=(1, 2, 5, 10)))
+
+
+def _count_ticks(axes: Axes) -> tuple[int, int]:
+    """Return how many numbers the axes of a panel have room for, along and up."""
+    along, up = (size / axes.figure.dpi for size in axes.bbox.size)
+    return max(2, int(along / _TICK[0])), max(2, int(up / _TICK[1]))

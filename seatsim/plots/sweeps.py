@@ -13,7 +13,18 @@ from numpy.typing import NDArray
 from seatsim.metrics.table import COMFORT, METRICS, TRAVEL
 from seatsim.plots import style
 from seatsim.plots.labels import clean_text, describe_metric
-from seatsim.plots.style import COLOURS, DARK, ROW, Entry, Grid, draw_bars, make_page, measure_names, name_rows
+from seatsim.plots.style import (
+    COLOURS,
+    DARK,
+    ROW,
+    Entry,
+    Grid,
+    draw_bars,
+    make_page,
+    make_rows,
+    measure_names,
+    name_rows,
+)
 from seatsim.schema.arrays import Array
 from seatsim.schema.printing import Quantity, describe_channel, format_number, format_percent, format_unit
 from seatsim.sweeps.parts import SweepRows, is_number
@@ -54,12 +65,9 @@ def plot_shares(found: Sequence[Sensitivity], words: str) -> Figure:
         Entry("the key alone", COLOURS[0], width=8),
         Entry("with its interactions, 95 % interval", "black", width=1.6),
     )
-    names = [row.key for row in rows]
-    grid = Grid((ROW * len(rows) + 0.1,), left=measure_names(names), right=1.1)
-    figure, [[axes]] = make_page(f"What determines the {words}", note, grid, legend)
-    name_rows(axes, names, [0])
-    colours = [COLOURS[0], *[style.GREY] * (len(rows) - 1)]
-    draw_bars(axes, [100 * _clip(row.first) for row in rows], colours, [""] * len(rows))
+    names, grid = [row.key for row in rows], Grid((), right=1.1)
+    figure, [axes] = make_rows(f"What determines the {words}", note, names, legend, [0], grid)
+    draw_bars(axes, [100 * _clip(row.first) for row in rows], [COLOURS[0]] * len(rows), [""] * len(rows))
     for k, row in enumerate(rows):
         ends = [100 * _clip(end) for end in (row.total_low, row.total_high)]
         axes.plot(ends, [k, k], color="black", linewidth=1.6, zorder=3)
@@ -121,7 +129,7 @@ def plot_comfort(rows: SweepRows, order: Sequence[str]) -> Figure | None:
     said = "" if colour in (None, "variant") else f" The colours are values of {colour}."
     columns = min(2, len(parts))
     grid = Grid((3.2 if columns == 1 else 2.0,) * -(-len(parts) // columns), columns, top=0.3, gap=(0.7, 0.85))
-    note = f"Lower left is better.{said}{some}"
+    note = f"Lower left is better.{style.OWN_SCALES * (len(parts) > 1)}{said}{some}"
     page = make_page("Comfort against travel", note, grid, [*looks, _FRONT])
     for axes, (title, part) in zip(page.list_panels(len(parts)), parts, strict=True):
         dots = part.sample(most, random_state=0) if len(part) > most else part

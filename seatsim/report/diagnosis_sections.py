@@ -11,8 +11,7 @@ from dataclasses import replace
 
 from seatsim.diagnosis.residuals import drop_start
 from seatsim.diagnosis.result import CalibratedParameter, Cause, Diagnosis, Estimate, Gaps, RunGaps
-from seatsim.plots.diagnosis.answer import STAGES, Key, read_gap, select_stages
-from seatsim.plots.diagnosis.signals import name_last
+from seatsim.plots.diagnosis.answer import STAGES, Key, find_last, read_gap, select_stages
 from seatsim.report.blocks import Block, Figures, Items, Table, Text, show_pictures, tabulate
 from seatsim.report.formatting import (
     describe_effect,
@@ -168,7 +167,7 @@ def show_signals(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
     lines = {
         "measured": ("measured", MEASURED),
         "nominal": ("nominal", 1),
-        "after": (name_last(diagnosis), 0 if diagnosis.selected else 2),
+        "after": (find_last(diagnosis).label, 0 if diagnosis.selected else 2),
     }
     ordered = sorted(named, key=lambda trace: -gaps.get(trace.channel, 0.0))
     runs = list(dict.fromkeys(trace.run for trace in named))
@@ -195,7 +194,7 @@ def show_comfort(diagnosis: Diagnosis) -> list[Table]:
         measured, nominal, after = (format_quantity(x, each.unit) for x in (each.measured, each.nominal, each.after))
         errors = [_format_error(value, each.measured) for value in (each.nominal, each.after)]
         rows.append((each.quantity.replace("_", " "), measured, nominal, errors[0], after, errors[1]))
-    return show_table("comfort", rows, last=name_last(diagnosis))
+    return show_table("comfort", rows, last=find_last(diagnosis).label)
 
 
 def show_budget(diagnosis: Diagnosis) -> list[Block]:

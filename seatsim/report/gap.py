@@ -23,7 +23,7 @@ from seatsim.report.credibility import NEAR_NOISE, Factor, count_variations, sta
 from seatsim.report.formatting import explain, format_noise, format_quantity, say_noise, scale_row, show_table
 from seatsim.report.packing import MEASURED, pack_traces
 from seatsim.scenario.loading import single
-from seatsim.schema.printing import UNKNOWN, format_number, format_percent
+from seatsim.schema.printing import UNKNOWN, format_percent
 
 
 def report_gap(name: str, found: Gap, factors: Sequence[Factor], command: str) -> Report:
@@ -90,7 +90,7 @@ def _tabulate_gaps(found: Gap) -> list[Table]:
     for name, traces in groups.items():
         words, unit = name.replace("_", " "), traces[0].unit
         left = np.concatenate([trace.measured - trace.nominal for trace in traces])
-        sizes = [_format_small(size, unit) for size in (rms(left), float(np.mean(left)))]
+        sizes = [format_quantity(size, unit) for size in (rms(left), float(np.mean(left)))]
         rows.append([words, format_percent(found.channels[name]), format_noise(found.floor.channels[name]), *sizes])
         gaps = {trace.run: nominal_gap(trace) for trace in traces if np.ptp(trace.measured) > 0}
         each_run.append([words, *(format_percent(gaps.get(run)) for run in runs)])
@@ -99,11 +99,6 @@ def _tabulate_gaps(found: Gap) -> list[Table]:
         caption = "Gap of each run, in per cent of the standard deviation of the signal in the run"
         tables.append(Table(caption, ["channel", *runs], each_run))
     return tables
-
-
-def _format_small(value: float, unit: str) -> str:
-    """Return a difference with its unit; one of a current in mA."""
-    return f"{format_number(1e3 * value)} mA" if unit == "A" else format_quantity(value, unit)
 
 
 def show_agreement(found: Gap) -> list[Block]:

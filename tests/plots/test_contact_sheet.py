@@ -34,6 +34,8 @@ from seatsim.sweeps.sensitivity import analyse_sensitivity
 
 from ..report import diagnoses, kinds
 
+EDGE = 4
+"""Pixels of a hundred to the inch that stay free around a page."""
 LONG = "a variant whose name goes on and on, beyond all use"
 RUNS = {
     "warming": lambda make: [make(wanted=False, warming=15.0)],
@@ -104,7 +106,8 @@ def test_everything_is_legible_and_inside_the_page(figures):
         assert figure.get_figwidth() == WIDTH and min(text.get_fontsize() for text in figure.findobj(Text)) >= 9
         for part in [*figure.axes, *figure.texts, *figure.legends]:
             box = part.get_tightbbox()
-            assert box.x0 >= 0 and box.x1 <= width and box.y0 >= 0 and box.y1 <= height, (name, part, box)
+            inside = box.x0 >= EDGE and box.x1 <= width - EDGE and box.y0 >= EDGE and box.y1 <= height - EDGE
+            assert inside, (name, part, box)
 
 
 def test_no_two_texts_collide(figures):

@@ -22,6 +22,8 @@ MOST = 6
 """Most responses in a panel."""
 SHOWN = 3.6
 """Length of a panel over the longest time to 90 %."""
+SYMMETRIC = 1e-3
+"""Asymmetric part over the RMS force up to which it is no more than rounding and noise."""
 _TIMES = (("t10", 0.1), ("t63", 1.0 - math.exp(-1.0)), ("t90", 0.9))
 """Times that are marked, with the shares of the change that they are of."""
 
@@ -29,12 +31,14 @@ _TIMES = (("t10", 0.1), ("t63", 1.0 - math.exp(-1.0)), ("t90", 0.9))
 def plot_characterisation(found: Characterisation) -> dict[str, Figure]:
     """Return the figures of a characterisation by name.
 
-    `loops` is always there, `energy` and `asymmetry` where there are cycles, `steps` where a response was determined,
-    `warm_up` where a record has many cycles.
+    `loops` is always there, `energy` where there are cycles, `asymmetry` where one of them has some, `steps` where a
+    response was determined, `warm_up` where a record has many cycles.
     """
     figures = {"loops": plot_loops(found)}
     if any(row.loop is not None for row in found.rows):
-        figures |= {"energy": plot_energy(found), "asymmetry": plot_asymmetry(found)}
+        figures["energy"] = plot_energy(found)
+    if any(row.asymmetry > SYMMETRIC for row in found.rows):
+        figures["asymmetry"] = plot_asymmetry(found)
     if any(answer.share is not None for answer in found.responses):
         figures["steps"] = plot_steps(found)
     if found.sheet.warm_up:

@@ -14,7 +14,7 @@ from seatsim.identification.identify import Identification
 from seatsim.plots import style
 from seatsim.plots.labels import clean_text
 from seatsim.plots.loops import SIGNS
-from seatsim.plots.style import GREY, Entry, Grid
+from seatsim.plots.style import MEASURED, Entry, Grid
 from seatsim.plots.thinning import spread_evenly
 from seatsim.schema.text import shorten_paths
 
@@ -24,7 +24,7 @@ SHOWN = 1200
 """Most rows of a record that are drawn, from the stretch with the highest speed."""
 START = 0.3
 """s at the start of a record that are left out: there the state of the damper is not known."""
-MEASURED, _PREDICTED = Entry("measured", GREY, width=3.2), Entry("predicted", style.COLOURS[1], width=1.2)
+_PREDICTED = Entry("predicted", style.COLOURS[1], style.DASHES[1], 1.2)
 _DIFFERENCE = Entry("measured less predicted", style.COLOURS[0], width=1.0)
 FIT = "Fit (normalised RMS): 100 % less the RMS error as a share of the measured force's standard deviation."
 PARTS = {"train": "fitted", "test": "held out", "predicted": "predicted only"}
@@ -44,12 +44,12 @@ def name_records(judged: Sequence[Assessment]) -> list[str]:
 
 
 def plot_predictions(found: Identification) -> Figure:
-    """Return force over velocity, over displacement and over time of some records, and what is left of it over time.
+    """Return force over velocity and over displacement of some records, and what is left of it over time.
 
     Held-out records come before fitted ones.
     """
     chosen = select_records(found.assessments)
-    grid = Grid(heights=(1.9,) * len(chosen), columns=3, right=0.62, top=0.3, gap=(0.2, 0.8))
+    grid = Grid(heights=(1.9,) * len(chosen), columns=3, right=0.7, top=0.3, gap=(0.2, 0.8))
     note, mean = f"{len(chosen)} of {len(found.assessments)} records", found.assessed
     note += f"; mean fit {mean.fit_percent:.1f} %{' of held-out records' * bool(found.mean('test'))}" if mean else ""
     legend = (MEASURED, _PREDICTED, _DIFFERENCE)
@@ -57,7 +57,7 @@ def plot_predictions(found: Identification) -> Figure:
     for panels, judged, name in zip(page.rows, chosen, name_records(chosen), strict=True):
         title = f"{name} ({PARTS[judged.part]}), fit {judged.agreement.fit_percent:.1f} %"
         panels[0].set_title(clean_text(title, 64), loc="left", fontsize=style.FONT)
-        _draw_record([*panels, style.split_panel(page.figure, panels[2], 0.35)], judged)
+        _draw_record(panels, judged)
     return style.name_coincident(page.figure)
 
 
@@ -65,16 +65,15 @@ def _draw_record(panels: Sequence[Axes], judged: Assessment) -> None:
     record = judged.record
     first, last = record.liveliest(SHOWN)
     part = slice(max(first, min(int(np.searchsorted(record.time, record.time[0] + START)), last // 2)), last)
-    for axes, across, name in (
-        (panels[0], record.velocity, "velocity [m/s]"),
-        (panels[1], 1e3 * record.displacement, "displacement [mm]"),
-        (panels[2], record.time, ""),
-    ):
+    motion = ((record.velocity, "velocity [m/s]"), (1e3 * record.displacement, "displacement [mm]"))
+    for axes, (across, name) in zip(panels, motion, strict=False):
         style.draw_line(axes, across[part], record.force[part], MEASURED)
         style.draw_line(axes, across[part], judged.predicted[part], _PREDICTED)
         axes.set(xlabel=name, ylim=panels[0].get_ylim())
         axes.tick_params(labelleft=axes is panels[0])
     panels[0].set_ylabel("force [N]")
-    style.draw_line(panels[3], record.time[part], record.force[part] - judged.predicted[part], _DIFFERENCE)
-    panels[3].set(xlabel="time [s]", ylabel="difference [N]")
-    panels[3].yaxis.set_label_position("right")
+    style.draw_line(panels[2], record.time[part], record.force[part] - judged.predicted[part], _DIFFERENCE)
+    panels[2].set(xlabel="time [s]", ylabel="difference [N]")
+    panels[2].yaxis.set_label_position("right")
+    panels[2].yaxis.tick_right()
+    panels[2].spines[["left", "right"]].set_visible(True)

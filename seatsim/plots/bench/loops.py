@@ -12,7 +12,7 @@ from seatsim.characterisation.rows import WARMER, Row, group_rows
 from seatsim.characterisation.summary import Characterisation, group_by_setting
 from seatsim.plots import style
 from seatsim.plots.labels import clean_text
-from seatsim.plots.loops import Family, label_panels, make_loop_page
+from seatsim.plots.loops import Family, draw_samples, label_panels, make_loop_page
 from seatsim.plots.thinning import spread_evenly
 from seatsim.simulation.damper_bench import SineTest
 
@@ -67,10 +67,8 @@ def order_by_current(group: Sequence[Row]) -> Family:
         full = [row.record for row in rows]
         # The current, or the time in the record, stands behind the last comma; it may be all that differs.
         short = [name.rpartition(",")[0] or name for name in full]
-        legend, names = (
-            "record",
-            [clean_text(name, _LONGEST) for name in (short if len(set(short)) == len(rows) else full)],
-        )
+        legend = "record"
+        names = [clean_text(name, _LONGEST) for name in (short if len(set(short)) == len(rows) else full)]
     at = f", {rows[0].temperature:.0f} °C" if np.isfinite(rows[0].temperature) and legend == "current" else ""
     return Family(describe_setting(rows[0]) + at, legend, list(zip(names, map(_centre_loop, rows), strict=True)))
 
@@ -129,10 +127,7 @@ def _draw_clouds(panels: Sequence[Axes], group: Sequence[Row]) -> None:
         assert row.cloud is not None
         x, v, force, current = (values[:: max(1, len(row.cloud.force) // DOTS)] for values in row.cloud)
         for axes, across in ((panels[0], v), (panels[1], 1e3 * x)):
-            dots = axes.scatter(
-                across, force, c=current, s=5, alpha=0.6, cmap=style.shade("viridis"), vmin=0.0, vmax=most or 1.0,
-                linewidths=0, rasterized=True,
-            )  # fmt: skip
+            dots = draw_samples(axes, across, force, current, most)
     names = list(dict.fromkeys(row.record.split(",")[0] for row in group))
     label_panels(panels, f"{names[0]}{f' and {len(names) - 1} more' * (len(names) > 1)}, not cyclic")
     if most > 0:

@@ -80,16 +80,15 @@ def plot_warm_up(found: Characterisation) -> Figure:
     shown = spread_evenly([*records.values()], MOST)
     looks = style.make_entries([_name_warm_up(cycles) for cycles in shown])
     note = "Force at the peak speed of each cycle; where the damper's temperature is known, the last one is at the end."
-    page = style.make_page(f"Fade as the damper warms up: {found.name}", note, Grid((2.8,), right=0.6), looks)
-    panel = page.rows[0][0]
+    title = f"Fade as the damper warms up: {found.name}"
+    figure, [[panel]] = style.make_page(title, note, Grid((2.8,), right=0.6), looks)
     for cycles, look in zip(shown, looks, strict=True):
         energy, share = [1e-3 * each.absorbed for each in cycles], [each.relative_force for each in cycles]
         style.draw_line(panel, energy, share, look)
         if np.isfinite(cycles[-1].temperature):
             panel.text(energy[-1], share[-1], f" {cycles[-1].temperature:.0f} °C", fontsize=style.FONT, va="center")
-    panel.set_xlabel("absorbed energy [kJ]")
-    panel.set_ylabel("force / that of the first cycle [-]")
-    return style.name_coincident(page.figure)
+    panel.set(xlabel="absorbed energy [kJ]", ylabel="force / that of the first cycle [-]")
+    return style.name_coincident(figure)
 
 
 def _name_warm_up(cycles: Sequence[WarmUp]) -> str:
@@ -106,7 +105,7 @@ def _plot_trends(title: str, note: str, found: Characterisation, figures: Sequen
         fixed += " Error bars: standard deviation over the cycles."
     if any(row.temperature_range > WARMER and row.cycle_values for row in rows):
         fixed += " Small dots: each cycle."
-    grid = Grid((1.9,) * (len(figures) // 2 * len(blocks)), columns=2, left=0.9, gap=(0.9, 0.65))
+    grid = Grid((1.9,) * (len(figures) // 2 * len(blocks)), columns=2, gap=(0.9, 0.65))
     page = style.make_page(title, note + fixed, grid, list(looks.values()))
     panels = iter(page.list_panels())
     for across, groups in blocks:
@@ -150,19 +149,16 @@ def _draw_trend(
     axes: Axes, across: Abscissa, figure: _Figure, groups: Sequence[Sequence[Row]], looks: dict[str, Entry]
 ) -> None:
     """Draw a figure of some groups of rows over a quantity: a line where no two rows are at the same place."""
-    size = 4.0 + 1.2 * len(looks)
     for group in groups:
         look = looks.get(describe_setting(group[0]))
         if look is None:
             continue
-        # Of marks at one place each is seen, since later ones are smaller.
-        size -= 1.2
         ordered = sorted(group, key=across.value)
         places = [across.value(row) for row in ordered]
         values, spreads, cycles = zip(*map(figure.read, ordered), strict=True)
         apart = bool(np.all(np.diff(places) > (WARMER if across is BY_TEMPERATURE else 0.0)))
         drawn = look if apart else look._replace(dashes="none")
-        style.draw_line(axes, places, values, drawn).set_markersize(size)
+        style.draw_line(axes, places, values, drawn)
         axes.errorbar(
             places, values, np.nan_to_num(spreads), fmt="none", ecolor=look.colour, capsize=2.5, elinewidth=0.9
         )

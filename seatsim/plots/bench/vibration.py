@@ -41,24 +41,19 @@ def _plot_running_rms(found: Comfort, axes: Sequence[str]) -> Figure:
     chosen = spread_evenly(range(len(found.stretches[axes[0]])), MOST)
     note = (
         "RMS of the weighted acceleration over the last second, without multiplying factor. The first second, in which"
-        " the window fills, is left out."
+        " the window fills, is left out. The largest value of all stretches is MTVV."
     )
-    legend = [*looks, Entry("the peak, MTVV", style.DARK, "none", mark="o")]
-    page = style.make_page("Vibration over time", note, Grid((1.5,) * len(chosen), top=0.3), legend)
+    page = style.make_page("Vibration over time", note, Grid((1.5,) * len(chosen), top=0.3), looks)
     for panel, k in zip(page.list_panels(), chosen, strict=True):
         for axis, look in zip(axes, looks, strict=True):
             part = found.stretches[axis][k]
             stride = max(1, round(RASTER * part.sample_rate))
             values = running_rms(part.weighted, part.sample_rate)
-            time, top = np.arange(len(values)) / part.sample_rate, int(np.argmax(values))
-            shown = slice(round(part.sample_rate), None, stride)
+            time, shown = np.arange(len(values)) / part.sample_rate, slice(round(part.sample_rate), None, stride)
             style.draw_line(panel, time[shown], values[shown], look)
-            if part.dose.mtvv == highest[axis]:
-                style.draw_line(panel, time[[top]], values[[top]], look._replace(mark="o"))
         style.set_title(panel, found.stretches[axes[0]][k].run)
-        panel.set_ylim(0.0, 1.05 * max(highest.values()) or 1.0)
-        panel.set_xlabel("time [s]")
-        panel.set_ylabel("a$_w$ over 1 s [m/s²]")
+        panel.set(ylim=(0.0, 1.05 * max(highest.values()) or 1.0))
+        panel.set(xlabel="time [s]", ylabel="a$_w$ over 1 s [m/s²]")
     return style.name_coincident(page.figure)
 
 
@@ -89,16 +84,14 @@ def _plot_operations(day: Exposure, operations: Sequence[Operation]) -> Figure:
     levels = [("action value", day.action_value.a8), ("limit value", day.limit_value.a8)]
     looks = [Entry(f"{name}, {level:g} m/s²", style.DARK, style.DASHES[k]) for k, (name, level) in enumerate(levels)]
     note = f"A(8) along {axis}, where the day's is largest; the squares of the parts add up to that of the day."
-    grid = Grid((style.ROW * len(names),), left=style.measure_names(names))
-    page = style.make_page("What each operation adds to the day", note, grid, looks)
-    panel = page.rows[0][0]
+    title = "What each operation adds to the day"
+    figure, [panel] = style.make_rows(title, note, names, looks, [len(names) - 1])
     colours = [*(style.COLOURS[0] for _ in operations), style.COLOURS[1]]
     style.draw_bars(panel, values, colours, [""] * len(values))
-    style.name_rows(panel, names, [len(names) - 1])
     for (_, level), look in zip(levels, looks, strict=True):
-        panel.axvline(level, color=look.colour, linestyle=look.dashes, linewidth=1.2, zorder=1)
+        panel.axvline(level, color=look.colour, linestyle=look.dashes, linewidth=1.2, zorder=3)
     panel.set_xlabel("A(8) [m/s²]")
-    return page.figure
+    return figure
 
 
 def plot_damping(found: SeatTest) -> dict[str, Figure]:

@@ -10,8 +10,9 @@ from matplotlib.figure import Figure
 
 from seatsim.diagnosis.result import Diagnosis, Gaps, RunGaps
 from seatsim.plots import style
-from seatsim.plots.style import COLOURS, ROW, Entry, Grid, draw_bars, make_page, measure_names, name_rows
+from seatsim.plots.style import COLOURS, Entry, Grid, draw_bars, make_rows
 from seatsim.recordings.gap import Gap, GapFigures
+from seatsim.schema.text import join_names
 
 MOST = 10
 """Causes that are shown."""
@@ -23,7 +24,7 @@ SMALLEST = 1e-4
 """Gap below which none is drawn: a logarithmic scale has no zero."""
 Key = Literal["floor", "before", "calibrated", "after"]
 STAGES: dict[Key, Entry] = {
-    "floor": Entry("noise floor", "0.35", "none", mark="|"),
+    "floor": Entry("noise floor", "black", "none", mark="|", hollow=True),
     "before": Entry("nominal", COLOURS[1], "none", mark="o"),
     "calibrated": Entry("refitted", COLOURS[2], "none", mark="D", hollow=True),
     "after": Entry("with effects", COLOURS[0], "none", mark="s"),
@@ -37,6 +38,11 @@ def select_stages(diagnosis: Diagnosis) -> list[Key]:
     """Return the gaps that are shown, in the order of the diagnosis; without effects `after` is that of the refit."""
     after: list[Key] = ["after"] if diagnosis.selected else []
     return ["before", "calibrated", *after, "floor"]
+
+
+def find_last(diagnosis: Diagnosis) -> Entry:
+    """Return what the simulation of `augmented.yaml` is called, and its mark; without effects it is the refitted."""
+    return STAGES["after" if diagnosis.selected else "calibrated"]
 
 
 def read_gap(gaps: Gaps | RunGaps, key: Key, channel: str) -> float | None:
@@ -74,8 +80,7 @@ def _draw_gaps(
     legend = [stage for stage, values in columns if max(np.nan_to_num(values)) > 0]
     shown = [name.replace("_", " ") for name in names]
     note = f"RMS of measured less simulated over the spread of the signal{where}; further left is better."
-    figure, [[axes]] = make_page(title, note, Grid((ROW * len(names) + 0.15,), left=measure_names(shown)), legend)
-    name_rows(axes, shown, [0])
+    figure, [axes] = make_rows(title, note, shown, legend, [0])
     style.scale_log(axes, "x", min(known, default=1.0) / 1.4, max(known, default=1.0) * 1.4)
     for row, values in enumerate(rows):
         seen = [(stage, 100 * value) for stage, value in zip(stages, values, strict=True) if value > SMALLEST]
@@ -105,9 +110,7 @@ def plot_location(diagnosis: Diagnosis) -> Figure | None:
         title = f"The gap lies in the {' or the '.join(merged)}"
         note += " Light blue: cannot be told from the first on this recording."
     names, values = [share.block for share in shares], [100 * share.share for share in shares]
-    grid = Grid((ROW * len(shares) + 0.1,), left=measure_names(names), right=0.5)
-    figure, [[axes]] = make_page(title, note, grid)
-    name_rows(axes, names)
+    figure, [axes] = make_rows(title, note, names, [], [])
     colours = [_CHOSEN, *(_EQUIVALENT if share.block in alike else OTHER for share in shares[1:])]
     draw_bars(axes, values, colours, list(map(_format_percent, values)))
     axes.set(xlim=(0, 100), xticks=[0, 50, 100], xlabel="share of the gap [%]")
@@ -120,21 +123,17 @@ def plot_ranking(diagnosis: Diagnosis) -> Figure | None:
         return None
     names, probabilities, shrinks, colours, texts = map(list, zip(*_list_rows(diagnosis), strict=True))
     alike = [name for name, colour in zip(names, colours, strict=True) if colour in (_CHOSEN, _EQUIVALENT)]
-    title = "Which effects are at work"
-    if not diagnosis.selected:
-        title += ": none is named"
-    elif _EQUIVALENT in colours:
-        title += f": cannot be told apart, {', '.join(alike)}"
+    found = join_names(alike, "or" if _EQUIVALENT in colours else "and") if diagnosis.selected else "none is named"
+    title = f"Effects at work: {found}"
     equivalent = " Light blue: explain the gap as well." if _EQUIVALENT in colours else ""
     note = (
         f"Bold and blue: the answer of the diagnosis.{equivalent} Each figure is the probability of being at work: two"
         " effects can both be near 100 %."
     )
-    grid = Grid((ROW * len(names) + 0.1,), 2, left=measure_names(names), right=0.45, bottom=0.65, gap=(0.5, 0.0))
-    figure, [[left, right]] = make_page(title, note, grid)
     strong = [k for k, colour in enumerate(colours) if colour == _CHOSEN]
-    for axes, shown in ((left, names), (right, [""] * len(names))):
-        name_rows(axes, shown, strong)
+    grid = Grid((), 2, right=0.45, bottom=0.7, gap=(0.5, 0.0))
+    figure, [left, right] = make_rows(title, note, names, [], strong, grid)
+    for axes in (left, right):
         axes.axhline(len(names) - 2.5, color="0.8", linewidth=0.8)
     draw_bars(left, probabilities, colours, texts)
     left.set(xlim=(0, 100), xticks=[0, 50, 100], xlabel="probability [%]")

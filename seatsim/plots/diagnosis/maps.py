@@ -10,23 +10,19 @@ from matplotlib.figure import Figure
 from seatsim.diagnosis.residuals import FEWEST, bin_edges, find_worst, map_rms, varies
 from seatsim.diagnosis.result import Diagnosis
 from seatsim.plots import style
-from seatsim.plots.diagnosis.signals import name_last
+from seatsim.plots.diagnosis.answer import find_last
 from seatsim.plots.style import COLOURS, Entry, Grid
 from seatsim.plots.thinning import thin_line
-from seatsim.schema.printing import Quantity, describe_channel, format_number
+from seatsim.schema.printing import describe_channel, format_number
 
 BINS = (22, 13)
 """Bins of a map over velocity and over the other quantity."""
 DOTS = 2500
 
 
-MOTIONS = {
-    "velocity": Quantity("suspension velocity", "m/s"),
-    "displacement": Quantity("travel", "mm", 1e3),
-    "coil_current": Quantity("coil current", "A"),
-    "damper_temperature": Quantity("damper temperature", "°C"),
-}
-"""How measured motion is shown."""
+UNITS = {"velocity": "m/s", "displacement": "m", "coil_current": "A", "damper_temperature": "degC"}
+MOTIONS = {name: describe_channel(name, unit) for name, unit in UNITS.items()}
+"""How measured motion, of a suspension or a damper, is shown."""
 
 
 def plot_maps(diagnosis: Diagnosis) -> Figure | None:
@@ -46,13 +42,13 @@ def plot_maps(diagnosis: Diagnosis) -> Figure | None:
     known = np.concatenate([each[np.isfinite(each)] for each in cells])
     if not known.size or not known.max() > 0:
         return None
-    title = f"Error of the {shown.words} over velocity and {other.replace('_', ' ')}"
+    title = f"Error of the {shown.words} over velocity and {MOTIONS[other].words}"
     note = f"RMS of measured less simulated on {trace.run}; cells of fewer than {FEWEST} samples stay empty."
     low, high = max(float(known.min()), float(known.max()) / 100), float(known.max())
     note += f" The darkest cells: {format_number(low)} {shown.unit} or less." if known.min() < low else ""
     figure, [panels] = style.make_page(title, note, Grid((2.2,), 2, right=0.95, top=0.3, gap=(0.15, 0.0)))
     norm = LogNorm(low, high)
-    for axes, name, values in zip(panels, ("nominal", name_last(diagnosis)), cells, strict=True):
+    for axes, name, values in zip(panels, ("nominal", find_last(diagnosis).label), cells, strict=True):
         mesh = axes.pcolormesh(*borders, values, norm=norm, cmap=colormaps["viridis"], rasterized=True)
         axes.set_xlabel(MOTIONS["velocity"].axis)
         style.set_title(axes, name)
@@ -70,14 +66,11 @@ def plot_discrepancy(diagnosis: Diagnosis) -> Figure | None:
     shown = describe_channel(found.quantity, found.unit)
     known = {name: values for name, values in diagnosis.evidence.motion.items() if name in MOTIONS and varies(values)}
     motion = {name: values for name, values in known.items() if len(values) == len(found.values)}
-    grid = Grid((1.5,) * (1 + -(-len(motion) // 2)), columns=2, gap=(0.75, 0.6))
+    grid = Grid((1.6,) * (1 + len(motion) // 2), columns=2, gap=(0.75, 0.6))
     title = f"The missing {shown.words} of the {found.block}"
-    note = "What the simulation lacks to agree with the held-out run: over time, then over what moves."
+    note = "What the simulation lacks to agree with the held-out run: over time, then over what moves or changes."
     page = style.make_page(title, note, grid)
-    first, second, *panels = page.list_panels(2 + len(motion))
-    second.remove()
-    box = first.get_position()
-    first.set_position((box.x0, box.y0, 1 - 0.15 / style.WIDTH - box.x0, box.height))
+    first, *panels = page.list_panels(1 + len(motion))
     style.draw_line(first, *thin_line(found.time, shown.factor * found.values), Entry("", COLOURS[6], width=1.0))
     first.set(xlabel="time [s]", ylabel=shown.axis)
     every = max(1, len(found.values) // DOTS)

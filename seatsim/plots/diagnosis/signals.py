@@ -19,7 +19,8 @@ from seatsim.metrics.motion import rms
 from seatsim.metrics.spectra import estimate_density
 from seatsim.plots import style
 from seatsim.plots.densities import draw_densities, find_resolution, state_method
-from seatsim.plots.style import COLOURS, Entry, Grid
+from seatsim.plots.diagnosis.answer import find_last
+from seatsim.plots.style import COLOURS, DASHES, MEASURED, Entry, Grid
 from seatsim.plots.thinning import BINS, Window, find_loudest, thin_line
 from seatsim.recordings.gap import Gap
 from seatsim.schema.arrays import Array
@@ -31,12 +32,10 @@ BAND = 2.0
 """Standard deviations of the noise that are shaded."""
 DECADES = 9.0
 """Decades below the highest density that a spectrum shows: down to the noise of a good sensor."""
-MEASURED = Entry("measured", "black", width=2.0)
-NOMINAL = Entry("nominal", COLOURS[1], (0.0, (4.0, 3.0)), width=1.3)
-_AFTER = Entry("with effects", COLOURS[0], width=1.1)
-NOISE = Entry("sensor noise", "0.55", ":", width=1.8)
+NOMINAL = Entry("nominal", COLOURS[1], DASHES[1], width=1.3)
+NOISE = Entry("sensor noise", "black", ":", width=1.3)
 _BAND = Entry(f"±{BAND:g} RMS of the noise", style.AREA, width=8)
-GRID = Grid((1.5, 1.0, 1.7), left=0.85, gap=(0.0, 0.16), bottom=0.5)
+GRID = Grid((1.5, 1.0, 1.7), left=1.04, gap=(0.0, 0.16), bottom=0.5)
 Looks: TypeAlias = dict[str, Entry]
 """Looks of simulations that are compared with a measurement, by their names in a trace."""
 LETTERS = 19
@@ -45,20 +44,16 @@ OWN_AXIS = 0.42
 """Room in inches above the spectrum for the axis of time."""
 
 
-def name_last(diagnosis: Diagnosis) -> str:
-    """Return what the simulation of `augmented.yaml` is called: without effects it is the refitted nominal one."""
-    return "with effects" if len(diagnosis.selected) > 1 else "with effect" if diagnosis.selected else "refitted"
-
-
 def plot_signals(diagnosis: Diagnosis) -> dict[str, Figure]:
     """Return a picture of each held-out channel, the channel with the largest nominal gap first."""
-    look = _AFTER._replace(label=name_last(diagnosis), colour=COLOURS[0 if diagnosis.selected else 2])
-    return _plot_channels(diagnosis.evidence.traces, {"nominal": NOMINAL, "after": look})
+    last = find_last(diagnosis)
+    after = Entry(last.label, last.colour, width=1.1)
+    return _plot_channels(diagnosis.evidence.traces, {"nominal": NOMINAL, "after": after})
 
 
 def plot_gap_signals(found: Gap) -> dict[str, Figure]:
     """Return a picture of each channel of a gap, the channel with the largest gap first."""
-    return _plot_channels(list_traces(found), {"nominal": NOMINAL._replace(label="simulated", dashes="-")})
+    return _plot_channels(list_traces(found), {"nominal": NOMINAL._replace(label="simulated")})
 
 
 def _plot_channels(traces: Sequence[Trace], looks: Looks) -> dict[str, Figure]:
@@ -78,34 +73,29 @@ def _plot_channel(trace: Trace, group: Sequence[Trace], looks: Looks) -> Figure:
     left_over = [[_subtract(each, name) for each in group] for name in reversed(looks)]
     # The measured signal is drawn last, before the others.
     density = [estimate_density(step, signals) for signals in (*left_over, [each.measured for each in group])]
-    has_spectrum = bool(len(density[0][0]))
+    resolution = find_resolution(density)
     note = f"{window} of {trace.run}, where the difference has most energy; RMS over the whole run."
-    method = state_method(find_resolution(density))
-    note += f" Below: power densities of the measured signal and of the differences. {method}" * has_spectrum
-    grid = GRID if has_spectrum else GRID._replace(heights=GRID.heights[:2])
+    note += f" Below: power densities of the measured signal and of the differences. {state_method(resolution)}"
     below = [look._replace(label=f"{look.label} (below: difference)") for look in looks.values()]
-    legend = [MEASURED, *below, *([NOISE] if noise and has_spectrum else []), *([_BAND] if noise else [])]
-    page = style.make_page(_make_title(trace, shown, looks), note, grid, legend)
-    upper, lower = (row[0] for row in page.rows[:2])
+    legend = [MEASURED, *below, *([NOISE, _BAND] if noise else [])]
+    figure, [[upper], [lower], [axes]] = style.make_page(_make_title(trace, shown, looks), note, GRID, legend)
     _draw_time(upper, lower, trace, window, shown, looks)
     if noise:
         lower.axhspan(-BAND * noise, BAND * noise, color=style.AREA, linewidth=0, zorder=0)
         # Its edges stand before the lines, which hide a band that they fill.
         lower.axhspan(-BAND * noise, BAND * noise, facecolor="none", edgecolor="black", linestyle=":", zorder=3)
-    for [axes] in page.rows[2:]:
-        left_edge, bottom, width, height = axes.get_position().bounds
-        axes.set_position((left_edge, bottom, width, height * (1 - OWN_AXIS / GRID.heights[2])))
-        frequency = density[0][0]
-        drawn = [(places, shown.factor**2 * power) for places, power in density]
-        if noise:
-            # The one-sided density of white noise of RMS s is 2 s^2 dt.
-            drawn.append((frequency[[0, -1]], np.full(2, 2 * noise**2 * step)))
-        entries = [*reversed(looks.values()), MEASURED, NOISE][: len(drawn)]
-        draw_densities(axes, drawn, entries, decades=DECADES)
-        style.scale_frequency_axis(axes, float(frequency[0]), float(frequency[-1]))
-        axes.set_ylabel(f"power density\n[{shown.square}/Hz]")
-        axes.yaxis.set_label_coords(-0.1, 0.5)
-    return style.name_coincident(page.figure)
+    left_edge, bottom, width, height = axes.get_position().bounds
+    axes.set_position((left_edge, bottom, width, height * (1 - OWN_AXIS / GRID.heights[2])))
+    drawn = [(places, shown.factor**2 * power) for places, power in density]
+    if noise:
+        # The one-sided density of white noise of RMS s is 2 s^2 dt.
+        drawn.append((density[0][0], np.full(len(density[0][0]), 2 * noise**2 * step)))
+    entries = [*reversed(looks.values()), MEASURED, NOISE][: len(drawn)]
+    draw_densities(axes, drawn, entries, decades=DECADES)
+    style.scale_frequency_axis(axes, resolution, 0.5 / step)
+    axes.set_ylabel(f"power density\n[{shown.square}/Hz]")
+    axes.yaxis.set_label_coords(-0.125, 0.5)
+    return style.name_coincident(figure)
 
 
 def _draw_time(upper: Axes, lower: Axes, trace: Trace, window: Window, shown: Quantity, looks: Looks) -> None:
@@ -127,7 +117,7 @@ def _draw_time(upper: Axes, lower: Axes, trace: Trace, window: Window, shown: Qu
     lower.yaxis.set_offset_position("right")
     for axes in (upper, lower):
         axes.set_xlim(*window)
-        axes.yaxis.set_label_coords(-0.1, 0.5)
+        axes.yaxis.set_label_coords(-0.125, 0.5)
 
 
 def _subtract(trace: Trace, name: str) -> Array:

@@ -14,7 +14,7 @@ from seatsim.metrics.table import COMFORT, SEAT, TRAVEL, UNWEIGHTED
 from seatsim.plots import style
 from seatsim.plots.labels import describe_metric
 from seatsim.plots.runs.looks import MOST as MOST_LINES
-from seatsim.plots.runs.looks import choose_looks
+from seatsim.plots.runs.looks import choose_looks, explain_grey
 from seatsim.plots.style import DARK, ROW, Entry, Grid
 from seatsim.scenario.scenario import condition_of
 from seatsim.schema.arrays import Array
@@ -67,16 +67,15 @@ def plot_pareto(runs: Sequence[Run], brackets: Mapping[str, PerformanceBounds]) 
     """
     found, looks = _make_panels(runs, brackets) or [Panel("", [], [])], choose_looks(runs)
     shown, columns = found[:MOST_PANELS], min(2, len(found))
-    colours = {
-        name: looks[id(run)].colour for panel in shown for name, run in zip(panel.names, panel.runs, strict=True)
-    }
+    named = {name: run for panel in shown for name, run in zip(panel.names, panel.runs, strict=True)}
     points = {
-        name: Entry(f"{_letter(k)}  {name}", colour, "none", mark="o")
-        for k, (name, colour) in enumerate(colours.items())
+        name: Entry(f"{_letter(k)}  {name}", looks[id(run)].colour, "none", mark="o")
+        for k, (name, run) in enumerate(named.items())
     }
     legend = [*points.values(), *([BOUND, BEST] if any(panel.bracket for panel in shown) else [])]
     legend += [FLOOR] if any(panel.runs and np.isfinite(panel.floor) for panel in shown) else []
     note = "Over the whole run; on the same floor, lower left is better."
+    note += style.OWN_SCALES * (len(shown) > 1) + explain_grey(looks)
     note += f" {len(shown)} of {len(found)} rigs are shown." if len(shown) < len(found) else ""
     grid = Grid((_SIDES[columns - 1],) * -(-len(shown) // columns), columns, top=0.3, gap=(0.75, 0.85))
     page = style.make_page(f"Comfort and travel: {naming.make_title(runs)}", note, grid, legend)
@@ -120,11 +119,7 @@ def _draw_panel(axes: Axes, panel: Panel, looks: Mapping[str, Entry]) -> None:
     if panel.bracket:
         travel = np.append(travel, 1e3 * panel.bracket.travel)
         comfort = np.append(comfort, [*panel.bracket.acceleration, panel.bracket.bound(1e-3 * np.max(travel))])
-        places = np.linspace(*_pad(travel), 200)
-        bound, best = panel.bracket.bound(1e-3 * places), panel.bracket.best(1e-3 * places)
-        axes.fill_between(places, bound, best, where=np.isfinite(best), color=style.AREA, linewidth=0, zorder=1)
-        style.draw_line(axes, places, bound, BOUND)
-        style.draw_line(axes, places, best, BEST)
+        draw_bounds(axes, np.linspace(*_pad(travel), 200), panel.bracket)
     axes.set(xlim=_pad(travel), ylim=_pad(comfort))
     axes.set(xlabel=describe_metric(TRAVEL).axis, ylabel=describe_metric(COMFORT).axis)
     # The most comfortable one on top of those that it meets.
@@ -132,6 +127,14 @@ def _draw_panel(axes: Axes, panel: Panel, looks: Mapping[str, Entry]) -> None:
         axes.scatter(point[0], point[1], s=150, color=looks[name].colour, edgecolors="1.0", zorder=4)
     _write_letters(axes, panel.points, [looks[name].label.split()[0] for name in panel.names])
     style.set_title(axes, panel.title)
+
+
+def draw_bounds(axes: Axes, travel: Array, bracket: PerformanceBounds) -> None:
+    """Draw the bounds of a rig over an RMS travel in mm, with the area between them."""
+    bound, best = bracket.bound(1e-3 * travel), bracket.best(1e-3 * travel)
+    axes.fill_between(travel, bound, best, where=np.isfinite(best), color=style.AREA, linewidth=0, zorder=1)
+    style.draw_line(axes, travel, bound, BOUND)
+    style.draw_line(axes, travel, best, BEST)
 
 
 def _write_letters(axes: Axes, points: Array, letters: Sequence[str]) -> None:
@@ -172,7 +175,7 @@ def _plot_bars(title: str, runs: Sequence[Run]) -> Figure:
     names = naming.label_runs(runs, 32)
     looks, left = choose_looks(runs), style.measure_names(names)
     grid = Grid((ROW * len(runs) + 0.1,) * 2, columns=2, left=left, gap=(0.2, 0.6))
-    page = style.make_page(title, NOTE, grid)
+    page = style.make_page(title, NOTE + explain_grey(looks), grid)
     for k, (axes, metric) in enumerate(zip(page.list_panels(), COMPARED, strict=True)):
         shown = describe_metric(metric)
         values = [shown.factor * run.read_metric(metric) for run in runs]
@@ -189,8 +192,7 @@ def _plot_lines(title: str, key: str, series: dict[str, list[Run]]) -> Figure:
     runs = [run for group in series.values() for run in group]
     of_runs = choose_looks(runs)
     looks = [of_runs[id(group[0])]._replace(label=name) for name, group in series.items()]
-    swept = sorted({float(run.scenario.label[key]) for run in runs})
-    page = style.make_page(title, NOTE, Grid((1.8, 1.8), 2, left=0.85, gap=(0.9, 0.65)), looks)
+    page = style.make_page(title, NOTE, Grid((1.8, 1.8), 2, left=0.85, gap=(0.9, 0.65)), looks[1:] and looks)
     for axes, metric in zip(page.list_panels(), COMPARED, strict=True):
         shown = describe_metric(metric)
         for look, group in zip(looks, series.values(), strict=True):
@@ -200,6 +202,4 @@ def _plot_lines(title: str, key: str, series: dict[str, list[Run]]) -> Figure:
             style.draw_line(axes, places, values, look._replace(width=1.6, mark="o"))
         axes.set(xlabel=naming.label_axis(runs[0].scenario, key), ylabel=f"{shown.words} [{shown.unit}]")
         axes.set_ylim(0, 1.05 * axes.get_ylim()[1])
-        if len(swept) <= 4:
-            axes.set_xticks(swept)
     return style.name_coincident(page.figure)

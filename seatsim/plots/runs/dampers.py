@@ -15,11 +15,13 @@ from seatsim.dampers.base import DamperSpecification
 from seatsim.kernel.generic import DamperModel
 from seatsim.metrics.motion import rms
 from seatsim.plots import style
-from seatsim.plots.loops import SIGNS, Family, make_loop_page
+from seatsim.plots.loops import SIGNS, Family, draw_samples, make_loop_page
+from seatsim.plots.runs.looks import name_variant
 from seatsim.plots.style import COLOURS, Entry, Grid
 from seatsim.rig.temperature import TemperatureFactors, Thermal
 from seatsim.schema.arrays import Array
 from seatsim.schema.registry import name_of, specification_of
+from seatsim.schema.text import name_some
 from seatsim.simulation import naming
 from seatsim.simulation.damper_bench import SineTest, sine_test
 from seatsim.simulation.result import Run
@@ -64,7 +66,9 @@ def plot_damper_loops(runs: Sequence[Run]) -> Figure:
     """Return the loops of each distinct damper by current, and by temperature, where these change its force."""
     dampers = find_dampers(runs)
     amplitude = choose_amplitude(runs)
-    families = [family for damper in dampers[:MOST] for family in _make_families(damper, len(dampers) > 1, amplitude)]
+    users = [_name_users(damper, runs) * (len(dampers) > 1) for damper in dampers[:MOST]]
+    named = zip(dampers, users, strict=False)
+    families = [family for damper, by in named for family in _make_families(damper, damper.name + by, amplitude)]
     note = f"Sine test, amplitude {1e3 * amplitude:g} mm, frequency {FREQUENCY:g} Hz."
     if len(dampers) > MOST:
         note += f" {MOST} of {len(dampers)} dampers are shown."
@@ -110,18 +114,22 @@ def plot_force_velocity(run: Run) -> Figure:
     changes = float(np.ptp(run.history["coil_current"])) > 0
     colours = style.sample_colours("viridis", len(currents)) if changes else ("0.5", "black")
     looks = [Entry(name, colour, width=1.8) for (name, _), colour in zip(tests, colours, strict=False)]
-    dots = Entry("the run", style.sample_colours("viridis", 3)[1] if changes else COLOURS[0], "none", mark="o")
+    dots = Entry(
+        "the run" + " (colour: current)" * changes,
+        style.sample_colours("viridis", 3)[1] if changes else COLOURS[0],
+        "none",
+        mark="o",
+    )
     areas = Entry("the damper gives energy back", style.AREA, width=8)
     note = f"Sine tests at {temperature:g} °C, amplitude {1e3 * amplitude:.3g} mm, {FREQUENCY:g} Hz. {SIGNS}"
     title = f"Damper at work: {naming.make_title([run])}"
-    page = style.make_page(title, note, Grid((3.3,), right=1.0), [dots, *looks, areas])
-    axes = page.rows[0][0]
+    figure, [[axes]] = style.make_page(title, note, Grid((3.3,), right=1.0), [dots, *looks, areas])
     _draw_samples(axes, velocity, run, damper.max_current if changes else 0.0)
     for look, (_, test) in zip(looks, tests, strict=True):
         style.draw_line(axes, test.velocity, test.force, look)
     _shade_active_quadrants(axes)
     axes.set(xlabel="damper velocity [m/s]", ylabel="damper force [N]")
-    return page.figure
+    return figure
 
 
 def _drop_equal(tests: Iterable[tuple[str, SineTest]]) -> list[tuple[str, SineTest]]:
@@ -141,13 +149,20 @@ def _start_temperature(run: Run) -> float:
     return stated.start if isinstance(stated, Thermal) else stated
 
 
-def _make_families(damper: _InstalledDamper, several: bool, amplitude: float) -> Iterator[Family]:
-    start, most = _start_temperature(damper.runs[0]), damper.max_current
-    called = f"{damper.name} ({naming.label_runs(damper.runs)[0]})" if several else damper.name
+def _name_users(damper: _InstalledDamper, runs: Sequence[Run]) -> str:
+    """Return in brackets what the runs with a damper share and others have not, or their variants."""
+    shared, _ = naming.distinguish_runs(damper.runs, runs)
+    return f" ({shared or name_some(list(dict.fromkeys(map(name_variant, damper.runs))))})"
+
+
+def _make_families(damper: _InstalledDamper, called: str, amplitude: float) -> Iterator[Family]:
+    start, most, fades = _start_temperature(damper.runs[0]), damper.max_current, any(damper.factors[:3])
     currents = [share * most for share in SHARES]
     by_current = _drop_equal((f"{current:g} A", damper.loop(amplitude, current, start)) for current in currents)
-    yield Family(f"{called} at {start:g} °C", "current", by_current)
-    if any(damper.factors[:3]):
+    # Where no current changes it, the loops by temperature show all.
+    if len(by_current) > 1 or not fades:
+        yield Family(f"{called} at {start:g} °C", "current", by_current)
+    if fades:
         temperatures = _choose_temperatures(damper)
         by_heat = _drop_equal((f"{value:g} °C", damper.loop(amplitude, most, value)) for value in temperatures)
         yield Family(f"{called} at {most:g} A" if len(by_current) > 1 else called, "temperature", by_heat, "plasma")
@@ -167,12 +182,10 @@ def _draw_samples(axes: Axes, velocity: Array, run: Run, largest: float) -> None
     """Draw samples of a run, coloured by a current that changes, on the scale of the tests: from 0 to its largest."""
     every = -(-len(velocity) // _MOST_SAMPLES)
     force, current = run.history["damper_force"][::every], run.history["coil_current"][::every]
-    look = {"c": current, "cmap": style.shade("viridis"), "vmin": 0.0, "vmax": largest}
-    dots = axes.scatter(
-        velocity[::every], force, s=7, linewidths=0, rasterized=True, **(look if largest else {"color": COLOURS[0]})
-    )
     if largest:
-        style.add_colour_bar(axes, dots, "coil current [A]")
+        style.add_colour_bar(axes, draw_samples(axes, velocity[::every], force, current, largest), "coil current [A]")
+    else:
+        axes.scatter(velocity[::every], force, s=6, color=COLOURS[0], linewidths=0, rasterized=True)
 
 
 def _shade_active_quadrants(axes: Axes) -> None:

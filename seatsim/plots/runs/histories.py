@@ -31,10 +31,8 @@ CHANNELS = ("driver_acceleration", "suspension_displacement", "damper_force", "c
 TEMPERATURE = "damper_temperature"
 TARGETS = {"damper_force": "wanted_force", "coil_current": "current_command"}
 """Channels that others should follow."""
-RUN, TARGET = (
-    Entry("the run", COLOURS[0], width=1.1),
-    Entry("wanted force, commanded current", COLOURS[5], "-", 2.0, 0.6),
-)
+RUN = Entry("the run", COLOURS[0], width=1.1)
+TARGET = Entry("wanted force, commanded current", COLOURS[5], "-", 2.0, 0.6)
 LIMIT = Entry("travel limit", DARK, ":")
 
 
@@ -59,7 +57,7 @@ def plot_time_histories(shown: Shown) -> Figure:
     limits, warms = _find_limits(shown.runs), any(np.ptp(run.history[TEMPERATURE]) > 0 for run in shown.runs)
     channels = (*CHANNELS, TEMPERATURE) if warms else CHANNELS
     legend = [*([RUN, TARGET] if single else shown.looks), *[LIMIT] * bool(limits)]
-    grid = Grid((1.2,) * len(channels), len(views), left=1.06, gap=(0.3, 0.3))
+    grid = Grid((1.2,) * len(channels), len(views), left=1.12, gap=(0.4, 0.3))
     page = style.make_page(f"Time histories: {shown.title}", note + shown.omission, grid, legend)
     for row, channel in zip(page.rows, channels, strict=True):
         for axes, view in zip(row, views, strict=True):

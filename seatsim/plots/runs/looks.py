@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from seatsim.plots.style import GREY, Entry, make_entries
@@ -33,14 +33,16 @@ class Shown(NamedTuple):
 def show_runs(runs: Sequence[Run]) -> list[Shown]:
     """Return the runs that are drawn over each other: all, or those of each scenario where one of several has several.
 
-    A name looks the same in all pictures. Up to eight runs are all drawn. Of more runs, those at the first swept values
+    A run looks the same in all pictures. Up to eight runs are all drawn. Of more runs, those at the first swept values
     (one for each variant) are drawn, or else eight that are spread evenly over their order, first and last included.
+    They are called by what sets them apart from each other.
     """
     parts, looks, found = _divide(runs), choose_looks(runs), []
     for part in parts:
-        shown, omission = _select_shown(part)
+        shown, names, omission = _select_shown(part)
         scenario = part[0].scenario.name if len(parts) > 1 else ""
-        found.append(Shown(scenario, naming.make_title(part), shown, [looks[id(run)] for run in shown], omission))
+        own = [looks[id(run)]._replace(label=name) for run, name in zip(shown, names, strict=True)]
+        found.append(Shown(scenario, naming.make_title(part), shown, own, omission))
     return found
 
 
@@ -54,7 +56,7 @@ def choose_looks(runs: Sequence[Run]) -> dict[int, Entry]:
     names = {id(run): name for part in parts for name, run in zip(naming.label_runs(part), part, strict=True)}
     families = names
     if len({run.scenario.label.get("variant") for run in runs}) > 1:
-        families = {id(run): str(run.scenario.label.get("variant", run.scenario.name)) for run in runs}
+        families = {id(run): name_variant(run) for run in runs}
     members, drawn = dict[str, list[str]](), [run for part in parts for run in _select_shown(part)[0]]
     for run in [*drawn, *runs]:
         family = members.setdefault(families[id(run)], [])
@@ -68,6 +70,17 @@ def choose_looks(runs: Sequence[Run]) -> dict[int, Entry]:
     return {run: found[families[run], name] for run, name in names.items()}
 
 
+def explain_grey(looks: Mapping[int, Entry]) -> str:
+    """Return a sentence on the runs that no picture draws as a line, where there are some."""
+    is_grey = any(look.colour == GREY for look in looks.values())
+    return " Grey: runs that the pictures over time and frequency leave out." * is_grey
+
+
+def name_variant(run: Run) -> str:
+    """Return the variant of a run, or its scenario where it has none."""
+    return str(run.scenario.label.get("variant", run.scenario.name))
+
+
 def _divide(runs: Sequence[Run]) -> list[list[Run]]:
     """Return the runs of each scenario where one of several has several, or else all together."""
     scenarios = dict.fromkeys(run.scenario.name for run in runs)
@@ -76,17 +89,18 @@ def _divide(runs: Sequence[Run]) -> list[list[Run]]:
     return [[run for run in runs if run.scenario.name == name] for name in scenarios]
 
 
-def _select_shown(runs: Sequence[Run]) -> tuple[list[Run], str]:
-    """Return the runs that are drawn, and a sentence on how they were chosen where there are more."""
+def _select_shown(runs: Sequence[Run]) -> tuple[list[Run], list[str], str]:
+    """Return the runs that are drawn, what they are called, and how they were chosen where there are more."""
     if len(runs) <= MOST:
-        return list(runs), ""
+        return list(runs), naming.label_runs(runs), ""
     # Lines of the same swept values differ in their variant, which is what a reader compares.
     first = _swept_values(runs[0])
     group = [run for run in runs if _swept_values(run) == first]
     if 1 < len(group) <= MOST:
         at = ", ".join(naming.describe_swept(runs[0].scenario, key, value) for key, value in first.items())
-        return group, f" {len(group)} of {len(runs)} runs are shown: {at}."
-    return spread_evenly(runs, MOST), f" {MOST} of {len(runs)} runs are shown, spread evenly over their order."
+        return group, naming.label_runs(group, without=first), f" {len(group)} of {len(runs)} runs are shown: {at}."
+    chosen = spread_evenly(runs, MOST)
+    return chosen, naming.label_runs(chosen), f" {MOST} of {len(runs)} runs are shown, spread evenly over their order."
 
 
 def _swept_values(run: Run) -> dict[str, object]:

@@ -44,7 +44,7 @@ def plot_psd(shown: Shown) -> Figure:
     resolution = find_resolution(found)
     legend = [] if find_problem(found, HIGHEST) else [*drivers, *floors]
     title = f"Driver acceleration over frequency: {shown.title}"
-    figure, axes = _make_page(title, state_method(resolution) + shown.omission, resolution, legend)
+    figure, axes = _make_page(title, state_method(resolution) + shown.omission, legend, (resolution, HIGHEST))
     axes.set_ylabel("power density [(m/s²)²/Hz]")
     draw_densities(axes, found, [*floors, *drivers], HIGHEST)
     return style.name_coincident(figure)
@@ -53,13 +53,16 @@ def plot_psd(shown: Shown) -> Figure:
 def plot_transmissibility(shown: Shown) -> Figure:
     """Return the magnitude of the transmissibility from floor to driver where it can be trusted."""
     gains = [_estimate_gain(run) for run in shown.runs]
-    known = np.concatenate([gain[np.isfinite(gain) & (gain > 0)] for _, gain, _ in gains])
+    places, values = (np.concatenate([each[k] for each in gains]) for k in (0, 1))
+    inside = np.isfinite(values) & (values > 0)
+    places, known = places[inside], values[inside]
     resolution = max((frequency[1] - frequency[0] for frequency, _, _ in gains if len(frequency)), default=np.inf)
     lines = f" Lines up to {resolution:.2g} Hz apart." * bool(known.size)
     looks = shown.looks if len(shown.runs) > 1 else [shown.looks[0]._replace(label="the run")]
     legend = [*looks, SAME] if known.size else []
     title = f"Transmissibility, floor to driver: {shown.title}"
-    figure, axes = _make_page(title, NOTE + lines + shown.omission, resolution, legend)
+    ends = (float(places.min()), min(HIGHEST, 1.1 * float(places.max()))) if known.size else (resolution, HIGHEST)
+    figure, axes = _make_page(title, NOTE + lines + shown.omission, legend, ends)
     axes.set_ylabel("|driver / floor| [-]")
     if not known.size:
         style.explain_empty(axes, "; ".join(dict.fromkeys(problem for _, _, problem in gains)))
@@ -72,9 +75,9 @@ def plot_transmissibility(shown: Shown) -> Figure:
     return style.name_coincident(figure)
 
 
-def _make_page(title: str, note: str, resolution: float, legend: Sequence[Entry]) -> tuple[Figure, Axes]:
+def _make_page(title: str, note: str, legend: Sequence[Entry], ends: tuple[float, float]) -> tuple[Figure, Axes]:
     figure, [[axes]] = style.make_page(title, note, Grid((2.9,)), legend)
-    style.scale_frequency_axis(axes, resolution, HIGHEST)
+    style.scale_frequency_axis(axes, *ends)
     return figure, axes
 
 

@@ -2,6 +2,7 @@
 // Draws the groups of linked pictures of a page with uPlot. Everything it draws stands on the page as packed numbers.
 (() => {
   const MEASURED = 8, GAP = -32768, HEIGHT = 240, PAPER_WIDTH = 680;
+  const INCREMENTS = Array.from({ length: 25 }, (_, k) => [1, 2, 5].map(digit => Number(`${digit}e${k - 12}`))).flat();
   const paper = matchMedia("print"), dark = matchMedia("(prefers-color-scheme: dark)");
   const probe = document.body.appendChild(document.createElement("i"));
   const colour = name => { probe.style.color = `var(${name})`; return getComputedStyle(probe).color; };
@@ -67,7 +68,7 @@
     get width() { return paper.matches ? PAPER_WIDTH : Math.max(200, this.boxes[0].clientWidth); }
 
     plot(box, number, x, lines) {
-      const axis = { stroke: colour("--ink"), grid: { stroke: colour("--line"), width: 1 }, ticks: { show: false }, font: "13px system-ui, sans-serif",
+      const axis = { stroke: colour("--ink"), grid: { stroke: colour("--line"), width: 1 }, ticks: { show: false }, font: "13px system-ui, sans-serif", incrs: INCREMENTS,
         values: (plot, marks) => marks.map(mark => mark == null ? "" : show(mark, 6)) };
       const options = {
         width: this.width, height: HEIGHT, legend: { show: false },
