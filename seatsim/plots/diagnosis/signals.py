@@ -35,13 +35,11 @@ DECADES = 9.0
 NOMINAL = Entry("nominal", COLOURS[1], DASHES[1], width=1.3)
 NOISE = Entry("sensor noise", "black", ":", width=1.3)
 _BAND = Entry(f"±{BAND:g} RMS of the noise", style.AREA, width=8)
-GRID = Grid((1.5, 1.0, 1.7), left=1.04, gap=(0.0, 0.16), bottom=0.5)
+GRID = Grid((1.5, 1.0, 1.3), left=1.04, gap=(0.0, 0.5))
 Looks: TypeAlias = dict[str, Entry]
 """Looks of simulations that are compared with a measurement, by their names in a trace."""
 LETTERS = 19
 """Letters of a label beside a panel that is this low."""
-OWN_AXIS = 0.42
-"""Room in inches above the spectrum for the axis of time."""
 
 
 def plot_signals(diagnosis: Diagnosis) -> dict[str, Figure]:
@@ -74,27 +72,29 @@ def _plot_channel(trace: Trace, group: Sequence[Trace], looks: Looks) -> Figure:
     # The measured signal is drawn last, before the others.
     density = [estimate_density(step, signals) for signals in (*left_over, [each.measured for each in group])]
     resolution = find_resolution(density)
+    has_spectrum = bool(np.isfinite(resolution))
     note = f"{window} of {trace.run}, where the difference has most energy; RMS over the whole run."
-    note += f" Below: power densities of the measured signal and of the differences. {state_method(resolution)}"
+    method = state_method(resolution)
+    note += f" Below: power densities of the measured signal and of the differences. {method}" * has_spectrum
+    grid = GRID if has_spectrum else GRID._replace(heights=GRID.heights[:2])
     below = [look._replace(label=f"{look.label} (below: difference)") for look in looks.values()]
-    legend = [MEASURED, *below, *([NOISE, _BAND] if noise else [])]
-    figure, [[upper], [lower], [axes]] = style.make_page(_make_title(trace, shown, looks), note, GRID, legend)
+    legend = [MEASURED, *below, *[NOISE] * bool(noise and has_spectrum), *[_BAND] * bool(noise)]
+    figure, [[upper], [lower], *spectra] = style.make_page(_make_title(trace, shown, looks), note, grid, legend)
     _draw_time(upper, lower, trace, window, shown, looks)
     if noise:
         lower.axhspan(-BAND * noise, BAND * noise, color=style.AREA, linewidth=0, zorder=0)
         # Its edges stand before the lines, which hide a band that they fill.
         lower.axhspan(-BAND * noise, BAND * noise, facecolor="none", edgecolor="black", linestyle=":", zorder=3)
-    left_edge, bottom, width, height = axes.get_position().bounds
-    axes.set_position((left_edge, bottom, width, height * (1 - OWN_AXIS / GRID.heights[2])))
-    drawn = [(places, shown.factor**2 * power) for places, power in density]
-    if noise:
-        # The one-sided density of white noise of RMS s is 2 s^2 dt.
-        drawn.append((density[0][0], np.full(len(density[0][0]), 2 * noise**2 * step)))
-    entries = [*reversed(looks.values()), MEASURED, NOISE][: len(drawn)]
-    draw_densities(axes, drawn, entries, decades=DECADES)
-    style.scale_frequency_axis(axes, resolution, 0.5 / step)
-    axes.set_ylabel(f"power density\n[{shown.square}/Hz]")
-    axes.yaxis.set_label_coords(-0.125, 0.5)
+    for [axes] in spectra:
+        drawn = [(places, shown.factor**2 * power) for places, power in density]
+        if noise:
+            # The one-sided density of white noise of RMS s is 2 s^2 dt.
+            drawn.append((density[0][0], np.full(len(density[0][0]), 2 * noise**2 * step)))
+        entries = [*reversed(looks.values()), MEASURED, NOISE][: len(drawn)]
+        draw_densities(axes, drawn, entries, decades=DECADES)
+        style.scale_frequency_axis(axes, resolution, 0.5 / step)
+        axes.set_ylabel(f"power density\n[{shown.square}/Hz]")
+        axes.yaxis.set_label_coords(-0.125, 0.5)
     return style.name_coincident(figure)
 
 
@@ -110,13 +110,12 @@ def _draw_time(upper: Axes, lower: Axes, trace: Trace, window: Window, shown: Qu
         draw(upper, getattr(trace, name), look)
         draw(lower, _subtract(trace, name), look)
     lower.axhline(0.0, color="0.6", linewidth=0.8, zorder=0.5)
-    upper.tick_params(labelbottom=False)
     upper.set_ylabel(fill(f"{shown.words} [{shown.unit}]", LETTERS))
     lower.set_ylabel(f"difference\n[{shown.unit}]")
-    lower.set_xlabel("time [s]", labelpad=1)
     lower.yaxis.set_offset_position("right")
     for axes in (upper, lower):
         axes.set_xlim(*window)
+        axes.set_xlabel("time [s]", labelpad=1)
         axes.yaxis.set_label_coords(-0.125, 0.5)
 
 
