@@ -152,7 +152,7 @@ def _start_temperature(run: Run) -> float:
 def _name_users(damper: _InstalledDamper, runs: Sequence[Run]) -> str:
     """Return in brackets what the runs with a damper share and others have not, or their variants."""
     shared, _ = naming.distinguish_runs(damper.runs, runs)
-    return f" ({shared or name_some(list(dict.fromkeys(map(name_variant, damper.runs))))})"
+    return f" ({shared or name_some(list(dict.fromkeys(map(name_variant, damper.runs))), 1)})"
 
 
 def _make_families(damper: _InstalledDamper, called: str, amplitude: float) -> Iterator[Family]:

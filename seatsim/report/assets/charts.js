@@ -74,7 +74,7 @@
         width: this.width, height: HEIGHT, legend: { show: false },
         cursor: { sync: { key: this.element.id }, drag: { x: true, y: false, setScale: false }, y: false },
         scales: { x: { time: false, range: (plot, low, high) => [low, high] }, y: { range: (plot, low, high) => roomAround(low, high) } },
-        axes: [{ ...axis, size: 30, gap: 4, label: "time [s]", labelSize: 18, labelGap: 0, labelFont: axis.font }, { ...axis, size: 58 }],
+        axes: [{ ...axis, size: 30, gap: 4, space: 40, label: "time [s]", labelSize: 18, labelGap: 0, labelFont: axis.font }, { ...axis, size: 58, space: 24 }],
         series: [{}, ...this.data.lines.map((line, k) => ({
           label: line.name, stroke: colour(`--c${line.look}`), ...(line.look === MEASURED ? { width: 3.4, alpha: 0.55 } : { width: 1.4, alpha: line.opacity, dash: [[], [7, 3], [9, 3, 2, 3]][line.look % 3] }),
           points: { show: false }, spanGaps: false, show: this.switches[k] ? this.switches[k].checked : true,
