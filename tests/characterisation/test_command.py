@@ -39,7 +39,7 @@ def test_a_bench_table_gives_files_and_a_table(record, sine, tmp_path):
     assert "rebound [N]" in done.stdout.splitlines()[1]
     assert {path.name for path in (tmp_path / "out").iterdir()} == set(
         words("""
-        cycles.csv characterisation.json characterisation.xlsx report.html loops.png energy.png asymmetry.png
+        cycles.csv characterisation.json characterisation.xlsx report.html loops.png energy.png
         manifest.json
     """)
     )
