@@ -88,8 +88,8 @@ def list_hypotheses(searches: Sequence[Search]) -> list[Hypothesis]:
     hypotheses = [
         Hypothesis(_describe_set(first.selection.calibrated, search, rig, gaps), rig, search)
         for search in searches
-        for sets in search.selection.sets[0 if search.disturbance else 1 :]
-        for rig in sets[:count]
+        for rig in search.selection.list_finalists(count)
+        if search.disturbance or rig.parameters.terms
     ]
     least = min((each.features["excess"] for each in hypotheses if each.search is first), default=0.0)
     return [*hypotheses, Hypothesis({"unknown": 1.0, "unknown_excess": least})]

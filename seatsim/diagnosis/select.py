@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from itertools import permutations
+from itertools import chain, permutations
 from typing import NamedTuple
 
 import numpy as np
@@ -35,7 +35,8 @@ class Selection:
     """Fitted sets of effects by size, the best first; `sets[0]` holds the calibrated nominal scenario alone.
 
     `nuisances` holds the sensitivities of the calibrated rig to the nuisance parameters, `sensitivities` those to the
-    candidates, `notes` a sentence on each effect that could not be simulated from some start.
+    candidates, `notes` a sentence on each effect that could not be simulated from some start, `proposed` the names of
+    sets that another search proposed.
     """
 
     nominal: Evaluation
@@ -43,6 +44,7 @@ class Selection:
     nuisances: Linearisation
     sensitivities: Sensitivities = field(default=Sensitivities((), {}), kw_only=True)
     notes: tuple[str, ...] = field(default=(), kw_only=True)
+    proposed: frozenset[frozenset[str]] = field(default=frozenset(), kw_only=True)
 
     @property
     def calibrated(self) -> Evaluation:
@@ -58,13 +60,22 @@ class Selection:
         """Return a set with the sensitivities of the calibrated rig to the nuisance parameters, which hardly change."""
         return Linearisation(evaluation, self.nuisances.jacobian)
 
-    def add(self, evaluation: Evaluation) -> Selection:
-        """Return the selection with one more set, as the first of its size, in the place of any with its effects."""
-        size, names = len(evaluation.parameters.terms), evaluation.parameters.names
-        same = self.sets[size] if size < len(self.sets) else ()
-        others = tuple(each for each in same if each.parameters.names != names)
-        sets = (*self.sets[:size], (evaluation, *others), *self.sets[size + 1 :])
-        return replace(self, sets=sets)
+    def list_finalists(self, count: int) -> list[Evaluation]:
+        """Return the best sets of each size, so many of a size, and all that were proposed."""
+        return [
+            each
+            for sets in self.sets
+            for rank, each in enumerate(sets)
+            if rank < count or each.parameters.names in self.proposed
+        ]
+
+    def propose(self, evaluations: Sequence[Evaluation]) -> Selection:
+        """Return the selection with more sets, of those with the same effects the one that costs less."""
+        every = [*chain.from_iterable(self.sets), *evaluations]
+        sizes = range(max(len(each.parameters.terms) for each in every) + 1)
+        by_size = ([each for each in every if len(each.parameters.terms) == size] for size in sizes)
+        sets = tuple(tuple(_best_of_each_set(each)) for each in by_size)
+        return replace(self, sets=sets, proposed=frozenset(each.parameters.names for each in evaluations))
 
     def weigh_again(self, old: Objective, new: Objective) -> LinearisedRig:
         """Return the rig under other weights, its nuisance parameters refitted; nothing is linearised again."""

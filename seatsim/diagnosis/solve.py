@@ -54,11 +54,9 @@ def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress)
     # A random signal takes nothing off the gap, however right it is.
     if first.decision.verdict == "none" or first.stochastic:
         return first
-    if first.decision.verdict != "unknown":
-        if _takes_enough(objective, first):
-            return _localise(task, first)
-        first = first._replace(decision=call_unknown(problem.settings.decision, first.decision))
-    return _in_time(_search_by_gap, task, first) or _localise(task, first)
+    if _is_explained(objective, first):
+        return _localise(task, first)
+    return _in_time(_search_by_gap, task, objective, first) or _localise(task, _call_unknown(first))
 
 
 def pose_search(problem: DiagnosisProblem, without: Sequence[str], progress: Progress) -> tuple[SearchTask, Objective]:
@@ -96,13 +94,15 @@ def _search_at_lower_noise(task: SearchTask, first: Solution) -> Solution:
     return search(task, new, selection.weigh_again(old, new))
 
 
-def _takes_enough(objective: Objective, solution: Solution) -> bool:
-    """Whether the chosen set takes enough of the gap, nominal and calibrated, for its effects to be its causes.
+def _is_explained(objective: Objective, solution: Solution) -> bool:
+    """Whether the chosen set is known, and takes enough of the gap, nominal and calibrated, to be its causes.
 
     Weights by noise value what an effect improves where signals are weak, which may be next to nothing of the gap. A
     broadband residual is noise only where nothing else is left; otherwise the gap counts beyond that of `objective`.
     """
     selection, chosen = solution.selection, solution.decision.chosen
+    if solution.decision.verdict == "unknown":
+        return False
     if chosen.excess < objective.settings.selection.nothing_left:
         objective = solution.objective
     taken = [measure_gap_taken(objective, rig, chosen) for rig in (selection.nominal, selection.calibrated)]
@@ -122,33 +122,52 @@ def _search_beyond_broadband(task: SearchTask, first: Solution) -> Solution:
     return second if second.decision.verdict in ("known", "ambiguous") else first
 
 
-def _search_by_gap(task: SearchTask, first: Solution) -> Solution:
-    """Return the unexplained remainder with the effects that cross-validation supports under uniform weights."""
+def _search_by_gap(task: SearchTask, objective: Objective, first: Solution) -> Solution:
+    """Return the solution with the sets that a search under uniform weights proposes, or the remainder beside one.
+
+    Where weak signals weigh most a fit may end far from the set that takes all of the gap, so that what is found under
+    uniform weights is fitted and judged under those of the noise. Where it does not explain the gap either, the effects
+    that cross-validation supports are stated beside the unexplained remainder.
+    """
     task.progress("weighing the gap alone")
-    problem, settings = first.objective.problem, first.objective.settings
-    objective = Objective(problem, weigh_gap(problem, first.selection.calibrated.residuals))
-    largest = settings.selection.largest_uniform_set
-    rig = first.selection.weigh_again(first.objective, objective)
-    selection = select_effects(objective, task.candidates, task.progress, largest, rig)
-    chosen, equivalent, tried = select_by_cross_validation(objective, selection)
-    evident = None if chosen.parameters.terms else _fit_evident(first, objective, selection)
+    problem, settings, known = first.objective.problem, first.objective.settings.selection, first.selection
+    uniform = Objective(problem, weigh_gap(problem, known.calibrated.residuals))
+    rig = known.weigh_again(first.objective, uniform)
+    selection = select_effects(uniform, task.candidates, task.progress, settings.largest_uniform_set, rig)
+    proposed = [
+        refit_on(first.objective, known.linearise(each))
+        for sets in selection.sets[1:]
+        for each in sets[: settings.finalists]
+    ]
+    second = _decide(task, first._replace(selection=known.propose(proposed)))
+    if second.stochastic:
+        return second
+    if _is_explained(objective, second):
+        return _localise(task, second)
+    return _state_beside_unknown(task, _call_unknown(second), uniform, selection)
+
+
+def _call_unknown(solution: Solution) -> Solution:
+    settings = solution.objective.settings.decision
+    return solution._replace(decision=call_unknown(settings, solution.decision))
+
+
+def _state_beside_unknown(task: SearchTask, first: Solution, uniform: Objective, selection: Selection) -> Solution:
+    """Return the unexplained remainder with the effects that cross-validation supports under uniform weights."""
+    settings = first.objective.settings.decision
+    chosen, equivalent, tried = select_by_cross_validation(uniform, selection)
+    evident = None if chosen.parameters.terms else _fit_evident(first, uniform, selection)
     if evident is None:
         refitted = refit_on(first.objective, first.selection.linearise(chosen))
-        decision = decide_beside_unknown(settings.decision, first.decision, refitted, equivalent, tried)
-        # Where weak signals weigh most a fit may end far from the set that takes all of the gap.
-        if _takes_enough(first.objective, first._replace(decision=decision)):
-            again = decide_verdict([Search(first.objective, first.selection.add(refitted))], task.effects)
-            if again.chosen is refitted and again.verdict in ("known", "ambiguous"):
-                decision = again
+        decision = decide_beside_unknown(settings, first.decision, refitted, equivalent, tried)
     else:
-        chosen, decision = evident, call_unknown(settings.decision, first.decision)
+        chosen, decision = evident, first.decision
     localised = _localise(task, first._replace(decision=decision))
     if localised.decision is not decision:
         return localised
     # The effects are stated as fitted under uniform weights, since those fits were cross-validated.
-    return localised._replace(
-        objective=objective, selection=selection, decision=dataclasses.replace(decision, chosen=chosen)
-    )
+    stated = dataclasses.replace(decision, chosen=chosen)
+    return localised._replace(objective=uniform, selection=selection, decision=stated)
 
 
 def _fit_evident(first: Solution, objective: Objective, selection: Selection) -> Evaluation | None:
@@ -208,14 +227,19 @@ def _decide_beside_disturbance(task: SearchTask, first: Solution, without: Seque
         disturbance = find_bias_drift(objective, first.decision.chosen)
     if disturbance is None or disturbance.effect in without:
         return first
-    second = search_beside(task, objective, selection, disturbance)
-    decision = decide_verdict([Search(objective, selection), second], task.effects)
-    if decision.verdict == "unknown" or decision.search is not second:
-        return first._replace(decision=decision)
-    effect, problem = disturbance.effect, second.objective.problem
-    moved = {effect.partition(".")[0]: disturbance.measure_movements(problem)}
-    where = share_gap(second.objective, decision.chosen, None, moved)
-    return Solution(second.objective, second.selection, decision, where, disturbance.found, effect)
+    return _decide(task, first._replace(beside=search_beside(task, objective, selection, disturbance)))
+
+
+def _decide(task: SearchTask, solution: Solution) -> Solution:
+    """Return the solution decided anew on all its sets, those beside a disturbance among them."""
+    first, beside = Search(solution.objective, solution.selection), solution.beside
+    decision = decide_verdict([first, beside] if beside else [first], task.effects)
+    if decision.verdict == "unknown" or decision.search is first or not (beside and beside.disturbance):
+        return solution._replace(decision=decision)
+    effect, problem = beside.disturbance.effect, beside.objective.problem
+    moved = {effect.partition(".")[0]: beside.disturbance.measure_movements(problem)}
+    where = share_gap(beside.objective, decision.chosen, None, moved)
+    return Solution(beside.objective, beside.selection, decision, where, beside.disturbance.found, effect)
 
 
 def search_beside(task: SearchTask, objective: Objective, selection: Selection, disturbance: Disturbance) -> Search:

@@ -140,12 +140,15 @@ def test_the_best_effect_is_begun_again_in_its_other_forms():
     assert found.sets[1][0].parameters.terms[0].cls is Cubed and amount**3 == pytest.approx(1.4, rel=0.01)
 
 
-def test_a_set_that_is_added_stands_first_of_its_size_and_once():
+def test_a_set_that_is_proposed_takes_its_place_by_its_cost_and_is_a_finalist():
     found, _ = search(pose({"true.one": 1.4, "true.two": -0.6}), largest=2)
-    last = found.sets[1][-1]
-    added = found.add(last)
-    assert added.sets[1][0] is last and sorted(map(sorted, names_of(added.sets[1]))) == sorted(
-        map(sorted, names_of(found.sets[1]))
-    )
+    singles = found.sets[1]
+    cheaper = dataclasses.replace(singles[-1], cost=0.9 * singles[-1].cost)
+    added = found.propose([cheaper, dataclasses.replace(singles[0], cost=1.1 * singles[0].cost)])
+    assert sorted(map(sorted, names_of(added.sets[1]))) == sorted(map(sorted, names_of(singles)))
+    assert added.sets[1][0] is singles[0] and any(each is cheaper for each in added.sets[1])
     assert (added.sets[0], added.sets[2:]) == (found.sets[0], found.sets[2:])
-    assert dataclasses.replace(found, sets=found.sets[:1]).add(last).sets == (found.sets[0], (last,))
+    finalists = names_of(added.list_finalists(1))
+    assert finalists == [set(), set(singles[0].parameters.names), set(singles[-1].parameters.names), {*PLANTED[:2]}]
+    larger = dataclasses.replace(found, sets=found.sets[:1]).propose(found.sets[2][:1])
+    assert larger.sets == (found.sets[0], (), found.sets[2][:1])
