@@ -17,7 +17,6 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import softmax
 
-from seatsim.diagnosis.localise.discrepancy import measure_unsteadiness
 from seatsim.diagnosis.localise.disturbance import Disturbance
 from seatsim.diagnosis.movement import (
     expect_power,
@@ -31,7 +30,7 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.fields import read_packaged
 
 _LITTLE = 0.02
-"""Excess, its share, or gap in standard deviations, about which differences begin to count."""
+"""Share of the excess, or gap in standard deviations, about which differences begin to count."""
 _LEAST_MOVEMENT = 0.01
 """Movement, in material limits, below which smaller ones count as much."""
 
@@ -91,8 +90,7 @@ def list_hypotheses(searches: Sequence[Search]) -> list[Hypothesis]:
         for rig in search.selection.list_finalists(count)
         if search.disturbance or rig.parameters.terms
     ]
-    least = min((each.features["excess"] for each in hypotheses if each.search is first), default=0.0)
-    return [*hypotheses, Hypothesis({"unknown": 1.0, "unknown_excess": least})]
+    return [*hypotheses, Hypothesis({"unknown": 1.0})]
 
 
 def _describe_set(
@@ -106,7 +104,6 @@ def _describe_set(
     smaller = [gap for others, gap in gaps.items() if search.effect <= others < names]
     movements = measure_relative_movements(problem, rig)
     features = {
-        "excess": math.log((rig.excess + _LITTLE) / (calibrated.excess + _LITTLE)),
         "gap": math.log(gaps[names] / gaps[calibrated.parameters.names]),
         "gap_gain": math.log(gaps[names] / min(smaller, default=gaps[names])),
         "worst": math.log(worst + _LITTLE),
@@ -118,7 +115,6 @@ def _describe_set(
             "disturbance": 1.0,
             "disturbance_effects": float(len(movements)),
             "predicted": search.disturbance.found.shares["everything"],
-            "unsteady": measure_unsteadiness(problem, search.disturbance.found),
         }
     moved = min(float(np.max(each)) for each in movements)
     return features | {"movement": min(0.0, math.log(moved + _LEAST_MOVEMENT))}

@@ -117,10 +117,10 @@ def select_effects(
             if not larger:
                 break
             sets.append(larger)
-            if size == 1 and larger[0].excess > settings.nothing_left:
-                bases = larger[: settings.beam]
-                again = [each for base in bases for each in _restart_effect(objective, base, candidates, nuisances)]
-                larger[:] = _best_of_each_set([*larger, *again])
+            if larger[0].excess > settings.nothing_left:
+                restarted = [(base, term) for base in larger[: settings.beam // size] for term in base.parameters.terms]
+                again = [_restart_effect(objective, *each, candidates, nuisances) for each in restarted]
+                larger[:] = _best_of_each_set([*larger, *chain.from_iterable(again)])
             larger[:] = _best_of_each_set([*larger, *_fit_twins(objective, larger[0], candidates, nuisances)])
             if not _gains(objective, sets):
                 break
@@ -168,7 +168,7 @@ def _extend(
         count = settings.further_shortlist if taken else settings.first_shortlist
         # A first effect of a gap is always tried; others only where a linear model predicts that they help.
         if taken:
-            bound = base.rows * (1.0 + settings.promising * bases[0].excess)
+            bound = base.rows * (1.0 + bases[0].excess)
         elif base.excess < settings.nothing_left:
             bound = base.cost - objective.settings.decision.least_lowered * base.rows
         else:
@@ -183,22 +183,27 @@ def _extend(
 
 
 def _restart_effect(
-    objective: Objective, best: Evaluation, candidates: Sequence[Candidate], nuisances: Linearisation
+    objective: Objective,
+    best: Evaluation,
+    term: Candidate,
+    candidates: Sequence[Candidate],
+    nuisances: Linearisation,
 ) -> list[Evaluation]:
-    """Return fits of the best single effect in each of its forms, begun again from all their starts.
+    """Return fits of a set with one of its effects in each of its forms, begun again from all their starts.
 
     A start that falls steeply only after some steps was left behind before. Forms with the same free parameters also
     start where the others ended: where the cost of one jumps, that of another may lead there.
     """
-    (term,) = best.parameters.terms
     rig = best.parameters.remove(term.effect)
     starts = [rig.add(each, np.array(each.start)) for each in candidates if each.replaces(term)]
     forms: dict[Hashable, list[Evaluation]] = {}
     for start in sorted(objective.evaluate(starts), key=lambda each: each.cost):
-        forms.setdefault(start.parameters.terms[0].structure, []).append(start)
+        forms.setdefault(start.parameters.terms[-1].structure, []).append(start)
     fitted = [_fit_from_best(objective, several, nuisances) for several in forms.values()]
     pairs = permutations((each.parameters for each in fitted), 2)
-    moved = [b.remove(term.effect).add(a.terms[0], *b.values) for a, b in pairs if a.terms[0].free == b.terms[0].free]
+    moved = [
+        b.remove(term.effect).add(a.terms[-1], b.values[-1]) for a, b in pairs if a.terms[-1].free == b.terms[-1].free
+    ]
     return fitted + [fit(objective, search_pattern(objective, each), nuisances) for each in objective.evaluate(moved)]
 
 
@@ -217,7 +222,8 @@ def _fit_twins(
 def _fit_from_best(objective: Objective, starts: Sequence[Evaluation], nuisances: Linearisation) -> Evaluation:
     """Return the fit that fell lowest in its first steps from some starts, the best first, carried to its end."""
     settings = objective.settings.selection
-    begun = [fit(objective, each, nuisances, settings.begun_steps) for each in starts[: settings.further_shortlist]]
+    most = settings.further_shortlist // len(starts[0].parameters.terms)
+    begun = [fit(objective, each, nuisances, settings.begun_steps) for each in starts[:most]]
     return fit(objective, min(begun, key=lambda each: each.cost), nuisances)
 
 

@@ -1,14 +1,12 @@
 """The model discrepancy: the unexplained signal in a block, what it depends on, and the sentences on it.
 
-A force comes from outside the rig where nothing predicts it on a left-out run and it is equally strong in every run. A
-rattle is hard to predict too, but its strength follows the motion. The regressors come from the simulation driven by
-the measured floor, not from the measured motion, to which the unexplained force itself contributes.
+A force that comes from outside the rig is one that nothing predicts on a left-out run. The regressors come from the
+simulation driven by the measured floor, not from the measured motion, to which the unexplained force itself contributes.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -122,8 +120,7 @@ def _lag(values: Array, lags: int) -> Array:
 class Discrepancy(NamedTuple):
     """An unexplained signal by run, and the shares of its variance that families of regressors predict.
 
-    `channel` is the one whose error it is; empty for a force, an acceleration or a current. `comparable` is the part of
-    the signal that every run shows.
+    `channel` is the one whose error it is; empty for a force, an acceleration or a current.
     """
 
     block: str
@@ -132,7 +129,6 @@ class Discrepancy(NamedTuple):
     signals: dict[str, Array]
     shares: dict[str, float]
     channel: str = ""
-    comparable: Mapping[str, Array] = MappingProxyType({})
 
     @property
     def rms(self) -> float:
@@ -145,34 +141,8 @@ def describe_discrepancy(
 ) -> Discrepancy:
     """Return the unexplained signal in a block of the seat and what predicts it."""
     shares = explain_signal(problem, parameters, hypothesis.signals)
-    return Discrepancy(
-        block,
-        hypothesis.quantity,
-        hypothesis.unit,
-        hypothesis.signals,
-        shares,
-        hypothesis.channel,
-        hypothesis.comparable,
-    )
-
-
-def measure_unsteadiness(problem: DiagnosisProblem, found: Discrepancy) -> float:
-    """Return the logarithm of the ratio of a signal's RMS in its strongest run to its weakest, 0 where chance makes it.
-
-    A few knocks make a force whose RMS differs from run to run by chance: as much as the power of its blocks of time,
-    of a second or so, lets expect.
-    """
-    settings, length = problem.settings, problem.settings.validation.block_length * problem.rate
-    powers = [
-        [float(np.mean(block**2)) for block in np.array_split(values, max(2, round(len(values) / length)))]
-        for values in (signal - signal.mean() for signal in found.comparable.values())
-    ]
-    if not powers:
-        return 0.0
-    means, errors = np.array([(np.mean(each), np.var(each, ddof=1) / len(each)) for each in powers]).T
-    low, high = np.argmin(means), np.argmax(means)
-    chance = settings.validation.by_chance * np.sqrt(errors[low] + errors[high])
-    return max(0.0, 0.5 * float(np.log(means[high] / (means[low] + chance))))
+    cause = hypothesis
+    return Discrepancy(block, cause.quantity, cause.unit, cause.signals, shares, cause.channel)
 
 
 def is_bias_drift(settings: LocalisationSettings, found: Discrepancy, rate: float, noise: float) -> bool:

@@ -42,8 +42,7 @@ class FaultHypothesis(NamedTuple):
 
     `negative_log_evidence` is minus twice the log evidence per number compared, less 1. `signals[run]`, shape
     (samples,), is the input above its noise, a quantity in its unit; `channel` is the one that errs, for a sensor.
-    `comparable` is, for a port, the part of that input at the frequencies at which every run shows it, `estimates`
-    what it was found by.
+    `estimates` is what it was found by.
     """
 
     negative_log_evidence: float
@@ -51,7 +50,6 @@ class FaultHypothesis(NamedTuple):
     unit: str
     signals: dict[str, Array]
     channel: str = ""
-    comparable: Mapping[str, Array] = MappingProxyType({})
     estimates: Mapping[str, InputEstimate] = MappingProxyType({})
 
 
@@ -74,9 +72,7 @@ def evaluate_hypotheses(
         signals = {run: estimate.signal for run, estimate in estimates.items()}
         quantity, unit = _QUANTITIES.get(name, ("force", "N"))
         evidence = _negative_log_evidence(objective, nuisances, estimates)
-        comparable = _make_comparable(estimates) if name in PORTS else {}
-        found = FaultHypothesis(evidence, quantity, unit, signals, comparable=comparable, estimates=estimates)
-        hypotheses[name] = found
+        hypotheses[name] = FaultHypothesis(evidence, quantity, unit, signals, estimates=estimates)
     errors = [
         hypotheses.pop(name)._replace(
             quantity=f"error of {name}", unit=problem.recording.channels[name].unit, channel=name
@@ -87,27 +83,6 @@ def evaluate_hypotheses(
     if "floor" in hypotheses and not follows_floor(problem.recording):
         errors.append(_as_sensor_error(hypotheses.pop("floor")))
     return hypotheses | {"sensor": min(errors, key=lambda hypothesis: hypothesis.negative_log_evidence)}
-
-
-def _make_comparable(estimates: Mapping[str, InputEstimate]) -> dict[str, Array]:
-    """Return an input by run, of its spectrum only as much as every run shows.
-
-    A run in which more else moves shows less of the same input, which is no sign that the input is weaker there.
-    """
-    longest = max(len(estimate.gain) for estimate in estimates.values())
-    common = np.min([_resample(estimate.gain, longest) for estimate in estimates.values()], axis=0)
-    comparable = {}
-    for run, estimate in estimates.items():
-        gain, spectrum = estimate.gain, np.fft.rfft(estimate.signal)
-        share = np.divide(_resample(common, len(gain)), gain, out=np.zeros_like(gain), where=gain > 0.0)
-        spectrum[: len(gain)] *= share
-        comparable[run] = np.fft.irfft(spectrum, len(estimate.signal))
-    return comparable
-
-
-def _resample(values: Array, count: int) -> Array:
-    """Return values over a range of frequencies at another number of them."""
-    return np.interp(np.linspace(0.0, 1.0, count), np.linspace(0.0, 1.0, len(values)), values)
 
 
 def _as_sensor_error(motion: FaultHypothesis) -> FaultHypothesis:

@@ -131,10 +131,6 @@ class SelectionSettings(NamedTuple):
     """Reduced chi-square less 1 below which nothing is left to explain.
     Trades off: lower: false alarms; higher: weak effects are missed.
     Chosen: on simulated rigs."""
-    promising: float = 0.97
-    """Share of what is left so far that a further effect may leave, as predicted, for it to be tried.
-    Trades off: lower: further effects are missed; higher: time.
-    Chosen: effects that are far from linear were predicted to leave up to 0.95, and left 0.05."""
     enlarge: float = 0.45
     """Share of what is left that a last effect leaves at most for the others to be left out in turn.
     Trades off: higher: time.
