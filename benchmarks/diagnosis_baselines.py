@@ -56,7 +56,7 @@ NAMED, NAMED_NEXT, LARGE = 0.85, 0.8, 0.02
 MISFIT = 8.0
 SPARSE, LEFT, SWEEPS = 0.15, 0.5, 10
 FULL = DiagnosisSettings()
-TO_THE_END = FULL._replace(selection=FULL.selection._replace(worthwhile=np.inf, promising=1e9, nothing_left=-1.0))
+TO_THE_END = FULL._replace(selection=FULL.selection._replace(worthwhile=np.inf, nothing_left=-1.0))
 """Settings under which every larger set is sought, so that BIC alone says how many effects there are."""
 
 

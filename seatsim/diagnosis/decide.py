@@ -65,9 +65,9 @@ def decide_verdict(searches: Sequence[Search], effects: Sequence[str]) -> Decisi
 
 
 def _merge_same(weighed: Sequence[tuple[Hypothesis, float]]) -> list[tuple[Hypothesis, float]]:
-    """Return one hypothesis for the same effects, as an offset of a sensor and its drift: that which leaves least."""
+    """Return one hypothesis for the same effects, as an offset of a sensor and its drift: the likeliest."""
     merged: dict[frozenset[str], tuple[Hypothesis, float]] = {}
-    for each, weight in sorted(weighed, key=lambda pair: -pair[0].features["gap"]):
+    for each, weight in sorted(weighed, key=lambda pair: pair[1]):
         _, before = merged.get(each.names, (each, 0.0))
         merged[each.names] = each, before + weight
     return list(merged.values())

@@ -82,11 +82,9 @@ def list_hypotheses(searches: Sequence[Search]) -> list[Hypothesis]:
     """
     first, *_ = searches
     count = first.objective.settings.selection.finalists
-    fitted = [(search, rig) for search in searches for sets in search.selection.sets for rig in sets]
-    gaps = {rig.parameters.names | search.effect: _measure_gap(search.objective, rig) for search, rig in fitted}
     hypotheses = [
         Hypothesis(_describe_set(first.selection.calibrated, search, rig, gaps), rig, search)
-        for search in searches
+        for search, gaps in zip(searches, map(_measure_gaps, searches), strict=True)
         for rig in search.selection.list_finalists(count)
         if search.disturbance or rig.parameters.terms
     ]
@@ -96,20 +94,21 @@ def list_hypotheses(searches: Sequence[Search]) -> list[Hypothesis]:
 def _describe_set(
     calibrated: Evaluation, search: Search, rig: Evaluation, gaps: Mapping[frozenset[str], float]
 ) -> dict[str, float]:
-    """Return the features of a fitted set of effects; `gaps` are those of all sets by the names of their effects."""
-    objective, names = search.objective, rig.parameters.names | search.effect
+    """Return the features of a fitted set of effects; `gaps` are those of all sets of its search, by their names."""
+    objective, names = search.objective, rig.parameters.names
     problem = objective.problem
     worst = max([0.0, *measure_shares_left(problem, calibrated, rig)])
-    # A random signal takes any gap, so that only sets beside it are compared, and it has no gain alone.
-    smaller = [gap for others, gap in gaps.items() if search.effect <= others < names]
+    smaller = [gap for others, gap in gaps.items() if others < names]
     movements = measure_relative_movements(problem, rig)
     features = {
-        "gap": math.log(gaps[names] / gaps[calibrated.parameters.names]),
         "gap_gain": math.log(gaps[names] / min(smaller, default=gaps[names])),
         "worst": math.log(worst + _LITTLE),
         "prior": float(np.sum((rig.parameters.deviations / objective.settings.fit.prior_std) ** 2)),
     }
-    if search.disturbance:
+    # A random signal takes any gap, however right it is.
+    if search.disturbance is None:
+        features["gap"] = math.log(gaps[names] / gaps[calibrated.parameters.names])
+    else:
         movements = [*movements, relate_to_material(problem, search.disturbance.measure_movements(problem))]
         features |= {
             "disturbance": 1.0,
@@ -118,6 +117,11 @@ def _describe_set(
         }
     moved = min(float(np.max(each)) for each in movements)
     return features | {"movement": min(0.0, math.log(moved + _LEAST_MOVEMENT))}
+
+
+def _measure_gaps(search: Search) -> dict[frozenset[str], float]:
+    """Return the gap of every set of a search by the names of its effects."""
+    return {rig.parameters.names: _measure_gap(search.objective, rig) for sets in search.selection.sets for rig in sets}
 
 
 def _measure_gap(objective: Objective, rig: Evaluation) -> float:

@@ -1,7 +1,7 @@
 """The model discrepancy: the unexplained signal in a block, what it depends on, and the sentences on it.
 
-A force that comes from outside the rig is one that nothing predicts on a left-out run. The regressors come from the
-simulation driven by the measured floor, not from the measured motion, to which the unexplained force itself contributes.
+Nothing predicts a force from outside the rig on a run that is left out. The regressors come from the simulation driven
+by the measured floor, not from the measured motion, to which the unexplained force itself contributes.
 """
 
 from __future__ import annotations

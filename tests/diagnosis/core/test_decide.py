@@ -93,14 +93,12 @@ def test_features_are_figures_of_the_fits(rig):
     gaps = np.hypot(0.3, 0.5), 0.3, 0.0
     left = [math.log((gap + 0.02) / (gaps[0] + 0.02)) for gap in gaps]
     assert single.features == pytest.approx(
-        {"excess": math.log(2.02 / 10.02), "gap": left[1]}
-        | {"gap_gain": left[1], "worst": math.log(3.9 / 4.0 + 0.02), "movement": 0.0, "prior": 0.0},
+        {"gap": left[1], "gap_gain": left[1], "worst": math.log(3.9 / 4.0 + 0.02), "movement": 0.0, "prior": 0.0},
         abs=3e-2,
     )
-    assert pair.features["excess"] == pytest.approx(math.log(0.12 / 10.02))
     assert pair.features["gap"] == pytest.approx(left[2], abs=0.05)
     assert pair.features["gap_gain"] == pytest.approx(left[2] - left[1], abs=0.05)
-    assert unknown.features == {"unknown": 1.0, "unknown_excess": pytest.approx(math.log(0.12 / 10.02))}
+    assert unknown.features == {"unknown": 1.0}
     assert {*single.features, *unknown.features} < set(WEIGHTS)
 
 
@@ -114,7 +112,7 @@ def test_a_search_beside_a_disturbance_adds_its_sets_and_the_disturbance_alone(r
     calibrated, one, both_ = (state(rig, *each) for each in (({}, 10.0), ({"b.two": 1.0}, 6.0), (both(), 0.5)))
     nuisances = rig.linearise_nuisances(calibrated)
     signals = {run: np.sin(np.arange(count)) for run, count in RUNS.items()}
-    found = Discrepancy("floor", "force", "N", signals, {"everything": 0.2}, comparable=signals)
+    found = Discrepancy("floor", "force", "N", signals, {"everything": 0.2})
     traces = {run: np.outer((0.4, 0.0), values) for run, values in signals.items()}
     beside = Search(
         rig, Selection(calibrated, ((one,), (both_,)), nuisances), Disturbance("z.other", found, traces, {})

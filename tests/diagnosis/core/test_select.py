@@ -100,7 +100,7 @@ def test_a_first_effect_that_later_ones_make_idle_is_eliminated():
 
 
 def test_an_effect_is_in_a_set_once_and_the_best_structure_of_it_is_kept():
-    objective = pose({"true.one": 1.4, "true.two": -0.6}, promising=9.0)
+    objective = pose({"true.one": 1.4, "true.two": -0.6})
     candidates = [offer("true.one", "decoy.0", 0.3), offer("true.one", "true.one", 0.3), offer("true.two", start=0.3)]
     found = select_effects(objective, candidates, lambda _: None)
     singles = {next(iter(each.parameters.names)): each for each in found.sets[1]}
