@@ -1,8 +1,9 @@
 """Weights of the score of a diagnosis, fitted to sealed cases: `python benchmarks/fit_score.py DIR:KEY ...`.
 
 DIR holds the cases of a blind set, DIR.sealed their labels. The searches of each case, without a random signal and
-beside one, give its hypotheses, which are kept in `DIR/CASE/hypotheses.json`. With x the features of the hypotheses
-of a case and t those that are true, or the unknown cause where no fitted set is, the weights w minimise
+beside one, and by the gap where the cause stays unknown, give its hypotheses, which are kept in
+`DIR/CASE/hypotheses.json`. With x the features of the hypotheses of a case and t those that are true, or the unknown
+cause where no fitted set is, the weights w minimise
 
     sum over cases  (log sum exp(x w) - log sum over t exp(x_t w))  +  RIDGE / 2 |w s|^2
 
@@ -28,10 +29,11 @@ from threadpoolctl import threadpool_limits
 
 from seatsim.blind.sealed import Label, unseal
 from seatsim.diagnosis import score
+from seatsim.diagnosis.decide import decide_verdict
 from seatsim.diagnosis.localise.disturbance import find_disturbance
 from seatsim.diagnosis.problem import pose_problem
 from seatsim.diagnosis.solution import search
-from seatsim.diagnosis.solve import pose_search, search_beside
+from seatsim.diagnosis.solve import adopt, pose_search, search_beside, search_by_gap
 from seatsim.recordings.recording import load_recording
 from seatsim.schema.arrays import Array
 from seatsim.schema.files import write_json, write_text
@@ -51,7 +53,7 @@ class LabelledCase(NamedTuple):
 
 
 def list_hypotheses(case: Path) -> None:
-    """Write the hypotheses on a case without a disturbance and beside one, none where it shows no gap."""
+    """Write all hypotheses on a case that its diagnosis weighs, none where it shows no gap."""
     with ThreadPoolExecutor() as pool, threadpool_limits(1):
         problem = pose_problem(load_recording(case), pool)
         task, objective = pose_search(problem, (), lambda _: None)
@@ -60,6 +62,9 @@ def list_hypotheses(case: Path) -> None:
             searches = [score.Search(objective, first.selection)]
             if disturbance := find_disturbance(objective, first.selection):
                 searches.append(search_beside(task, objective, first.selection, disturbance))
+            if decide_verdict(searches, task.effects).verdict == "unknown":
+                by_gap = search_by_gap(task, objective, first.selection)
+                searches[0] = score.Search(objective, adopt(objective, first.selection, by_gap.selection))
             found = score.list_hypotheses(searches)
         write_json(case / HYPOTHESES, [{"names": sorted(each.names), "features": each.features} for each in found])
 

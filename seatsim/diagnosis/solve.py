@@ -56,7 +56,7 @@ def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress)
         return first
     if _is_explained(objective, first):
         return _localise(task, first)
-    return _in_time(_search_by_gap, task, objective, first) or _localise(task, _call_unknown(first))
+    return _in_time(_explain_by_gap, task, objective, first) or _localise(task, _call_unknown(first))
 
 
 def pose_search(problem: DiagnosisProblem, without: Sequence[str], progress: Progress) -> tuple[SearchTask, Objective]:
@@ -122,29 +122,35 @@ def _search_beyond_broadband(task: SearchTask, first: Solution) -> Solution:
     return second if second.decision.verdict in ("known", "ambiguous") else first
 
 
-def _search_by_gap(task: SearchTask, objective: Objective, first: Solution) -> Solution:
+def _explain_by_gap(task: SearchTask, objective: Objective, first: Solution) -> Solution:
     """Return the solution with the sets that a search under uniform weights proposes, or the remainder beside one.
 
     Where weak signals weigh most a fit may end far from the set that takes all of the gap, so that what is found under
     uniform weights is fitted and judged under those of the noise. Where it does not explain the gap either, the effects
     that cross-validation supports are stated beside the unexplained remainder.
     """
-    task.progress("weighing the gap alone")
-    problem, settings, known = first.objective.problem, first.objective.settings.selection, first.selection
-    uniform = Objective(problem, weigh_gap(problem, known.calibrated.residuals))
-    rig = known.weigh_again(first.objective, uniform)
-    selection = select_effects(uniform, task.candidates, task.progress, settings.largest_uniform_set, rig)
-    proposed = [
-        refit_on(first.objective, known.linearise(each))
-        for sets in selection.sets[1:]
-        for each in sets[: settings.finalists]
-    ]
-    second = _decide(task, first._replace(selection=known.propose(proposed)))
+    uniform = search_by_gap(task, first.objective, first.selection)
+    second = _decide(task, first._replace(selection=adopt(first.objective, first.selection, uniform.selection)))
     if second.stochastic:
         return second
     if _is_explained(objective, second):
         return _localise(task, second)
-    return _state_beside_unknown(task, _call_unknown(second), uniform, selection)
+    return _state_beside_unknown(task, _call_unknown(second), uniform)
+
+
+def search_by_gap(task: SearchTask, objective: Objective, known: Selection) -> Search:
+    """Return a search under uniform weights, by which all of the gap counts, from a rig that is known by others."""
+    task.progress("weighing the gap alone")
+    problem, largest = objective.problem, objective.settings.selection.largest_uniform_set
+    uniform = Objective(problem, weigh_gap(problem, known.calibrated.residuals))
+    rig = known.weigh_again(objective, uniform)
+    return Search(uniform, select_effects(uniform, task.candidates, task.progress, largest, rig))
+
+
+def adopt(objective: Objective, known: Selection, others: Selection) -> Selection:
+    """Return a selection with the best sets of another search, fitted again under the weights of an objective."""
+    best = others.list_finalists(objective.settings.selection.finalists)
+    return known.propose([refit_on(objective, known.linearise(each)) for each in best if each.parameters.terms])
 
 
 def _call_unknown(solution: Solution) -> Solution:
@@ -152,9 +158,9 @@ def _call_unknown(solution: Solution) -> Solution:
     return solution._replace(decision=call_unknown(settings, solution.decision))
 
 
-def _state_beside_unknown(task: SearchTask, first: Solution, uniform: Objective, selection: Selection) -> Solution:
+def _state_beside_unknown(task: SearchTask, first: Solution, search: Search) -> Solution:
     """Return the unexplained remainder with the effects that cross-validation supports under uniform weights."""
-    settings = first.objective.settings.decision
+    settings, (uniform, selection, _) = first.objective.settings.decision, search
     chosen, equivalent, tried = select_by_cross_validation(uniform, selection)
     evident = None if chosen.parameters.terms else _fit_evident(first, uniform, selection)
     if evident is None:
