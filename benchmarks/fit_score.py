@@ -127,10 +127,8 @@ def main() -> None:
         f'{name}: {{weight: {weight:.3f}, means: "{score.WEIGHTS[name].means}"}}\n'
         for name, weight in zip(NAMES, fit_weights(cases), strict=True)
     ]
-    head = (
-        f"# Weights of the score of a hypothesis, fitted by benchmarks/fit_score.py to {len(cases)} cases with a gap.\n"
-    )
-    write_text(Path(score.__file__).with_name("score.yaml"), head + "".join(lines))
+    head = "# Weights of the score of a hypothesis, fitted by benchmarks/fit_score.py to"
+    write_text(Path(score.__file__).with_name("score.yaml"), f"{head} {len(cases)} cases with a gap.\n{''.join(lines)}")
 
 
 if __name__ == "__main__":

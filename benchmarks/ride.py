@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from ruamel.yaml import YAML
+from scipy.stats import gmean
 
 import seatsim
 from controllers.clairvoyant import clairvoyant
@@ -98,11 +99,6 @@ def measure_excess(settings: Settings) -> dict[str, float]:
     return {run.scenario.label["variant"]: 1.0 + measure_distance(run, bounds).above_bound for run in ours}
 
 
-def find_mean(ratios: pd.Series) -> float:
-    """Return the geometric mean."""
-    return float(np.exp(np.log(ratios).mean()))
-
-
 def main() -> None:
     """Run the cells and print the figures of each variant."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -117,11 +113,11 @@ def main() -> None:
     asked.out.mkdir(parents=True, exist_ok=True)
     table.to_csv(asked.out / "ride.csv", index=False)
     for name, part in table.groupby("variant", sort=False):
-        text = f"{name:18} mean {find_mean(part.ratio):.3f}, worst {part.ratio.max():.3f}"
+        text = f"{name:18} mean {gmean(part.ratio):.3f}, worst {part.ratio.max():.3f}"
         text += f", peak travel {part.peak_mm.max():.1f} mm"
         bound = part.bound.dropna()
         if len(bound):
-            text += f"; no damper below: mean {find_mean(bound):.3f}, worst {bound.max():.3f}"
+            text += f"; no damper below: mean {gmean(bound):.3f}, worst {bound.max():.3f}"
         print(text, flush=True)
 
 
