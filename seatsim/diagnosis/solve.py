@@ -240,12 +240,12 @@ def _decide(task: SearchTask, solution: Solution) -> Solution:
     """Return the solution decided anew on all its sets, those beside a disturbance among them."""
     first, beside = Search(solution.objective, solution.selection), solution.beside
     decision = decide_verdict([first, beside] if beside else [first], task.effects)
-    if decision.verdict == "unknown" or decision.search is first or not (beside and beside.disturbance):
+    objective, selection, disturbance = decision.search or first
+    if decision.verdict == "unknown" or disturbance is None:
         return solution._replace(decision=decision)
-    effect, problem = beside.disturbance.effect, beside.objective.problem
-    moved = {effect.partition(".")[0]: beside.disturbance.measure_movements(problem)}
-    where = share_gap(beside.objective, decision.chosen, None, moved)
-    return Solution(beside.objective, beside.selection, decision, where, beside.disturbance.found, effect)
+    moved = {disturbance.effect.partition(".")[0]: disturbance.measure_movements(objective.problem)}
+    where = share_gap(objective, decision.chosen, None, moved)
+    return Solution(objective, selection, decision, where, disturbance.found, disturbance.effect)
 
 
 def search_beside(task: SearchTask, objective: Objective, selection: Selection, disturbance: Disturbance) -> Search:

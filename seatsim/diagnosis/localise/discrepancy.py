@@ -141,8 +141,7 @@ def describe_discrepancy(
 ) -> Discrepancy:
     """Return the unexplained signal in a block of the seat and what predicts it."""
     shares = explain_signal(problem, parameters, hypothesis.signals)
-    cause = hypothesis
-    return Discrepancy(block, cause.quantity, cause.unit, cause.signals, shares, cause.channel)
+    return Discrepancy(block, hypothesis.quantity, hypothesis.unit, hypothesis.signals, shares, hypothesis.channel)
 
 
 def is_bias_drift(settings: LocalisationSettings, found: Discrepancy, rate: float, noise: float) -> bool:

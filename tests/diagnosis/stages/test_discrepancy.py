@@ -6,20 +6,14 @@ import pytest
 from seatsim.diagnosis.localise.discrepancy import Discrepancy, describe_in_words, is_bias_drift
 from seatsim.diagnosis.settings.examining import LocalisationSettings
 
-from .toy import RATE, pose, record
+from .toy import RATE
 
 SETTINGS = LocalisationSettings()
-WAVE = np.sin(2.0 * np.pi * np.arange(1000) / 100.0)
 
 
 def found(signals, shares=None, block="suspension", channel=""):
     runs = dict(zip("abc", signals, strict=False))
     return Discrepancy(block, "force", "N", runs, shares or {"velocity": 0.1, "everything": 0.1}, channel)
-
-
-@pytest.fixture(scope="module")
-def problem(folder):
-    return pose(record(folder))
 
 
 def tone(frequency, rms=1.0, samples=2000):
