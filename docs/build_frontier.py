@@ -1,4 +1,4 @@
-"""Draw the trade of comfort against travel that each kind of seat offers on the rough ground of the quickstart.
+"""Draw the trade of comfort against travel that each kind of seat offers on the scraper of the quickstart.
 
 Along every curve one number varies: the coefficient of a viscous damper, that of a hybrid skyhook, the weight of the
 travel in the H-infinity synthesis. The points are runs of the quickstart at 20 degC; the limits are those of
@@ -43,14 +43,14 @@ CURVES = (
     Curve(SKYHOOK, "hybrid skyhook", "controller.damping", (700.0, 1000.0, 1300.0, 1700.0, 2300.0, 3000.0)),
     Curve(SYNTHESISED, "H-infinity", "controller.weights.travel", (1.6, 2.0, 2.3, 2.7, 3.2, 5.0)),
 )
-PUBLISHED = Entry("gain of Yu et al. 2019", "black", "none", mark="D")
-QUICKSTART = Entry("travel of the quickstart", style.GREY, width=1.0)
+PUBLISHED = Entry("gain for Yu et al.'s seat", "black", "none", mark="D")
+QUICKSTART = Entry("travel of the example's gain", style.GREY, width=1.0)
 ACROSS = np.linspace(5.0, 19.0, 200)
 """RMS travel in mm of the bounds."""
 
 
 def run_variant(variant: str, **settings: object) -> Run:
-    """Return the run of a variant of the quickstart on its rough ground at 20 degC, without end stops."""
+    """Return the run of a variant of the quickstart on the scraper at 20 degC, without end stops."""
     content = yaml.safe_load((HERE.parent / "scenarios" / "quickstart.yaml").read_text(encoding="utf-8"))
     content = {key: value for key, value in content.items() if key not in ("sweep", "checks", "effects")}
     content["variants"] = {variant: content["variants"][variant] | settings}
@@ -64,7 +64,7 @@ def place(run: Run) -> tuple[float, float]:
 
 def draw(curves: Sequence[Sequence[Run]], published: Run, ours: Run, bounds: PerformanceBounds) -> Figure:
     """Return the picture of the runs of each curve, those of the two gains, and the bounds of the rig."""
-    title = "An H-infinity gain that measures travel alone comes near the skyhook"
+    title = "An H-infinity gain on the travel comes near the skyhook"
     note = "Scraper (ISO 7096 EM2), damper at 20 °C, no end stops; lower left is better."
     legend = [*(curve.entry for curve in CURVES), PUBLISHED, QUICKSTART, BEST, BOUND, FLOOR]
     figure, [[axes]] = style.make_page(title, note, Grid((3.4,)), legend)

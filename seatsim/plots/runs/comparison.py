@@ -23,8 +23,8 @@ from seatsim.simulation import naming
 from seatsim.simulation.performance_bounds import PerformanceBounds
 from seatsim.simulation.result import Run
 
-BOUND = Entry("no damper without memory comes below", "black", width=1.6)
-BEST = Entry("best run found of an ideal damper", DARK, (0.0, (5.0, 1.5)), 1.6)
+BOUND = Entry("lower bound without hysteresis", "black", width=1.6)
+BEST = Entry("best run found, floor known ahead", DARK, (0.0, (5.0, 1.5)), 1.6)
 FLOOR = Entry("as much as the floor (SEAT = 1)", DARK, ":", 1.6)
 SAME_PLACE = 10.0
 """Distance in points of print, below which a mark would cover another's number."""

@@ -77,7 +77,7 @@ def test_distances_are_printed_and_written(compared):
 
 
 def test_a_run_below_the_bound_is_told(compared):
-    assert "seat (soft) is below its bound, which holds for dampers without memory" in compared(Beaten)[1]
+    assert "seat (soft) is below its bound, which holds for dampers without hysteresis" in compared(Beaten)[1]
 
 
 @pytest.mark.parametrize(("kind", "reason"), [(Refused, "no bracket: the seat is bent"), (Interrupted, "interrupted")])
