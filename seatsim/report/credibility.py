@@ -70,7 +70,7 @@ def say_doubt(factors: Sequence[Factor]) -> str:
     weakest = min(factors, key=lambda factor: factor.level / len(factor.holds))
     if weakest.level == len(weakest.holds):
         return ""
-    return format_sentence(f"the weakest factor of credibility is the {weakest.name}: {weakest.evidence}")
+    return format_sentence(f"the weakest point of this result is its {weakest.name}: {weakest.evidence}")
 
 
 def verify(words: str, errors: Iterable[float]) -> Factor:
@@ -90,9 +90,11 @@ def validate(compared: int, held_out: int, error: float | None, noise: float | N
     if not compared or error is None:
         return Factor("validation", "no recording of this rig was compared", (False,) * 4)
     is_measured = noise is None or 0.0 < noise < NEAR_NOISE * error
-    alone = f", noise alone makes {_format_share(noise)}" if noise else ""
-    held = f"{held_out} of {compared} took" if held_out else "none is known to have taken"
-    said = f"error of {_format_share(error)} of the signals' spread{alone}; of its runs {held} no part in a fit"
+    alone = f", sensor noise alone makes {_format_share(noise)}" if noise else ""
+    kept = (
+        f"{held_out} of {compared} runs {'was' if held_out == 1 else 'were'}" if held_out else "no run is known to be"
+    )
+    said = f"the error is {_format_share(error)} of the signals' spread{alone}; {kept} kept out of all fits"
     good = held_out > 1 and error <= max(GOOD, NEAR_NOISE * (noise or 0.0))
     return Factor("validation", said, (True, held_out > 0, is_measured and error <= FAIR, good))
 

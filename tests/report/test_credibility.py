@@ -61,7 +61,7 @@ def test_a_card_says_what_the_next_level_asks_for_and_the_doubt_is_of_the_weakes
     rows = {row[0]: row[1:] for row in show_card([best, weak]).blocks[1].rows}
     assert rows["verification"] == ["2\u00a0of\u00a02", "All balances.", "–"]
     assert rows["robustness"] == ["0\u00a0of\u00a01", "One run.", read_conditions()["robustness"][0]]
-    assert say_doubt([best, weak]) == "The weakest factor of credibility is the robustness: one run."
+    assert say_doubt([best, weak]) == "The weakest point of this result is its robustness: one run."
     assert say_doubt([best]) == ""
 
 
@@ -80,7 +80,8 @@ def test_evidence_of_a_diagnosis_is_of_its_held_out_run():
     diagnosis = with_every_run()
     validation = next(factor for factor in judge_diagnosis(diagnosis) if factor.name == "validation")
     assert (
-        "1 of 3 took no part" in validation.evidence and f"{diagnosis.gap.after.overall:.1%}"[:3] in validation.evidence
+        "1 of 3 runs was kept out" in validation.evidence
+        and f"{diagnosis.gap.after.overall:.1%}"[:3] in validation.evidence
     )
     assert level_of("uncertainty", judge_diagnosis(diagnosis)) >= 3
 
@@ -95,7 +96,7 @@ def test_a_tolerance_that_nobody_stated_is_no_pedigree(stated, reached, sound, t
         found = judge_gap(str(folder / "nominal.yaml"), folder, gap)
     assert level_of("input pedigree", found) == reached
     # What was not fitted to such data is validated by all runs, with whatever tolerance.
-    assert ("none is known to have taken" in found[0].evidence) == (stated == "fitted")
+    assert ("no run is known to be kept out" in found[0].evidence) == (stated == "fitted")
 
 
 def test_a_diagnosis_within_a_tolerance_that_nobody_stated_has_less_of_a_pedigree():
