@@ -108,15 +108,21 @@ class SealFriction(NamedTuple):
         return (dahl_rate(self.presliding, v, z[0]),)
 
 
+def _mount(gap: float, softness: float) -> Form:
+    """Return a free play behind which the mount yields: at once or, where air is trapped, gradually."""
+    return Form({"gap": gap, "stiffness": 3e6}, {"softness": softness}, within={"stiffness": (1e6, 1e9)})
+
+
 @effect(
     "damper.free_play",
-    source="backlash: the damper's end stays while the gap is crossed; behind it a mount that yields",
+    source="backlash: the damper's end stays while the gap is crossed; behind it a mount that yields, or trapped air",
     initial=(0.0,),
     off={"softness": 0.3},
     forms=(
         *({"gap": gap} for gap in (1e-4, 3e-4, 1e-3, 2e-3)),
         {"gap": 3e-4, "softness": 0.9},
-        *(Form({"gap": gap, "stiffness": 3e6}, within={"stiffness": (1e6, 1e9)}) for gap in (3e-5, 1e-4, 3e-4, 8e-4)),
+        *(_mount(gap, softness=0.1) for gap in (3e-5, 1e-4, 3e-4, 8e-4)),
+        *(_mount(gap, softness=1.0) for gap in (1e-4, 4e-4)),
         *(Form({"gap": 1e-4 * 1.32**k}, {"softness": 0.05, "turning": 3e-4}) for k in range(12)),
     ),
 )
@@ -128,8 +134,9 @@ class FreePlay(NamedTuple):
     0 at `s = 1 - 2 softness` to 1 at s = 1, so a reversal of the force opens the gap. With `turning` a reversal of the
     motion opens it, and the damper keeps its state while it transmits nothing: `h = (1 + w) h+ / 2 + (1 - w) h- / 2`,
     `w = tanh(v / turning)`, with h+ and h- for the two signs of s. A small `turning` makes the force chatter in an
-    unpredictable way where the damper is at rest. With stiffness the force is that of the mount, `S = stiffness max(0,
-    |g| - gap / 2) sgn g`, and u is the speed at which the damper's force is S.
+    unpredictable way where the damper is at rest. With stiffness the force is that of the mount, `S = stiffness g (1 -
+    (1 + |2 g / gap|^p)^(-1 / p))` with `p = 2 / softness`, which is `stiffness (|g| - gap / 2) sgn g` far outside the
+    gap, and u is the speed at which the damper's force is S. Trapped air, of softness 1, carries gradually.
     """
 
     gap: Annotated[float, param("m", "travel without force after a reversal", low=0, high=0.02)]
@@ -156,7 +163,11 @@ class FreePlay(NamedTuple):
         """Return S in N, NaN where the mount is rigid."""
         if self.stiffness <= 0.0:
             return force
-        return math.copysign(self.stiffness * max(0.0, abs(z[0]) - 0.5 * self.gap), z[0])
+        if self.gap <= 0.0:
+            return self.stiffness * z[0]
+        power = 2.0 / self.softness
+        filled = 1.0 + abs(2.0 * z[0] / self.gap) ** power
+        return self.stiffness * z[0] * (1.0 - filled ** (-1.0 / power))
 
     def rates(self, x: float, v: float, u: float, i: float, demanded: float, target: float, z: State) -> State:
         """Return g'."""
@@ -194,9 +205,9 @@ def _without_state(damper: object) -> bool:
 class PreyieldHysteresis(NamedTuple):
     """Yield force that builds up over a travel, or with a lag: a loop at low speed.
 
-    Of the yield force with its nominal shape s(v), -1 to 1, the `share` is replaced by z, which follows it:
-    `z' = (|v| / travel + 1 / lag) (s(v) - z)`, where a travel or lag of zero is left out, at most at 1000 1/s; or by
-    s(u), where u lags the speed, `u' = (v - u) / behind`.
+    Of the yield force with its nominal shape s(u) at the speed u of the piston, -1 to 1, the `share` is replaced by z,
+    which follows it: `z' = (|u| / travel + 1 / lag) (s(u) - z)`, where a travel or lag of zero is left out, at most at
+    1000 1/s; or by s(w), where w lags the speed, `w' = (u - w) / behind`.
     """
 
     travel: Annotated[float, param("m", "travel over which the yield force builds up", low=0, high=0.02)]
@@ -205,7 +216,7 @@ class PreyieldHysteresis(NamedTuple):
     share: Annotated[float, param("-", "share of the yield force that builds up", low=0, high=2)] = 1.0
 
     def yield_speed(self, v: float, z: State) -> float:
-        """Return u in m/s."""
+        """Return w in m/s."""
         return z[1] if self.behind > 0.0 else v
 
     def yield_shape(self, shape: float, target: float, late: float, z: State) -> float:
@@ -216,11 +227,11 @@ class PreyieldHysteresis(NamedTuple):
         return self.share * built + (1.0 - self.share) * target
 
     def rates(self, x: float, v: float, u: float, i: float, demanded: float, target: float, z: State) -> State:
-        """Return (z', u')."""
-        rate = abs(v) / self.travel if self.travel > 0.0 else 0.0
+        """Return (z', w')."""
+        rate = abs(u) / self.travel if self.travel > 0.0 else 0.0
         if self.lag > 0.0:
             rate += 1.0 / self.lag
-        following = (v - z[1]) / max(self.behind, 1.0 / _FASTEST) if self.behind > 0.0 else 0.0
+        following = (u - z[1]) / max(self.behind, 1.0 / _FASTEST) if self.behind > 0.0 else 0.0
         return (rate / (1.0 + rate / _FASTEST) * (target - z[0]), following)
 
 

@@ -110,8 +110,8 @@ def _all_rates(
     u = _piston_speed(damper, effects, x, v, i, scaling, inner, outer, demanded)
     target = 0.0
     if not math.isnan(yield_shape(effects, outer, math.nan, 0.0, 0.0)):
-        felt = part_scaling(effects, outer, scaling, v)
-        target = _split(damper, x, v, yield_current(effects, outer, i), felt, inner).shape
+        felt = part_scaling(effects, outer, scaling, u)
+        target = _split(damper, x, u, yield_current(effects, outer, i), felt, inner).shape
     return rates(damper, x, u, i, scaling, inner) + effect_rates(effects, outer, x, v, u, i, demanded, target)
 
 

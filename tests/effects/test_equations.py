@@ -106,7 +106,8 @@ def compare_free_play(rng):
     else:
         w = np.tanh(v / e.turning)
         expected = 0.6 * ((1 + w) / 2 * share(1) + (1 - w) / 2 * share(-1))
-    mount = e.stiffness * max(0.0, abs(g) - e.gap / 2) * np.sign(g) if e.stiffness else 7.0
+    carried = 1.0 - np.hypot(1.0, (2 * np.abs(g) / e.gap) ** (1 / e.softness)) ** -e.softness if e.gap else 1.0
+    mount = e.stiffness * g * carried if e.stiffness else 7.0
     found = e.transmitted_share(0.6, v, demanded, (g,)), e.mount_force(7.0, (g,)), e.mount_stiffness((g,))
     yield "damper.free_play", found, (expected, mount, e.stiffness)
     yield "damper.free_play", e.rates(0.0, 0.3, 0.1, 0.0, demanded, 0.0, (g,)), (0.2,)
@@ -115,12 +116,12 @@ def compare_free_play(rng):
 def compare_preyield_hysteresis(rng):
     ranges = {"travel": (1e-4, 5e-3), "lag": (2e-3, 0.02), "behind": (2e-3, 0.02), "share": (0, 2)}
     e = drawn("damper.preyield_hysteresis", rng, **ranges)
-    v, target, late, z = rng.normal(0, 0.05), rng.uniform(-1, 1), rng.uniform(-1, 1), tuple(rng.uniform(-1, 1, 2))
-    wanted = (abs(v) / e.travel if e.travel else 0.0) + (1 / e.lag if e.lag else 0.0)
+    u, target, late, z = rng.normal(0, 0.05), rng.uniform(-1, 1), rng.uniform(-1, 1), tuple(rng.uniform(-1, 1, 2))
+    wanted = (abs(u) / e.travel if e.travel else 0.0) + (1 / e.lag if e.lag else 0.0)
     rate = 1 / (1 / wanted + 1 / MOTION_RATE) if wanted else 0.0
-    expected = (rate * (target - z[0]), (v - z[1]) / e.behind if e.behind else 0.0)
-    found = *e.rates(0.0, v, v, 0.0, 0.0, target, z), e.yield_speed(v, z)
-    yield "damper.preyield_hysteresis", found, (*expected, z[1] if e.behind else v)
+    expected = (rate * (target - z[0]), (u - z[1]) / e.behind if e.behind else 0.0)
+    found = *e.rates(0.0, 0.3, u, 0.0, 0.0, target, z), e.yield_speed(u, z)
+    yield "damper.preyield_hysteresis", found, (*expected, z[1] if e.behind else u)
     follower = late if e.behind else z[0]
     is_on = e.travel or e.lag or e.behind
     shape = e.yield_shape(math.nan, target, late, z)
