@@ -182,12 +182,6 @@ class NoiseWeights:
         """Return the weights with a random force that leaves these amplitudes, shape (channels, frequencies) by run."""
         return dataclasses.replace(self, force=amplitudes)
 
-    def scale(self, factor: float) -> NoiseWeights:
-        """Return the weights with this factor on all power."""
-        power = {run: factor * each for run, each in self.power.items()}
-        force = {run: math.sqrt(factor) * each for run, each in self.force.items()}
-        return dataclasses.replace(self, power=power, force=force)
-
 
 def weigh_noise(problem: DiagnosisProblem) -> NoiseWeights:
     """Return the weights for a recording: by all noise that is stated, and the disturbance that repeated runs show."""

@@ -9,16 +9,16 @@ from typing import ParamSpec
 import numpy as np
 
 from seatsim.diagnosis.candidates import list_candidates
-from seatsim.diagnosis.cross_validate import cross_validate, select_by_cross_validation
-from seatsim.diagnosis.decide import decide_verdict, shows_effect
+from seatsim.diagnosis.cross_validate import select_by_cross_validation
+from seatsim.diagnosis.decide import decide_verdict
 from seatsim.diagnosis.fit import refit_on
 from seatsim.diagnosis.localise.discrepancy import describe_discrepancy
 from seatsim.diagnosis.localise.disturbance import Disturbance, find_bias_drift, find_disturbance, put_beside
 from seatsim.diagnosis.localise.input_estimate import estimate_nonrepeatable_force
 from seatsim.diagnosis.localise.localisation import localise_remainder, share_gap
-from seatsim.diagnosis.movement import is_material, measure_gap_taken
+from seatsim.diagnosis.movement import measure_gap_taken
 from seatsim.diagnosis.noise import carry_force, measure_broadband, weigh_gap, weigh_noise
-from seatsim.diagnosis.objective import Evaluation, Objective, Parameters
+from seatsim.diagnosis.objective import Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, OutOfTimeError
 from seatsim.diagnosis.result import Share
 from seatsim.diagnosis.score import Search
@@ -46,7 +46,6 @@ def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress)
     """
     task, objective = pose_search(problem, without, progress)
     first = search(task, objective)
-    first = _in_time(_search_at_lower_noise, task, first) or first
     if first.decision.verdict == "unknown":
         first = _in_time(_search_beyond_broadband, task, first) or first
     if not problem.bench:
@@ -78,20 +77,6 @@ def _in_time(stage: Callable[P, Solution], *arguments: P.args, **named: P.kwargs
         return stage(*arguments, **named)
     except OutOfTimeError:
         return None
-
-
-def _search_at_lower_noise(task: SearchTask, first: Solution) -> Solution:
-    """Search again with the noise at the level that the best set leaves, where the weights expect more than there is.
-
-    Noise that is expected too large, mostly of a disturbance estimated from one repeat, would hide a gap as large.
-    """
-    selection, old = first.selection, first.objective
-    least = min(each.cost / each.rows for sets in selection.sets for each in sets)
-    if first.decision.verdict != "none" or least >= 1.0 or not shows_effect(old.problem, selection):
-        return first
-    task.progress("lowering the noise to what is left")
-    new = Objective(old.problem, old.weights.scale(least))
-    return search(task, new, selection.weigh_again(old, new))
 
 
 def _is_explained(objective: Objective, solution: Solution) -> bool:
@@ -162,37 +147,14 @@ def _state_beside_unknown(task: SearchTask, first: Solution, search: Search) -> 
     """Return the unexplained remainder with the effects that cross-validation supports under uniform weights."""
     settings, (uniform, selection, _) = first.objective.settings.decision, search
     chosen, equivalent, tried = select_by_cross_validation(uniform, selection)
-    evident = None if chosen.parameters.terms else _fit_evident(first, uniform, selection)
-    if evident is None:
-        refitted = refit_on(first.objective, first.selection.linearise(chosen))
-        decision = decide_beside_unknown(settings, first.decision, refitted, equivalent, tried)
-    else:
-        chosen, decision = evident, first.decision
+    refitted = refit_on(first.objective, first.selection.linearise(chosen))
+    decision = decide_beside_unknown(settings, first.decision, refitted, equivalent, tried)
     localised = _localise(task, first._replace(decision=decision))
     if localised.decision is not decision:
         return localised
     # The effects are stated as fitted under uniform weights, since those fits were cross-validated.
     stated = dataclasses.replace(decision, chosen=chosen)
     return localised._replace(objective=uniform, selection=selection, decision=stated)
-
-
-def _fit_evident(first: Solution, objective: Objective, selection: Selection) -> Evaluation | None:
-    """Return the smallest set that explains the weighted excess as fitted to the gap, None where the gap opposes it.
-
-    An offset of an accelerometer stands out of the noise at frequencies where no model errs, however large the gap
-    elsewhere; the gap of runs left out need not ask for it, but must not grow by it.
-    """
-    settings, before = objective.settings, first.selection.calibrated
-    least = settings.decision.explained * before.excess
-    best = next((sets[0] for sets in first.selection.sets[1:] if sets[0].excess < least), None)
-    if best is None or before.excess < settings.localisation.above_noise:
-        return None
-    fitted = refit_on(objective, selection.linearise(best))
-    gaps = [
-        float(np.mean(cross_validate(objective, each, selection.nuisances) ** 2))
-        for each in (selection.calibrated, fitted)
-    ]
-    return fitted if gaps[1] < gaps[0] and is_material(objective.problem, fitted) else None
 
 
 def _localise(task: SearchTask, solution: Solution) -> Solution:

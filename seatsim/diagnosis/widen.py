@@ -2,15 +2,14 @@
 
 A nominal scenario that was fitted without an effect has absorbed part of it, and a tolerance that is stated too small
 then forbids the truth: much stays unexplained, or a false effect beside the true one takes what the parameters may not.
-The second search is stated only where it leaves clearly less than the first, or explains as much by fewer effects, so
-that a right tolerance stays what it is.
+The second search is stated only where it leaves clearly less than the first, so that a right tolerance stays what it
+is.
 """
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -21,7 +20,6 @@ from seatsim.diagnosis.problem import DiagnosisProblem, OutOfTimeError, normalis
 from seatsim.diagnosis.solution import Progress, Solution
 from seatsim.diagnosis.solve import solve
 
-_Search = Callable[[], Solution]
 _THEIRS = {
     "plant.driver_mass": "driver.mass",
     "actuator.rate": "coil.lag",
@@ -30,18 +28,6 @@ _THEIRS = {
     "damper.parameters.k0": "damper.gas_spring",
 }
 """Parameters that an effect continues beyond their tolerance, so that they end at a bound where it is at work."""
-
-
-class _Wider(NamedTuple):
-    """The first solution's best set, the same rig where parameters at their bounds may go farther, and its measure."""
-
-    best: Evaluation
-    start: Parameters
-    judge: Objective
-
-    def evaluate(self, solution: Solution) -> Evaluation:
-        """Return what a solution leaves, by the weights of the first."""
-        return self.judge.evaluate([solution.decision.chosen.parameters])[0]
 
 
 def search_wider(first: Solution, without: Sequence[str], progress: Progress) -> tuple[Solution, list[str]]:
@@ -57,49 +43,26 @@ def search_wider(first: Solution, without: Sequence[str], progress: Progress) ->
     held = find_at_bound(problem, best.parameters)
     if not held:
         return first, []
-    factor = problem.settings.widening.factor
-    start, judge = _widen(first.objective, best.parameters, list(held))
-
-    def search() -> Solution:
-        progress("searching again with a wider tolerance of parameters at their bounds")
-        return solve(judge.problem.as_recorded(), without, progress)
-
-    attempt = _leave_less if best.excess > problem.settings.selection.nothing_left else _need_fewer
     notes = ["at the bound of their tolerance: " + ", ".join(held.values())]
+    settings = problem.settings.widening
+    if best.excess <= problem.settings.selection.nothing_left:
+        return first, notes
+    start, judge = _widen(first.objective, best.parameters, list(held))
+    stated = first
     try:
-        second, said = attempt(_Wider(best, start, judge), search, len(held))
+        left = _share_left(problem, best, refit(judge, start))
+        if left <= settings.clearly_less:
+            progress("searching again with a wider tolerance of parameters at their bounds")
+            second = solve(judge.problem.as_recorded(), without, progress)
+            left = _share_left(problem, best, judge.evaluate([second.decision.chosen.parameters])[0])
+            stated = second if left <= settings.clearly_less else first
     except OutOfTimeError:
         return first, notes
-    if said:
-        told = "this is stated here; check the nominal values, or state a wider tolerance"
-        told = told if second else "the stated tolerance holds"
-        notes.append(f"with {factor:g} times the tolerance of these parameters {said}: {told}")
-    return second or first, notes
-
-
-def _leave_less(wider: _Wider, search: _Search, held: int) -> tuple[Solution | None, str]:
-    """Return the second solution where it leaves clearly less than the first, with words on what it leaves."""
-    settings, second = wider.judge.settings.widening, None
-    left = _share_left(wider, refit(wider.judge, wider.start))
-    if left < settings.promising:
-        second = search()
-        left = _share_left(wider, wider.evaluate(second))
+    told = "which is not clearly less: the stated tolerance holds"
+    if stated is not first:
+        told = "as is stated here; check the nominal values, or state a wider tolerance"
     said = f"{100.0 * left:.0f} % of the remainder stays"
-    return (second, said) if left <= settings.clearly_less else (None, f"{said}, which is not clearly less")
-
-
-def _need_fewer(wider: _Wider, search: _Search, held: int) -> tuple[Solution | None, str]:
-    """Return the second solution where fewer effects leave nothing to explain, with words on that."""
-    terms, little = wider.start.terms, wider.judge.settings.selection.nothing_left
-    if len(terms) < 2 or held < wider.judge.settings.widening.strained:
-        return None, ""
-    smaller = [refit(wider.judge, wider.start.remove(term.effect)) for term in terms]
-    if min(each.excess for each in smaller) > little:
-        return None, "all effects found are needed"
-    second = search()
-    found = wider.evaluate(second)
-    fewer = 0 < len(found.parameters.terms) < len(terms) and found.excess <= little
-    return (second, "fewer effects explain as much") if fewer else (None, "fewer effects do not explain as much")
+    return stated, [*notes, f"with {settings.factor:g} times the tolerance of these parameters {said}, {told}"]
 
 
 def find_at_bound(problem: DiagnosisProblem, parameters: Parameters) -> dict[int, str]:
@@ -126,8 +89,7 @@ def _widen(objective: Objective, parameters: Parameters, held: Sequence[int]) ->
     return same, Objective(dataclasses.replace(problem, parameters=wider), objective.weights)
 
 
-def _share_left(wider: _Wider, second: Evaluation) -> float:
+def _share_left(problem: DiagnosisProblem, first: Evaluation, second: Evaluation) -> float:
     """Return the share of what the first rig leaves that the second leaves: of the excess or of the gap, the larger."""
-    both, problem = (wider.best, second), wider.judge.problem
-    errors = [float(np.mean(normalise_rms_errors(problem, each.residuals) ** 2)) for each in both]
-    return max(second.excess / wider.best.excess, errors[1] / errors[0])
+    errors = [float(np.mean(normalise_rms_errors(problem, each.residuals) ** 2)) for each in (first, second)]
+    return max(second.excess / first.excess, errors[1] / errors[0])

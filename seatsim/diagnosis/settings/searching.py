@@ -151,15 +151,7 @@ class WideningSettings(NamedTuple):
     """Factor on the tolerance of parameters at their bounds.
     Trades off: larger: a parameter takes the place of an effect; smaller: what a fit has absorbed stays absorbed.
     Chosen: by convention."""
-    promising: float = 0.7
-    """Share of the remainder that the same effects may leave within the wider tolerance for a search to be made.
-    Trades off: lower: a wrong first set is kept; higher: time.
-    Chosen: on simulated rigs."""
     clearly_less: float = 0.5
-    """Share of the remainder that the second search may leave for it to be stated.
+    """Share of the remainder that the same effects may leave for a second search, and that may leave to be stated.
     Trades off: higher: stated tolerances are overruled by what lies outside the library.
-    Chosen: on simulated rigs."""
-    strained: int = 3
-    """Parameters at their bounds from which several effects that explain everything are tried with one less.
-    Trades off: lower: a true second effect is taken for a parameter; higher: a false one stays beside the true one.
     Chosen: on simulated rigs."""

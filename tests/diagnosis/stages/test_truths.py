@@ -274,16 +274,6 @@ def test_a_second_recording_is_joined_to_the_first(heavier, tmp_path):
     assert "driver.mass" in found.selected and len(found.gap.by_run) == 3
 
 
-def test_noise_that_is_expected_too_large_hides_no_effect(solved):
-    problem = solved("a heavier driver")[1]
-    doubtful = dataclasses.replace(problem.recording, header=problem.recording.header._replace(model_error=1.0))
-    problem = dataclasses.replace(problem, recording=doubtful)
-    found = diagnose_problem(problem)
-    assert (found.verdict, found.selected) == ("known", ["driver.mass"])
-    chosen = solve(problem, (), lambda _: None).decision.chosen
-    assert chosen.cost == pytest.approx(chosen.rows, rel=0.05)
-
-
 @pytest.mark.parametrize(("repeats", "named"), [(None, "floor.unmeasured_input"), ({"again": "first"}, "")])
 def test_a_force_is_named_unless_repeats_show_that_it_is_noise(folder, repeats, named):
     floor = np.random.default_rng(4).standard_normal(SKIP + 400)
