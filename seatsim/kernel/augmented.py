@@ -226,5 +226,5 @@ def _yield(
 def classes_of(damper: DamperModel) -> list[type]:
     """Return the classes that a loop with this damper is compiled for."""
     if isinstance(damper, AugmentedDamper):
-        return [type(damper.damper), *map(type, damper.effects)]
+        return [AugmentedDamper, type(damper.damper), *map(type, damper.effects)]
     return [type(damper)]

@@ -1,10 +1,12 @@
 """A damper with effects as plain Python: each hook changes its own part of force, rates and friction."""
 
 import math
+import sys
 from typing import NamedTuple
 
 import pytest
 
+from seatsim.compilation.cached import digest
 from seatsim.kernel.augmented import SETTLING, AugmentedDamper, classes_of
 from seatsim.rig.temperature import TemperatureScaling
 
@@ -149,4 +151,13 @@ def test_behind_a_mount_the_damper_bears_the_mounts_force(elongation, v):
 
 def test_a_loop_is_compiled_of_the_damper_and_its_effects():
     assert classes_of(DAMPER) == [Yielding]
-    assert classes_of(AugmentedDamper(DAMPER, (Half(), Beside()))) == [Yielding, Half, Beside]
+    assert classes_of(AugmentedDamper(DAMPER, (Half(), Beside()))) == [AugmentedDamper, Yielding, Half, Beside]
+
+
+def test_what_is_compiled_for_effects_is_not_taken_from_before_a_change_of_their_kernel(monkeypatch):
+    def key():
+        return digest({sys.modules[part.__module__] for part in classes_of(AugmentedDamper(DAMPER, (Half(),)))})
+
+    before = key()
+    monkeypatch.setattr("seatsim.kernel.augmented.SETTLING", 2.0 * SETTLING)
+    assert key() != before
