@@ -7,6 +7,7 @@ from typing import NamedTuple
 import pytest
 
 from seatsim.compilation.cached import digest
+from seatsim.dampers.bingham import Bingham
 from seatsim.kernel.augmented import SETTLING, AugmentedDamper, classes_of
 from seatsim.rig.temperature import TemperatureScaling
 
@@ -155,8 +156,10 @@ def test_a_loop_is_compiled_of_the_damper_and_its_effects():
 
 
 def test_what_is_compiled_for_effects_is_not_taken_from_before_a_change_of_their_kernel(monkeypatch):
+    damper = AugmentedDamper(Bingham(), ())
+
     def key():
-        return digest({sys.modules[part.__module__] for part in classes_of(AugmentedDamper(DAMPER, (Half(),)))})
+        return digest({sys.modules[part.__module__] for part in classes_of(damper)})
 
     before = key()
     monkeypatch.setattr("seatsim.kernel.augmented.SETTLING", 2.0 * SETTLING)
