@@ -166,8 +166,8 @@ class FreePlay(NamedTuple):
         if self.gap <= 0.0:
             return self.stiffness * z[0]
         power = 2.0 / self.softness
-        filled = 1.0 + abs(2.0 * z[0] / self.gap) ** power
-        return self.stiffness * z[0] * (1.0 - filled ** (-1.0 / power))
+        share: float = 1.0 - (1.0 + abs(2.0 * z[0] / self.gap) ** power) ** (-1.0 / power)
+        return self.stiffness * z[0] * share
 
     def rates(self, x: float, v: float, u: float, i: float, demanded: float, target: float, z: State) -> State:
         """Return g'."""
