@@ -77,14 +77,14 @@ def _shows_no_gap(problem: DiagnosisProblem, selection: Selection) -> bool:
     """Whether the calibrated rig leaves no gap, or no single effect that reduces the gap is material."""
     calibrated = selection.calibrated
     if calibrated.excess < problem.settings.selection.nothing_left:
-        return calibrated.excess == 0.0 or not shows_effect(problem, selection)
+        return calibrated.excess == 0.0 or not _shows_effect(problem, selection)
     if np.any(measure_remainders(problem, calibrated) >= problem.settings.decision.material):
         return False
     # Where every candidate is withheld there is no set of one effect.
     return len(selection.sets) == 1 or not is_material(problem, selection.sets[1][0])
 
 
-def shows_effect(problem: DiagnosisProblem, selection: Selection) -> bool:
+def _shows_effect(problem: DiagnosisProblem, selection: Selection) -> bool:
     """Whether a single material effect lowers the cost by more than chance does, however little the noise leaves.
 
     An effect at a few frequencies, such as a preload that shifts the travel, hardly changes the excess of all.
