@@ -43,7 +43,9 @@ def power_spectral_density(x: Array, sample_rate: float, length: int) -> tuple[A
 
 
 LOWEST = 0.1
-"""Hz from which on a density is averaged over bands: the distance of the lines of the longest segment."""
+"""Hz at which the bands begin over which a density is averaged: the distance of the lines of the longest segment."""
+FIRST_LINE = 2
+"""First line of a density: the one before holds the mean under the window less the plain mean, which is removed."""
 PER_OCTAVE = 12
 """Bands in an octave, finer than the resonance of a seat is wide."""
 LEAST_SAMPLES = 64
@@ -73,8 +75,7 @@ def _average_bands(frequency: Array, power: Array) -> tuple[Array, Array]:
 
     Otherwise the many lines of the high decades would make a drawn line thick and noisy.
     """
-    # Segments have their means removed, so that the first line holds nothing.
-    inside = frequency >= max(LOWEST, frequency[1])
+    inside = frequency >= max(LOWEST, frequency[FIRST_LINE])
     band = np.floor(PER_OCTAVE * np.log2(frequency[inside] / LOWEST) + 1e-9).astype(int)
     _, index, count = np.unique(band, return_inverse=True, return_counts=True)
     return np.bincount(index, frequency[inside]) / count, np.bincount(index, power[inside]) / count

@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 from matplotlib.axes import Axes
 
-from seatsim.metrics.spectra import LEAST_SAMPLES, LONGEST, PER_OCTAVE, SEGMENTS
+from seatsim.metrics.spectra import FIRST_LINE, LEAST_SAMPLES, LONGEST, PER_OCTAVE, SEGMENTS
 from seatsim.plots import style
 from seatsim.plots.style import Entry
 from seatsim.schema.arrays import Array
@@ -23,15 +23,14 @@ METHOD = (
 )
 
 
-def find_resolution(densities: Densities) -> float:
-    """Return the largest distance in Hz between the lines of some densities, infinite where none has lines."""
-    # The first line is as far from 0 as the next one is from it, and no other shares its band.
+def find_first(densities: Densities) -> float:
+    """Return the highest frequency in Hz at which one of some densities begins, infinite where none has lines."""
     return max((float(frequency[0]) for frequency, _ in densities if len(frequency)), default=np.inf)
 
 
-def state_method(resolution: float) -> str:
-    """Return how a picture's densities were estimated, whose lines are `resolution` Hz apart."""
-    lines = f"lines up to {resolution:.2g} Hz apart, " * bool(np.isfinite(resolution))
+def state_method(first: float) -> str:
+    """Return how a picture's densities were estimated that begin at `first` Hz; no other line shares its band."""
+    lines = f"lines up to {first / FIRST_LINE:.2g} Hz apart, " * bool(np.isfinite(first))
     return f"Welch's method, {lines}averaged over 1/{PER_OCTAVE} octave."
 
 
@@ -56,5 +55,5 @@ def draw_densities(
     axes.set_yscale("log")
     for (frequency, power), look in zip(inside, looks, strict=True):
         style.draw_line(axes, frequency, np.where(power > 0, power, np.nan), look)
-    low, high = axes.get_ylim()
-    style.scale_log(axes, "y", max(low, largest / 10**decades), high)
+    low, _ = axes.get_ylim()
+    style.scale_log(axes, "y", max(low, largest / 10**decades), 2.0 * largest)

@@ -49,7 +49,9 @@ DASHES: tuple[LineStyleType, ...] = ("-", (0.0, (5.0, 1.5)), (0.0, (7.0, 1.5, 1.
 AREA = "0.91"
 """Grey of areas, such as a band of noise; a wide line of a legend names one."""
 _TICK = (0.4, 0.2)
-"""Least distance of the numbers of an axis in inches, along and up: wide enough for a sign and three digits."""
+"""Least distance of the numbers of an axis in inches, along and up."""
+_BETWEEN = 0.12
+"""Least space between two numbers along an axis in inches."""
 _FREQUENCIES = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000)
 """Hz at which an axis begins."""
 
@@ -109,6 +111,25 @@ ROWS = Grid((), right=0.5)
 """One panel of rows, with room for a figure behind the longest bar."""
 
 
+class _RoomyLocator(MaxNLocator):
+    """Multiples of 1, 2 or 5, as many as an axis of so many inches has room to name beside each other."""
+
+    def __init__(self, inches: float) -> None:
+        super().__init__(steps=(1, 2, 5, 10))
+        self._inches = inches
+
+    def tick_values(self, vmin: float, vmax: float) -> Sequence[float]:
+        """Return where numbers stand between two ends of the axis."""
+        ticks: Sequence[float] = ()
+        for most in range(max(2, int(self._inches / _TICK[0])), 1, -1):
+            self.set_params(nbins=most)
+            ticks = super().tick_values(vmin, vmax)
+            widest = max(len(f"{tick:.6g}") for tick in ticks) * LETTER
+            if (widest + _BETWEEN) * (len(ticks) - 1) <= self._inches:
+                break
+        return ticks
+
+
 def make_entries(labels: Sequence[str]) -> list[Entry]:
     """Return a look for each of some lines: after eight the colours begin anew, with other dashes."""
     looks = zip(labels, cycle(COLOURS), cycle(DASHES), strict=False)
@@ -161,8 +182,11 @@ def measure_head(title: int, note: int) -> float:
 
 
 def draw_line(axes: Axes, x: ArrayLike, y: ArrayLike, look: Entry) -> Line2D:
-    """Draw the line through (x, y), shape (N,) each, with the look of its entry; return it."""
-    [line] = axes.plot(np.asarray(x), np.asarray(y))
+    """Draw the line through (x, y), shape (N,) each, with the look of its entry; return it.
+
+    Dashes lie upon solid lines, which are seen between them.
+    """
+    [line] = axes.plot(np.asarray(x), np.asarray(y), zorder=2.0 if look.dashes == "-" else 2.1)
     return _dress(line, look, LONGEST)
 
 
@@ -342,8 +366,8 @@ def _add_panel(figure: Figure, place: tuple[float, float, float, float]) -> Axes
 
 def _place_ticks(axes: Axes) -> None:
     """Put numbers along the axes of a panel, at multiples of 1, 2 or 5, as many as there is room for."""
-    for axis, most in zip((axes.xaxis, axes.yaxis), _count_ticks(axes), strict=True):
-        axis.set_major_locator(MaxNLocator(most, steps=(1, 2, 5, 10)))
+    axes.xaxis.set_major_locator(_RoomyLocator(axes.bbox.width / axes.figure.dpi))
+    axes.yaxis.set_major_locator(MaxNLocator(_count_ticks(axes)[1], steps=(1, 2, 5, 10)))
 
 
 def _count_ticks(axes: Axes) -> tuple[int, int]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -43,7 +44,9 @@ _MOST_GROUPS = 7
 _MOST_LEVELS = 8
 """Values of a key that have rows or columns of their own; numbers with more are taken in `BINS` of as many runs."""
 BINS = 5
-_FRONT = Entry("Pareto front", "black", width=1.6)
+_FRONT = Entry("Pareto front", "black", width=1.2)
+_BESIDE = "alone / with"
+"""Head of the two figures beside each bar."""
 
 
 def describe_column(name: str, units: Mapping[str, str]) -> Quantity:
@@ -65,15 +68,16 @@ def plot_shares(found: Sequence[Sensitivity], words: str) -> Figure:
         Entry("the key alone", COLOURS[0], width=8),
         Entry("with its interactions, 95 % interval", "black", width=1.6),
     )
-    names, grid = [row.key for row in rows], Grid((), right=1.1)
+    names = [row.key for row in rows]
+    texts = [f"{format_percent(row.first)} / {format_percent(row.total)}" for row in rows]
+    grid = Grid((), right=0.25 + style.LETTER * max(map(len, (*texts, _BESIDE))))
     figure, [axes] = make_rows(f"What determines the {words}", note, names, legend, [0], grid)
     draw_bars(axes, [100 * _clip(row.first) for row in rows], [COLOURS[0]] * len(rows), [""] * len(rows))
-    for k, row in enumerate(rows):
+    for k, (row, text) in enumerate(zip(rows, texts, strict=True)):
         ends = [100 * _clip(end) for end in (row.total_low, row.total_high)]
         axes.plot(ends, [k, k], color="black", linewidth=1.6, zorder=3)
-        texts = f"{format_percent(row.first)} / {format_percent(row.total)}"
-        axes.annotate(texts, (1.02, k), xycoords=("axes fraction", "data"), va="center", fontsize=style.FONT)
-    axes.annotate("alone / with", (1.02, 1.0), xycoords="axes fraction", va="bottom", fontsize=style.FONT, color=DARK)
+        axes.annotate(text, (1.02, k), xycoords=("axes fraction", "data"), va="center", fontsize=style.FONT)
+    axes.annotate(_BESIDE, (1.02, 1.0), xycoords="axes fraction", va="bottom", fontsize=style.FONT, color=DARK)
     axes.set(xlim=(0, 100), xlabel="share of the variance [%]")
     return figure
 
@@ -135,11 +139,13 @@ def plot_comfort(rows: SweepRows, order: Sequence[str]) -> Figure | None:
         dots = part.sample(most, random_state=0) if len(part) > most else part
         for k, group in enumerate([dots] if colour is None else [dots[dots[colour] == value] for value in values]):
             axes.scatter(
-                1e3 * group[TRAVEL], group[COMFORT], s=14, linewidths=0, alpha=0.7, color=COLOURS[k], rasterized=True
-            )
+                1e3 * group[TRAVEL], group[COMFORT], s=14, linewidths=0, alpha=0.7, color=COLOURS[k], zorder=3,
+                rasterized=True,
+            )  # fmt: skip
         travel, comfort = (part[name].to_numpy(float) for name in (TRAVEL, COMFORT))
         front = find_front(travel, comfort)
-        style.draw_line(axes, 1e3 * travel[front], comfort[front], _FRONT)
+        # Between two runs of the front no other is known to be better than the left one.
+        style.draw_line(axes, 1e3 * travel[front], comfort[front], _FRONT).set_drawstyle("steps-post")
         style.set_title(axes, title)
         axes.set(xlabel=describe_metric(TRAVEL).axis, ylabel=describe_metric(COMFORT).axis)
     return page.figure
@@ -170,8 +176,9 @@ def plot_means(rows: SweepRows, order: Sequence[str], metric: str) -> Figure | N
     table = means.groupby(["y", "x"], observed=True)["z"].mean().unstack()
     values = table.to_numpy()
     names = [str(name) for name in table.index]
-    grid = Grid((0.32 * len(names),), left=measure_names(names), right=0.15, bottom=0.55)
-    note = f"Rows: {keys[1]}. Mean over the runs of each cell, in {shown.unit}; the darker, the larger."
+    grid = Grid((max(1.6, 0.32 * len(names)),), left=measure_names(names) + 2 * style.LINE, right=0.15, bottom=0.55)
+    every = " of all variants" * ("variant" in order)
+    note = f"Mean over the runs{every} of each cell, in {shown.unit}; the darker, the larger."
     figure, [[axes]] = make_page(f"Mean {shown.words} over {keys[0]} and {keys[1]}", note, grid)
     axes.grid(False)
     axes.pcolormesh(values, cmap=colormaps["Blues"], rasterized=True)
@@ -184,6 +191,7 @@ def plot_means(rows: SweepRows, order: Sequence[str], metric: str) -> Figure | N
     axes.set_xticks(np.arange(values.shape[1]) + 0.5, [clean_text(str(name), 12) for name in table.columns], fontsize=9)
     axes.set_yticks(np.arange(len(names)) + 0.5, [clean_text(name, 32) for name in names], fontsize=9)
     axes.set_xlabel(clean_text(describe_column(keys[0], rows.units).axis))
+    axes.set_ylabel(fill(clean_text(describe_column(keys[1], rows.units).axis), int(grid.heights[0] / style.LETTER)))
     return figure
 
 

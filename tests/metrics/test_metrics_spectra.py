@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from seatsim.metrics.spectra import cross_spectral_density, power_spectral_density
+from seatsim.metrics.spectra import cross_spectral_density, estimate_density, power_spectral_density
 
 
 @pytest.mark.parametrize(("samples", "length"), [(4000, 512), (4001, 511), (100, 100), (9, 1), (10, 3)])
@@ -18,3 +18,9 @@ def test_densities_are_those_of_scipy(samples, length, conform):
         claim = f"{name} spectral density, {samples} samples in segments of {length}: greatest deviation over the peak"
         deviation = np.max(np.abs(found - reference)) / max(1e-15, np.max(np.abs(reference)))
         conform(claim, "scipy.signal", deviation, tolerance=1e-9)
+
+
+def test_a_density_begins_above_what_the_mean_leaves():
+    frequency, power = estimate_density(0.01, [np.sin(2 * np.pi * 1.03 * np.arange(0, 60, 0.01))])
+    assert frequency[0] == pytest.approx(0.2)
+    assert power[0] < 1e-5 * power.max()

@@ -85,8 +85,8 @@ def _draw_responses(axes: Axes, shown: list[tuple[Response, StepResponse]]) -> N
         top = max(top, float(np.max(answer.share)) + 0.05)
     for time, share in _TIMES:
         axes.axhline(share, color=GREY, linewidth=0.7, linestyle=(0.0, (1.0, 2.0)))
-        words, upright = _say_time(time, [row for _, row in shown]), "bottom" if share < 0.5 else "top"
-        axes.text(0.99e3 * end, share, words, fontsize=9, horizontalalignment="right", verticalalignment=upright)
+        words = _say_time(time, [row for _, row in shown])
+        axes.text(0.99e3 * end, share - 0.02, words, fontsize=9, horizontalalignment="right", verticalalignment="top")
     axes.set(xlabel="time [ms]", xlim=(-0.08e3 * end, 1e3 * end), ylim=(-0.15, top))
     axes.set_yticks([0, *(share for _, share in _TIMES)], ["0", *(f"{share:.2g}" for _, share in _TIMES)])
     axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.17), fontsize=style.FONT, frameon=False, borderaxespad=0)

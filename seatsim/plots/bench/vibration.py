@@ -11,7 +11,7 @@ from seatsim.metrics.comfort import running_rms
 from seatsim.metrics.exposure import Exposure, Operation
 from seatsim.metrics.spectra import estimate_density
 from seatsim.plots import style
-from seatsim.plots.densities import draw_densities, find_resolution, state_method
+from seatsim.plots.densities import draw_densities, find_first, state_method
 from seatsim.plots.style import GREY, Entry, Grid
 from seatsim.plots.thinning import spread_evenly
 from seatsim.standards.comfort import Comfort
@@ -65,10 +65,10 @@ def _plot_spectra(found: Comfort, axes: Sequence[str]) -> Figure:
     for stretches in (found.stretches[axis] for axis in chosen):
         signals = [part.acceleration for part in stretches], [part.weighted for part in stretches]
         densities.append([estimate_density(1.0 / stretches[0].sample_rate, each) for each in signals])
-    resolution, grid = find_resolution(densities[0]), Grid((1.7,) * len(chosen), top=0.3)
-    page = style.make_page("Vibration over frequency", state_method(resolution), grid, looks)
+    first, grid = find_first(densities[0]), Grid((1.7,) * len(chosen), top=0.3)
+    page = style.make_page("Vibration over frequency", state_method(first), grid, looks)
     for panel, axis, drawn in zip(page.list_panels(), chosen, densities, strict=True):
-        style.scale_frequency_axis(panel, resolution, HIGHEST)
+        style.scale_frequency_axis(panel, first, HIGHEST)
         panel.set_ylabel("density [(m/s²)²/Hz]")
         style.set_title(panel, f"{axis}, {found.axes[axis].direction.weighting}")
         draw_densities(panel, drawn, looks, HIGHEST)

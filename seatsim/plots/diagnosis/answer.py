@@ -131,7 +131,7 @@ def plot_ranking(diagnosis: Diagnosis) -> Figure | None:
         " effects can both be near 100 %."
     )
     strong = [k for k, colour in enumerate(colours) if colour == _CHOSEN]
-    grid = Grid((), 2, right=0.45, bottom=0.7, gap=(0.5, 0.0))
+    grid = Grid((), 2, right=0.45, bottom=0.7, gap=(0.7, 0.0))
     figure, [left, right] = make_rows(title, note, names, [], strong, grid)
     for axes in (left, right):
         axes.axhline(len(names) - 2.5, color="0.8", linewidth=0.8)

@@ -18,7 +18,7 @@ from seatsim.diagnosis.result import Diagnosis, Trace
 from seatsim.metrics.motion import rms
 from seatsim.metrics.spectra import estimate_density
 from seatsim.plots import style
-from seatsim.plots.densities import draw_densities, find_resolution, state_method
+from seatsim.plots.densities import draw_densities, find_first, state_method
 from seatsim.plots.diagnosis.answer import find_last
 from seatsim.plots.style import COLOURS, DASHES, MEASURED, Entry, Grid
 from seatsim.plots.thinning import BINS, Window, find_loudest, thin_line
@@ -69,13 +69,12 @@ def _plot_channel(trace: Trace, group: Sequence[Trace], looks: Looks) -> Figure:
     window = Window(window.start + trace.time[0], window.end + trace.time[0])
     noise = shown.factor * trace.noise_rms
     left_over = [[_subtract(each, name) for each in group] for name in reversed(looks)]
-    # The measured signal is drawn last, before the others.
-    density = [estimate_density(step, signals) for signals in (*left_over, [each.measured for each in group])]
-    resolution = find_resolution(density)
-    has_spectrum = bool(np.isfinite(resolution))
+    density = [estimate_density(step, signals) for signals in ([each.measured for each in group], *left_over)]
+    first = find_first(density)
+    has_spectrum = bool(np.isfinite(first))
     note = f"{window} of {trace.run}, where the difference has most energy; RMS over the whole run."
-    method = state_method(resolution)
-    note += f" Below: power densities of the measured signal and of the differences. {method}" * has_spectrum
+    spectrum = f" Lowest panel: power densities of the measured signal and of what differs. {state_method(first)}"
+    note += spectrum * has_spectrum
     grid = GRID if has_spectrum else GRID._replace(heights=GRID.heights[:2])
     below = [look._replace(label=f"{look.label} (below: difference)") for look in looks.values()]
     legend = [MEASURED, *below, *[NOISE] * bool(noise and has_spectrum), *[_BAND] * bool(noise)]
@@ -90,9 +89,9 @@ def _plot_channel(trace: Trace, group: Sequence[Trace], looks: Looks) -> Figure:
         if noise:
             # The one-sided density of white noise of RMS s is 2 s^2 dt.
             drawn.append((density[0][0], np.full(len(density[0][0]), 2 * noise**2 * step)))
-        entries = [*reversed(looks.values()), MEASURED, NOISE][: len(drawn)]
+        entries = [MEASURED, *reversed(looks.values()), NOISE][: len(drawn)]
         draw_densities(axes, drawn, entries, decades=DECADES)
-        style.scale_frequency_axis(axes, resolution, 0.5 / step)
+        style.scale_frequency_axis(axes, first, 0.5 / step)
         axes.set_ylabel(f"power density\n[{shown.square}/Hz]")
         axes.yaxis.set_label_coords(-0.125, 0.5)
     return style.name_coincident(figure)

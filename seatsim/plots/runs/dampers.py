@@ -112,8 +112,7 @@ def plot_force_velocity(run: Run) -> Figure:
     currents = (0.0, damper.max_current)
     tests = _drop_equal((f"sine test at {i:g} A", damper.loop(amplitude, i, temperature)) for i in currents)
     changes = float(np.ptp(run.history["coil_current"])) > 0
-    colours = style.sample_colours("viridis", len(currents)) if changes else ("0.5", "black")
-    looks = [Entry(name, colour, width=1.8) for (name, _), colour in zip(tests, colours, strict=False)]
+    looks = [Entry(name, colour, width=1.8) for (name, _), colour in zip(tests, ("0.5", "black"), strict=False)]
     dots = Entry(
         "the run" + " (colour: current)" * changes,
         style.sample_colours("viridis", 3)[1] if changes else COLOURS[0],
@@ -124,9 +123,9 @@ def plot_force_velocity(run: Run) -> Figure:
     note = f"Sine tests at {temperature:g} °C, amplitude {1e3 * amplitude:.3g} mm, {FREQUENCY:g} Hz. {SIGNS}"
     title = f"Damper at work: {naming.make_title([run])}"
     figure, [[axes]] = style.make_page(title, note, Grid((3.3,), right=1.0), [dots, *looks, areas])
-    _draw_samples(axes, velocity, run, damper.max_current if changes else 0.0)
     for look, (_, test) in zip(looks, tests, strict=True):
-        style.draw_line(axes, test.velocity, test.force, look)
+        style.draw_line(axes, test.velocity, test.force, look).set_zorder(0.9)
+    _draw_samples(axes, velocity, run)
     _shade_active_quadrants(axes)
     axes.set(xlabel="damper velocity [m/s]", ylabel="damper force [N]")
     return figure
@@ -178,12 +177,13 @@ def _choose_temperatures(damper: _InstalledDamper) -> list[float]:
     return [low, 0.5 * (low + high), high]
 
 
-def _draw_samples(axes: Axes, velocity: Array, run: Run, largest: float) -> None:
-    """Draw samples of a run, coloured by a current that changes, on the scale of the tests: from 0 to its largest."""
+def _draw_samples(axes: Axes, velocity: Array, run: Run) -> None:
+    """Draw samples of a run, coloured by a current that changes, from 0 to its largest."""
     every = -(-len(velocity) // _MOST_SAMPLES)
-    force, current = run.history["damper_force"][::every], run.history["coil_current"][::every]
-    if largest:
-        style.add_colour_bar(axes, draw_samples(axes, velocity[::every], force, current, largest), "coil current [A]")
+    force, current = run.history["damper_force"][::every], run.history["coil_current"]
+    if np.ptp(current) > 0:
+        drawn = draw_samples(axes, velocity[::every], force, current[::every], float(np.max(current)))
+        style.add_colour_bar(axes, drawn, "coil current [A]")
     else:
         axes.scatter(velocity[::every], force, s=6, color=COLOURS[0], linewidths=0, rasterized=True)
 

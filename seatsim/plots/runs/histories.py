@@ -33,7 +33,7 @@ TARGETS = {"damper_force": "wanted_force", "coil_current": "current_command"}
 """Channels that others should follow."""
 RUN = Entry("the run", COLOURS[0], width=1.1)
 TARGET = Entry("wanted force, commanded current", COLOURS[5], "-", 2.0, 0.6)
-LIMIT = Entry("travel limit", DARK, ":")
+LIMIT = Entry("end stop begins", DARK, ":")
 
 
 def plot_time_histories(shown: Shown) -> Figure:
@@ -56,7 +56,7 @@ def plot_time_histories(shown: Shown) -> Figure:
         views, note = [whole, window], f"Left: whole run. Right (grey on the left): {note}"
     limits, warms = _find_limits(shown.runs), any(np.ptp(run.history[TEMPERATURE]) > 0 for run in shown.runs)
     channels = (*CHANNELS, TEMPERATURE) if warms else CHANNELS
-    legend = [*([RUN, TARGET] if single else shown.looks), *[LIMIT] * bool(limits)]
+    legend = [*([RUN, _name_target(shown.runs[0])] if single else shown.looks), *[LIMIT] * bool(limits)]
     grid = Grid((1.2,) * len(channels), len(views), left=1.12, gap=(0.4, 0.3))
     page = style.make_page(f"Time histories: {shown.title}", note + shown.omission, grid, legend)
     for row, channel in zip(page.rows, channels, strict=True):
@@ -84,13 +84,18 @@ def _draw_view(axes: Axes, shown: Shown, channel: str, view: Window) -> None:
         [run] = shown.runs
         lines = [(run, channel, RUN)]
         if channel in TARGETS and np.isfinite(run.history[TARGETS[channel]]).any():
-            lines.insert(0, (run, TARGETS[channel], TARGET))
+            lines.insert(0, (run, TARGETS[channel], _name_target(run)))
     for run, name, look in lines:
         part = view.part(run.history.step)
         values = describe_channel(name, UNITS[name]).factor * run.history[name][part]
         thinned = thin_line(run.history["time"][part], values, round(BINS * axes.get_position().width))
         style.draw_line(axes, *thinned, look)
     axes.set_xlim(*view)
+
+
+def _name_target(run: Run) -> Entry:
+    """Return the entry of what should be followed: a law that states a current wants no force."""
+    return TARGET if np.isfinite(run.history["wanted_force"]).any() else TARGET._replace(label="commanded current")
 
 
 def _find_limits(runs: Sequence[Run]) -> list[float]:

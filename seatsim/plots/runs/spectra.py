@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from seatsim.metrics.spectra import POWER, TRUSTED, estimate_density, trusted_gain
 from seatsim.plots import style
-from seatsim.plots.densities import draw_densities, find_problem, find_resolution, state_method
+from seatsim.plots.densities import draw_densities, find_first, find_problem, state_method
 from seatsim.plots.runs.looks import Shown
 from seatsim.plots.style import DASHES, GREY, Entry, Grid
 from seatsim.schema.arrays import Array
@@ -41,10 +41,10 @@ def plot_psd(shown: Shown) -> Figure:
     drivers = shown.looks if len(shown.runs) > 1 else [shown.looks[0]._replace(label="driver")]
     found = [_estimate(group[0], "floor_acceleration") for group in groups.values()]
     found += [_estimate(run, "driver_acceleration") for run in shown.runs]
-    resolution = find_resolution(found)
+    first = find_first(found)
     legend = [] if find_problem(found, HIGHEST) else [*drivers, *floors]
     title = f"Driver acceleration over frequency: {shown.title}"
-    figure, axes = _make_page(title, state_method(resolution) + shown.omission, legend, (resolution, HIGHEST))
+    figure, axes = _make_page(title, state_method(first) + shown.omission, legend, (first, HIGHEST))
     axes.set_ylabel("power density [(m/s²)²/Hz]")
     draw_densities(axes, found, [*floors, *drivers], HIGHEST)
     return style.name_coincident(figure)
@@ -71,7 +71,7 @@ def plot_transmissibility(shown: Shown) -> Figure:
     axes.set_yscale("log")
     for (frequency, gain, _), look in zip(gains, looks, strict=True):
         style.draw_line(axes, frequency, gain, look)
-    style.scale_log(axes, "y", min(0.5, float(known.min())) / 1.2, max(2.0, float(known.max())) * 1.2)
+    style.scale_log(axes, "y", min(0.5, float(known.min())) / 1.2, max(1.0, float(known.max())) * 1.2)
     return style.name_coincident(figure)
 
 
