@@ -19,8 +19,6 @@ Function = Callable[[Array, float], tuple[float, Array]]
 
 # The usual weak Wolfe constants. The curvature condition is loose on purpose: at a kink a strong one cannot be met.
 _ARMIJO, _CURVATURE = 1e-4, 0.5
-HOPE = 10.0
-"""A descent is given up that at its present pace takes more than so many times the steps or turns that show it."""
 # Each step halves or doubles: 40 of them span twelve decades of step length.
 _LINE_STEPS = 40
 
@@ -42,7 +40,6 @@ def minimise(
     patience: int = 20,
     progress: float = 1e-6,
     iterations: int = 1000,
-    target: float = np.inf,
 ) -> Iterate:
     """Descend from `start`, where `function` must be finite; the first steps are steepest in x / unit.
 
@@ -55,7 +52,6 @@ def minimise(
         patience: number of steps that together must gain `progress`, else the search ends.
         progress: least gain of so many steps, in the value's unit.
         iterations: most steps.
-        target: lowest value known elsewhere; a descent too slow to reach it ends.
 
     Returns:
         The lowest point found, which no step lowered or one of the limits stopped.
@@ -77,8 +73,7 @@ def minimise(
         inverse = _update(inverse, here, following, fresh)
         here, fresh = following, False
         history.append(here.value)
-        needed = max(progress, (here.value - target) / HOPE)
-        if len(history) > patience and history[-1 - patience] - here.value < needed:
+        if len(history) > patience and history[-1 - patience] - here.value < progress:
             break
     return here
 

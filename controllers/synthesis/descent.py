@@ -1,7 +1,8 @@
 """Multi-start descent on the exact H-infinity norm, in scaled coordinates.
 
-From every start: BFGS on the spectral abscissa until the loop is stable, then BFGS on log gamma, coarsely. The best
-few are then lowered to the end, by BFGS and polish in turn; where starts disagree, gains about the best one follow.
+From every start: BFGS on the spectral abscissa until the loop is stable, then BFGS on log gamma, coarsely. The best few
+are then lowered once, and the best of them to the end, by BFGS and polish in turn; where starts disagree, gains about
+the best one follow.
 
 Starts are no gain, projected state feedback, random gains over decades, and the single-step LMI. Random gains are drawn
 in the user's units and in scaled ones in turn: states and signals in units of a like size make for short valleys, and
@@ -11,7 +12,6 @@ Source: Apkarian & Noll 2006, IEEE Trans. Autom. Control 51:71; Burke, Henrion, 
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import count
@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy.linalg
 
-from controllers.synthesis.bfgs import HOPE, minimise
+from controllers.synthesis.bfgs import minimise
 from controllers.synthesis.objective import STABILITY_MARGIN, NormObjective
 from controllers.synthesis.plant import GeneralisedPlant
 from controllers.synthesis.polish import polish
@@ -84,7 +84,7 @@ _STABLE_ENOUGH = -1e-2
 _STABILISING_PATIENCE = 60
 # Gain in log gamma below which descents end: coarse to tell valleys apart, fine to reach their floor.
 _COARSE, _FINE = 1e-4, 1e-6
-# Valleys that are followed to the end, which costs more than to find them.
+# Valleys that are lowered further, which costs more than to find them.
 _REFINED = 6
 # Candidates nearer to each other than this are taken for one valley: the coarse descent leaves as much.
 _SAME = 2e-3
@@ -100,10 +100,6 @@ class StabilisingGain(NamedTuple):
 
     gamma: float
     entries: Array
-
-
-def _log(gamma: float) -> float:
-    return math.log(gamma) if gamma > 0.0 else -math.inf
 
 
 def _gamma(candidate: StabilisingGain) -> float:
@@ -136,8 +132,8 @@ class Descent(NamedTuple):
         return Descent(candidates, min(self.abscissa, more.abscissa), self.starts + more.starts)
 
 
-def explore(objective: NormObjective, starts: Iterable[StartingGain], deadline: float, best: float = np.inf) -> Descent:
-    """Descend coarsely from every start until the deadline; `best` is the lowest gamma known before."""
+def explore(objective: NormObjective, starts: Iterable[StartingGain], deadline: float) -> Descent:
+    """Descend coarsely from every start until the deadline."""
     candidates: list[StabilisingGain] = []
     abscissa, tried = float("inf"), 0
     for start in starts:
@@ -145,21 +141,22 @@ def explore(objective: NormObjective, starts: Iterable[StartingGain], deadline: 
         point = minimise(objective.abscissa, theta, unit, deadline, _STABLE_ENOUGH, _STABILISING_PATIENCE, 1e-4)
         abscissa, tried = min(abscissa, point.value), tried + 1
         if point.value < -STABILITY_MARGIN:
-            lowest = minimise(objective.log_norm, point.x, unit, deadline, progress=_COARSE, target=_log(best))
+            lowest = minimise(objective.log_norm, point.x, unit, deadline, progress=_COARSE)
             entries = objective.entries(lowest.x)
             candidates.append(StabilisingGain(objective.norm(entries), entries))
-            best = min(best, candidates[-1].gamma)
         if time.monotonic() > deadline:
             break
     return Descent(sorted(candidates, key=_gamma), abscissa, tried)
 
 
 def refine(objective: NormObjective, candidates: list[StabilisingGain], deadline: float) -> StabilisingGain:
-    """Lower the best few candidates to the end and return the best; of those in one valley, only one."""
-    first, *others = _distinct(sorted(candidates, key=_gamma))[:_REFINED]
-    best = _lower(objective, first, np.inf, deadline)
-    for candidate in others:
-        best = min(best, _lower(objective, candidate, best.gamma, deadline), key=_gamma)
+    """Lower the best few candidates, of those in one valley only one, and the best of them to the end; return it."""
+    valleys = _distinct(sorted(candidates, key=_gamma))[:_REFINED]
+    best = min((_lower(objective, candidate, deadline) for candidate in valleys), key=_gamma)
+    for _ in range(_TURNS):
+        before, best = best, _lower(objective, best, deadline)
+        if best.gamma >= before.gamma * (1 - _FINE) or time.monotonic() > deadline:
+            break
     return best
 
 
@@ -172,7 +169,7 @@ def improve(objective: NormObjective, best: StabilisingGain, seed: int, deadline
         step = random.standard_normal((len(_ABOUT), objective.size)) * np.array(_ABOUT)[:, None]
         places = best.entries + step * sizes
         scattered = [StartingGain(objective.gain(entries), objective.gain(sizes)) for entries in places]
-        found = explore(objective, scattered, deadline, best.gamma)
+        found = explore(objective, scattered, deadline)
         lower = refine(objective, [best, *found.candidates], deadline)
         fruitless = 0 if lower.gamma < best.gamma * (1 - _COARSE) else fruitless + 1
         best = lower
@@ -188,17 +185,10 @@ def _distinct(candidates: list[StabilisingGain]) -> list[StabilisingGain]:
     return kept
 
 
-def _lower(objective: NormObjective, candidate: StabilisingGain, target: float, deadline: float) -> StabilisingGain:
-    """BFGS and polish in turn, until both together gain nothing or too little to come below `target`."""
-    for _ in range(_TURNS):
-        unit = objective.sizes(candidate.entries)
-        angles = objective.angles(candidate.entries)
-        point = minimise(objective.log_norm, angles, unit, deadline, progress=_FINE, target=_log(target))
-        entries = polish(objective, objective.entries(point.x), deadline)
-        lower = StabilisingGain(objective.norm(entries), entries)
-        gained = candidate.gamma - lower.gamma
-        candidate = min(candidate, lower, key=_gamma)
-        hopeless = candidate.gamma - target > HOPE * gained
-        if gained <= _FINE * candidate.gamma or hopeless or time.monotonic() > deadline:
-            break
-    return candidate
+def _lower(objective: NormObjective, candidate: StabilisingGain, deadline: float) -> StabilisingGain:
+    """BFGS, then polish, which goes on along the kinks where BFGS ends."""
+    unit = objective.sizes(candidate.entries)
+    angles = objective.angles(candidate.entries)
+    point = minimise(objective.log_norm, angles, unit, deadline, progress=_FINE)
+    entries = polish(objective, objective.entries(point.x), deadline)
+    return min(candidate, StabilisingGain(objective.norm(entries), entries), key=_gamma)

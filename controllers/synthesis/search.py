@@ -27,8 +27,9 @@ from controllers.synthesis.scaling import ScaledPlant, scale
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import SynthesisError
 
-# A few starts tell an easy problem, where all lead to the same value; where they do not, many more follow.
-_FIRST_STARTS, _MORE_STARTS = 6, 24
+# A few starts tell an easy problem, where all lead to the same value. Where they do not, as many follow at a time until
+# the last half of all starts lowered the norm no more.
+_STARTS = 6
 # Shares of the time budget: starts are explored until the first; where none is stable, until the second a proof that
 # none can be is tried, and until the third starts are explored again. The best is refined until the third and improved
 # upon until the fourth; the rest is for proofs.
@@ -112,14 +113,20 @@ def _starts(objective: NormObjective, known: StabilisingGain | None, seed: int) 
 def _explore(objective: NormObjective, starts: Iterator[StartingGain], clock: TimeBudget) -> Descent:
     """Descend from a few starts where all lead to the same value, from many where not, and on until one is stable."""
     deadline = clock.after(_EXPLORED)
-    found = explore(objective, islice(starts, _FIRST_STARTS), deadline)
+    found = explore(objective, islice(starts, _STARTS), deadline)
     if found.agrees:
         return found
     plant = objective.plants[0]
     size = float(np.linalg.norm(plant.B1) * np.linalg.norm(plant.C1)) or 1.0
     gamma = found.gamma if found.candidates else size
     convex = generate_convex_start(plant, max(gamma, 1e-9 * size), objective.gain(objective.unit), deadline)
-    return found.with_more(explore(objective, chain(convex, islice(starts, _MORE_STARTS)), deadline, found.gamma))
+    found = found.with_more(explore(objective, convex, deadline))
+    fruitless = 0
+    while 2 * fruitless < found.starts and time.monotonic() < deadline:
+        more = explore(objective, islice(starts, _STARTS), deadline)
+        fruitless = 0 if more.gamma < found.gamma * _GAINED else fruitless + more.starts
+        found = found.with_more(more)
+    return found
 
 
 def _require_hope(plants: Sequence[GeneralisedPlant], limits: tuple[Array, Array], deadline: float) -> None:
@@ -138,7 +145,7 @@ def _require_hope(plants: Sequence[GeneralisedPlant], limits: tuple[Array, Array
 def _explore_on(objective: NormObjective, starts: Iterator[StartingGain], found: Descent, deadline: float) -> Descent:
     """Go on with further starts until one is stable."""
     while not found.candidates and time.monotonic() < deadline:
-        found = found.with_more(explore(objective, islice(starts, _FIRST_STARTS), deadline))
+        found = found.with_more(explore(objective, islice(starts, _STARTS), deadline))
     return found
 
 
@@ -158,14 +165,16 @@ def _lowest(
     progress(f"{found.starts} starts, {len(found.candidates)} stabilised, gamma {found.gamma:.6g}")
     best = refine(objective, found.candidates, clock.after(_REFINED))
     deadline = clock.after(_IMPROVED)
-    gained = not found.agrees
-    while gained and time.monotonic() < deadline:
-        progress(f"gamma {best.gamma:.6g}, looking about it")
-        best = improve(objective, best, seed, deadline)
+    tried, fruitless = found.starts, 0
+    while not found.agrees and 2 * fruitless < tried and time.monotonic() < deadline:
+        if not fruitless:
+            progress(f"gamma {best.gamma:.6g}, looking about it")
+            best = improve(objective, best, seed, deadline)
         progress(f"gamma {best.gamma:.6g}, further starts")
-        more = explore(objective, islice(starts, _FIRST_STARTS), deadline, best.gamma)
+        more = explore(objective, islice(starts, _STARTS), deadline)
         lower = refine(objective, [best, *more.candidates], deadline)
-        gained, best = lower.gamma < best.gamma * _GAINED, lower
+        fruitless = 0 if lower.gamma < best.gamma * _GAINED else fruitless + more.starts
+        tried, best = tried + more.starts, lower
     progress(f"gamma {best.gamma:.6g}")
     return best
 
