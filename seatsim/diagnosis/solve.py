@@ -53,9 +53,9 @@ def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress)
     # A random signal takes nothing off the gap, however right it is.
     if first.decision.verdict == "none" or first.stochastic:
         return first
-    if _is_explained(objective, first):
+    if _is_explained(first):
         return _localise(task, first)
-    return _in_time(_explain_by_gap, task, objective, first) or _localise(task, _call_unknown(first))
+    return _in_time(_explain_by_gap, task, first) or _localise(task, _call_unknown(first))
 
 
 def pose_search(problem: DiagnosisProblem, without: Sequence[str], progress: Progress) -> tuple[SearchTask, Objective]:
@@ -79,18 +79,15 @@ def _in_time(stage: Callable[P, Solution], *arguments: P.args, **named: P.kwargs
         return None
 
 
-def _is_explained(objective: Objective, solution: Solution) -> bool:
+def _is_explained(solution: Solution) -> bool:
     """Whether the chosen set is known, and takes enough of the gap, nominal and calibrated, to be its causes.
 
-    Weights by noise value what an effect improves where signals are weak, which may be next to nothing of the gap. A
-    broadband residual is noise only where nothing else is left; otherwise the gap counts beyond that of `objective`.
+    Weights by noise value what an effect improves where signals are weak, which may be next to nothing of the gap.
     """
-    selection, chosen = solution.selection, solution.decision.chosen
-    if solution.decision.verdict == "unknown":
+    objective, selection, decision = solution.objective, solution.selection, solution.decision
+    if decision.verdict == "unknown":
         return False
-    if chosen.excess < objective.settings.selection.nothing_left:
-        objective = solution.objective
-    taken = [measure_gap_taken(objective, rig, chosen) for rig in (selection.nominal, selection.calibrated)]
+    taken = [measure_gap_taken(objective, rig, decision.chosen) for rig in (selection.nominal, selection.calibrated)]
     return min(taken) >= objective.settings.decision.least_taken
 
 
@@ -107,7 +104,7 @@ def _search_beyond_broadband(task: SearchTask, first: Solution) -> Solution:
     return second if second.decision.verdict in ("known", "ambiguous") else first
 
 
-def _explain_by_gap(task: SearchTask, objective: Objective, first: Solution) -> Solution:
+def _explain_by_gap(task: SearchTask, first: Solution) -> Solution:
     """Return the solution with the sets that a search under uniform weights proposes, or the remainder beside one.
 
     Where weak signals weigh most a fit may end far from the set that takes all of the gap, so that what is found under
@@ -118,7 +115,7 @@ def _explain_by_gap(task: SearchTask, objective: Objective, first: Solution) -> 
     second = _decide(task, first._replace(selection=adopt(first.objective, first.selection, uniform.selection)))
     if second.stochastic:
         return second
-    if _is_explained(objective, second):
+    if _is_explained(second):
         return _localise(task, second)
     return _state_beside_unknown(task, _call_unknown(second), uniform)
 

@@ -263,12 +263,12 @@ class MagneticSaturation(NamedTuple):
 
 @effect(
     "damper.remanence",
-    source="play operator (Krasnosel'skii and Pokrovskii 1989), two of them; magnetic after-effect",
+    source="play operators (Krasnosel'skii, Pokrovskii 1989), reversible share (Jiles, Atherton 1986), after-effect",
     initial=(0.0, 0.0, 0.0),
     forms=(
         {"width": 0.01},
         {"width": 0.15},
-        {"width": 0.01, "spread": 0.7},
+        {"width": 0.05, "reversible": 0.5, "spread": 0.5},
         {"width": 0.01, "lift": 0.5},
         {"width": 0.15, "lift": 0.5},
         {"width": 0.02, "decay": 1.0},
@@ -283,8 +283,9 @@ class Remanence(NamedTuple):
     The plays' half-widths are `width (1 +- spread)`: after a reversal the current has to move by more than that before
     the magnetisation follows, and meanwhile the magnetisation creeps towards the current at the rate `decay`. `lift`
     raises the play's output: at 0 it lags a rising and a falling current alike, at 1 it follows a rising current at
-    once, so that only a falling current is remembered. The after-effect adds `share (m - i)`, where m follows a rising
-    current at once and falls as `m' = decay (i - m)`.
+    once, so that only a falling current is remembered. A `reversible` share of the plays' magnetisation follows the
+    current at once. The after-effect adds `share (m - i)`, where m follows a rising current at once and falls as
+    `m' = decay (i - m)`.
     """
 
     width: Annotated[float, param("A", "current that stays remembered", low=0, high=1)]
@@ -292,6 +293,7 @@ class Remanence(NamedTuple):
     lift: Annotated[float, param("-", "share of the width added to a current that flows", low=0, high=1)] = 0.0
     decay: Annotated[float, param("1/s", "rate at which the memory fades", low=0, high=200)] = 0.0
     share: Annotated[float, param("-", "share of a current that fell that stays for a while", low=0, high=1)] = 0.0
+    reversible: Annotated[float, param("-", "share of the plays that follows the current at once", low=0, high=1)] = 0.0
 
     def yield_current(self, i: float, z: State) -> float:
         """Return the current that the yield force feels, in A."""
@@ -299,7 +301,8 @@ class Remanence(NamedTuple):
         if self.width <= 0.0:
             return i + after
         wide, narrow = self.width * (1.0 + self.spread), self.width * (1.0 - self.spread)
-        felt = 0.5 * (_play(z[0], i, wide) + _play(z[1], i, narrow))
+        plays = 0.5 * (_play(z[0], i, wide) + _play(z[1], i, narrow))
+        felt = plays + self.reversible * (i - plays)
         return felt + self.lift * min(self.width, max(felt, 0.0)) + after
 
     def rates(self, x: float, v: float, u: float, i: float, demanded: float, target: float, z: State) -> State:

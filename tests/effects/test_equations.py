@@ -69,10 +69,11 @@ def compare_magnetism(rng):
     e = drawn("damper.magnetic_saturation", rng, bend=(0.1, 3), sharpness=(0.6, 6))
     saturated = i / (1 + (e.bend * i) ** e.sharpness) ** (1 / e.sharpness)
     yield "damper.magnetic_saturation", e.yield_current(i, ()), saturated
-    e = drawn("damper.remanence", rng, width=(0.01, 0.3), spread=(0.1, 1), lift=(0.1, 1), decay=(1, 30), share=(0.1, 1))
+    shares = {name: (0.1, 1) for name in ("spread", "lift", "share", "reversible")}
+    e = drawn("damper.remanence", rng, width=(0.01, 0.3), decay=(1, 30), **shares)
     widths = e.width * (1 + e.spread), e.width * (1 - e.spread)
     plays = [np.clip(kept, i - width, i + width) for kept, width in zip(z, widths, strict=False)]
-    felt = np.mean(plays)
+    felt = (1 - e.reversible) * np.mean(plays) + e.reversible * i
     expected = felt + e.lift * np.clip(felt, 0, e.width) + e.share * max(z[2] - i, 0)
     rates = [MEMORY_RATE * (play - kept) + e.decay * (i - kept) if e.width else 0.0
              for play, kept in zip(plays, z, strict=False)]  # fmt: skip
