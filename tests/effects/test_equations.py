@@ -69,7 +69,7 @@ def compare_magnetism(rng):
     e = drawn("damper.magnetic_saturation", rng, bend=(0.1, 3), sharpness=(0.6, 6))
     saturated = i / (1 + (e.bend * i) ** e.sharpness) ** (1 / e.sharpness)
     yield "damper.magnetic_saturation", e.yield_current(i, ()), saturated
-    shares = {name: (0.1, 1) for name in ("spread", "lift", "share", "reversible")}
+    shares = dict.fromkeys(("spread", "lift", "share", "reversible"), (0.1, 1))
     e = drawn("damper.remanence", rng, width=(0.01, 0.3), decay=(1, 30), **shares)
     widths = e.width * (1 + e.spread), e.width * (1 - e.spread)
     plays = [np.clip(kept, i - width, i + width) for kept, width in zip(z, widths, strict=False)]
