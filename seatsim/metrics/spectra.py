@@ -45,7 +45,7 @@ def power_spectral_density(x: Array, sample_rate: float, length: int) -> tuple[A
 LOWEST = 0.1
 """Hz at which the bands begin over which a density is averaged: the distance of the lines of the longest segment."""
 FIRST_LINE = 2
-"""First line of a density: the one before holds the mean under the window less the plain mean, which is removed."""
+"""First line of a density. The line before keeps some of the mean under the window: the plain mean is removed."""
 PER_OCTAVE = 12
 """Bands in an octave, finer than the resonance of a seat is wide."""
 LEAST_SAMPLES = 64

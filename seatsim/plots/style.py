@@ -114,14 +114,14 @@ ROWS = Grid((), right=0.5)
 class _RoomyLocator(MaxNLocator):
     """Multiples of 1, 2 or 5, as many as an axis of so many inches has room to name beside each other."""
 
-    def __init__(self, inches: float) -> None:
+    def __init__(self, most: int, inches: float) -> None:
         super().__init__(steps=(1, 2, 5, 10))
-        self._inches = inches
+        self._most, self._inches = most, inches
 
     def tick_values(self, vmin: float, vmax: float) -> Sequence[float]:
         """Return where numbers stand between two ends of the axis."""
         ticks: Sequence[float] = ()
-        for most in range(max(2, int(self._inches / _TICK[0])), 1, -1):
+        for most in range(self._most, 1, -1):
             self.set_params(nbins=most)
             ticks = super().tick_values(vmin, vmax)
             widest = max(len(f"{tick:.6g}") for tick in ticks) * LETTER
@@ -366,8 +366,9 @@ def _add_panel(figure: Figure, place: tuple[float, float, float, float]) -> Axes
 
 def _place_ticks(axes: Axes) -> None:
     """Put numbers along the axes of a panel, at multiples of 1, 2 or 5, as many as there is room for."""
-    axes.xaxis.set_major_locator(_RoomyLocator(axes.bbox.width / axes.figure.dpi))
-    axes.yaxis.set_major_locator(MaxNLocator(_count_ticks(axes)[1], steps=(1, 2, 5, 10)))
+    along, up = _count_ticks(axes)
+    axes.xaxis.set_major_locator(_RoomyLocator(along, axes.bbox.width / axes.figure.dpi))
+    axes.yaxis.set_major_locator(MaxNLocator(up, steps=(1, 2, 5, 10)))
 
 
 def _count_ticks(axes: Axes) -> tuple[int, int]:

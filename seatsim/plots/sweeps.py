@@ -139,13 +139,12 @@ def plot_comfort(rows: SweepRows, order: Sequence[str]) -> Figure | None:
         dots = part.sample(most, random_state=0) if len(part) > most else part
         for k, group in enumerate([dots] if colour is None else [dots[dots[colour] == value] for value in values]):
             axes.scatter(
-                1e3 * group[TRAVEL], group[COMFORT], s=14, linewidths=0, alpha=0.7, color=COLOURS[k], zorder=3,
-                rasterized=True,
-            )  # fmt: skip
+                1e3 * group[TRAVEL], group[COMFORT], s=14, linewidths=0, alpha=0.7, color=COLOURS[k], rasterized=True
+            )
         travel, comfort = (part[name].to_numpy(float) for name in (TRAVEL, COMFORT))
         front = find_front(travel, comfort)
-        # Between two runs of the front no other is known to be better than the left one.
-        style.draw_line(axes, 1e3 * travel[front], comfort[front], _FRONT).set_drawstyle("steps-post")
+        # Between two runs of the front no other is known to be better than the left one; behind the dots it hides none.
+        style.draw_line(axes, 1e3 * travel[front], comfort[front], _FRONT).set(drawstyle="steps-post", zorder=0.9)
         style.set_title(axes, title)
         axes.set(xlabel=describe_metric(TRAVEL).axis, ylabel=describe_metric(COMFORT).axis)
     return page.figure

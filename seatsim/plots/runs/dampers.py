@@ -125,7 +125,7 @@ def plot_force_velocity(run: Run) -> Figure:
     figure, [[axes]] = style.make_page(title, note, Grid((3.3,), right=1.0), [dots, *looks, areas])
     for look, (_, test) in zip(looks, tests, strict=True):
         style.draw_line(axes, test.velocity, test.force, look).set_zorder(0.9)
-    _draw_samples(axes, velocity, run)
+    _draw_samples(axes, velocity, run, changes)
     _shade_active_quadrants(axes)
     axes.set(xlabel="damper velocity [m/s]", ylabel="damper force [N]")
     return figure
@@ -177,11 +177,11 @@ def _choose_temperatures(damper: _InstalledDamper) -> list[float]:
     return [low, 0.5 * (low + high), high]
 
 
-def _draw_samples(axes: Axes, velocity: Array, run: Run) -> None:
-    """Draw samples of a run, coloured by a current that changes, from 0 to its largest."""
+def _draw_samples(axes: Axes, velocity: Array, run: Run, changes: bool) -> None:
+    """Draw samples of a run, coloured by its current from 0 to its largest where that changes."""
     every = -(-len(velocity) // _MOST_SAMPLES)
     force, current = run.history["damper_force"][::every], run.history["coil_current"]
-    if np.ptp(current) > 0:
+    if changes:
         drawn = draw_samples(axes, velocity[::every], force, current[::every], float(np.max(current)))
         style.add_colour_bar(axes, drawn, "coil current [A]")
     else:
