@@ -12,7 +12,6 @@ folder nor a file is used that another user may have written.
 
 from __future__ import annotations
 
-import ast
 import atexit
 import gc
 import hashlib
@@ -26,7 +25,6 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack
 from functools import cache
-from importlib.util import resolve_name
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 from typing import TypeVar, cast
@@ -254,39 +252,28 @@ def digest(modules: Iterable[ModuleType]) -> str:
 
 
 def _reachable(modules: Iterable[ModuleType]) -> set[ModuleType]:
-    """Return the modules and all that they import, directly or not, without libraries that do not change."""
+    """Return the modules and those whose parts they name, directly or not, without libraries that do not change."""
     found: set[ModuleType] = set()
     waiting = list(modules)
     while waiting:
         module = waiting.pop()
         if module not in found and _changes(module):
             found.add(module)
-            waiting += [sys.modules[name] for name in _imported(module) if name in sys.modules]
+            waiting += _list_named(module)
     return found
 
 
-def _imported(module: ModuleType) -> tuple[str, ...]:
-    """Return the full names of what the module's source imports, outside functions and not for type checkers only."""
-    return _imports(Path(str(module.__file__)).read_bytes(), module.__package__)
+def _list_named(module: ModuleType) -> Iterator[ModuleType]:
+    """Yield the modules that a module names, and those that made the functions and classes that it names.
 
-
-@cache
-def _imports(source: bytes, package: str | None) -> tuple[str, ...]:
-    """Return the same for a source, which is parsed once: most modules are part of every combination."""
-    found: list[str] = []
-    waiting: list[ast.AST] = [ast.parse(source)]
-    while waiting:
-        node = waiting.pop()
-        if isinstance(node, ast.Import):
-            found += [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom):
-            origin = resolve_name("." * node.level + (node.module or ""), package)
-            found += [origin, *(f"{origin}.{alias.name}" for alias in node.names)]
-        elif isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
-            waiting += node.orelse
-        elif isinstance(node, ast.Module | ast.stmt | ast.ExceptHandler) and not isinstance(node, ast.FunctionDef):
-            waiting += ast.iter_child_nodes(node)
-    return tuple(found)
+    A number that it names belongs to none: `_loaded` states its value.
+    """
+    for own, value in vars(module).items():
+        name = value.__name__ if isinstance(value, ModuleType) else getattr(value, "__module__", None)
+        # The module's loader, and what pytest writes into a module for its asserts, differ in tests.
+        named = own.isidentifier() and not own.startswith("__")
+        if named and isinstance(name, str) and name in sys.modules:
+            yield sys.modules[name]
 
 
 def _loaded(module: ModuleType) -> Iterator[bytes]:
