@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from controllers.synthesis.certify import Certificate
 from controllers.synthesis.design import Design, verify
+from controllers.synthesis.kept import find_kept
 from controllers.synthesis.norm import build_frequency_grid, frequency_response
 from controllers.synthesis.plant import MATRICES, GeneralisedPlant, Loop, StateSpaceLike
 from controllers.synthesis.search import Progress, TimeBudget, search
@@ -121,11 +122,12 @@ def synthesise(
 
 
 def find_gain(plants: Sequence[GeneralisedPlant]) -> Array:
-    """Return the gain that `synthesise` finds for plants within `SEAT_TIME_BUDGET` s, without certificate and bound."""
-    begin = time.monotonic()
-    return search(
-        plants, _limits(plants[0], _MAX_GAIN, None), 0, TimeBudget(begin, SEAT_TIME_BUDGET), lambda text: None
-    )
+    """Return the gain that `synthesise` finds for plants within `SEAT_TIME_BUDGET` s, without certificate and bound.
+
+    A gain that was found before is taken from the cache.
+    """
+    limits, clock = _limits(plants[0], _MAX_GAIN, None), TimeBudget(time.monotonic(), SEAT_TIME_BUDGET)
+    return find_kept(plants, lambda: search(plants, limits, 0, clock, lambda text: None))
 
 
 def _find_largest_bound(design: Design, deadline: float) -> float:

@@ -175,7 +175,7 @@ def compiled(function: _F, plugged: Iterable[type]) -> _F:
 def _compiled(function: Callable[..., object], plugged: frozenset[type]) -> Callable[..., object]:
     modules = {sys.modules[part.__module__] for part in (function, *plugged)}
     # A notebook has no source.
-    folder = _find_folder(digest(modules)) if all(map(_source, modules)) else None
+    folder = find_folder(digest(modules)) if all(map(_source, modules)) else None
     previous = numba.config.CACHE_DIR
     # Without a folder numba would cache beside the source, where it may find stale code.
     numba.config.CACHE_DIR = str(folder or cache_folder())
@@ -188,7 +188,7 @@ def _compiled(function: Callable[..., object], plugged: frozenset[type]) -> Call
     return dispatcher
 
 
-def _find_folder(name: str) -> Path | None:
+def find_folder(name: str) -> Path | None:
     """Return a folder in the cache that this user alone may write, or a private one; None where none can be written."""
     folder = cache_folder() / name
     try:

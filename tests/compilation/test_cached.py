@@ -50,14 +50,14 @@ def test_a_folder_is_made_for_its_user_alone_unless_it_cannot_be(tmp_path, choos
     choose(tmp_path / "a" / "b")
     before = os.umask(0o002)
     try:
-        assert cached._find_folder("key") == tmp_path / "a" / "b" / "key"
+        assert cached.find_folder("key") == tmp_path / "a" / "b" / "key"
     finally:
         os.umask(before)
     assert (tmp_path / "a").stat().st_mode & 0o777 == 0o700
-    assert cached._find_folder("key") == tmp_path / "a" / "b" / "key"
+    assert cached.find_folder("key") == tmp_path / "a" / "b" / "key"
     (tmp_path / "file").touch()
     choose(tmp_path / "file")
-    assert cached._find_folder("key") is None
+    assert cached.find_folder("key") is None
 
 
 @pytest.mark.parametrize("level", ["above", "above/cache", "above/cache/key"])
@@ -71,15 +71,15 @@ def test_a_private_folder_takes_the_place_of_one_that_others_may_write(
     (tmp_path / "home").mkdir()
     (tmp_path / "home").chmod(home)
     monkeypatch.setattr(cached.platformdirs, "user_cache_dir", lambda name: str(tmp_path / "home" / name))
-    assert cached._find_folder("key") == cache / "key"
+    assert cached.find_folder("key") == cache / "key"
     (tmp_path / level).chmod(mode)
     cached._private_cache.cache_clear()
     if mode == 0o1777 and level != "above/cache/key":  # as in /tmp, nobody can exchange what is another's
-        assert cached._find_folder("key") == cache / "key"
+        assert cached.find_folder("key") == cache / "key"
         return
     with pytest.warns(UserWarning, match=rf"{tmp_path / level} may be written by other users.*SEATSIM_CACHE_DIR"):
-        private = cached._find_folder("key")
-    assert private == cached._find_folder("key") and cache not in private.parents
+        private = cached.find_folder("key")
+    assert private == cached.find_folder("key") and cache not in private.parents
     assert (tmp_path / "home" in private.parents) == (home == 0o700)
     assert private.stat().st_mode & 0o777 == 0o700 and find_foreign(private) is None
 

@@ -1,0 +1,57 @@
+"""Gains that were found before, kept beside the compiled runs: a search takes seconds, and the same seat comes again.
+
+A gain is kept under the sources of the synthesis and the matrices of its plants, so that a change of either is searched
+anew. What is known of a gain, its norm and the proof of it, is not kept: that is worked out whenever it is used.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from controllers.synthesis.plant import MATRICES, GeneralisedPlant
+from seatsim.compilation.cached import find_folder
+from seatsim.schema.arrays import Array
+from seatsim.schema.errors import SeatsimError
+from seatsim.schema.files import write_whole
+
+
+def find_kept(plants: Sequence[GeneralisedPlant], find: Callable[[], Array]) -> Array:
+    """Return the gain (nu, ny) that `find` found for these plants before, or finds now.
+
+    A file that is damaged counts as none; where the cache cannot be written, nothing is kept.
+    """
+    folder = find_folder("gains")
+    if folder is None:
+        return find()
+    file = folder / f"{_digest(plants)}.json"
+    try:
+        kept = np.array(json.loads(file.read_bytes()), dtype=np.float64)
+        if kept.shape == plants[0].free.shape and np.isfinite(kept).all():
+            return kept
+    except (OSError, ValueError, TypeError):
+        pass
+    gain = find()
+    with suppress(SeatsimError):
+        write_whole(file, lambda part: part.write_text(json.dumps(gain.tolist())))
+    return gain
+
+
+def _digest(plants: Sequence[GeneralisedPlant]) -> str:
+    """Return a hash over the sources of the synthesis, and over the matrices and free gains of the plants."""
+    state = hashlib.sha256(_read_sources())
+    for plant in plants:
+        for matrix in (*(getattr(plant, name) for name in MATRICES), plant.free):
+            state.update(repr(matrix.shape).encode() + matrix.tobytes())
+    return state.hexdigest()
+
+
+@cache
+def _read_sources() -> bytes:
+    return b"".join(file.read_bytes() for file in sorted(Path(__file__).parent.glob("*.py")))
