@@ -4,8 +4,9 @@ Cells are roads of class C and D at two speeds, the floors EM1, EM2 and EM5 of I
 holds them, each with the damper at 20, 50 and 80 degC and with 45, 80 and 110 kg on the seat. The variants of
 `quickstart.yaml` and `ride.yaml` run in every cell. Their figure is the driver's Wk RMS over that of the best viscous
 damper of that floor and driver, which is found anew in every cell. With `--bounds` the clairvoyant bound follows for
-the cold cells: what no damper of the seat comes below at the variant's own travel. Written is `OUT/ride.csv`, a row
-for each run.
+the cold cells: what no damper of the seat comes below at the variant's own travel. With `--tuned` a gain on five
+measures is tuned on the very draw of every cell, which no law with one gain can do better than. Written is
+`OUT/ride.csv`, a row for each run.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import itertools
 from pathlib import Path
 from typing import Any
 
+import cma
 import numpy as np
 import pandas as pd
 from ruamel.yaml import YAML
@@ -22,6 +24,7 @@ from scipy.stats import gmean
 
 import seatsim
 from controllers.clairvoyant import clairvoyant
+from seatsim.schema.arrays import Array
 from seatsim.simulation.performance_bounds import measure_distance
 
 HERE = Path(__file__).parent
@@ -34,31 +37,20 @@ WEIGHTS = np.array([3.0, 8.0, 20.0]) ** 2
 """1/s^4; weights of the squared travel at which the bound is found."""
 RIDE = "driver_acceleration_weighted"
 Settings = dict[str, Any]
-QUICKSTART, OURS = (
+QUICKSTART, RIDE_FILE = (
     YAML(typ="safe").load(path) for path in (HERE.parent / "scenarios" / "quickstart.yaml", HERE / "ride.yaml")
 )
-VARIANTS: dict[str, Settings] = {**QUICKSTART["variants"], **OURS}
+VARIANTS: dict[str, Settings] = QUICKSTART["variants"] | RIDE_FILE["variants"]
 ALONE: Settings = {"sweep": {}, "checks": {}}
 """What leaves the quickstart its variants alone."""
+GENERATIONS, TRIALS = 24, 10
 
 
 def list_floors(data: Path | None) -> dict[str, Settings]:
-    """Return the excitation of every floor by name."""
-    floors: dict[str, Settings] = {
-        f"road {name}, {speed:g} m/s": {"kind": "road", "road_class": name, "speed": speed}
-        for name, speed in itertools.product("CD", (12.0, 20.0))
-    }
-    floors |= {name: {"kind": "iso7096", "spectral_class": name} for name in ("EM1", "EM2", "EM5")}
-    for path in sorted(data.glob("bus_floor/*.csv.gz")) if data else ():
-        floors[path.name.partition("_")[0]] = {
-            "kind": "table", "path": str(path), "time_column": "time_s", "column": "acc_z_m_s2", "start": 5.0,
-        }  # fmt: skip
-    if data:
-        road = str(data / "roads" / "profile_1.csv.gz")
-        floors["measured road, 15 m/s"] = {
-            "kind": "table", "path": road, "distance_column": "distance_m", "column": "elevation_m", "speed": 15.0,
-            "repeat": "mirror",
-        }  # fmt: skip
+    """Return the excitation of every floor by name, measured ones where their folder is given."""
+    floors: dict[str, Settings] = RIDE_FILE["floors"]
+    for name, floor in (RIDE_FILE["measured"] if data else {}).items():
+        floors[name] = floor | {"kind": "table", "path": str(data / floor["path"])}
     return {name: floor | {"duration": SECONDS} for name, floor in floors.items()}
 
 
@@ -70,7 +62,23 @@ def find_best_viscous(cell: Settings) -> float:
     return min(run.metrics[RIDE].value for run in seatsim.run("quickstart", ALONE | cell | {"variants": dampers}).runs)
 
 
-def run_cells(floors: dict[str, Settings], seed: int, bounded: bool) -> pd.DataFrame:
+def tune_gain(settings: Settings) -> Settings:
+    """Return the variant whose fixed gain has the least Wk RMS in a cell, by CMA-ES."""
+    controller, spread = RIDE_FILE["tuned"]["controller"], RIDE_FILE["tuned"]["spread"]
+    search = cma.CMAEvolutionStrategy(np.zeros(len(spread)), 1.0, {"popsize": TRIALS, "seed": 3, "verbose": -9})
+
+    def state(trial: Array) -> Settings:
+        return {"controller": controller | {"gain": (trial * spread).tolist()}}
+
+    for _ in range(GENERATIONS):
+        trials = search.ask()
+        variants = {str(number): state(trial) for number, trial in enumerate(trials)}
+        runs = seatsim.run("quickstart", settings | {"variants": variants}).runs
+        search.tell(trials, [run.metrics[RIDE].value for run in runs])
+    return state(search.result.xbest)
+
+
+def run_cells(floors: dict[str, Settings], seed: int, bounded: bool, tuned: bool) -> pd.DataFrame:
     """Return a row for each run, with its bound where that is asked for and the damper cold."""
     rows = []
     for (floor, excitation), mass in itertools.product(floors.items(), MASSES):
@@ -78,7 +86,8 @@ def run_cells(floors: dict[str, Settings], seed: int, bounded: bool) -> pd.DataF
         best = find_best_viscous(cell)
         print(f"{floor}, {mass:g} kg: best viscous damper {best:.3f} m/s^2", flush=True)
         for temperature in TEMPERATURES:
-            settings = ALONE | cell | {"temperature": temperature, "variants": VARIANTS}
+            alone = ALONE | cell | {"temperature": temperature}
+            settings = alone | {"variants": VARIANTS | ({"gain of the cell": tune_gain(alone)} if tuned else {})}
             excess = measure_excess(settings) if bounded and temperature == min(TEMPERATURES) else {}
             for run in seatsim.run("quickstart", settings).runs:
                 ride, peak = (run.metrics[name].value for name in (RIDE, "suspension_displacement_peak"))
@@ -106,10 +115,11 @@ def main() -> None:
     parser.add_argument("--only", nargs="*", help="names of floors, such as EM1")
     parser.add_argument("--seed", type=int, default=11, help="of the random floors")
     parser.add_argument("--bounds", action="store_true", help="bound the cold cells, a minute each")
+    parser.add_argument("--tuned", action="store_true", help="tune a gain in every cell, a quarter of a minute each")
     parser.add_argument("--out", type=Path, default=Path("out/ride"))
     asked = parser.parse_args()
     floors = {name: floor for name, floor in list_floors(asked.data).items() if not asked.only or name in asked.only}
-    table = run_cells(floors, asked.seed, asked.bounds)
+    table = run_cells(floors, asked.seed, asked.bounds, asked.tuned)
     asked.out.mkdir(parents=True, exist_ok=True)
     table.to_csv(asked.out / "ride.csv", index=False)
     for name, part in table.groupby("variant", sort=False):
