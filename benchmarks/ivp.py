@@ -14,7 +14,6 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from seat_run import DAMPER, GAIN, PLANT, STEP
 
-from seatsim.dampers.base import DAMPERS
 from seatsim.kernel.inverse import CELLS, invert
 from seatsim.rig.coil import Coil
 from seatsim.rig.temperature import TemperatureScaling
@@ -63,10 +62,10 @@ def rates(damper: Force, size: Size, s: Sequence[float], command: float, floor: 
 def compile_model() -> tuple[Callable[..., Sequence[float]], Callable[[float, float, float, float], float]]:
     """Return the seat's rates as `solve_ivp` wants them, and the commanded current, compiled with numba."""
     force, slope, excite = map(numba.njit, (damper, rates, interpolate))
-    order, cold = DAMPERS.specification_of(type(DAMPER)).current_order, TemperatureScaling()
+    cold = TemperatureScaling()
 
     def command(x: float, v: float, y: float, z: float) -> float:
-        return invert(DAMPER, order, KX * x + KV * v, x, v, cold, (y, z), TOP, np.empty(CELLS + 1)).current
+        return invert(DAMPER, KX * x + KV * v, x, v, cold, (y, z), TOP, np.empty(CELLS + 1)).current
 
     return numba.njit(lambda t, s, u, f: slope(force, abs, s, u, excite(f, t))), numba.njit(command)
 

@@ -8,7 +8,6 @@ from typing import cast
 import numpy as np
 
 from seatsim.compilation.cached import compiled
-from seatsim.dampers.base import DAMPERS
 from seatsim.dampers.bouc_wen import ModifiedBoucWen
 from seatsim.excitations.iso7096 import Iso7096
 from seatsim.kernel.generic import DamperModel, TrueModel
@@ -38,7 +37,7 @@ def make_setup(sample_every: int, damper: DamperModel = DAMPER) -> LoopSetup:
     """Return the run's constant parts; the law is sampled every `sample_every` steps."""
     stated = cast("Law", LAWS.find("static_output_feedback")(gain=GAIN))
     law = prepare_law(stated, PLANT, Coil(), sample_every * STEP)
-    model = TrueModel(damper, DAMPERS.specification_of(type(damper)).current_order)
+    model = TrueModel(damper)
     timing = Timing(STEP, sample_every, 1e-4, self_heating=False)
     factors, coil = TemperatureFactors(), Coil()
     return LoopSetup(Rig(PLANT, damper), coil, factors, Thermal(), law, model, timing, coil.max_current)

@@ -268,11 +268,16 @@ def _list_named(module: ModuleType) -> Iterator[ModuleType]:
 
     A number that it names belongs to none: `_loaded` states its value.
     """
+    is_library = "site-packages" in Path(str(module.__file__)).parts
     for own, value in vars(module).items():
-        name = value.__name__ if isinstance(value, ModuleType) else getattr(value, "__module__", None)
         # The module's loader, and what pytest writes into a module for its asserts, differ in tests.
-        named = own.isidentifier() and not own.startswith("__")
-        if named and isinstance(name, str) and name in sys.modules:
+        if not own.isidentifier() or own.startswith("__"):
+            continue
+        name = getattr(value, "__module__", None)
+        if isinstance(value, ModuleType):
+            # A library has those of its parts that anybody imported, such as its plugin for pytest.
+            name = None if is_library and value.__name__ == f"{module.__name__}.{own}" else value.__name__
+        if isinstance(name, str) and name in sys.modules:
             yield sys.modules[name]
 
 

@@ -117,13 +117,9 @@ def _evaluate_law(law: types.Type, y: types.Type, state: types.Type) -> Callable
 
 
 class TrueModel(NamedTuple):
-    """The inverse knows the damper of the rig, its state and its temperature.
-
-    `order` is the degree of the force as a polynomial in the current, 0 where it is none (see `invert`).
-    """
+    """The inverse knows the damper of the rig, its state and its temperature."""
 
     damper: DamperModel
-    order: int
 
     def model_state(self, true: State, followed: State) -> State:
         """Return the state with which the inverse evaluates the damper."""
@@ -138,11 +134,9 @@ class AssumedModel(NamedTuple):
     """The inverse assumes that the damper is `damper` and tracks its state from measured motion and current.
 
     `temperature` is the assumed temperature of the damper in degC; NaN where the inverse reads the measured one.
-    `order` as in `TrueModel`.
     """
 
     damper: DamperModel
-    order: int
     factors: TemperatureFactors
     temperature: float
 

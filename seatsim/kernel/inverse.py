@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
-from seatsim.compilation.jit import jit
+from numba import types
+
+from seatsim.compilation.jit import jit, specialise
 from seatsim.kernel.generic import DamperModel, force, friction_limit
+from seatsim.kernel.hooks import method_of, record_class
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.arrays import Array
+from seatsim.schema.registry import current_order
 
 CELLS = 16
 """Cells of the grid on which a non-polynomial force-current map is searched for its first crossing.
@@ -42,7 +47,6 @@ class InverseSolution(NamedTuple):
 @jit
 def invert(
     damper: DamperModel,
-    order: int,
     wanted: float,
     x: float,
     v: float,
@@ -57,21 +61,52 @@ def invert(
     [N] is positive when it opposes extension, max_current [A] is above zero. `grid`, shape (CELLS + 1,), is scratch.
 
     Outside the dissipative quadrant (`wanted v <= 0`) the current is zero; inside, the wanted force is clipped to the
-    range of forces over the permitted currents at this motion, temperature and state. Where the force is a polynomial
-    in the current of `order` 1 or 2 it is recovered exactly from three values and solved in closed form. Any other map,
-    which need not be monotone, is searched from zero current upward for the first cell, or the first turn, that reaches
-    the force, then bracketed there; where none does, the closest turn or end is taken. So is a map of that order whose
-    set-valued friction vanishes at some current, since it has a corner there.
+    range of forces over the permitted currents at this motion, temperature and state. Where the force of the damper's
+    class is a polynomial in the current of degree 1 or 2 (`current_order`), it is recovered exactly from three values
+    and solved in closed form. Any other map, which need not be monotone, is searched from zero current upward for the
+    first cell, or the first turn, that reaches the force, then bracketed there; where none does, the closest turn or
+    end is taken. So is a map of that degree whose set-valued friction vanishes at some current, since it has a corner
+    there.
     """
-    if wanted * v <= 0.0:
-        current = 0.0
-    elif order > 0 and not _friction_vanishes(damper, v, scaling, z, max_current):
-        current = _closed_form(damper, order, wanted, x, v, scaling, z, max_current)
-    else:
-        current = _search(damper, wanted, x, v, scaling, z, max_current, grid)
+    current = 0.0 if wanted * v <= 0.0 else find_current(damper, wanted, x, v, scaling, z, max_current, grid)
     got = total_force(damper, x, v, current, scaling, z)
     served = 1.0 if abs(got - wanted) <= SERVED * (1.0 + abs(wanted)) else 0.0
     return InverseSolution(current, got, served)
+
+
+def find_current(
+    damper: DamperModel,
+    target: float,
+    x: float,
+    v: float,
+    scaling: TemperatureScaling,
+    z: State,
+    top: float,
+    grid: Array,
+) -> float:
+    """Return the least current in `[0, top]` whose force is closest to the target, in the way of the damper's class."""
+    return _choose_way(type(damper))(damper, target, x, v, scaling, z, top, grid)
+
+
+@specialise(find_current)
+def _find_current(damper: types.Type, *arguments: types.Type) -> Callable[..., float]:
+    return _choose_way(record_class(damper))
+
+
+def _choose_way(cls: type) -> Callable[..., float]:
+    """Return the search, or the closed form: a search that a class never uses would be a fifth of what is compiled."""
+    order = current_order(cls)
+    if order == 0:
+        return _search
+    if not (method_of(cls, "coulomb") or method_of(cls, "friction_limit")):
+        return lambda damper, target, x, v, scaling, z, top, grid: _closed_form(
+            damper, order, target, x, v, scaling, z, top
+        )
+    return lambda damper, target, x, v, scaling, z, top, grid: (
+        _search(damper, target, x, v, scaling, z, top, grid)
+        if _friction_vanishes(damper, v, scaling, z, top)
+        else _closed_form(damper, order, target, x, v, scaling, z, top)
+    )
 
 
 @jit

@@ -139,7 +139,7 @@ def command_current(
         return min(max(answer, 0.0), top) if is_number else math.nan, math.nan, math.nan
     scaling = model_scaling(model, factors, y.temperature)
     x, v = ratio * y.displacement, ratio * y.velocity
-    found = invert(model.damper, model.order, answer, x, v, scaling, z, top, grid)
+    found = invert(model.damper, answer, x, v, scaling, z, top, grid)
     return found.current if is_number else math.nan, answer, found.served
 
 

@@ -109,6 +109,12 @@ def initial_state(cls: type) -> tuple[float, ...]:
     return initial
 
 
+def current_order(cls: type) -> int:
+    """Return the degree of a damper's force as a polynomial in the current, 0 where it is none or not stated."""
+    order: int = getattr(_specifications.get(cls), "current_order", 0)
+    return order
+
+
 def name_of(kind: str, cls: type) -> str:
     """Return the name under which a class is registered."""
     return next(name for name, known in _classes[kind].items() if known is cls)

@@ -131,16 +131,13 @@ def _assume_damper(scenario: Scenario, control: Control, carry_all_effects: bool
     """Return the damper that the inverse assumes: the plant's without its effects, unless stated otherwise."""
     if control.inverse is None:
         record = scenario.damper.record
-        order = specification_of(type(record)).current_order
         # Where all effects are carried the kind of model must not hang on those chosen: the loop is compiled for it.
         if carry_all_effects or any(acts_on(type(effect), (*ON_DAMPER, "factors")) for effect in scenario.effects):
-            return AssumedModel(record, order, scenario.damper.factors, np.nan)
-        return TrueModel(record, order)
+            return AssumedModel(record, scenario.damper.factors, np.nan)
+        return TrueModel(record)
     record, factors = control.inverse.damper.record, control.inverse.damper.factors
     temperature = control.inverse.temperature
-    return AssumedModel(
-        record, specification_of(type(record)).current_order, factors, np.nan if temperature is None else temperature
-    )
+    return AssumedModel(record, factors, np.nan if temperature is None else temperature)
 
 
 def sample_period(step: float, control: Control) -> float:

@@ -3,11 +3,11 @@
 import math
 from typing import NamedTuple
 
+from .uncompiled import plugged
+
 
 class Wavy(NamedTuple):
     """`F = v (500 + 400 sin(3 pi i))`: 900 v at 1/6 A, 100 v at 1/2 A, 900 v again at 5/6 A."""
-
-    order = 0
 
     mean: float = 500.0
     swing: float = 400.0
@@ -19,8 +19,6 @@ class Wavy(NamedTuple):
 class Bump(NamedTuple):
     """`F = v (500 + slope i + height exp(-((i - centre) / width)^2))`: a turn at a current, up or down."""
 
-    order = 0
-
     centre: float = 0.5
     width: float = 0.1
     height: float = 300.0
@@ -30,10 +28,9 @@ class Bump(NamedTuple):
         return v * (500.0 + self.slope * i + self.height * math.exp(-(((i - self.centre) / self.width) ** 2)))
 
 
+@plugged("parabola", current_order=2)
 class Parabola(NamedTuple):
     """`F = v (a + b i + c i^2)`."""
-
-    order = 2
 
     a: float = 200.0
     b: float = 1200.0
@@ -45,8 +42,6 @@ class Parabola(NamedTuple):
 
 class Steep(NamedTuple):
     """`F = v (500 + height s^power)` with `s = (i - start) / width`, and 500 v below the start."""
-
-    order = 0
 
     start: float
     width: float

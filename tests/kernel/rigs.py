@@ -24,7 +24,7 @@ METRICS = ("frame_acceleration", "driver_acceleration", "suspension_displacement
 
 def true_model(damper):
     """The inverse knows the damper."""
-    return TrueModel(damper, specification_of(type(damper)).current_order)
+    return TrueModel(damper)
 
 
 def rough(duration, step=STEP, rms=1.0, seed=0, low=1.0, high=12.0):

@@ -23,7 +23,7 @@ class Cubes(NamedTuple):
 
 @pytest.mark.parametrize(("own", "measured", "felt"), [(math.nan, 60.0, 60.0), (35.0, 60.0, 35.0)])
 def test_an_assumed_model_has_a_state_and_a_temperature_of_its_own(own, measured, felt):
-    model = AssumedModel(Linear(), 1, FACTORS, own)
+    model = AssumedModel(Linear(), FACTORS, own)
     assert model_state(model, (1.0,), (2.0,)) == (2.0,)
     expected = (math.exp(-0.01 * (felt - 20.0)), 1.0, math.exp(-0.02 * (felt - 20.0)))
     assert model_scaling(model, HOT, measured) == pytest.approx(expected, rel=1e-14)

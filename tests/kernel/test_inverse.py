@@ -7,7 +7,6 @@ from seatsim.dampers.bingham import Bingham
 from seatsim.dampers.bouc_wen import BoucWen, ModifiedBoucWen
 from seatsim.kernel.inverse import CELLS, invert, total_force
 from seatsim.rig.temperature import TemperatureScaling
-from seatsim.schema.registry import specification_of
 
 from .dampers import Bump, Parabola, Steep, Wavy
 
@@ -35,12 +34,8 @@ def draw(bounds, count):
         yield rng.uniform(-1.0, 3.0) * 800.0 * v, rng.uniform(-0.02, 0.02), v, tuple(rng.uniform(*b) for b in bounds)
 
 
-def order(damper):
-    return damper.order if hasattr(damper, "order") else specification_of(type(damper)).current_order
-
-
 def ask(damper, wanted, x, v, z):
-    return invert(damper, order(damper), wanted, x, v, HEAT, z, TOP, np.empty(CELLS + 1))
+    return invert(damper, wanted, x, v, HEAT, z, TOP, np.empty(CELLS + 1))
 
 
 def on_grid(damper, x, v, z):

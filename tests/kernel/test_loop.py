@@ -42,7 +42,7 @@ def run(
         FACTORS,
         thermal or Thermal(),
         law,
-        model or TrueModel(damper, 1),
+        model or TrueModel(damper),
         Timing(STEP, every, 1e-4, heating),
         top,
         sensors or Direct(),
@@ -107,8 +107,8 @@ class Charged(NamedTuple):
 
 def test_an_assumed_state_follows_the_current_that_flows():
     law = {"law_state": (0.0,), "damper": Charged(), "rest": (0.0,), "followed": (0.0,), "start_velocity": 0.1}
-    knows, _ = run(Feedback(450.0), model=TrueModel(Charged(), 1), **law)
-    assumes, _ = run(Feedback(450.0), model=AssumedModel(Charged(), 1, FACTORS, math.nan), **law)
+    knows, _ = run(Feedback(450.0), model=TrueModel(Charged()), **law)
+    assumes, _ = run(Feedback(450.0), model=AssumedModel(Charged(), FACTORS, math.nan), **law)
     assert np.ptp(knows["current_command"][2:]) > 0.01
     assert assumes["current_command"] == pytest.approx(knows["current_command"], abs=5e-4)
 

@@ -7,9 +7,12 @@ from typing import NamedTuple
 from seatsim.schema.registry import register
 
 
-def plugged(name, initial=()):
-    """Enter a record with its state at rest, under a kind of its own: scenarios and other tests do not see it."""
-    return register("part of a test", name, SimpleNamespace(initial=initial))
+def plugged(name, initial=(), current_order=0):
+    """Enter a record with its state at rest and the degree of its force in the current.
+
+    It has a kind of its own: scenarios and other tests do not see it.
+    """
+    return register("part of a test", name, SimpleNamespace(initial=initial, current_order=current_order))
 
 
 @plugged("linear")

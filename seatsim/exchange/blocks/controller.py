@@ -146,7 +146,7 @@ def controller_block(scenario: Scenario) -> Block:
     setup, _ = set_up(scenario, plant, control, False, False)
     model = setup.inverse_model
     if not isinstance(model, AssumedModel):
-        model = AssumedModel(model.damper, model.order, scenario.damper.factors, math.nan)
+        model = AssumedModel(model.damper, scenario.damper.factors, math.nan)
     period = setup.timing.sample_every * setup.timing.step
     parameters = ControllerParameters(
         setup.law, model, setup.sensors, plant.damper_ratio, setup.max_command, period, setup.timing.sample_every
@@ -155,7 +155,7 @@ def controller_block(scenario: Scenario) -> Block:
     rest = ControllerState(
         0.0, 0.0, 0.0, sensed, initial_state(type(model.damper)), initial_state(type(control.law)), 0.0, 0.0, 0
     )
-    hidden = ["inverse_model.order", "inverse_model.temperature", "sensors", "sample_time", "divisions"]
+    hidden = ["inverse_model.temperature", "sensors", "sample_time", "divisions"]
     hidden += ["velocity", "frame_velocity", "driver_velocity"] if control.sensors else []
     hidden += [] if specification_of(type(control.law)).replays else ["replayed_command"]
     hidden += [] if wants_force(setup.law) else ["inverse_model", "wanted_force"]

@@ -298,7 +298,7 @@ def rig_block(scenario: Scenario) -> Block:
     inputs = RigInputs(temperature=float(temperature))
     variable = setup.law, setup.inverse_model.damper, setup.sensors
     parts = (*classes_of(setup.rig.damper), *map(type, setup.rig.effects), *map(type, variable))
-    hidden = ["coil.delay", "inverse_model.order", "sensors", "self_heating", "tolerance", "step", "sample_every"]
+    hidden = ["coil.delay", "sensors", "self_heating", "tolerance", "step", "sample_every"]
     hidden += ["temperature"] if heated else ["thermal", "coil.resistance"]
     hidden += [] if control.sensors else ["displacement_noise", "frame_noise", "driver_noise", "floor_noise"]
     hidden += [] if specification_of(type(control.law)).replays else ["replayed_command"]
