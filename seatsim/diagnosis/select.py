@@ -194,15 +194,19 @@ def _restart_effect(
     A start that falls steeply only after some steps was left behind before. Forms with the same free parameters also
     start where the others ended: where the cost of one jumps, that of another may lead there.
     """
-    rig = best.parameters.remove(term.effect)
+    rig, settings = best.parameters.remove(term.effect), objective.settings.selection
     starts = [rig.add(each, np.array(each.start)) for each in candidates if each.replaces(term)]
     forms: dict[Hashable, list[Evaluation]] = {}
     for start in sorted(objective.evaluate(starts), key=lambda each: each.cost):
         forms.setdefault(start.parameters.terms[-1].structure, []).append(start)
-    fitted = [_fit_from_best(objective, several, nuisances) for several in forms.values()]
-    pairs = permutations((each.parameters for each in fitted), 2)
+    begun = [_begin_best(objective, several, nuisances) for several in forms.values()]
+    ranked = sorted(begun, key=lambda each: each.cost)[: settings.finalists]
+    fitted = [fit(objective, each, nuisances) for each in ranked]
+    least = min(fitted, key=lambda each: each.cost).parameters
     moved = [
-        b.remove(term.effect).add(a.terms[-1], b.values[-1]) for a, b in pairs if a.terms[-1].free == b.terms[-1].free
+        each.parameters.remove(term.effect).add(each.parameters.terms[-1], least.values[-1])
+        for each in fitted
+        if each.parameters.terms[-1].free == least.terms[-1].free and each.parameters is not least
     ]
     return fitted + [fit(objective, search_pattern(objective, each), nuisances) for each in objective.evaluate(moved)]
 
@@ -219,12 +223,12 @@ def _fit_twins(
     return [fit(objective, each, nuisances) for each in objective.evaluate(starts)]
 
 
-def _fit_from_best(objective: Objective, starts: Sequence[Evaluation], nuisances: Linearisation) -> Evaluation:
-    """Return the fit that fell lowest in its first steps from some starts, the best first, carried to its end."""
+def _begin_best(objective: Objective, starts: Sequence[Evaluation], nuisances: Linearisation) -> Evaluation:
+    """Return the fit that fell lowest in its first steps from some starts, the best first."""
     settings = objective.settings.selection
     most = settings.further_shortlist // len(starts[0].parameters.terms)
     begun = [fit(objective, each, nuisances, settings.begun_steps) for each in starts[:most]]
-    return fit(objective, min(begun, key=lambda each: each.cost), nuisances)
+    return min(begun, key=lambda each: each.cost)
 
 
 def _eliminate_backwards(objective: Objective, best: Evaluation, nuisances: Linearisation) -> list[Evaluation]:
