@@ -153,10 +153,10 @@ POWER = 1e-3
 def trusted_gain(floor: Array, driver: Array, sample_rate: float, highest: float) -> tuple[Array, Array]:
     """Return frequency in Hz and transmissibility, shape (F,) each, NaN where `TRUSTED` and `POWER` forbid it.
 
-    Frequencies are those from `LOWEST` to `highest` Hz; the other arguments, and errors, are of `transmissibility`.
+    Frequencies are those of a density, up to `highest` Hz; the other arguments, and errors, are of `transmissibility`.
     """
     found = transmissibility(floor, driver, sample_rate)
-    inside = (found.frequency >= LOWEST) & (found.frequency <= highest)
+    inside = (found.frequency >= max(LOWEST, found.frequency[FIRST_LINE])) & (found.frequency <= highest)
     centres, density = estimate_density(1 / sample_rate, [floor])
     power = np.interp(found.frequency[inside], centres, density) if len(centres) else np.zeros(int(np.sum(inside)))
     strong = power >= POWER * np.max(power, initial=1e-300)

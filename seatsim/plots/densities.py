@@ -31,7 +31,7 @@ def find_first(densities: Densities) -> float:
 def state_method(first: float) -> str:
     """Return how a picture's densities were estimated that begin at `first` Hz; no other line shares its band."""
     lines = f"lines up to {first / FIRST_LINE:.2g} Hz apart, " * bool(np.isfinite(first))
-    return f"Welch's method, {lines}averaged over 1/{PER_OCTAVE} octave."
+    return f"Welch's method, {lines}averaged over 1/{PER_OCTAVE} octave, without the mean."
 
 
 def find_problem(densities: Densities, highest: float) -> str:

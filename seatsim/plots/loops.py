@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PathCollection
 
@@ -49,9 +50,11 @@ def make_loop_page(title: str, note: str, families: Sequence[Family], more: int 
 
 
 def draw_samples(axes: Axes, across: Array, force: Array, current: Array, most: float) -> PathCollection:
-    """Draw samples of a force coloured by the current, from 0 to the most in A; return them."""
-    colours, end = style.shade("viridis"), most or 1.0
-    return axes.scatter(across, force, 6, current, cmap=colours, vmin=0.0, vmax=end, linewidths=0, rasterized=True)
+    """Draw samples of a force coloured by the current, from 0 to the most in A, large ones on top; return them."""
+    colours, end, order = style.shade("viridis"), most or 1.0, np.argsort(current, kind="stable")
+    return axes.scatter(
+        across[order], force[order], 6, current[order], cmap=colours, vmin=0.0, vmax=end, linewidths=0, rasterized=True
+    )
 
 
 def label_panels(panels: Sequence[Axes], title: str) -> None:

@@ -190,11 +190,14 @@ def draw_line(axes: Axes, x: ArrayLike, y: ArrayLike, look: Entry) -> Line2D:
     return _dress(line, look, LONGEST)
 
 
-def add_colour_bar(axes: Axes, drawn: ScalarMappable, label: str) -> Axes:
-    """Return the axes of a new bar of the colours in which something is drawn, to the right of a panel."""
+def add_colour_bar(axes: Axes, drawn: ScalarMappable, label: str, extend: str = "neither") -> Axes:
+    """Return the axes of a new bar of the colours in which something is drawn, to the right of a panel.
+
+    It ends in a tip where larger values have the last colour, `extend="max"`.
+    """
     box = axes.get_position()
     beside = axes.figure.add_axes((box.x1 + 0.025, box.y0, 0.025, box.height))
-    bar = axes.figure.colorbar(drawn, cax=beside, label=label)
+    bar = axes.figure.colorbar(drawn, cax=beside, label=label, extend=extend)
     if bar.solids is not None:
         # Dots may be translucent.
         bar.solids.set_alpha(1.0)

@@ -26,6 +26,7 @@ from seatsim.plots.style import (
     measure_names,
     name_rows,
 )
+from seatsim.scenario.scenario import is_condition
 from seatsim.schema.arrays import Array
 from seatsim.schema.printing import Quantity, describe_channel, format_number, format_percent, format_unit
 from seatsim.sweeps.parts import SweepRows, is_number
@@ -62,10 +63,13 @@ def format_level(value: object) -> str:
 def plot_shares(found: Sequence[Sensitivity], words: str) -> Figure:
     """Return the shares of the variance of a metric that its keys explain, alone and with others."""
     rows = found[:_MOST_KEYS]
-    cut = f" The {_MOST_KEYS} strongest of {len(found)} keys." if len(found) > _MOST_KEYS else ""
-    note = f"Figures: the key alone / with its interactions.{cut}"
+    cut = f" The {_MOST_KEYS} strongest of {len(found)} parameters." if len(found) > _MOST_KEYS else ""
+    note = (
+        f"Figures: the parameter alone / with its interactions.{cut} What is fitted to the runs explains"
+        f" {format_percent(found[0].explained)} of the variance; the rest is in no bar."
+    )
     legend = (
-        Entry("the key alone", COLOURS[0], width=8),
+        Entry("the parameter alone", COLOURS[0], width=8),
         Entry("with its interactions, 95 % interval", "black", width=1.6),
     )
     names = [row.key for row in rows]
@@ -85,17 +89,16 @@ def plot_shares(found: Sequence[Sensitivity], words: str) -> Figure:
 def plot_tornado(found: Sequence[Sensitivity], rows: SweepRows) -> Figure:
     """Return from where to where the mean of a metric goes between a low and a high value of each key."""
     shown, strongest = describe_column(found[0].metric, rows.units), found[:_MOST_KEYS]
-    note = "Keys that are texts: at the values with the smallest and with the largest mean."
+    note = "Where a parameter is a text: at the values with the smallest and with the largest mean."
     legend = [
-        Entry(f"mean at the key's {share} % quantile", COLOURS[0], "none", mark="o", hollow=share == 5)
-        for share in (5, 95)
+        Entry(f"mean at its {share} % quantile", COLOURS[0], "none", mark="o", hollow=share == 5) for share in (5, 95)
     ]
     names = []
     for row in strongest:
         unit = format_unit(rows.units.get(row.key, "")).removesuffix("-")
         names.append(f"{row.key}: {format_level(row.low)} to {format_level(row.high)} {unit}".strip())
     grid = Grid((2 * ROW * len(strongest) + 0.1,), left=0.3, right=0.3)
-    figure, [[axes]] = make_page(f"How far each key moves the mean {shown.words}", note, grid, legend)
+    figure, [[axes]] = make_page(f"How far each parameter moves the mean {shown.words}", note, grid, legend)
     name_rows(axes, [""] * len(strongest))
     for k, (row, name) in enumerate(zip(strongest, names, strict=True)):
         ends = [shown.factor * row.at_low, shown.factor * row.at_high]
@@ -134,7 +137,9 @@ def plot_comfort(rows: SweepRows, order: Sequence[str]) -> Figure | None:
     columns = min(2, len(parts))
     grid = Grid((3.2 if columns == 1 else 2.0,) * -(-len(parts) // columns), columns, top=0.3, gap=(0.7, 0.85))
     note = f"Lower left is better.{style.OWN_SCALES * (len(parts) > 1)}{said}{some}"
-    page = make_page("Comfort against travel", note, grid, [*looks, _FRONT])
+    # Runs under different conditions, as with drivers of another mass, are no rivals.
+    has_front = not any(is_condition(key) for key in order if key != road)
+    page = make_page("Comfort against travel", note, grid, [*looks, *[_FRONT] * has_front])
     for axes, (title, part) in zip(page.list_panels(len(parts)), parts, strict=True):
         dots = part.sample(most, random_state=0) if len(part) > most else part
         for k, group in enumerate([dots] if colour is None else [dots[dots[colour] == value] for value in values]):
@@ -142,9 +147,10 @@ def plot_comfort(rows: SweepRows, order: Sequence[str]) -> Figure | None:
                 1e3 * group[TRAVEL], group[COMFORT], s=14, linewidths=0, alpha=0.7, color=COLOURS[k], rasterized=True
             )
         travel, comfort = (part[name].to_numpy(float) for name in (TRAVEL, COMFORT))
-        front = find_front(travel, comfort)
-        # Between two runs of the front no other is known to be better than the left one; behind the dots it hides none.
-        style.draw_line(axes, 1e3 * travel[front], comfort[front], _FRONT).set(drawstyle="steps-post", zorder=0.9)
+        if has_front:
+            front = find_front(travel, comfort)
+            # Between two runs of it no other is known to be better than the left one; behind the dots it hides none.
+            style.draw_line(axes, 1e3 * travel[front], comfort[front], _FRONT).set(drawstyle="steps-post", zorder=0.9)
         style.set_title(axes, title)
         axes.set(xlabel=describe_metric(TRAVEL).axis, ylabel=describe_metric(COMFORT).axis)
     return page.figure
@@ -175,7 +181,9 @@ def plot_means(rows: SweepRows, order: Sequence[str], metric: str) -> Figure | N
     table = means.groupby(["y", "x"], observed=True)["z"].mean().unstack()
     values = table.to_numpy()
     names = [str(name) for name in table.index]
-    grid = Grid((max(1.6, 0.32 * len(names)),), left=measure_names(names) + 2 * style.LINE, right=0.15, bottom=0.55)
+    label = clean_text(describe_column(keys[1], rows.units).axis)
+    height = max(1.6, 0.32 * len(names), style.LETTER * (max(map(len, label.split())) + 1))
+    grid = Grid((height,), left=measure_names(names) + 2 * style.LINE, right=0.15, bottom=0.55)
     every = " of all variants" * ("variant" in order)
     note = f"Mean over the runs{every} of each cell, in {shown.unit}; the darker, the larger."
     figure, [[axes]] = make_page(f"Mean {shown.words} over {keys[0]} and {keys[1]}", note, grid)
@@ -190,7 +198,7 @@ def plot_means(rows: SweepRows, order: Sequence[str], metric: str) -> Figure | N
     axes.set_xticks(np.arange(values.shape[1]) + 0.5, [clean_text(str(name), 12) for name in table.columns], fontsize=9)
     axes.set_yticks(np.arange(len(names)) + 0.5, [clean_text(name, 32) for name in names], fontsize=9)
     axes.set_xlabel(clean_text(describe_column(keys[0], rows.units).axis))
-    axes.set_ylabel(fill(clean_text(describe_column(keys[1], rows.units).axis), int(grid.heights[0] / style.LETTER)))
+    axes.set_ylabel(fill(label, int(height / style.LETTER)))
     return figure
 
 

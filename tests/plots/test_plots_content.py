@@ -155,11 +155,11 @@ def test_distinct_dampers(made_up):
 
 def test_force_velocity_shows_the_run_within_the_dampers_curves(made_up):
     run = made_up()
-    figure = plot_force_velocity(run)
+    figure = plot_force_velocity([run])
     axes = figure.axes[0]
     dots = axes.collections[0].get_offsets()
     every = -(-len(run.history["time"]) // len(dots))
-    np.testing.assert_allclose(dots[:, 1], run.history["damper_force"][::every])
+    np.testing.assert_allclose(np.sort(dots[:, 1]), np.sort(run.history["damper_force"][::every]))
     assert axes.lines[1].get_xdata().max() == pytest.approx(np.abs(run.history["suspension_velocity"]).max())
     assert legend(figure) == [
         "the run (colour: current)",
@@ -167,7 +167,7 @@ def test_force_velocity_shows_the_run_within_the_dampers_curves(made_up):
         "sine test at 1 A",
         "the damper gives energy back",
     ]
-    ends = (0.0, run.history["coil_current"].max())
+    ends = (0.0, np.quantile(run.history["coil_current"], 0.99))
     assert axes.collections[0].get_clim() == ends and figure.axes[1].get_ylim() == ends
 
 

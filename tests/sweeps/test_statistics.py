@@ -75,19 +75,18 @@ def test_the_front_holds_what_nothing_is_better_than():
     assert list(find_front(travel, comfort)) == [1, 2, 0]
 
 
-def test_each_road_has_a_picture_of_comfort_over_travel():
-    road, mass = np.repeat(["B", "C", "D"], 20), np.tile([60.0, 80.0], 30)
+@pytest.mark.parametrize(("key", "front"), [("controller.damping", ["Pareto front"]), ("plant.driver_mass", [])])
+def test_each_road_has_a_picture_of_comfort_over_travel_and_a_front_where_runs_are_rivals(key, front):
+    road, value = np.repeat(["B", "C", "D"], 20), np.tile([60.0, 80.0], 30)
     noise = np.random.default_rng(3).random((2, 60))
     travel = "suspension_displacement_rms"
-    frame = pd.DataFrame(
-        {"excitation.road_class": road, "plant.driver_mass": mass, COMFORT: noise[0], travel: noise[1]}
-    )
-    rows = rows_of(frame, ["plant.driver_mass", "excitation.road_class"])
+    frame = pd.DataFrame({"excitation.road_class": road, key: value, COMFORT: noise[0], travel: noise[1]})
+    rows = rows_of(frame, [key, "excitation.road_class"])
     rows = rows._replace(metrics=[COMFORT, travel])
     figure = plot_comfort(rows, rows.keys)
     assert [axes.get_title(loc="left")[-1] for axes in figure.axes] == ["B", "C", "D"]
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["60.00", "80.00", "Pareto front"]
-    assert len(plot_comfort(rows, ["plant.driver_mass"]).axes) == 1
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["60.00", "80.00", *front]
+    assert len(plot_comfort(rows, [key]).axes) == 1
 
 
 def test_a_condition_is_never_advised_on_as_a_choice():

@@ -52,8 +52,8 @@ _ENERGY = (
     _Figure("equivalent damping\n[kN·s/m]", "damping", 1e-3),
 )
 _ASYMMETRY = (
-    _Figure("asymmetric part /\nRMS force [%]", "asymmetry", 100.0, 10.0),
-    _Figure("asymmetry without the\nmean force [%]", "asymmetry_of_shape", 100.0, 10.0),
+    _Figure("asymmetric part /\nRMS force [%]", "asymmetry", 100.0, 2.0),
+    _Figure("asymmetry without the\nmean force [%]", "asymmetry_of_shape", 100.0, 2.0),
 )
 BY_CURRENT = Abscissa("current [A]", lambda r: r.current, lambda r: f", {r.temperature:.0f} °C")
 BY_TEMPERATURE = Abscissa("temperature [°C]", lambda r: r.temperature, lambda r: f", {r.current:.3g} A")
@@ -79,7 +79,7 @@ def plot_warm_up(found: Characterisation) -> Figure:
         records.setdefault(cycle.record, []).append(cycle)
     shown = spread_evenly([*records.values()], MOST)
     looks = style.make_entries([_name_warm_up(cycles) for cycles in shown])
-    note = "Force at the peak speed of each cycle; where the damper's temperature is known, the last one is at the end."
+    note = "Force at the peak speed of each cycle. The number at the end of a line is the damper's last temperature."
     title = f"Fade as the damper warms up: {found.name}"
     figure, [[panel]] = style.make_page(title, note, Grid((2.8,), right=0.6), looks)
     for cycles, look in zip(shown, looks, strict=True):
@@ -102,7 +102,7 @@ def _plot_trends(title: str, note: str, found: Characterisation, figures: Sequen
     blocks = choose_abscissas(rows)
     looks, fixed = choose_looks(blocks)
     if any(np.isfinite(getattr(row, f"{figure.name}_sd", np.nan)) for row in rows for figure in figures):
-        fixed += " Error bars: standard deviation over the cycles."
+        fixed += " Error bars, where larger than a dot: standard deviation over the cycles."
     if any(row.temperature_range > WARMER and row.cycle_values for row in rows):
         fixed += " Small dots: each cycle."
     grid = Grid((1.9,) * (len(figures) // 2 * len(blocks)), columns=2, gap=(0.9, 0.65))
@@ -167,4 +167,6 @@ def _draw_trend(
                 warmth = (row.cycle_values or {})["temperature"]
                 axes.plot(warmth, each, ".", color=look.colour, markersize=3, alpha=0.5, zorder=1)
     low, high = axes.get_ylim()
-    axes.set(xlabel=across.label, ylabel=figure.label, ylim=(min(0.0, low), max(high, figure.least)))
+    # A marker at the top is whole although the axis begins at 0, far from the lowest.
+    high = max(high, 1.05 * axes.dataLim.y1, figure.least)
+    axes.set(xlabel=across.label, ylabel=figure.label, ylim=(min(0.0, low), high))

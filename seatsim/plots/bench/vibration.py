@@ -13,14 +13,12 @@ from seatsim.metrics.spectra import estimate_density
 from seatsim.plots import style
 from seatsim.plots.densities import draw_densities, find_first, state_method
 from seatsim.plots.style import GREY, Entry, Grid
-from seatsim.plots.thinning import spread_evenly
+from seatsim.plots.thinning import spread_evenly, thin_line
 from seatsim.standards.comfort import Comfort
 from seatsim.standards.seat_rows import SeatTest
 
 MOST = 4
 """Stretches, and axes, that have a panel of their own; more are chosen evenly."""
-RASTER = 0.1
-"""s between the drawn values of a running RMS, whose window is ten times as long."""
 HIGHEST = 100.0
 """Hz up to which a spectrum is drawn: above it no weighting of the body lets much through."""
 
@@ -47,10 +45,9 @@ def _plot_running_rms(found: Comfort, axes: Sequence[str]) -> Figure:
     for panel, k in zip(page.list_panels(), chosen, strict=True):
         for axis, look in zip(axes, looks, strict=True):
             part = found.stretches[axis][k]
-            stride = max(1, round(RASTER * part.sample_rate))
-            values = running_rms(part.weighted, part.sample_rate)
-            time, shown = np.arange(len(values)) / part.sample_rate, slice(round(part.sample_rate), None, stride)
-            style.draw_line(panel, time[shown], values[shown], look)
+            values, filled = running_rms(part.weighted, part.sample_rate), round(part.sample_rate)
+            time = np.arange(len(values)) / part.sample_rate
+            style.draw_line(panel, *thin_line(time[filled:], values[filled:]), look)
         style.set_title(panel, found.stretches[axes[0]][k].run)
         panel.set(ylim=(0.0, 1.05 * max(highest.values()) or 1.0))
         panel.set(xlabel="time [s]", ylabel="a$_w$ over 1 s [m/s²]")
@@ -99,7 +96,7 @@ def plot_damping(found: SeatTest) -> dict[str, Figure]:
     if not found.damping:
         return {}
     looks = [each._replace(mark=".", width=1.6) for each in style.make_entries(list(found.damping))]
-    note = "Sines from half to twice the resonance."
+    note = "Sines from half to twice the resonance that is expected of the seat."
     figure, [[axes]] = style.make_page(
         "Damping test: motion of the mass over that of the floor", note, Grid((2.6,)), looks
     )

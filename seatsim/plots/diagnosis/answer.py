@@ -127,8 +127,8 @@ def plot_ranking(diagnosis: Diagnosis) -> Figure | None:
     title = f"Effects at work: {found}"
     equivalent = " Light blue: explain the gap as well." if _EQUIVALENT in colours else ""
     note = (
-        f"Bold and blue: the answer of the diagnosis.{equivalent} Each figure is the probability of being at work: two"
-        " effects can both be near 100 %."
+        f"Bold and blue: the answer of the diagnosis.{equivalent} Left: how probable it is that an effect is at work;"
+        " two effects can both be near 100 %."
     )
     strong = [k for k, colour in enumerate(colours) if colour == _CHOSEN]
     grid = Grid((), 2, right=0.45, bottom=0.7, gap=(0.7, 0.0))

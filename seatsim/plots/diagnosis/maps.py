@@ -54,7 +54,7 @@ def plot_maps(diagnosis: Diagnosis) -> Figure | None:
         style.set_title(axes, name)
     panels[0].set_ylabel(MOTIONS[other].axis)
     panels[1].tick_params(labelleft=False)
-    style.scale_log(style.add_colour_bar(panels[1], mesh, f"error [{shown.unit}]"), "y", low, high)
+    style.scale_log(style.add_colour_bar(panels[1], mesh, f"error [{shown.unit}], logarithmic"), "y", low, high)
     return figure
 
 

@@ -106,7 +106,7 @@ def _pad(values: Array) -> tuple[float, float]:
     low, high = float(np.min(values)), float(np.max(values))
     # At least a tenth of the values: runs that hardly differ are not spread over the whole panel.
     margin = max(0.12 * (high - low), 0.05 * abs(high)) or 1.0
-    return max(0.0, low - margin), high + margin
+    return low - margin, high + margin
 
 
 def _draw_panel(axes: Axes, panel: Panel, looks: Mapping[str, Entry]) -> None:
@@ -145,12 +145,12 @@ def _write_letters(axes: Axes, points: Array, letters: Sequence[str]) -> None:
         near = [k for k in left if np.linalg.norm(places[k] - places[left[0]]) < SAME_PLACE]
         left = [k for k in left if k not in near]
         text, others = " ".join(letters[k] for k in near), np.delete(places, near, axis=0)
-        aside = 8.0 + 4.0 * len(text)
-        spots = (
-            np.array([(aside, 0.0), (0.0, 15.0), (0.0, -15.0), (-aside, 0.0)]) if len(near) > 1 else np.zeros((1, 2))
-        )
-        gaps = np.linalg.norm(places[near[0]] + spots[:, None] - others, axis=2)
-        spot = spots[np.argmax(np.min(gaps, axis=1, initial=ENOUGH))]
+        across, up = np.ptp(places[near], axis=0) / 2 + (8.0 + 4.0 * len(text), 15.0)
+        spots = np.array([(across, 0.0), (0.0, up), (0.0, -up), (-across, 0.0)]) if len(near) > 1 else np.zeros((1, 2))
+        # From the middle of the outer ones, so that no mark of the group lies below its letters.
+        spots = spots + (np.min(places[near], axis=0) + np.max(places[near], axis=0)) / 2
+        gaps = np.linalg.norm(spots[:, None] - others, axis=2)
+        spot = spots[np.argmax(np.min(gaps, axis=1, initial=ENOUGH))] - places[near[0]]
         axes.annotate(
             text, points[near[0]], tuple(spot), textcoords="offset points", fontsize=9, zorder=5, fontweight="bold",
             ha="center", va="center_baseline", color="0.0" if len(near) > 1 else "1.0",
@@ -174,7 +174,7 @@ def plot_comparison(runs: Sequence[Run]) -> Figure:
 def _plot_bars(title: str, runs: Sequence[Run]) -> Figure:
     names = naming.label_runs(runs, 32)
     looks, left = choose_looks(runs), style.measure_names(names)
-    grid = Grid((ROW * len(runs) + 0.1,) * 2, columns=2, left=left, gap=(0.2, 0.6))
+    grid = Grid((ROW * len(runs) + 0.1,) * 2, columns=2, left=left, gap=(0.3, 0.6))
     page = style.make_page(title, NOTE + explain_grey(looks), grid)
     for k, (axes, metric) in enumerate(zip(page.list_panels(), COMPARED, strict=True)):
         shown = describe_metric(metric)

@@ -36,6 +36,8 @@ MOST = 4
 """Most dampers in one picture."""
 _MOST_SAMPLES = 3000
 """Samples of a run that are drawn; more hide each other."""
+_USUAL = 0.99
+"""Share of a run for which the current is within the scale of its colours."""
 _SLOWEST = 0.01
 """m/s; least peak velocity of the curves beside a run."""
 
@@ -97,8 +99,8 @@ def choose_amplitude(runs: Iterable[Run]) -> float:
     return max(SMALLEST, round(amplitude / digit) * digit)
 
 
-def plot_force_velocity(run: Run) -> Figure:
-    """Return delivered force over damper velocity, coloured by a current that changes, with the damper's own limits.
+def plot_force_velocity(runs: Sequence[Run]) -> Figure:
+    """Return the first run's delivered force over damper velocity, coloured by a current that changes, with limits.
 
     The limits are the damper's loops in a sine test at no and at the actuator's largest current, at the peak velocity
     of the run.
@@ -106,6 +108,7 @@ def plot_force_velocity(run: Run) -> Figure:
     Raises:
         RunError: a sine test cannot be carried to its end.
     """
+    run = runs[0]
     [damper], temperature = find_dampers([run]), _start_temperature(run)
     velocity = _stroke_ratio(run) * run.history["suspension_velocity"]
     amplitude = max(_SLOWEST, float(np.max(np.abs(velocity)))) / (2 * math.pi * FREQUENCY)
@@ -121,6 +124,7 @@ def plot_force_velocity(run: Run) -> Figure:
     )
     areas = Entry("the damper gives energy back", style.AREA, width=8)
     note = f"Sine tests at {temperature:g} °C, amplitude {1e3 * amplitude:.3g} mm, {FREQUENCY:g} Hz. {SIGNS}"
+    note += f" The first of {len(runs)} runs." * (len(runs) > 1)
     title = f"Damper at work: {naming.make_title([run])}"
     figure, [[axes]] = style.make_page(title, note, Grid((3.3,), right=1.0), [dots, *looks, areas])
     for look, (_, test) in zip(looks, tests, strict=True):
@@ -178,12 +182,12 @@ def _choose_temperatures(damper: _InstalledDamper) -> list[float]:
 
 
 def _draw_samples(axes: Axes, velocity: Array, run: Run, changes: bool) -> None:
-    """Draw samples of a run, coloured by its current from 0 to its largest where that changes."""
+    """Draw samples of a run, coloured by its current where that changes, up to what it seldom exceeds."""
     every = -(-len(velocity) // _MOST_SAMPLES)
     force, current = run.history["damper_force"][::every], run.history["coil_current"]
     if changes:
-        drawn = draw_samples(axes, velocity[::every], force, current[::every], float(np.max(current)))
-        style.add_colour_bar(axes, drawn, "coil current [A]")
+        drawn = draw_samples(axes, velocity[::every], force, current[::every], float(np.quantile(current, _USUAL)))
+        style.add_colour_bar(axes, drawn, "coil current [A]", extend="max")
     else:
         axes.scatter(velocity[::every], force, s=6, color=COLOURS[0], linewidths=0, rasterized=True)
 

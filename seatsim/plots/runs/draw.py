@@ -40,5 +40,5 @@ def plot_result(result: Result) -> dict[str, Figure]:
     if models:
         figures["damper_loops"] = plot_damper_loops(models)
     if models and models[0] is result.runs[0]:
-        figures["force_velocity"] = plot_force_velocity(result.runs[0])
+        figures["force_velocity"] = plot_force_velocity(result.runs)
     return figures
