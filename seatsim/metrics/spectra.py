@@ -146,21 +146,26 @@ def transmissibility(floor: ArrayLike, driver: ArrayLike, sample_rate: float) ->
 
 TRUSTED = 0.5
 """Least coherence of a transmissibility: below it most of the driver's motion is not the floor's."""
+STRETCH = 3
+"""Least neighbouring lines of a transmissibility that are trusted: by chance a single one is coherent anywhere."""
 POWER = 1e-3
 """Least density of the floor over its highest at which it has power enough for a transmissibility."""
 
 
 def trusted_gain(floor: Array, driver: Array, sample_rate: float, highest: float) -> tuple[Array, Array]:
-    """Return frequency in Hz and transmissibility, shape (F,) each, NaN where `TRUSTED` and `POWER` forbid it.
+    """Return frequency in Hz and transmissibility, shape (F,) each, NaN where the limits above forbid it.
 
     Frequencies are those of a density, up to `highest` Hz; the other arguments, and errors, are of `transmissibility`.
     """
+    from scipy.ndimage import binary_opening
+
     found = transmissibility(floor, driver, sample_rate)
     inside = (found.frequency >= max(LOWEST, found.frequency[FIRST_LINE])) & (found.frequency <= highest)
     centres, density = estimate_density(1 / sample_rate, [floor])
     power = np.interp(found.frequency[inside], centres, density) if len(centres) else np.zeros(int(np.sum(inside)))
-    strong = power >= POWER * np.max(power, initial=1e-300)
-    return found.frequency[inside], np.where(strong & (found.coherence >= TRUSTED)[inside], found.gain[inside], np.nan)
+    is_strong = power >= POWER * np.max(power, initial=1e-300)
+    known = binary_opening(is_strong & (found.coherence >= TRUSTED)[inside], np.ones(STRETCH, bool))
+    return found.frequency[inside], np.where(known, found.gain[inside], np.nan)
 
 
 def _segment(samples: int, sample_rate: float) -> int:

@@ -24,7 +24,7 @@ from numpy.typing import ArrayLike
 
 from seatsim.plots.labels import clean_text
 from seatsim.schema.printing import LONGEST, RAISED
-from seatsim.schema.text import name_some
+from seatsim.schema.text import join_names, name_some
 
 WIDTH = 5.8
 """Width of a page in inches."""
@@ -205,19 +205,25 @@ def add_colour_bar(axes: Axes, drawn: ScalarMappable, label: str, extend: str = 
 
 
 def name_coincident(figure: Figure) -> Figure:
-    """Return a finished figure; its note says which lines lie on each other in every panel that shows them."""
-    panels = [{str(line.get_label()): line for line in axes.lines} for axes in figure.axes]
-
-    def coincide(one: str, other: str) -> bool:
-        shared = [(panel[one], panel[other]) for panel in panels if one in panel and other in panel]
-        return bool(shared) and all(_lie_on_each_other(*lines) for lines in shared)
-
-    groups: dict[str, list[str]] = {}
+    """Return a finished figure; its note says which lines lie on each other, and where, if not in all their panels."""
     # matplotlib gives lines of its own a label that begins with an underscore.
-    for name in dict.fromkeys(name for panel in panels for name in panel if name.strip() and name[0] != "_"):
-        first = next((first for first in groups if coincide(first, name)), name)
-        groups.setdefault(first, []).append(f"“{name.strip()}”")
-    said = [f"{name_some(names)} coincide." for names in groups.values() if len(names) > 1]
+    labelled = [[(str(line.get_label()), line) for line in axes.lines] for axes in figure.axes]
+    panels = [{name: line for name, line in lines if name.strip() and name[0] != "_"} for lines in labelled]
+    places: dict[tuple[str, ...], list[Axes]] = {}
+    for axes, panel in zip(figure.axes, panels, strict=True):
+        groups: dict[str, list[str]] = {}
+        for name in panel:
+            first = next((first for first in groups if _lie_on_each_other(panel[first], panel[name])), name)
+            groups.setdefault(first, []).append(name)
+        for names in groups.values():
+            if len(names) > 1:
+                places.setdefault(tuple(names), []).append(axes)
+    said = []
+    for group, where in places.items():
+        is_everywhere = len(where) == sum(set(group) <= set(panel) for panel in panels)
+        panel_names = (" ".join((axes.get_title(loc="left") or axes.get_ylabel()).split()) for axes in where)
+        place = "" if is_everywhere else " in " + join_names(dict.fromkeys(name.split(" [")[0] for name in panel_names))
+        said.append(f"{name_some([f'“{name.strip()}”' for name in group])} coincide{place}.")
     if said:
         _lengthen_note(figure, " ".join(said))
     return figure
@@ -257,13 +263,14 @@ def set_title(axes: Axes, text: str) -> None:
 
 
 def scale_log(axes: Axes, which: Literal["x", "y"], low: float, high: float) -> None:
-    """Make an axis logarithmic from `low` to `high`: 1, 2, 5 or 1, 3 of each decade where there is room, or decades."""
+    """Make an axis logarithmic from `low` to `high`: with numbers within a decade where there is room."""
     axes.set(**{f"{which}scale": "log", f"{which}lim": (low, high)})
     axis, most = (axes.xaxis, _count_ticks(axes)[0]) if which == "x" else (axes.yaxis, _count_ticks(axes)[1])
     is_plain = low > 2e-4 and high < 5e4
     # Powers of ten with a factor read badly: they stand where decades alone would be too few.
     room = np.log10(high / low) / (most if is_plain else 0.5 * most)
-    subs = next((subs for subs in ((1, 2, 5), (1, 3)) if room * len(subs) <= 1), (1,))
+    finest = ((1, 1.5, 2, 3, 5, 7),) if high < 10 * low else ()
+    subs = next((subs for subs in (*finest, (1, 2, 5), (1, 3)) if room * len(subs) <= 1), (1,))
     axis.set_major_locator(LogLocator(subs=subs, numticks=most))
     axis.set_major_formatter("{x:g}" if is_plain else _write_power)
     axis.set_minor_locator(NullLocator())
