@@ -92,9 +92,8 @@ def run_cells(floors: dict[str, Settings], seed: int, bounded: bool, tuned: bool
             for run in seatsim.run("quickstart", settings).runs:
                 ride, peak = (run.metrics[name].value for name in (RIDE, "suspension_displacement_peak"))
                 variant = run.scenario.label["variant"]
-                ratio = ride / best
-                bound = ratio / excess.get(variant, np.nan)
-                rows.append([variant, floor, mass, temperature, ride, best, ratio, 1e3 * peak, bound])
+                figures = ride, best, ride / best, 1e3 * peak, ride / best / excess.get(variant, np.nan)
+                rows.append([variant, floor, mass, temperature, *figures])
     columns = ["variant", "floor", "mass", "temperature", "ride", "viscous", "ratio", "peak_mm", "bound"]
     return pd.DataFrame(rows, columns=columns)
 
@@ -125,9 +124,8 @@ def main() -> None:
     for name, part in table.groupby("variant", sort=False):
         text = f"{name:18} mean {gmean(part.ratio):.3f}, worst {part.ratio.max():.3f}"
         text += f", peak travel {part.peak_mm.max():.1f} mm"
-        bound = part.bound.dropna()
-        if len(bound):
-            text += f"; no damper below: mean {gmean(bound):.3f}, worst {bound.max():.3f}"
+        if part.bound.count():
+            text += f"; no damper below: mean {gmean(part.bound.dropna()):.3f}, worst {part.bound.max():.3f}"
         print(text, flush=True)
 
 
