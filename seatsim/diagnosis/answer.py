@@ -20,7 +20,7 @@ def write_answer(diagnosis: Diagnosis) -> str:
     size = f"{gap.before.overall:.3f}"
     if diagnosis.verdict == "none":
         return (
-            f"There is no gap beyond noise and the stated tolerance of the parameters: {size} nominal,"
+            f"There is no gap that matters beyond noise and the stated tolerance of the parameters: {size} nominal,"
             f" {gap.calibrated.overall:.3f} refitted, {_noise(gap)} (in standard deviations)."
         )
     if diagnosis.verdict == "unknown" and not diagnosis.selected:

@@ -39,7 +39,7 @@ def alike(*groups):
 
 
 @pytest.mark.parametrize(("verdict", "selected", "changed", "said"), [
-    ("none", [], {}, "There is no gap beyond noise and the stated tolerance of the parameters: 0.500 nominal, 0.400"
+    ("none", [], {}, "There is no gap that matters beyond noise and the stated tolerance of the parameters: 0.500 nominal, 0.400"
                      " refitted, noise 0.052 (in standard deviations)."),
     # An unknown cause lies in its block or in one that the channels cannot tell from it.
     ("unknown", [], {}, "Something in the cushion or the suspension or the driver that no effect of the library"
