@@ -88,7 +88,7 @@ def _draw_view(axes: Axes, shown: Shown, channel: str, view: Window) -> None:
     for run, name, look in lines:
         part = view.part(run.history.step)
         values = describe_channel(name, UNITS[name]).factor * run.history[name][part]
-        # The whole of a run has more swings than a close-up, and gaps between them where there are fewer bins than dots.
+        # The whole of a run has swings beside each other, with gaps between them where bins are wider than dots.
         bins = BINS * (2 if view.end - view.start > CLOSE_UP else 1)
         thinned = thin_line(run.history["time"][part], values, round(bins * axes.get_position().width))
         style.draw_line(axes, *thinned, look)

@@ -39,8 +39,8 @@ def alike(*groups):
 
 
 @pytest.mark.parametrize(("verdict", "selected", "changed", "said"), [
-    ("none", [], {}, "There is no gap that matters beyond noise and the stated tolerance of the parameters: 0.500 nominal, 0.400"
-                     " refitted, noise 0.052 (in standard deviations)."),
+    ("none", [], {}, "There is no gap that matters beyond noise and the stated tolerance of the parameters: 0.500"
+                     " nominal, 0.400 refitted, noise 0.052 (in standard deviations)."),
     # An unknown cause lies in its block or in one that the channels cannot tell from it.
     ("unknown", [], {}, "Something in the cushion or the suspension or the driver that no effect of the library"
                         " explains makes the gap: 0.500 nominal, noise 0.052 (in standard deviations)."),
