@@ -10,7 +10,6 @@ import hashlib
 import json
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +19,9 @@ from seatsim.compilation.cached import find_folder
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import SeatsimError
 from seatsim.schema.files import write_whole
+
+_SOURCES = b"".join(file.read_bytes() for file in sorted(Path(__file__).parent.glob("*.py")))
+"""Sources of the synthesis, as they are when it is loaded."""
 
 
 def find_kept(plants: Sequence[GeneralisedPlant], find: Callable[[], Array]) -> Array:
@@ -45,13 +47,8 @@ def find_kept(plants: Sequence[GeneralisedPlant], find: Callable[[], Array]) -> 
 
 def _digest(plants: Sequence[GeneralisedPlant]) -> str:
     """Return a hash over the sources of the synthesis, and over the matrices and free gains of the plants."""
-    state = hashlib.sha256(_read_sources())
+    state = hashlib.sha256(_SOURCES)
     for plant in plants:
         for matrix in (*(getattr(plant, name) for name in MATRICES), plant.free):
             state.update(repr(matrix.shape).encode() + matrix.tobytes())
     return state.hexdigest()
-
-
-@cache
-def _read_sources() -> bytes:
-    return b"".join(file.read_bytes() for file in sorted(Path(__file__).parent.glob("*.py")))

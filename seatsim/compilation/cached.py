@@ -38,6 +38,7 @@ from numba.core.caching import FunctionCache, IndexDataCacheFile
 from seatsim.compilation.jit import ARITHMETIC
 from seatsim.compilation.messages import report
 from seatsim.schema.guarded import temporary_folder
+from seatsim.schema.registry import current_order
 
 _DIGEST = hashlib.sha256().digest_size
 
@@ -289,6 +290,8 @@ def _loaded(module: ModuleType) -> Iterator[bytes]:
         for function in functions:
             if isinstance(function, FunctionType):
                 yield from _code(function.__code__)
+        if own and isinstance(value, type):
+            yield f"{name} {current_order(value)}".encode()
         if isinstance(value, int | float | complex | np.ndarray | tuple) and not name.startswith("__"):
             yield f"{name} {_constant(value)}".encode()
 
