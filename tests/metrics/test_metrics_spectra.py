@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from seatsim.metrics.spectra import cross_spectral_density, estimate_density, power_spectral_density
+from seatsim.metrics.spectra import cross_spectral_density, estimate_density, power_spectral_density, trusted_gain
 
 
 @pytest.mark.parametrize(("samples", "length"), [(4000, 512), (4001, 511), (100, 100), (9, 1), (10, 3)])
@@ -24,3 +24,17 @@ def test_a_density_begins_above_what_the_mean_leaves():
     frequency, power = estimate_density(0.01, [np.sin(2 * np.pi * 1.03 * np.arange(0, 60, 0.01))])
     assert frequency[0] == pytest.approx(0.2)
     assert power[0] < 1e-5 * power.max()
+
+
+def test_a_transmissibility_begins_with_its_density_and_has_no_stray_lines():
+    random = np.random.default_rng(7)
+    floor, other = random.standard_normal((2, 6000))
+    # The driver follows the floor below 10 Hz; above, coherence is chance.
+    slow = signal.butter(6, 10.0, fs=100.0, output="sos")
+    driver = signal.sosfiltfilt(slow, floor) + 0.3 * (other - signal.sosfiltfilt(slow, other))
+    frequency, gain = trusted_gain(floor, driver, 100.0, 50.0)
+    assert frequency[0] == pytest.approx(estimate_density(0.01, [floor])[0][0])
+    known = np.flatnonzero(np.isfinite(gain))
+    stretches = np.split(known, np.flatnonzero(np.diff(known) > 1) + 1)
+    assert min(map(len, stretches)) >= 3 and 9.0 < frequency[known[-1]] < 15.0
+    np.testing.assert_allclose(gain[(frequency > 0.5) & (frequency < 5.0)], 1.0, atol=0.1)
