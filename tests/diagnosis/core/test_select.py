@@ -133,7 +133,7 @@ def test_forms_of_one_effect_leave_another_its_place():
 
 def test_the_best_effect_is_begun_again_in_its_other_forms():
     # The cube gains little in its first steps, so that the form that only imitates the effect is ahead of it.
-    objective = pose({"true.one": 1.4}, {"decoy.x": {"true.one": 0.8, "decoy.0": 0.6}}, begun_steps=0, finalists=1)
+    objective = pose({"true.one": 1.4}, {"decoy.x": {"true.one": 0.8, "decoy.0": 0.6}}, begun_steps=0, finalists=2)
     forms = [offer("true.one", "decoy.x", 0.3), offer("true.one", "true.one", 0.03, cls=Cubed)]
     found = select_effects(objective, forms, lambda _: None, 1)
     (amount,) = found.sets[1][0].parameters.values[0]
