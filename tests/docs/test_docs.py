@@ -91,9 +91,9 @@ def test_every_command_and_option_has_an_example_that_is_run():
 def test_the_examples_of_own_parts_work(tmp_path, forget_own_code):
     for page in ("damper", "controller", "effect"):
         text = (ROOT / "docs" / f"howto_{page}.md").read_text(encoding="utf-8")
-        ((name, block),) = re.findall(r"^cat > (\w+\.py) <<'PY'\n(.*?)^PY$", text, re.DOTALL | re.MULTILINE)
-        (tmp_path / name).write_text(block, encoding="utf-8")
-        cls = vars(seatsim.use(tmp_path / name))[re.search(r"^class (\w+)", block, re.MULTILINE)[1]]
+        for name, block in re.findall(r"^cat > (\w+\.py) <<'PY'\n(.*?)^PY$", text, re.DOTALL | re.MULTILINE):
+            (tmp_path / name).write_text(block, encoding="utf-8")
+            cls = vars(seatsim.use(tmp_path / name))[re.search(r"^class (\w+)", block, re.MULTILINE)[1]]
     effects = [{"effect": "bellows:AirDrag", "parameters": {"drag": 350.0}}]
     (scenario,) = seatsim.load("quickstart", {"effects": effects, "variants": {}, "sweep": {}})
     assert scenario.effects == (cls(350.0),)
