@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from itertools import chain
+from itertools import chain, permutations
 from typing import NamedTuple
 
 import numpy as np
@@ -202,11 +202,9 @@ def _restart_effect(
     begun = [_begin_best(objective, several, nuisances) for several in forms.values()]
     ranked = sorted(begun, key=lambda each: each.cost)[: settings.finalists]
     fitted = [fit(objective, each, nuisances) for each in ranked]
-    least = min(fitted, key=lambda each: each.cost).parameters
+    pairs = permutations((each.parameters for each in fitted), 2)
     moved = [
-        each.parameters.remove(term.effect).add(each.parameters.terms[-1], least.values[-1])
-        for each in fitted
-        if each.parameters.terms[-1].free == least.terms[-1].free and each.parameters is not least
+        b.remove(term.effect).add(a.terms[-1], b.values[-1]) for a, b in pairs if a.terms[-1].free == b.terms[-1].free
     ]
     return fitted + [fit(objective, search_pattern(objective, each), nuisances) for each in objective.evaluate(moved)]
 
