@@ -44,11 +44,12 @@ VARIANTS: dict[str, Settings] = QUICKSTART["variants"] | RIDE_FILE["variants"]
 ALONE: Settings = {"sweep": {}, "checks": {}}
 """What leaves the quickstart its variants alone."""
 GENERATIONS, TRIALS = 24, 10
+"""Of a search for the gain of a cell, and gains that are tried in each."""
 
 
 def list_floors(data: Path | None) -> dict[str, Settings]:
     """Return the excitation of every floor by name, measured ones where their folder is given."""
-    floors: dict[str, Settings] = RIDE_FILE["floors"]
+    floors: dict[str, Settings] = dict(RIDE_FILE["floors"])
     for name, floor in (RIDE_FILE["measured"] if data else {}).items():
         floors[name] = floor | {"kind": "table", "path": str(data / floor["path"])}
     return {name: floor | {"duration": SECONDS} for name, floor in floors.items()}

@@ -7,7 +7,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy import fft
 
 from seatsim.metrics.motion import as_pair, require_positive
@@ -75,10 +75,16 @@ def _average_bands(frequency: Array, power: Array) -> tuple[Array, Array]:
 
     Otherwise the many lines of the high decades would make a drawn line thick and noisy.
     """
-    inside = frequency >= max(LOWEST, frequency[FIRST_LINE])
+    inside = _is_resolved(frequency)
     band = np.floor(PER_OCTAVE * np.log2(frequency[inside] / LOWEST) + 1e-9).astype(int)
     _, index, count = np.unique(band, return_inverse=True, return_counts=True)
     return np.bincount(index, frequency[inside]) / count, np.bincount(index, power[inside]) / count
+
+
+def _is_resolved(frequency: Array) -> NDArray[np.bool_]:
+    """Return which lines are drawn: those above `LOWEST` and above what a mean leaves."""
+    resolved: NDArray[np.bool_] = frequency >= max(LOWEST, frequency[FIRST_LINE])
+    return resolved
 
 
 def _segments(values: Array, length: int) -> Array:
@@ -160,7 +166,7 @@ def trusted_gain(floor: Array, driver: Array, sample_rate: float, highest: float
     from scipy.ndimage import binary_opening
 
     found = transmissibility(floor, driver, sample_rate)
-    inside = (found.frequency >= max(LOWEST, found.frequency[FIRST_LINE])) & (found.frequency <= highest)
+    inside = _is_resolved(found.frequency) & (found.frequency <= highest)
     centres, density = estimate_density(1 / sample_rate, [floor])
     power = np.interp(found.frequency[inside], centres, density) if len(centres) else np.zeros(int(np.sum(inside)))
     is_strong = power >= POWER * np.max(power, initial=1e-300)
