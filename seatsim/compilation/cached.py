@@ -34,6 +34,7 @@ import numpy as np
 import platformdirs
 from numba.core import event
 from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.core.dispatcher import Dispatcher
 
 from seatsim.compilation.jit import ARITHMETIC
 from seatsim.compilation.messages import report
@@ -286,8 +287,9 @@ def _loaded(module: ModuleType) -> Iterator[bytes]:
     """Yield the code of the module's functions and methods and its constants, as they are in this process."""
     for name, value in sorted(vars(module).items()):
         own = getattr(value, "__module__", None) == module.__name__
-        functions = vars(value).values() if own and isinstance(value, type) else [getattr(value, "py_func", value)]
-        for function in functions:
+        # Only what numba compiled is asked for its function: some objects answer every name, such as pytest's marks.
+        functions = [value.py_func if isinstance(value, Dispatcher) else value]
+        for function in vars(value).values() if own and isinstance(value, type) else functions:
             if isinstance(function, FunctionType):
                 yield from _code(function.__code__)
         if own and isinstance(value, type):

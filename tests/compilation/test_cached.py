@@ -121,7 +121,7 @@ def test_libraries_do_not_change(module):
 
 
 def test_the_key_changes_with_every_file_and_with_what_is_loaded(module):
-    low = module("low", "import math\nA = 1\ndef f(a):\n    return a + 1.0\n")
+    low = module("low", "import math\nfrom pytest import mark\nA = 1\ndef f(a):\n    return a + 1.0\n")
     module("middle", "import low\n")
     top = module("top", "from middle import low\n")
     keys = [cached.digest([top])]
