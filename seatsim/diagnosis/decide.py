@@ -77,7 +77,7 @@ def _shows_no_gap(problem: DiagnosisProblem, selection: Selection) -> bool:
     """Whether the calibrated rig leaves no gap, or no single effect that reduces the gap is material."""
     calibrated = selection.calibrated
     if calibrated.excess < problem.settings.selection.nothing_left:
-        return calibrated.excess == 0.0 or not _shows_effect(problem, selection)
+        return not _shows_effect(problem, selection)
     if np.any(measure_remainders(problem, calibrated) >= problem.settings.decision.material):
         return False
     # Where every candidate is withheld there is no set of one effect.
