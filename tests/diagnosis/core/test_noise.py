@@ -57,16 +57,15 @@ def test_a_random_force_counts_with_its_spectrum_wherever_it_comes_from():
 
 
 def weigh_repeats(size):
-    """Return the weights where a tone of 40 Hz is in a repeat and in another run, and not in the run repeated."""
+    """Return the weights where a repeat has a tone of 40 Hz beside what the run repeated has."""
     runs = {"first": 400, "again": 300, "other": 600}
     problem = pose({"model_error": 0.0}, runs=runs, repeats={"again": "first"})
-    tone = np.tile(size * np.sin(2.0 * np.pi * 40.0 * np.arange(600) / RATE), (2, 1))
-    measured = {"first": np.zeros((2, 400)), "again": tone[:, :300], "other": tone}
-    return runs, weigh_noise(dataclasses.replace(problem, measured=measured)).weights
+    again = problem.measured["first"][:, :300] + size * np.sin(2.0 * np.pi * 40.0 * np.arange(300) / RATE)
+    return runs, weigh_noise(dataclasses.replace(problem, measured=problem.measured | {"again": again})).weights
 
 
 def test_what_repeats_differ_by_counts_where_it_is_more_than_the_noise_and_there_alone():
-    runs, weights = weigh_repeats(0.1)
+    runs, weights = weigh_repeats(0.3)
     for run, count in runs.items():
         power, frequency = 2.0 / weights[run] ** 2 / count, np.arange(count // 2) * RATE / count
         near = np.abs(frequency - 40.0) < 3.0
@@ -74,7 +73,7 @@ def test_what_repeats_differ_by_counts_where_it_is_more_than_the_noise_and_there
         assert np.all(power[1, near] > 10.0 * NOISE[1] ** 2)
         np.testing.assert_allclose(power[1, far], NOISE[1] ** 2)
         # Half of the tone's power, 1/4 N of |X|^2 / N at one of the two sides, spread over 19 bins of 300 rows.
-        assert power[1, np.argmin(np.abs(frequency - 40.0))] == pytest.approx(0.1**2 * 0.5 * 300 / 4 / 19, rel=0.01)
+        assert power[1, np.argmin(np.abs(frequency - 40.0))] == pytest.approx(0.3**2 * 0.5 * 300 / 4 / 19, rel=0.01)
 
 
 def test_what_repeats_of_a_seat_differ_by_is_no_noise_where_it_is_material():
