@@ -5,9 +5,10 @@ beside one, and by the gap where the cause stays unknown, give its hypotheses, w
 `DIR/CASE/hypotheses.json`. With x the features of the hypotheses of a case and t those that are true, or the unknown
 cause where no fitted set is, the weights w minimise
 
-    sum over cases  (log sum exp(x w) - log sum over t exp(x_t w))  +  RIDGE / 2 |w s|^2
+    sum over cases  (log sum exp(x w) - log sum over t exp(x_t w))  +  RIDGE / 2 |(w - v) s|^2
 
-(conditional logistic regression: McFadden 1974), s the standard deviations of the features. A table says how often the
+(conditional logistic regression: McFadden 1974), s the standard deviations of the features and v the weights so far,
+which hold what other cases said: no case is to be given twice. A table says how often the
 likeliest hypothesis is the true one in cases left out, a fifth at a time, and how often effects of a probability from
 SURE on are at work. The weights go into `seatsim/diagnosis/score.yaml`.
 """
@@ -16,6 +17,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import re
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -39,7 +41,7 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.files import write_json, write_text
 from seatsim.schema.processes import run_jobs
 
-RIDGE, SURE, PARTS = 1.0, 0.9, 5
+RIDGE, SURE, PARTS = 3.0, 0.9, 5
 HYPOTHESES = "hypotheses.json"
 NAMES = list(score.WEIGHTS)
 
@@ -82,16 +84,18 @@ def fit_weights(cases: list[LabelledCase]) -> Array:
     """Return the weights of the features."""
     spread = np.std(np.concatenate([case.features for case in cases]), axis=0)
     scaled = [case.features / spread for case in cases]
+    before = np.array([score.WEIGHTS[name].weight for name in NAMES]) * spread
 
     def cost(weights: Array) -> tuple[float, Array]:
-        value, slope = 0.5 * RIDGE * float(weights @ weights), RIDGE * weights
+        change = weights - before
+        value, slope = 0.5 * RIDGE * float(change @ change), RIDGE * change
         for case, features in zip(cases, scaled, strict=True):
             scores = features @ weights
             value += float(logsumexp(scores) - logsumexp(scores[case.true]))
             slope = slope + softmax(scores) @ features - softmax(scores[case.true]) @ features[case.true]
         return value, slope
 
-    return np.asarray(minimize(cost, np.zeros(len(NAMES)), jac=True, method="L-BFGS-B").x / spread)
+    return np.asarray(minimize(cost, before, jac=True, method="L-BFGS-B").x / spread)
 
 
 def cross_validate(cases: list[LabelledCase]) -> str:
@@ -127,8 +131,9 @@ def main() -> None:
         f'{name}: {{weight: {weight:.3f}, means: "{score.WEIGHTS[name].means}"}}\n'
         for name, weight in zip(NAMES, fit_weights(cases), strict=True)
     ]
-    head = "# Weights of the score of a hypothesis, fitted by benchmarks/fit_score.py to"
-    write_text(Path(score.__file__).with_name("score.yaml"), f"{head} {len(cases)} cases with a gap.\n{''.join(lines)}")
+    file = Path(score.__file__).with_name("score.yaml")
+    head, before, rest = re.split(r"(\d+)", file.read_text().splitlines()[0], maxsplit=1)
+    write_text(file, f"{head}{int(before) + len(cases)}{rest}\n{''.join(lines)}")
 
 
 if __name__ == "__main__":

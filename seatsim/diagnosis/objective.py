@@ -208,9 +208,13 @@ class Objective:
         cost = sum(float(np.sum(values**2)) for values in whitened.values())
         if not finite:
             cost = np.inf
-        prior = float(np.sum((parameters.deviations / self.settings.fit.prior_std) ** 2))
         charge = math.exp(self.weights.parameter_cost * parameters.further)
-        return Evaluation(parameters, residuals, whitened, cost + prior, self.weights.independent, charge)
+        cost += self.measure_prior(parameters)
+        return Evaluation(parameters, residuals, whitened, cost, self.weights.independent, charge)
+
+    def measure_prior(self, parameters: Parameters) -> float:
+        """Return the sum of squares of the nuisance parameters' deviations, in their standard deviations."""
+        return float(np.sum((parameters.deviations / self.settings.fit.prior_std) ** 2))
 
     def linearise(self, evaluation: Evaluation, components: Sequence[int]) -> Linearisation:
         """Return the sensitivities of the whitened outputs to some components of the vector, by finite differences.

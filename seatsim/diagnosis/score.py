@@ -81,14 +81,15 @@ def list_hypotheses(searches: Sequence[Search]) -> list[Hypothesis]:
     All are compared with the calibrated rig of the first search, which has no disturbance.
     """
     first, *_ = searches
-    count = first.objective.settings.selection.finalists
+    count, calibrated = first.objective.settings.selection.finalists, first.selection.calibrated
     hypotheses = [
-        Hypothesis(_describe_set(first.selection.calibrated, search, rig, gaps), rig, search)
+        Hypothesis(_describe_set(calibrated, search, rig, gaps), rig, search)
         for search, gaps in zip(searches, map(_measure_gaps, searches), strict=True)
         for rig in search.selection.list_finalists(count)
         if search.disturbance or rig.parameters.terms
     ]
-    return [*hypotheses, Hypothesis({"unknown": 1.0})]
+    prior = first.objective.measure_prior(calibrated.parameters)
+    return [*hypotheses, Hypothesis({"unknown": 1.0, "prior": prior})]
 
 
 def _describe_set(
@@ -103,7 +104,8 @@ def _describe_set(
     features = {
         "gap_gain": math.log(gaps[names] / min(smaller, default=gaps[names])),
         "worst": math.log(worst + _LITTLE),
-        "prior": float(np.sum((rig.parameters.deviations / objective.settings.fit.prior_std) ** 2)),
+        "prior": objective.measure_prior(rig.parameters),
+        "parameters": float(len(rig.parameters.effect_components)),
     }
     # A random signal takes any gap, however right it is.
     if search.disturbance is None:

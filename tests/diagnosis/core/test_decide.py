@@ -93,12 +93,15 @@ def test_features_are_figures_of_the_fits(rig):
     gaps = np.hypot(0.3, 0.5), 0.3, 0.0
     left = [math.log((gap + 0.02) / (gaps[0] + 0.02)) for gap in gaps]
     assert single.features == pytest.approx(
-        {"gap": left[1], "gap_gain": left[1], "worst": math.log(3.9 / 4.0 + 0.02), "movement": 0.0, "prior": 0.0},
+        {"gap": left[1], "gap_gain": left[1], "worst": math.log(3.9 / 4.0 + 0.02), "movement": 0.0, "prior": 0.0}
+        | {"parameters": 1.0},
         abs=3e-2,
     )
     assert pair.features["gap"] == pytest.approx(left[2], abs=0.05)
     assert pair.features["gap_gain"] == pytest.approx(left[2] - left[1], abs=0.05)
-    assert unknown.features == {"unknown": 1.0}
+    assert pair.features["parameters"] == 2.0
+    # An unknown cause has the refitted parameters of the rig without effects.
+    assert unknown.features == {"unknown": 1.0, "prior": 0.0}
     assert {*single.features, *unknown.features} < set(WEIGHTS)
 
 

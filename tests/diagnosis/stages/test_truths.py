@@ -16,7 +16,7 @@ from seatsim.diagnosis.result import Estimate, Share
 from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.diagnosis.solve import solve
 from seatsim.effects.damper import GasSpring
-from seatsim.effects.seat import Friction, Mass
+from seatsim.effects.seat import Friction, Mass, ProgressiveSpring
 from seatsim.effects.sensor import Gain
 from seatsim.recordings.gap import measure_gap
 from seatsim.report.formatting import format_sentence
@@ -86,7 +86,8 @@ TRUTHS = {
                        HEAVY | {"sensor.gain": ("error", 0.3)}, "driver"),
     "friction in the linkage": Row((Friction(60.0),), "known", RUB, "suspension"),
     "a spring that a slow floor shows as another": Row(
-        (GasSpring(0.0, 800.0),), "ambiguous", {"damper.gas_spring": ("stiffness", 800.0)}, "damper", **FEW),
+        (ProgressiveSpring(800.0),), "ambiguous", {"suspension.progressive_spring": ("rise", 800.0)}, "suspension",
+        **FEW),
     "the first spring on a rough floor": Row(
         (GasSpring(0.0, 800.0),), "known", {"damper.gas_spring": ("stiffness", 800.0)}, "damper",
         channels=CHANNELS[:2], noise=0.05),
