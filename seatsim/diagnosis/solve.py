@@ -17,7 +17,7 @@ from seatsim.diagnosis.localise.disturbance import Disturbance, find_bias_drift,
 from seatsim.diagnosis.localise.input_estimate import estimate_nonrepeatable_force
 from seatsim.diagnosis.localise.localisation import localise_remainder, share_gap
 from seatsim.diagnosis.movement import measure_gap_taken
-from seatsim.diagnosis.noise import carry_force, measure_broadband, measure_nonrepeatable, weigh_gap, weigh_noise
+from seatsim.diagnosis.noise import carry_force, measure_broadband, weigh_gap, weigh_noise
 from seatsim.diagnosis.objective import Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, OutOfTimeError
 from seatsim.diagnosis.result import Share
@@ -64,7 +64,7 @@ def pose_search(problem: DiagnosisProblem, without: Sequence[str], progress: Pro
     task = SearchTask(list_candidates(problem, without), effects, progress)
     progress("weighing the channels")
     objective = Objective(problem, weigh_noise(problem))
-    if not problem.bench and measure_nonrepeatable(problem):
+    if not problem.bench:
         nominal = objective.unhurried.evaluate([Parameters(problem.nominal)])[0]
         if forces := estimate_nonrepeatable_force(objective, nominal):
             objective = Objective(problem, objective.weights.add(carry_force(problem, forces)))

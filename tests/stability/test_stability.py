@@ -52,7 +52,8 @@ def test_the_margins_are_those_of_the_polynomials_of_the_loop(mass, gain):
     loop = control.ss(designed.A, designed.B2, -np.array([gain]) @ designed.C2, 0.0)
     gains, phases, _, _, crossings, _ = control.stability_margins(loop, returnall=True)
     expected = (
-        min((each for each in gains if each > 1.0), default=np.inf),
+        # A loop that is never real has a factor of 1e14 there on some processors, by the rounding of its polynomials.
+        min((each for each in gains if 1.0 < each < 1e9), default=np.inf),
         np.min(np.abs(phases), initial=np.inf),
         np.min(np.radians(np.mod(phases, 360.0)) / crossings, initial=np.inf),
     )

@@ -56,16 +56,14 @@ def test_a_random_force_counts_with_its_spectrum_wherever_it_comes_from():
     np.testing.assert_array_equal(found.weights["second"][0], without.weights["second"][0])
 
 
-def weigh_repeats(size):
-    """Return the weights where a repeat has a tone of 40 Hz beside what the run repeated has."""
+def test_what_repeats_differ_by_counts_where_it_is_more_than_the_noise_and_there_alone():
     runs = {"first": 400, "again": 300, "other": 600}
     problem = pose({"model_error": 0.0}, runs=runs, repeats={"again": "first"})
-    again = problem.measured["first"][:, :300] + size * np.sin(2.0 * np.pi * 40.0 * np.arange(300) / RATE)
-    return runs, weigh_noise(dataclasses.replace(problem, measured=problem.measured | {"again": again})).weights
-
-
-def test_what_repeats_differ_by_counts_where_it_is_more_than_the_noise_and_there_alone():
-    runs, weights = weigh_repeats(0.3)
+    time = np.arange(600) / RATE
+    tone = np.sin(2.0 * np.pi * 40.0 * time)
+    measured = {run: np.zeros((2, count)) for run, count in runs.items()} | {"again": np.tile(tone[:300], (2, 1))}
+    measured["other"] = np.tile(tone, (2, 1))
+    weights = weigh_noise(dataclasses.replace(problem, measured=measured)).weights
     for run, count in runs.items():
         power, frequency = 2.0 / weights[run] ** 2 / count, np.arange(count // 2) * RATE / count
         near = np.abs(frequency - 40.0) < 3.0
@@ -73,13 +71,7 @@ def test_what_repeats_differ_by_counts_where_it_is_more_than_the_noise_and_there
         assert np.all(power[1, near] > 10.0 * NOISE[1] ** 2)
         np.testing.assert_allclose(power[1, far], NOISE[1] ** 2)
         # Half of the tone's power, 1/4 N of |X|^2 / N at one of the two sides, spread over 19 bins of 300 rows.
-        assert power[1, np.argmin(np.abs(frequency - 40.0))] == pytest.approx(0.3**2 * 0.5 * 300 / 4 / 19, rel=0.01)
-
-
-def test_what_repeats_of_a_seat_differ_by_is_no_noise_where_it_is_material():
-    runs, weights = weigh_repeats(1.0)
-    for run, count in runs.items():
-        np.testing.assert_allclose(2.0 / weights[run] ** 2 / count, np.tile(NOISE[:, None] ** 2, count // 2))
+        assert power[1, np.argmin(np.abs(frequency - 40.0))] == pytest.approx(0.5 * 300 / 4 / 19, rel=0.01)
 
 
 def test_what_a_force_may_have_done_to_all_channels_weighs_as_little_as_its_power_says():
