@@ -183,11 +183,11 @@ class NoiseWeights:
         return dataclasses.replace(self, force=amplitudes)
 
 
-def weigh_noise(problem: DiagnosisProblem) -> NoiseWeights:
-    """Return the weights for a recording: by all noise that is stated, and the disturbance that repeated runs show."""
+def weigh_noise(problem: DiagnosisProblem, repeats: bool = True) -> NoiseWeights:
+    """Return the weights for a recording: by all noise that is stated, and, with `repeats`, what repeats differ by."""
     settings, stated = problem.settings.noise, problem.recording.header.model_error
     missed = settings.model_error if stated is None else stated
-    repeated = _measure_nonrepeatable(problem)
+    repeated = _measure_nonrepeatable(problem) if repeats else None
     found = {}
     for run in problem.runs:
         measured = problem.measured[run]
@@ -250,23 +250,32 @@ def _count_compared(problem: DiagnosisProblem, samples: int) -> int:
 
 
 def _measure_nonrepeatable(problem: DiagnosisProblem) -> tuple[Array, Array] | None:
-    """Return frequencies and the power per sample of the non-repeatable disturbance, None without repeated runs.
-
-    The difference of two repeats has twice the power of that disturbance.
-    """
+    """Return frequencies and the power per sample of the non-repeatable disturbance, None without repeated runs."""
     found = []
-    for run, entry in problem.recording.runs.items():
-        if entry.repeat_of is None or run not in problem.runs or entry.repeat_of not in problem.runs:
-            continue
-        first, second = problem.measured[entry.repeat_of], problem.measured[run]
-        samples = min(first.shape[1], second.shape[1])
-        spectrum = np.fft.rfft(first[:, :samples] - second[:, :samples], axis=1)
-        frequency = np.arange(samples // 2 + 1) * problem.rate / samples
-        smoothed = smooth_spectrum(np.abs(spectrum) ** 2, problem.settings.noise.smoothing)
-        found.append((frequency, 0.5 * smoothed / samples))
+    for signal in _list_nonrepeatable(problem):
+        samples = signal.shape[1]
+        power = smooth_spectrum(np.abs(np.fft.rfft(signal, axis=1)) ** 2, problem.settings.noise.smoothing)
+        found.append((np.arange(samples // 2 + 1) * problem.rate / samples, power / samples))
     if not found:
         return None
     frequency = found[0][0]
     resampled = [[np.interp(frequency, f, row) for row in power] for f, power in found]
     mean: Array = np.mean(resampled, axis=0)
     return frequency, mean
+
+
+def differ_materially(problem: DiagnosisProblem) -> bool:
+    """Whether what repeats differ by, beyond the noise, is of a material size in some channel."""
+    power = [np.mean(signal**2, axis=1) - problem.noise**2 for signal in _list_nonrepeatable(problem)]
+    return any(np.any(each > (problem.settings.decision.material * problem.spread) ** 2) for each in power)
+
+
+def _list_nonrepeatable(problem: DiagnosisProblem) -> list[Array]:
+    """Return a signal with the power of the non-repeatable disturbance for each repeat, shape (channels, samples).
+
+    The difference of two repeats has twice its power.
+    """
+    measured, entries = problem.measured, problem.recording.runs
+    pairs = [(entries[run].repeat_of or "", run) for run in problem.runs if entries[run].repeat_of in problem.runs]
+    lengths = [min(measured[first].shape[1], measured[second].shape[1]) for first, second in pairs]
+    return [(measured[a][:, :n] - measured[b][:, :n]) / np.sqrt(2.0) for (a, b), n in zip(pairs, lengths, strict=True)]

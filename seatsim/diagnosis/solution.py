@@ -34,8 +34,8 @@ class SearchTask(NamedTuple):
 class Solution(NamedTuple):
     """A selection with its decision, the blocks that the gap lies in, and the discrepancy, if anything is unexplained.
 
-    `stochastic` is the effect, if any, whose signal is that discrepancy; `beside` is the search beside a disturbance,
-    where one was made.
+    `stochastic` is the effect, if any, whose signal is that discrepancy; `beside` holds the searches beside a
+    disturbance.
     """
 
     objective: Objective
@@ -44,7 +44,7 @@ class Solution(NamedTuple):
     where: Sequence[Share] = ()
     discrepancy: Discrepancy | None = None
     stochastic: str = ""
-    beside: Search | None = None
+    beside: Sequence[Search] = ()
 
 
 def search(task: SearchTask, objective: Objective, rig: LinearisedRig | None = None) -> Solution:

@@ -17,7 +17,7 @@ from seatsim.diagnosis.localise.disturbance import Disturbance, find_bias_drift,
 from seatsim.diagnosis.localise.input_estimate import estimate_nonrepeatable_force
 from seatsim.diagnosis.localise.localisation import localise_remainder, share_gap
 from seatsim.diagnosis.movement import measure_gap_taken
-from seatsim.diagnosis.noise import carry_force, measure_broadband, weigh_gap, weigh_noise
+from seatsim.diagnosis.noise import carry_force, differ_materially, measure_broadband, weigh_gap, weigh_noise
 from seatsim.diagnosis.objective import Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, OutOfTimeError
 from seatsim.diagnosis.result import Share
@@ -46,6 +46,9 @@ def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress)
     """
     task, objective = pose_search(problem, without, progress)
     first = search(task, objective)
+    if first.decision.verdict == "none" and differ_materially(problem):
+        # What repeats differ by is noise while effects are sought; where none is found it is itself the gap.
+        first = search(task, Objective(problem, weigh_noise(problem, repeats=False)))
     if first.decision.verdict == "unknown":
         first = _in_time(_search_beyond_broadband, task, first) or first
     if not problem.bench:
@@ -187,18 +190,18 @@ def _decide_beside_disturbance(task: SearchTask, first: Solution, without: Seque
         return first
     if verdict == "unknown":
         task.progress("asking whether a disturbance hides the effects")
-        disturbance = find_disturbance(objective, selection)
+        found = [find_disturbance(objective, selection), find_bias_drift(objective, selection.calibrated)]
     else:
-        disturbance = find_bias_drift(objective, first.decision.chosen)
-    if disturbance is None or disturbance.effect in without:
-        return first
-    return _decide(task, first._replace(beside=search_beside(task, objective, selection, disturbance)))
+        found = [find_bias_drift(objective, first.decision.chosen)]
+    by_effect = {each.effect: each for each in found if each and each.effect not in without}
+    beside = [search_beside(task, objective, selection, each) for each in by_effect.values()]
+    return _decide(task, first._replace(beside=beside)) if beside else first
 
 
 def _decide(task: SearchTask, solution: Solution) -> Solution:
     """Return the solution decided anew on all its sets, those beside a disturbance among them."""
-    first, beside = Search(solution.objective, solution.selection), solution.beside
-    decision = decide_verdict([first, beside] if beside else [first], task.effects)
+    first = Search(solution.objective, solution.selection)
+    decision = decide_verdict([first, *solution.beside], task.effects)
     objective, selection, disturbance = decision.search or first
     if decision.verdict == "unknown" or disturbance is None:
         return solution._replace(decision=decision)
