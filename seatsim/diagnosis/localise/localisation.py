@@ -19,12 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.diagnosis.fit import solve_step
-from seatsim.diagnosis.localise.input_estimate import (
-    InputEstimate,
-    estimate_current,
-    estimate_error,
-    estimate_input,
-)
+from seatsim.diagnosis.localise.input_estimate import InputEstimate, estimate_current, estimate_error, estimate_input
 from seatsim.diagnosis.localise.reconstruction import PORTS
 from seatsim.diagnosis.movement import measure_movements
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
