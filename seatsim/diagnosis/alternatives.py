@@ -15,6 +15,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from typing import NamedTuple, cast
 
 import numpy as np
@@ -41,6 +42,12 @@ from seatsim.simulation.respond import fit_motion, respond
 
 _MOTION = {"seat": "suspension_displacement", "damper_bench": "displacement"}
 """Channel from which the motion of the damper is taken, by rig."""
+
+
+_ROWS = 4000
+"""Rows of all runs together that a model is fitted to, the liveliest of each: seconds for the slowest model."""
+_EVALUATIONS = (4, 12)
+"""Most evaluations of least squares from each start, and from the better one."""
 
 
 class _FormFit(NamedTuple):
@@ -131,28 +138,22 @@ def _compare_about(
     own = name_of("damper", type(rig.damper.record))
 
     def shrink(fit: _FormFit | None) -> float:
-        return -math.inf if fit is None else 1.0 - _measure_gap(problem, fit.scenario, run) / before
+        """Return what a fit takes off the gap, minus infinity where there is none or its rig leaves all bounds."""
+        with suppress(RunError):
+            if fit is not None:
+                return 1.0 - measure_gap(fit.scenario, problem.recording, [run]).overall / before
+        return -math.inf
 
     as_free = _fit_form(problem, rig, own, records)
     refitted = max(0.0, shrink(as_free))
     fits = [fit for name in models if (fit := _fit_form(problem, rig, name, records)) is not None]
-    for fit in fits if problem.bench else _screen_fits(problem, fits, as_free):
+    if not problem.bench:
+        # The fit that leaves least of the force is simulated where that is less than the nominal's own leaves.
+        highest = math.inf if as_free is None else as_free.cost * (1.0 - problem.settings.damper_forms.better) ** 2
+        fits = [fit for fit in sorted(fits, key=lambda fit: fit.cost)[:1] if fit.cost < highest]
+    for fit in fits:
         if math.isfinite(gain := shrink(fit)):
             yield DamperForm(fit.model, own, beside, gain, refitted, fit.parameters)
-
-
-def _screen_fits(problem: DiagnosisProblem, fits: Sequence[_FormFit], as_free: _FormFit | None) -> list[_FormFit]:
-    """Return the fit that leaves least of the force where that is less than the nominal's own leaves, else none."""
-    highest = math.inf if as_free is None else as_free.cost * (1.0 - problem.settings.damper_forms.better) ** 2
-    return [fit for fit in sorted(fits, key=lambda fit: fit.cost)[:1] if fit.cost < highest]
-
-
-def _measure_gap(problem: DiagnosisProblem, rig: Scenario, run: str) -> float:
-    """Return the overall gap of a rig on a run, infinite where it leaves all bounds."""
-    try:
-        return measure_gap(rig, problem.recording, [run]).overall
-    except RunError:
-        return math.inf
 
 
 def _isolate_damper(problem: DiagnosisProblem, rig: Scenario, run: str) -> BenchRecord:
@@ -177,12 +178,12 @@ def _isolate_damper(problem: DiagnosisProblem, rig: Scenario, run: str) -> Bench
     velocity = true("velocity", table["velocity"]) if "velocity" in table else spline.derivative()(rows)
     motion = spline(rows), velocity
     record = BenchRecord(run, run, problem.rate, *motion, force, np.maximum(driving, 0.0), False, temperature)
-    return record.part(*record.liveliest(problem.settings.damper_forms.rows // len(problem.runs)))
+    return record.part(*record.liveliest(_ROWS // len(problem.runs)))
 
 
 def _fit_form(problem: DiagnosisProblem, rig: Scenario, model: str, records: Sequence[BenchRecord]) -> _FormFit | None:
     """Return the rig with a model fitted to the damper's records, None where the model cannot be fitted to them."""
-    settings, record = problem.settings.damper_forms, cast("DamperRecord", rig.damper.record)
+    record = cast("DamperRecord", rig.damper.record)
     known = record if name_of("damper", type(record)) == model else None
     try:
         stated, _ = state_problem(
@@ -190,11 +191,11 @@ def _fit_form(problem: DiagnosisProblem, rig: Scenario, model: str, records: Seq
         )
         stated = stated._replace(factors=rig.damper.factors)
         start = (
-            descend_from_defaults(stated, problem.pool, most=settings.evaluations[0]).vector
+            descend_from_defaults(stated, problem.pool, most=_EVALUATIONS[0]).vector
             if known is None
             else default_vector(stated)
         )
-        found = refine(stated, start, problem.pool, most=settings.evaluations[1])
+        found = refine(stated, start, problem.pool, most=_EVALUATIONS[1])
     except (InputError, ArithmeticError, np.linalg.LinAlgError):
         return None
     damper = stated.to_bench(found.vector).damper

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
-from seatsim.diagnosis.objective import Parameters
+from seatsim.diagnosis.objective import AT_BOUND, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import CalibratedParameter, Cause, Diagnosis, Estimate, Gaps
 from seatsim.effects.base import EFFECTS, same_place
@@ -54,12 +54,10 @@ def _noise(gap: Gaps) -> str:
 
 def _alike(diagnosis: Diagnosis) -> str:
     """Return a clause on the effects that explain the recording as well as the selected ones."""
-    what = "it" if len(diagnosis.selected) == 1 else "{}"
-    said = [
-        f"; these data cannot tell {what.format(group[0])} from {join_names(group[1:])}"
-        for group in diagnosis.indistinguishable
-    ]
-    return "".join(said)
+    return "".join(
+        f"; these data cannot tell {first if len(diagnosis.selected) > 1 else 'it'} from {join_names(others)}"
+        for first, *others in diagnosis.indistinguishable
+    )
 
 
 def _unexplained(diagnosis: Diagnosis) -> str:
@@ -89,19 +87,13 @@ def _values(cause: Cause) -> str:
     return ", ".join(parts)
 
 
-def list_calibrated(parameters: Sequence[Nuisance], deviations: Array, at_bound: float) -> list[CalibratedParameter]:
-    """List the refitted parameters, of deviations of shape (parameters,); from `at_bound` on one is at its bound."""
-    return [
-        CalibratedParameter(
-            each.key,
-            each.nominal,
-            each.at(deviation),
-            (each.at(-1.0), each.at(1.0)),
-            abs(deviation) >= at_bound,
-            each.unit,
-        )
-        for each, deviation in zip(parameters, deviations.tolist(), strict=True)
-    ]
+def list_calibrated(parameters: Sequence[Nuisance], deviations: Array) -> list[CalibratedParameter]:
+    """List the refitted parameters, of deviations of shape (parameters,)."""
+    calibrated = []
+    for each, deviation in zip(parameters, deviations.tolist(), strict=True):
+        bound, at_bound = (each.at(-1.0), each.at(1.0)), abs(deviation) >= AT_BOUND
+        calibrated.append(CalibratedParameter(each.key, each.nominal, each.at(deviation), bound, at_bound, each.unit))
+    return calibrated
 
 
 def write_augmented(problem: DiagnosisProblem, parameters: Parameters) -> dict[str, object]:
@@ -129,17 +121,14 @@ def write_augmented(problem: DiagnosisProblem, parameters: Parameters) -> dict[s
         for entry, effect in zip(present, problem.scenario.effects, strict=True)
         if not any(same_place(effect, found) for found in parameters.effects)
     ]
+    # A YAML file can hold Python floats only; strings stay strings.
     added = [
-        {"effect": term.effect, "parameters": _as_plain(term.record(values)._asdict())}
-        for term, values in zip(parameters.terms, parameters.values, strict=True)
+        {name: float(value) if isinstance(value, int | float) else value for name, value in found._asdict().items()}
+        for found in parameters.effects
     ]
-    content["effects"] = [*kept, *added]
+    pairs = zip(parameters.terms, added, strict=True)
+    content["effects"] = [*kept, *({"effect": term.effect, "parameters": values} for term, values in pairs)]
     return content
-
-
-def _as_plain(values: Mapping[str, object]) -> dict[str, object]:
-    """Return the numbers of an effect's record as Python floats, which a YAML file can hold; strings stay strings."""
-    return {name: float(value) if isinstance(value, int | float) else value for name, value in values.items()}
 
 
 def _copy_plain(value: object) -> object:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable, Mapping, Sequence
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -17,10 +18,10 @@ from seatsim.schema.registry import Record
 
 _Fixed = Mapping[str, float | str]
 """Parameters that no fit changes."""
-
-
 _INPUTS = ("floor_acceleration", "displacement")
 """Recorded inputs whose sensor may err: it moves every channel that is simulated from them."""
+_LIMIT_STARTS = (1.0, 0.5, 0.7, 1.4, 2.0)
+"""Factors on the start of a limit from which fits are begun, since a fit does not feel one far beyond the motion."""
 _SEAT_SPRING = 4600.0
 """N/m; spring of the seat for which the effects state the stiffnesses at which fits start."""
 
@@ -105,19 +106,16 @@ class Candidate(NamedTuple):
 
 def list_candidates(problem: DiagnosisProblem, without: Sequence[str] = ()) -> list[Candidate]:
     """List the effects that the nominal scenario of a recording could lack, except those named in `without`."""
-    settings = problem.settings.selection
-    present, found = problem.scenario.effects, list[Candidate]()
-    for name in EFFECTS.names():
-        cls = EFFECTS.find(name)
-        if name in without or not _fits(cls, problem):
-            continue
-        for form in EFFECTS.specification_of(cls).forms:
-            for place in _places(cls, problem):
-                candidate = _candidate(name, cls, form, place, settings.shape_reach)
-                own = next((each for each in present if same_place(each, candidate.record(candidate.start))), None)
-                suited = _suit_log(_suit_spring(candidate, problem), problem)
-                candidate = suited if own is None else _change(candidate, own)
-                found += _starts(candidate, settings.limit_starts, _share_reached(candidate, problem))
+    found, reach = list[Candidate](), problem.settings.selection.shape_reach
+    offered = {name: EFFECTS.find(name) for name in EFFECTS.names() if name not in without}
+    fitting = {name: cls for name, cls in offered.items() if _fits(cls, problem)}
+    for name, cls in fitting.items():
+        for form, place in product(EFFECTS.specification_of(cls).forms, _places(cls, problem)):
+            candidate = _candidate(name, cls, form, place, reach)
+            at_start = candidate.record(candidate.start)
+            own = next((each for each in problem.scenario.effects if same_place(each, at_start)), None)
+            candidate = _suit(candidate, problem) if own is None else _change(candidate, own)
+            found += _vary_start(candidate, problem)
     return found
 
 
@@ -144,9 +142,15 @@ def _change(candidate: Candidate, own: Record) -> Candidate:
     )
 
 
-def _suit_spring(candidate: Candidate, problem: DiagnosisProblem) -> Candidate:
-    """Return the candidate with a stiffness beside the suspension's spring scaled down to a spring that is softer."""
+def _suit(candidate: Candidate, problem: DiagnosisProblem) -> Candidate:
+    """Return the candidate as it suits the recording.
+
+    Commands that it holds are held as long as those of the recording, and a stiffness beside the suspension's spring is
+    scaled down to a spring that is softer.
+    """
     plant = problem.scenario.plant
+    if candidate.fixed.get("hold"):
+        return candidate._replace(fixed={**candidate.fixed, "hold": problem.command_interval})
     if candidate.block != "suspension" or plant is None:
         return candidate
     units = {field.name: field.unit for field in describe(candidate.cls)}
@@ -158,43 +162,27 @@ def _suit_spring(candidate: Candidate, problem: DiagnosisProblem) -> Candidate:
     return candidate._replace(start=start, low=low, high=high)
 
 
-def _suit_log(candidate: Candidate, problem: DiagnosisProblem) -> Candidate:
-    """Return the candidate with commands that, where it holds them, are held as long as those of the recording."""
-    if not candidate.fixed.get("hold"):
-        return candidate
-    return candidate._replace(fixed={**candidate.fixed, "hold": problem.command_interval})
-
-
-def _share_reached(candidate: Candidate, problem: DiagnosisProblem) -> float:
-    """Return the share of a limit's start that the recording reaches, at most 1."""
-    if not candidate.is_limit:
-        return 1.0
-    unit = next(field.unit for field in describe(candidate.cls) if field.name == candidate.free[0])
-    return min(1.0, problem.reached.get(unit, math.inf) / abs(candidate.start[0]))
-
-
-def _starts(candidate: Candidate, limit_starts: Sequence[float], reached: float) -> list[Candidate]:
+def _vary_start(candidate: Candidate, problem: DiagnosisProblem) -> list[Candidate]:
     """Return the candidate from every start; the cost depends on a limit only where the motion reaches it."""
-    starts = list(zip(candidate.start, candidate.limits, strict=True))
-    factors = [reached * factor for factor in limit_starts] if candidate.is_limit else [1.0]
+    starts, factors = list(zip(candidate.start, candidate.limits, strict=True)), [1.0]
+    if candidate.is_limit:
+        unit = next(field.unit for field in describe(candidate.cls) if field.name == candidate.free[0])
+        reached = min(1.0, problem.reached.get(unit, math.inf) / abs(candidate.start[0]))
+        factors = [reached * factor for factor in _LIMIT_STARTS]
     return [candidate._replace(start=tuple(f * x if limit else x for x, limit in starts)) for f in factors]
 
 
 def _fits(cls: type[Record], problem: DiagnosisProblem) -> bool:
     """Whether the effect has something to act on in this recording."""
-    if problem.bench and acts_on(cls, (*ON_SEAT, "plant", "frame_force")):
-        return False
-    if acts_on(cls, ("inner_mass",)) and problem.scenario.driver.model != SINGLE_MASS:
-        return False
-    recorded = problem.recording.channels
+    specification, recorded = EFFECTS.specification_of(cls), problem.recording.channels
     commanded = "current_command" in recorded or "command_voltage" in recorded
-    # Where only the current is recorded, it drives the damper in the simulation, so that no fault of the coil shows.
-    if acts_on(cls, ("coil",)) and not commanded:
-        return False
-    specification = EFFECTS.specification_of(cls)
-    if specification.shown_by_fall and not problem.current_falls:
-        return False
-    return specification.suits(problem.scenario.damper.record)
+    return not (
+        (problem.bench and acts_on(cls, (*ON_SEAT, "plant", "frame_force")))
+        or (acts_on(cls, ("inner_mass",)) and problem.scenario.driver.model != SINGLE_MASS)
+        # Where only the current is recorded, it drives the damper in the simulation: no fault of the coil shows.
+        or (acts_on(cls, ("coil",)) and not commanded)
+        or (specification.shown_by_fall and not problem.current_falls)
+    ) and specification.suits(problem.scenario.damper.record)
 
 
 def _places(cls: type[Record], problem: DiagnosisProblem) -> list[_Fixed]:
@@ -208,7 +196,8 @@ def _places(cls: type[Record], problem: DiagnosisProblem) -> list[_Fixed]:
 
 def _candidate(name: str, cls: type[Record], form: Form, place: _Fixed, reach: float) -> Candidate:
     """Return the candidate of one structure on one channel; parameters that the structure does not name stay off."""
-    off = {field: 0.0 for field in field_names(cls) if field not in place} | dict(EFFECTS.specification_of(cls).off)
+    specification = EFFECTS.specification_of(cls)
+    off = {field: 0.0 for field in field_names(cls) if field not in place} | dict(specification.off)
     fixed = {field: value for field, value in off.items() if field not in form.free} | dict(form.fixed) | dict(place)
     # The first parameter is the effect's size, which may be anything; the others are its shape.
     ranges = [
@@ -217,7 +206,7 @@ def _candidate(name: str, cls: type[Record], form: Form, place: _Fixed, reach: f
     ]
     low, high = zip(*ranges, strict=True)
     start = tuple(form.free.values())
-    held = max(0, len(EFFECTS.specification_of(cls).forms[0].free) - len(form.free))
+    held = max(0, len(specification.forms[0].free) - len(form.free))
     return Candidate(name, cls, fixed, tuple(form.free), start, low, high, sizes=form.sizes, held=held)
 
 

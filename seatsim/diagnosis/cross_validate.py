@@ -21,6 +21,13 @@ from seatsim.diagnosis.problem import normalise_rms_errors
 from seatsim.diagnosis.select import Selection
 from seatsim.schema.arrays import Array
 
+_SETS_COMPARED = 8
+"""Sets of each size that are cross-validated; more take more time."""
+_FOLDS = 3
+"""Parts of the runs that are left out in turn."""
+_DOUBTFUL = 1.5
+"""Factor by which a run left out may get worse before the step of the other runs is checked and shortened."""
+
 
 class _Supported(NamedTuple):
     """What runs left out support: a set, sets that help as much, and all sets tried, with the logarithm of the weight.
@@ -45,7 +52,7 @@ def select_by_cross_validation(objective: Objective, selection: Selection) -> _S
     before = _charge(objective, chosen, 1.0)
     found = [(chosen, before)]
     for sets in selection.sets[1:]:
-        compared = [each for each in sets[: settings.sets_compared] if is_material(problem, each)]
+        compared = [each for each in sets[:_SETS_COMPARED] if is_material(problem, each)]
         tried = []
         for each in compared:
             after = cross_validate(objective, each, selection.nuisances)
@@ -90,9 +97,8 @@ def _charge(objective: Objective, evaluation: Evaluation, left: float) -> float:
 
     Nuisance parameters cost their prior, further parameters of effects what the weights by the gap charge for them.
     """
-    settings = objective.settings
-    prior = float(np.sum((evaluation.parameters.deviations / settings.fit.prior_std) ** 2))
-    return left * evaluation.charge * math.exp(0.5 * prior / settings.cross_validation.power)
+    prior = objective.measure_prior(evaluation.parameters)
+    return left * evaluation.charge * math.exp(0.5 * prior / objective.settings.cross_validation.power)
 
 
 def _count_sensors(evaluation: Evaluation) -> int:
@@ -110,10 +116,9 @@ def cross_validate(objective: Objective, evaluation: Evaluation, nuisances: Line
     if len(problem.runs) == 1:
         return normalise_rms_errors(problem, evaluation.residuals)
     own, residuals = objective.linearise_effects(evaluation).jacobian, dict[str, Array]()
-    folds = objective.settings.cross_validation.folds
-    for k in range(min(folds, len(problem.runs))):
-        left_out, others = problem.runs[k::folds], [run for j, run in enumerate(problem.runs) if j % folds != k]
-        step = find_step(objective, evaluation, nuisances, {run: own[run] for run in others})
+    for k in range(min(_FOLDS, len(problem.runs))):
+        left_out, others = problem.runs[k::_FOLDS], [run for j, run in enumerate(problem.runs) if j % _FOLDS != k]
+        step = find_step(evaluation, nuisances, {run: own[run] for run in others})
         moved = evaluation.parameters.move_to(evaluation.parameters.vector + step)
         residuals |= _foresee(objective, evaluation, nuisances, left_out, moved)
     return normalise_rms_errors(problem, residuals)
@@ -129,10 +134,8 @@ def _foresee(
     """
     there = objective.on_runs(left_out)
     found = there.evaluate([moved])[0]
-    before = there.weigh(evaluation.parameters, {run: evaluation.residuals[run] for run in left_out})
-    if found.cost <= objective.settings.cross_validation.doubtful * before.cost:
+    if found.cost <= _DOUBTFUL * there.weigh_again(evaluation).cost:
         return found.residuals
-    others = [run for run in objective.problem.runs if run not in left_out]
-    part = objective.on_runs(others)
-    start = part.weigh(evaluation.parameters, {run: evaluation.residuals[run] for run in others})
-    return there.evaluate([fit(part, start, nuisances, steps=1).parameters])[0].residuals
+    part = objective.on_runs([run for run in objective.problem.runs if run not in left_out])
+    shortened = fit(part, part.weigh_again(evaluation), nuisances, steps=1)
+    return there.evaluate([shortened.parameters])[0].residuals

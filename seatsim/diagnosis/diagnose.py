@@ -23,8 +23,8 @@ from seatsim.schema.errors import InputError
 
 BUDGET = 120.0
 """s; time that a diagnosis may take unless another is asked for."""
-_CUT = "the budget of {budget:g} s was spent, so that the answer is the best so far; cut short"
-"""Beginning of the note that names the stages cut short."""
+_SEARCH_SHARE = 0.7
+"""Share of it after which the search ends, so that some is left to validate and state the answer."""
 
 
 def diagnose(
@@ -100,16 +100,14 @@ def diagnose_problem(
 
     with threadpool_limits(1):
         check_nominal(problem)
-        deadline = Deadline.after(problem.settings.fit.search_share * budget)
+        deadline = Deadline(time.monotonic() + _SEARCH_SHARE * budget)
         solution = solve(problem.until(deadline), without, tell)
         solution, at_bound = search_wider(solution, without, tell)
-        cut = _list_cut(stages, deadline.end) if deadline.is_past else []
-        said = [*notes, *at_bound, *([f"{_CUT.format(budget=budget)}: {', '.join(cut)}"] if cut else [])]
+        said = [*notes, *at_bound]
+        began = [at for _, at in stages[1:]] + [math.inf]
+        cut = dict.fromkeys(stage for (stage, _), until in zip(stages, began, strict=True) if until > deadline.end)
+        if deadline.is_past and cut:
+            spent = f"the budget of {budget:g} s was spent, so that the answer is the best so far"
+            said.append(f"{spent}; cut short: {', '.join(cut)}")
         solution = solution._replace(objective=solution.objective.unhurried)
         return state_diagnosis(solution, said, progress, damper_forms)
-
-
-def _list_cut(stages: Sequence[tuple[str, float]], end: float) -> list[str]:
-    """Return the stages that were under way or begun when the time was spent, each once."""
-    began = [at for _, at in stages[1:]] + [math.inf]
-    return list(dict.fromkeys(stage for (stage, _), until in zip(stages, began, strict=True) if until > end))

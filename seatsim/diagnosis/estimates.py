@@ -21,13 +21,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.diagnosis.decide import Decision
-from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters
+from seatsim.diagnosis.objective import AT_BOUND, PRIOR_STD, Evaluation, Linearisation, Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
 from seatsim.diagnosis.result import Cause, ComfortFigure, Estimate, Trace
-from seatsim.diagnosis.select import Selection
+from seatsim.diagnosis.solution import Solution
 from seatsim.diagnosis.spectra import Spectra, as_complex
-from seatsim.diagnosis.validate import ReplayedRun
+from seatsim.diagnosis.validate import BLOCK_LENGTH, ReplayedRun
 from seatsim.metrics.motion import rms
 from seatsim.recordings.model_error import band_edges, band_powers, band_widths
 from seatsim.recordings.replay import LEFT_OUT
@@ -38,28 +37,23 @@ _QUOTED = ("driver_acceleration", "frame_acceleration", "suspension_displacement
 """Channels whose RMS the report states."""
 _STATED_DIGITS = 2
 """Significant digits to which a probability is known."""
+_LEAST_TIME = 0.03
+"""Least standard deviation of a time, in intervals between rows: a tenth of what rounding to whole rows makes."""
 _SMOOTHED_ROWS = 5
 """Rows over which a displacement is averaged before its slope is drawn."""
 
 
-def estimate_causes(
-    objective: Objective,
-    selection: Selection,
-    decision: Decision,
-    calibrated: Evaluation,
-    augmented: Linearisation,
-    run: str,
-) -> list[Cause]:
+def estimate_causes(solution: Solution, calibrated: Evaluation, augmented: Linearisation, run: str) -> list[Cause]:
     """Return every effect, ranked by probability, with its own shrink on a held-out run and its parameters.
 
     Args:
-        objective: over all runs.
-        selection: the fitted sets; those of one effect give each effect's own shrink and parameters.
-        decision: probabilities by effect.
+        solution: its objective is over all runs, its fitted sets of one effect give each effect's own shrink and
+            parameters, and its decision the probabilities.
         calibrated: the rig with refitted parameters, fitted without the run.
         augmented: the rig with the effects chosen, fitted without the run, which gives their parameters.
         run: held out of the fits.
     """
+    objective, selection = solution.objective, solution.selection
     held_out = objective.on_runs([run])
     base = normalise_rms_errors(held_out.problem, held_out.evaluate([calibrated.parameters])[0].residuals)
     # Single effects share one linearisation of the nuisances, about the calibrated rig: one each would take longer than
@@ -67,7 +61,7 @@ def estimate_causes(
     fitted = augmented.evaluation
     chosen = _estimate_parameters(objective.on_runs(list(fitted.whitened)), fitted, augmented)
     causes = []
-    for effect, probability in decision.probabilities.items():
+    for effect, probability in solution.decision.probabilities.items():
         shrink, found = 0.0, chosen.get(effect, _FoundEffect({}, False))
         single = selection.singles.get(effect)
         if single is not None:
@@ -92,9 +86,9 @@ def _estimate_parameters(
 ) -> dict[str, _FoundEffect]:
     """Return what was found of each effect."""
     parameters, found = evaluation.parameters, {}
-    ends = parameters.find_at_bound(1.0 - objective.settings.widening.at_bound)
+    ends = parameters.find_at_bound(1.0 - AT_BOUND)
     deviations = estimate_standard_deviations(objective, evaluation, nuisances)
-    start, shortest = len(parameters.deviations), objective.settings.validation.least_time / objective.problem.rate
+    start, shortest = len(parameters.deviations), _LEAST_TIME / objective.problem.rate
     for term, values in zip(parameters.terms, parameters.values, strict=True):
         units = {field.name: field.unit for field in describe(term.cls)}
         estimates: dict[str, Estimate | str] = {}
@@ -160,7 +154,7 @@ def estimate_standard_deviations(objective: Objective, evaluation: Evaluation, n
     own = objective.linearise_effects(evaluation).jacobian
     jacobian = {run: np.concatenate([nuisances.jacobian[run], own[run]]) for run in own}
     prior = np.zeros(len(next(iter(jacobian.values()))))
-    prior[: len(evaluation.parameters.deviations)] = objective.settings.fit.prior_std**-2
+    prior[: len(evaluation.parameters.deviations)] = PRIOR_STD**-2
     inverse = np.linalg.pinv(np.sum([each @ each.T for each in jacobian.values()], axis=0) + np.diag(prior))
     channels = len(objective.problem.channels)
     gains = {run: as_complex((inverse @ each).reshape(len(prior), channels, -1)) for run, each in jacobian.items()}
@@ -172,7 +166,7 @@ def estimate_standard_deviations(objective: Objective, evaluation: Evaluation, n
 
 def _measure_block_variance(objective: Objective, evaluation: Evaluation, gains: dict[str, Spectra]) -> Array:
     """Return the variance of the estimate that the residuals of blocks of time show, shape (components,)."""
-    length, moves = objective.settings.validation.block_length * objective.problem.rate, []
+    length, moves = BLOCK_LENGTH * objective.problem.rate, []
     for run, gain in gains.items():
         residual = _as_signals(as_complex(evaluation.whitened[run]))
         count = max(1, round(objective.problem.measured[run].shape[1] / length))

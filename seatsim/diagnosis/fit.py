@@ -13,36 +13,38 @@ from itertools import product
 
 import numpy as np
 
-from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters
+from seatsim.diagnosis.objective import PRIOR_STD, Evaluation, Linearisation, Objective, Parameters
 from seatsim.diagnosis.problem import OutOfTimeError
 from seatsim.schema.arrays import Array
 
+_BACKTRACKING = (1.0, 0.4, 0.12)
+"""Fractions of a step that are tried in turn."""
 
-def fit(objective: Objective, start: Evaluation, nuisances: Linearisation, steps: int | None = None) -> Evaluation:
+
+def fit(
+    objective: Objective,
+    start: Evaluation,
+    nuisances: Linearisation,
+    steps: int | None = None,
+    settled: float | None = None,
+) -> Evaluation:
     """Return the evaluation at the end of a fit from `start`, with the given sensitivities of the nuisances.
 
-    At the deadline it is the best so far.
+    Most steps, and the share of its cost by which one must lower it to be followed by another, are those of the
+    settings where absent. At the deadline it is the best so far.
     """
-    evaluation = start
-    for _ in range(objective.settings.fit.most_steps if steps is None else steps):
-        before = evaluation.cost
+    evaluation, settings = start, objective.settings.fit
+    settled = settings.settled if settled is None else settled
+    for _ in range(settings.most_steps if steps is None else steps):
+        before, rig = evaluation.cost, evaluation.parameters
         try:
-            evaluation = _step_down(objective, evaluation, nuisances)
+            step = find_step(evaluation, nuisances, objective.linearise_effects(evaluation).jacobian)
+            tries = (objective.evaluate([rig.move_to(rig.vector + part * step)])[0] for part in _BACKTRACKING)
+            evaluation = next((tried for tried in tries if tried.cost < before), evaluation)
         except OutOfTimeError:
             break
-        if evaluation.cost > (1.0 - objective.settings.fit.settled) * before:
+        if evaluation.cost > (1.0 - settled) * before:
             break
-    return evaluation
-
-
-def _step_down(objective: Objective, evaluation: Evaluation, nuisances: Linearisation) -> Evaluation:
-    """Return the evaluation after one step, the whole or a fraction of it; the one given where none lowers the cost."""
-    step = find_step(objective, evaluation, nuisances, objective.linearise_effects(evaluation).jacobian)
-    for fraction in objective.settings.fit.backtracking:
-        moved = evaluation.parameters.move_to(evaluation.parameters.vector + fraction * step)
-        tried = objective.evaluate([moved])[0]
-        if tried.cost < evaluation.cost:
-            return tried
     return evaluation
 
 
@@ -52,30 +54,23 @@ def refit(objective: Objective, parameters: Parameters) -> Evaluation:
     return fit(objective, start, objective.linearise_nuisances(start))
 
 
-def refit_on(objective: Objective, rig: Linearisation) -> Evaluation:
+def refit_on(objective: Objective, rig: Linearisation, settled: float | None = None) -> Evaluation:
     """Return the evaluation at the end of a fit on the runs of an objective, from a rig linearised over more runs."""
-    known = rig.evaluation
-    start = objective.weigh(known.parameters, {run: known.residuals[run] for run in objective.problem.runs})
-    return fit(objective, start, rig)
+    return fit(objective, objective.weigh_again(rig.evaluation), rig, settled=settled)
 
 
-def find_step(
-    objective: Objective, evaluation: Evaluation, nuisances: Linearisation, own: Mapping[str, Array]
-) -> Array:
+def find_step(evaluation: Evaluation, nuisances: Linearisation, own: Mapping[str, Array]) -> Array:
     """Return the Gauss-Newton step of the vector under its bounds, over the runs of `own`.
 
     `own` holds the sensitivities to the effects' free parameters by run.
     """
     parts = [nuisances.normal_equations(run, own[run], evaluation.whitened[run]) for run in own]
-    low, high = evaluation.parameters.limits
-    matrix, right = np.sum([part[0] for part in parts], axis=0), np.sum([part[1] for part in parts], axis=0)
-    count, prior_std = len(evaluation.parameters.deviations), objective.settings.fit.prior_std
-    return solve_step(matrix, right, count, evaluation.parameters.vector, low, high, prior_std)
+    matrix, right = (np.sum(part, axis=0) for part in zip(*parts, strict=True))
+    rig = evaluation.parameters
+    return solve_step(matrix, right, len(rig.deviations), rig.vector, *rig.limits)
 
 
-def solve_step(
-    matrix: Array, right: Array, count: int, vector: Array, low: Array, high: Array, prior_std: float
-) -> Array:
+def solve_step(matrix: Array, right: Array, count: int, vector: Array, low: Array, high: Array) -> Array:
     """Return the step s from a vector that minimises `s' matrix s - 2 right' s` with the prior, under bounds.
 
     Args:
@@ -85,12 +80,11 @@ def solve_step(
         vector: where the step starts, shape (components,).
         low: lower bounds of `vector + s`, shape (components,).
         high: upper bounds.
-        prior_std: standard deviation of the prior.
     """
     matrix, right = matrix.copy(), right.copy()
     index = np.arange(count)
-    matrix[index, index] += prior_std**-2
-    right[:count] -= vector[:count] / prior_std**2
+    matrix[index, index] += PRIOR_STD**-2
+    right[:count] -= vector[:count] / PRIOR_STD**2
     # Components differ in size, so they are scaled to a unit diagonal; a small ridge keeps collinear ones solvable.
     size = np.sqrt(np.maximum(np.diag(matrix), 1e-12))
     scaled = matrix / np.outer(size, size) + 1e-8 * np.eye(len(size))
@@ -99,6 +93,8 @@ def solve_step(
     return minimise_bounded(scaled, right / size, *room) / size
 
 
+PATTERN_STEPS = (0.3, 0.15, 0.08, 0.04, 0.02)
+"""Steps of a pattern search, in natural sizes of a parameter: a larger first one would reach other minima."""
 _DECIMALS = 9
 """Decimals, in natural sizes of the parameters, to which two points have to agree to be the same."""
 
@@ -111,7 +107,7 @@ def search_pattern(objective: Objective, start: Evaluation) -> Evaluation:
     2003). A point that was evaluated before is not evaluated again, since it costs no less than the best.
 
     Args:
-        objective: what is minimised; its settings hold the steps, in natural sizes of the parameters.
+        objective: what is minimised.
         start: evaluation of the rig at which the search starts.
 
     Raises:
@@ -119,7 +115,7 @@ def search_pattern(objective: Objective, start: Evaluation) -> Evaluation:
     """
     best, directions = start, list_directions(len(start.parameters.terms[-1].free))
     known = {_locate(start.parameters)}
-    for step in objective.settings.fit.pattern_steps:
+    for step in PATTERN_STEPS:
         while True:
             vector = best.parameters.vector
             moves = np.tile(vector, (len(directions), 1))

@@ -88,7 +88,7 @@ def share_removable(objective: Objective, before: float, after: float) -> float:
     problem = objective.problem
     left = np.sqrt(np.mean([expect_power(objective, run)[0] / problem.spread**2 for run in problem.runs]))
     removable = float(before - left)
-    return (before - after) / removable if removable > problem.settings.decision.least_removable else 1.0
+    return (before - after) / removable if removable > 0.0 else 1.0
 
 
 def expect_power(objective: Objective, run: str) -> tuple[Array, Array]:

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.noise import NoiseWeights
-from seatsim.diagnosis.problem import NEVER, DiagnosisProblem
+from seatsim.diagnosis.problem import NEVER, DiagnosisProblem, OutOfTimeError
 from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.schema.arrays import Array
 from seatsim.schema.registry import Record
@@ -108,6 +108,10 @@ class Parameters:
         return self.move_to(moved), signed
 
 
+PRIOR_STD = 0.58
+"""Standard deviation of a nuisance parameter, as a share of its tolerance: 1/sqrt(3), of a uniform distribution."""
+AT_BOUND = 0.98
+"""Deviation, in tolerances, from which a parameter is at its bound."""
 AT_ONCE = 16
 """Rigs that are simulated between two looks at the clock: enough for all cores, few enough for a budget of seconds."""
 
@@ -130,6 +134,11 @@ class Evaluation:
     def rows(self) -> float:
         """Number of whitened numbers that are compared, of which a share may count as independent."""
         return self.independent * sum(values.size for values in self.whitened.values())
+
+    @property
+    def stacked(self) -> Array:
+        """The whitened numbers of all runs as one vector."""
+        return np.concatenate([values.ravel() for values in self.whitened.values()])
 
     @property
     def charged(self) -> float:
@@ -156,6 +165,11 @@ class Linearisation:
     def normal_matrices(self) -> dict[str, Array]:
         """`J J'` of each run, shape (components, components)."""
         return {run: jacobian @ jacobian.T for run, jacobian in self.jacobian.items()}
+
+    @property
+    def stacked(self) -> Array:
+        """The Jacobians of all runs, joined along the rows."""
+        return np.hstack(list(self.jacobian.values()))
 
     def normal_equations(self, run: str, own: Array, whitened: Array) -> tuple[Array, Array]:
         """Return normal matrix and right-hand side of a run, for these components and then for those of `own`."""
@@ -193,7 +207,8 @@ class Objective:
         """
         evaluations: list[Evaluation] = []
         for first in range(0, len(several), AT_ONCE):
-            self.problem.deadline.check()
+            if self.problem.deadline.is_past:
+                raise OutOfTimeError
             part = several[first : first + AT_ONCE]
             residuals = self.problem.residuals([(each.deviations, each.effects) for each in part])
             evaluations += self.problem.pool.map(self.weigh, part, residuals)
@@ -205,16 +220,18 @@ class Objective:
         whitened = {
             run: self.weights(values if finite else np.zeros_like(values), run) for run, values in residuals.items()
         }
-        cost = sum(float(np.sum(values**2)) for values in whitened.values())
-        if not finite:
-            cost = np.inf
+        cost = sum(float(np.sum(values**2)) for values in whitened.values()) if finite else np.inf
         charge = math.exp(self.weights.parameter_cost * parameters.further)
         cost += self.measure_prior(parameters)
         return Evaluation(parameters, residuals, whitened, cost, self.weights.independent, charge)
 
+    def weigh_again(self, evaluation: Evaluation) -> Evaluation:
+        """Return an evaluation over more runs, or under other weights, on the runs of this objective."""
+        return self.weigh(evaluation.parameters, {run: evaluation.residuals[run] for run in self.problem.runs})
+
     def measure_prior(self, parameters: Parameters) -> float:
         """Return the sum of squares of the nuisance parameters' deviations, in their standard deviations."""
-        return float(np.sum((parameters.deviations / self.settings.fit.prior_std) ** 2))
+        return float(np.sum((parameters.deviations / PRIOR_STD) ** 2))
 
     def linearise(self, evaluation: Evaluation, components: Sequence[int]) -> Linearisation:
         """Return the sensitivities of the whitened outputs to some components of the vector, by finite differences.

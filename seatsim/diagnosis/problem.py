@@ -5,10 +5,11 @@ from __future__ import annotations
 import dataclasses
 import math
 import time
-from collections.abc import Collection, Container, Hashable, Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import islice
 
 import numpy as np
 from scipy.fft import prev_fast_len
@@ -39,20 +40,10 @@ class Deadline:
 
     end: float = math.inf
 
-    @classmethod
-    def after(cls, seconds: float) -> Deadline:
-        """Return the deadline that lies so many seconds ahead."""
-        return cls(time.monotonic() + seconds)
-
     @property
     def is_past(self) -> bool:
         """Whether the time is spent."""
         return time.monotonic() >= self.end
-
-    def check(self) -> None:
-        """Raise OutOfTimeError where the time is spent."""
-        if self.is_past:
-            raise OutOfTimeError
 
 
 NEVER = Deadline()
@@ -137,6 +128,12 @@ class DiagnosisProblem:
         found = np.std(np.concatenate([self.measured[run] for run in self.runs], axis=1), axis=1)
         return np.where(found > 0.0, found, np.inf)
 
+    def seat_inputs(self, run: str) -> SeatInputs:
+        """Return the inputs of a run on a seat."""
+        inputs = self.inputs[run]
+        assert isinstance(inputs, SeatInputs)
+        return inputs
+
     @property
     def nominal(self) -> Array:
         """Deviations of the nuisance parameters at their nominal values, shape (parameters,)."""
@@ -156,11 +153,14 @@ class DiagnosisProblem:
         The rig is driven by them, and their `traces` in the channels, shape (channels, samples), are taken off again,
         so that the damper slips as it does under the forces.
         """
-        inputs = dict[str, RigInputs]()
-        for run, driven in self.inputs.items():
-            assert isinstance(driven, SeatInputs)
-            inputs[run] = driven._replace(forces=Forces(self.spread_over_steps(driven, forces[run])))
-        return dataclasses.replace(self, inputs=inputs, traces=traces, motions={})
+        seats = {run: self.seat_inputs(run) for run in self.inputs}
+        acting = {run: Forces(self.spread_over_steps(seat, forces[run])) for run, seat in seats.items()}
+        return self._drive(acting, traces)
+
+    def _drive(self, forces: Mapping[str, Forces], traces: Mapping[str, Array]) -> DiagnosisProblem:
+        """Return the problem of a seat on whose frame other forces act."""
+        driven = {run: self.seat_inputs(run)._replace(forces=force) for run, force in forces.items()}
+        return dataclasses.replace(self, inputs=dict(driven), traces=traces, motions={})
 
     def spread_over_steps(self, inputs: SeatInputs, signal: Array) -> Array:
         """Return a signal of the rows that are compared on the simulation's steps, linear between rows, 0 outside."""
@@ -169,16 +169,16 @@ class DiagnosisProblem:
 
     def as_recorded(self) -> DiagnosisProblem:
         """Return the problem without forces about which it was linearised."""
-        if not self.traces:
-            return self
-        seats = {run: each for run, each in self.inputs.items() if isinstance(each, SeatInputs)}
-        inputs = dict[str, RigInputs]({run: each._replace(forces=Forces()) for run, each in seats.items()})
-        return dataclasses.replace(self, inputs=inputs, traces={}, motions={})
+        return self._drive(dict.fromkeys(self.inputs, Forces()), {}) if self.traces else self
 
-    def augmented(self, deviations: Array, effects: Sequence[Record]) -> Scenario:
-        """Return the nominal scenario with other parameters, and effects, which replace its own of the same kind."""
-        varied = vary(self.scenario, self.parameters, deviations)
-        return dataclasses.replace(varied, effects=replace_effects(self.scenario.effects, effects))
+    def augmented(self, deviations: Array, effects: Sequence[Record], nominal: Scenario | None = None) -> Scenario:
+        """Return the nominal scenario with other parameters, and effects, which replace its own of the same kind.
+
+        It is that of the problem, with its solver, unless another one is given.
+        """
+        nominal = nominal or self.scenario
+        varied = vary(nominal, self.parameters, deviations)
+        return dataclasses.replace(varied, effects=replace_effects(nominal.effects, effects))
 
     def scenario_of(self, run: str, deviations: Array, effects: Sequence[Record]) -> Scenario:
         """Return the same rig as it was in a run, with what its owner changed for that run on purpose."""
@@ -199,7 +199,9 @@ class DiagnosisProblem:
 
     def _replay(self, run: str, deviations: Array, scenario: Scenario) -> Mapping[str, Array]:
         """Return what the sensors say in a run; a motion that only sensors read otherwise is not simulated again."""
-        wrong = tuple(each for each in scenario.effects if _is_only_read(each))
+        wrong = tuple(
+            each for each in scenario.effects if hasattr(each, "reading") and getattr(each, "channel", "") in _ONLY_READ
+        )
         others = tuple(each for each in scenario.effects if each not in wrong)
         key = run, self.parameters, deviations.tobytes(), repr(others)
         outputs = self.motions.get(key) if wrong else None
@@ -221,17 +223,9 @@ class DiagnosisProblem:
 
     def residuals(self, rigs: Sequence[tuple[Array, Sequence[Record]]]) -> list[dict[str, Array]]:
         """Return `measured - simulated` of every run for each rig (deviations, effects), on all cores."""
-        jobs = [(index, run) for index in range(len(rigs)) for run in self.runs]
-        answers = self.pool.map(lambda job: self._residuals(job[1], *rigs[job[0]]), jobs)
-        found: list[dict[str, Array]] = [{} for _ in rigs]
-        for (index, run), values in zip(jobs, answers, strict=True):
-            found[index][run] = values
-        return found
-
-
-def _is_only_read(effect: object) -> bool:
-    """Whether an effect changes what one sensor says, and nothing of the motion of the rig."""
-    return hasattr(effect, "reading") and getattr(effect, "channel", "") in _ONLY_READ
+        jobs = [(run, *rig) for rig in rigs for run in self.runs]
+        answers = self.pool.map(lambda job: self._residuals(*job), jobs)
+        return [dict(zip(self.runs, islice(answers, len(self.runs)), strict=True)) for _ in rigs]
 
 
 def _respond(scenario: Scenario, inputs: RigInputs) -> dict[str, Array]:
@@ -269,17 +263,17 @@ def pose_problem(recording: Recording, pool: Executor, settings: DiagnosisSettin
     measured = {run: np.array([table[name][skip : ends[run]] for name in loud]) for run, table in tables.items()}
     inputs = {run: recorded_inputs(recording, table, solver.step) for run, table in tables.items()}
     settings = settings or DiagnosisSettings()
+    telling = {unit: [name for name in names if name in recording.channels] for unit, names in _REACHED.items()}
+    reached = {
+        unit: max(float(np.abs(table[names[0]]).max()) for table in tables.values())
+        for unit, names in telling.items()
+        if names
+    }
     parameters = list_varied(recording.header, scenario, settings.fit.fitted_tolerance)
     return DiagnosisProblem(
         recording, scenario, tuple(tables), tuple(loud), measured, inputs, parameters, settings, pool,
-        current_falls=shows_falling_current(recording), reached=_measure_reach(recording.channels, tables.values()),
+        current_falls=shows_falling_current(recording), reached=reached,
     )  # fmt: skip
-
-
-def _measure_reach(recorded: Container[str], tables: Collection[Mapping[str, Array]]) -> dict[str, float]:
-    """Return the largest value of the first recorded channel of each unit, in any run."""
-    first = {unit: next((name for name in names if name in recorded), "") for unit, names in _REACHED.items()}
-    return {unit: max(float(np.abs(table[name]).max()) for table in tables) for unit, name in first.items() if name}
 
 
 def check_nominal(problem: DiagnosisProblem) -> None:

@@ -16,6 +16,18 @@ from seatsim.diagnosis.objective import AT_ONCE, Evaluation, Linearisation, Obje
 from seatsim.diagnosis.problem import OutOfTimeError
 from seatsim.schema.arrays import Array
 
+_STRETCH = 6.0
+"""Largest factor by which the screening enlarges the start of a candidate; a linear model holds no farther."""
+_LIMIT_FACTORS = (1.08, 1.16, 1.27)
+"""Factors that are tried on a limit that acts too much, and their inverses where it acts too little.
+
+A limit acts by what exceeds it, so that fits from fewer places end in a wrong minimum.
+"""
+
+
+_LEAST_FACTOR = 1e-3
+"""Factor on a start below which the data do not show the candidate at all."""
+
 
 class Sensitivities(NamedTuple):
     """Candidates and what each size of theirs changes alone, at its start, in the whitened outputs.
@@ -108,7 +120,7 @@ def screen_candidates(
         if predicted[k].cost < bound:
             best_starts.setdefault(offered.candidates[k].structure, k)
     shortlist = list(best_starts.values())[:count]
-    several = [_starts_around(objective, base.parameters, offered.candidates[k], predicted[k]) for k in shortlist]
+    several = [_starts_around(base.parameters, offered.candidates[k], predicted[k]) for k in shortlist]
     evaluations = iter(objective.evaluate([parameters for starts in several for parameters in starts]))
     best = [min(islice(evaluations, len(starts)), key=lambda each: each.cost) for starts in several]
     # Where the prediction fails, a fit begins at the candidate's own start.
@@ -138,7 +150,7 @@ def _predict(
         squares = np.sum([each @ each.T for each in changes], axis=0)
         whole = np.block([[matrix, mixed[entries[k]].T], [mixed[entries[k]], squares]])
         slope = np.append(right, slopes[entries[k]])
-        found[k] = _predict_one(objective, base, offered.candidates[k], whole, slope)
+        found[k] = _predict_one(base, offered.candidates[k], whole, slope)
     return found
 
 
@@ -151,35 +163,30 @@ def _multiply(jacobian: Array, changes: Array, residuals: Array) -> tuple[Array,
     return jacobian @ jacobian.T, jacobian @ residuals, changes @ jacobian.T, changes @ residuals
 
 
-def _predict_one(
-    objective: Objective, base: Evaluation, candidate: Candidate, matrix: Array, right: Array
-) -> _Prediction:
+def _predict_one(base: Evaluation, candidate: Candidate, matrix: Array, right: Array) -> _Prediction:
     """Return the prediction for a candidate, whose sizes are the last components of the normal equations."""
     vector, (low, high) = base.parameters.vector, base.parameters.limits
-    count, stretch = len(base.parameters.deviations), objective.settings.selection.stretch
+    count = len(base.parameters.deviations)
     least, most = (candidate.from_nominal(each) for each in (candidate.low, candidate.high))
     size = candidate.from_nominal(candidate.start)
     turns = np.where(size > 0.0, least, -most) < 0.0
-    low = np.append(low, np.where(turns, -stretch, 0.0))
-    high = np.append(high, np.full(candidate.sizes, stretch))
+    low = np.append(low, np.where(turns, -_STRETCH, 0.0))
+    high = np.append(high, np.full(candidate.sizes, _STRETCH))
     start = np.append(vector, np.zeros(candidate.sizes))
-    step = solve_step(matrix, right, count, start, low, high, objective.settings.fit.prior_std)
+    step = solve_step(matrix, right, count, start, low, high)
     cost = base.cost - 2.0 * float(step @ right) + float(step @ matrix @ step)
     return _Prediction(cost, step[: -candidate.sizes], step[-candidate.sizes :])
 
 
-def _starts_around(
-    objective: Objective, base: Parameters, candidate: Candidate, predicted: _Prediction
-) -> list[Parameters]:
+def _starts_around(base: Parameters, candidate: Candidate, predicted: _Prediction) -> list[Parameters]:
     """Return a base with a candidate where the prediction has its least cost, a limit a little to either side."""
-    settings, start, factors = objective.settings.selection, np.array(candidate.start), predicted.factors
+    start, factors = np.array(candidate.start), predicted.factors
     if candidate.is_limit:
         # The action of a limit is not proportional to its size, so only the direction of the prediction is used.
-        less = settings.limit_factors
-        scaled = [start[:1] * (each if factors[0] < 1.0 else 1.0 / each) for each in less]
+        scaled = [start[:1] * (each if factors[0] < 1.0 else 1.0 / each) for each in _LIMIT_FACTORS]
         starts = [start, *(np.concatenate([sizes, start[1:]]) for sizes in scaled)]
         return [base.add(candidate, np.clip(each, candidate.low, candidate.high)) for each in starts]
-    if np.max(np.abs(factors)) <= settings.least_factor:
+    if np.max(np.abs(factors)) <= _LEAST_FACTOR:
         return [base.add(candidate, start)]
     sizes = start[: candidate.sizes] + (factors - 1.0) * candidate.from_nominal(candidate.start)
     there = np.clip(np.concatenate([sizes, start[len(sizes) :]]), candidate.low, candidate.high)

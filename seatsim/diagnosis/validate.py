@@ -9,39 +9,40 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.diagnosis.fit import refit_on
-from seatsim.diagnosis.movement import measure_movements
+from seatsim.diagnosis.fit import fit, refit_on
+from seatsim.diagnosis.movement import measure_movements, name_immaterial, share_removable
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
 from seatsim.diagnosis.result import Gaps, RunGaps
-from seatsim.effects.base import replace_effects
+from seatsim.diagnosis.solution import Solution, call_unknown, decide_without
 from seatsim.recordings.gap import GapFigures, Signals, compare_signals, loud_channels
 from seatsim.recordings.model_error import ModelError, measure_model_error
-from seatsim.recordings.nuisance import vary
 from seatsim.recordings.replay import replay
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
-from seatsim.schema.errors import InputError
+from seatsim.schema.errors import InputError, RunError
+
+_CLOSELY_SETTLED = 1e-5
+"""The stated fit ends where a step lowers its cost by less than this share."""
+BLOCK_LENGTH = 1.0
+"""s; length of the blocks of the bootstrap: several periods of the seat's resonance, and many in a run."""
+_DRAWS = 400
+"""Samples of the bootstrap."""
+_PERCENTILES = 5.0, 95.0
+"""Ends of the interval of the shrink, in %."""
 
 
-def shrink_by_run(problem: DiagnosisProblem, nominal: Evaluation, chosen: Evaluation) -> Array:
-    """Return by how much the gap shrinks in each run from one rig to another, shape (runs,)."""
-    after, before = (normalise_rms_errors(problem, each.residuals) for each in (chosen, nominal))
-    return 1.0 - after / before
-
-
-def choose_held_out_run(problem: DiagnosisProblem, chosen: Evaluation, shrink: Array, quantile: float) -> str:
+def choose_held_out_run(problem: DiagnosisProblem, chosen: Evaluation, shrink: Array) -> str:
     """Return the run to hold out: one that the effects move about as much as others, at a quantile of shrink.
 
     The gap of a new excitation shrinks less than that of the runs in which the effect was found, hence a low quantile.
     """
     if not chosen.parameters.terms or len(problem.runs) < 2:
         return problem.runs[-1]
-    share = _share_movements(problem, chosen)
-    spared = _spare(problem, share)
-    moved = spared & (share.min(axis=1) > problem.settings.validation.least_share)
+    spared, least = _spare_runs(problem, chosen)
+    moved = spared & (least > problem.settings.validation.least_share)
     suitable = sorted(np.flatnonzero(moved if moved.any() else spared), key=lambda k: shrink[k])
-    return problem.runs[suitable[int(quantile * (len(suitable) - 1))]]
+    return problem.runs[suitable[int(problem.settings.validation.quantile * (len(suitable) - 1))]]
 
 
 def choose_typical_run(problem: DiagnosisProblem, nominal: Evaluation, chosen: Evaluation) -> str:
@@ -50,24 +51,20 @@ def choose_typical_run(problem: DiagnosisProblem, nominal: Evaluation, chosen: E
         return problem.runs[-1]
     after, before = (normalise_rms_errors(problem, each.residuals) for each in (chosen, nominal))
     overall = 1.0 - float(np.linalg.norm(after) / np.linalg.norm(before))
-    spared = np.flatnonzero(_spare(problem, _share_movements(problem, chosen)))
-    return problem.runs[min(spared, key=lambda k: abs(1.0 - after[k] / before[k] - overall))]
+    spared, _ = _spare_runs(problem, chosen)
+    return problem.runs[min(np.flatnonzero(spared), key=lambda k: abs(1.0 - after[k] / before[k] - overall))]
 
 
-def _share_movements(problem: DiagnosisProblem, chosen: Evaluation) -> Array:
-    """Return each run's share of what each effect moves in all runs, shape (runs, effects)."""
-    moves = [measure_movements(problem.on_runs([run]), chosen) for run in problem.runs]
-    shares = np.array([[float(np.mean(move**2)) for move in of_run] for of_run in moves])
-    return np.asarray(shares / np.maximum(np.sum(shares, axis=0), 1e-12))
-
-
-def _spare(problem: DiagnosisProblem, share: Array) -> NDArray[np.bool_]:
-    """Return which runs a fit can do without.
+def _spare_runs(problem: DiagnosisProblem, chosen: Evaluation) -> tuple[NDArray[np.bool_], Array]:
+    """Return which runs a fit can do without, and each run's least share of what an effect moves in all, (runs,) each.
 
     Where every run has more than the permitted share of some effect, the one with the least is held out.
     """
+    moves = [measure_movements(problem.on_runs([run]), chosen) for run in problem.runs]
+    powers = np.array([[float(np.mean(move**2)) for move in of_run] for of_run in moves])
+    share = powers / np.maximum(np.sum(powers, axis=0), 1e-12)
     largest = share.max(axis=1)
-    return np.asarray(largest < max(problem.settings.validation.most_share, 1.001 * largest.min()))
+    return largest < max(problem.settings.validation.most_share, 1.001 * largest.min()), share.min(axis=1)
 
 
 def refit_without(
@@ -82,15 +79,7 @@ def refit_without(
 
 def refit_closely(objective: Objective, rig: Linearisation) -> Evaluation:
     """Return a refit that ends where steps change the estimate by less than its standard deviation."""
-    problem, settings = objective.problem, objective.settings
-    closer = settings._replace(fit=settings.fit._replace(settled=settings.validation.settled))
-    return refit_on(dataclasses.replace(objective, problem=dataclasses.replace(problem, settings=closer)), rig)
-
-
-def make_scenario(problem: DiagnosisProblem, nominal: Scenario, parameters: Parameters) -> Scenario:
-    """Return the nominal scenario with some parameters and effects."""
-    varied = vary(nominal, problem.parameters, parameters.deviations)
-    return dataclasses.replace(varied, effects=replace_effects(nominal.effects, parameters.effects))
+    return refit_on(objective, rig, _CLOSELY_SETTLED)
 
 
 class ReplayedRun(NamedTuple):
@@ -105,11 +94,9 @@ def replay_runs(problem: DiagnosisProblem, scenarios: Sequence[Scenario]) -> lis
     """Return every run, replayed with some scenarios on all cores."""
     jobs = [(scenario, run) for run in problem.runs for scenario in scenarios]
     found = list(problem.pool.map(lambda job: replay(job[0], problem.recording, job[1]), jobs))
-    count = len(scenarios)
-    return [
-        ReplayedRun(run, found[k * count][0], [simulated for _, simulated in found[k * count : (k + 1) * count]])
-        for k, run in enumerate(problem.runs)
-    ]
+    by_run = [found[k : k + len(scenarios)] for k in range(0, len(found), len(scenarios))]
+    pairs = zip(problem.runs, by_run, strict=True)
+    return [ReplayedRun(run, of_run[0][0], [simulated for _, simulated in of_run]) for run, of_run in pairs]
 
 
 def list_gaps(problem: DiagnosisProblem, runs: Sequence[ReplayedRun]) -> list[RunGaps]:
@@ -156,26 +143,111 @@ def _bootstrap_shrink(
     problem: DiagnosisProblem, measured: Signals, simulated: Sequence[Signals], shrink: float, spread: float
 ) -> tuple[float, float]:
     """Return the block bootstrap interval of the shrink from the first rig to the last, widened by its spread."""
-    settings = problem.settings.validation
-    length = max(1, round(settings.block_length * problem.rate))
+    length = max(1, round(BLOCK_LENGTH * problem.rate))
     count = max(1, len(next(iter(measured.values()))) // length)
-    powers = np.array(
-        [
-            [
-                _block_powers((values - outputs[name]) / np.std(values), count, length)
-                for name, values in measured.items()
-            ]
-            for outputs in (simulated[0], simulated[-1])
-        ]
-    )
+
+    def measure_powers(outputs: Signals) -> list[Array]:
+        errors = [(values - outputs[name]) / np.std(values) for name, values in measured.items()]
+        return [np.mean(each[: count * length].reshape(count, -1) ** 2, axis=1) for each in errors]
+
+    powers = np.array([measure_powers(simulated[0]), measure_powers(simulated[-1])])
     # The same draws for every recording: equal input gives equal output.
     rng = np.random.default_rng(0)
-    drawn = powers[:, :, rng.integers(0, count, (settings.draws, count))].mean(axis=(1, 3))
-    widened = np.hypot(settings.excitation_std, spread) * rng.standard_normal(settings.draws)
+    drawn = powers[:, :, rng.integers(0, count, (_DRAWS, count))].mean(axis=(1, 3))
+    widened = np.hypot(problem.settings.validation.excitation_std, spread) * rng.standard_normal(_DRAWS)
     samples = 1.0 - np.sqrt(drawn[1] / drawn[0]) + widened
-    low, high = np.percentile(samples, settings.percentiles)
+    low, high = np.percentile(samples, _PERCENTILES)
     return float(min(low, shrink)), float(min(1.0, max(high, shrink)))
 
 
-def _block_powers(values: Array, count: int, length: int) -> Array:
-    return np.asarray(np.mean(values[: count * length].reshape(count, -1) ** 2, axis=1))
+@dataclasses.dataclass(frozen=True)
+class Validation:
+    """A solution on a run held out of its fits: the rigs fitted without the run, and the gaps that they leave on it.
+
+    `runs` holds every run, replayed with the nominal, the calibrated and the augmented scenario, the three `scenarios`.
+    `found` is the rig of the solution, fitted to all runs, with its sensitivities to the nuisance parameters.
+    """
+
+    solution: Solution
+    found: Linearisation
+    run: str
+    calibrated: Evaluation
+    augmented: Evaluation
+    scenarios: Sequence[Scenario]
+    runs: Sequence[ReplayedRun]
+    gaps: Gaps
+
+    @property
+    def fitted(self) -> Parameters:
+        """Parameters of the augmented rig, of the calibrated one where no effect is stated."""
+        return (self.augmented if self.augmented.parameters.terms else self.calibrated).parameters
+
+    @property
+    def rigs(self) -> tuple[Parameters, Parameters, Parameters]:
+        """Parameters of the nominal, the calibrated and the augmented rig."""
+        nominal = Parameters(self.solution.objective.problem.nominal)
+        return nominal, self.calibrated.parameters, self.augmented.parameters
+
+
+def validate_on_held_out(solution: Solution) -> Validation:
+    """Return a solution assessed on a held-out run; effects that fail there beside an unknown cause are dropped."""
+    objective, decision, selection = solution.objective, solution.decision, solution.selection
+    problem, chosen = objective.problem, decision.chosen
+    after, before = (normalise_rms_errors(problem, each.residuals) for each in (chosen, selection.nominal))
+    shrink = 1.0 - after / before
+    if decision.verdict == "unknown":
+        # Runs differ in how much of the gap is the unknown cause's own.
+        run = choose_typical_run(problem, selection.nominal, chosen)
+    else:
+        run = choose_held_out_run(problem, chosen, shrink)
+    found = objective.linearise_nuisances(chosen) if chosen.parameters.terms else selection.nuisances
+    calibrated, augmented = refit_without(objective, selection.nuisances, found, run)
+    if decision.verdict == "unknown" and not chosen.parameters.terms:
+        augmented = selection.nominal
+    rigs = Parameters(problem.nominal), calibrated.parameters, augmented.parameters
+    scenarios = [problem.augmented(rig.deviations, rig.effects, problem.recording.nominal) for rig in rigs]
+    try:
+        runs = replay_runs(problem, scenarios)
+    except RunError:
+        if not chosen.parameters.terms:
+            raise
+        return validate_on_held_out(_give_up(solution, f"cannot be simulated as fitted without {run}"))
+    if weak := name_immaterial(problem, objective.evaluate([augmented.parameters])[0]):
+        reason = f"moves no channel by a material size as fitted without {run}"
+        return validate_on_held_out(_give_up(solution, reason, weak))
+    # A single run has no spread: its standard deviation with n - 1 degrees of freedom would be NaN.
+    spread = float(np.std(shrink, ddof=min(1, len(shrink) - 1)))
+    gaps = measure_gaps(problem, next(each for each in runs if each.name == run), spread)
+    gaps = dataclasses.replace(gaps, by_run=list_gaps(problem, runs))
+    raised = _name_raised_gap(gaps, run)
+    if decision.verdict == "unknown" and chosen.parameters.terms and raised:
+        return validate_on_held_out(_give_up(solution, f"raises {raised} as fitted without {run}"))
+    if not solution.stochastic and decision.verdict in ("known", "ambiguous"):
+        taken = share_removable(objective.on_runs([run]), gaps.before.overall, gaps.after.overall)
+        if taken < problem.settings.decision.least_taken:
+            solution = solution._replace(decision=call_unknown(problem.settings.decision, decision))
+    return Validation(solution, found, run, calibrated, augmented, scenarios, runs, gaps)
+
+
+def _name_raised_gap(gaps: Gaps, held_out: str) -> str:
+    """Return which gap the augmented scenario raises above the nominal's, in words; an empty word for none."""
+    if gaps.after.overall >= gaps.before.overall:
+        return f"the gap of {held_out}"
+    raised = sum(run.after.overall**2 for run in gaps.by_run) > sum(run.before.overall**2 for run in gaps.by_run)
+    return "the gap of all runs" if raised else ""
+
+
+def _give_up(solution: Solution, reason: str, given_up: Sequence[str] = ()) -> Solution:
+    """Return the solution without some of its effects, all where none is named; a note names them with the reason."""
+    objective, decision, selection = solution.objective, solution.decision, solution.selection
+    given_up = given_up or sorted(decision.chosen.parameters.names)
+    noted = dataclasses.replace(
+        selection, notes=(*selection.notes, f"{' with '.join(given_up)} was given up, since it {reason}")
+    )
+    kept = decision.chosen.parameters.remove(*given_up)
+    rig = selection.calibrated
+    if kept.terms:
+        rig = fit(objective, objective.evaluate([kept])[0], selection.nuisances)
+    left = decide_without(objective.problem, decision, rig, given_up)
+    where = () if left.verdict == "none" else solution.where
+    return solution._replace(selection=noted, decision=left, where=where)

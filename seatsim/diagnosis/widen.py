@@ -70,7 +70,7 @@ def find_at_bound(problem: DiagnosisProblem, parameters: Parameters) -> dict[int
 
     A parameter that an effect of the rig continues beyond its tolerance is left out.
     """
-    listed = list_calibrated(problem.parameters, parameters.deviations, problem.settings.widening.at_bound)
+    listed = list_calibrated(problem.parameters, parameters.deviations)
     return {
         k: f"{each.name} {each.nominal:.4g} (fitted {each.value:.4g})"
         for k, each in enumerate(listed)

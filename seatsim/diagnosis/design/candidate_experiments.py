@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -13,6 +14,7 @@ from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.excitations.base import EXCITATIONS as REGISTERED
 from seatsim.excitations.base import Floor
 from seatsim.schema.arrays import Array
+from seatsim.schema.fields import read_packaged
 from seatsim.simulation.inputs import SeatInputs
 
 _Keys = Mapping[str, str | float]
@@ -51,51 +53,13 @@ class _Excitation(NamedTuple):
     free: tuple[str, ...]
 
 
-def _tone(frequency: float, amplitude: float, duration: float) -> _Keys:
-    return {"kind": "sine", "amplitude": amplitude, "frequency": frequency, "duration": duration}
-
-
-_STEADY: _Keys = {"law": "constant", "current": 0.3}
-_SWITCHED: _Keys = {"law": "on_off_skyhook", "on": _NEARLY_FULL}
-SWEPT: _Keys = {
-    "kind": "chirp",
-    "start_frequency": 1.0,
-    "stop_frequency": 20.0,
-    "amplitude": 1.5,
-    "duration": 12.0,
-    "quantity": "acceleration",
-}
-_BUMP: _Keys = {
-    "kind": "bumps",
-    "shape": "haversine",
-    "height": 0.05,
-    "length": 1.0,
-    "speed": 3.0,
-    "duration": 8.0,
-    "through": "direct",
-}
-_SWEEP = "sweep the floor from {start_frequency:.3g} to {stop_frequency:.3g} Hz at {amplitude:.3g} m/s^2"
-_STEPS = "switch the current about every 0.25 s on a tone of {frequency:.3g} Hz"
-_OF_A_TONE = ("amplitude", "frequency", "current")
-EXCITATIONS: Mapping[str, _Excitation] = {
-    "bump": _Excitation("drive over a bump of {mm:.3g} mm", _STEADY, _BUMP, ("height", "speed", "current")),
-    "sweep": _Excitation(_SWEEP, _STEADY, SWEPT, ("amplitude", "start_frequency", "stop_frequency", "current")),
-    "large_slow_sine": _Excitation(
-        "shake the floor at {frequency:.3g} Hz with {mm:.3g} mm", _STEADY, _tone(0.5, 0.025, 12.0), _OF_A_TONE
-    ),
-    "very_slow_sine": _Excitation(
-        "move the floor at {frequency:.3g} Hz with {mm:.3g} mm", _STEADY, _tone(0.05, 0.025, 20.0), _OF_A_TONE
-    ),
-    "current_steps": _Excitation(_STEPS, _SWITCHED, _tone(1.0, 0.03, 12.0), ("amplitude", "frequency", "on")),
-}
+EXCITATIONS = read_packaged(Path(__file__).with_name("excitations.yaml"), dict[str, _Excitation])
 """The menu; currents are shares of the largest current."""
 
 
 def list_candidate_experiments(problem: DiagnosisProblem) -> Iterator[CandidateExperiment]:
     """Yield the experiments, cheapest first: excitations with the rig as it is, then changes of the rig."""
-    for name in EXCITATIONS:
-        if not (problem.bench and name == "bump"):
-            yield excite(problem, name)
+    yield from (excite(problem, name) for name in EXCITATIONS if not (problem.bench and name == "bump"))
     yield from _intervene(problem, _recorded_floor(problem))
 
 
@@ -105,26 +69,20 @@ def excite(problem: DiagnosisProblem, name: str, factors: Mapping[str, float] = 
     `factors` change some of its free keys; no current exceeds the largest.
     """
     item = EXCITATIONS[name]
-    keys = {key: _scale(value, factors.get(key, 1.0)) for key, value in item.keys.items()}
+    keys, law = (
+        {key: value if isinstance(value, str) else value * factors.get(key, 1.0) for key, value in each.items()}
+        for each in (item.keys, item.law)
+    )
     text = item.text.format(**keys, mm=1000.0 * float(keys.get("height", keys.get("amplitude", 0.0))))
     own = {key: value for key, value in keys.items() if key != "kind"}
     floor = REGISTERED.find(str(keys["kind"]))(**own).floor(problem.scenario.solver.step, 0)
     top = problem.scenario.coil.max_current
-    law = {
-        key: top * min(float(_scale(value, factors.get(key, 1.0))), 1.0)
-        for key, value in item.law.items()
-        if key != "law"
-    }
-    command = np.full(len(floor.time), law.get("current", 0.0))
-    if "on" in law:
-        command = law["on"] * (np.floor(floor.time / _SWITCHING) % 2.0)
-    scenario: Mapping[str, _Keys] = {"controller": {"law": item.law["law"], **law}, "excitation": keys}
+    law = {key: value if isinstance(value, str) else top * min(value, 1.0) for key, value in law.items()}
+    switched = float(law.get("on", 0.0)) * (np.floor(floor.time / _SWITCHING) % 2.0)
+    command = switched if "on" in law else np.full(len(floor.time), law["current"])
+    scenario = {"controller": law, "excitation": keys}
     text = text.replace("the floor", "the damper") if problem.bench else text
     return CandidateExperiment(name, text, floor._replace(command=command), scenario=scenario)
-
-
-def _scale(value: str | float, factor: float) -> str | float:
-    return value if isinstance(value, str) else value * factor
 
 
 def _intervene(problem: DiagnosisProblem, floor: Floor) -> Iterator[CandidateExperiment]:
@@ -156,37 +114,28 @@ def _recorded_floor(problem: DiagnosisProblem) -> Floor:
     inputs = problem.inputs[problem.runs[0]]
     if isinstance(inputs, SeatInputs):
         return inputs.floor
-    still = np.zeros(len(inputs.displacement))
-    return Floor(
-        1.0 / problem.rate,
-        still,
-        still,
-        inputs.displacement,
-        inputs.current_command,
-        inputs.coil_current,
-        inputs.damper_temperature,
-    )
+    still, moved = np.zeros(len(inputs.displacement)), inputs.displacement
+    driving = inputs.current_command, inputs.coil_current, inputs.damper_temperature
+    return Floor(1.0 / problem.rate, still, still, moved, *driving)
 
 
 _FIRST_STEP = 0.6
 """First step of the search in the natural logarithm of a key: a factor of 1.8."""
 _LARGEST_FACTOR = 2.4
 """Largest factor on a key, either way: the sweep then ends below 50 Hz, which a step of 2 ms resolves."""
+_TRIALS = 16
+"""Most excitations that are tried, about four for each free key."""
 
 
-def optimise_excitation(
-    problem: DiagnosisProblem, name: str, score: Callable[[CandidateExperiment], float], trials: int
-) -> None:
+def optimise_excitation(problem: DiagnosisProblem, name: str, score: Callable[[CandidateExperiment], float]) -> None:
     """Search the free keys of an excitation for the least score, by Nelder and Mead's simplex in their logarithms.
 
     Args:
         problem: the recording, whose coil bounds the current.
         name: of the excitation in the menu.
         score: called with every excitation that is tried; it keeps the best.
-        trials: most excitations that are tried, about four for each free key.
     """
-    free = EXCITATIONS[name].free
-    largest = np.log(_LARGEST_FACTOR)
+    free, largest = EXCITATIONS[name].free, np.log(_LARGEST_FACTOR)
 
     def score_at(logarithms: Array) -> float:
         return score(excite(problem, name, dict(zip(free, np.exp(logarithms).tolist(), strict=True))))
@@ -197,5 +146,5 @@ def optimise_excitation(
         corners[0],
         method="Nelder-Mead",
         bounds=[(-largest, largest)] * len(free),
-        options={"maxfev": trials, "initial_simplex": corners},
+        options={"maxfev": _TRIALS, "initial_simplex": corners},
     )

@@ -9,7 +9,7 @@ pair: 0 where their changes of the outputs share nothing, 1 where they are the s
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -25,19 +25,15 @@ from seatsim.diagnosis.design.separability import (
     measure_likeness,
     measure_separability,
     project,
-    stack_jacobian,
-    stack_whitened,
 )
-from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters
+from seatsim.diagnosis.objective import PRIOR_STD, Evaluation, Linearisation, Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import Content, ProposedExperiment
-from seatsim.diagnosis.settings.examining import DesignSettings
-from seatsim.excitations.base import Floor
 from seatsim.recordings.replay import COMPARED
 from seatsim.scenario.numbers import change_numbers, list_numbers
 from seatsim.schema.arrays import Array
 from seatsim.simulation.augment import augment_plant
-from seatsim.simulation.inputs import BenchInputs, RigInputs, SeatInputs
+from seatsim.simulation.inputs import BenchInputs, SeatInputs
 from seatsim.simulation.respond import respond
 
 _Kind = Literal["excitation", "intervention", "none"]
@@ -46,6 +42,8 @@ USUAL_NOISE = dict(zip(COMPARED["seat"], (0.03, 0.015, 5e-5, 2.5, 0.003), strict
 """Noise of usual sensors, for those that state none, in the unit of their channel."""
 _BEYOND = 10.0
 """Score of an excitation for each time that it takes the permitted travel beyond the first."""
+_EFFECT_STD = 10.0
+"""Prior standard deviation of an effect's parameter, in its natural size: no effect is separable by being small."""
 _NOT_REPEATED = ("start", "sweep", "variants", "published")
 """Sections of the nominal scenario that an experiment does not have."""
 
@@ -54,13 +52,16 @@ class _Verdict(NamedTuple):
     """Prediction of an experiment.
 
     Separability of the nearest pair in noise units, likeness of the most alike pair, and the share of the permitted
-    travel of the suspension that an excitation takes.
+    travel of the suspension that an excitation takes. `is_distinct` says whether it distinguishes all members within
+    that travel; `score` is what an optimised excitation has least: likeness, lack of separability, travel beyond.
     """
 
     separability: float
     likeness: float
     candidate: CandidateExperiment
-    reach: float = 0.0
+    reach: float
+    is_distinct: bool
+    score: float
 
 
 def propose_experiment(
@@ -77,9 +78,8 @@ def propose_experiment(
         members: fitted rigs that explain the recording equally well, by the effect in which they differ.
     """
     base = objective.evaluate([nuisances.evaluation.parameters.remove(*members)])[0]
-    whitened = stack_whitened(objective, base.whitened)
-    changes = np.array([whitened - stack_whitened(objective, member.whitened) for member in members.values()])
-    now = _likeness(objective, changes, stack_jacobian(objective, nuisances))
+    changes = np.array([base.stacked - member.stacked for member in members.values()])
+    now = _measure_likeness(changes, nuisances.stacked)
     sensors, first = _name_sensors(members), ""
     if sensors:
         unloaded = " while it is unloaded" if sensors == ["damper force"] else ""
@@ -121,48 +121,26 @@ def _assess_candidates(
     Excitations cost least, so that where none distinguishes them the best is optimised; changes of the rig are tried
     where it does not either.
     """
-    settings, candidates = objective.settings.design, list(list_candidate_experiments(objective.problem))
+    candidates = list(list_candidate_experiments(objective.problem))
+    rigs = [each.parameters for each in (base, nuisances.evaluation, *members)]
+    own = [objective.linearise_effects(member).stacked for member in members]
+    known = PredictedExperiment(np.array([-member.stacked for member in members]), nuisances.stacked, own)
+    seen = list[_Verdict]()
 
     def assess(candidate: CandidateExperiment) -> _Verdict:
-        return _assess(objective, nuisances, base, members, candidate)
+        seen.append(_assess(objective, rigs, known, candidate))
+        return seen[-1]
 
-    excitations = [each for each in candidates if each.scenario is not None]
-    seen = _assess_until_distinct(settings, assess, excitations)
-    best = min(seen, key=lambda each: _score(settings, each))
+    def distinguish(offered: Sequence[CandidateExperiment]) -> bool:
+        """Assess experiments up to the first that distinguishes all members, and say whether there is one."""
+        return any(assess(each).is_distinct for each in offered)
 
-    def score(candidate: CandidateExperiment) -> float:
-        seen.append(assess(candidate))
-        return _score(settings, seen[-1])
-
-    if not _is_distinct(settings, seen[-1]):
-        optimise_excitation(objective.problem, best.candidate.name, score, settings.trials)
-    if any(_is_distinct(settings, each) for each in seen):
-        return seen
-    return seen + _assess_until_distinct(settings, assess, [each for each in candidates if each.scenario is None])
-
-
-def _assess_until_distinct(
-    settings: DesignSettings,
-    assess: Callable[[CandidateExperiment], _Verdict],
-    candidates: Sequence[CandidateExperiment],
-) -> list[_Verdict]:
-    seen: list[_Verdict] = []
-    for candidate in candidates:
-        seen.append(assess(candidate))
-        if _is_distinct(settings, seen[-1]):
-            break
+    if not distinguish([each for each in candidates if each.scenario is not None]):
+        best = min(seen, key=lambda each: each.score).candidate.name
+        optimise_excitation(objective.problem, best, lambda candidate: assess(candidate).score)
+        if not any(each.is_distinct for each in seen):
+            distinguish([each for each in candidates if each.scenario is None])
     return seen
-
-
-def _is_distinct(settings: DesignSettings, seen: _Verdict) -> bool:
-    """Whether an experiment distinguishes all members within the travel of the suspension."""
-    return seen.separability > settings.separated and seen.likeness < settings.unlike and seen.reach <= 1.0
-
-
-def _score(settings: DesignSettings, seen: _Verdict) -> float:
-    """Return what an optimised excitation has least: likeness, lack of separability, travel beyond the permitted."""
-    lacking = max(0.0, 1.0 - seen.separability / settings.separated)
-    return seen.likeness + lacking + _BEYOND * max(0.0, seen.reach - 1.0)
 
 
 def _propose(kind: _Kind, name: str, reason: str, now: float, then: float) -> ProposedExperiment:
@@ -185,9 +163,9 @@ def _name_sensors(members: Mapping[str, Evaluation]) -> list[str]:
     return named if len(set(named)) == len(named) else []
 
 
-def _likeness(objective: Objective, changes: Array, jacobian: Array) -> float:
+def _measure_likeness(changes: Array, jacobian: Array) -> float:
     """Return the likeness of the most similar pair of changes, with the nuisance parameters projected out."""
-    return measure_likeness(project(changes, jacobian, np.full(len(jacobian), objective.settings.fit.prior_std)))
+    return measure_likeness(project(changes, jacobian, np.full(len(jacobian), PRIOR_STD)))
 
 
 def _simulate(problem: DiagnosisProblem, candidate: CandidateExperiment, rig: Parameters) -> Array:
@@ -200,7 +178,18 @@ def _respond(problem: DiagnosisProblem, candidate: CandidateExperiment, rig: Par
     """Return all sensor readings in an experiment."""
     augmented = problem.augmented(rig.deviations, rig.effects)
     scenario = change_numbers(augmented, candidate.set, list_numbers(problem.scenario))
-    return respond(scenario, _make_inputs(problem, candidate.floor), carry_all_effects=True)
+    floor, interval = candidate.floor, 1.0 / problem.rate
+    if not problem.bench:
+        return respond(scenario, SeatInputs(floor, interval), carry_all_effects=True)
+    every = slice(None, None, round(interval / floor.step))
+    driving = floor.command, floor.coil_current, floor.temperature
+    command, current, temperature = (None if values is None else values[every] for values in driving)
+    noise = problem.recording.channels["displacement"].noise_rms
+    inputs = BenchInputs(
+        interval, floor.displacement[every], noise, current_command=command, coil_current=current,
+        damper_temperature=temperature,
+    )  # fmt: skip
+    return respond(scenario, inputs, carry_all_effects=True)
 
 
 def _measure_reach(problem: DiagnosisProblem, candidate: CandidateExperiment, rig: Parameters) -> float:
@@ -215,22 +204,6 @@ def _measure_reach(problem: DiagnosisProblem, candidate: CandidateExperiment, ri
     return float(max(np.max(travel) / max(high, 1e-9), np.min(travel) / min(low, -1e-9)))
 
 
-def _make_inputs(problem: DiagnosisProblem, floor: Floor) -> RigInputs:
-    """Return the inputs of the rig: the floor's motion or, on a bench, the damper's motion and its current."""
-    interval = 1.0 / problem.rate
-    if not problem.bench:
-        return SeatInputs(floor, interval)
-    every = round(interval / floor.step)
-    return BenchInputs(
-        interval,
-        floor.displacement[::every],
-        problem.recording.channels["displacement"].noise_rms,
-        current_command=None if floor.command is None else floor.command[::every],
-        coil_current=None if floor.coil_current is None else floor.coil_current[::every],
-        damper_temperature=None if floor.temperature is None else floor.temperature[::every],
-    )
-
-
 def _weigh(problem: DiagnosisProblem, candidate: CandidateExperiment, outputs: Array) -> Array:
     """Return 1 / sigma of the channels of an experiment, shape (channels, 1)."""
     stated = [*problem.noise, *(USUAL_NOISE[name] for name in candidate.added_sensors)]
@@ -240,30 +213,33 @@ def _weigh(problem: DiagnosisProblem, candidate: CandidateExperiment, outputs: A
 
 
 def _assess(
-    objective: Objective,
-    nuisances: Linearisation,
-    base: Evaluation,
-    members: Sequence[Evaluation],
-    candidate: CandidateExperiment,
+    objective: Objective, rigs: Sequence[Parameters], known: PredictedExperiment, candidate: CandidateExperiment
 ) -> _Verdict:
-    """Return the prediction of an experiment, from a joint simulation of all rigs and their difference steps."""
-    problem, settings = objective.problem, objective.settings
-    rig, step, number = nuisances.evaluation.parameters, settings.fit.difference_step, len(members)
+    """Return the prediction of an experiment, from a joint simulation of all rigs and their difference steps.
+
+    Args:
+        objective: over all runs of the recording at hand.
+        rigs: the rig found without the members' effects, the rig found, and then every member.
+        known: what the recording at hand tells of the members.
+        candidate: the experiment.
+    """
+    problem, step, (_, rig, *members) = objective.problem, objective.settings.fit.difference_step, rigs
     shifts = [[rig.shift(k, step) for k in rig.nuisance_components]]
-    shifts += [[m.parameters.shift(k, step) for k in m.parameters.effect_components] for m in members]
-    rigs = [base.parameters, rig, *(m.parameters for m in members), *(p for found in shifts for p, _ in found)]
-    outputs = list(problem.pool.map(lambda each: _simulate(problem, candidate, each), rigs))
+    shifts += [[member.shift(k, step) for k in member.effect_components] for member in members]
+    moved = [*rigs, *(parameters for found in shifts for parameters, _ in found)]
+    outputs = list(problem.pool.map(lambda each: _simulate(problem, candidate, each), moved))
     weights = _weigh(problem, candidate, outputs[1])
     rows = np.array([(weights * values).ravel() for values in outputs])
-    ends = np.cumsum([2 + number] + [len(found) for found in shifts])
+    ends = np.cumsum([len(rigs)] + [len(found) for found in shifts])
     jacobians = [
         (rows[ends[k] : ends[k + 1]] - rows[1 + k]) / np.array([signed for _, signed in found])[:, None]
         for k, found in enumerate(shifts)
     ]
-    new = PredictedExperiment(rows[2 : 2 + number], jacobians[0], jacobians[1:])
-    own = [stack_jacobian(objective, objective.linearise_effects(member)) for member in members]
-    known = np.array([-stack_whitened(objective, member.whitened) for member in members])
-    old = PredictedExperiment(known, stack_jacobian(objective, nuisances), own)
-    separability = measure_separability(old, new, settings.fit.prior_std, settings.design.effect_std)
-    likeness = _likeness(objective, new.outputs - rows[0], jacobians[0])
-    return _Verdict(separability, likeness, candidate, _measure_reach(problem, candidate, rig))
+    new = PredictedExperiment(rows[2 : len(rigs)], jacobians[0], jacobians[1:])
+    separability = measure_separability(known, new, PRIOR_STD, _EFFECT_STD)
+    likeness = _measure_likeness(new.outputs - rows[0], jacobians[0])
+    settings, reach = problem.settings.design, _measure_reach(problem, candidate, rig)
+    is_distinct = separability > settings.separated and likeness < settings.unlike and reach <= 1.0
+    lacking = max(0.0, 1.0 - separability / settings.separated)
+    score = likeness + lacking + _BEYOND * max(0.0, reach - 1.0)
+    return _Verdict(separability, likeness, candidate, reach, is_distinct, score)

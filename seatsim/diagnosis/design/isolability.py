@@ -16,13 +16,15 @@ viscous damping), and faults of two groups may be too small to be distinguished 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Collection, Iterable
+from collections.abc import Collection
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import maximum_bipartite_matching
 
+from seatsim.schema.fields import read_packaged
 from seatsim.schema.text import join_names
 
 
@@ -30,26 +32,18 @@ class Equation(NamedTuple):
     """An equation of a rig: its unknowns, and the block whose fault enters it (None: it cannot be wrong)."""
 
     unknowns: frozenset[str]
-    fault: str | None
+    fault: str | None = None
 
 
-def _equation(unknowns: str, fault: str | None = None) -> Equation:
-    return Equation(frozenset(unknowns.split()), fault)
+class _Structure(NamedTuple):
+    """Equations of a rig without coil and sensors, its blocks in order, and what to do about a channel that lacks."""
+
+    equations: list[Equation]
+    blocks: list[str]
+    remedies: dict[str, str]
 
 
-_SEAT = (
-    _equation("as Fs Fc Fd", "floor"),  # ms as = Fc - Fs - Fd + what else shakes the frame
-    _equation("Fs x v", "suspension"),  # Fs = kf x + cf v
-    _equation("ac Fc", "driver"),  # m ac = -Fc
-    _equation("Fc xc vc", "cushion"),  # Fc = kc xc + cc vc
-    _equation("Fd x v i", "damper"),  # Fd = F(x, v, i, T), T recorded or stated
-    _equation("x v"),  # x' = v
-    _equation("v as a0"),  # v' = as - a0
-    _equation("xc vc"),  # xc' = vc
-    _equation("vc ac as"),  # vc' = ac - as
-)
-_BENCH = (_equation("Fd x v i", "damper"), _equation("x v"))
-"""Equations of the two rigs, without coil and sensors."""
+_RIGS = read_packaged(Path(__file__).with_name("structure.yaml"), dict[str, _Structure])
 _SENSED = {
     "floor_acceleration": "a0",
     "frame_acceleration": "as",
@@ -61,44 +55,30 @@ _SENSED = {
     "coil_current": "i",
 }
 """The unknown that each sensor measures; the command and the temperature are known inputs."""
-_COMMANDS = ("current_command", "command_voltage")
-_BLOCKS = {
-    "seat": ("damper", "coil", "suspension", "cushion", "driver", "floor", "sensor"),
-    "damper_bench": ("damper", "coil", "sensor"),
-}
-_REMEDIES = {
-    "damper_force": "add a load cell at the damper",
-    "coil_current": "log the current of the coil",
-    "current_command": "log the commanded current",
-    "driver_acceleration": "add an accelerometer at the driver",
-    "frame_acceleration": "add an accelerometer on the seat frame",
-    "suspension_displacement": "add a displacement sensor across the suspension",
-    "velocity": "add a velocity sensor across the damper",
-}
-"""What to do about a channel that is absent."""
-_FOR_RIG = {
-    "seat": tuple(name for name in _REMEDIES if name != "velocity"),
-    "damper_bench": ("damper_force", "coil_current", "current_command", "velocity"),
-}
 
 
 def find_isolable_groups(rig: str, channels: Collection[str]) -> list[list[str]]:
-    """Return the groups of blocks that these channels can distinguish, in the order of `_BLOCKS`.
+    """Return the groups of blocks that these channels can distinguish, in the order of the rig's blocks.
 
     Blocks of one group cannot be distinguished by structure. A block in no group enters no test: its faults leave no
     trace in these channels. `sensor` joins the first group with a block that a fault of some sensor cannot be
     distinguished from.
     """
     equations = _equations(rig, channels)
-    tested = [k for k in sorted(find_overdetermined(equations)) if equations[k].fault is not None]
-    classes: list[set[int]] = []
-    for k in tested:
+    faults = {k: equations[k].fault for k in sorted(find_overdetermined(equations))}
+    blocks, classes = {k: fault.split()[0] for k, fault in faults.items() if fault}, list[set[int]]()
+    for k in blocks:
         home = next((c for c in classes if not _is_isolable(equations, min(c), k)), None)
         if home is None:
             classes.append({k})
         else:
             home.add(k)
-    return _ordered(rig, [{_block(equations[k].fault) for k in c} for c in classes])
+    order = _RIGS[rig].blocks
+    groups = sorted((sorted({blocks[k] for k in c}, key=order.index) for c in classes), key=lambda g: order.index(g[0]))
+    # `sensor` appears once, in the first group with another block.
+    for group in [group for group in groups if "sensor" in group][1:]:
+        group.remove("sensor")
+    return [group for group in groups if group]
 
 
 def find_overdetermined(equations: Collection[Equation]) -> set[int]:
@@ -106,9 +86,11 @@ def find_overdetermined(equations: Collection[Equation]) -> set[int]:
     rows = list(equations)
     if not rows:
         return set()
-    matched = _matching(rows)
-    owner = {unknown: k for k, unknown in matched.items()}
-    reached = set(range(len(rows))) - set(matched)
+    unknowns = sorted(frozenset[str]().union(*(row.unknowns for row in rows)))
+    incidence = np.array([[unknown in row.unknowns for unknown in unknowns] for row in rows], dtype=np.int8)
+    columns = maximum_bipartite_matching(csr_array(incidence), perm_type="column")
+    owner = {unknowns[column]: k for k, column in enumerate(columns) if column >= 0}
+    reached = set(range(len(rows))) - set(owner.values())
     queue = list(reached)
     while queue:
         found = {owner[unknown] for unknown in rows[queue.pop()].unknowns if unknown in owner} - reached
@@ -120,12 +102,12 @@ def find_overdetermined(equations: Collection[Equation]) -> set[int]:
 def describe_missing_sensors(rig: str, channels: Collection[str]) -> list[str]:
     """Return a sentence for each distinction that these channels do not allow, with the channel that would allow it."""
     groups = find_isolable_groups(rig, channels)
-    sentences = [_loss(rig, channels, groups, name) for name in _FOR_RIG[rig] if not _is_recorded(name, channels)]
-    everything = {*channels, *(name for name in _FOR_RIG[rig] if not _is_recorded(name, channels))}
+    missing = [name for name in _RIGS[rig].remedies if not _is_recorded(name, channels)]
+    sentences = [_loss(rig, channels, groups, name) for name in missing]
     sentences += [
         f"{join_names(group)} cannot be distinguished by any channel:"
         " only the form of an effect, or a repeat of a run, can"
-        for group in find_isolable_groups(rig, everything)
+        for group in find_isolable_groups(rig, {*channels, *missing})
         if len(group) > 1
     ]
     return [sentence for sentence in sentences if sentence]
@@ -133,44 +115,21 @@ def describe_missing_sensors(rig: str, channels: Collection[str]) -> list[str]:
 
 def _equations(rig: str, channels: Collection[str]) -> list[Equation]:
     """Return the equations of a rig with these channels; a coil without any record carries a stated current."""
-    equations = list(_SEAT if rig == "seat" else _BENCH)
+    equations = list(_RIGS[rig].equations)
     if _is_recorded("current_command", channels) or "coil_current" not in channels:
-        equations.append(_equation("i", "coil"))  # i' = rate (command - i), the command known
-    return equations + [_equation(_SENSED[name], f"sensor {name}") for name in sorted(channels) if name in _SENSED]
+        equations.append(Equation(frozenset({"i"}), "coil"))  # i' = rate (command - i), the command known
+    sensed = {name: frozenset({_SENSED[name]}) for name in sorted(channels) if name in _SENSED}
+    return equations + [Equation(unknown, f"sensor {name}") for name, unknown in sensed.items()]
 
 
 def _is_recorded(name: str, channels: Collection[str]) -> bool:
-    return name in channels or (name == "current_command" and any(command in channels for command in _COMMANDS))
+    return name in channels or (name == "current_command" and "command_voltage" in channels)
 
 
 def _is_isolable(equations: list[Equation], first: int, second: int) -> bool:
     """Say whether equation `first` can still be tested after equation `second` is removed."""
     others = equations[:second] + equations[second + 1 :]
     return first - (first > second) in find_overdetermined(others)
-
-
-def _matching(rows: list[Equation]) -> dict[int, str]:
-    """Return the unknown that a maximum matching assigns to each matched equation."""
-    unknowns = sorted({unknown for row in rows for unknown in row.unknowns})
-    if not unknowns:
-        return {}
-    incidence = np.array([[unknown in row.unknowns for unknown in unknowns] for row in rows], dtype=np.int8)
-    columns = maximum_bipartite_matching(csr_array(incidence), perm_type="column")
-    return {k: unknowns[column] for k, column in enumerate(columns) if column >= 0}
-
-
-def _block(fault: str | None) -> str:
-    return str(fault).split()[0]
-
-
-def _ordered(rig: str, classes: Iterable[set[str]]) -> list[list[str]]:
-    """Return the groups in the order of BLOCKS; `sensor` appears once, in the first group with another block."""
-    order = _BLOCKS[rig]
-    groups = sorted((sorted(found, key=order.index) for found in classes), key=lambda group: order.index(group[0]))
-    homes = [group for group in groups if "sensor" in group]
-    for group in homes[1:]:
-        group.remove("sensor")
-    return [group for group in groups if group]
 
 
 def _loss(rig: str, channels: Collection[str], groups: list[list[str]], absent: str) -> str:
@@ -183,7 +142,7 @@ def _loss(rig: str, channels: Collection[str], groups: list[list[str]], absent: 
         f"{join_names([_named(part) for part in found])} cannot be distinguished" for found in split if len(found) > 1
     ]
     costs += [f"{join_names(unseen)} cannot be assessed"] if unseen else []
-    return f"without {absent}, {join_names(costs)}: {_REMEDIES[absent]}" if costs else ""
+    return f"without {absent}, {join_names(costs)}: {_RIGS[rig].remedies[absent]}" if costs else ""
 
 
 def _named(part: list[str]) -> str:

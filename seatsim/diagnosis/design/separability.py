@@ -17,10 +17,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.diagnosis.objective import Linearisation, Objective
+from seatsim.diagnosis.objective import PRIOR_STD
 from seatsim.diagnosis.result import Collinearity
 from seatsim.diagnosis.select import Selection
 from seatsim.schema.arrays import Array
+
+_FAINT = 1e-9
+"""Length of a projected sensitivity, in noise units, below which it is collinear with nothing."""
 
 
 def project(changes: Array, sensitivities: Array, deviations: Array) -> Array:
@@ -38,10 +41,10 @@ def project(changes: Array, sensitivities: Array, deviations: Array) -> Array:
     return np.concatenate([changes - shares @ sensitivities, -shares / deviations], axis=1)
 
 
-def measure_cosines(vectors: Array, faint: float) -> Array:
-    """Return the cosine between each pair of rows, shape (rows, rows); 0 where one of them is shorter than `faint`."""
+def measure_cosines(vectors: Array) -> Array:
+    """Return the cosine between each pair of rows, shape (rows, rows); 0 where one of them is 0 but for rounding."""
     size = np.linalg.norm(vectors, axis=1)
-    unit = vectors / np.where(size > faint, size, np.inf)[:, None]
+    unit = vectors / np.where(size > _FAINT, size, np.inf)[:, None]
     return np.clip(unit @ unit.T, -1.0, 1.0)
 
 
@@ -90,41 +93,27 @@ def measure_separability(
     return float(np.sqrt(max(min(gains), 0.0)))
 
 
-def measure_collinearity(objective: Objective, selection: Selection, names: Sequence[str]) -> Collinearity:
+def measure_collinearity(selection: Selection, names: Sequence[str]) -> Collinearity:
     """Return the effects that can act on this rig, and how collinear they are.
 
     Each change is that of the outputs when one effect is added to the calibrated rig: as it was fitted alone, or else
     as its first candidate was screened.
 
     Args:
-        objective: over all runs.
         selection: the fitted sets of one effect, and the sensitivities to the candidates.
         names: effects to compare.
     """
-    origin = stack_whitened(objective, selection.calibrated.whitened)
-    offered, changes = selection.sensitivities, dict[str, Array]()
+    offered, changes, origin = selection.sensitivities, dict[str, Array](), selection.calibrated.stacked
     for candidate, entry in zip(offered.candidates, offered.entries, strict=True):
         if candidate.effect in names and candidate.effect not in changes:
-            first = {run: each[entry.start] for run, each in offered.changes.items()}
-            changes[candidate.effect] = stack_whitened(objective, first)
+            changes[candidate.effect] = np.concatenate([each[entry.start].ravel() for each in offered.changes.values()])
     for name, single in selection.singles.items():
         if name in names:
-            changes[name] = origin - stack_whitened(objective, single.whitened)
+            changes[name] = origin - single.stacked
     known = [name for name in dict.fromkeys(names) if name in changes]
-    sensitivities = stack_jacobian(objective, selection.nuisances)
-    deviations = np.full(len(sensitivities), objective.settings.fit.prior_std)
+    sensitivities = selection.nuisances.stacked
     stacked = np.array([changes[name] for name in known]).reshape(len(known), origin.size)
-    left = project(stacked, sensitivities, deviations)
-    matrix = np.abs(measure_cosines(left, objective.settings.design.faint))
+    left = project(stacked, sensitivities, np.full(len(sensitivities), PRIOR_STD))
+    matrix = np.abs(measure_cosines(left))
     np.fill_diagonal(matrix, 1.0)
     return Collinearity(known, matrix)
-
-
-def stack_whitened(objective: Objective, whitened: dict[str, Array]) -> Array:
-    """Return the whitened numbers of all runs, shape (channels, rows) each, as one vector."""
-    return np.concatenate([whitened[run].ravel() for run in objective.problem.runs])
-
-
-def stack_jacobian(objective: Objective, linearisation: Linearisation) -> Array:
-    """Return the Jacobians of all runs, shape (components, channels x rows) each, joined along the rows."""
-    return np.concatenate([linearisation.jacobian[run] for run in objective.problem.runs], axis=1)

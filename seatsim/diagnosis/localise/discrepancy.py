@@ -6,7 +6,7 @@ by the measured floor, not from the measured motion, to which the unexplained fo
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -19,78 +19,71 @@ from seatsim.diagnosis.result import DiscrepancySignal
 from seatsim.diagnosis.settings.examining import LocalisationSettings
 from seatsim.schema.arrays import Array
 
+_RATE = 100.0
+"""Rate at which signals are regressed [Hz]."""
+_LAGS = 10
+"""Past samples of the motion that a linear filter may use; more overfit."""
+_RIDGE, _LEAST_RIDGE = 1e-3, 1e-9
+"""Ridge, relative to the regressors' power, and the least one: they may all rest, as a current that never flows."""
+_SLOW_SLIP, _FAST_SLIP = 0.03, 0.005
+"""Velocity scales of the smooth and the sharp friction among the regressors [m/s]."""
+_WORTH_NAMING = 0.1
+"""R2 from which a family of regressors is named in the report."""
+
 
 def explain_signal(problem: DiagnosisProblem, parameters: Parameters, signals: Mapping[str, Array]) -> dict[str, float]:
     """Return the share of a signal's variance (R2 on runs left out) that each family of regressors predicts.
 
     `everything` stands for all families together; a family alone may predict better, since it overfits less.
     """
-    settings = problem.settings.localisation
     regressors = {run: _list_regressors(problem, parameters, run) for run in problem.runs}
     target = {run: _decimate(problem, signals[run]) for run in problem.runs}
     families = list(regressors[problem.runs[0]])
     shares = {
-        family: predict_share(settings, {run: each[family] for run, each in regressors.items()}, target)
-        for family in families
+        family: predict_share({run: each[family] for run, each in regressors.items()}, target) for family in families
     }
     everything = {run: np.concatenate(list(each.values())) for run, each in regressors.items()}
-    shares["everything"] = max(predict_share(settings, everything, target), *shares.values())
+    shares["everything"] = max(predict_share(everything, target), *shares.values())
     return shares
 
 
-def predict_share(
-    settings: LocalisationSettings, regressors: Mapping[str, Array], target: Mapping[str, Array]
-) -> float:
+def predict_share(regressors: Mapping[str, Array], target: Mapping[str, Array]) -> float:
     """Return the share of the runs' variance that a ridge regression on the other runs predicts, at least 0.
 
     Args:
-        settings: the ridge.
         regressors: by run, shape (regressors, samples).
         target: by run, shape (samples,); a single run is cut into halves.
     """
     missed, power = 0.0, 0.0
-    for (inside, values), (outside, truth) in _folds(regressors, target):
-        error = truth - _regress(settings, inside, values) @ outside
+    if len(target) == 1:
+        (known,), (values,) = regressors.values(), target.values()
+        halves = {"first": slice(0, len(values) // 2), "second": slice(len(values) // 2, None)}
+        regressors = {half: known[:, part] for half, part in halves.items()}
+        target = {half: values[part] for half, part in halves.items()}
+    for left_out, truth in target.items():
+        others = [run for run in target if run != left_out]
+        known, values = np.hstack([regressors[run] for run in others]), np.concatenate([target[run] for run in others])
+        error = truth - _regress(known, values) @ regressors[left_out]
         missed, power = missed + float(error @ error), power + float(truth @ truth)
     return max(0.0, 1.0 - missed / max(power, 1e-30))
 
 
-def _folds(
-    regressors: Mapping[str, Array], target: Mapping[str, Array]
-) -> Iterator[tuple[tuple[Array, Array], tuple[Array, Array]]]:
-    """Yield regressors and target to fit, and those left out: each run, or each half of a single one."""
-    runs = list(target)
-    if len(runs) == 1:
-        known, values = regressors[runs[0]], target[runs[0]]
-        middle = len(values) // 2
-        first, second = slice(0, middle), slice(middle, None)
-        for test, train in ((first, second), (second, first)):
-            yield (known[:, train], values[train]), (known[:, test], values[test])
-        return
-    for left_out in runs:
-        others = [run for run in runs if run != left_out]
-        fitted = np.hstack([regressors[run] for run in others]), np.concatenate([target[run] for run in others])
-        yield fitted, (regressors[left_out], target[left_out])
-
-
-def _regress(settings: LocalisationSettings, regressors: Array, target: Array) -> Array:
+def _regress(regressors: Array, target: Array) -> Array:
     """Return the coefficients of a ridge regression, shape (regressors,), each regressor scaled to unit RMS."""
     scale = np.sqrt(np.mean(regressors**2, axis=1)) + 1e-12
     scaled = regressors / scale[:, None]
     normal = scaled @ scaled.T
-    ridge = max(settings.ridge * np.trace(normal) / len(normal), settings.least_ridge) * np.eye(len(normal))
-    coefficients: Array = np.linalg.solve(normal + ridge, scaled @ target) / scale
-    return coefficients
+    ridge = max(_RIDGE * np.trace(normal) / len(normal), _LEAST_RIDGE) * np.eye(len(normal))
+    return np.asarray(np.linalg.solve(normal + ridge, scaled @ target) / scale)
 
 
 def _decimate(problem: DiagnosisProblem, values: Array) -> Array:
-    factor = max(1, round(problem.rate / problem.settings.localisation.regression_rate))
+    factor = max(1, round(problem.rate / _RATE))
     return np.asarray(decimate(values, factor, ftype="fir")) if factor > 1 else values
 
 
 def _list_regressors(problem: DiagnosisProblem, parameters: Parameters, run: str) -> dict[str, Array]:
     """Return families of regressors at the regression's rate, shape (regressors, samples) each."""
-    settings = problem.settings.localisation
     outputs = problem.simulated(run, parameters.deviations, parameters.effects)
     simulated = dict(zip(problem.channels, outputs, strict=True))
     samples, table = problem.measured[run].shape[1], problem.recording.table(run)
@@ -99,22 +92,22 @@ def _list_regressors(problem: DiagnosisProblem, parameters: Parameters, run: str
     current = current[-samples:] if len(current) >= samples else np.zeros(samples)
     x = simulated.get("suspension_displacement")
     if x is None:
-        return {"floor motion": _lag(_decimate(problem, floor), settings.lags)}
+        return {"floor motion": _lag(_decimate(problem, floor))}
     v = np.gradient(x, 1.0 / problem.rate)
     x, v, i, a = (_decimate(problem, values) for values in (x, v, current, floor))
-    slow, fast = np.tanh(v / settings.slow_slip), np.tanh(v / settings.fast_slip)
+    slow, fast = np.tanh(v / _SLOW_SLIP), np.tanh(v / _FAST_SLIP)
     return {
         "displacement": np.array([x, x * np.abs(x), x**3]),
         "velocity": np.array([v, v * np.abs(v), v**3, slow, fast]),
         "velocity and current": np.array([i, i * v, i * slow, i * fast, i**2 * slow, i * x, np.gradient(i)]),
-        "past motion": np.concatenate([_lag(x, settings.lags), _lag(v, settings.lags)]),
-        "floor motion": _lag(a, settings.lags),
+        "past motion": np.concatenate([_lag(x), _lag(v)]),
+        "floor motion": _lag(a),
     }
 
 
-def _lag(values: Array, lags: int) -> Array:
+def _lag(values: Array) -> Array:
     """Return values and their past ones, shape (lags, samples); before the start the first value is repeated."""
-    return np.array([np.concatenate([np.full(k, values[0]), values[: len(values) - k]]) for k in range(lags)])
+    return np.array([np.concatenate([np.full(k, values[0]), values[: len(values) - k]]) for k in range(_LAGS)])
 
 
 class Discrepancy(NamedTuple):
@@ -157,12 +150,12 @@ def is_bias_drift(settings: LocalisationSettings, found: Discrepancy, rate: floa
     return found.block == "sensor" and slow > settings.slow_share * power
 
 
-def describe_in_words(settings: LocalisationSettings, found: Discrepancy) -> list[str]:
+def describe_in_words(found: Discrepancy) -> list[str]:
     """Return sentences on an unexplained signal."""
     sentences = [f"The unexplained {found.quantity} in the {found.block} has an RMS of {found.rms:.3g} {found.unit}."]
     families = {family: share for family, share in found.shares.items() if family != "everything"}
     best = max(families, key=lambda family: families[family])
-    if families[best] < settings.worth_naming:
+    if families[best] < _WORTH_NAMING:
         sentences.append("No motion, current or temperature of the simulated rig predicts it on a run left out.")
     else:
         sentences.append(f"It follows {best} best, which predicts {families[best]:.0%} of its power on runs left out.")
@@ -175,5 +168,6 @@ def show_discrepancy(problem: DiagnosisProblem, found: Discrepancy, run: str) ->
     """Return the signal on a run, as the report draws it."""
     samples = len(found.signals[run])
     time = (problem.skip + np.arange(samples)) / problem.rate
-    words = describe_in_words(problem.settings.localisation, found)
-    return DiscrepancySignal(found.block, found.quantity, found.unit, time, found.signals[run], words)
+    return DiscrepancySignal(
+        found.block, found.quantity, found.unit, time, found.signals[run], describe_in_words(found)
+    )

@@ -78,17 +78,12 @@ def _disturb(objective: Objective, effect: str, found: Discrepancy, cause: Fault
     traces, amplitudes = {}, {}
     for run, estimate in cause.estimates.items():
         response = estimate.response / objective.weights.weights[run]
-        traces[run] = _pass(response, estimate.signal)
+        spectrum = np.fft.rfft(estimate.signal)
+        passed = np.zeros((len(response), len(spectrum)), dtype=complex)
+        passed[:, : response.shape[1]] = response * spectrum[: response.shape[1]]
+        traces[run] = np.fft.irfft(passed, len(estimate.signal))
         amplitudes[run] = response * np.sqrt(estimate.power)
     return Disturbance(effect, found, traces, amplitudes)
-
-
-def _pass(response: Spectra, signal: Array) -> Array:
-    """Return what a signal leaves in the channels, shape (channels, samples), at the frequencies of its response."""
-    spectrum = np.fft.rfft(signal)
-    passed = np.zeros((len(response), len(spectrum)), dtype=complex)
-    passed[:, : response.shape[1]] = response * spectrum[: response.shape[1]]
-    return np.fft.irfft(passed, len(signal))
 
 
 def find_bias_drift(objective: Objective, evaluation: Evaluation) -> Disturbance | None:

@@ -19,8 +19,13 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.diagnosis.fit import solve_step
-from seatsim.diagnosis.localise.input_estimate import InputEstimate, estimate_current, estimate_error, estimate_input
-from seatsim.diagnosis.localise.reconstruction import PORTS
+from seatsim.diagnosis.localise.input_estimate import (
+    PORTS,
+    InputEstimate,
+    estimate_current,
+    estimate_error,
+    estimate_input,
+)
 from seatsim.diagnosis.movement import measure_movements
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
 from seatsim.diagnosis.result import Share
@@ -66,24 +71,20 @@ def evaluate_hypotheses(
         estimates = {run: of_run[name] for run, of_run in runs.items()}
         signals = {run: estimate.signal for run, estimate in estimates.items()}
         quantity, unit = _QUANTITIES.get(name, ("force", "N"))
-        evidence = _negative_log_evidence(objective, nuisances, estimates)
+        evidence = _negative_log_evidence(nuisances, estimates)
         hypotheses[name] = FaultHypothesis(evidence, quantity, unit, signals, estimates=estimates)
-    errors = [
-        hypotheses.pop(name)._replace(
-            quantity=f"error of {name}", unit=problem.recording.channels[name].unit, channel=name
-        )
-        for name in problem.channels
-    ]
-    errors.append(_as_sensor_error(hypotheses.pop(FLOOR)))
-    if "floor" in hypotheses and not follows_floor(problem.recording):
-        errors.append(_as_sensor_error(hypotheses.pop("floor")))
+
+    def pop_error(name: str, channel: str) -> FaultHypothesis:
+        """Return a hypothesis as the error of a channel's sensor."""
+        unit = problem.recording.channels[channel].unit
+        return hypotheses.pop(name)._replace(quantity=f"error of {channel}", unit=unit, channel=channel)
+
+    errors = [pop_error(name, name) for name in problem.channels]
+    # An unseen motion of the floor is, with the other sign, an error of the floor's accelerometer.
+    motions = [FLOOR, "floor"] if "floor" in hypotheses and not follows_floor(problem.recording) else [FLOOR]
+    for error in [pop_error(name, FLOOR) for name in motions]:
+        errors.append(error._replace(signals={run: -values for run, values in error.signals.items()}))
     return hypotheses | {"sensor": min(errors, key=lambda hypothesis: hypothesis.negative_log_evidence)}
-
-
-def _as_sensor_error(motion: FaultHypothesis) -> FaultHypothesis:
-    """Return an unseen motion of the floor as the equivalent error of the floor's accelerometer."""
-    signals = {run: -values for run, values in motion.signals.items()}
-    return motion._replace(signals=signals, quantity=f"error of {FLOOR}", unit="m/s^2", channel=FLOOR)
 
 
 def _estimate_inputs(
@@ -105,9 +106,7 @@ def _estimate_inputs(
     return estimates
 
 
-def _negative_log_evidence(
-    objective: Objective, nuisances: Linearisation, estimates: dict[str, InputEstimate]
-) -> float:
+def _negative_log_evidence(nuisances: Linearisation, estimates: dict[str, InputEstimate]) -> float:
     """Return minus twice the log evidence per number compared, less 1, the nuisances refitted to first order."""
     deviations = nuisances.evaluation.parameters.deviations
     count = len(deviations)
@@ -123,7 +122,7 @@ def _negative_log_evidence(
         matrix, right, cost = matrix + products[1:, 1:], right + products[1:, 0], cost + products[0, 0]
         rows += estimate.residuals.size
     ones = np.ones(count)
-    step = solve_step(matrix, right, count, deviations, -ones, ones, objective.settings.fit.prior_std)
+    step = solve_step(matrix, right, count, deviations, -ones, ones)
     return float(cost - 2.0 * step @ right + step @ matrix @ step) / rows - 1.0
 
 
@@ -132,6 +131,10 @@ _ON_FRAME = ("damper", "suspension", "floor")
 _NOTHING: Mapping[str, Array] = MappingProxyType({})
 _LEAST_DIFFERENCE = 1e-6
 """Least difference in evidence that is divided by, where no block explains anything."""
+
+
+_REMAINDER_FACTOR = 1.2
+"""Share of the remainder's block beside the largest share of the effects found: above 1, for it stands first."""
 
 
 class Remainder(NamedTuple):
@@ -162,8 +165,7 @@ def share_gap(
     for term, move in zip(chosen.parameters.terms, measure_movements(objective.problem, chosen), strict=True):
         shares[term.block] = shares.get(term.block, 0.0) + float(np.mean(move**2))
     if remainder is not None:
-        factor = objective.settings.localisation.remainder_factor
-        scale = factor * max(shares.values(), default=1.0) / remainder.shares[remainder.block]
+        scale = _REMAINDER_FACTOR * max(shares.values(), default=1.0) / remainder.shares[remainder.block]
         for block, share in remainder.shares.items():
             shares[block] = shares.get(block, 0.0) + share * scale
     total = sum(shares.values())

@@ -2,20 +2,16 @@
 
 Below each field stand its meaning with its unit, what is lost where it is raised or lowered, and how its value was
 chosen: "on simulated rigs" whose effects have other functional forms than the candidates; "numerically", so that the
-result does not depend on it; "by convention"; or by what is said. Thresholds stand only here; what a definition fixes
-(rows left out, channels compared) stands with that definition.
+result does not depend on it; "by convention"; or by what is said. What a definition fixes (rows left out, channels
+compared), and what only makes a computation accurate or quick (steps of a search, samples of a bootstrap), stands with
+the code that uses it.
 """
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
-from seatsim.diagnosis.settings.examining import (
-    DamperFormSettings,
-    DesignSettings,
-    LocalisationSettings,
-    ReconstructionSettings,
-)
+from seatsim.diagnosis.settings.examining import DamperFormSettings, DesignSettings, LocalisationSettings
 from seatsim.diagnosis.settings.judging import CrossValidationSettings, DecisionSettings, ValidationSettings
 from seatsim.diagnosis.settings.searching import FitSettings, NoiseSettings, SelectionSettings, WideningSettings
 
@@ -29,7 +25,6 @@ class DiagnosisSettings(NamedTuple):
     decision: DecisionSettings = DecisionSettings()
     cross_validation: CrossValidationSettings = CrossValidationSettings()
     validation: ValidationSettings = ValidationSettings()
-    reconstruction: ReconstructionSettings = ReconstructionSettings()
     localisation: LocalisationSettings = LocalisationSettings()
     design: DesignSettings = DesignSettings()
     damper_forms: DamperFormSettings = DamperFormSettings()

@@ -38,10 +38,6 @@ class DecisionSettings(NamedTuple):
     """Share that a known set takes off the part of the gap that a right model would take off.
     Trades off: lower: confident wrong verdicts.
     Chosen: the recording's contract."""
-    least_removable: float = 0.01
-    """Removable gap, in standard deviations, below which its share is not asked for.
-    Trades off: lower: the share of a small number decides.
-    Chosen: numerically."""
 
 
 class CrossValidationSettings(NamedTuple):
@@ -69,18 +65,6 @@ class CrossValidationSettings(NamedTuple):
     Trades off: higher: a sensor is blamed where a change of the rig does as much.
     Chosen: sensors are calibrated, while dampers and cushions age; on measured rigs, where forms are wrong
     anyway."""
-    sets_compared: int = 8
-    """Sets of each size that are cross-validated.
-    Trades off: more: time.
-    Chosen: on measured rigs."""
-    folds: int = 3
-    """Parts of the runs that are left out in turn.
-    Trades off: more: time.
-    Chosen: by convention."""
-    doubtful: float = 1.5
-    """Factor by which a run left out may get worse before the step of the other runs is checked and shortened.
-    Trades off: lower: time; higher: effects far from linear are judged by steps that no fit would take.
-    Chosen: numerically."""
 
     @property
     def power(self) -> float:
@@ -91,17 +75,6 @@ class CrossValidationSettings(NamedTuple):
 class ValidationSettings(NamedTuple):
     """The shrink stated on a run held out of the fit, with its interval."""
 
-    block_length: float = 1.0
-    """Length of the blocks of the bootstrap [s].
-    Trades off: shorter than the rig's memory: intervals too narrow; longer: too few blocks.
-    Chosen: several periods of the seat's resonance."""
-    draws: int = 400
-    """Bootstrap samples.
-    Trades off: more: time.
-    Chosen: numerically."""
-    percentiles: tuple[float, float] = (5.0, 95.0)
-    """Ends of the interval [%].
-    Chosen: by convention."""
     excitation_std: float = 0.1
     """Standard deviation by which the shrink differs between excitations of one kind.
     Trades off: lower: intervals that do not cover.
@@ -118,14 +91,6 @@ class ValidationSettings(NamedTuple):
     """Quantile of the shrink over the suitable runs at which the held-out run lies.
     Trades off: higher: a stated shrink that other excitations do not reach.
     Chosen: least bias of the stated shrink on sealed rigs."""
-    least_time: float = 0.03
-    """Least standard deviation of a time, as a share of the interval between rows.
-    Trades off: higher: intervals of delays that are known better are too wide.
-    Chosen: a tenth of what rounding to whole rows makes."""
-    settled: float = 1e-5
-    """The stated fit ends where a step lowers its cost by less than this share.
-    Trades off: higher: a parameter ends farther from its estimate than its standard deviation.
-    Chosen: numerically."""
     by_chance: float = 2.0
     """Standard deviations of the power of noise by which a residual must exceed it to show an error of the form.
     Trades off: higher: intervals that do not cover under a wrong form; lower: too wide ones under a right form.

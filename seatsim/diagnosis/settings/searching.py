@@ -41,10 +41,6 @@ class NoiseSettings(NamedTuple):
 class FitSettings(NamedTuple):
     """Gauss-Newton fits of nuisance parameters and effects."""
 
-    prior_std: float = 0.58
-    """Standard deviation of a nuisance parameter, as a share of its tolerance.
-    Trades off: lower: parameters absorb less of an effect.
-    Chosen: 1/sqrt(3), of a uniform distribution."""
     difference_step: float = 0.02
     """Step of the finite differences, in natural sizes of a parameter.
     Trades off: larger: curvature enters; smaller: switching dampers make differences rough.
@@ -57,19 +53,6 @@ class FitSettings(NamedTuple):
     """A fit ends where a step lowers its cost by less than this share.
     Trades off: lower: more steps for no change of the verdict.
     Chosen: numerically."""
-    backtracking: tuple[float, ...] = (1.0, 0.4, 0.12)
-    """Fractions of a step that are tried in turn.
-    Trades off: more of them: slower, safer descents.
-    Chosen: numerically."""
-    pattern_steps: tuple[float, ...] = (0.3, 0.15, 0.08, 0.04, 0.02)
-    """Steps of a pattern search, in natural sizes of a parameter.
-    Trades off: the first larger: other minima are reached; the last smaller: a nearer minimum, more time.
-    Chosen: numerically."""
-    search_share: float = 0.7
-    """Share of the time budget after which the search ends.
-    Trades off: higher: more is tried where time is short; lower: more of it is left to validate and state the
-    answer.
-    Chosen: by convention."""
     fitted_tolerance: float = 0.5
     """Tolerance of parameters that a recording states as `fitted`.
     Trades off: higher: effects vanish in parameters; lower: what a fit has absorbed of an effect cannot be given
@@ -108,25 +91,10 @@ class SelectionSettings(NamedTuple):
     """Most effects of a set that is sought under uniform weights.
     Trades off: more: time.
     Chosen: by convention."""
-    stretch: float = 6.0
-    """Largest factor by which the screening enlarges the start of a candidate.
-    Trades off: larger: a linear model is trusted farther than it holds.
-    Chosen: on simulated rigs."""
-    limit_factors: tuple[float, ...] = (1.08, 1.16, 1.27)
-    """Factors that are tried on a limit that acts too much; their inverses where it acts too little.
-    Trades off: more: fewer fits that end in a wrong minimum, more time: a limit acts by what exceeds it.
-    Chosen: on simulated rigs."""
-    limit_starts: tuple[float, ...] = (1.0, 0.5, 0.7, 1.4, 2.0)
-    """Factors on the start of a limit from which fits are begun.
-    Trades off: a fit does not feel a limit far beyond the motion.
-    Chosen: on simulated rigs."""
     shape_reach: float = 8.0
     """Factor by which a parameter of shape may leave its start.
     Trades off: larger: effects imitate each other by extreme shapes.
     Chosen: on simulated rigs."""
-    least_factor: float = 1e-3
-    """Factor on a start below which the data do not show the candidate at all.
-    Chosen: numerically."""
     nothing_left: float = 0.15
     """Reduced chi-square less 1 below which nothing is left to explain.
     Trades off: lower: false alarms; higher: weak effects are missed.
@@ -144,9 +112,6 @@ class SelectionSettings(NamedTuple):
 class WideningSettings(NamedTuple):
     """The second search, with wider tolerances of the parameters that end at their bounds."""
 
-    at_bound: float = 0.98
-    """Deviation, in tolerances, from which a parameter is at its bound.
-    Chosen: numerically."""
     factor: float = 3.0
     """Factor on the tolerance of parameters at their bounds.
     Trades off: larger: a parameter takes the place of an effect; smaller: what a fit has absorbed stays absorbed.

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
+from seatsim.diagnosis import cross_validate as cv
 from seatsim.diagnosis.cross_validate import cross_validate, select_by_cross_validation
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.noise import weigh_gap
@@ -65,9 +66,10 @@ def test_the_gap_of_each_run_is_that_of_a_fit_without_it(names):
     np.testing.assert_allclose(found, left_out(objective, names, 3), rtol=2e-3)
 
 
-def test_several_runs_are_left_out_together_where_there_are_more_than_folds():
+def test_several_runs_are_left_out_together_where_there_are_more_than_folds(monkeypatch):
+    monkeypatch.setattr(cv, "_FOLDS", 2)
     runs = {f"run {k}": 60 + 10 * k for k in range(5)}
-    objective = pose(runs, folds=2)
+    objective = pose(runs)
     names = ("rig.one", "rig.overfit")
     found = leave_out(objective, fitted(objective, *names))
     np.testing.assert_allclose(found, left_out(objective, names, 2), rtol=2e-3)

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from seatsim.diagnosis.fit import fit, list_directions, search_pattern, solve_step
+from seatsim.diagnosis.fit import PATTERN_STEPS, fit, list_directions, search_pattern, solve_step
+from seatsim.diagnosis.objective import PRIOR_STD
 from seatsim.diagnosis.settings import DiagnosisSettings
 
 from .toy import (
@@ -38,10 +39,10 @@ def starting(objective, *terms, deviations=None):
     return start, objective.linearise_nuisances(start)
 
 
-def bounded(jacobian, residual, count, vector, low, high, prior_std):
+def bounded(jacobian, residual, count, vector, low, high):
     """Return the step by scipy, with the prior as further rows of the least-squares problem."""
-    prior = np.eye(count, len(vector)) / prior_std
-    rows, target = np.vstack([jacobian, prior]), np.concatenate([residual, -vector[:count] / prior_std])
+    prior = np.eye(count, len(vector)) / PRIOR_STD
+    rows, target = np.vstack([jacobian, prior]), np.concatenate([residual, -vector[:count] / PRIOR_STD])
     return lsq_linear(rows, target, (low - vector, high - vector), method="bvls", tol=1e-14).x
 
 
@@ -53,7 +54,7 @@ def test_a_step_is_that_of_bounded_least_squares_with_the_prior(seed, reach):
     jacobian = rng.standard_normal((60, 6)) * np.array([1.0, 30.0, 0.2, 5.0, 1e3, 0.01])
     residual, vector = jacobian @ rng.standard_normal(6) + rng.standard_normal(60), 0.3 * rng.standard_normal(6)
     low, high = vector - reach * rng.random(6), vector + reach * rng.random(6)
-    arguments = (3, vector, low, high, 0.4)
+    arguments = (3, vector, low, high)
     step = solve_step(jacobian.T @ jacobian, jacobian.T @ residual, *arguments)
     expected = bounded(jacobian, residual, *arguments)
     size = np.linalg.norm(jacobian, axis=0)
@@ -126,7 +127,7 @@ def test_a_rig_that_leaves_all_bounds_is_no_better_than_the_start():
 def test_a_component_beyond_its_bound_by_rounding_stays_where_it_is():
     matrix, right = np.eye(2), np.array([-3.0, 3.0])
     beyond = np.array([-1.0 - 1e-10, 1.0 + 1e-10])
-    step = solve_step(matrix, right, 0, beyond, -np.ones(2), np.ones(2), 1.0)
+    step = solve_step(matrix, right, 0, beyond, -np.ones(2), np.ones(2))
     np.testing.assert_array_equal(step, 0.0)
 
 
@@ -145,7 +146,7 @@ def test_a_pattern_search_ends_within_its_smallest_step_of_the_minimum_and_evalu
     # The simulation of the start is the first of them.
     amounts = [round(effect.amount, 9) for _, _, (effect,) in objective.problem.calls]
     assert len(amounts) == len(set(amounts)) > 5
-    smallest = objective.settings.fit.pattern_steps[-1] * float(offer("a.one").scale[0])
+    smallest = PATTERN_STEPS[-1] * float(offer("a.one").scale[0])
     assert found.parameters.values[-1][0] == pytest.approx(1.0, abs=smallest)
     assert found.cost < start.cost and np.array_equal(found.parameters.deviations, start.parameters.deviations)
     assert search_pattern(objective, found) is found

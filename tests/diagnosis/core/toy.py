@@ -12,7 +12,7 @@ import numpy as np
 from seatsim.dampers.bingham import Bingham
 from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.noise import weigh_uniformly
-from seatsim.diagnosis.objective import Objective
+from seatsim.diagnosis.objective import PRIOR_STD, Objective
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.effects.base import EffectSpecification
@@ -223,7 +223,7 @@ def stack(objective, names):
     Its unknowns are deviations and amounts, its residual's square is the cost.
     """
     problem = objective.problem
-    count, prior = len(problem.parameters), 1.0 / problem.settings.fit.prior_std
+    count, prior = len(problem.parameters), 1.0 / PRIOR_STD
     columns = [whiten(objective, f"nuisance {k}") for k in range(count)] + [whiten(objective, name) for name in names]
     gap = [
         objective.weights(problem.measured[run] - problem.signals[run]["nominal"], run).ravel() for run in problem.runs

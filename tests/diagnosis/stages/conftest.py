@@ -8,7 +8,7 @@ from .toy import NOMINAL, respond_linearly
 SIMULATING = tuple(
     words("""
     seatsim.recordings.replay seatsim.diagnosis.problem seatsim.recordings.validation
-    seatsim.diagnosis.localise.reconstruction seatsim.diagnosis.design.experiment
+    seatsim.diagnosis.localise.input_estimate seatsim.diagnosis.design.experiment
 """)
 )
 """Modules that simulate a rig."""

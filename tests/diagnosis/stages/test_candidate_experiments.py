@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.design.candidate_experiments import EXCITATIONS, SWEPT, excite, list_candidate_experiments
+from seatsim.diagnosis.design.candidate_experiments import EXCITATIONS, excite, list_candidate_experiments
 from seatsim.simulation.inputs import BenchInputs
 
 from .toy import CHANNELS, RATE, pose, record
@@ -79,7 +79,7 @@ def test_factors_change_the_free_keys_of_an_excitation_and_no_current_exceeds_th
     found = excite(seat, "sweep", {"amplitude": 2.0, "stop_frequency": 0.5, "current": 9.0})
     assert found.text == "sweep the floor from 1 to 10 Hz at 3 m/s^2"
     assert found.scenario["controller"] == {"law": "constant", "current": 2.0} and np.all(found.floor.command == 2.0)
-    assert found.scenario["excitation"] == dict(SWEPT) | {"stop_frequency": 10.0, "amplitude": 3.0}
+    assert found.scenario["excitation"] == EXCITATIONS["sweep"].keys | {"stop_frequency": 10.0, "amplitude": 3.0}
     bump = excite(seat, "bump", {"height": 0.5})
     assert bump.text == "drive over a bump of 25 mm" and bump.scenario["excitation"]["height"] == 0.025
     for name, item in EXCITATIONS.items():

@@ -22,7 +22,7 @@ def compare(objective, names, fitted, offered=()):
     nuisances = objective.linearise_nuisances(calibrated)
     sensitivities = measure_sensitivities(objective, calibrated, offered)
     selection = Selection(calibrated, ((calibrated,), tuple(singles)), nuisances, sensitivities=sensitivities)
-    return measure_collinearity(objective, selection, names)
+    return measure_collinearity(selection, names)
 
 
 def leave(objective, signal, nuisances=("mass", "stiffness")):

@@ -45,7 +45,7 @@ def test_what_is_slow_and_a_sensors_is_the_drift_of_its_zero(signals, block, dri
 
 def test_words_name_what_predicts_it_best_and_the_next_two():
     shares = {"displacement": 0.22, "velocity": 0.314, "past motion": 0.05, "floor motion": 0.12, "everything": 0.9}
-    assert describe_in_words(SETTINGS, found([3.0 * np.ones(5), 4.0 * np.ones(5)], shares)) == [
+    assert describe_in_words(found([3.0 * np.ones(5), 4.0 * np.ones(5)], shares)) == [
         "The unexplained force in the suspension has an RMS of 3.54 N.",
         "It follows velocity best, which predicts 31% of its power on runs left out.",
         "The displacement predicts 22% of it.",

@@ -11,6 +11,7 @@ from seatsim.diagnosis.estimates import compare_comfort, estimate_causes, estima
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.result import Trace
 from seatsim.diagnosis.select import Selection
+from seatsim.diagnosis.solution import Solution
 
 from .toy import RATE, SKIP, Added, AddedTwice, add_taps, offer, place, pose, record, weigh_stated, whiten
 
@@ -23,22 +24,17 @@ TWICE = Candidate(
 HALF = (Added("one", 0.5),)
 
 
-def pose_one(folder, truth=HALF, noise=0.05):
-    return weigh_stated(pose(record(folder, truth, noise=noise)))
+def pose_one(folder, truth=HALF):
+    return weigh_stated(pose(record(folder, truth)))
 
 
-def scatter(objective, causes, scale=1.0):
+def scatter(objective, causes):
     """Return the posterior standard deviations of nuisances and amounts of the causes, from their signals."""
     signals = [0.1 * whiten(objective, "mass"), 0.1 * whiten(objective, "stiffness")]
     signals += [whiten(objective, cause) for cause in causes]
     precision = np.diag([PRIOR**-2, PRIOR**-2] + [0.0] * len(causes))
     covariance = np.linalg.inv(np.array(signals) @ np.array(signals).T + precision)
-    return np.sqrt(scale * np.diag(covariance))
-
-
-def deviations_of(objective, *terms, deviations=None):
-    rig = objective.evaluate([place(objective.problem, *terms, deviations=deviations)])[0]
-    return estimate_standard_deviations(objective, rig, objective.linearise_nuisances(rig)), rig
+    return np.sqrt(np.diag(covariance))
 
 
 def test_an_error_of_the_form_that_shows_in_one_band_widens_what_that_band_says(folder):
@@ -47,7 +43,8 @@ def test_an_error_of_the_form_that_shows_in_one_band_widens_what_that_band_says(
     for rows in (400, 1600):
         runs = {"first": rows, "second": rows}
         objective = weigh_stated(pose(record(folder, (Added("one", 0.5), Added("three", 0.2)), runs, noise=0.01)))
-        found, _ = deviations_of(objective, (offer("a", "one"), 0.5))
+        rig = objective.evaluate([place(objective.problem, (offer("a", "one"), 0.5))])[0]
+        found = estimate_standard_deviations(objective, rig, objective.linearise_nuisances(rig))
         ratios.append(found[2] / scatter(objective, ["one"])[2])
     assert ratios[0] > 3.0 and ratios[1] == pytest.approx(2.0 * ratios[0], rel=0.4)
 
@@ -83,9 +80,8 @@ def rms_gap(problem, run, amounts):
     return np.sqrt(np.mean(np.square(gaps)))
 
 
-@pytest.fixture(scope="module")
-def found(folder):
-    """Causes of a rig with two effects, of four that may be, one of them chosen."""
+def test_an_effect_shrinks_the_calibrated_gap_of_the_held_out_run(folder):
+    # Two effects are at work, of four that may be; one of them is chosen.
     objective = pose_one(folder, (Added("one", 0.5), Added("two", 0.2)))
     problem = objective.problem
     rigs = {
@@ -95,27 +91,18 @@ def found(folder):
         "augmented": place(problem, (offer("a.one", "one", start=0.25), 0.45), deviations=[0.0, 0.05]),
     }
     rigs = {name: objective.evaluate([rig])[0] for name, rig in rigs.items()}
-    without = objective.on_runs(["first"])
-    held = {name: without.evaluate([rigs[name].parameters])[0] for name in ("calibrated", "augmented")}
+    kept = [rigs[name].parameters for name in ("calibrated", "augmented")]
+    calibrated, augmented = objective.on_runs(["first"]).evaluate(kept)
     nuisances = objective.linearise_nuisances(rigs["calibrated"])
     selection = Selection(rigs["calibrated"], ((rigs["calibrated"],), (rigs["single"], rigs["twice"])), nuisances)
     probabilities = {"c.absent": 0.1, "b.twice": 0.1, "a.one": 0.9, "d.absent": 0.2}
     decision = Decision("known", rigs["single"], [], probabilities, 0.0, 0.0)
-    augmented = objective.linearise_nuisances(held["augmented"])
-    given = objective, selection, decision, held["calibrated"], augmented, "second"
-    return objective, rigs, held, estimate_causes(*given), given
-
-
-def test_an_effect_shrinks_the_calibrated_gap_of_the_held_out_run(found):
-    objective, _, _, causes, _ = found
-    shrink = {cause.effect: cause.shrink for cause in causes}
-    base = rms_gap(objective.problem, "second", {"mass": 0.01, "stiffness": 0.02})
-    assert shrink["a.one"] == pytest.approx(
-        1.0 - rms_gap(objective.problem, "second", {"one": 0.4, "mass": 0.01}) / base
-    )
-    assert shrink["b.twice"] == pytest.approx(
-        1.0 - rms_gap(objective.problem, "second", {"one": 0.5, "two": 0.2}) / base
-    )
+    solution, found = Solution(objective, selection, decision), objective.linearise_nuisances(augmented)
+    shrink = {cause.effect: cause.shrink for cause in estimate_causes(solution, calibrated, found, "second")}
+    base = rms_gap(problem, "second", {"mass": 0.01, "stiffness": 0.02})
+    left = {"a.one": {"one": 0.4, "mass": 0.01}, "b.twice": {"one": 0.5, "two": 0.2}}
+    for effect, amounts in left.items():
+        assert shrink[effect] == pytest.approx(1.0 - rms_gap(problem, "second", amounts) / base)
     assert shrink["c.absent"] == shrink["d.absent"] == 0.0
 
 
@@ -128,7 +115,7 @@ def test_a_parameter_at_the_end_of_its_range_and_a_cause_all_of_whose_size_is_th
     decision = Decision("known", chosen, [], {"b.twice": 0.9, "c.three": 0.8}, 0.0, 0.0)
     selection = Selection(calibrated, ((calibrated,),), objective.linearise_nuisances(calibrated))
     found = objective.linearise_nuisances(chosen)
-    twice, third = estimate_causes(objective, selection, decision, calibrated, found, "first")
+    twice, third = estimate_causes(Solution(objective, selection, decision), calibrated, found, "first")
     assert (twice.ends, twice.at_bound, third.ends, third.at_bound) == (["second"], False, ["amount"], True)
     assert third.parameters["amount"].bound == (-20.0, 0.1)
 

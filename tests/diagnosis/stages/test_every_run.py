@@ -5,12 +5,12 @@ import dataclasses
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.validate import list_gaps, make_scenario, replay_runs, state_model_error
+from seatsim.diagnosis.validate import list_gaps, replay_runs, state_model_error
 from seatsim.recordings.gap import measure_gap
 from seatsim.recordings.validation import budget_errors, carry_input_noise, measure_step_error
 from seatsim.scenario.loading import single
 
-from .toy import SIZES, TAPS, Added, offer, place, pose, record
+from .toy import SIZES, TAPS, Added, make_scenario, offer, place, pose, record
 
 RUNS = {"first": 300, "second": 240, "third": 360}
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from seatsim.diagnosis.candidates import Candidate, list_candidates
-from seatsim.diagnosis.design import experiment
+from seatsim.diagnosis.design import candidate_experiments, experiment
 from seatsim.diagnosis.design.candidate_experiments import list_candidate_experiments
 from seatsim.diagnosis.design.experiment import propose_experiment
 from seatsim.diagnosis.fit import refit
@@ -54,17 +54,18 @@ def test_the_cheapest_experiment_that_parts_the_members_is_proposed(equivalent):
     assert found.scenario["name"] == "experiment-sweep"
 
 
-def test_an_optimised_excitation_parts_the_members_better_within_travel_and_current(equivalent):
+def test_an_optimised_excitation_parts_the_members_better_within_travel_and_current(equivalent, monkeypatch):
     objective, *fitted = equivalent
     usual = objective.settings
 
-    def propose(**changed):
+    def propose(trials=16, **changed):
+        monkeypatch.setattr(candidate_experiments, "_TRIALS", trials)
         settings = usual._replace(design=usual.design._replace(**changed))
         problem = dataclasses.replace(objective.problem, settings=settings)
         return propose_experiment(dataclasses.replace(objective, problem=problem), *fitted)
 
     # What the menu alone does not tell apart by enough is told apart by an excitation that is optimised.
-    plain, found = propose(trials=1, unlike=0.0), propose(trials=16, unlike=0.0)
+    plain, found = propose(trials=1, unlike=0.0), propose(unlike=0.0)
     assert plain.kind == found.kind == "excitation" and found.likeness_then <= plain.likeness_then
     top = objective.problem.scenario.coil.max_current
     assert 0.0 < found.scenario["controller"]["current"] <= top

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.localise.reconstruction import FAR_OFF, PORTS, Port, reconstruct
+from seatsim.diagnosis.localise.input_estimate import FAR_OFF, PORTS, Port, Reconstruction
 
 from .toy import CHANNELS, SKIP, Diverging, add_taps, place, pose, record, respond_to_taps, weigh_stated
 
@@ -18,7 +18,7 @@ def objective(folder):
 
 
 def build(objective, port, run="first", *terms):
-    return reconstruct(objective, place(objective.problem, *terms), run, port)
+    return Reconstruction(objective, place(objective.problem, *terms), run, port)
 
 
 def padded(problem, signal):

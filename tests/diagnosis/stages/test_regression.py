@@ -1,16 +1,12 @@
 """Regressions on runs left out, against ridge regressions solved as least-squares problems."""
 
-import dataclasses
-
 import numpy as np
 import pytest
 
+from seatsim.diagnosis.localise import discrepancy
 from seatsim.diagnosis.localise.discrepancy import explain_signal, predict_share
-from seatsim.diagnosis.settings.examining import LocalisationSettings
 
 from .toy import CHANNELS, RATE, SKIP, place, pose, record
-
-SETTINGS = LocalisationSettings()
 
 
 def draw(counts, regressors=3, seed=1):
@@ -18,11 +14,11 @@ def draw(counts, regressors=3, seed=1):
     return {run: rng.standard_normal((regressors, count)) * [[1.0], [50.0], [0.02]] for run, count in counts.items()}
 
 
-def ridge_errors(settings, train, test):
+def ridge_errors(train, test):
     """Return what a ridge regression, each regressor scaled to unit RMS, leaves of a target left out."""
     (known, values), (outside, truth) = train, test
     scale = np.sqrt(np.mean(known**2, axis=1))
-    strength = settings.ridge * len(values)
+    strength = discrepancy._RIDGE * len(values)
     rows = np.vstack([(known / scale[:, None]).T, np.sqrt(strength) * np.eye(len(known))])
     target = np.concatenate([values, np.zeros(len(known))])
     coefficients = np.linalg.lstsq(rows, target, rcond=None)[0] / scale
@@ -34,29 +30,30 @@ def join(parts, runs):
 
 
 @pytest.mark.parametrize("ridge", [1e-3, 0.5])
-def test_each_run_is_predicted_by_the_others(ridge):
+def test_each_run_is_predicted_by_the_others(ridge, monkeypatch):
+    monkeypatch.setattr(discrepancy, "_RIDGE", ridge)
     regressors = draw({"a": 60, "b": 90, "c": 40})
     rng, coefficients = np.random.default_rng(2), np.array([1.0, -0.02, 30.0])
     target = {run: coefficients @ known + rng.standard_normal(known.shape[1]) for run, known in regressors.items()}
-    settings, missed = SETTINGS._replace(ridge=ridge), 0.0
+    missed = 0.0
     for run in target:
         others = [other for other in target if other != run]
         train = join(regressors, others), join(target, others)
-        missed += np.sum(ridge_errors(settings, train, (regressors[run], target[run])) ** 2)
+        missed += np.sum(ridge_errors(train, (regressors[run], target[run])) ** 2)
     expected = 1.0 - missed / sum(np.sum(values**2) for values in target.values())
     assert 0.3 < expected < 0.8
-    assert predict_share(settings, regressors, target) == pytest.approx(expected, rel=1e-6)
+    assert predict_share(regressors, target) == pytest.approx(expected, rel=1e-6)
 
 
 def test_what_the_regressors_make_is_predicted_and_what_they_do_not_is_not():
     regressors = draw({"a": 200, "b": 200})
     made = {run: np.array([1.0, -0.02, 30.0]) @ known for run, known in regressors.items()}
     apart = {run: values[1] for run, values in draw({"a": 200, "b": 200}, seed=9).items()}
-    assert predict_share(SETTINGS, regressors, made) > 0.999
-    assert predict_share(SETTINGS, regressors, apart) < 0.05
+    assert predict_share(regressors, made) > 0.999
+    assert predict_share(regressors, apart) < 0.05
     # The sign of what was found in one run is the wrong one in the other.
     turned = {"a": made["a"], "b": -made["b"]}
-    assert predict_share(SETTINGS, regressors, turned) == 0.0
+    assert predict_share(regressors, turned) == 0.0
 
 
 FAMILIES = ["displacement", "velocity", "velocity and current", "past motion", "floor motion"]
@@ -98,12 +95,10 @@ def test_a_force_that_the_rig_makes_is_predicted_by_its_family(problem, make, fa
     assert found[family] > 0.35 and found["everything"] >= found[family]
 
 
-def test_signals_at_a_low_rate_are_not_thinned(problem):
-    slow = dataclasses.replace(
-        problem, settings=problem.settings._replace(localisation=SETTINGS._replace(regression_rate=200.0))
-    )
+def test_signals_at_a_low_rate_are_not_thinned(problem, monkeypatch):
+    monkeypatch.setattr(discrepancy, "_RATE", 200.0)
     signals = of_motion(problem, lambda x, v, i, a: 1e5 * x**3)
-    assert explain_signal(slow, place(slow), signals)["displacement"] > 0.999
+    assert explain_signal(problem, place(problem), signals)["displacement"] > 0.999
 
 
 def test_a_single_run_is_predicted_by_halves():
@@ -112,8 +107,8 @@ def test_a_single_run_is_predicted_by_halves():
     target = np.array([1.0, -0.02, 30.0]) @ known + np.random.default_rng(2).standard_normal(101)
     halves = slice(0, 50), slice(50, 101)
     errors = [
-        ridge_errors(SETTINGS, (known[:, train], target[train]), (known[:, test], target[test]))
+        ridge_errors((known[:, train], target[train]), (known[:, test], target[test]))
         for train, test in (halves, halves[::-1])
     ]
     expected = 1.0 - np.sum(np.concatenate(errors) ** 2) / np.sum(target**2)
-    assert predict_share(SETTINGS, regressors, {"a": target}) == pytest.approx(expected, rel=1e-6)
+    assert predict_share(regressors, {"a": target}) == pytest.approx(expected, rel=1e-6)

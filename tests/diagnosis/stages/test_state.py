@@ -10,7 +10,7 @@ from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.result import Share
 from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.solution import Solution
-from seatsim.diagnosis.state import validate_on_held_out
+from seatsim.diagnosis.validate import validate_on_held_out
 
 from .toy import CHANNELS, Added, offer, place, pose, record, weigh_stated
 

@@ -11,7 +11,6 @@ from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.diagnosis.validate import (
     choose_held_out_run,
     choose_typical_run,
-    make_scenario,
     measure_gaps,
     refit_without,
     replay_runs,
@@ -19,7 +18,7 @@ from seatsim.diagnosis.validate import (
 from seatsim.effects.sensor import Gain
 from seatsim.scenario.loading import single
 
-from .toy import RATE, SKIP, Added, add_taps, offer, place, pose, record, weigh_stated
+from .toy import RATE, SKIP, Added, add_taps, make_scenario, offer, place, pose, record, weigh_stated
 
 
 @dataclasses.dataclass(frozen=True)
@@ -44,7 +43,7 @@ class Moved:
         return gone + dict(self.left).get(run, 0.0)
 
 
-def choose(shares, shrink, effects=("one",), quantile=0.25, **changed):
+def choose(shares, shrink, effects=("one",), **changed):
     """Return the run chosen, from the share of what each effect moves in each run, and the shrink."""
     runs = tuple(f"run {k}" for k in range(len(shrink)))
     moves = {run: {e: np.sqrt(shares[e][k]) for e in shares} for k, run in enumerate(runs)}
@@ -55,7 +54,7 @@ def choose(shares, shrink, effects=("one",), quantile=0.25, **changed):
     for effect in effects:
         rig = rig.add(offer(f"x.{effect}", effect), np.array([1.0]))
     still = {run: np.zeros((1, 4)) for run in runs}
-    return choose_held_out_run(problem, Evaluation(rig, still, {}, 0.0), np.array(shrink), quantile)
+    return choose_held_out_run(problem, Evaluation(rig, still, {}, 0.0), np.array(shrink))
 
 
 @pytest.mark.parametrize(
@@ -183,9 +182,11 @@ BLOCKS, LENGTH = 40, 20
 
 
 @pytest.fixture
-def draw_residuals(folder):
+def draw_residuals(folder, monkeypatch):
     """Return a function that draws residuals of two rigs, whose blocks differ in strength, and bootstraps them."""
-    problem = pose(record(folder), validation={"excitation_std": 0.0, "block_length": LENGTH / RATE, "draws": 200})
+    monkeypatch.setattr(validate, "_DRAWS", 200)
+    monkeypatch.setattr(validate, "BLOCK_LENGTH", LENGTH / RATE)
+    problem = pose(record(folder), validation={"excitation_std": 0.0})
 
     def bootstrap(rng, shrink, correlation=0.0, spread=0.0, problem=problem):
         strength = np.repeat(rng.uniform(0.5, 1.5, BLOCKS), LENGTH)

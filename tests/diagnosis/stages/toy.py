@@ -5,12 +5,13 @@ plant's parameters and effects, each with its own taps by channel. Real effects 
 """
 
 from dataclasses import dataclass, field, replace
+from types import SimpleNamespace
 from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from seatsim.diagnosis.candidates import Candidate
-from seatsim.diagnosis.localise.reconstruction import PORTS, reconstruct
+from seatsim.diagnosis.localise.input_estimate import PORTS, Reconstruction
 from seatsim.diagnosis.problem import pose_problem
 from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.effects.base import EffectSpecification
@@ -217,17 +218,9 @@ def whiten(objective, cause):
     return np.concatenate(parts)
 
 
-@dataclass(frozen=True)
-class _Unweighed:
-    """A problem without weights, to drive a rig by an input."""
-
-    problem: object
-    weights: object = None
-
-
 def drive(problem, run, port, signal):
     """Return what a signal at a port adds to the channels of a run, shape (channels, samples)."""
-    rig = reconstruct(_Unweighed(problem), place(problem), run, port)
+    rig = Reconstruction(SimpleNamespace(problem=problem), place(problem), run, port)
     return rig.simulate_with(signal) - rig.simulate_with(np.zeros(rig.samples))
 
 
@@ -266,3 +259,8 @@ def slow_floor(rows, seed=3):
     return np.convolve(
         np.cumsum(np.random.default_rng(seed).standard_normal(rows + 40)) / 10.0, np.ones(20) / 20.0, "same"
     )[20:-20]
+
+
+def make_scenario(problem, nominal, rig):
+    """Return a nominal scenario with the parameters and effects of a rig."""
+    return problem.augmented(rig.deviations, rig.effects, nominal)
