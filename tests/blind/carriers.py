@@ -15,6 +15,11 @@ BENCH_CHANNELS = {
     "damper_force": {"unit": "N", "noise_rms": 0.5},
     "current_command": {"unit": "A"},
 }
+SEAT_CHANNELS = {
+    "floor_acceleration": {"unit": "m/s^2"},
+    "driver_acceleration": {"unit": "m/s^2", "noise_rms": 1e-3},
+    "suspension_displacement": {"unit": "m", "noise_rms": 1e-6},
+}
 PLANT = parse("""
     {frame_mass: 20.0, driver_mass: 80.0, suspension_stiffness: 9000.0, suspension_damping: 600.0,
      cushion_stiffness: 60000.0, cushion_damping: 1500.0}
@@ -83,25 +88,18 @@ def seat_carrier():
     for k in range(2):
         floor = np.clip(time, 0.0, 1.0) * draw_waves(np.random.default_rng(k), time, 6, 1.0, 6.0)
         motion = simulate_linear(PLANT, floor, 1.0 / RATE)
-        tables[f"run-{k}"] = {
-            "floor_acceleration": floor,
-            "driver_acceleration": motion.driver,
-            "suspension_displacement": motion.x,
-        }
-    channels = {
-        "floor_acceleration": {"unit": "m/s^2"},
-        "driver_acceleration": {"unit": "m/s^2", "noise_rms": 1e-3},
-        "suspension_displacement": {"unit": "m", "noise_rms": 1e-6},
-    }
-    nominal = {
-        "plant": PLANT,
-        "controller": {"law": "replay", "current": 0.0},
-        "excitation": {"kind": "recording"},
-    }
-    return rig("seat", 0.0, channels, tables, nominal, (0.0,) * 4, rate=130.0, max_current=1.0)
+        tables[f"run-{k}"] = dict(zip(SEAT_CHANNELS, (floor, motion.driver, motion.x), strict=True))
+    nominal = {"plant": PLANT, "controller": {"law": "replay", "current": 0.0}, "excitation": {"kind": "recording"}}
+    return rig("seat", 0.0, SEAT_CHANNELS, tables, nominal, (0.0,) * 4, rate=130.0, max_current=1.0)
 
 
 def write_yaml(content, path):
     """Write a scenario."""
     YAML(typ="safe").dump(content, path)
     return path
+
+
+def files_of(folder, but="no such name"):
+    """Return the bytes of every file below a folder by its place there, but of those whose name holds a word."""
+    found = {str(path.relative_to(folder)): path for path in sorted(folder.rglob("*.*")) if path.is_file()}
+    return {name: path.read_bytes() for name, path in found.items() if but not in name}

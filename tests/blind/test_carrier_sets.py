@@ -15,17 +15,13 @@ from seatsim.cli.outputs.diagnosis_results import make_score_tables
 from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
 
-from .carriers import bench_carrier, write_carrier
+from .carriers import bench_carrier, files_of, write_carrier
 from .test_score import CARRIED
 
 
 @pytest.fixture(scope="module")
 def recording(tmp_path_factory):
     return write_carrier(bench_carrier(0.02), tmp_path_factory.mktemp("carrier") / "mine")
-
-
-def files_of(folder):
-    return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*.*")) if p.is_file()}
 
 
 def test_a_set_is_sealed_repeatable_and_silent(recording, tmp_path):
@@ -35,8 +31,8 @@ def test_a_set_is_sealed_repeatable_and_silent(recording, tmp_path):
     first, second = make("first"), make("second")
     opened = unseal(tmp_path / "first.sealed", first, tmp_path / "first")
     assert opened.labels == unseal(tmp_path / "second.sealed", second, tmp_path / "second").labels
-    cases = {name: data for name, data in files_of(tmp_path / "first").items() if "seal" not in name}
-    assert cases == {name: data for name, data in files_of(tmp_path / "second").items() if "seal" not in name}
+    cases = files_of(tmp_path / "first", but="seal")
+    assert cases == files_of(tmp_path / "second", but="seal")
     for name, data in cases.items():
         text = (gzip.decompress(data) if name.endswith(".gz") else data).decode().splitlines()
         assert not [word for word in (*EFFECTS, "carried", UNTOUCHED) if any(word in line for line in text)]
@@ -59,9 +55,8 @@ def test_labels_beside_the_recordings_and_short_runs_are_refused(recording, tmp_
 
 def test_a_score_counts_wrong_names_and_sizes_and_leaves_the_untouched_out():
     untouched = {"kind": "untouched", "effects": [], "blocks": []}
-    named = Verdict(
-        "unknown", causes=("coil.delay",), selected=("coil.delay",), parameters={"coil.delay": {"time": 0.012}}
-    )
+    delay = ("coil.delay",)
+    named = Verdict("unknown", causes=delay, selected=delay, parameters={"coil.delay": {"time": 0.012}})
     wrong = Verdict("known", causes=("driver.mass",), selected=("driver.mass",))
     found = score_verdicts({"a": CARRIED, "b": CARRIED, "c": untouched}, {"a": named, "b": wrong, "c": wrong})
     assert (found.right.right, found.right.total, found.cases) == (1, 2, 3)

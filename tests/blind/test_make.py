@@ -1,6 +1,7 @@
 """Sets: repeatable, resumable, sealed, and silent about their labels."""
 
 import gzip
+from collections import Counter
 
 import numpy as np
 import pytest
@@ -11,9 +12,7 @@ from seatsim.blind.make.make import make, make_public
 from seatsim.blind.sealed import EFFECTS, unseal
 from seatsim.schema.errors import InputError
 
-
-def contents(folder):
-    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*.*")) if path.is_file()}
+from .carriers import files_of
 
 
 def made(base, name, kinds, cases=1, seed=None, stop=None):
@@ -27,24 +26,18 @@ def whole(tmp_path_factory):
     return made(tmp_path_factory.mktemp("whole"), "set", "one", 2, seed=3)
 
 
-def without_seal(folder):
-    return {name: data for name, data in contents(folder).items() if "seal" not in name}
-
-
 def test_nothing_in_a_set_tells_the_label(whole, tmp_path):
     folder, sealed, key = whole
     opened = unseal(sealed, key, folder)
     assert {label["kind"] for label in opened.labels.values()} == {"one"}
     assert all(1.0 <= size < 11.0 for label in opened.labels.values() for size in label["materialities"])
     telling = {*EFFECTS, "effect:", "seed", "severity", "outside", *opened.labels["case-0001"]["forms"]}
-    for name, data in without_seal(folder).items():
+    for name, data in files_of(folder, but="seal").items():
         text = (gzip.decompress(data) if name.endswith(".gz") else data).decode()
-        assert not [
-            word for word in telling if word in text.splitlines()[0] or (name.endswith("yaml") and word in text)
-        ]
-    assert sorted(p.name for p in (folder / "case-0001").iterdir()) == (
-        ["nominal.yaml", "recording.yaml", "run-a.csv.gz", "run-b.csv.gz", "run-c.csv.gz"]
-    )
+        shown = text if name.endswith("yaml") else text.splitlines()[0]
+        assert not [word for word in telling if word in shown]
+    runs = [f"run-{letter}.csv.gz" for letter in "abc"]
+    assert sorted(p.name for p in (folder / "case-0001").iterdir()) == ["nominal.yaml", "recording.yaml", *runs]
     assert len({p.stat().st_mtime for p in folder.glob("case-*/*")}) == 1
     assert list(load_recording(folder / "case-0002").runs) == ["run-a", "run-b", "run-c"]
     assert list(load_recording(opened.extract("case-0002", tmp_path)).runs) == ["run-u"]
@@ -64,7 +57,7 @@ def test_a_set_that_was_broken_off_goes_on_where_it_stopped_and_is_what_its_seed
     part, resealed, rekey = made(tmp_path, "part", "one", 2)
     assert (part / "case-0001").stat().st_ino == before
     folder, sealed, key = whole
-    assert without_seal(folder) == without_seal(part)
+    assert files_of(folder, but="seal") == files_of(part, but="seal")
     assert unseal(sealed, key).labels == unseal(resealed, rekey, part).labels
     with pytest.raises(InputError, match="already"):
         made(tmp_path, "part", "one", 2, 3)
@@ -91,8 +84,7 @@ def test_wrong_keys_and_changed_files_are_refused(whole, tmp_path):
 def test_the_composition(preset):
     orders = compose(400, preset, np.random.default_rng(0))
     assert {order.varied for order in orders} == {preset == "varied"}
-    counts = {kind: sum(order.kind == kind for order in orders) for kind in ("none", "one", "two", "outside")}
-    assert counts == {"none": 80, "one": 160, "two": 80, "outside": 80}
+    assert Counter(order.kind for order in orders) == {"none": 80, "one": 160, "two": 80, "outside": 80}
     singles = [order.names[0] for order in orders if order.kind == "one"]
     assert {singles.count(effect) for effect in EFFECTS} <= {6, 7}
     assert all(len(set(order.names)) == 2 for order in orders if order.kind == "two")
@@ -108,7 +100,7 @@ def test_a_public_set_is_the_same_bytes_whoever_makes_it_and_its_name_fixes_what
 
     keys = [publish("a name", place) for place in "ab"]
     assert keys[0] == keys[1]
-    assert contents(tmp_path / "a") == contents(tmp_path / "b")
+    assert files_of(tmp_path / "a") == files_of(tmp_path / "b")
     assert (tmp_path / "a.sealed").read_bytes() == (tmp_path / "b.sealed").read_bytes()
     opened = unseal(tmp_path / "a.sealed", keys[0], tmp_path / "a" / "set")
     assert opened.made["kinds"] == "varied" and opened.made["cases"] == 1
@@ -117,7 +109,7 @@ def test_a_public_set_is_the_same_bytes_whoever_makes_it_and_its_name_fixes_what
     assert load_recording(tmp_path / "a" / "set" / "case-0001").header.sample_rate == label["sample_rate"]
     assert label["rig"]["damper_ratio"] <= 1.0 and label["order"]["varied"]
     key = publish("other", "c")
-    assert contents(tmp_path / "a") != contents(tmp_path / "c")
+    assert files_of(tmp_path / "a") != files_of(tmp_path / "c")
     with pytest.raises(InputError, match="the key does not open it"):
         unseal(tmp_path / "c.sealed", keys[0])
     assert unseal(tmp_path / "c.sealed", key).labels

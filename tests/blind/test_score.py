@@ -8,16 +8,9 @@ import pytest
 from rich.console import Console
 
 from seatsim.blind.carrier.recorded import encode_carrier
+from seatsim.blind.score import verdicts
 from seatsim.blind.score.score import score, score_shrink, score_verdicts
-from seatsim.blind.score.verdicts import (
-    Rate,
-    Verdict,
-    calibration_error,
-    is_right,
-    is_wrong_name,
-    read_verdict,
-    reliability,
-)
+from seatsim.blind.score.verdicts import Rate, Verdict, is_right, is_wrong_name, read_verdict
 from seatsim.blind.sealed import Sealed, new_key, seal
 from seatsim.cli.outputs.diagnosis_results import make_score_tables
 from seatsim.schema.content import to_content
@@ -28,14 +21,8 @@ from .carriers import bench_carrier, offset, seat_carrier, write_carrier, write_
 ONE = {"kind": "one", "effects": ["damper.remanence"], "blocks": ["damper"], "forms": ["remanence-decay"]}
 TWO = {"kind": "two", "effects": ["coil.lag", "driver.mass"], "blocks": ["coil", "driver"]}
 NONE = {"kind": "none", "effects": [], "blocks": []}
-CARRIED = {
-    "kind": "carried",
-    "effects": ["coil.delay"],
-    "blocks": ["coil"],
-    "materialities": [2.0],
-    "shapes": [{"time": 0.01}],
-    "forms": ["command advanced"],
-}
+CARRIED = {"kind": "carried", "effects": ["coil.delay"], "blocks": ["coil"], "forms": ["command advanced"]}
+CARRIED |= {"materialities": [2.0], "shapes": [{"time": 0.01}]}
 OUT = {"kind": "outside", "effects": [], "blocks": ["suspension"], "forms": ["maxwell-bushing"]}
 
 
@@ -98,8 +85,8 @@ def test_calibration_of_honest_and_boastful_probabilities():
     rng = np.random.default_rng(0)
     stated = rng.uniform(size=20000)
     true = rng.uniform(size=20000) < stated
-    assert calibration_error(reliability(stated, true)) < 0.02
-    assert calibration_error(reliability(np.ones(100), np.arange(100) % 2 == 0)) == pytest.approx(0.5)
+    assert verdicts.calibration_error(verdicts.reliability(stated, true)) < 0.02
+    assert verdicts.calibration_error(verdicts.reliability(np.ones(100), np.arange(100) % 2 == 0)) == pytest.approx(0.5)
     assert Rate(9, 10).interval == pytest.approx((0.596, 0.982), abs=2e-3)
 
 
@@ -142,12 +129,8 @@ def test_shrink_claimed_and_reached(tmp_path):
     opened = Sealed(dict.fromkeys(said, ONE), dict.fromkeys(said, files), {})
     found = score_shrink(base, opened, said, 1, None)
     assert found is not None and found.predicted is None
-    assert [(name, stated, held) for name, stated, _, held in found.cases] == [
-        ("a", 0.9, True),
-        ("b", 0.6, False),
-        ("c", 0.5, None),
-        ("f", 0.1, None),
-    ]
+    expected = [("a", 0.9, True), ("b", 0.6, False), ("c", 0.5, None), ("f", 0.1, None)]
+    assert [(name, stated, held) for name, stated, _, held in found.cases] == expected
     true = {name: value for name, _, value, _ in found.cases}
     assert true["a"] > 0.95 and true["b"] == pytest.approx(0.5, abs=0.02) and true["f"] < -0.9
     assert found.coverage == Rate(1, 2)

@@ -43,9 +43,8 @@ def test_every_rig_is_another_and_inside_what_is_built():
             assert rig["A"] == pytest.approx(rig["beta"] + rig["gamma"], rel=0.01) and rig["n"] in (1.0, 2.0)
     scissors = [rig for rig in rigs if rig["damper_ratio"] < 0.8]
     assert 0.25 < len(scissors) / 300 < 0.4 and all(rig["ms"] >= 28.0 for rig in scissors)
-    assert np.mean([rig["y_b"] for rig in scissors]) > 1.3 * np.mean(
-        [rig["y_b"] for rig in rigs if rig not in scissors]
-    )
+    straight = [rig for rig in rigs if rig not in scissors]
+    assert np.mean([rig["y_b"] for rig in scissors]) > 1.3 * np.mean([rig["y_b"] for rig in straight])
 
 
 def test_parameters_lie_inside_the_stated_tolerance(rigs):
@@ -91,9 +90,8 @@ def test_a_row_is_a_whole_number_of_steps(rigs, rate):
     motion = simulate_run(experiment, Changes(), 0)
     per_row = motion.fine_current.size / motion.frame.size
     assert per_row == int(per_row) and 1.0 / (rate * per_row) <= INTEGRATION_STEP * (1.0 + 1e-6)
-    files = encode_recording(
-        experiment, [read_channels(experiment, Changes(), 0, motion)], np.random.default_rng(0), [0]
-    )
+    shown = [read_channels(experiment, Changes(), 0, motion)]
+    files = encode_recording(experiment, shown, np.random.default_rng(0), [0])
     last = gzip.decompress(files["run-a.csv.gz"]).decode().splitlines()[-1]
     assert float(last.split(",")[0]) == pytest.approx((motion.frame.size - 1) / rate, abs=1e-9)
     header = recording_header(experiment, experiment.runs)
@@ -132,10 +130,3 @@ def test_coloured_noise_has_unit_variance_and_its_slope():
     assert np.std(noise) == pytest.approx(1.0)
     assert np.sqrt(power[f.searchsorted(4.0)] / power[f.searchsorted(16.0)]) == pytest.approx(4.0, rel=0.2)
     assert power[f > 61.0].max() < 1e-6 * power.max()
-    half = coloured_noise(np.random.default_rng(0), 200_000, 0.5, 10.0, 0.0, 500.0)
-    f, power = welch(half, 500.0, nperseg=4096)
-    at = {
-        hertz: np.mean(power[f.searchsorted(hertz - 0.3) : f.searchsorted(hertz + 0.3)]) for hertz in (3.0, 10.0, 20.0)
-    }
-    assert at[10.0] / at[3.0] == pytest.approx(0.5, rel=0.3)
-    assert at[20.0] / at[3.0] == pytest.approx(1.0 / 257.0, rel=0.4)

@@ -8,7 +8,7 @@ from numpy.random import Generator
 
 from seatsim.blind.carrier import recorded
 from seatsim.blind.carrier.readings import command_gain, commanded
-from seatsim.blind.carrier.recorded import Altered, Carrier, Change, Table, number, section
+from seatsim.blind.carrier.recorded import Carrier, Change, Table, number, section
 from seatsim.schema.arrays import Array
 
 _LARGEST = 1.5
@@ -41,11 +41,10 @@ class _Bench(NamedTuple):
     ) -> Change:
         """Return an effect that adds a force, N, to what was measured in a run."""
 
-        def read(table: Table, amount: float) -> Array:
-            return table["damper_force"] + added(table, amount)
+        def read(table: Table, amount: float) -> Table:
+            return {"damper_force": table["damper_force"] + added(table, amount)}
 
-        named = (f"damper.{effect}", form)
-        return recorded.change_channel(self.carrier, named, "damper_force", largest, read, parameters)
+        return recorded.change_runs(self.carrier, (f"damper.{effect}", form, ""), largest, read, parameters)
 
     def speed(self, table: Table) -> Array:
         """Return the speed of a run, m/s."""
@@ -119,19 +118,16 @@ def _free_play(bench: _Bench, rng: Generator) -> Change:
     """
     soft = float(rng.uniform(*_CROSSED)) * bench.size
 
-    def alter(amount: float) -> Altered:
-        gap = amount * bench.travel
+    def played(table: Table, amount: float) -> Table:
+        across = np.clip(table["damper_force"] / soft, -1.0, 1.0)
+        ahead = 0.5 * (amount * bench.travel) * (1.5 * across - 0.5 * across**3)
+        moved = {"displacement": table["displacement"] + ahead - ahead[0]}
+        if "velocity" in table:
+            moved["velocity"] = table["velocity"] + recorded.slope(ahead, bench.carrier.step)
+        return moved
 
-        def played(table: Table) -> Table:
-            across = np.clip(table["damper_force"] / soft, -1.0, 1.0)
-            ahead = 0.5 * gap * (1.5 * across - 0.5 * across**3)
-            moved = {**table, "displacement": table["displacement"] + ahead - ahead[0]}
-            rate = recorded.slope(ahead, bench.carrier.step)
-            return moved | ({"velocity": table["velocity"] + rate} if "velocity" in table else {})
-
-        return Altered(recorded.with_tables(bench.carrier, played), {"gap": gap})
-
-    return Change("damper.free_play", "motion shifted", "", 1.0, alter)
+    named = ("damper.free_play", "motion shifted", "")
+    return recorded.change_runs(bench.carrier, named, 1.0, played, lambda amount: {"gap": amount * bench.travel})
 
 
 def _saturation(bench: _Bench) -> list[Change]:

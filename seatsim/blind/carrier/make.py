@@ -6,7 +6,6 @@ A size is how far a change moves what a gap compares, beyond what parameters ins
 import dataclasses
 import functools
 import math
-from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -19,7 +18,7 @@ from seatsim.blind.carrier.recorded import Altered, Carrier, Change, Content, nu
 from seatsim.blind.carrier.seat import draw_seat_changes
 from seatsim.blind.make.folder import encode_yaml
 from seatsim.blind.make.make import CaseFiles, make_set
-from seatsim.blind.make.materiality import MATERIAL_SHARE, bounded_least_squares
+from seatsim.blind.make.materiality import MATERIAL_SHARE, refit_residuals, rms
 from seatsim.blind.sealed import Label
 from seatsim.recordings.recording import HEADER, Recording, load_recording
 from seatsim.recordings.replay import replay_table, select_compared, stands_out
@@ -62,20 +61,9 @@ class Ruler:
         self.recording = _load(carrier)
         self.before = self.residuals(carrier)
         self.spread = {name: float(np.std(carrier.pooled(name))) for name in self.before}
-        self.columns = self._sensitivities()
-
-    def _sensitivities(self) -> list[Array]:
-        """Return how the residuals change where each parameter is up by its tolerance, in std, end to end."""
-        found = []
-        for nominal in _varied_nominals(self.carrier):
-            moved = self.residuals(self.carrier._replace(nominal=nominal))
-            column = self._stack({name: moved[name] - self.before[name] for name in self.before})
-            if np.all(np.isfinite(column)):
-                found.append(column)
-        return found
-
-    def _stack(self, change: Mapping[str, Array]) -> Array:
-        return np.concatenate([change[name] / self.spread[name] for name in self.before])
+        moved = [self._change(carrier._replace(nominal=nominal)) for nominal in _varied_nominals(carrier)]
+        # how the residuals change where each parameter is up by its tolerance, in std, end to end
+        self.columns = [column for column in moved if np.all(np.isfinite(column))]
 
     def size(self, changed: Carrier) -> float:
         """Return the largest change of a compared channel in its std, after the best refit inside the tolerance.
@@ -86,9 +74,9 @@ class Ruler:
         g = self._change(changed)
         if not np.all(np.isfinite(g)):
             return float("inf")
-        parts = dict(zip(self.before, np.split(g - self._absorbed(g), len(self.before)), strict=True))
-        rms = {name: float(np.sqrt(np.mean(values**2))) for name, values in parts.items()}
-        return max((r for name, r in rms.items() if r > self.carrier.noise(name) / self.spread[name]), default=0.0)
+        parts = dict(zip(self.before, np.split(refit_residuals(self.columns, g), len(self.before)), strict=True))
+        sizes = {name: rms(values) for name, values in parts.items()}
+        return max((r for name, r in sizes.items() if r > self.carrier.noise(name) / self.spread[name]), default=0.0)
 
     def stands_out(self, changed: Carrier) -> bool:
         """Tell whether a change adds to the gap about what it does by itself, so that taking it away would help.
@@ -96,8 +84,9 @@ class Ruler:
         Where the background holds the opposite of the effect the two cancel, and nobody can know which is true:
         `|r1|^2 - |r0|^2 >= _OWN_SHARE |g|^2` of the residuals before and after, each refitted inside the tolerance.
         """
-        g, r0 = self._change(changed), self._stack(self.before)
-        before, after, own = (values - self._absorbed(values) for values in (r0, r0 + g, g))
+        g = self._change(changed)
+        r0 = np.concatenate([values / self.spread[name] for name, values in self.before.items()])
+        before, after, own = (refit_residuals(self.columns, values) for values in (r0, r0 + g, g))
         return bool(after @ after - before @ before >= _OWN_SHARE * (own @ own))
 
     def _change(self, changed: Carrier) -> Array:
@@ -105,13 +94,7 @@ class Ruler:
         after = self.residuals(changed)
         if set(after) != set(self.before):
             return np.full(sum(map(len, self.before.values())), np.nan)
-        return self._stack({name: after[name] - self.before[name] for name in self.before})
-
-    def _absorbed(self, g: Array) -> Array:
-        if not self.columns:
-            return np.zeros_like(g)
-        J = np.column_stack(self.columns)
-        return np.asarray(J @ bounded_least_squares(J, g))
+        return np.concatenate([(after[name] - self.before[name]) / self.spread[name] for name in self.before])
 
     def residuals(self, carrier: Carrier) -> _Residuals:
         """Return measured minus simulated of the channels that stand above their noise."""
@@ -188,12 +171,11 @@ def draw_amount(ruler: Ruler, change: Change, size: float) -> DrawnCase | None:
     low, high = 0.0, change.largest
     for _ in range(_EVALUATIONS):
         middle = 0.5 * (low + high) if low > 0.0 else 0.25 * high
-        found = ruler.size(change.alter(middle).carrier)
+        altered = change.alter(middle)
+        found = ruler.size(altered.carrier)
         if abs(found - size) < _CLOSE * size:
             break
         low, high = (middle, high) if found < size else (low, middle)
-    altered = change.alter(middle)
-    found = ruler.size(altered.carrier)
     fits = 1.0 - 2.0 * _CLOSE < found / size < 1.0 + 4.0 * _CLOSE and ruler.stands_out(altered.carrier)
     return DrawnCase(change, altered, found) if fits else None
 
@@ -215,17 +197,14 @@ def make_on_carrier(
         InputError: the recording is none, allows no effect of a material size, or the folder is another set's.
     """
     source = Path(recording)
-    carrier = recorded.read_carrier(source)
-
-    def order(seed: int) -> list[str]:
-        return take_turns(carrier, cases, np.random.default_rng(seed))
-
+    order = functools.partial(_take_turns, recorded.read_carrier(source), cases)
     kinds, draw = f"carrier {source.resolve()}", functools.partial(_draw_files, source)
     return make_set(cases, seed, kinds, Path(out), Path(sealed), order, draw, progress, processes)
 
 
-def take_turns(carrier: Carrier, cases: int, rng: Generator) -> list[str]:
+def _take_turns(carrier: Carrier, cases: int, seed: int) -> list[str]:
     """Return the effect that each case is to have: all that the carrier allows, in a new order every time."""
+    rng = np.random.default_rng(seed)
     effects = [*sorted({change.effect for change in draw_changes(carrier, rng)}), UNTOUCHED]
     turns = [effects[k] for _ in range(-(-cases // len(effects))) for k in rng.permutation(len(effects))]
     return turns[:cases]

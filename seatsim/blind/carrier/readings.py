@@ -4,11 +4,13 @@ A command that was given earlier than logged, a supply that did not reach it, a 
 low-pass of a sensor, and a controller's log that is shifted in time.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.random import Generator
 
 from seatsim.blind.carrier import recorded
-from seatsim.blind.carrier.recorded import Altered, Carrier, Change, Table, change_channel, number, section
+from seatsim.blind.carrier.recorded import Altered, Carrier, Change, Table, change_runs, number, section
 from seatsim.schema.arrays import Array
 
 _COMMANDS = ("current_command", "command_voltage")
@@ -35,13 +37,13 @@ def draw_delays(carrier: Carrier, rng: Generator) -> list[Change]:
     if command is None or not _varies(carrier, command):
         return []
 
-    def early(table: Table, amount: float) -> Array:
-        return recorded.shifted_rows(table[command], -round(amount / carrier.step))
+    def early(table: Table, amount: float) -> Table:
+        return {command: recorded.shifted_rows(table[command], -round(amount / carrier.step))}
 
     def state(amount: float) -> dict[str, float]:
         return {"time": round(amount / carrier.step) * carrier.step}
 
-    return [change_channel(carrier, ("coil.delay", "command advanced"), command, _LONGEST_DELAY, early, state)]
+    return [change_runs(carrier, ("coil.delay", "command advanced", ""), _LONGEST_DELAY, early, state)]
 
 
 def draw_limits(carrier: Carrier, rng: Generator) -> list[Change]:
@@ -99,48 +101,40 @@ def draw_sensor_changes(carrier: Carrier, rng: Generator) -> list[Change]:
     found: list[Change] = []
     for channel in _SENSORS:
         if channel in carrier.channels and not ("velocity" in carrier.channels and channel == "displacement"):
-            found += [_gain(carrier, channel, rng), _lag(carrier, channel)]
-            found += _biases(carrier, channel, rng) if channel not in _INPUTS else []
+            found += _misread(carrier, channel, rng)
     return found
 
 
-def _gain(carrier: Carrier, channel: str, rng: Generator) -> Change:
+def _misread(carrier: Carrier, channel: str, rng: Generator) -> list[Change]:
+    """Return the changes of a sensor; its drift is zero at first, and the amount in the mean of the runs' lengths."""
+    step, scale, pooled = carrier.step, _SCALES.get(channel, 1.0), carrier.pooled(channel)
+
+    def change(
+        effect: str, form: str, largest: float, read: Callable[[Array, float], Array], parameters: recorded.Parameters
+    ) -> Change:
+        named = (f"sensor.{effect}", form, channel)
+        return change_runs(carrier, named, largest, lambda table, a: {channel: read(table[channel], a)}, parameters)
+
     sign = recorded.draw_sign(rng, -0.5)
-
-    def read(table: Table, amount: float) -> Array:
-        return table[channel] + sign * amount * table[channel]
-
-    return change_channel(carrier, ("sensor.gain", "gain"), channel, _LARGEST_GAIN, read, lambda a: {"error": sign * a})
-
-
-def _lag(carrier: Carrier, channel: str) -> Change:
-    def read(table: Table, amount: float) -> Array:
-        return recorded.low_pass(table[channel], amount, carrier.step)
-
-    return change_channel(carrier, ("sensor.lag", "lag"), channel, _LONGEST_LAG, read, lambda a: {"time": a})
-
-
-def _biases(carrier: Carrier, channel: str, rng: Generator) -> list[Change]:
-    """Return an offset, and a drift: zero at first, and the amount in the mean of the runs' lengths."""
-    pooled, scale = carrier.pooled(channel), _SCALES.get(channel, 1.0)
+    found = [
+        change("gain", "gain", _LARGEST_GAIN, lambda u, a: u + sign * a * u, lambda a: {"error": sign * a}),
+        change("lag", "lag", _LONGEST_LAG, lambda u, a: recorded.low_pass(u, a, step), lambda a: {"time": a}),
+    ]
+    if channel in _INPUTS:
+        return found
     offset, last = (recorded.draw_sign(rng) * float(np.std(pooled)) for _ in range(2))
-    rate = last / (len(pooled) / len(carrier.tables) * carrier.step)
+    rate = last / (len(pooled) / len(carrier.tables) * step)
 
-    def drifting(table: Table, amount: float) -> Array:
-        return table[channel] + rate * amount * carrier.step * np.arange(len(table[channel]))
-
-    def shares(amount: float) -> dict[str, float]:
-        return {"share": offset * amount / scale}
+    def drifting(u: Array, amount: float) -> Array:
+        return u + rate * amount * step * np.arange(len(u))
 
     def rates(amount: float) -> dict[str, float]:
         return {"share": 0.0, "drift": rate * amount / scale}
 
-    def shifted(table: Table, amount: float) -> Array:
-        return table[channel] + offset * amount
-
     return [
-        change_channel(carrier, ("sensor.bias", "bias"), channel, _LARGEST_OFFSET, shifted, shares),
-        change_channel(carrier, ("sensor.bias", "drift"), channel, 2.0 * _LARGEST_OFFSET, drifting, rates),
+        *found,
+        change("bias", "bias", _LARGEST_OFFSET, lambda u, a: u + offset * a, lambda a: {"share": offset * a / scale}),
+        change("bias", "drift", 2.0 * _LARGEST_OFFSET, drifting, rates),
     ]
 
 
@@ -154,18 +148,17 @@ def draw_skewed_logs(carrier: Carrier, rng: Generator) -> list[Change]:
         return []
     sign = recorded.draw_sign(rng) if "coil_current" in logged and len(logged) > 1 else 1.0
 
-    def alter(amount: float) -> Altered:
-        rows = round(sign * amount / carrier.step)
+    def rows(amount: float) -> int:
+        return round(sign * amount / carrier.step)
 
-        def late(table: Table) -> Table:
-            moved = {name: recorded.shifted_rows(table[name], rows) for name in logged if name != "coil_current"}
-            if "coil_current" in logged:
-                moved["coil_current"] = recorded.shifted(table["coil_current"], rows * carrier.step, carrier.step)
-            return {**table, **moved}
+    def late(table: Table, amount: float) -> Table:
+        moved = {name: recorded.shifted_rows(table[name], rows(amount)) for name in logged}
+        if "coil_current" in logged:
+            moved["coil_current"] = recorded.shifted(table["coil_current"], rows(amount) * carrier.step, carrier.step)
+        return moved
 
-        return Altered(recorded.with_tables(carrier, late), {"shift": rows * carrier.step})
-
-    return [Change("sensor.clock_skew", "late log" if sign > 0 else "early log", "", _LONGEST_SKEW, alter)]
+    named = ("sensor.clock_skew", "late log" if sign > 0 else "early log", "")
+    return [change_runs(carrier, named, _LONGEST_SKEW, late, lambda a: {"shift": rows(a) * carrier.step})]
 
 
 def _varies(carrier: Carrier, channel: str) -> bool:

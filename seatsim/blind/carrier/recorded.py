@@ -149,25 +149,22 @@ class Change(NamedTuple):
     alter: Callable[[float], Altered]
 
 
-def with_tables(carrier: Carrier, table_of: Callable[[Table], Table]) -> Carrier:
-    """Return the carrier with every run replaced."""
-    return carrier._replace(tables={run: table_of(table) for run, table in carrier.tables.items()})
+Read = Callable[[Table, float], Table]
+"""Channels that an effect changes, of a run and an amount."""
+Parameters = Callable[[float], Mapping[str, float]]
+"""True parameters of an effect at an amount."""
 
 
-def change_channel(
-    carrier: Carrier,
-    effect: tuple[str, str],
-    channel: str,
-    largest: float,
-    read: Callable[[Table, float], Array],
-    parameters: Callable[[float], Mapping[str, float]],
+def change_runs(
+    carrier: Carrier, effect: tuple[str, str, str], largest: float, read: Read, parameters: Parameters
 ) -> Change:
-    """Return an effect, by name and form, whose channel shows what `read` makes of a run and an amount."""
+    """Return an effect, by name, form and channel: `read` gives the channels that change in a run at an amount."""
 
     def alter(amount: float) -> Altered:
-        return Altered(with_tables(carrier, lambda table: {**table, channel: read(table, amount)}), parameters(amount))
+        tables = {run: {**table, **read(table, amount)} for run, table in carrier.tables.items()}
+        return Altered(carrier._replace(tables=tables), parameters(amount))
 
-    return Change(*effect, channel if effect[0].startswith("sensor.") else "", largest, alter)
+    return Change(*effect, largest, alter)
 
 
 def draw_sign(rng: Generator, negative: float = -1.0) -> float:
@@ -196,10 +193,8 @@ def shifted_rows(values: Array, late: int) -> Array:
 
 def low_pass(values: Array, time: float, step: float) -> Array:
     """Return the exact first-order response with time constant `time` [s] to a signal held between rows' midpoints."""
-    a = float(np.exp(-step / time)) if time > 0.0 else 0.0
-    half = float(np.exp(-0.5 * step / time)) if time > 0.0 else 0.0
-    response = lfilter([1.0 - half, half - a], [1.0, -a], values - values[0])
-    return np.asarray(response + values[0])
+    half, a = (float(np.exp(-part * step / time)) if time > 0.0 else 0.0 for part in (0.5, 1.0))
+    return np.asarray(lfilter([1.0 - half, half - a], [1.0, -a], values - values[0]) + values[0])
 
 
 def slide(x: Array, travel: float) -> Array:

@@ -6,6 +6,7 @@ With the rig's equations linear, the difference d of the motion with and without
 
 import itertools
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -60,20 +61,21 @@ def draw_seat_changes(carrier: Carrier, rng: Generator) -> list[Change]:
         return Change(effect, form, "", largest, alter)
 
     def rub(a: float) -> _Putting:
-        return {"force": a * force}, lambda: _friction(a * force, width)
+        return {"force": a * force}, partial(_rub, a * force, width)
 
     def stiffen(a: float) -> _Putting:
-        return {"rise": a / travel**2}, lambda: _cubic(a * stiffness / travel**2)
+        return {"rise": a / travel**2}, partial(_cubic, a * stiffness / travel**2)
 
     def push(a: float) -> _Putting:
-        drawn = np.random.default_rng(seed)
-        return {}, lambda: _random(a * force, drawn, step)
+        return {}, partial(_random, a * force, np.random.default_rng(seed), step)
 
     return [
-        change("suspension.friction", "F sgn v", 1.0, rub),
+        change(
+            "suspension.friction", "F sgn v", 1.0, lambda a: ({"force": a * force}, partial(_rub, a * force, width))
+        ),
         change("suspension.progressive_spring", "cubic", 3.0, stiffen),
-        change("suspension.end_stop", "linear buffer", 5.0, lambda a: ({}, lambda: _buffer(a * stiffness, stop))),
-        change("driver.mass", "heavier", 0.6, lambda a: ({"change": a * mass}, lambda: _mass(a * mass))),
+        change("suspension.end_stop", "linear buffer", 5.0, lambda a: ({}, partial(_buffer, a * stiffness, stop))),
+        change("driver.mass", "heavier", 0.6, lambda a: ({"change": a * mass}, partial(_mass, a * mass))),
         change("floor.unmeasured_input", "random force on the frame", 3.0, push),
     ]
 
@@ -140,7 +142,7 @@ def simulate_linear(plant: Mapping[str, float], floor: Array, step: float) -> _S
     return _SeatMotion(*found.T)
 
 
-def _friction(force: float, width: float) -> _Force:
+def _rub(force: float, width: float) -> _Force:
     anchor = 0.0
 
     def friction(x: float, v: float, xc: float, vc: float, driver: float) -> tuple[float, float]:

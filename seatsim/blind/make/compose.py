@@ -109,36 +109,26 @@ def _kinds(cases: int, kinds: str | Sequence[str]) -> list[Kind]:
         fifth = round(cases / 5)
         parts: dict[Kind, int] = {"none": fifth, "two": fifth, "outside": fifth, "one": max(cases - 3 * fifth, 0)}
         return [kind for kind, count in parts.items() for _ in range(count)][:cases]
-    chosen = [_known_kind(kind) for kind in ([kinds] if isinstance(kinds, str) else kinds)]
-    return [chosen[k % len(chosen)] for k in range(cases)]
-
-
-def _known_kind(name: str) -> Kind:
-    for kind in KINDS:
-        if kind == name:
-            return kind
-    known = (*_PRESETS, *KINDS)
-    raise InputError(f"kinds: {name!r} is not one of {', '.join(known)}{nearest(name, known)}")
+    by_name, known = {str(kind): kind for kind in KINDS}, (*_PRESETS, *KINDS)
+    chosen = [kinds] if isinstance(kinds, str) else kinds
+    for name in chosen:
+        if name not in by_name:
+            raise InputError(f"kinds: {name!r} is not one of {', '.join(known)}{nearest(name, known)}")
+    return [by_name[chosen[k % len(chosen)]] for k in range(cases)]
 
 
 def _specify(kinds: list[Kind], rng: Generator, varied: bool) -> list[CaseSpecification]:
     """Return a specification for each kind; effects and scenarios are dealt so that each comes equally often."""
     singles, pairs = _Dealer(EFFECTS, rng), _Dealer(EFFECTS, rng)
     outside = _Dealer([scenario.name for scenario in scenarios_of("outside")], rng)
-    specifications = []
-    for kind in kinds:
-        match kind:
-            case "one":
-                names: tuple[str, ...] = (singles.take(),)
-            case "two":
-                first = pairs.take()
-                names = (first, pairs.take(first))
-            case "outside":
-                names = (outside.take(),)
-            case "none":
-                names = ()
-        specifications.append(CaseSpecification(kind, names, varied=varied))
-    return specifications
+
+    def take(kind: Kind) -> tuple[str, ...]:
+        if kind == "two":
+            first = pairs.take()
+            return first, pairs.take(first)
+        return () if kind == "none" else ((singles if kind == "one" else outside).take(),)
+
+    return [CaseSpecification(kind, take(kind), varied=varied) for kind in kinds]
 
 
 class _Dealer:

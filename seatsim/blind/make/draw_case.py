@@ -1,6 +1,7 @@
 """Draws a case: which kind, which faults in which form, how strong, on which rig with which channels."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -87,7 +88,8 @@ def draw_case(specification: CaseSpecification, rng: Generator) -> _Case:
     rig = FaultlessRig(specification.draw_rig(rng))
     for _ in range(_EXCHANGES):
         for _ in range(_ATTEMPTS):
-            case = _attempt(specification, scenarios, rig, rng)
+            faults = _draw_faults(scenarios, rig, rng)
+            case = None if faults is None else _settle(specification, faults, rig)
             if case is not None:
                 return case
             scenarios = _draw_scenarios(specification, rng)
@@ -105,33 +107,26 @@ def _draw_scenarios(specification: CaseSpecification, rng: Generator) -> list[Fa
     return [choice[int(rng.integers(len(choice)))] for choice in choices]
 
 
-def _attempt(
-    specification: CaseSpecification, scenarios: Sequence[FaultScenario], rig: FaultlessRig, rng: Generator
-) -> _Case | None:
-    """Draw shapes and severities once; None where a fault cannot be made material on this rig."""
-    faults: list[_DrawnFault] = []
+def _draw_faults(scenarios: Sequence[FaultScenario], rig: FaultlessRig, rng: Generator) -> list[_DrawnFault] | None:
+    """Draw shapes, and severities that give each fault a drawn materiality when it is alone.
+
+    None where one cannot be made material on this rig.
+    """
+    faults = []
     for scenario in scenarios:
-        fault = _draw_fault(scenario, rig, rng)
-        if fault is None:
+        if scenario.bingham and not rig.experiment.is_bingham:
             return None
-        faults.append(fault)
-    return _settle(specification, faults, rig)
+        shape = scenario.draw(rng, rig.context)
+        build = partial(scenario.build, shape=shape, context=rig.context)
 
+        def size_of(severity: float, build: Callable[[float], Changes] = build) -> float:
+            return rig.runs.materiality(build(severity), Changes())[0]
 
-def _draw_fault(scenario: FaultScenario, rig: FaultlessRig, rng: Generator) -> _DrawnFault | None:
-    """Draw a fault's shape, and the severity that gives it a drawn materiality when it is alone."""
-    if scenario.bingham and not rig.experiment.is_bingham:
-        return None
-    shape = scenario.draw(rng, rig.context)
-
-    def size_of(severity: float) -> float:
-        return rig.runs.materiality(scenario.build(severity, shape, rig.context), Changes())[0]
-
-    found = find_severity(size_of, scenario.span, rng)
-    if found is None:
-        return None
-    severity, size = found
-    return _DrawnFault(scenario, shape, severity, size, scenario.build(severity, shape, rig.context))
+        found = find_severity(size_of, scenario.span, rng)
+        if found is None:
+            return None
+        faults.append(_DrawnFault(scenario, shape, *found, build(found[0])))
+    return faults
 
 
 def _settle(specification: CaseSpecification, faults: list[_DrawnFault], rig: FaultlessRig) -> _Case | None:

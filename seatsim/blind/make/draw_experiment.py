@@ -6,7 +6,6 @@ noise, floor, tolerance, background force.
 
 import math
 from collections.abc import Collection, Mapping
-from typing import NamedTuple
 
 import numpy as np
 from numpy.random import Generator
@@ -25,6 +24,8 @@ SCATTER = 0.015
 """Largest relative error of a nominal parameter; inside the stated tolerance of 2 %, so a faultless rig is one."""
 STEPPED = 0.4
 """Share of the rigs whose current is stepped in every run, not controlled in some."""
+_SCHEDULED = np.array([coil.SCHEDULE, 0.0, 0.0, 0.0, 0.0, 0.0])
+"""The law of those runs."""
 _STARTS, _HOT = (20.0, 30.0, 45.0, 60.0), (55.0, 75.0)
 """Temperatures of the damper at which runs start, to within 2 K, and the range of the one that is hot, degC."""
 PLANT = {"ms": 20.0, "m": 80.0, "kf": 4600.0, "cf": 150.0, "kc": 60000.0, "cc": 1500.0}
@@ -107,24 +108,18 @@ def _draw_runs(rng: Generator, repeat: bool) -> tuple[RunPlan, ...]:
     rms = rng.uniform(1.15, 1.7)
     starts = draw_temperatures(rng, 4)
     no_current = np.zeros(rows)
-    schedule = np.array([coil.SCHEDULE, 0.0, 0.0, 0.0, 0.0, 0.0])
     skyhook, feedback = draw_laws(rng)
     top = rng.uniform(0.8, 1.0)
-    first = RunPlan(
-        "run-a",
-        excitation.draw_road(rng, SECONDS, rms),
-        schedule,
-        excitation.draw_current_steps(rng, rows, top),
-        starts[0],
-    )
+    road = excitation.draw_road(rng, SECONDS, rms)
+    first = RunPlan("run-a", road, _SCHEDULED, excitation.draw_current_steps(rng, rows, top), starts[0])
     laws = [(skyhook, no_current), (feedback, no_current)]
     if rng.random() < STEPPED:
-        laws = [(schedule, excitation.draw_current_steps(rng, rows, top)) for _ in laws]
+        laws = [(_SCHEDULED, excitation.draw_current_steps(rng, rows, top)) for _ in laws]
     second = RunPlan("run-b", excitation.draw_road(rng, SECONDS, rms), *laws[0], starts[1])
     third = RunPlan("run-c", excitation.draw_bumps(rng, SECONDS, rng.uniform(6.0, 8.5)), *laws[1], starts[2])
     again = (first._replace(name="run-d", repeat_of="run-a"),) if repeat else ()
     sweep = excitation.draw_sweep(rng, UNSEEN_SECONDS, 0.9 * rms)
-    last = RunPlan("run-u", sweep, schedule, excitation.draw_current_steps(rng, unseen, top), starts[3])
+    last = RunPlan("run-u", sweep, _SCHEDULED, excitation.draw_current_steps(rng, unseen, top), starts[3])
     return (first, second, third, *again, last)
 
 
@@ -149,19 +144,13 @@ LEAST_VISCOUS = 250.0
 """N s/m; below it a damper in a mount with play is stiffer than the steps of the truth resolve."""
 
 
-class _SeatKind(NamedTuple):
-    """Ranges of a kind of seat."""
-
-    frame: tuple[float, float]  # kg
-    resonance: tuple[float, float]  # Hz, of frame and driver on the suspension
-    damper_ratio: tuple[float, float]  # stroke of the damper per suspension displacement
-
-
 _SEATS = (
-    _SeatKind((14.0, 28.0), (1.2, 2.2), (1.0, 1.0)),  # car seat on a suspension
-    _SeatKind((28.0, 60.0), (1.0, 1.6), (0.4, 0.8)),  # truck seat on a scissor
-    _SeatKind((22.0, 45.0), (1.1, 2.0), (0.8, 1.0)),  # tractor seat
+    ((14.0, 28.0), (1.2, 2.2), (1.0, 1.0)),  # car seat on a suspension
+    ((28.0, 60.0), (1.0, 1.6), (0.4, 0.8)),  # truck seat on a scissor
+    ((22.0, 45.0), (1.1, 2.0), (0.8, 1.0)),  # tractor seat
 )
+"""Ranges of kinds of seats: mass of the frame, kg; resonance of frame and driver on the suspension, Hz; stroke of the
+damper per suspension displacement."""
 _DRIVER = (50.0, 110.0)
 """kg."""
 _CUSHION_RESONANCE, _CUSHION_DAMPING = (3.5, 6.5), (0.12, 0.4)
@@ -174,8 +163,8 @@ _STANDARD_MASS = PLANT["ms"] + PLANT["m"]
 
 def draw_varied_experiment(rng: Generator, bingham: bool, channels: tuple[str, ...]) -> Experiment:
     """Draw a rig and its protocol; a third of them have a background force and a repeated run."""
-    rate, tolerance = float(rng.choice(SAMPLE_RATES)), _log_uniform(rng, _SMALLEST_TOLERANCE, _LARGEST_TOLERANCE)
-    tolerance = float(f"{tolerance:.2g}")
+    rate = float(rng.choice(SAMPLE_RATES))
+    tolerance = float(f"{_log_uniform(rng, _SMALLEST_TOLERANCE, _LARGEST_TOLERANCE):.2g}")
     nominal = draw_nominal(rng, bingham)
     factors = {name: _log_uniform(rng, 1.0 / _NOISE_FACTOR, _NOISE_FACTOR) for name in noise_of(channels)}
     noise = {name: float(f"{value * factors[name]:.3g}") for name, value in noise_of(channels).items()}
@@ -193,22 +182,18 @@ def _log_uniform(rng: Generator, low: float, high: float) -> float:
 
 def draw_nominal(rng: Generator, bingham: bool) -> dict[str, float]:
     """Draw the parameters of seat, damper and coil, rounded to three digits as an owner states them."""
-    seat = _SEATS[int(rng.integers(len(_SEATS)))]
-    plant = _draw_plant(rng, seat)
-    ratio = round(rng.uniform(*seat.damper_ratio), 2)
+    frame, resonance, ratios = _SEATS[int(rng.integers(len(_SEATS)))]
+    ms, m = rng.uniform(*frame), rng.uniform(*_DRIVER)
+    # springs and dampings follow from natural frequencies and damping ratios
+    w, cushion = (2.0 * math.pi * rng.uniform(*band) for band in (resonance, _CUSHION_RESONANCE))
+    suspension = {"kf": (ms + m) * w * w, "cf": 2.0 * rng.uniform(*_SUSPENSION_DAMPING) * (ms + m) * w}
+    seated = {"kc": m * cushion * cushion, "cc": 2.0 * rng.uniform(*_CUSHION_DAMPING) * m * cushion}
+    plant = {"ms": ms, "m": m, **suspension, **seated}
+    ratio = round(rng.uniform(*ratios), 2)
     damper = _draw_damper(rng, plant, ratio, bingham)
     driver = {"rate": _log_uniform(rng, 60.0, 250.0), "i_max": COIL["i_max"]}
     rounded = {name: float(f"{value:.3g}") for name, value in (plant | damper | driver).items()}
     return rounded | {"damper_ratio": ratio}
-
-
-def _draw_plant(rng: Generator, seat: _SeatKind) -> dict[str, float]:
-    """Draw masses, and from natural frequencies and damping ratios the springs and dampings."""
-    ms, m = rng.uniform(*seat.frame), rng.uniform(*_DRIVER)
-    w, cushion = (2.0 * math.pi * rng.uniform(*band) for band in (seat.resonance, _CUSHION_RESONANCE))
-    suspension = {"kf": (ms + m) * w * w, "cf": 2.0 * rng.uniform(*_SUSPENSION_DAMPING) * (ms + m) * w}
-    seated = {"kc": m * cushion * cushion, "cc": 2.0 * rng.uniform(*_CUSHION_DAMPING) * m * cushion}
-    return {"ms": ms, "m": m, **suspension, **seated}
 
 
 def _draw_damper(rng: Generator, plant: dict[str, float], ratio: float, bingham: bool) -> dict[str, float]:
@@ -230,8 +215,7 @@ def _draw_damper(rng: Generator, plant: dict[str, float], ratio: float, bingham:
     slope, share = _log_uniform(rng, 500.0, 2500.0), rng.uniform(0.3, 0.7)
     offset = rng.random() < _OFFSET_SHARE
     hysteresis = {"A": slope, "beta": share * slope, "gamma": (1.0 - share) * slope, "n": float(rng.integers(1, 3))}
-    k0 = size * rng.uniform(100.0, 800.0) if offset else 0.0
-    f0 = size * rng.uniform(-40.0, 40.0) if offset else 0.0
+    k0, f0 = (size * rng.uniform(*ends) if offset else 0.0 for ends in ((100.0, 800.0), (-40.0, 40.0)))
     return damper | {"is_bingham": 0.0, **hysteresis, "x0": 0.0, "k0": k0, "f0": f0}
 
 
@@ -246,10 +230,12 @@ def _draw_varied_runs(rng: Generator, experiment: Experiment, repeat: bool) -> t
     """Draw three runs of one vehicle on different roads, the first again where `repeat`, and the unseen one."""
     rate, vehicle, top = experiment.sample_rate, excitation.draw_vehicle(rng), rng.uniform(0.8, 1.0)
     starts = draw_temperatures(rng, 4)
-    schedule = np.array([coil.SCHEDULE, 0.0, 0.0, 0.0, 0.0, 0.0])
-    laws = [schedule, *_fit_laws(draw_laws(rng), experiment), schedule]
+    nominal, (skyhook, feedback) = experiment.nominal, draw_laws(rng)
+    # the feedback assumes the standard damper, so its forces are scaled to this one; a real floor asks for more of them
+    scale = _FEEDBACK_GAIN * _STANDARD_MASS / (nominal["ms"] + nominal["m"]) * nominal["damper_ratio"]
+    laws = [_SCHEDULED, skyhook, np.concatenate([feedback[:2], scale * feedback[2:]]), _SCHEDULED]
     if rng.random() < STEPPED:
-        laws = [schedule] * 4
+        laws = [_SCHEDULED] * 4
     runs = []
     for k, (name, law) in enumerate(zip(("run-a", "run-b", "run-c", "run-u"), laws, strict=True)):
         seconds = UNSEEN_SECONDS if name == "run-u" else SECONDS
@@ -258,17 +244,6 @@ def _draw_varied_runs(rng: Generator, experiment: Experiment, repeat: bool) -> t
         runs.append(RunPlan(name, floor, law, currents, starts[k]))
     again = [runs[0]._replace(name="run-d", repeat_of="run-a")] if repeat else []
     return (*runs[:3], *again, runs[3])
-
-
-def _fit_laws(laws: tuple[Array, Array], experiment: Experiment) -> tuple[Array, Array]:
-    """Return skyhook and feedback for this rig.
-
-    The feedback assumes the standard damper, so its forces are scaled to it; on real floors it asks for more of them.
-    """
-    skyhook, feedback = laws
-    nominal = experiment.nominal
-    scale = _FEEDBACK_GAIN * _STANDARD_MASS / (nominal["ms"] + nominal["m"]) * nominal["damper_ratio"]
-    return skyhook, np.concatenate([feedback[:2], scale * feedback[2:]])
 
 
 def _add_background(experiment: Experiment, rng: Generator) -> Experiment:

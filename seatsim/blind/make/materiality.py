@@ -57,16 +57,6 @@ class CommandedRuns:
     known: dict[str, list[RigMotion]] = field(default_factory=dict)
     """Motions simulated so far, by what makes them."""
 
-    @property
-    def runs(self) -> range:
-        """Recorded runs."""
-        return range(len(self.commands))
-
-    @property
-    def left_out(self) -> int:
-        """Rows at the start of each run that no gap counts."""
-        return round(LEFT_OUT * self.experiment.sample_rate)
-
     def simulate(self, changes: Changes) -> list[RigMotion]:
         """Return the motion of each run; sensor faults do not change it, so one simulation serves all of those."""
         key = repr((sorted(changes.parameters.items()), changes.frame_forces))
@@ -74,14 +64,14 @@ class CommandedRuns:
             if len(self.known) > _REMEMBERED:
                 self.known.pop(list(self.known)[1])
             self.known[key] = [
-                simulate_run(self.experiment, changes, k, self.commands[k], step=COARSE_STEP) for k in self.runs
+                simulate_run(self.experiment, changes, k, command, step=COARSE_STEP)
+                for k, command in enumerate(self.commands)
             ]
         return self.known[key]
 
     def read(self, changes: Changes) -> list[Readings]:
         """Return what the channels show in each run, without noise."""
-        motions = self.simulate(changes)
-        return [read_channels(self.experiment, changes, k, motions[k]) for k in self.runs]
+        return [read_channels(self.experiment, changes, k, motion) for k, motion in enumerate(self.simulate(changes))]
 
     def materiality(self, fault: Changes, others: Changes) -> tuple[float, Array]:
         """Return the materiality of a fault in the presence of others, and its response over channels and runs.
@@ -116,21 +106,19 @@ class CommandedRuns:
     def _response_of_replay(self, fault: Changes, others: Changes, shown: list[Readings]) -> dict[str, Array]:
         """Return what faulty inputs move in a replay, by compared channel."""
         clean = Changes(others.parameters, others.frame_forces)
-        base = self.simulate(clean)
         on_floor = any(f.channel == "floor_acceleration" for f in fault.sensor_faults)
-        parts: dict[str, list[Array]] = {name: [] for name in self.experiment.compared}
-        for k in self.runs:
-            floor = shown[k]["floor_acceleration"] if on_floor else None
-            motion = simulate_run(self.experiment, clean, k, shown[k]["current_command"], floor, COARSE_STEP)
-            new = read_channels(self.experiment, clean, k, motion)
-            old = read_channels(self.experiment, clean, k, base[k])
-            for name, moved in parts.items():
-                moved.append(new[name][self.left_out :] - old[name][self.left_out :])
-        return {name: np.concatenate(moved) for name, moved in parts.items()}
+        new = []
+        for k, run in enumerate(shown):
+            floor = run["floor_acceleration"] if on_floor else None
+            motion = simulate_run(self.experiment, clean, k, run["current_command"], floor, COARSE_STEP)
+            new.append(read_channels(self.experiment, clean, k, motion))
+        old = self.read(clean)
+        return {name: self._pooled(new, name) - self._pooled(old, name) for name in self.experiment.compared}
 
     def _pooled(self, runs: list[Readings], name: str) -> Array:
         """Return a channel over all runs, without the rows that no gap counts."""
-        return np.concatenate([run[name][self.left_out :] for run in runs])
+        left_out = round(LEFT_OUT * self.experiment.sample_rate)
+        return np.concatenate([run[name][left_out:] for run in runs])
 
 
 def rms(values: Array) -> float:
@@ -173,33 +161,30 @@ class ToleranceRefit:
         if not np.all(np.isfinite(g)) or before < _NEGLIGIBLE:
             return 1.0
         columns = [np.concatenate([c[name] / limits[name] for name in names]) for c in self.sensitivities]
-        J = np.column_stack(columns)
-        left = np.split(g - J @ bounded_least_squares(J, g), len(names))
+        left = np.split(refit_residuals(columns, g), len(names))
         return max(rms(part) for part in left) / before
 
 
-def bounded_least_squares(J: Array, g: Array) -> Array:
-    """Return `argmin |g - J theta|` with `|theta| <= 1`.
+def refit_residuals(columns: Sequence[Array], g: Array) -> Array:
+    """Return `g - J theta` at its least norm with `|theta| <= 1`, where J has these columns; g where there are none.
 
     Solved on the triangular factor of `[J g]`, which has the same minimum with a row per column.
     """
+    if not columns:
+        return g
+    J = np.column_stack(columns)
     triangle = np.asarray(np.linalg.qr(np.column_stack([J, g]), mode="r"))
-    return np.asarray(lsq_linear(triangle[:, :-1], triangle[:, -1], (-1.0, 1.0)).x)
+    return np.asarray(g - J @ lsq_linear(triangle[:, :-1], triangle[:, -1], (-1.0, 1.0)).x)
 
 
 def context_of(experiment: Experiment, readings: Sequence[Readings]) -> Context:
     """Return what fault scenarios may know, from the readings of the rig without them."""
     pooled = {name: np.concatenate([run[name] for run in readings]) for name in CHANNELS}
-    driver = pooled["driver_acceleration"]
-    mass, stiffness = experiment.nominal["m"], experiment.nominal["kc"]
-    return Context(
-        spread={name: float(np.std(values)) for name, values in pooled.items()},
-        x_peak=float(np.max(np.abs(pooled["suspension_displacement"]))),
-        y_peak=mass * float(np.max(driver)) / stiffness,
-        tension_peak=mass * float(np.max(-driver)),
-        channels=experiment.channels,
-        is_bingham=experiment.is_bingham,
-    )
+    driver, mass = pooled["driver_acceleration"], experiment.nominal["m"]
+    spread = {name: float(np.std(values)) for name, values in pooled.items()}
+    x_peak = float(np.max(np.abs(pooled["suspension_displacement"])))
+    y_peak, tension_peak = mass * float(np.max(driver)) / experiment.nominal["kc"], mass * float(np.max(-driver))
+    return Context(spread, x_peak, y_peak, tension_peak, experiment.channels, experiment.is_bingham)
 
 
 class FaultlessRig:

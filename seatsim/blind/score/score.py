@@ -14,19 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.blind.score.verdicts import (
-    NAMING,
-    Bin,
-    Rate,
-    Verdict,
-    brier_score,
-    calibration_error,
-    count_true,
-    is_right,
-    is_wrong_name,
-    read_verdict,
-    reliability,
-)
+from seatsim.blind.score import verdicts as figures
+from seatsim.blind.score.verdicts import NAMING, Bin, Rate, Verdict, count_true, is_right, is_wrong_name, read_verdict
 from seatsim.blind.sealed import EFFECTS, KINDS, Label, Sealed, unseal
 from seatsim.schema.errors import InputError, SeatsimError
 from seatsim.schema.guarded import temporary_folder
@@ -95,9 +84,8 @@ def _compare_case(
 def _compare(cases: Sequence[_CaseShrink]) -> ShrinkScore:
     coverage = count_true([covered for *_, covered in cases if covered is not None])
     off = np.array([claimed - true for _, claimed, true, _ in cases if math.isfinite(true)])
-    if not off.size:
-        return ShrinkScore(math.nan, math.nan, coverage, list(cases))
-    return ShrinkScore(float(np.mean(np.abs(off))), float(np.mean(off)), coverage, list(cases))
+    mean, bias = (float(np.mean(np.abs(off))), float(np.mean(off))) if off.size else (math.nan, math.nan)
+    return ShrinkScore(mean, bias, coverage, list(cases))
 
 
 def _find_unseen_shrink(nominal: Path, augmented: Path, unseen: Path) -> _UnseenShrink:
@@ -257,12 +245,12 @@ def score_verdicts(
     known = kinds["one"] + kinds["carried"]
     faulty = [case for case in cases if case.label["kind"] != "none"]
     stated, true = _marginals(cases)
-    table = reliability(stated, true)
+    table = figures.reliability(stated, true)
     recall, precision = _recall_and_precision(kinds["two"])
     single = known + kinds["outside"]
     return Score(
-        right=_rate_right(cases),
-        kinds={kind: _rate_right(some) for kind, some in kinds.items() if some},
+        right=count_true([c.right for c in cases]),
+        kinds={kind: count_true([c.right for c in some]) for kind, some in kinds.items() if some},
         outside_with_block=count_true([c.right and c.is_block_first for c in kinds["outside"]]),
         top1=_rate_among_first(known, 1),
         top3=_rate_among_first(known, 3),
@@ -273,8 +261,8 @@ def score_verdicts(
         detected=count_true([c.verdict.verdict not in ("none", "missing") for c in faulty]),
         two_recall=recall,
         two_precision=precision,
-        calibration_error=calibration_error(table),
-        brier=brier_score(stated, true),
+        calibration_error=figures.calibration_error(table),
+        brier=figures.brier_score(stated, true),
         reliability=table,
         shrink=shrink,
         group_size=_mean_group_size(cases),
@@ -292,14 +280,10 @@ def score_verdicts(
 
 def _marginals(cases: Sequence[ScoredCase]) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """Return every stated probability and whether that effect is at work; cases that state none take no part."""
-    stated, true = [], []
-    for case in cases:
-        if case.verdict.probabilities is None:
-            continue
-        for effect in EFFECTS:
-            stated.append(case.verdict.probabilities.get(effect, 0.0))
-            true.append(effect in case.label["effects"])
-    return np.array(stated, dtype=float), np.array(true, dtype=bool)
+    stating = [(case.verdict.probabilities, case.label["effects"]) for case in cases]
+    told = [(stated, true) for stated, true in stating if stated is not None]
+    stated = np.array([stated.get(effect, 0.0) for stated, _ in told for effect in EFFECTS], dtype=float)
+    return stated, np.array([effect in true for _, true in told for effect in EFFECTS], dtype=bool)
 
 
 def _rate_among_first(cases: Sequence[ScoredCase], count: int) -> Rate:
@@ -320,11 +304,6 @@ def _mean_group_size(cases: Sequence[ScoredCase]) -> float:
     return float(np.mean([len(verdict.group) for verdict in naming])) if naming else math.nan
 
 
-def _rate_right(cases: Iterable[ScoredCase]) -> Rate:
-    """Return how many verdicts are right."""
-    return count_true([case.right for case in cases])
-
-
 def _rates_by(cases: Iterable[ScoredCase], classes_of: Callable[[Label], Sequence[str]]) -> dict[str, Rate]:
     """Return how many verdicts are right by class, in the order of the alphabet; a case may belong to several."""
     flags: dict[str, list[bool]] = {}
@@ -337,10 +316,7 @@ def _rates_by(cases: Iterable[ScoredCase], classes_of: Callable[[Label], Sequenc
 def _strength_class(label: Label) -> list[str]:
     """Return the class of a case by the materiality of its weakest fault."""
     weakest = min(label.get("materialities") or [math.nan])
-    for edge in _SIZES:
-        if weakest < edge:
-            return [f"{edge:.1f} x limit or less"]
-    return ["stronger"]
+    return [next((f"{edge:.1f} x limit or less" for edge in _SIZES if weakest < edge), "stronger")]
 
 
 def _confusion(cases: Iterable[ScoredCase]) -> dict[str, dict[str, int]]:
@@ -369,13 +345,10 @@ def _compare_sizes(cases: Iterable[ScoredCase]) -> list[FoundSize]:
 
 
 def _true_name(label: Label) -> str:
-    match label["kind"]:
-        case "one" | "carried":
-            return label["effects"][0]
-        case "outside":
-            return f"outside ({label['blocks'][0]})"
-        case kind:
-            return kind
+    kind = label["kind"]
+    if kind in ("one", "carried"):
+        return label["effects"][0]
+    return f"outside ({label['blocks'][0]})" if kind == "outside" else kind
 
 
 def _describe_failure(case: ScoredCase) -> Failure:

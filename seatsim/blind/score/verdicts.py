@@ -41,19 +41,13 @@ class Verdict:
     @property
     def group(self) -> tuple[str, ...]:
         """The indistinguishable group that holds the first cause, or that cause alone."""
-        if not self.causes:
-            return ()
-        for group in self.groups:
-            if self.causes[0] in group:
-                return group
-        return self.causes[:1]
+        first = self.causes[:1]
+        return next((group for group in self.groups if set(first) & set(group)), first)
 
     @property
     def named(self) -> str:
         """The first cause, or `none`, `unknown`, `missing` where none is named."""
-        if self.verdict in NAMING:
-            return self.causes[0] if self.causes else "unknown"
-        return self.verdict
+        return (*self.causes, "unknown")[0] if self.verdict in NAMING else self.verdict
 
 
 class _Estimate(BaseModel):
@@ -133,15 +127,12 @@ def is_right(label: Label, verdict: Verdict) -> bool:
     Two: named, and selected is exactly both. Outside: verdict unknown. Carried: as one, and under `unknown` too, since
     a nominal misses much else of a measured rig.
     """
-    effects = set(label["effects"])
-    match label["kind"]:
-        case "none":
-            return verdict.verdict == "none"
-        case "outside":
-            return verdict.verdict == "unknown"
-        case "two":
-            return verdict.verdict in NAMING and set(verdict.selected) == effects
-    naming = (*NAMING, "unknown") if label["kind"] == "carried" else NAMING
+    kind, effects = label["kind"], set(label["effects"])
+    if kind in ("none", "outside"):
+        return verdict.verdict == ("none" if kind == "none" else "unknown")
+    if kind == "two":
+        return verdict.verdict in NAMING and set(verdict.selected) == effects
+    naming = (*NAMING, "unknown") if kind == "carried" else NAMING
     if verdict.verdict not in naming or not verdict.causes:
         return False
     pairs = [set(group) for group in verdict.groups if len(group) <= _LARGEST_GROUP]
@@ -205,12 +196,10 @@ def reliability(stated: NDArray[np.float64], true: NDArray[np.bool_]) -> list[Bi
     Sorted by what was stated; ties stay in their order. Equal mass, since most probabilities lie near zero and bins of
     equal width would hold next to nothing.
     """
-    order = np.argsort(stated, kind="stable")
-    return [_bin(stated[part], true[part]) for part in np.array_split(order, _BINS) if part.size]
-
-
-def _bin(stated: NDArray[np.float64], true: NDArray[np.bool_]) -> Bin:
-    return Bin(float(np.mean(stated)), float(np.mean(true)), stated.size, float(np.min(stated)), float(np.max(stated)))
+    parts = [part for part in np.array_split(np.argsort(stated, kind="stable"), _BINS) if part.size]
+    means = [(float(np.mean(stated[part])), float(np.mean(true[part]))) for part in parts]
+    ends = [(float(np.min(stated[part])), float(np.max(stated[part]))) for part in parts]
+    return [Bin(*mean, part.size, *end) for part, mean, end in zip(parts, means, ends, strict=True)]
 
 
 def calibration_error(table: Sequence[Bin]) -> float:

@@ -194,12 +194,6 @@ def bracketed_speed(y: Array, memory: Array, x: float, wanted: float, guess: flo
 
 
 @compiled
-def _rests(stretch: float, speed: float, p: RigParameters) -> bool:
-    """Tell whether a damper with play rests: its motion has turned and the gap is not crossed yet."""
-    return abs(stretch) < 0.5 * p.play_gap or stretch * speed <= 0.0
-
-
-@compiled
 def damper_force(y: Array, rates: Array, memory: Array, x: float, speed: float, p: RigParameters) -> float:
     """Return Fd at the load cell, N (positive opposes extension), and write the rates of its own states.
 
@@ -209,11 +203,12 @@ def damper_force(y: Array, rates: Array, memory: Array, x: float, speed: float, 
     """
     turning = p.play_turn != 0.0 and p.play_gap > 0.0
     loose = not turning and (p.play_gap > 0.0 or p.play_air > 0.0)
-    resting = turning and _rests(y[state.MOUNT], speed, p)
+    stretch = y[state.MOUNT]
+    resting = turning and (abs(stretch) < 0.5 * p.play_gap or stretch * speed <= 0.0)
     force = 0.0
     v = 0.0 if resting else speed
     if loose:
-        force = _mount_force(y[state.MOUNT], p)
+        force = _mount_force(stretch, p)
         v = piston_speed(y, memory, x, force, p)
     if turning or loose:
         rates[state.MOUNT] = speed - v

@@ -31,7 +31,9 @@ _NO_FORCE = np.zeros(1)
 """A single sample, which the rig's loop takes for none."""
 
 
-def coloured_noise(rng: Generator, samples: int, low: float, high: float, slope: float, rate: float) -> Array:
+def coloured_noise(
+    rng: Generator, samples: int, low: float, high: float, slope: float, rate: float = EXCITATION_RATE
+) -> Array:
     """Return noise of unit variance, shape (samples,), whose amplitude goes as `f^slope` between two soft edges, Hz."""
     spectrum = np.fft.rfft(rng.standard_normal(samples))
     f = np.fft.rfftfreq(samples, 1.0 / rate)
@@ -73,15 +75,11 @@ def colour_noise(white: Array, colour: NoiseColour, rate: float) -> Array:
     return np.fft.irfft(np.fft.rfft(white) * np.sqrt(power), white.size)
 
 
-def _noise(rng: Generator, samples: int, low: float, high: float, slope: float) -> Array:
-    return coloured_noise(rng, samples, low, high, slope, EXCITATION_RATE)
-
-
 def draw_road(rng: Generator, seconds: float, rms: float) -> Array:
     """Return the acceleration of a cab floor on a random road, m/s^2 (a soft vehicle mode over a flat spectrum)."""
     samples = round(seconds * EXCITATION_RATE)
-    base = _noise(rng, samples, rng.uniform(0.6, 1.1), rng.uniform(7.0, 14.0), rng.uniform(-0.6, 0.1))
-    mode = _noise(rng, samples, rng.uniform(1.2, 1.6), rng.uniform(2.2, 3.5), 0.0)
+    base = coloured_noise(rng, samples, rng.uniform(0.6, 1.1), rng.uniform(7.0, 14.0), rng.uniform(-0.6, 0.1))
+    mode = coloured_noise(rng, samples, rng.uniform(1.2, 1.6), rng.uniform(2.2, 3.5), 0.0)
     mixed = base + rng.uniform(0.3, 1.2) * mode
     return np.asarray(rms * mixed / np.std(mixed))
 
@@ -92,7 +90,7 @@ def draw_bumps(rng: Generator, seconds: float, peak: float) -> Array:
     A bump is a raised cosine in height, so a cosine in acceleration, softened where it begins and ends.
     """
     time = np.arange(round(seconds * EXCITATION_RATE)) / EXCITATION_RATE
-    total = 0.12 * _noise(rng, time.size, 1.0, 15.0, -0.3)
+    total = 0.12 * coloured_noise(rng, time.size, 1.0, 15.0, -0.3)
     at = rng.uniform(0.4, 1.2)
     while at < seconds - 1.0:
         long = rng.uniform(0.2, 0.5)
@@ -118,7 +116,7 @@ def draw_sweep(rng: Generator, seconds: float, rms: float) -> Array:
     rate = np.log(high / low) / seconds
     phase = 2.0 * np.pi * low * (np.exp(rate * time) - 1.0) / rate
     size = 1.1 * rms * np.minimum(1.0, 0.4 + time / seconds)
-    return np.asarray(size * np.sin(phase) + 0.6 * rms * _noise(rng, time.size, 0.8, 10.0, -0.3))
+    return np.asarray(size * np.sin(phase) + 0.6 * rms * coloured_noise(rng, time.size, 0.8, 10.0, -0.3))
 
 
 class _Vehicle(NamedTuple):
@@ -159,7 +157,7 @@ def draw_vehicle_floor(rng: Generator, vehicle: _Vehicle, seconds: float, bumps:
     floor = _through_vehicle(road + _draw_bump_velocity(rng, speed, bumps), vehicle)
     level = float(np.std(floor))
     # the engine is a narrow band about its frequency
-    engine = coloured_noise(rng, samples, 0.97 * vehicle.engine, vehicle.engine, 0.0, EXCITATION_RATE)
+    engine = coloured_noise(rng, samples, 0.97 * vehicle.engine, vehicle.engine, 0.0)
     return floor * min(max(level, _QUIETEST), _LOUDEST) / level + vehicle.hum * engine
 
 
@@ -228,7 +226,7 @@ def _draw_unit_force(rng: Generator, force: FrameForce, seconds: float) -> Array
     match force.kind:
         case "coloured":
             low, high, samples = rng.uniform(1.0, 2.5), rng.uniform(8.0, 18.0), round(seconds * EXCITATION_RATE)
-            return coloured_noise(rng, samples, low, high, rng.uniform(-0.3, 0.3), EXCITATION_RATE)
+            return coloured_noise(rng, samples, low, high, rng.uniform(-0.3, 0.3))
         case "hum":
             return _draw_hum(rng, seconds, force.detail)
         case "knock":
@@ -238,7 +236,7 @@ def _draw_unit_force(rng: Generator, force: FrameForce, seconds: float) -> Array
 def _draw_hum(rng: Generator, seconds: float, hertz: float) -> Array:
     """Return an engine tone of about 1 N rms: its frequency wanders by 2 %, its amplitude by 25 %."""
     time = np.arange(round(seconds * EXCITATION_RATE)) / EXCITATION_RATE
-    wander = 0.02 * coloured_noise(rng, time.size, 0.1, 0.4, 0.0, EXCITATION_RATE)
+    wander = 0.02 * coloured_noise(rng, time.size, 0.1, 0.4, 0.0)
     phase = 2.0 * np.pi * np.cumsum(hertz * (1.0 + wander)) / EXCITATION_RATE
     envelope = 1.0 + 0.25 * np.sin(2.0 * np.pi * rng.uniform(0.05, 0.2) * time + rng.uniform(0.0, 6.0))
     return np.asarray(np.sqrt(2.0) * envelope * np.sin(phase))

@@ -1,6 +1,6 @@
 """One rig under test and its protocol: what a run is, with or without faults, and what its channels read."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -23,16 +23,8 @@ _EVEN_RUN_DRIFT = 0.6
 def read_sensors(motion: RigMotion, floor: Array, faults: Iterable[SensorFault], run: int) -> Readings:
     """Return what each channel reads, without noise; `floor` is the run's acceleration at 2 kHz, m/s^2."""
     time = np.arange(motion.frame.size) / motion.sample_rate
-    true = {
-        "floor_acceleration": np.interp(time * EXCITATION_RATE, np.arange(floor.size), floor),
-        "frame_acceleration": motion.frame,
-        "driver_acceleration": motion.driver,
-        "suspension_displacement": motion.displacement,
-        "damper_force": motion.force,
-        "current_command": motion.command,
-        "coil_current": motion.current,
-        "damper_temperature": motion.temperature,
-    }
+    floor_at_rows = np.interp(time * EXCITATION_RATE, np.arange(floor.size), floor)
+    true = dict(zip(CHANNELS, (floor_at_rows, *motion[:7]), strict=True))
     read = {name: values.copy() for name, values in true.items()}
     for fault in faults:
         if fault.kind == "skew":
@@ -56,9 +48,7 @@ def _read_late_log(motion: RigMotion, fault: SensorFault, run: int) -> tuple[Arr
     return motion.command[rows], np.interp(at, fine, motion.fine_current)
 
 
-def apply_fault(  # noqa: PLR0911 - one return per fault
-    u: Array, other: Array, fault: SensorFault, run: int, rate: float = SAMPLE_RATE
-) -> Array:
+def apply_fault(u: Array, other: Array, fault: SensorFault, run: int, rate: float = SAMPLE_RATE) -> Array:
     """Return a channel `u` read through a fault; `other` is what couples into it.
 
     gain `(1 + g) u`; gain_bent `(1 + g) u` whose g fades with size; bias: offset plus drift; wander: offset plus slow
@@ -68,30 +58,20 @@ def apply_fault(  # noqa: PLR0911 - one return per fault
     time = np.arange(u.size) / rate
     if size == 0.0:
         return u
-    match fault.kind:
-        case "gain":
-            return u * (1.0 + size)
-        case "gain_bent":
-            return u * (1.0 + size / (1.0 + 0.1 * fault.detail * (u / fault.scale) ** 2))
-        case "bias":
-            return np.asarray(u + size * (1.0 + (fault.detail - 0.4) * time / time[-1]))
-        case "wander":
-            rng = np.random.default_rng([fault.seed, run])
-            noise = coloured_noise(rng, u.size, 0.02, 0.1 + 0.1 * fault.detail, -1.0, rate)
-            return u + size * (0.6 + noise)
-        case "lag_second":
-            return _low_pass(u, size, rate)
-        case "lag_average":
-            return _moving_average(u, size, rate)
-        case "quantise":
-            return np.asarray(np.round(u / size) * size)
-        case "clip":
-            return np.clip(u, -size, size)
-        case "backlash":
-            return _follow_with_play(u, size)
-        case "crosstalk":
-            return u + size * other
-    raise ValueError(fault.kind)
+    rng = np.random.default_rng([fault.seed, run])
+    reading: Mapping[str, Callable[[], Array]] = {
+        "gain": lambda: u * (1.0 + size),
+        "gain_bent": lambda: u * (1.0 + size / (1.0 + 0.1 * fault.detail * (u / fault.scale) ** 2)),
+        "bias": lambda: u + size * (1.0 + (fault.detail - 0.4) * time / time[-1]),
+        "wander": lambda: u + size * (0.6 + coloured_noise(rng, u.size, 0.02, 0.1 + 0.1 * fault.detail, -1.0, rate)),
+        "lag_second": lambda: _low_pass(u, size, rate),
+        "lag_average": lambda: _moving_average(u, size, rate),
+        "quantise": lambda: np.round(u / size) * size,
+        "clip": lambda: np.clip(u, -size, size),
+        "backlash": lambda: _follow_with_play(u, size),
+        "crosstalk": lambda: u + size * other,
+    }
+    return np.asarray(reading[fault.kind]())
 
 
 def _low_pass(u: Array, delay: float, rate: float) -> Array:
@@ -157,15 +137,10 @@ class RunPlan(NamedTuple):
 
     name: str
     floor: Array  # m/s^2, at EXCITATION_RATE
-    law: Array  # see `physics.control_laws`
+    law: Array  # see `coil`
     schedule: Array  # A, one per row
     temperature: float
     repeat_of: str | None = None
-
-    @property
-    def rows(self) -> int:
-        """Rows of the table."""
-        return self.schedule.size
 
 
 class Experiment(NamedTuple):
@@ -218,9 +193,10 @@ def simulate_run(
         else:
             values[name] = number
     law, schedule = (plan.law, plan.schedule) if command is None else (np.zeros(6), command)
-    base, rate = (plan.floor, EXCITATION_RATE) if floor is None else (floor, experiment.sample_rate)
-    force = frame_force((*experiment.background, *changes.frame_forces), run, plan.rows / experiment.sample_rate)
-    return simulate(parameter_record(values), Inputs(base, rate, force, law, schedule, experiment.sample_rate), step)
+    rate = experiment.sample_rate
+    base, base_rate = (plan.floor, EXCITATION_RATE) if floor is None else (floor, rate)
+    force = frame_force((*experiment.background, *changes.frame_forces), run, plan.schedule.size / rate)
+    return simulate(parameter_record(values), Inputs(base, base_rate, force, law, schedule, rate), step)
 
 
 def read_channels(experiment: Experiment, changes: Changes, run: int, motion: RigMotion) -> Readings:

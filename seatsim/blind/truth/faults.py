@@ -48,7 +48,7 @@ class FrameForce(NamedTuple):
 
 
 class SensorFault(NamedTuple):
-    """A sensor fault: kind, channel, size (as `sensors` states), detail (0..1), seed, and the channel's spread."""
+    """A sensor fault: kind, channel, size (see `apply_fault`), detail (0..1), seed, and the channel's spread."""
 
     kind: _SensorFaultKind
     channel: str
@@ -67,7 +67,7 @@ class SensorFault(NamedTuple):
 class Changes:
     """What departs from the nominal rig: parameters, forces on the frame, sensor faults.
 
-    `parameters` are those of `parameters`, and `rate_factor`, by which the coil's true rate is multiplied.
+    `parameters` are those of `parameters.yaml`, and `rate_factor`, by which the coil's true rate is multiplied.
     """
 
     parameters: Mapping[str, _Value] = field(default_factory=dict)
@@ -76,11 +76,8 @@ class Changes:
 
     def __add__(self, other: Changes) -> Changes:
         """Return both together; a parameter that both set has the other's value."""
-        return Changes(
-            {**self.parameters, **other.parameters},
-            self.frame_forces + other.frame_forces,
-            self.sensor_faults + other.sensor_faults,
-        )
+        forces, faults = self.frame_forces + other.frame_forces, self.sensor_faults + other.sensor_faults
+        return Changes({**self.parameters, **other.parameters}, forces, faults)
 
 
 class Context(NamedTuple):

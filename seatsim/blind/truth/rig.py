@@ -29,7 +29,10 @@ _FORGETTING = 0.8
 
 
 class RigMotion(NamedTuple):
-    """What the rig did, shape (rows,) each, before sensors and noise; `fine_current` has a value for every step."""
+    """What the rig did, shape (rows,) each, before sensors and noise; `fine_current` has a value for every step.
+
+    The first seven are what the channels after the floor's read, in the contract's order.
+    """
 
     frame: Array  # m/s^2
     driver: Array  # m/s^2
@@ -48,20 +51,9 @@ class Inputs(NamedTuple):
     floor: Array  # m/s^2
     floor_rate: float  # Hz
     frame_force: Array  # N, at EXCITATION_RATE; a single sample means none
-    law: Array  # see `control_laws`
+    law: Array  # see `coil`
     schedule: Array  # A, one per row: the command where the law is a schedule
     sample_rate: float = SAMPLE_RATE  # Hz, of the rows
-
-
-class _Stages(NamedTuple):
-    """Rates at the four stages of a Runge-Kutta step, the state between them, and the last accelerations."""
-
-    k1: Array
-    k2: Array
-    k3: Array
-    k4: Array
-    part: Array
-    acc: Array
 
 
 def simulate(record: np.void, inputs: Inputs, step: float = INTEGRATION_STEP) -> RigMotion:
@@ -99,21 +91,17 @@ def _base_acceleration(y: Array, rates: Array, floor: float, reaction: float, p:
 
 @compiled
 def _write_rates(
-    y: Array,
-    rates: Array,
-    memory: Array,
-    floor: float,
-    frame_force: float,
-    target: float,
-    late: float,
-    p: RigParameters,
-    acc: Array,
+    y: Array, rates: Array, memory: Array, acting: tuple[float, float, float, float], p: RigParameters, acc: Array
 ) -> None:
     """Write all rates; `acc` gets frame and driver acceleration (m/s^2) and the force at the load cell (N).
+
+    `acting` are the floor's acceleration (m/s^2), the force on the frame (N), the current that the driver aims at (A)
+    and the late speed of the cushion to which the muscles answer (m/s).
 
     An inerter (fluid inertia) adds its mass to the frame and is carried by the base; a lever transmits the damper's
     force and travel by its ratio.
     """
+    floor, frame_force, target, late = acting
     write_coil_rates(y, rates, target, y[state.V], p)
     ratio = p.damper_ratio + p.lever_slope * y[state.X]
     fd = damper_force(y, rates, memory, p.damper_ratio * y[state.X], y[state.V] * ratio, p)
@@ -134,86 +122,54 @@ def _write_rates(
 
 
 @compiled
-def _finish_step(
-    y: Array,
-    memory: Array,
-    stages: _Stages,
-    middle: float,
-    end: float,
-    frame_force: float,
-    target: float,
-    late: float,
-    h: float,
-    p: RigParameters,
-) -> None:
-    """Advance the state from the first stage to the end of the step; the floor is given in its middle and at its end.
-
-    Frame force, target and muscles stay as they were at its start: they change slowly beside a step.
-    """
-    k1, k2, k3, k4, part, acc = stages
-    for j in range(state.STATES):
-        part[j] = y[j] + 0.5 * h * k1[j]
-    _write_rates(part, k2, memory, middle, frame_force, target, late, p, acc)
-    for j in range(state.STATES):
-        part[j] = y[j] + 0.5 * h * k2[j]
-    _write_rates(part, k3, memory, middle, frame_force, target, late, p, acc)
-    for j in range(state.STATES):
-        part[j] = y[j] + h * k3[j]
-    _write_rates(part, k4, memory, end, frame_force, target, late, p, acc)
-    for j in range(state.STATES):
-        y[j] += h / 6.0 * (k1[j] + 2.0 * (k2[j] + k3[j]) + k4[j])
-    # the driver stage can neither sink current nor exceed its supply
-    y[state.CURRENT] = min(max(y[state.CURRENT], 0.0), p.i_max)
-
-
-@compiled
-def _update_memory(
-    y: Array, memory: Array, relays: Array, frame: float, driver: float, h: float, p: RigParameters
-) -> None:
-    """Carry what changes once a step: the controller's velocities, the cavity, the relays."""
-    memory[state.V_FRAME] += h * (frame - _FORGETTING * memory[state.V_FRAME])
-    memory[state.V_DRIVER] += h * (driver - _FORGETTING * memory[state.V_DRIVER])
-    if p.cavitation_force > 0.0:
-        ratio = p.damper_ratio + p.lever_slope * y[state.X]
-        update_cavity(y, memory, p.damper_ratio * y[state.X], y[state.V] * ratio, h, p)
-    if p.relay_share != 0.0:
-        update_relays(y, memory, relays, p)
-
-
-@compiled
 def _run(p: RigParameters, inputs: Inputs, per_row: int, out: Array, fine: Array) -> None:
+    """Run row by row; frame force, target and muscles stay within a step, as they change slowly beside it."""
     floor, floor_rate, frame_forces, law, schedule, sample_rate = inputs
-    rows = out.shape[1]
     interval = 1.0 / sample_rate
     h = interval / per_row
     y = np.zeros(state.STATES)
     y[state.T_FLUID] = y[state.T_HOUSING] = y[state.T_THERMOMETER] = p.t_start
-    memory = np.zeros(state.MEMORIES)
-    relays = np.zeros(state.RELAYS)
+    memory, relays, acc = np.zeros(state.MEMORIES), np.zeros(state.RELAYS), np.zeros(3)
+    # rates at the four stages of a Runge-Kutta step, and the state between them
     k1, k2, k3 = np.zeros(state.STATES), np.zeros(state.STATES), np.zeros(state.STATES)
-    k4, part, acc = np.zeros(state.STATES), np.zeros(state.STATES), np.zeros(3)
-    stages = _Stages(k1, k2, k3, k4, part, acc)
-    commands = np.zeros(rows)
+    k4, part = np.zeros(state.STATES), np.zeros(state.STATES)
+    commands = np.zeros(out.shape[1])
     # a ring of past cushion speeds, as long as the muscles' delay
-    lag = max(round(p.muscle_delay / h), 1)
-    past = np.zeros(lag)
-    for row in range(rows):
-        for sub in range(per_row):
-            n = row * per_row + sub
-            time = n * h
-            force = _between(frame_forces, EXCITATION_RATE, time) if frame_forces.size > 1 else 0.0
-            if sub == 0:
-                commands[row] = command_of(law, schedule, row, y, memory, p)
-            target = target_current(held_command(commands, time, interval, p), time, h, y, memory, p)
-            late = past[n % lag]
-            _write_rates(y, k1, memory, _between(floor, floor_rate, time), force, target, late, p, acc)
-            if sub == 0:
-                out[0, row], out[1, row], out[3, row] = acc
-                out[2, row], out[4, row], out[5, row] = y[state.X], commands[row], y[state.CURRENT]
-                out[6, row] = y[state.T_THERMOMETER]
-            fine[n] = y[state.CURRENT]
-            frame, driver = acc[0], acc[1]
-            middle, end = _between(floor, floor_rate, time + 0.5 * h), _between(floor, floor_rate, time + h)
-            _finish_step(y, memory, stages, middle, end, force, target, late, h, p)
-            past[n % lag] = y[state.W]
-            _update_memory(y, memory, relays, frame, driver, h, p)
+    past = np.zeros(max(round(p.muscle_delay / h), 1))
+    for n in range(fine.size):
+        row, time = n // per_row, n * h
+        force = _between(frame_forces, EXCITATION_RATE, time) if frame_forces.size > 1 else 0.0
+        if n % per_row == 0:
+            commands[row] = command_of(law, schedule, row, y, memory, p)
+        target = target_current(held_command(commands, time, interval, p), time, h, y, memory, p)
+        late = past[n % past.size]
+        _write_rates(y, k1, memory, (_between(floor, floor_rate, time), force, target, late), p, acc)
+        if n % per_row == 0:
+            out[0, row], out[1, row], out[3, row] = acc
+            out[2, row], out[4, row], out[5, row] = y[state.X], commands[row], y[state.CURRENT]
+            out[6, row] = y[state.T_THERMOMETER]
+        fine[n] = y[state.CURRENT]
+        frame, driver = acc[0], acc[1]
+        middle, end = _between(floor, floor_rate, time + 0.5 * h), _between(floor, floor_rate, time + h)
+        for j in range(state.STATES):
+            part[j] = y[j] + 0.5 * h * k1[j]
+        _write_rates(part, k2, memory, (middle, force, target, late), p, acc)
+        for j in range(state.STATES):
+            part[j] = y[j] + 0.5 * h * k2[j]
+        _write_rates(part, k3, memory, (middle, force, target, late), p, acc)
+        for j in range(state.STATES):
+            part[j] = y[j] + h * k3[j]
+        _write_rates(part, k4, memory, (end, force, target, late), p, acc)
+        for j in range(state.STATES):
+            y[j] += h / 6.0 * (k1[j] + 2.0 * (k2[j] + k3[j]) + k4[j])
+        # the driver stage can neither sink current nor exceed its supply
+        y[state.CURRENT] = min(max(y[state.CURRENT], 0.0), p.i_max)
+        past[n % past.size] = y[state.W]
+        # what changes once a step: the controller's velocities, the cavity, the relays
+        memory[state.V_FRAME] += h * (frame - _FORGETTING * memory[state.V_FRAME])
+        memory[state.V_DRIVER] += h * (driver - _FORGETTING * memory[state.V_DRIVER])
+        if p.cavitation_force > 0.0:
+            ratio = p.damper_ratio + p.lever_slope * y[state.X]
+            update_cavity(y, memory, p.damper_ratio * y[state.X], y[state.V] * ratio, h, p)
+        if p.relay_share != 0.0:
+            update_relays(y, memory, relays, p)
