@@ -12,6 +12,7 @@ is used.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
@@ -74,9 +75,8 @@ class Iso7096(NamedTuple):
         count = samples(self.duration, step)
         size = max(count - 1, round(_LEAST_PERIOD / step))
         period = size * step
-        acceleration = random_phase(
-            lambda f: acceleration_density(f, self.spectral_class), LOWEST, highest, period, seed
-        )
+        density = partial(acceleration_density, spectral_class=self.spectral_class)
+        acceleration = random_phase(density, LOWEST, highest, period, seed)
         return soft_start(step, motion_of(integrated_twice(acceleration, period), step, size, count))
 
 

@@ -135,8 +135,7 @@ def random_phase(density: Callable[[Array], Array], low: float, high: float, per
     phase = np.random.default_rng(seed).uniform(0.0, 2 * np.pi, len(frequency))
     amplitude = np.zeros(len(frequency))
     amplitude[inside] = np.sqrt(density(frequency[inside]) / (2 * period))
-    spectrum: Spectrum = amplitude * np.exp(1j * phase)
-    return spectrum
+    return np.asarray(amplitude * np.exp(1j * phase))
 
 
 def motion_of(displacement: Spectrum, step: float, size: int, count: int) -> Motion:
@@ -165,8 +164,7 @@ def mirrored(values: Array) -> Spectrum:
 
     A record of N values has a period of `2*(N - 1)` intervals.
     """
-    spectrum: Spectrum = rfft(np.concatenate([values, values[-2:0:-1]]), norm="forward")
-    return spectrum
+    return np.asarray(rfft(np.concatenate([values, values[-2:0:-1]]), norm="forward"))
 
 
 def limited(values: Array, interval: float, low: float, high: float) -> Array:
@@ -191,5 +189,4 @@ def band(frequency: Array, low: float, high: float) -> Array:
     raised cosine from 1 at `0.8*high` to 0 at `high`.
     """
     fall = np.clip((frequency / high - 0.8) / 0.2, 0.0, 1.0)
-    gain: Array = frequency**4 / (frequency**4 + low**4) * np.cos(np.pi / 2 * fall) ** 2
-    return gain
+    return np.asarray(frequency**4 / (frequency**4 + low**4) * np.cos(np.pi / 2 * fall) ** 2)

@@ -73,16 +73,10 @@ def interpolate_floor(table: Mapping[str, Array], parts: int, step: float) -> Fl
     check_steps(float(parts) * len(table["floor_acceleration"]))
     floor, command = _linear(table["floor_acceleration"], parts), table.get("current_command")
     velocity = _leaky_integral(floor, step)
+    held = None if command is None else np.append(np.repeat(command[:-1], parts), command[-1])
     finer = {name: _linear(table[name], parts) for name in ("coil_current", "damper_temperature") if name in table}
-    return Floor(
-        step,
-        floor,
-        velocity,
-        _leaky_integral(velocity, step),
-        None if command is None else np.append(np.repeat(command[:-1], parts), command[-1]),
-        finer.get("coil_current"),
-        finer.get("damper_temperature"),
-    )
+    current, temperature = finer.get("coil_current"), finer.get("damper_temperature")
+    return Floor(step, floor, velocity, _leaky_integral(velocity, step), held, current, temperature)
 
 
 def _linear(values: Array, parts: int) -> Array:
@@ -97,8 +91,7 @@ def _leaky_integral(values: Array, step: float) -> Array:
 
     leak = math.pi * _CORNER * step
     gain = 0.5 * step / (1 + leak)
-    result: Array = lfilter([gain, gain], [1.0, -(1 - leak) / (1 + leak)], values)
-    return result
+    return np.asarray(lfilter([gain, gain], [1.0, -(1 - leak) / (1 + leak)], values))
 
 
 # Part of a table's Nyquist frequency up to which its content is used.
@@ -116,7 +109,7 @@ class Table(NamedTuple):
       passes `vehicle.floor_response` unless `through: direct`. Waves shorter than 0.35 m are left out, since
       a tyre's contact patch averages over them.
 
-    Both filters have no phase shift (see `spectra.band`). Without `duration` the whole record is played; a
+    Both filters have no phase shift (see `motion.band`). Without `duration` the whole record is played; a
     longer run plays it backwards and forwards in turn where `repeat: mirror` says so. The floor is faded in
     over the first second. The record is stretched by less than half a step over its length so that it holds a
     whole number of steps.
@@ -206,10 +199,6 @@ class _EvenSeries(NamedTuple):
         """From the first to the last value, in s or m."""
         return self.interval * (len(self.values) - 1)
 
-    def after(self, start: float) -> _EvenSeries:
-        """Return the record from `start` on, in s or m after the first value."""
-        return self._replace(values=self.values[round(start / self.interval) :])
-
 
 def _read_record(path: str, axis: str, column: str, start: float) -> _EvenSeries:
     """Read `column` of a CSV (or CSV.gz) table over its column `axis`, from `start` after its first row.
@@ -221,22 +210,19 @@ def _read_record(path: str, axis: str, column: str, start: float) -> _EvenSeries
     if not is_there(Path(path)):
         raise InputError(f"{path}: no such file{nearest_beside(Path(path))}")
     table = read_table(Path(path))
+    known = list(map(str, table))
     for name in (axis, column):
-        _check_column(path, name, list(map(str, table)))
+        if name not in known:
+            shown = ", ".join(known[:8]) + (f", ... ({len(known)} in all)" if len(known) > 8 else "")
+            raise InputError(f"{path}: no column '{name}'{nearest(name, known)}; columns: {shown}")
     if len(table) < _LEAST_ROWS:
         raise InputError(f"{path}: {len(table)} rows are too few; permitted: at least {_LEAST_ROWS}")
     position = _numbers(path, table, axis)
     whole = _EvenSeries(_interval(path, axis, position), _numbers(path, table, column))
-    record = whole.after(start)
+    record = whole._replace(values=whole.values[round(start / whole.interval) :])
     if len(record.values) < _LEAST_ROWS:
         raise InputError(f"{path}: start {start:g} leaves fewer than {_LEAST_ROWS} rows of {whole.length:g} (s or m)")
     return record
-
-
-def _check_column(path: str, name: str, known: list[str]) -> None:
-    if name not in known:
-        shown = ", ".join(known[:8]) + (f", ... ({len(known)} in all)" if len(known) > 8 else "")
-        raise InputError(f"{path}: no column '{name}'{nearest(name, known)}; columns: {shown}")
 
 
 def _numbers(path: str, table: pd.DataFrame, name: str) -> Array:

@@ -27,22 +27,10 @@ from math import ceil
 from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
 
+from seatsim.excitations import motion
 from seatsim.excitations.base import Duration, Floor, Speed, Through, choice, excitation
-from seatsim.excitations.motion import (
-    Motion,
-    Spectrum,
-    check_step,
-    clock,
-    floor_of,
-    lines,
-    motion_of,
-    random_phase,
-    samples,
-    soft_start,
-)
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param
@@ -77,7 +65,7 @@ class Vehicle(NamedTuple):
 TRUCK = Vehicle()
 
 
-def floor_response(frequency: Array, vehicle: Vehicle = TRUCK) -> Spectrum:
+def floor_response(frequency: Array, vehicle: Vehicle = TRUCK) -> motion.Spectrum:
     """Return the complex response `z0/zr` of the cab floor to the road, shape of `frequency`.
 
     Built from the cab down: a mass `m` on a spring with the transmissibility `T = (k + c s)/(m s^2 + k + c s)`
@@ -90,7 +78,12 @@ def floor_response(frequency: Array, vehicle: Vehicle = TRUCK) -> Spectrum:
     s = (2j * np.pi * frequency).astype(np.complex128)
     response = np.ones_like(s)
     carried = np.zeros_like(s)
-    for mass, link in _stages(s, vehicle):
+    v = vehicle
+    for mass, link in (
+        (v.cab_mass, v.mount_stiffness + v.mount_damping * s),
+        (v.body_mass, v.suspension_stiffness + v.suspension_damping * s),
+        (v.axle_mass, v.tyre_stiffness + 0 * s),
+    ):
         total = mass + carried
         transmissibility = link / (total * s**2 + link)
         carried = total * transmissibility
@@ -132,14 +125,6 @@ def ring_down(vehicle: Vehicle) -> float:
     return float(-np.log(1e6) / slowest)
 
 
-def _stages(s: Spectrum, v: Vehicle) -> tuple[tuple[float, NDArray[np.complex128]], ...]:
-    return (
-        (v.cab_mass, v.mount_stiffness + v.mount_damping * s),
-        (v.body_mass, v.suspension_stiffness + v.suspension_damping * s),
-        (v.axle_mass, v.tyre_stiffness + 0 * s),
-    )
-
-
 def _chain(lower: float, upper: float) -> Array:
     return np.array([[lower, -lower, 0.0], [-lower, lower + upper, -upper], [0.0, -upper, upper]])
 
@@ -172,14 +157,14 @@ class Road(NamedTuple):
         Raises:
             InputError: `step` holds fewer than five samples of the shortest wave.
         """
-        check_step("road", step, SHORTEST * self.speed, per_period=5)
-        count = samples(self.duration, step)
+        motion.check_step("road", step, SHORTEST * self.speed, per_period=5)
+        count = motion.samples(self.duration, step)
         # In whole seconds, so that the period, and thus the road, is the same for every step.
         size = max(count - 1, round(ceil(_LEAST_PERIOD / self.speed) / step))
         spectrum = _road(self.road_class, size * step * self.speed, SHORTEST, seed)
         if self.through == "vehicle":
-            spectrum = spectrum * floor_response(lines(spectrum, size * step), self.vehicle)
-        return soft_start(step, motion_of(spectrum, step, size, count))
+            spectrum = spectrum * floor_response(motion.lines(spectrum, size * step), self.vehicle)
+        return motion.soft_start(step, motion.motion_of(spectrum, step, size, count))
 
 
 def displacement_density(wavenumber: Array, road_class: RoadClass) -> Array:
@@ -197,11 +182,11 @@ def profile(road_class: RoadClass, length: float, spacing: float, seed: int) -> 
     size = max(count - 1, round(_LEAST_PERIOD / spacing))
     spectrum = _road(road_class, size * spacing, min(SHORTEST, 0.4 / spacing), seed)
     elevation = irfft(spectrum, n=size, norm="forward")
-    return clock(count, spacing), np.resize(elevation, count)
+    return motion.clock(count, spacing), np.resize(elevation, count)
 
 
-def _road(road_class: RoadClass, period: float, shortest: float, seed: int) -> Spectrum:
-    return random_phase(lambda n: displacement_density(n, road_class), LONGEST, shortest, period, seed)
+def _road(road_class: RoadClass, period: float, shortest: float, seed: int) -> motion.Spectrum:
+    return motion.random_phase(lambda n: displacement_density(n, road_class), LONGEST, shortest, period, seed)
 
 
 @excitation("bumps")
@@ -233,10 +218,9 @@ class Bumps(NamedTuple):
                 five samples of the time to roll over a patch or a bump.
         """
         self._check()
-        check_step("bumps", step, self.speed / min(self.patch, self.length), per_period=5)
-        count = samples(self.duration, step)
-        motion = self._road(step, count) if self.through == "direct" else self._cab(step, count)
-        return floor_of(step, motion)
+        motion.check_step("bumps", step, self.speed / min(self.patch, self.length), per_period=5)
+        count = motion.samples(self.duration, step)
+        return motion.floor_of(step, self._road(step, count) if self.through == "direct" else self._cab(step, count))
 
     def _check(self) -> None:
         if self.number > 1 and self.spacing < self.length:
@@ -251,36 +235,26 @@ class Bumps(NamedTuple):
                 "lengthen duration, or lower first, number or spacing"
             )
 
-    def _road(self, step: float, count: int) -> Motion:
+    def _road(self, step: float, count: int) -> motion.Motion:
         """Return the road under the patch; its acceleration is averaged over two steps, which keeps its integral."""
-        ahead = self.speed * (clock(count + 2, step) - step - self.first)
-        behind = ahead - self.patch
-        elevation = (self._area(ahead) - self._area(behind)) / self.patch
-        velocity = self.speed * (self._height(ahead) - self._height(behind)) / self.patch
-        return Motion(elevation[1:-1], velocity[1:-1], np.diff(elevation, 2) / step**2)
+        ahead = self.speed * (motion.clock(count + 2, step) - step - self.first)
+        (height, area), (height_behind, area_behind) = self._profile(ahead), self._profile(ahead - self.patch)
+        elevation = (area - area_behind) / self.patch
+        velocity = self.speed * (height - height_behind) / self.patch
+        return motion.Motion(elevation[1:-1], velocity[1:-1], np.diff(elevation, 2) / step**2)
 
-    def _cab(self, step: float, count: int) -> Motion:
+    def _cab(self, step: float, count: int) -> motion.Motion:
         # The Fourier transform is periodic: the vehicle has to come to rest before the next period begins.
         size = count + round(ring_down(self.vehicle) / step)
         road = rfft(self._road(step, size).displacement, norm="forward")
-        return motion_of(road * floor_response(lines(road, size * step), self.vehicle), step, size, count)
+        return motion.motion_of(road * floor_response(motion.lines(road, size * step), self.vehicle), step, size, count)
 
-    def _height(self, s: Array) -> Array:
-        u = np.clip(s - self._passed(s) * self.spacing, 0.0, self.length) / self.length
-        if self.shape == "half_sine":
-            return self.height * np.sin(np.pi * u)
-        return self.height / 2 * (1 - np.cos(2 * np.pi * u))
-
-    def _area(self, s: Array) -> Array:
-        passed = self._passed(s)
+    def _profile(self, s: Array) -> tuple[Array, Array]:
+        """Return the elevation at s in m, and its integral up to there in m^2."""
+        passed = np.clip(np.floor(s / self.spacing), 0, self.number - 1)
         u = np.clip(s - passed * self.spacing, 0.0, self.length) / self.length
         if self.shape == "half_sine":
-            full = 2 / np.pi
-            part = (1 - np.cos(np.pi * u)) / np.pi
+            height, full, part = np.sin(np.pi * u), 2 / np.pi, (1 - np.cos(np.pi * u)) / np.pi
         else:
-            full = 0.5
-            part = u / 2 - np.sin(2 * np.pi * u) / (4 * np.pi)
-        return self.height * self.length * (passed * full + part)
-
-    def _passed(self, s: Array) -> Array:
-        return np.clip(np.floor(s / self.spacing), 0, self.number - 1)
+            height, full, part = (1 - np.cos(2 * np.pi * u)) / 2, 0.5, u / 2 - np.sin(2 * np.pi * u) / (4 * np.pi)
+        return self.height * height, self.height * self.length * (passed * full + part)

@@ -51,9 +51,8 @@ def test_impulse_at_the_kink_has_its_area_at_any_step(step, first):
 
 def test_pulse_height_is_that_of_the_patch(conform):
     peak, expected = HALF.floor(0.0002, 0).acceleration.max(), 5.0**2 * 0.04 * np.pi / 0.05
-    conform(
-        "half-sine bump, peak acceleration, m/s^2", "v^2 h pi / (L patch)", peak, expected, tolerance=0.01 * expected
-    )
+    claim = "half-sine bump, peak acceleration, m/s^2"
+    conform(claim, "v^2 h pi / (L patch)", peak, expected, tolerance=0.01 * expected)
 
 
 def test_cab_comes_to_rest_after_the_bump():

@@ -15,9 +15,8 @@ def test_sine_is_exact_after_its_first_second(conform):
     for k, quantity in enumerate(("displacement", "velocity", "acceleration")):
         exact = 0.01 * np.imag((1j * omega) ** k * np.exp(1j * omega * t))
         deviation = np.max(np.abs(getattr(floor, quantity)[1001:] - exact)) / (0.01 * omega**k)
-        conform(
-            f"sine of 2 Hz, deviation of the {quantity} over its amplitude", "closed form", deviation, tolerance=1e-12
-        )
+        claim = f"sine of 2 Hz, deviation of the {quantity} over its amplitude"
+        conform(claim, "closed form", deviation, tolerance=1e-12)
 
 
 def test_short_sine_is_faded_in_over_its_first_quarter():

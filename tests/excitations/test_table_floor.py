@@ -35,6 +35,13 @@ def write(tmp_path):
     return file
 
 
+def road_table(write, length, spacing, **keys):
+    """A table of a road of class C, driven over at 10 m/s."""
+    distance, elevation = profile("C", length, spacing, 4)
+    path = write(distance_m=distance, elevation_m=elevation)
+    return Table(path, "elevation_m", distance_column="distance_m", speed=10.0, **keys)
+
+
 @pytest.mark.parametrize(("unit", "size"), [("m/s^2", 1.0), ("g", 9.80665)])
 def test_measured_acceleration_is_resampled_and_integrated(write, unit, size):
     t = np.arange(0, 60.0001, 0.004)
@@ -43,26 +50,21 @@ def test_measured_acceleration_is_resampled_and_integrated(write, unit, size):
     assert len(floor.time) == 60001
     inner = slice(20000, 40000)
     for got, expected in zip((floor.acceleration, floor.velocity, floor.displacement), tones(floor.time), strict=True):
-        error = np.abs(got - expected)[inner].max()
-        assert error < 0.005 * np.abs(expected).max()
+        assert np.abs(got - expected)[inner].max() < 0.005 * np.abs(expected).max()
 
 
 def test_drift_and_frequencies_outside_the_band_are_removed(write):
     t = np.arange(0, 100, 0.002)
     slow, fast = 0.2 * np.sin(2 * np.pi * 0.01 * t), np.sin(2 * np.pi * 120 * t)
-    path = write(time_s=t, az=slow + fast)
-    floor = Table(path, "az", time_column="time_s").floor(0.001, 0)
+    floor = Table(write(time_s=t, az=slow + fast), "az", time_column="time_s").floor(0.001, 0)
     assert np.abs(floor.acceleration[5000:-5000]).max() < 0.02 * 0.2
     # Plain integration of the slow part would sway by 0.2/(2 pi 0.01)^2 = 51 m.
     assert np.abs(floor.displacement).max() < 0.05
 
 
 def test_road_over_distance_agrees_with_the_random_road_it_came_from(write):
-    speed = 10.0
-    distance, elevation = profile("C", 600.0, 0.05, 4)
-    path = write(distance_m=distance, elevation_m=elevation)
-    floor = Table(path, "elevation_m", distance_column="distance_m", speed=speed).floor(0.002, 0)
-    expected = Road("C", speed, 60.0).floor(0.002, 4)
+    floor = road_table(write, 600.0, 0.05).floor(0.002, 0)
+    expected = Road("C", 10.0, 60.0).floor(0.002, 4)
     f, got = welch(floor.acceleration[1000:], 500, nperseg=4096)
     _, want = welch(expected.acceleration[1000:], 500, nperseg=4096)
     band = (f > 0.8) & (f < 15)
@@ -72,17 +74,13 @@ def test_road_over_distance_agrees_with_the_random_road_it_came_from(write):
 
 
 def test_coarse_profile_gives_no_content_that_it_cannot_hold(write):
-    distance, elevation = profile("C", 400.0, 0.25, 4)
-    path = write(distance_m=distance, elevation_m=elevation)
-    floor = Table(path, "elevation_m", distance_column="distance_m", speed=10.0, through="direct").floor(0.001, 0)
+    floor = road_table(write, 400.0, 0.25, through="direct").floor(0.001, 0)
     f, density = welch(floor.acceleration[1000:], 1000, nperseg=8192, window="blackmanharris")
     assert density[f > 1.05 * 1.6 * 10].max() < 1e-6 * density.max()
 
 
 def test_mirror_plays_the_record_backwards(write):
-    distance, elevation = profile("C", 100.0, 0.1, 4)
-    path = write(distance_m=distance, elevation_m=elevation)
-    made = Table(path, "elevation_m", distance_column="distance_m", speed=10.0, through="direct", duration=18.0)
+    made = road_table(write, 100.0, 0.1, through="direct", duration=18.0)
     with pytest.raises(InputError, match="exceeds the record's 10 s; shorten it, or set repeat: mirror"):
         made.floor(0.001, 0)
     floor = made._replace(repeat="mirror").floor(0.001, 0)
@@ -94,8 +92,7 @@ def test_start_leaves_out_the_beginning(write):
     t = np.arange(0, 30, 0.004)
     a = tones(t)[0]
     a[:100] += 50.0
-    path = write(time_s=t, az=a)
-    floor = Table(path, "az", time_column="time_s", start=2.0, duration=20.0).floor(0.001, 0)
+    floor = Table(write(time_s=t, az=a), "az", time_column="time_s", start=2.0, duration=20.0).floor(0.001, 0)
     assert np.abs(floor.acceleration).max() < 2.5
     np.testing.assert_allclose(floor.acceleration[8000:9000], tones(2.0 + floor.time)[0][8000:9000], atol=0.05)
 
