@@ -76,11 +76,8 @@ class Asymmetry(NamedTuple):
         if self.viscous == 0.0 and self.yielding == 0.0:
             return scaling
         side = math.tanh(v / self.speed) + self.offset
-        viscous, yielding = (
-            scaling.viscous * (1.0 + self.viscous * side),
-            scaling.yield_force * (1.0 + self.yielding * side),
-        )
-        return TemperatureScaling(viscous, scaling.stiffness, yielding)
+        viscous = scaling.viscous * (1.0 + self.viscous * side)
+        return TemperatureScaling(viscous, scaling.stiffness, scaling.yield_force * (1.0 + self.yielding * side))
 
 
 @effect("damper.seal_friction", source="Coulomb's law; with presliding Dahl 1968", initial=(0.0,), forms=FRICTIONS)

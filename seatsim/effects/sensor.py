@@ -147,6 +147,5 @@ class ClockSkew(NamedTuple):
         if channel in _COMMANDS and self.hold > 0.0:
             late = self.hold * np.ceil(late / self.hold - _ROUNDING)
             index = np.arange(len(values)) + np.rint(late / step).astype(int)
-            held: Array = values[np.clip(index, 0, len(values) - 1)]
-            return held
+            return np.asarray(values[np.clip(index, 0, len(values) - 1)])
         return np.interp(rows + late, rows, values)

@@ -32,6 +32,5 @@ def relax(coil: Coil, current: float, command: float, time: float) -> float:
 
     The command is taken as it is: its delay and its clipping to `max_current` are the caller's.
     """
-    fall = coil.rate_fall if coil.rate_fall > 0.0 else coil.rate
-    rate = coil.rate if command > current else fall
+    rate = coil.rate_fall if command <= current and coil.rate_fall > 0.0 else coil.rate
     return command + (current - command) * math.exp(-rate * time)

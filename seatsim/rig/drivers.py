@@ -49,7 +49,6 @@ class Body(NamedTuple):
     links: tuple[Link, ...]
     head: int
     source: str
-    confidence: str
 
     @property
     def mass(self) -> float:
@@ -57,7 +56,6 @@ class Body(NamedTuple):
         return self.contact + sum(self.masses)
 
 
-_RECALLED = "recalled: the figures and the links were not read in the source"
 _CUSHION_MASS = 1.0
 """kg that move with the surface of the cushion, for models without a mass there (ours): without it the contact point
 would have no inertia of its own. It raises the apparent mass by as much."""
@@ -69,7 +67,6 @@ BODIES: Mapping[str, Body] = {
         links=(Link(0, _CONTACT, 36200.0, 1390.0), Link(1, _CONTACT, 9990.0, 387.0), Link(2, 1, 34400.0, 234.0)),
         head=2,
         source="ISO 5982:2001, model of a person of 75 kg, of whom 55 kg rest on the seat",
-        confidence=_RECALLED,
     ),
     "wan_schimmels": Body(
         contact=_CUSHION_MASS,
@@ -83,7 +80,6 @@ BODIES: Mapping[str, Body] = {
         ),
         head=3,
         source="Wan and Schimmels 1995: thighs and pelvis, lower torso, upper torso, head",
-        confidence=_RECALLED,
     ),
     "boileau_rakheja": Body(
         contact=_CUSHION_MASS,
@@ -96,10 +92,9 @@ BODIES: Mapping[str, Body] = {
         ),
         head=3,
         source="Boileau and Rakheja 1998: thighs and pelvis, lower torso, chest, head and neck",
-        confidence=_RECALLED,
     ),
 }
-"""Bodies by the name of their model."""
+"""Bodies by the name of their model; all are recalled: the figures and the links were not read in the source."""
 
 
 class BodyMatrices(NamedTuple):
@@ -125,14 +120,12 @@ def body_matrices(body: Body, mass: float | None = None) -> BodyMatrices:
 def apparent_mass(body: Body, frequency: ArrayLike) -> NDArray[np.complex128]:
     """Return force over acceleration at a rigid seat in kg, shape of `frequency` in Hz (ISO 5982)."""
     response = _responses(body, np.asarray(frequency, dtype=float))
-    total: NDArray[np.complex128] = body.contact + response @ np.array(body.masses)
-    return total
+    return np.asarray(body.contact + response @ np.array(body.masses))
 
 
 def head_transmissibility(body: Body, frequency: ArrayLike) -> NDArray[np.complex128]:
     """Return the acceleration of the head over that of a rigid seat, shape of `frequency` in Hz (ISO 5982)."""
-    head: NDArray[np.complex128] = _responses(body, np.asarray(frequency, dtype=float))[..., body.head]
-    return head
+    return np.asarray(_responses(body, np.asarray(frequency, dtype=float))[..., body.head])
 
 
 def _responses(body: Body, frequency: Array) -> NDArray[np.complex128]:

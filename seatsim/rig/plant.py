@@ -84,17 +84,14 @@ def state_space(plant: Plant, variant: Literal["exact", "yu2019"] = "exact") -> 
     frame = [-kf / ms, -cf / ms, kc / ms, cc / ms]
     driver = [0.0, 0.0, -kc / m, -cc / m]
     c1 = np.array([[1.0, 0.0, 0.0, 0.0], driver])
-    c2 = np.eye(2, 4)
     if variant == "yu2019":
-        a = np.array([[0.0, 1.0, 0.0, 0.0], frame, [0.0, 0.0, 0.0, 1.0], driver])
+        cushion, coupling = driver, 0.0
         b1 = np.array([[0.0, 0.0], [-1.0, 0.0], [0.0, 0.0], [0.0, -1.0]])
-        b2 = np.array([[0.0], [-ratio / ms], [0.0], [0.0]])
-        return PlantMatrices(a, b1, b2, c1, c2)
-    cushion = [d - f for d, f in zip(driver, frame, strict=True)]
+    else:
+        cushion, coupling = [d - f for d, f in zip(driver, frame, strict=True)], ratio / ms
+        b1 = np.array([[0.0], [-1.0], [0.0], [0.0]])
     a = np.array([[0.0, 1.0, 0.0, 0.0], frame, [0.0, 0.0, 0.0, 1.0], cushion])
-    b1 = np.array([[0.0], [-1.0], [0.0], [0.0]])
-    b2 = np.array([[0.0], [-ratio / ms], [0.0], [ratio / ms]])
-    return PlantMatrices(a, b1, b2, c1, c2)
+    return PlantMatrices(a, b1, np.array([[0.0], [-ratio / ms], [0.0], [coupling]]), c1, np.eye(2, 4))
 
 
 def zero_order_hold(A: Array, B: Array, time: float) -> tuple[Array, Array]:
@@ -116,18 +113,11 @@ def control_system(plant: Plant) -> control.StateSpace:
     import control
 
     s = state_space(plant)
-    ms = plant.frame_mass
-    frame = s.A[1]
-    c = np.vstack([s.C2, frame, s.C1[1]])
-    d = np.array([[0.0, 0.0], [0.0, 0.0], [0.0, -plant.damper_ratio / ms], [0.0, 0.0]])
-    return control.ss(
-        s.A,
-        np.hstack([s.B1, s.B2]),
-        c,
-        d,
-        inputs=["floor_acceleration", "damper_force"],
-        outputs=["suspension_displacement", "suspension_velocity", "frame_acceleration", "driver_acceleration"],
-    )
+    c = np.vstack([s.C2, s.A[1], s.C1[1]])
+    d = np.array([[0.0, 0.0], [0.0, 0.0], [0.0, -plant.damper_ratio / plant.frame_mass], [0.0, 0.0]])
+    inputs = ["floor_acceleration", "damper_force"]
+    outputs = ["suspension_displacement", "suspension_velocity", "frame_acceleration", "driver_acceleration"]
+    return control.ss(s.A, np.hstack([s.B1, s.B2]), c, d, inputs=inputs, outputs=outputs)
 
 
 def natural_frequencies(plant: Plant) -> tuple[float, float]:

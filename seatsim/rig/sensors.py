@@ -158,7 +158,4 @@ class Sensors(NamedTuple):
 
 def at_rest(displacement: float) -> State:
     """Return the instruments' state of a seat at rest at a suspension displacement in m."""
-    state = [0.0] * INSTRUMENTS
-    for index in (_X_TRUE, _X_FILTERED, _X_READ):
-        state[index] = displacement
-    return tuple(state)
+    return tuple(displacement if k in (_X_TRUE, _X_FILTERED, _X_READ) else 0.0 for k in range(INSTRUMENTS))

@@ -134,9 +134,7 @@ def compare_preyield_hysteresis(rng):
 
 def compare_suspension(rng):
     x, v = rng.normal(0, 0.02), rng.normal(0, 0.2)
-    e = drawn(
-        "suspension.progressive_spring", rng, rise=(100, 5000), skew=(-5, 5), helper=(0.1, 4), reach=(0.001, 0.03)
-    )
+    e = drawn("suspension.progressive_spring", rng, rise=(100, 5000), skew=(-5, 5), helper=(0.1, 4), reach=(1e-3, 0.03))
     helper = e.helper * (np.hypot(x, e.reach) - e.reach) * np.sign(x)
     progressive = 4600.0 * (e.skew * x**2 + e.rise * x**3 + helper)
     yield "suspension.progressive_spring", e.suspension_force(PLANT, x, v, ()), progressive
@@ -160,10 +158,8 @@ def compare_cushion(rng):
 
 
 def compare_driver(rng):
-    e, z = (
-        drawn("driver.biodynamics", rng, share=(0.1, 0.9), frequency=(2, 10), damping=(0.1, 1)),
-        rng.normal(0, 0.1, 2),
-    )
+    e = drawn("driver.biodynamics", rng, share=(0.1, 0.9), frequency=(2, 10), damping=(0.1, 1))
+    z = rng.normal(0, 0.1, 2)
     omega = 2 * np.pi * e.frequency
     pull = omega**2 * z[0] + 2 * e.damping * omega * z[1]
     found = e.inner_mass(PLANT, z), e.inner_force(PLANT, z), *e.rates(PLANT, SimpleNamespace(driver=1.7), z)
@@ -175,9 +171,8 @@ def compare_driver(rng):
 
 
 def compare_coil(rng):
-    coil = Coil(
-        rate=float(rng.uniform(50, 300)), rate_fall=float(rng.choice([0.0, 80.0])), max_current=1.2, delay=0.003
-    )
+    rate, fall = float(rng.uniform(50, 300)), float(rng.choice([0.0, 80.0]))
+    coil = Coil(rate=rate, rate_fall=fall, max_current=1.2, delay=0.003)
 
     def slowed(rate, time):
         return 1 / max(1e-5, 1 / rate + time)
