@@ -12,25 +12,6 @@ What belongs to the rig and is the same for every law (noise, delay, coil, inver
 never imports this package: it finds laws and bounds through the entry points `laws` and `bounds`.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from controllers.synthesis import Design, GeneralisedPlant, synthesise
+from controllers.synthesis import Design, GeneralisedPlant, synthesise
 
 __all__ = ["Design", "GeneralisedPlant", "synthesise"]
-
-
-def __getattr__(name: str) -> object:
-    """Import the synthesis when it is first asked for: a run with a stated gain does not need it."""
-    if name not in __all__:
-        raise AttributeError(f"module 'controllers' has no attribute '{name}'")
-    from controllers import synthesis
-
-    return getattr(synthesis, name)
-
-
-def __dir__() -> list[str]:
-    """List the public names."""
-    return __all__

@@ -17,20 +17,11 @@ from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
 from controllers.synthesis.norm import frequency_response
-from controllers.synthesis.plant import Loop
+from controllers.synthesis.plant import LinearSystem
 from seatsim.metrics.weighting import sections
 from seatsim.schema.arrays import Array
 
 Coefficients = tuple[float, float, float]
-
-
-class LinearSystem(NamedTuple):
-    """A linear system `x' = A x + B u`, `y = C x + D u`; shapes (n, n), (n, m), (p, n), (p, m)."""
-
-    A: Array
-    B: Array
-    C: Array
-    D: Array
 
 
 def pass_through(size: int) -> LinearSystem:
@@ -91,10 +82,9 @@ def compute_margins(seat: LinearSystem, gain: Array) -> Margins:
     of systems with the states of L twice. The delay margin is the least phase margin over its frequency (rad/rad/s),
     over all frequencies of magnitude 1.
     """
-    loop = Loop(seat.A, seat.B, -np.atleast_2d(gain) @ seat.C, np.zeros((1, 1)))
-    A, B, C, _ = loop
+    A, B, C, D = loop = LinearSystem(seat.A, seat.B, -np.atleast_2d(gain) @ seat.C, np.zeros((1, 1)))
     nothing = np.zeros_like(A)
-    odd = np.block([[A, nothing, B], [nothing, -A, B], [C, C, np.zeros((1, 1))]])
+    odd = np.block([[A, nothing, B], [nothing, -A, B], [C, C, D]])
     turns = scipy.linalg.eigvals(odd, np.diag(np.append(np.ones(2 * len(A)), 0.0)))
     crossings = _find_on_axis(np.linalg.eigvals(np.block([[A, B @ B.T], [-C.T @ C, -A.T]])))
     at_real = frequency_response(loop, np.append(0.0, _find_on_axis(turns))).real.ravel()

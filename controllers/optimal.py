@@ -15,7 +15,7 @@ from scipy.linalg import expm, solve_discrete_are
 
 from seatsim.compilation.jit import jit
 from seatsim.rig.control import Measurement, State
-from seatsim.rig.plant import Plant, PlantMatrices, state_space, zero_order_hold
+from seatsim.rig.plant import Plant, state_space, zero_order_hold
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import SynthesisError
 from seatsim.schema.fields import param
@@ -56,7 +56,7 @@ def solve_regulator(plant: Plant, weights: QuadraticWeights) -> State:
     z = s.C1 * [[weights.travel], [weights.acceleration]]
     with solving("regulator"):
         gain, _, _ = control.lqr(s.A, s.B2, z.T @ z, np.array([[weights.force**2]]))
-    return tuple(-float(value) for value in gain[0])
+    return _rows(-gain)[0]
 
 
 Rows = tuple[State, ...]
@@ -96,7 +96,10 @@ def design_kalman_filter(plant: Plant, noise: Noise, sample_time: float) -> Kalm
     """
     s = state_space(plant)
     transition, input_gain = zero_order_hold(s.A, s.B2, sample_time)
-    process_noise = _process_noise(s, sample_time, noise.floor) + noise.force**2 * input_gain @ input_gain.T
+    n, density = len(s.A), noise.floor
+    # The covariance that a floor of white noise adds to the state over a sample (Van Loan 1978).
+    both = expm(np.block([[-s.A, density * s.B1 @ s.B1.T], [np.zeros((n, n)), s.A.T]]) * sample_time)
+    process_noise = both[n:, n:].T @ both[:n, n:] + noise.force**2 * input_gain @ input_gain.T
     reading = np.diag([noise.displacement**2, noise.acceleration**2])
     with solving("Kalman filter"):
         p = solve_discrete_are(transition.T, s.C1.T, process_noise, reading)
@@ -104,16 +107,8 @@ def design_kalman_filter(plant: Plant, noise: Noise, sample_time: float) -> Kalm
     return KalmanFilter(_rows(transition), _rows(input_gain.T)[0], _rows(s.C1), _rows(correction))
 
 
-def _process_noise(s: PlantMatrices, time: float, density: float) -> Array:
-    """Return the covariance (4, 4) that a floor of white noise adds to the state over a sample (Van Loan 1978)."""
-    n = len(s.A)
-    both = expm(np.block([[-s.A, density * s.B1 @ s.B1.T], [np.zeros((n, n)), s.A.T]]) * time)
-    process_noise: Array = both[n:, n:].T @ both[:n, n:]
-    return process_noise
-
-
 def _rows(matrix: Array) -> Rows:
-    return tuple(tuple(float(value) for value in row) for row in matrix)
+    return tuple(map(tuple, matrix.tolist()))
 
 
 @jit

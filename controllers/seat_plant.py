@@ -4,29 +4,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 from pydantic import Field
 from scipy.linalg import solve_toeplitz
 
 from controllers.linear_systems import (
-    LinearSystem,
     connect_in_parallel,
     connect_in_series,
     frequency_weighting,
     pass_through,
     second_order_section,
 )
+from controllers.synthesis.plant import GeneralisedPlant, LinearSystem
 from seatsim.rig.control import FloorRecord
 from seatsim.rig.plant import Plant, state_space
 from seatsim.rig.sensors import Sensors
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param
-
-if TYPE_CHECKING:
-    from controllers.synthesis import GeneralisedPlant
-
 
 _ORDER = 4
 """Order of the model: a peak with its two flanks, and a slope beside it. Every order costs the synthesis time."""
@@ -48,13 +44,9 @@ class ShapingFilter(NamedTuple):
         n, k = len(self.coefficients), 2.0 * _RATE
         A = np.vstack([self.coefficients, np.eye(n - 1, n)])
         B, C = np.eye(n, 1) * self.deviation / math.sqrt(_RATE), np.array([self.coefficients])
-        inverse = np.linalg.inv(np.eye(n) + A)
-        return LinearSystem(
-            k * inverse @ (A - np.eye(n)),
-            math.sqrt(2.0 * k) * inverse @ B,
-            math.sqrt(2.0 * k) * C @ inverse,
-            B[:1] - C @ inverse @ B,
-        )
+        inverse, size = np.linalg.inv(np.eye(n) + A), math.sqrt(2.0 * k)
+        flow = k * inverse @ (A - np.eye(n))
+        return LinearSystem(flow, size * inverse @ B, size * C @ inverse, B[:1] - C @ inverse @ B)
 
 
 def fit_shaping_filter(floor: FloorRecord) -> ShapingFilter:
@@ -70,11 +62,11 @@ def fit_shaping_filter(floor: FloorRecord) -> ShapingFilter:
 
     rate = 1.0 / floor.step
     acceleration = resample_poly(floor.acceleration, round(_RATE), round(rate))
-    acceleration = (acceleration - acceleration.mean()) * np.hanning(len(acceleration))
-    power = float(np.mean(acceleration**2))
-    if len(acceleration) < 10 * _ORDER or power == 0.0:
-        raise InputError("floor: excitation: the floor rests, or its record is too short to have a spectrum")
     count = len(acceleration)
+    acceleration = (acceleration - acceleration.mean()) * np.hanning(count)
+    power = float(np.mean(acceleration**2))
+    if count < 10 * _ORDER or power == 0.0:
+        raise InputError("floor: excitation: the floor rests, or its record is too short to have a spectrum")
     correlation = [float(acceleration[: count - lag] @ acceleration[lag:]) / count / power for lag in range(_ORDER + 1)]
     coefficients = solve_toeplitz(correlation[:-1], correlation[1:])
     deviation = math.sqrt(1.0 - float(coefficients @ correlation[1:]))
@@ -141,8 +133,6 @@ def build_generalised_plant(
         InputError: the frame's acceleration is measured without a `lag`: the force would act on it at once; or the
             travel weight is still `limit`.
     """
-    from controllers.synthesis import GeneralisedPlant
-
     if weights.travel == "limit":
         raise InputError("travel: limit is found by simulation of a scenario; state a number here")
     if "frame_acceleration" in measures and lag is None:
@@ -156,48 +146,39 @@ def build_generalised_plant(
         weighting = frequency_weighting(weights.comfort)
         seat = connect_in_series(seat, connect_in_parallel(pass_through(1), weighting, pass_through(len(measures))))
     scale = np.diag([weights.travel, weights.acceleration, *[1.0] * len(measures)])
-    A, B, C = seat.A, seat.B * [1.0, force_factor], scale @ seat.C
-    return GeneralisedPlant(
-        A,
-        B[:, :1],
-        B[:, 1:],
-        C[:2],
-        C[2:],
-        np.zeros((2, 1)),
-        np.zeros((2, 1)),
-        np.zeros((len(measures), 1)),
-        None if displacement_gain else np.array([[measure != "displacement" for measure in measures]]),
-    )
+    # No path is direct: what is measured and weighed follows the force through the lag, or the seat's states.
+    system = LinearSystem(seat.A, seat.B * [1.0, force_factor], scale @ seat.C, np.zeros_like(seat.D))
+    structure = None if displacement_gain else [[measure != "displacement" for measure in measures]]
+    return GeneralisedPlant.from_system(system, 1, 2, structure)
 
 
 def _seat(plant: Plant, measures: Sequence[Measure]) -> LinearSystem:
     """Return the seat from (z0'', Fd) to x, zc'' and what is measured."""
     s = state_space(plant)
     # Of the two accelerations only the frame's feels the force at once; z0'' acts on neither.
-    frame, at_once = s.A[1:2], np.array([[0.0, float(s.B2[1, 0])]])
-    driver, nothing = s.C1[1:2], np.zeros((1, 2))
-    paths = {
-        "displacement": (s.C2[:1], nothing),
-        "velocity": (s.C2[1:], nothing),
-        "frame_velocity": (frame, at_once),
-        "frame_acceleration": (frame, at_once),
-        "driver_velocity": (driver, nothing),
-        "driver_acceleration": (driver, nothing),
-    }
+    nothing, at_once = np.zeros((1, 2)), np.array([[0.0, float(s.B2[1, 0])]])
+    frame, driver = (s.A[1:2], at_once), (s.C1[1:2], nothing)
+    paths = {"displacement": (s.C2[:1], nothing), "velocity": (s.C2[1:], nothing)}
+    paths |= {"frame_velocity": frame, "frame_acceleration": frame}
+    paths |= {"driver_velocity": driver, "driver_acceleration": driver}
     measured = [paths[measure] for measure in measures]
     C, D = (np.vstack(parts) for parts in zip((s.C1, np.zeros((2, 2))), *measured, strict=True))
     seat = LinearSystem(s.A, np.hstack([s.B1, s.B2]), C, D)
     if not any(measure.endswith("_velocity") for measure in measures):
         return seat
-    leak = LinearSystem(*(np.array([[value]]) for value in (-math.tau * Sensors().corner, 1.0, 1.0, 0.0)))
+    leak = _first_order(-math.tau * Sensors().corner, 1.0)
     behind = [leak if measure.endswith("_velocity") else pass_through(1) for measure in measures]
     return connect_in_series(seat, connect_in_parallel(pass_through(2), *behind))
 
 
+def _first_order(a: float, b: float) -> LinearSystem:
+    """Return `x' = a x + b u`, `y = x`."""
+    return LinearSystem(*(np.array([[value]]) for value in (a, b, 1.0, 0.0)))
+
+
 def build_actuator(lag: ActuatorLag) -> LinearSystem:
     """Return the lag from the wanted force to the damper's."""
-    coil = LinearSystem(*(np.array([[value]]) for value in (-lag.rate, lag.rate, 1.0, 0.0)))
-    if lag.delay == 0:
+    coil, d = _first_order(-lag.rate, lag.rate), lag.delay
+    if d == 0:
         return coil
-    d = lag.delay
     return connect_in_series(second_order_section((1.0, -d / 2, d * d / 12), (1.0, d / 2, d * d / 12)), coil)

@@ -12,11 +12,12 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from controllers.clairvoyant.problem import HeldForceProblem
+from controllers.clairvoyant.problem import HeldForceProblem, LagrangianMinimum
 from controllers.clairvoyant.recursion import ForceBand
 from seatsim.scenario.scenario import DamperChoice
 from seatsim.schema.arrays import Array
@@ -24,7 +25,7 @@ from seatsim.schema.errors import InputError
 from seatsim.simulation.damper_bench import sine_test
 
 if TYPE_CHECKING:
-    import scipy.sparse
+    from scipy.sparse import csr_array
 
 
 _SPACING = 0.02
@@ -55,74 +56,51 @@ def find_lower_bound(problem: HeldForceProblem, band: ForceBand, size: float, st
     `size` is about J; `start` are the logarithms found at another weight.
     """
     hats = _build_hat_functions(problem.intervals, problem.transcription.step)
-    y = _find_constant_multipliers(problem, band, hats, size) if start is None else start
-    while (best := _evaluate_bound(problem, band, hats, y)) is None:
+
+    def minimise(y: Array, barrier: float = 0.0) -> LagrangianMinimum | None:
+        multipliers = np.ascontiguousarray((hats @ np.exp(y.reshape(3, -1)).T).T)
+        return problem.minimise_lagrangian(band, multipliers, barrier)
+
+    def evaluate(y: Array) -> LowerBound | None:
+        return LowerBound(found.bound, y, found.gain) if (found := minimise(y)) else None
+
+    def raise_with(barrier: float, y: Array) -> tuple[float, Array] | None:
+        if (found := minimise(y, barrier)) is None:
+            return None
+        return found.bound + barrier * found.barrier, np.ravel((found.by @ hats) * np.exp(y.reshape(3, -1)))
+
+    y = start
+    if y is None:
+        # The best of some multipliers that do not change with time: they bound the energy of the whole record.
+        share = size / (problem.intervals * problem.transcription.step)
+        levels = np.geomspace(1e-4, 1e-1, 10)
+        tried = (np.log(np.repeat([0.5 * x * share, 0.5 * x * share, _NU * share], hats.shape[1])) for x in levels)
+        # Of equal ones the last, at the highest level.
+        y = max(reversed(list(filter(None, map(evaluate, tried)))), key=lambda bound: bound.value).logarithms
+    while (best := evaluate(y)) is None:
         y = y - _RETREAT
     for share in SHARES:
-        y = _ascend(_make_dual_function(problem, band, hats, share * size / problem.intervals), best.logarithms)
-        reached = _evaluate_bound(problem, band, hats, y)
+        y = _ascend(partial(raise_with, share * size / problem.intervals), best.logarithms)
+        reached = evaluate(y)
         if reached and reached.value > best.value:
             best = reached
     return best
 
 
-def _evaluate_bound(
-    problem: HeldForceProblem, band: ForceBand, hats: scipy.sparse.csr_array, y: Array
-) -> LowerBound | None:
-    found = problem.minimise_lagrangian(band, _sum_hats(hats, y), 0.0)
-    return LowerBound(found.bound, y, found.gain) if found else None
-
-
-def _build_hat_functions(count: int, step: float) -> scipy.sparse.csr_array:
+def _build_hat_functions(count: int, step: float) -> csr_array:
     """Return what the hat functions of unit density sum up to in each of `count` intervals, shape (count, nodes)."""
-    import scipy.sparse
+    from scipy.sparse import csr_array
 
     place = step / _SPACING * (np.arange(count) + 0.5)
     left = place.astype(int)
-    entries = (
-        step * np.concatenate([left + 1 - place, place - left]),
-        (np.tile(np.arange(count), 2), np.append(left, left + 1)),
-    )
-    return scipy.sparse.csr_array(entries, shape=(count, math.ceil(count * step / _SPACING - 1e-9) + 1))
-
-
-def _sum_hats(hats: scipy.sparse.csr_array, y: Array) -> Array:
-    return np.ascontiguousarray((hats @ np.exp(y.reshape(3, -1)).T).T)
-
-
-def _make_dual_function(
-    problem: HeldForceProblem, band: ForceBand, hats: scipy.sparse.csr_array, barrier: float
-) -> _DualFunction:
-    def objective(y: Array) -> tuple[float, Array] | None:
-        found = problem.minimise_lagrangian(band, _sum_hats(hats, y), barrier)
-        if found is None:
-            return None
-        by: Array = (found.by @ hats) * np.exp(y.reshape(3, -1))
-        return found.bound + barrier * found.barrier, by.ravel()
-
-    return objective
-
-
-def _find_constant_multipliers(
-    problem: HeldForceProblem, band: ForceBand, hats: scipy.sparse.csr_array, size: float
-) -> Array:
-    """Return the best of some multipliers that do not change with time: they bound the energy of the whole record."""
-    share = size / (problem.intervals * problem.transcription.step)
-    nodes = hats.shape[1]
-    found = []
-    for level in np.geomspace(1e-4, 1e-1, 10):
-        y = np.log(np.repeat([0.5 * level * share, 0.5 * level * share, _NU * share], nodes))
-        value = problem.minimise_lagrangian(band, _sum_hats(hats, y), 0.0)
-        if value:
-            found.append((value.bound, level, y))
-    highest: Array = max(found, key=lambda entry: entry[:2])[2]
-    return highest
+    values = step * np.concatenate([left + 1 - place, place - left])
+    places = np.tile(np.arange(count), 2), np.append(left, left + 1)
+    return csr_array((values, places), shape=(count, math.ceil(count * step / _SPACING - 1e-9) + 1))
 
 
 def _ascend(objective: _DualFunction, y: Array) -> Array:
     """Return where L-BFGS with backtracking comes to in `STEPS` steps, or when it settles."""
-    here = objective(y)
-    if here is None:
+    if (here := objective(y)) is None:
         return y
     value, gradient = here
     pairs: deque[tuple[Array, Array]] = deque(maxlen=_MEMORY)
@@ -160,8 +138,7 @@ def _find_direction(gradient: Array, pairs: deque[tuple[Array, Array]]) -> Array
         q *= 0.1 / np.max(np.abs(q))
     for (step, bend), factor in zip(pairs, reversed(kept), strict=True):
         q += step * (factor - (bend @ q) / (step @ bend))
-    shortened: Array = q * min(1.0, _LONGEST / float(np.max(np.abs(q))))
-    return shortened
+    return np.asarray(q * min(1.0, _LONGEST / float(np.max(np.abs(q)))))
 
 
 TOP = 1.5
@@ -207,14 +184,10 @@ def fit_envelope(damper: DamperChoice, max_current: float, temperature: float) -
     if inner.a <= inner.f or inner.a + inner.b * TOP <= inner.f + inner.c * TOP:
         raise InputError("the damper's forces at no and at full current do not leave a straight band between them")
     # Of all strips that hold the forces, the narrowest: a wide one would loosen the bound at every speed.
-    a, slope = min((_find_half_width(least, most, slope), slope) for slope in np.linspace(0, b, _SLOPES))
-    return DamperEnvelope(ForceBand(c, float(weakest.min()), float(slope), a), inner)
-
-
-def _find_half_width(least: Array, most: Array, slope: float) -> float:
-    """Return the least `a` with `abs(F - slope w) <= a` for all forces: the bound's third multiplier is of a strip."""
-    middle = slope * SPEEDS[:, None]
-    return float(max((most - middle).max(), (middle - least).max()))
+    # Its half width is the least `a` with `abs(F - slope w) <= a`: the bound's third multiplier is of a strip.
+    slopes = np.linspace(0, b, _SLOPES)
+    a, slope = min((max((most - x * speeds).max(), (x * speeds - least).max()), x) for x in slopes)
+    return DamperEnvelope(ForceBand(c, float(weakest.min()), float(slope), float(a)), inner)
 
 
 def _measure_steady_force(damper: DamperChoice, speed: float, current: float, temperature: float) -> Array:

@@ -24,13 +24,8 @@ from controllers.clairvoyant.recursion import (
     minimise_backwards,
     simulate_delivered,
 )
-from controllers.linear_systems import (
-    LinearSystem,
-    connect_in_parallel,
-    connect_in_series,
-    frequency_weighting,
-    pass_through,
-)
+from controllers.linear_systems import connect_in_parallel, connect_in_series, frequency_weighting, pass_through
+from controllers.synthesis.plant import LinearSystem
 from seatsim.compilation.cached import compiled
 from seatsim.metrics.weighting import weight
 from seatsim.rig.plant import Plant, state_space, zero_order_hold
@@ -63,32 +58,25 @@ def transcribe(plant: Plant, floor: Array, sample: float, every: int, start: tup
     The force is held over `every` samples of `sample` seconds. Samples after the last whole interval count as zero,
     which only lowers the criterion.
     """
-    s = state_space(plant)
     # Takes half a second to load, which runs without bounds do without.
-    import scipy.signal
+    from scipy.signal import lsim
 
+    s = state_space(plant)
     count = (len(floor) - 1) // every
     used = count * every + 1
-    time = sample * np.arange(used)
-    response = scipy.signal.lsim((s.A, s.B1, s.C1, np.zeros((2, 1))), floor[:used], time, [*start, 0.0, 0.0])[1]
+    time, nothing = sample * np.arange(used), np.zeros((2, 1))
+    response = lsim((s.A, s.B1, s.C1, nothing), floor[:used], time, [*start, 0.0, 0.0])[1]
     travel, acceleration = np.ascontiguousarray(response.T)
-    seat = LinearSystem(s.A, s.B2, s.C1, np.zeros((2, 1)))
-    A, B, C, _ = connect_in_series(seat, connect_in_parallel(pass_through(1), frequency_weighting("Wk")))
+    weighted = connect_in_parallel(pass_through(1), frequency_weighting("Wk"))
+    A, B, C, _ = connect_in_series(LinearSystem(s.A, s.B2, s.C1, nothing), weighted)
     steps = [np.hstack(zero_order_hold(A, B, (j + 1) * sample)) for j in range(every)]
     last = steps[-1]
     rows = np.array([C @ step for step in steps])  # travel, weighted acceleration
-    ratio = plant.damper_ratio / (every * sample)
-    aw = weight(acceleration, 1 / sample)
-    total = len(floor)
-    return Transcription(
-        every * sample,
-        last[:, :-1],
-        last[:, -1],
-        ratio * (last[0] - np.eye(len(A) + 1)[0]),
-        ratio * np.diff(travel[::every]),
-        _criterion(aw, rows[:, 1], total),
-        _criterion(travel, rows[:, 0], total),
-    )
+    ratio, total = plant.damper_ratio / (every * sample), len(floor)
+    velocity, free_velocity = ratio * (last[0] - np.eye(len(A) + 1)[0]), ratio * np.diff(travel[::every])
+    comfort = _criterion(weight(acceleration, 1 / sample), rows[:, 1], total)
+    travelled = _criterion(travel, rows[:, 0], total)
+    return Transcription(every * sample, last[:, :-1], last[:, -1], velocity, free_velocity, comfort, travelled)
 
 
 def _criterion(free: Array, rows: Array, total: int) -> _Criterion:
@@ -108,7 +96,7 @@ class ClairvoyantRun(NamedTuple):
     modes: ForceModes
 
 
-class _LagrangianMinimum(NamedTuple):
+class LagrangianMinimum(NamedTuple):
     """The Lagrangian's minimum (a bound of J), the sum of log pivots, their derivatives by the multipliers, the law."""
 
     bound: float
@@ -127,8 +115,7 @@ class HeldForceProblem(NamedTuple):
     def stage_matrices(self) -> StageMatrices:
         """The matrices of the recursions."""
         t = self.transcription
-        Q = t.acceleration.Q + self.weight * t.travel.Q
-        q = t.acceleration.q + self.weight * t.travel.q
+        Q, q = t.acceleration.Q + self.weight * t.travel.Q, t.acceleration.q + self.weight * t.travel.q
         return StageMatrices(np.column_stack([t.A, t.B]), Q, q, t.velocity, t.free_velocity)
 
     @property
@@ -136,7 +123,7 @@ class HeldForceProblem(NamedTuple):
         """Number of intervals."""
         return len(self.transcription.free_velocity)
 
-    def minimise_lagrangian(self, band: ForceBand, multipliers: Array, barrier: float) -> _LagrangianMinimum | None:
+    def minimise_lagrangian(self, band: ForceBand, multipliers: Array, barrier: float) -> LagrangianMinimum | None:
         """Return the minimum of the Lagrangian with its derivatives; None where it has none."""
         p, count, t = self.stage_matrices, self.intervals, self.transcription
         gain, pivot, by = np.empty((count, len(p.V))), np.empty(count), np.empty((3, count))
@@ -146,7 +133,7 @@ class HeldForceProblem(NamedTuple):
             return None
         compiled(differentiate, ())(p, band, gain, pivot, barrier, by)
         free = t.acceleration.free + self.weight * t.travel.free
-        return _LagrangianMinimum(free + least, float(np.sum(np.log(pivot))), by, gain)
+        return LagrangianMinimum(free + least, float(np.sum(np.log(pivot))), by, gain)
 
     def simulate(self, band: ForceBand, gain: Array) -> ClairvoyantRun:
         """Return the run under what the damper delivers of the force `gain . (s, 1)`, shape (N, n+1)."""

@@ -74,28 +74,24 @@ class ClairvoyantBounds:
     @property
     def reached(self) -> Array:
         """J of the runs, shape (K,)."""
-        squares: Array = self.acceleration**2 + self.weights * self.travel**2
-        return squares
+        return np.asarray(self.acceleration**2 + self.weights * self.travel**2)
 
     @property
     @written()
     def width(self) -> Array:
         """sqrt(J reached / J bound) - 1, shape (K,): what is not known of the best damper."""
-        ratio: Array = np.sqrt(self.reached / self.lower) - 1
-        return ratio
+        return np.asarray(np.sqrt(self.reached / self.lower) - 1)
 
     def bound(self, travel: ArrayLike) -> Array:
         """Return the aw in m/s^2 below which no damper comes at an RMS travel in m; the shape of `travel`."""
         x = np.asarray(travel, dtype=np.float64)[..., None]
-        found: Array = np.sqrt(np.maximum(0.0, np.max(self.lower - self.weights * x**2, axis=-1)))
-        return found
+        return np.asarray(np.sqrt(np.maximum(0.0, np.max(self.lower - self.weights * x**2, axis=-1))))
 
     def best(self, travel: ArrayLike) -> Array:
         """Return the aw in m/s^2 of the runs at an RMS travel in m, linear between them; NaN short of the shortest."""
         order = np.argsort(self.travel)
         lowest = np.minimum.accumulate(self.acceleration[order])
-        found: Array = np.interp(np.asarray(travel), self.travel[order], lowest, left=np.nan)
-        return found
+        return np.asarray(np.interp(np.asarray(travel), self.travel[order], lowest, left=np.nan))
 
 
 @register("bracket", "clairvoyant", None)
@@ -136,16 +132,13 @@ def clairvoyant(
         band,
         lambda done: progress(f"{scenario.title}: bracket, weight {done} of {len(chosen)}"),
     )
-    ends = [found[place] for place in np.argsort(rising)]
-    _check_speed([run for _, run in ends])
-    return ClairvoyantBounds(
-        chosen,
-        np.array([bound.value for bound, _ in ends]),
-        np.sqrt([run.acceleration for _, run in ends]),
-        np.sqrt([run.travel for _, run in ends]),
-        np.array([run.force for _, run in ends]),
-        transcription.step,
-    )
+    bounds, runs = zip(*(found[place] for place in np.argsort(rising)), strict=True)
+    top = max(float(np.max(np.abs(run.velocity))) for run in runs)
+    if top > TOP:
+        raise InputError(f"the damper moves at {top:.3g} m/s; the bracket's envelope holds to {TOP:g} m/s")
+    acceleration, travel = np.sqrt([(run.acceleration, run.travel) for run in runs]).T
+    lower, force = np.array([bound.value for bound in bounds]), np.array([run.force for run in runs])
+    return ClairvoyantBounds(chosen, lower, acceleration, travel, force, transcription.step)
 
 
 Ends = tuple[LowerBound, ClairvoyantRun]
@@ -180,7 +173,11 @@ def _pose(scenario: Scenario, hold: float) -> tuple[Transcription, DamperEnvelop
     if scenario.plant is None:
         raise InputError(f"{scenario.name}: a damper bench has no seat, so it has no bracket")
     temperature = _require_plain_rig(scenario)
-    step, every = scenario.solver.step, _count_held_samples(scenario.solver.step, hold)
+    step = scenario.solver.step
+    every = round(hold / step)
+    if every < 1 or abs(every * step - hold) > 1e-9:
+        problem = f"hold {hold:g} s is not a multiple of solver.step {step:g} s; choose {max(1, every) * step:g} s"
+        raise InputError(problem)
     floor = scenario.excitation.floor(step, scenario.seed)
     if len(floor.acceleration) <= every:
         raise InputError(f"{scenario.title}: the floor's record is shorter than the time over which a force is held")
@@ -206,18 +203,3 @@ def _require_plain_rig(scenario: Scenario) -> float:
     if not isinstance(scenario.temperature, float | int):
         raise InputError(f"{scenario.title}: the bracket needs a damper of one temperature; state it as a number")
     return float(scenario.temperature)
-
-
-def _count_held_samples(step: float, hold: float) -> int:
-    """Return over how many samples of `step` seconds a force is held for `hold` seconds."""
-    every = round(hold / step)
-    if every < 1 or abs(every * step - hold) > 1e-9:
-        problem = f"hold {hold:g} s is not a multiple of solver.step {step:g} s; choose {max(1, every) * step:g} s"
-        raise InputError(problem)
-    return every
-
-
-def _check_speed(runs: list[ClairvoyantRun]) -> None:
-    top = max(float(np.max(np.abs(run.velocity))) for run in runs)
-    if top > TOP:
-        raise InputError(f"the damper moves at {top:.3g} m/s; the bracket's envelope holds to {TOP:g} m/s")

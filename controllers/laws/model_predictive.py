@@ -92,11 +92,9 @@ class Planner:
         hessian = UNIT**2 * (self.forced.T @ cost @ self.forced + effort * np.eye(horizon))
         self.linear = UNIT * self.forced.T @ cost @ self.free
         self.times: list[float] = []
-        self.solver = osqp.OSQP()
-        wide = np.full(horizon, 1e6)
-        self.solver.setup(
-            csc_matrix(np.triu(hessian)), np.zeros(horizon), eye(horizon, format="csc"), -wide, wide, **SETTINGS
-        )
+        self.solver, wide = osqp.OSQP(), np.full(horizon, 1e6)
+        upper, identity = csc_matrix(np.triu(hessian)), eye(horizon, format="csc")
+        self.solver.setup(upper, np.zeros(horizon), identity, -wide, wide, **SETTINGS)
 
     def force(self, state: Array) -> float:
         """Return the first force in N of the plan from (x, v, zc - zs, its rate), shape (4,), and count its time."""
@@ -123,13 +121,10 @@ class Planner:
 
 def _condensed(transition: Array, input_gain: Array, horizon: int) -> tuple[Array, Array]:
     """Return the maps (4 N, 4) and (4 N, N) from the state and from the forces to the states at samples 1..N."""
-    powers = [np.eye(4)]
-    for _ in range(horizon):
-        powers.append(transition @ powers[-1])
-    forced = np.zeros((4 * horizon, horizon))
-    for j in range(horizon):
-        for k in range(j + 1):
-            forced[4 * j : 4 * j + 4, k] = (powers[j - k] @ input_gain)[:, 0]
+    powers = list(itertools.accumulate([transition] * horizon, lambda power, step: step @ power, initial=np.eye(4)))
+    answers, forced = np.vstack([power @ input_gain for power in powers]), np.zeros((4 * horizon, horizon))
+    for k in range(horizon):
+        forced[4 * k :, k] = answers[: 4 * (horizon - k), 0]
     return np.vstack(powers[1:]), forced
 
 

@@ -159,16 +159,18 @@ class ScheduledOutputFeedback(NamedTuple):
             InputError: keys that exclude or need each other, points that do not rise, or not one entry a point.
         """
         gains = [law.on_floors(plant, coil, sample_time, floors) for law in self._list_laws()]
+        # Natural frequency of frame and driver on the suspension.
+        rate = math.sqrt(plant.suspension_stiffness / (plant.frame_mass + plant.driver_mass))
         return Schedule(
             tuple(map(float, self.temperatures or (0.0,))),
-            tuple(map(float, self.frequencies or (_find_natural_frequency(plant),))),
+            tuple(map(float, self.frequencies or (max(rate / (2.0 * math.pi), _SLOWEST),))),
             tuple(map(float, self.travels or (0.0,))),
             -math.expm1(-sample_time / self.memory),
             *(tuple(column) for column in np.array(gains, dtype=np.float64).T.tolist()),
         )
 
-    def _count_points(self) -> int:
-        """Return the number of combinations of what is scheduled, after a check of each quantity."""
+    def _list_laws(self) -> list[StaticOutputFeedback]:
+        """Return the law with one gain that is at work where the schedule stays at a point, for every point."""
         axes = {name: getattr(self, name) for name in ("temperatures", "frequencies", "travels")}
         scheduled = {name: points for name, points in axes.items() if points is not None}
         if not scheduled:
@@ -176,11 +178,7 @@ class ScheduledOutputFeedback(NamedTuple):
         for name, points in scheduled.items():
             if len(points) < 2 or any(high <= low for low, high in pairwise(points)):
                 raise InputError(f"{name} {list(points)} must be two or more, and must rise")
-        return math.prod(map(len, scheduled.values()))
-
-    def _list_laws(self) -> list[StaticOutputFeedback]:
-        """Return the law with one gain that is at work where the schedule stays at a point, for every point."""
-        count = self._count_points()
+        count = math.prod(map(len, scheduled.values()))
         if [self.gains, self.weights, self.weights_at_points].count(None) != 2:
             raise InputError("give exactly one of 'gains', 'weights' and 'weights_at_points'")
         if self.gains is not None:
@@ -195,23 +193,10 @@ class ScheduledOutputFeedback(NamedTuple):
             factors = [(factor,) for factor in stated for _ in range(count // len(stated))]
         elif self.weights is not None:
             raise InputError("weights alone make every gain the same: give temperatures, or weights_at_points")
-        return [
-            StaticOutputFeedback(
-                weights=at_point,
-                measures=self.measures,
-                masses=self.masses,
-                force_factors=served,
-                displacement_gain=self.displacement_gain,
-                lag=self.lag,
-            )
-            for at_point, served in zip(weights, factors, strict=True)
-        ]
-
-
-def _find_natural_frequency(plant: Plant) -> float:
-    """Return the frequency in Hz of frame and driver on the suspension, at least `_SLOWEST`."""
-    rate = math.sqrt(plant.suspension_stiffness / (plant.frame_mass + plant.driver_mass))
-    return max(rate / (2.0 * math.pi), _SLOWEST)
+        names = ("measures", "masses", "displacement_gain", "lag")
+        law = StaticOutputFeedback(**{name: getattr(self, name) for name in names})
+        points = zip(weights, factors, strict=True)
+        return [law._replace(weights=at_point, force_factors=served) for at_point, served in points]
 
 
 def _require_count(name: str, entries: Sequence[object], count: int, of: str) -> None:

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from pathlib import Path
 from threading import Lock
-from typing import TYPE_CHECKING, Annotated, NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from pydantic import Field
 
-from controllers.linear_systems import LinearSystem, compute_margins
+from controllers.linear_systems import compute_margins
 from controllers.seat_plant import (
     TRAVEL_AND_RATE,
     ActuatorLag,
@@ -22,6 +22,8 @@ from controllers.seat_plant import (
     build_generalised_plant,
     fit_shaping_filter,
 )
+from controllers.synthesis import SEAT_TIME_BUDGET, ClosedLoop, Design, GeneralisedPlant, find_gain, synthesise, verify
+from controllers.synthesis.plant import LinearSystem
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import FloorRecord, Floors, Measurement, State, law, no_floors
 from seatsim.rig.designs import unit_of_gain
@@ -29,11 +31,6 @@ from seatsim.rig.plant import Plant
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from controllers.synthesis import ClosedLoop, Design, GeneralisedPlant
 
 # Margins above this are crossings that rounding alone makes.
 _UNBOUNDED = 1e6
@@ -109,9 +106,7 @@ class StaticOutputFeedback(NamedTuple):
             return self._compile(np.array([self.gain]))
         if self.design is None:
             return self._compile(self._find_loops(plant, floors)[0])
-        from controllers.synthesis import Design
-
-        design = Design.load(Path(self.design))
+        design = Design.load(self.design)
         if design.measures and design.measures != self.measures:
             raise InputError(f"{self.design} was designed for measures: [{', '.join(design.measures)}]; state the same")
         return self._compile(design.gain)
@@ -128,8 +123,6 @@ class StaticOutputFeedback(NamedTuple):
         self, plant: Plant, floors: Floors = no_floors, progress: Callable[[str], object] = lambda text: None
     ) -> Design:
         """Return the H-infinity design for a plant with this law's weights (the default ones where none are given)."""
-        from controllers.synthesis import SEAT_TIME_BUDGET, synthesise
-
         plants = self.plants(plant, self._shape_floors(floors))
         return replace(synthesise(plants, time_budget=SEAT_TIME_BUDGET, progress=progress), measures=self.measures)
 
@@ -177,8 +170,7 @@ class StaticOutputFeedback(NamedTuple):
         gain, loops = self._find_loops(plant, floors)
         proven = "certified" if all(loop.certificate for loop in loops) else "not certified"
         entries = zip(gain[0], self.measures, strict=True)
-        texts = (f"{value:.4g} {unit_of_gain(name)} on {name.replace('_', ' ')}" for value, name in entries)
-        named = ", ".join(texts)
+        named = ", ".join(f"{value:.4g} {unit_of_gain(name)} on {name.replace('_', ' ')}" for value, name in entries)
         several = f" for {len(loops)} plants" if len(loops) > 1 else ""
         norm = f"gamma {max(loop.gamma for loop in loops):.4g}, {proven}{several}"
         return f"gain {named}; {norm}; margins: {self.margins(plant, coil, gain)}"
@@ -217,8 +209,6 @@ def _design(
     law: StaticOutputFeedback, plant: Plant, floors: tuple[ShapingFilter | None, ...]
 ) -> tuple[Array, tuple[ClosedLoop, ...]]:
     """Return gain and loops of a law for a plant; runs that differ in temperature alone share one design."""
-    from controllers.synthesis import find_gain, verify
-
     plants = law.plants(plant, floors)
     gain = find_gain(plants)
     return gain, tuple(verify(each, gain) for each in plants)

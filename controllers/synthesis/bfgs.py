@@ -58,8 +58,7 @@ def minimise(
     """
     here = Iterate(start, *function(start, np.inf))
     inverse = first = np.diag(unit**2)
-    history = [here.value]
-    fresh = True
+    history, fresh = [here.value], True
     for _ in range(iterations):
         if here.value <= enough or not np.any(here.gradient) or time.monotonic() > deadline:
             break
@@ -109,5 +108,4 @@ def _update(inverse: Array, here: Iterate, following: Iterate, fresh: bool) -> A
         inverse = inverse * curvature / float(y @ inverse @ y)
     Hy = inverse @ y
     along = (1 + float(y @ Hy) / curvature) * np.outer(s, s)
-    answer: Array = inverse + (along - np.outer(Hy, s) - np.outer(s, Hy)) / curvature
-    return answer
+    return np.asarray(inverse + (along - np.outer(Hy, s) - np.outer(s, Hy)) / curvature)

@@ -6,71 +6,43 @@ proves ||T|| < gamma and stability; whoever has P need only look at signs. P com
 
     A'P + PA + C'C / gamma + e I + (PB + C'D / gamma) (gamma I - D'D / gamma)^-1 (PB + C'D / gamma)' = 0
 
-whose slack e > 0 makes M(P) < 0 strict. The signs are those of matrices without rounding (`ExactMatrix`): doubles are
-whole numbers over powers of two, and so are their sums and products.
+whose slack e > 0 makes M(P) < 0 strict. The signs are those of matrices without rounding: doubles are whole numbers
+over powers of two, hence decimals of finitely many digits, and so are their sums and products.
 Source: Boyd, El Ghaoui, Feron & Balakrishnan 1994, section 2.7.3.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from decimal import MAX_EMAX, MAX_PREC, MIN_EMIN, Context, Decimal, Inexact, localcontext
+from typing import Any
 
 import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
 from controllers.synthesis.norm import balance, hinf_norm
-from controllers.synthesis.plant import GeneralisedPlant, Loop
+from controllers.synthesis.plant import MATRICES, GeneralisedPlant, LinearSystem, close_loop
 from seatsim.schema.arrays import Array
 
-
-@dataclass(frozen=True, eq=False)
-class ExactMatrix:
-    """The matrix `whole / 2^bits`, `whole` an array of Python's integers; `@`, `+`, `-` and `.T` are exact."""
-
-    whole: NDArray[np.object_]
-    bits: int
-
-    @classmethod
-    def of(cls, matrix: Array) -> ExactMatrix:
-        """Return a matrix of doubles as it is."""
-        ratios = [[value.as_integer_ratio() for value in row] for row in matrix.tolist()]
-        bits = max((bottom.bit_length() - 1 for row in ratios for _, bottom in row), default=0)
-        whole = np.empty(matrix.shape, dtype=object)
-        for i, row in enumerate(ratios):
-            for j, (top, bottom) in enumerate(row):
-                whole[i, j] = top << (bits - bottom.bit_length() + 1)
-        return cls(whole, bits)
-
-    def __matmul__(self, other: ExactMatrix) -> ExactMatrix:
-        # Python's integers grow as they must: numpy multiplies and adds them as objects, without overflow.
-        return ExactMatrix(self.whole @ other.whole, self.bits + other.bits)
-
-    def __add__(self, other: ExactMatrix) -> ExactMatrix:
-        bits = max(self.bits, other.bits)
-        return ExactMatrix(self.whole * 2 ** (bits - self.bits) + other.whole * 2 ** (bits - other.bits), bits)
-
-    def __sub__(self, other: ExactMatrix) -> ExactMatrix:
-        return self + ExactMatrix(-other.whole, other.bits)
-
-    @property
-    def T(self) -> ExactMatrix:  # noqa: N802 - as in NumPy
-        """The transposed matrix."""
-        return ExactMatrix(self.whole.T, self.bits)
-
-    def rounded(self) -> Array:
-        """Return the nearest doubles."""
-        bottom = 1 << self.bits
-        return np.array([[top / bottom for top in row] for row in self.whole.tolist()], dtype=float)
+# Sums and products take as many digits as they need; a rounded one would be an error.
+EXACT = Context(prec=MAX_PREC, Emin=MIN_EMIN, Emax=MAX_EMAX, traps=[Inexact])
 
 
-def close_exactly(plant: GeneralisedPlant, gain: Array) -> tuple[ExactMatrix, ExactMatrix, ExactMatrix, ExactMatrix]:
+def without_rounding(matrix: Array) -> NDArray[np.object_]:
+    """Return a matrix of doubles as one of decimals, to be used under the context `EXACT`."""
+    return np.array([[Decimal(value) for value in row] for row in matrix.tolist()], dtype=object)
+
+
+def rounded(matrix: NDArray[Any]) -> Array:
+    """Return the nearest doubles."""
+    return matrix.astype(float) + 0.0  # no zero keeps a sign
+
+
+def close_exactly(plant: GeneralisedPlant, gain: Array) -> LinearSystem:
     """Return A, B, C, D of the closed loop as `GeneralisedPlant.close` does, without rounding."""
-    A, B1, B2, C1, C2, D11, D12, D21 = (
-        ExactMatrix.of(m) for m in (plant.A, plant.B1, plant.B2, plant.C1, plant.C2, plant.D11, plant.D12, plant.D21)
-    )
-    left, right = B2 @ ExactMatrix.of(gain), D12 @ ExactMatrix.of(gain)
-    return A + left @ C2, B1 + left @ D21, C1 + right @ C2, D11 + right @ D21
+    *matrices, K = (without_rounding(matrix) for matrix in (*(getattr(plant, name) for name in MATRICES), gain))
+    return close_loop(matrices, K)
 
 
 # Excess of the certified gamma over the norm: the smallest that double precision can prove is taken.
@@ -125,63 +97,62 @@ def largest_lmi_eigenvalue(plant: GeneralisedPlant, gain: Array, factor: Array, 
     to doubles, and the rounding of its eigenvalues is added. Infinity where `factor` is singular.
     """
     try:
-        W = np.asarray(np.linalg.inv(factor), dtype=float)
+        with localcontext(EXACT):
+            T, back, one = _invert(factor)
+            A, B, C, D = close_exactly(plant, gain)
+            flow, drive, seen = (rounded(part) for part in (one.T @ T @ A @ back, one.T @ T @ B, C @ back))
     except np.linalg.LinAlgError:
         return np.inf
-    if not np.isfinite(W).all():
-        return np.inf
-    A, B, C, D = close_exactly(plant, gain)
-    T, back = ExactMatrix.of(factor), ExactMatrix.of(W)
-    one = T @ back
-    flow, drive, seen = (one.T @ T @ A @ back).rounded(), (one.T @ T @ B).rounded(), (C @ back).rounded()
     rate = float(np.linalg.norm(flow, 2))
     flow, drive, seen = flow / rate, drive / np.sqrt(gamma * rate), seen / np.sqrt(gamma * rate)
-    through = D.rounded() / gamma
-    M = np.block(
-        [
-            [flow + flow.T, drive, seen.T],
-            [drive.T, -np.eye(drive.shape[1]), through.T],
-            [seen, through, -np.eye(len(seen))],
-        ]
-    )
+    through = rounded(D) / gamma
+    inputs, outputs = np.eye(drive.shape[1]), np.eye(len(seen))
+    M = np.block([[flow + flow.T, drive, seen.T], [drive.T, -inputs, through.T], [seen, through, -outputs]])
     # P > 0 where factor is regular, which its product with about its inverse shows.
-    if not np.isfinite(M).all() or np.linalg.norm(one.rounded() - np.eye(plant.order), 2) > _REGULAR:
+    if not np.isfinite(M).all() or np.linalg.norm(rounded(one) - np.eye(plant.order), 2) > _REGULAR:
         return np.inf
     allowance = _ROUNDING * len(M) * np.finfo(float).eps * float(np.linalg.norm(M, 2))
     return float(np.linalg.eigvalsh(M)[-1] + allowance)
 
 
-def recentre(plant: GeneralisedPlant, gain: Array, factor: Array) -> Loop:
-    """Return the closed loop in the states `factor` x, in which P becomes the identity, free of the loop's rounding."""
-    A, B, C, D = close_exactly(plant, gain)
+def _invert(factor: Array) -> tuple[NDArray[np.object_], NDArray[np.object_], NDArray[np.object_]]:
+    """Return a matrix, about its inverse, and their product; raise LinAlgError where it is singular."""
     inverse = np.asarray(np.linalg.inv(factor), dtype=float)
-    T, back = ExactMatrix.of(factor), ExactMatrix.of(inverse)
-    # The inverse of factor is back (I + E)^-1, with E = factor back - I as small as rounding.
-    E = (T @ back - ExactMatrix.of(np.eye(len(factor)))).rounded()
-    correction = np.linalg.inv(np.eye(len(factor)) + E)
-    flow, seen = (T @ A @ back).rounded() @ correction, (C @ back).rounded() @ correction
-    return Loop(flow, (T @ B).rounded(), seen, D.rounded())
+    if not np.isfinite(inverse).all():
+        raise np.linalg.LinAlgError
+    T, back = without_rounding(factor), without_rounding(inverse)
+    return T, back, T @ back
+
+
+def _recentre(plant: GeneralisedPlant, gain: Array, factor: Array) -> LinearSystem:
+    """Return the closed loop in the states `factor` x, in which P becomes the identity, free of the loop's rounding."""
+    identity = np.eye(len(factor))
+    with localcontext(EXACT):
+        A, B, C, D = close_exactly(plant, gain)
+        T, back, one = _invert(factor)
+        # The inverse of factor is back (I + E)^-1, with E = factor back - I as small as rounding.
+        correction = np.linalg.inv(identity + rounded(one - without_rounding(identity)))
+        flow, seen = rounded(T @ A @ back) @ correction, rounded(C @ back) @ correction
+        return LinearSystem(flow, rounded(T @ B), seen, rounded(D))
 
 
 def _bounded_real_factor(plant: GeneralisedPlant, gain: Array, level: float, delta: float) -> Array | None:
     """Solve the Riccati equation in balanced states, then again in those where its solution is the identity."""
-    factor = np.diag(1 / balance(plant.close(gain))[1])
-    answer = None
+    start = factor = np.diag(1 / balance(plant.close(gain))[1])
     for _ in range(_RECENTRED):
         try:
-            P = _riccati(recentre(plant, gain, factor), level, delta)
+            P = _riccati(_recentre(plant, gain, factor), level, delta)
             factor = np.asarray(np.linalg.qr(np.linalg.cholesky(P).T @ factor, mode="r"))
         except (np.linalg.LinAlgError, ValueError):
             break
-        answer = factor
-    return answer
+    return None if factor is start else factor
 
 
-def _riccati(loop: Loop, level: float, delta: float) -> Array:
+def _riccati(loop: LinearSystem, level: float, delta: float) -> Array:
     n, nw = loop.B.shape
     B, C, D = loop.B / np.sqrt(level), loop.C / np.sqrt(level), loop.D / level
     # With the output sqrt(slack) x added, the squared norm grows by slack * reach^2 <= delta, and stays below 1.
-    reach = hinf_norm(Loop(loop.A, B, np.eye(n), np.zeros((n, nw)))).value
+    reach = hinf_norm(LinearSystem(loop.A, B, np.eye(n), np.zeros((n, nw)))).value
     slack = delta / max(reach, 1.0) ** 2
     Q, R = C.T @ C + slack * np.eye(n), D.T @ D - np.eye(nw)
     P: Array = scipy.linalg.solve_continuous_are(loop.A, B, Q, R, s=C.T @ D)

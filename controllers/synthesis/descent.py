@@ -55,27 +55,14 @@ def generate_starting_gains(plants: Sequence[GeneralisedPlant], unit: Array, see
         yield StartingGain(random.choice([-1.0, 1.0], free.shape) * size * free, size)
 
 
-def generate_convex_start(
-    plant: GeneralisedPlant, gamma: float, unit: Array, deadline: float
-) -> Iterator[StartingGain]:
-    """Yield the gain of the single-step LMI, or nothing where it has none; `gamma` is the norm's order of magnitude."""
-    from controllers.synthesis.lmi import find_single_step_gain
-
-    gain = find_single_step_gain(plant, gamma, deadline)
-    if gain is not None:
-        yield StartingGain(gain, unit)
-
-
 def project_state_feedback(plant: GeneralisedPlant) -> Array | None:
     """Return the output feedback nearest to the linear-quadratic state feedback, K = -B2'P pinv(C2); None without P."""
-    identity = np.eye(plant.order)
     try:
-        P = scipy.linalg.solve_continuous_are(plant.A, plant.B2, identity, np.eye(plant.control_count))
+        P = scipy.linalg.solve_continuous_are(plant.A, plant.B2, np.eye(plant.order), np.eye(plant.control_count))
     except np.linalg.LinAlgError:
         return None
     # u = -B2'P x is the optimum of the full state; the pseudo-inverse reads the state off y as well as y can tell.
-    gain: Array = -plant.B2.T @ P @ np.linalg.pinv(plant.C2) * plant.free
-    return gain
+    return np.asarray(-plant.B2.T @ P @ np.linalg.pinv(plant.C2) * plant.free)
 
 
 # A loop this stable (in scaled time) is ready for the descent on its norm.
@@ -162,8 +149,7 @@ def refine(objective: NormObjective, candidates: list[StabilisingGain], deadline
 
 def improve(objective: NormObjective, best: StabilisingGain, seed: int, deadline: float) -> StabilisingGain:
     """Descend from gains scattered about the best one, until rounds in a row gain nothing."""
-    random = np.random.default_rng(seed)
-    fruitless = 0
+    random, fruitless = np.random.default_rng(seed), 0
     while fruitless < _FRUITLESS and time.monotonic() < deadline and best.gamma > 0:
         sizes = objective.sizes(best.entries)
         step = random.standard_normal((len(_ABOUT), objective.size)) * np.array(_ABOUT)[:, None]
@@ -178,9 +164,9 @@ def improve(objective: NormObjective, best: StabilisingGain, seed: int, deadline
 
 def _distinct(candidates: list[StabilisingGain]) -> list[StabilisingGain]:
     """Candidates, best first, whose gamma differs by more than the coarse descent may leave."""
-    kept: list[StabilisingGain] = []
+    kept = candidates[:1]
     for candidate in candidates:
-        if not kept or candidate.gamma > kept[-1].gamma * (1 + _SAME):
+        if candidate.gamma > kept[-1].gamma * (1 + _SAME):
             kept.append(candidate)
     return kept
 

@@ -5,18 +5,18 @@ Reading the file needs neither solver nor plant.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, NotRequired, TypedDict, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from controllers.synthesis.certify import Certificate, certify
 from controllers.synthesis.global_proof import FACTOR, GlobalProof, prove_no_better
-from controllers.synthesis.norm import Peak, grid_norm, hinf_norm
-from controllers.synthesis.plant import MATRICES, GeneralisedPlant, Loop
+from controllers.synthesis.norm import grid_norm, hinf_norm
+from controllers.synthesis.plant import MATRICES, GeneralisedPlant, LinearSystem
 from seatsim.rig.designs import Clipping
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
@@ -120,10 +120,7 @@ class Design:
 
     def save(self, path: str | Path) -> None:
         """Write the design as YAML; the file appears whole or not at all."""
-        order = {"order": self.order} if self.order else {}
-        proof = {"global": _to_plain_global(self.proof)} if self.proof else {}
-        clipping = {"clipping": self.clipping._asdict()} if self.clipping else {}
-        write_text(Path(path), dump({**order, **_to_plain(self), **proof, **clipping}))
+        write_text(Path(path), dump(_to_plain(self)))
 
     @classmethod
     def load(cls, path: str | Path) -> Design:
@@ -134,108 +131,58 @@ class Design:
         """
         plain = Source(Path(path)).data
         try:
-            return _from_plain(cast("_PlainDesign", plain))
+            return _from_plain(plain)
         except KeyError as error:
             raise InputError(f"{path}: the design lacks the key {error}") from error
         except (TypeError, ValueError, IndexError, AttributeError, InputError) as error:
             raise InputError(f"{path}: not a design: {error}") from error
 
 
-class _PlainProof(TypedDict):
-    """A certificate as it stands in the file."""
-
-    factor: list[list[float]]
-    gamma: float
-    delta: float
-    largest_eigenvalue: float
+# Fields of a loop and of its certificate that stand in the file as they are.
+_OF_LOOP = ("gamma", "peak_frequency", "norms_agree", "disk_margin")
+_OF_PROOF = ("factor", "gamma", "delta", "largest_eigenvalue")
 
 
-class _ReadableProof(TypedDict):
-    """The worst loop's certificate as one reads it: P itself, rounded."""
+def _to_plain(design: Design) -> dict[str, object]:
+    """Return a design as it stands in the file; a static one states no order.
 
-    gamma: float
-    delta: float
-    matrix: list[list[float]]
-
-
-class _PlainLoop(TypedDict):
-    """A loop as it stands in the file; `plant` holds its matrices and its structure by name."""
-
-    gamma: float
-    peak_frequency: float
-    norms_agree: bool
-    disk_margin: float
-    poles: list[list[float]]
-    certificate: _PlainProof | None
-    plant: dict[str, list[list[float]] | None]
+    `certificate` is the worst loop's as one reads it: P itself, rounded. That which `load` reads stands with the loop.
+    """
+    plain: dict[str, object] = {"order": design.order} if design.order else {}
+    plain |= {"measures": list(design.measures), **_list_fields(design, ("gain", "gamma", "max_gain", "lower_bound"))}
+    plain["certificate"] = design.certificate and _list_fields(design.certificate, ("gamma", "delta", "matrix"))
+    plain["loops"] = [_to_plain_loop(loop) for loop in design.loops]
+    if (proof := design.proof) is not None:
+        box = [proof.low.tolist(), proof.high.tolist()]
+        plain["global"] = {"box": box, "factor": FACTOR, "boxes": proof.boxes, "proven": proof.is_proven}
+    if design.clipping:
+        plain["clipping"] = design.clipping._asdict()
+    return plain
 
 
-class _PlainDesign(TypedDict):
-    """A design as it stands in the file; a static one states no order."""
-
-    order: NotRequired[int]
-    measures: NotRequired[list[str]]
-    gain: list[list[float]]
-    gamma: float
-    max_gain: float
-    lower_bound: float
-    certificate: _ReadableProof | None
-    loops: list[_PlainLoop]
-
-
-def _to_plain(design: Design) -> _PlainDesign:
-    return {
-        "measures": list(design.measures),
-        "gain": design.gain.tolist(),
-        "gamma": design.gamma,
-        "max_gain": design.max_gain,
-        "lower_bound": design.lower_bound,
-        "certificate": _to_readable_proof(design.certificate),
-        "loops": [_to_plain_loop(loop) for loop in design.loops],
-    }
-
-
-def _to_plain_global(proof: GlobalProof) -> dict[str, object]:
-    """Return the box of the free gains, the level over gamma, the number of boxes, and whether all are excluded."""
-    box = [proof.low.tolist(), proof.high.tolist()]
-    return {"box": box, "factor": FACTOR, "boxes": proof.boxes, "proven": proof.is_proven}
-
-
-def _to_readable_proof(proof: Certificate | None) -> _ReadableProof | None:
-    """Return the worst loop's proof as one reads it: P, rounded; that which `load` reads stands with the loop."""
-    return None if proof is None else {"gamma": proof.gamma, "delta": proof.delta, "matrix": proof.matrix.tolist()}
-
-
-def _to_plain_loop(loop: ClosedLoop) -> _PlainLoop:
-    proof, free = loop.certificate, loop.plant.structure
-    return {
-        "gamma": loop.gamma,
-        "peak_frequency": loop.peak_frequency,
-        "norms_agree": loop.norms_agree,
-        "disk_margin": loop.disk_margin,
+def _to_plain_loop(loop: ClosedLoop) -> dict[str, object]:
+    free = loop.plant.structure
+    return _list_fields(loop, _OF_LOOP) | {
         "poles": [[float(pole.real), float(pole.imag)] for pole in loop.poles],
-        "certificate": None if proof is None else _to_plain_proof(proof),
-        "plant": {name: getattr(loop.plant, name).tolist() for name in MATRICES}
+        "certificate": loop.certificate and _list_fields(loop.certificate, _OF_PROOF),
+        "plant": _list_fields(loop.plant, MATRICES)
         | {"structure": None if free is None else free.astype(int).tolist()},
     }
 
 
-def _to_plain_proof(proof: Certificate) -> _PlainProof:
-    return {
-        "factor": proof.factor.tolist(),
-        "gamma": proof.gamma,
-        "delta": proof.delta,
-        "largest_eigenvalue": proof.largest_eigenvalue,
-    }
+def _list_fields(record: object, names: Sequence[str]) -> dict[str, object]:
+    """Return some fields of a record, arrays as lists."""
+    values = {name: getattr(record, name) for name in names}
+    return {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in values.items()}
 
 
-def _from_plain(plain: _PlainDesign) -> Design:
+def _from_plain(plain: Any) -> Design:
     gain, loops = np.array(plain["gain"], dtype=float), tuple(_from_plain_loop(loop) for loop in plain["loops"])
     if not np.isfinite(gain).all():
         raise ValueError("an entry of gain is not a finite number")
     if not loops:
         raise ValueError("loops is empty")
-    wanted = (loops[0].plant.B2.shape[1], loops[0].plant.C2.shape[0])
+    wanted = loops[0].plant.free.shape
     if gain.shape != wanted:
         raise ValueError(f"gain has the shape {gain.shape}; the plant of its loop has {wanted}, a row for each control")
     measures = tuple(map(str, plain.get("measures", ())))
@@ -243,27 +190,16 @@ def _from_plain(plain: _PlainDesign) -> Design:
     return Design(gain, float(plain["max_gain"]), float(plain["lower_bound"]), loops, measures, order=order)
 
 
-def _from_plain_loop(plain: _PlainLoop) -> ClosedLoop:
-    poles = np.array(plain["poles"], dtype=float)
-    matrices = [cast(ArrayLike, plain["plant"][name]) for name in MATRICES]
-    return ClosedLoop(
-        plant=GeneralisedPlant.from_matrices(matrices, plain["plant"]["structure"]),
-        gamma=float(plain["gamma"]),
-        peak_frequency=float(plain["peak_frequency"]),
-        norms_agree=bool(plain["norms_agree"]),
-        certificate=plain["certificate"] and _from_plain_proof(plain["certificate"]),
-        disk_margin=float(plain["disk_margin"]),
-        poles=poles[:, 0] + 1j * poles[:, 1],
-    )
-
-
-def _from_plain_proof(plain: _PlainProof) -> Certificate:
-    return Certificate(
-        factor=np.array(plain["factor"], dtype=float),
-        gamma=float(plain["gamma"]),
-        delta=float(plain["delta"]),
-        largest_eigenvalue=float(plain["largest_eigenvalue"]),
-    )
+def _from_plain_loop(plain: Any) -> ClosedLoop:
+    poles, proof = np.array(plain["poles"], dtype=float), plain["certificate"]
+    matrices = [plain["plant"][name] for name in MATRICES]
+    plant = GeneralisedPlant.from_matrices(matrices, plain["plant"]["structure"])
+    gamma, frequency, margin = (float(plain[name]) for name in ("gamma", "peak_frequency", "disk_margin"))
+    if proof:
+        factor = np.array(proof["factor"], dtype=float)
+        proof = Certificate(factor, *(float(proof[name]) for name in _OF_PROOF[1:]))
+    agree = bool(plain["norms_agree"])
+    return ClosedLoop(plant, gamma, frequency, agree, proof, margin, poles[:, 0] + 1j * poles[:, 1])
 
 
 # Two frequencies of equal height differ by rounding; a grid higher by more has found what bisection missed.
@@ -274,20 +210,17 @@ _AGREEMENT = 1e-6  # what the documentation states of the norm
 def verify(plant: GeneralisedPlant, gain: Array, order: int = 0) -> ClosedLoop:
     """Return what is known of a plant under a stabilising gain (nu, ny); the last `order` controls are not physical."""
     loop = plant.close(gain)
-    peak, agree = _compute_verified_norm(loop)
-    certificate, margin = certify(plant, gain, peak.value), disk_margin(plant, gain, plant.control_count - order)
-    return ClosedLoop(plant, peak.value, peak.frequency, agree, certificate, margin, loop.poles)
-
-
-def _compute_verified_norm(loop: Loop) -> tuple[Peak, bool]:
-    """Return the larger H-infinity norm of bisection and frequency grid, and whether the two agree to 1e-6."""
     norm, grid = hinf_norm(loop), grid_norm(loop)
     if norm.value < grid.value * (1 - _ROUNDING):
         norm = hinf_norm(loop, guesses=[grid.frequency])
-    return norm, norm.value - grid.value <= _AGREEMENT * norm.value
+    agree = norm.value - grid.value <= _AGREEMENT * norm.value
+    certificate, margin = certify(plant, gain, norm.value), disk_margin(plant, gain, plant.control_count - order)
+    return ClosedLoop(plant, norm.value, norm.frequency, agree, certificate, margin, loop.poles)
 
 
 def disk_margin(plant: GeneralisedPlant, gain: Array, controls: int) -> float:
     """Return the balanced disk margin at the first `controls`, 2 / ||2 S - I||, with S = (I - K G)^-1; at most 2."""
     A = plant.A + plant.B2 @ gain @ plant.C2
-    return 2 / hinf_norm(Loop(A, plant.B2[:, :controls], 2 * gain[:controls] @ plant.C2, np.eye(controls))).value
+    return (
+        2 / hinf_norm(LinearSystem(A, plant.B2[:, :controls], 2 * gain[:controls] @ plant.C2, np.eye(controls))).value
+    )

@@ -107,16 +107,12 @@ class Inequalities(NamedTuple):
 
     values: Array
     sizes: Array
-    rows: list[_Inequality]
+    rows: Sequence[_Inequality]
 
     def joined(self, others: Sequence[Inequalities]) -> Inequalities:
         """Return these inequalities and others."""
-        every = [self, *others]
-        return Inequalities(
-            np.vstack([one.values for one in every]),
-            np.concatenate([one.sizes for one in every]),
-            [row for one in every for row in one.rows],
-        )
+        values, sizes, rows = zip(self, *others, strict=True)
+        return Inequalities(np.vstack(values), np.concatenate(sizes), list(itertools.chain(*rows)))
 
 
 class BoxView:
@@ -125,9 +121,8 @@ class BoxView:
     def __init__(self, number: int, plant: GeneralisedPlant, level: float) -> None:
         self.number, self.plant, self.level = number, plant, level
         poles = np.abs(np.linalg.eigvals(plant.A))
-        moving = poles[poles > _ROUNDING * poles.max()]
-        scale = moving if len(moving) else np.ones(1)
-        ends = scale.min() / 10, scale.max() * 10
+        moving = poles[poles > _ROUNDING * poles.max()] if poles.any() else np.ones(1)
+        ends = moving.min() / 10, moving.max() * 10
         self._slowest = float(ends[0]) * _SLOWEST
         grid = [np.geomspace(*ends, n) * np.exp(1j * np.radians(angle)) for angle, n in _POINTS.items()]
         self._points = _respond(plant, np.concatenate([[0.0, self._slowest, np.inf], *grid]))
@@ -144,14 +139,10 @@ class BoxView:
 
     def look(self, corners: Array, points: Complex) -> CornerView:
         """Return the view of the box with these corners, at the common points and some more."""
-        middle = self.plant.close(self.gain(corners.mean(axis=0)[None])[0])
-        poles = middle.poles
+        poles = self.plant.close(self.gain(corners.mean(axis=0)[None])[0]).poles
         own = np.where(poles.real > 0, poles, 1j * poles.imag)[poles.imag >= 0]
-        return CornerView(
-            self,
-            self.gain(corners),
-            self._points.joined(_respond(self.plant, np.append(own[np.abs(own) > self._slowest], points))),
-        )
+        more = _respond(self.plant, np.append(own[np.abs(own) > self._slowest], points))
+        return CornerView(self, self.gain(corners), self._points.joined(more))
 
     def prove_out_of_reach(self) -> OutOfReach | None:
         """Return the proof that no controller of any order is better than the level, from Parrott's theorem."""
@@ -199,8 +190,8 @@ class CornerView:
         """Return the inequalities whose mean over the corners, weighted by `mixture`, is positive."""
         view = self._view
         chosen = np.flatnonzero(self._coefficients @ mixture > 0)
-        of_coefficients: list[_Inequality] = [_OfCoefficient(view.number, power) for power in chosen.tolist()]
-        listed = Inequalities(self._coefficients[chosen], self._coefficient_sizes[chosen], of_coefficients)
+        named = [_OfCoefficient(view.number, power) for power in chosen.tolist()]
+        listed = Inequalities(self._coefficients[chosen], self._coefficient_sizes[chosen], named)
         if np.isinf(view.level):  # only instability counts, which no transfer matrix shows
             return listed
         N = np.einsum("c,fcij->fij", mixture, self._N)
@@ -212,17 +203,10 @@ class CornerView:
         near, p, q = near[kept], _shorten_complex(left[kept, :, 0]), _shorten_complex(right[kept, 0].conj())
         along = np.einsum("fi,fcij,fj->fc", p.conj(), self._N[near], q).real
         across = (np.linalg.norm(p, axis=1) * np.linalg.norm(q, axis=1))[:, None]
-        bounds = self._bound[near]
+        bounds, sizes = self._bound[near], self._sizes[near]
         values = along - across * (bounds + _ROUNDING * (np.abs(bounds) + self._terms[near]))
-        sizes = self._sizes[near]
-        rows: list[_Inequality] = [
-            AtPoint(view.number, *row) for row in zip(self._points.s[near].tolist(), p, q, strict=True)
-        ]
-        return Inequalities(
-            np.vstack([values / sizes[:, None], listed.values]),
-            np.concatenate([sizes, listed.sizes]),
-            rows + listed.rows,
-        )
+        rows = [AtPoint(view.number, *row) for row in zip(self._points.s[near].tolist(), p, q, strict=True)]
+        return Inequalities(values / sizes[:, None], sizes, rows).joined([listed])
 
 
 def weigh(values: Array) -> tuple[Array, Array]:
@@ -232,9 +216,8 @@ def weigh(values: Array) -> tuple[Array, Array]:
     better: `values @ r <= 0`, zero where there is a weight. Only a row with a positive mean there can help.
     """
     rows, corners = values.shape
-    target = np.ones(corners)
-    found = scipy.optimize.nnls(np.hstack([values.T, -np.eye(corners)]), target)[0]
-    return found[:rows], np.maximum(target - found[:rows] @ values, 0.0)
+    weights = scipy.optimize.nnls(np.hstack([values.T, -np.eye(corners)]), np.ones(corners))[0][:rows]
+    return weights, np.maximum(1.0 - weights @ values, 0.0)
 
 
 def state_sum(weights: Array, inequalities: Inequalities) -> tuple[WeightedSum, Array]:
@@ -242,7 +225,8 @@ def state_sum(weights: Array, inequalities: Inequalities) -> tuple[WeightedSum, 
     values, sizes, rows = inequalities
     used = np.flatnonzero(weights > 0)
     stated = _shorten(weights[used] / sizes[used], _POINT_DIGITS)
-    return WeightedSum(tuple(stated.tolist()), tuple(rows[i] for i in used)), (stated * sizes[used]) @ values[used]
+    named = WeightedSum(tuple(stated.tolist()), tuple(rows[i] for i in used.tolist()))
+    return named, (stated * sizes[used]) @ values[used]
 
 
 def corners_of(low: Array, high: Array) -> Array:
@@ -253,7 +237,7 @@ def corners_of(low: Array, high: Array) -> Array:
 
 def _gaps(parts: Array) -> Iterator[float]:
     """Yield values between the real parts of poles and below the largest, widest gap first; they are not negative."""
-    edges = np.unique(np.concatenate([[0.0], parts[parts > 0]]))
+    edges = np.unique(np.append(0.0, parts[parts > 0]))
     widths = np.diff(edges)
     for i in np.argsort(-widths)[:3]:
         yield float(_shorten(np.array([edges[i] + widths[i] / 2]))[0])
@@ -300,11 +284,10 @@ def _respond(plant: GeneralisedPlant, points: Complex) -> _Points:
     sizes = np.maximum(np.abs(points), _ROUNDING * np.abs(poles).max())
     near = np.abs(points[:, None] - poles).min(axis=1) <= _APART * sizes
     s = _shorten_complex(points[~near | np.isinf(points)], _POINT_DIGITS)
-    B, C = np.hstack([plant.B1, plant.B2]), np.vstack([plant.C1, plant.C2])
-    D = np.block([[plant.D11, plant.D12], [plant.D21, np.zeros((plant.measured_count, plant.control_count))]])
+    A, B, C, D = plant.system
     finite = np.isfinite(s)[:, None, None]
-    resolvent = np.where(finite, s[:, None, None], 1.0) * np.eye(plant.order) - plant.A * finite
-    P: Complex = D + C @ (np.linalg.solve(resolvent, B[None]) * finite)
+    resolvent = np.where(finite, s[:, None, None], 1.0) * np.eye(plant.order) - A * finite
+    P = np.asarray(D + C @ (np.linalg.solve(resolvent, B[None]) * finite), dtype=np.complex128)
     z, w = len(plant.C1), plant.B1.shape[1]
     signs = np.where(s.imag == 0, np.sign(np.linalg.det(resolvent).real), 0.0)
     return _Points(s, signs, P[:, :z, :w], P[:, :z, w:], P[:, z:, :w], P[:, z:, w:])
@@ -326,7 +309,7 @@ def adjugate_and_determinant(L: Complex) -> tuple[Complex, Complex]:
     for k in range(1, n):
         product = L @ M
         M = product - np.trace(product, axis1=-2, axis2=-1)[..., None, None] / k * identity
-    adjugate: Complex = (-1) ** (n - 1) * M
+    adjugate = (-1) ** (n - 1) * M
     return adjugate, np.trace(L @ adjugate, axis1=-2, axis2=-1) / n
 
 
@@ -335,8 +318,7 @@ def _polynomials(roots: NDArray[np.number]) -> Array:
     rising = np.ones((1, len(roots)), dtype=roots.dtype)
     for root in roots.T:
         rising = np.vstack([-root * rising[:1], rising[:-1] - root * rising[1:], rising[-1:]])
-    found: Array = rising[:-1].real
-    return found
+    return np.asarray(rising[:-1].real)
 
 
 def _shorten(values: Array, digits: int = _DIGITS) -> Array:

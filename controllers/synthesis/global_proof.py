@@ -76,37 +76,25 @@ class GlobalProof:
 
     def save(self, path: Path) -> None:
         """Write plants, box, level (null: infinite) and steps as JSON; the file appears whole or not at all."""
-        plants = [
-            {name: getattr(plant, name).tolist() for name in MATRICES} | {"free": plant.free.astype(int).tolist()}
-            for plant in self.plants
-        ]
+        matrices = [{name: getattr(plant, name) for name in MATRICES} for plant in self.plants]
+        plants = [each | {"free": plant.free.astype(int)} for each, plant in zip(matrices, self.plants, strict=True)]
         level = self.level if np.isfinite(self.level) else None
-        content = {"low": self.low.tolist(), "high": self.high.tolist(), "level": level, "plants": plants}
-        content["steps"] = [_to_plain(step) for step in self.steps]
-        write_whole(path, lambda part: part.write_text(json.dumps(content)))
+        steps = [_name_parts(step) for step in self.steps]
+        content = {"low": self.low, "high": self.high, "level": level, "plants": plants, "steps": steps}
+        write_whole(path, lambda part: part.write_text(json.dumps(content, default=_to_plain)))
 
 
-def _to_plain(step: Split | _Reason) -> dict[str, object]:
-    if isinstance(step, Split | exclusion.Unstable):
+def _name_parts(step: Split | _Reason) -> dict[str, object]:
+    if not isinstance(step, exclusion.WeightedSum):
         return step._asdict()
-    if isinstance(step, exclusion.OutOfReach):
-        return step._asdict() | {"s": _pair_at(step.s), "vector": _pairs(step.vector)}
-    named = []
-    for weight, inequality in zip(*step, strict=True):
-        plain = inequality._asdict() | {"weight": weight}
-        if isinstance(inequality, exclusion.AtPoint):
-            plain |= {"s": _pair_at(inequality.s), "p": _pairs(inequality.p), "q": _pairs(inequality.q)}
-        named.append(plain)
-    return {"inequalities": named}
+    return {"inequalities": [one._asdict() | {"weight": weight} for weight, one in zip(*step, strict=True)]}
 
 
-def _pair_at(s: complex) -> list[float] | None:
-    """Return the parts of a point; None is infinity."""
-    return [s.real, s.imag] if np.isfinite(s) else None
-
-
-def _pairs(vector: exclusion.Complex) -> list[list[float]]:
-    return [[z.real, z.imag] for z in vector.tolist()]
+def _to_plain(value: Array | complex) -> object:
+    """Return an array as lists, a complex number as its parts; None is a point at infinity."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return [value.real, value.imag] if np.isfinite(value) else None
 
 
 def prove_no_better(
@@ -141,8 +129,8 @@ def prove_no_better(
     proof = GlobalProof(plants, low, high, level)
     views = [exclusion.BoxView(number, plant, level) for number, plant in enumerate(plants)]
     # Depth first, the lower half first: the order in which a checker walks through the steps again.
-    known = (view.prove_out_of_reach() for view in views if np.isfinite(level))
-    waiting = [_Box(low, high, 1.0, next((reason for reason in known if reason is not None), None))]
+    known = filter(None, (view.prove_out_of_reach() for view in views if np.isfinite(level)))
+    waiting = [_Box(low, high, 1.0, next(known, None))]
     done, end, told = 0.0, time.monotonic() + time_budget, 0.0
     while waiting:
         box = waiting.pop()
@@ -152,16 +140,13 @@ def prove_no_better(
         if time.monotonic() - told > 1.0:
             told = time.monotonic()
             progress(f"no better gain in {100 * done:.1f} % of the box, {proof.boxes} boxes")
-        found = box.reason or _exclude_or_divide(views, box, high - low)
-        if isinstance(found, _Division):
-            if found.better is not None:
-                proof.better = found.better
-                break
-            proof.steps.append(found.split)
-            waiting += [found.above, found.below]
-        else:
-            proof.steps.append(found)
-            done += box.share
+        step, parts = (box.reason, []) if box.reason else _exclude_or_divide(views, box, high - low)
+        if isinstance(step, np.ndarray):
+            proof.better = step
+            break
+        proof.steps.append(step)
+        waiting += parts
+        done += 0.0 if parts else box.share
     return proof
 
 
@@ -175,34 +160,25 @@ class _Box(NamedTuple):
     points: tuple[complex, ...] = ()
 
 
-class _Division(NamedTuple):
-    """A divided box, and a gain in it that is better than the level, if one was met."""
-
-    split: Split
-    below: _Box
-    above: _Box
-    better: Array | None = None
-
-
-def _exclude_or_divide(views: Sequence[exclusion.BoxView], box: _Box, whole: Array) -> _Reason | _Division:
-    """Return why no gain in a box is good enough, or its two parts; `whole` is the width of the whole."""
+def _exclude_or_divide(
+    views: Sequence[exclusion.BoxView], box: _Box, whole: Array
+) -> tuple[_Reason | Split | Array, list[_Box]]:
+    """Return why no gain in a box is good enough, its split and both parts, or a better gain; `whole`: all's width."""
     corners = exclusion.corners_of(box.low, box.high)
     listed, weights = _weigh(views, corners, box.points)
     reason, at_corners = exclusion.state_sum(weights, listed)
     if at_corners.min() > 0:
-        return reason
+        return reason, []
     for view in views:
-        unstable = view.prove_unstable(corners)
-        if unstable is not None:
-            return unstable
+        if (unstable := view.prove_unstable(corners)) is not None:
+            return unstable, []
     middle = corners.mean(axis=0)
     peaks = [view.norm_at(middle) for view in views]
     # Where the sum falls short most is where a better gain is likely to be, if there is one.
     worst = corners[int(at_corners.argmin())]
     for values, found in ((middle, peaks), (worst, [view.norm_at(worst) for view in views])):
         if all(peak.value < view.level for view, peak in zip(views, found, strict=True)):
-            better = views[0].gain(values[None])[0]
-            return _divide(box, _Slab(0, 0.5, 0, False), None)._replace(better=better)
+            return views[0].gain(values[None])[0], []
     points = {one.s for one in reason.inequalities if isinstance(one, exclusion.AtPoint)}
     points |= {1j * peak.frequency for peak in peaks if 0 < peak.frequency < np.inf}
     box = box._replace(points=tuple(points))
@@ -264,12 +240,12 @@ def _largest_slab(values: Array) -> _Slab:
     return best
 
 
-def _divide(box: _Box, slab: _Slab, reason: _Reason | None) -> _Division:
-    """Cut a slab off a box, for which there is a reason or none."""
+def _divide(box: _Box, slab: _Slab, reason: _Reason | None) -> tuple[Split, list[_Box]]:
+    """Cut a slab off a box, for which there is a reason or none; the upper part comes first."""
     gain, part = slab.gain, 1 - slab.share if slab.at_the_top else slab.share
     at = float(box.low[gain] + part * (box.high[gain] - box.low[gain]))
     middle_low, middle_high = box.low.copy(), box.high.copy()
     middle_low[gain] = middle_high[gain] = at
     below = _Box(box.low, middle_high, box.share * part, None if slab.at_the_top else reason, box.points)
     above = _Box(middle_low, box.high, box.share * (1 - part), reason if slab.at_the_top else None, box.points)
-    return _Division(Split(gain, at), below, above)
+    return Split(gain, at), [above, below]

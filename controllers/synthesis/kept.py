@@ -32,7 +32,11 @@ def find_kept(plants: Sequence[GeneralisedPlant], find: Callable[[], Array]) -> 
     folder = find_folder("gains")
     if folder is None:
         return find()
-    file = folder / f"{_digest(plants)}.json"
+    state = hashlib.sha256(_SOURCES)
+    for plant in plants:
+        for matrix in (*(getattr(plant, name) for name in MATRICES), plant.free):
+            state.update(repr(matrix.shape).encode() + matrix.tobytes())
+    file = folder / f"{state.hexdigest()}.json"
     try:
         kept = np.array(json.loads(file.read_bytes()), dtype=np.float64)
         if kept.shape == plants[0].free.shape and np.isfinite(kept).all():
@@ -43,12 +47,3 @@ def find_kept(plants: Sequence[GeneralisedPlant], find: Callable[[], Array]) -> 
     with suppress(SeatsimError):
         write_whole(file, lambda part: part.write_text(json.dumps(gain.tolist())))
     return gain
-
-
-def _digest(plants: Sequence[GeneralisedPlant]) -> str:
-    """Return a hash over the sources of the synthesis, and over the matrices and free gains of the plants."""
-    state = hashlib.sha256(_SOURCES)
-    for plant in plants:
-        for matrix in (*(getattr(plant, name) for name in MATRICES), plant.free):
-            state.update(repr(matrix.shape).encode() + matrix.tobytes())
-    return state.hexdigest()

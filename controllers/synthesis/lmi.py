@@ -79,25 +79,15 @@ def find_single_step_gain(plant: GeneralisedPlant, gamma: float, deadline: float
     X, Y = cp.Variable((plant.order, plant.order), symmetric=True), cp.Variable((plant.control_count, plant.order))
     if not _minimise_norm(plant, gamma, X, Y, deadline):
         return None
-    moved = _change_states(plant, _symmetric_root(X.value))
-    XR, YR, X, Y = _make_structured_variables(moved)
-    if not _minimise_norm(moved, gamma, X, Y, deadline):
-        return None
-    gain: Array = YR.value @ np.linalg.inv(XR.value)
-    return gain
-
-
-def _make_structured_variables(
-    plant: GeneralisedPlant,
-) -> tuple[cp.Variable, cp.Variable, cp.Expression, cp.Expression]:
-    """Variables XR, YR and the expressions X, Y they make."""
-    R, Q = np.linalg.pinv(plant.C2), scipy.linalg.null_space(plant.C2)
-    ny = plant.measured_count
+    moved, ny = _change_states(plant, _symmetric_root(X.value)), plant.measured_count
+    R, Q = np.linalg.pinv(moved.C2), scipy.linalg.null_space(moved.C2)
     XR, YR = cp.Variable((ny, ny), symmetric=True), cp.Variable(plant.free.shape)
     X = R @ XR @ R.T
     if Q.shape[1]:
         X = X + Q @ cp.Variable((Q.shape[1], Q.shape[1]), symmetric=True) @ Q.T
-    return XR, YR, X, YR @ R.T
+    if not _minimise_norm(moved, gamma, X, YR @ R.T, deadline):
+        return None
+    return np.asarray(YR.value @ np.linalg.inv(XR.value))
 
 
 def _minimise_norm(plant: GeneralisedPlant, gamma: float, X: cp.Expression, Y: cp.Expression, deadline: float) -> bool:
@@ -115,24 +105,26 @@ def _minimise_norm(plant: GeneralisedPlant, gamma: float, X: cp.Expression, Y: c
 def _bounded_real(
     plant: GeneralisedPlant, gamma: float, X: cp.Expression, Y: cp.Expression, g: cp.Expression | float
 ) -> cp.Expression:
-    B1, D11 = plant.B1 / np.sqrt(gamma), plant.D11 / gamma
     flow, seen = plant.A @ X + plant.B2 @ Y, (plant.C1 @ X + plant.D12 @ Y) / np.sqrt(gamma)
-    H = cp.bmat(
-        [[flow + flow.T, B1, seen.T], [B1.T, -g * np.eye(B1.shape[1]), D11.T], [seen, D11, -g * np.eye(len(D11))]]
-    )
+    H = _stack(flow + flow.T, plant.B1 / np.sqrt(gamma), seen, plant.D11 / gamma, g)
     return (H + H.T) / 2
 
 
 def _project(plant: GeneralisedPlant, X: cp.Expression, g: cp.Expression) -> cp.Expression:
     """N' [A'X + X A, X B1, C1'; B1'X, -g I, D11'; C1, D11, -g I] N with N the kernel of [C2, D21, 0]."""
-    A, B1, C1, D11 = plant.A, plant.B1, plant.C1, plant.D11
-    full = cp.bmat(
-        [[A.T @ X + X @ A, X @ B1, C1.T], [B1.T @ X, -g * np.eye(B1.shape[1]), D11.T], [C1, D11, -g * np.eye(len(C1))]]
-    )
+    full = _stack(plant.A.T @ X + X @ plant.A, X @ plant.B1, plant.C1, plant.D11, g)
     kernel = scipy.linalg.null_space(np.hstack([plant.C2, plant.D21]))
-    N = scipy.linalg.block_diag(kernel, np.eye(len(C1)))
+    N = scipy.linalg.block_diag(kernel, np.eye(len(plant.C1)))
     product = N.T @ full @ N
     return (product + product.T) / 2
+
+
+def _stack(
+    flow: cp.Expression, drive: cp.Expression, seen: cp.Expression, through: Array, g: cp.Expression | float
+) -> cp.Expression:
+    """[flow, drive, seen'; drive', -g I, through'; seen, through, -g I]."""
+    nz, nw = through.shape
+    return cp.bmat([[flow, drive, seen.T], [drive.T, -g * np.eye(nw), through.T], [seen, through, -g * np.eye(nz)]])
 
 
 def _recentre(plant: GeneralisedPlant, factor: Array, gamma: float) -> GeneralisedPlant:
@@ -144,16 +136,10 @@ def _recentre(plant: GeneralisedPlant, factor: Array, gamma: float) -> Generalis
     rate = np.linalg.norm(p.A, 2)
     state, size = np.sqrt(rate), np.sqrt(gamma)
     controls, measured = _column_lengths(p.B2) / state, _column_lengths(p.C2.T)[:, None] / state
-    return GeneralisedPlant(
-        p.A / rate,
-        p.B1 / (state * size),
-        p.B2 / state / controls,
-        p.C1 / (state * size),
-        p.C2 / state / measured,
-        p.D11 / gamma,
-        p.D12 / size / controls,
-        p.D21 / size / measured,
-    )
+    B1, B2 = p.B1 / (state * size), p.B2 / state / controls
+    C1, C2 = p.C1 / (state * size), p.C2 / state / measured
+    D11, D12, D21 = p.D11 / gamma, p.D12 / size / controls, p.D21 / size / measured
+    return GeneralisedPlant(p.A / rate, B1, B2, C1, C2, D11, D12, D21)
 
 
 def _change_states(plant: GeneralisedPlant, T: NDArray[np.floating]) -> GeneralisedPlant:
@@ -177,8 +163,7 @@ def _column_lengths(columns: Array) -> Array:
 def _symmetric_root(matrix: Array) -> Array:
     """Symmetric square root, kept invertible."""
     values, vectors = np.linalg.eigh(matrix)
-    root: Array = vectors * np.sqrt(np.maximum(values, 1e-9 * values[-1])) @ vectors.T
-    return root
+    return np.asarray(vectors * np.sqrt(np.maximum(values, 1e-9 * values[-1])) @ vectors.T)
 
 
 def _solve(objective: cp.Expression, constraints: list[cp.Constraint], deadline: float) -> bool:

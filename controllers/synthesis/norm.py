@@ -14,7 +14,7 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import ArrayLike, NDArray
 
-from controllers.synthesis.plant import Loop
+from controllers.synthesis.plant import LinearSystem
 from seatsim.schema.arrays import Array
 
 # Bisection converges quadratically: so many rounds are a guard against rounding that keeps it from settling.
@@ -34,38 +34,36 @@ class Peak(NamedTuple):
     frequency: float
 
 
-def frequency_response(loop: Loop, frequencies: ArrayLike) -> NDArray[np.complex128]:
+def frequency_response(loop: LinearSystem, frequencies: ArrayLike) -> NDArray[np.complex128]:
     """Return T(j omega), shape (frequencies, nz, nw), at frequencies in rad/s; infinity is allowed."""
     omega = np.atleast_1d(np.asarray(frequencies, dtype=float))
     finite = np.isfinite(omega)
     resolvent = np.multiply.outer(1j * np.where(finite, omega, 1.0), np.eye(len(loop.A))) - loop.A
     dynamic = loop.C @ np.linalg.solve(resolvent, loop.B[None])
-    answer: NDArray[np.complex128] = dynamic * finite[:, None, None] + loop.D
-    return answer
+    return np.asarray(dynamic * finite[:, None, None] + loop.D)
 
 
-def largest_singular_values(loop: Loop, frequencies: ArrayLike) -> Array:
+def largest_singular_values(loop: LinearSystem, frequencies: ArrayLike) -> Array:
     """Return sigma_max(T(j omega)) at frequencies in rad/s."""
     T = frequency_response(loop, frequencies)
     if min(T.shape[1:]) == 1:
         return np.asarray(np.linalg.norm(T, axis=(1, 2)), dtype=float)
-    values: Array = np.linalg.svd(T, compute_uv=False)[:, 0].astype(float)
-    return values
+    return np.linalg.svd(T, compute_uv=False)[:, 0].astype(float)
 
 
-def balance(loop: Loop) -> tuple[Loop, Array]:
+def balance(loop: LinearSystem) -> tuple[LinearSystem, Array]:
     """Return the loop in balanced states x~, and the factors of x = diag(factors) x~."""
     states: Array = scipy.linalg.lapack.dgebal(loop.A, scale=1, permute=0)[3]
-    return Loop(loop.A * states / states[:, None], loop.B / states[:, None], loop.C * states, loop.D), states
+    return LinearSystem(loop.A * states / states[:, None], loop.B / states[:, None], loop.C * states, loop.D), states
 
 
-def hinf_norm(loop: Loop, guesses: ArrayLike = ()) -> Peak:
+def hinf_norm(loop: LinearSystem, guesses: ArrayLike = ()) -> Peak:
     """Return the H-infinity norm of one loop, as `find_highest_norm` does."""
     return find_highest_norm([loop], guesses)[1]
 
 
 def find_highest_norm(
-    loops: Sequence[Loop],
+    loops: Sequence[LinearSystem],
     guesses: ArrayLike = (),
     tolerance: float = 1e-10,
     enough: float = np.inf,
@@ -102,7 +100,7 @@ def find_highest_norm(
     return worst, best
 
 
-def _find_highest_peak(loop: Loop, frequencies: Array) -> Peak:
+def _find_highest_peak(loop: LinearSystem, frequencies: Array) -> Peak:
     """Highest peak at some frequencies; only where the Frobenius norm is larger can a singular value be so."""
     T = frequency_response(loop, frequencies)
     sizes = np.linalg.norm(T, axis=(1, 2))
@@ -115,17 +113,15 @@ def _find_highest_peak(loop: Loop, frequencies: Array) -> Peak:
     return Peak(value, float(frequencies[place]))
 
 
-def _find_crossings(loop: Loop, gamma: float) -> Array:
+def _find_crossings(loop: LinearSystem, gamma: float) -> Array:
     """Frequencies where a singular value may equal gamma: Hamiltonian eigenvalues on or near the imaginary axis."""
-    scaled = Loop(loop.A, loop.B / np.sqrt(gamma), loop.C / np.sqrt(gamma), loop.D / gamma)
+    scaled = LinearSystem(loop.A, loop.B / np.sqrt(gamma), loop.C / np.sqrt(gamma), loop.D / gamma)
     values = _hamiltonian_eigenvalues(scaled) if np.linalg.norm(scaled.D) < _WELL_BELOW else _pencil_eigenvalues(scaled)
     # Generous: a frequency too many costs one evaluation, a missed one would under-report the norm.
-    near = np.abs(values.real) <= 1e-2 * np.abs(values)
-    answer: Array = np.unique(np.abs(values.imag[near]))
-    return answer
+    return np.unique(np.abs(values.imag[np.abs(values.real) <= 1e-2 * np.abs(values)]))
 
 
-def _hamiltonian_eigenvalues(loop: Loop) -> NDArray[np.complex128]:
+def _hamiltonian_eigenvalues(loop: LinearSystem) -> NDArray[np.complex128]:
     """Eigenvalues of the Hamiltonian matrix for gamma = 1."""
     A, B, C, D = loop
     n, nw = B.shape
@@ -137,7 +133,7 @@ def _hamiltonian_eigenvalues(loop: Loop) -> NDArray[np.complex128]:
     return np.linalg.eigvals(flow).astype(np.complex128)
 
 
-def _pencil_eigenvalues(loop: Loop) -> NDArray[np.complex128]:
+def _pencil_eigenvalues(loop: LinearSystem) -> NDArray[np.complex128]:
     """Eigenvalues of the Hamiltonian matrix as those of a pencil in states, costates, w and z.
 
     No inverse of I - D'D is formed, which is nearly singular where the norm is attained at infinity. An orthogonal
@@ -155,11 +151,10 @@ def _pencil_eigenvalues(loop: Loop) -> NDArray[np.complex128]:
     rest = np.linalg.qr(static, mode="complete")[0][:, nw + nz :].T
     alpha, beta = scipy.linalg.eigvals(rest @ dynamic, rest[:, : 2 * n], homogeneous_eigvals=True, check_finite=False)
     finite = np.abs(beta) > 1e-14 * np.abs(alpha)
-    values: NDArray[np.complex128] = alpha[finite] / beta[finite]
-    return values
+    return np.asarray(alpha[finite] / beta[finite])
 
 
-def grid_norm(loop: Loop) -> Peak:
+def grid_norm(loop: LinearSystem) -> Peak:
     """Return the H-infinity norm of a stable loop from a dense frequency grid, refined at its highest peaks.
 
     Shares nothing with `hinf_norm` but the frequency response. It never over-reports; a peak far narrower than the
@@ -168,7 +163,7 @@ def grid_norm(loop: Loop) -> Peak:
     return max(find_local_peaks(loop, 0.5))
 
 
-def find_local_peaks(loop: Loop, level: float) -> list[Peak]:
+def find_local_peaks(loop: LinearSystem, level: float) -> list[Peak]:
     """Return the peaks of sigma_max over frequency that reach `level` times the highest, zero and infinity included."""
     omega = build_frequency_grid(loop)
     values = largest_singular_values(loop, omega)
@@ -182,25 +177,24 @@ def find_local_peaks(loop: Loop, level: float) -> list[Peak]:
     return refined + [Peak(float(values[top]), float(omega[top])) for top in tops]
 
 
-def build_frequency_grid(loop: Loop) -> Array:
+def build_frequency_grid(loop: LinearSystem) -> Array:
     """Return frequencies from zero to infinity: dense on a logarithmic scale, and denser about every pole."""
     poles = loop.poles
     rates = np.abs(poles[np.abs(poles) > 0])
     wide = np.geomspace(rates.min() / 1e3, rates.max() * 1e3, _GRID_POINTS)
     offsets = np.concatenate([-np.geomspace(10, 0.05, 12), [0.0], np.geomspace(0.05, 10, 12)])
     about = np.abs(poles.imag)[:, None] + np.abs(poles.real)[:, None] * offsets
-    omega: Array = np.unique(np.concatenate([[0.0, np.inf], wide, about[about > 0]]))
-    return omega
+    return np.unique(np.concatenate([[0.0, np.inf], wide, about[about > 0]]))
 
 
-def _refine_peaks(loop: Loop, low: Array, high: Array) -> list[Peak]:
+def _refine_peaks(loop: LinearSystem, low: Array, high: Array) -> list[Peak]:
     """Close in on the peak between each `low` and `high`, all at once, by a factor of four a round."""
+    if not len(low):
+        return []
     spread, rows = np.linspace(0, 1, 9), np.arange(len(low))
-    for _ in range(_ZOOMS if len(low) else 0):
+    for _ in range(_ZOOMS):
         omega = low[:, None] + (high - low)[:, None] * spread
         values = largest_singular_values(loop, omega.ravel()).reshape(omega.shape)
         best = np.clip(values.argmax(axis=1), 1, len(spread) - 2)
         low, high = omega[rows, best - 1], omega[rows, best + 1]
-    if not len(low):
-        return []
     return [Peak(float(v), float(w)) for v, w in zip(values[rows, best], omega[rows, best], strict=True)]

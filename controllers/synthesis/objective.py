@@ -17,10 +17,8 @@ import scipy.linalg
 from numpy.typing import ArrayLike, NDArray
 
 from controllers.synthesis.norm import find_highest_norm, frequency_response
-from controllers.synthesis.plant import GeneralisedPlant, Loop
+from controllers.synthesis.plant import GeneralisedPlant, LinearSystem
 from seatsim.schema.arrays import Array
-
-Complex = NDArray[np.complex128]
 
 # In scaled time: loops this close to the edge of stability count as unstable.
 STABILITY_MARGIN = 1e-7
@@ -42,9 +40,7 @@ class NormObjective:
         self.plants = list(plants)
         self.free = plants[0].free
         self._limits = low, high, unit
-        self.unit: Array = unit[self.free]
-        self.low: Array = low[self.free]
-        self.high: Array = high[self.free]
+        self.unit, self.low, self.high = unit[self.free], low[self.free], high[self.free]
         self._centre: Array = (self.low + self.high) / 2
         self._reach: Array = (self.high - self.low) / 2
         self.size = len(self.low)
@@ -62,24 +58,21 @@ class NormObjective:
     def sizes(self, entries: Array) -> Array:
         """Return the natural sizes of changes of some entries: their own, none far below the largest's in `unit`."""
         largest = float(np.max(np.abs(entries) / self.unit))
-        answer: Array = np.maximum(np.abs(entries), _LEAST * largest * self.unit) if largest > 0 else self.unit
-        return answer
+        return np.maximum(np.abs(entries), _LEAST * largest * self.unit) if largest > 0 else self.unit
 
-    def loops(self, entries: Array) -> list[Loop]:
+    def loops(self, entries: Array) -> list[LinearSystem]:
         """Return the closed loop of every plant with these free entries."""
         gain = self.gain(entries)
         return [plant.close(gain) for plant in self.plants]
 
     def entries(self, theta: Array) -> Array:
         """Return the free entries of the gain at angles theta."""
-        values: Array = self._centre + self._reach * np.sin(theta / self._reach)
-        return values
+        return np.asarray(self._centre + self._reach * np.sin(theta / self._reach))
 
     def angles(self, entries: Array) -> Array:
         """Return the angles of free entries; beyond the limits, of the nearest entries within."""
         sines = np.clip((entries - self._centre) / self._reach, -_INSIDE, _INSIDE)
-        values: Array = self._reach * np.arcsin(sines)
-        return values
+        return np.asarray(self._reach * np.arcsin(sines))
 
     def abscissa(self, theta: Array, ceiling: float = np.inf) -> tuple[float, Array]:
         """Return the largest spectral abscissa and its gradient by theta; above `ceiling` there is no gradient."""
@@ -108,30 +101,25 @@ class NormObjective:
         return float(np.log(highest.value)), self._by_theta(slopes[0, 0] / values[0, 0], theta)
 
     def _by_theta(self, slope: Array, theta: Array) -> Array:
-        answer: Array = slope[self.free] * np.cos(theta / self._reach)
-        return answer
+        return np.asarray(slope[self.free] * np.cos(theta / self._reach))
 
 
 def differentiate_singular_values(
-    plant: GeneralisedPlant, loop: Loop, frequencies: ArrayLike, count: int
+    plant: GeneralisedPlant, loop: LinearSystem, frequencies: ArrayLike, count: int
 ) -> tuple[Array, Array]:
     """Return the `count` largest singular values of T, (m, count), and their gradients by K, (m, count, nu, ny)."""
     U, values, Vh = np.linalg.svd(frequency_response(loop, frequencies), full_matrices=False)
-    from_control = frequency_response(Loop(loop.A, plant.B2, loop.C, plant.D12), frequencies)
-    to_measured = frequency_response(Loop(loop.A, loop.B, plant.C2, plant.D21), frequencies)
+    from_control = frequency_response(LinearSystem(loop.A, plant.B2, loop.C, plant.D12), frequencies)
+    to_measured = frequency_response(LinearSystem(loop.A, loop.B, plant.C2, plant.D21), frequencies)
     p = np.einsum("mzk,mzu->mku", U[:, :, :count].conj(), from_control)
     q = np.einsum("myw,mkw->mky", to_measured, Vh[:, :count].conj())
     return values[:, :count], np.real(p[..., :, None] * q[..., None, :])
 
 
-def _eigenvalues_and_vectors(A: Array) -> tuple[Complex, Complex, Complex]:
-    """Return eigenvalues (n,), left and right eigenvectors (n, n); scipy's stubs do not tell how many it returns."""
-    return cast("tuple[Complex, Complex, Complex]", scipy.linalg.eig(A, left=True, right=True))
-
-
-def _abscissa(plant: GeneralisedPlant, loop: Loop, ceiling: float) -> tuple[float, Array]:
+def _abscissa(plant: GeneralisedPlant, loop: LinearSystem, ceiling: float) -> tuple[float, Array]:
     """Spectral abscissa and its gradient by K."""
-    values, left, right = _eigenvalues_and_vectors(loop.A)
+    # Its stubs do not tell how many arrays it returns.
+    values, left, right = cast("tuple[NDArray[np.complex128], ...]", scipy.linalg.eig(loop.A, left=True, right=True))
     place = int(values.real.argmax())
     if values.real[place] > ceiling:
         return float(values.real[place]), np.zeros(plant.free.shape)

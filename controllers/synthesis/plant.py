@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol, cast, runtime_checkable
+from typing import Any, NamedTuple, Protocol, cast, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,8 +23,8 @@ from seatsim.schema.errors import InputError
 MATRICES = ("A", "B1", "B2", "C1", "C2", "D11", "D12", "D21")
 
 
-class Loop(NamedTuple):
-    """A closed loop `x' = A x + B w`, `z = C x + D w`."""
+class LinearSystem(NamedTuple):
+    """A linear system `x' = A x + B u`, `y = C x + D u`; shapes (n, n), (n, m), (p, n), (p, m)."""
 
     A: Array
     B: Array
@@ -43,29 +43,24 @@ class Loop(NamedTuple):
         return float(np.linalg.eigvals(self.A).real.max())
 
 
+def close_loop(matrices: Sequence[NDArray[Any]], K: NDArray[Any]) -> LinearSystem:
+    """Return the loop of `u = K y` around a plant of eight matrices, as `GeneralisedPlant.close` states it."""
+    A, B1, B2, C1, C2, D11, D12, D21 = matrices
+    left, right = B2 @ K, D12 @ K
+    return LinearSystem(A + left @ C2, B1 + left @ D21, C1 + right @ C2, D11 + right @ D21)
+
+
 @runtime_checkable
 class StateSpaceLike(Protocol):
     """What is used of a `control.StateSpace` (or a continuous `scipy.signal.StateSpace`); both are untyped."""
 
-    @property
-    def A(self) -> ArrayLike:  # noqa: N802 - as in control and scipy
-        """State matrix (n, n)."""
-
-    @property
-    def B(self) -> ArrayLike:  # noqa: N802
-        """Input matrix (n, inputs)."""
-
-    @property
-    def C(self) -> ArrayLike:  # noqa: N802
-        """Output matrix (outputs, n)."""
-
-    @property
-    def D(self) -> ArrayLike:  # noqa: N802
-        """Direct path (outputs, inputs)."""
-
-    @property
-    def dt(self) -> float | bool | None:
-        """Sample time in s; 0 or None for continuous time."""
+    # Shapes: A (n, n), B (n, inputs), C (outputs, n), D (outputs, inputs).
+    A: ArrayLike
+    B: ArrayLike
+    C: ArrayLike
+    D: ArrayLike
+    # Sample time in s; 0 or None for continuous time.
+    dt: float | bool | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,18 +108,22 @@ class GeneralisedPlant:
         return len(self.C2)
 
     @property
+    def system(self) -> LinearSystem:
+        """The plant with inputs [w; u] and outputs [z; y]."""
+        through = np.zeros((self.measured_count, self.control_count))
+        D = np.block([[self.D11, self.D12], [self.D21, through]])
+        return LinearSystem(self.A, np.hstack([self.B1, self.B2]), np.vstack([self.C1, self.C2]), D)
+
+    @property
     def free(self) -> NDArray[np.bool_]:
         """Which gains are free, (nu, ny)."""
         if self.structure is None:
             return np.ones((self.control_count, self.measured_count), dtype=bool)
         return self.structure
 
-    def close(self, gain: ArrayLike) -> Loop:
+    def close(self, gain: ArrayLike) -> LinearSystem:
         """Return the loop of `u = gain @ y`: A + B2 K C2, B1 + B2 K D21, C1 + D12 K C2, D11 + D12 K D21."""
-        K = np.asarray(gain, dtype=float)
-        left, right = self.B2 @ K, self.D12 @ K
-        A, B = self.A + left @ self.C2, self.B1 + left @ self.D21
-        return Loop(A, B, self.C1 + right @ self.C2, self.D11 + right @ self.D21)
+        return close_loop([getattr(self, name) for name in MATRICES], np.asarray(gain, dtype=float))
 
     def with_controller_states(self, order: int) -> GeneralisedPlant:
         """Return the plant whose static gain [[D_K, C_K], [B_K, A_K]] is a controller with `order` states.
@@ -133,13 +132,10 @@ class GeneralisedPlant:
         u_K its controls and x_K its measurements. All of A_K, B_K, C_K is free.
         Source: El Ghaoui, Oustry & AitRami 1997, IEEE Trans. Autom. Control 42:1171.
         """
-        n, k = self.order, order
-        rows, columns = {"A": k, "B1": k, "B2": k, "C2": k, "D21": k}, {"A": k, "B2": k, "C1": k, "C2": k, "D12": k}
-        padded = [np.pad(getattr(self, name), ((0, rows.get(name, 0)), (0, columns.get(name, 0)))) for name in MATRICES]
-        B2, C2 = padded[MATRICES.index("B2")], padded[MATRICES.index("C2")]
-        B2[n:, self.control_count :] = C2[self.measured_count :, n:] = np.eye(k)
-        free = np.pad(self.free, (0, k), constant_values=True)
-        return GeneralisedPlant.from_matrices(padded, free)
+        A, B, C, D = (np.pad(part, (0, order)) for part in self.system)
+        B[self.order :, -order:] = C[-order:, self.order :] = np.eye(order)
+        free = np.pad(self.free, (0, order), constant_values=True)
+        return GeneralisedPlant.from_system(LinearSystem(A, B, C, D), self.B1.shape[1], len(self.C1), free)
 
     @classmethod
     def from_state_space(
@@ -154,12 +150,24 @@ class GeneralisedPlant:
         """
         if system.dt:
             raise InputError(f"the plant is sampled (dt = {system.dt}); H-infinity synthesis wants continuous time")
-        A, B, C, D = (_matrix(name, getattr(system, name)) for name in "ABCD")
-        _check_split(disturbances, performance, D.shape)
+        parts = LinearSystem(*(_matrix(name, getattr(system, name)) for name in "ABCD"))
+        outputs, inputs = parts.D.shape
+        sides = (("disturbance inputs", disturbances, inputs), ("performance outputs", performance, outputs))
+        for name, count, total in sides:
+            if not 0 < count < total:
+                raise InputError(f"split: {count} {name} of {total}; at least one must be on each side")
+        if np.any(parts.D[performance:, disturbances:]):
+            raise InputError("u reaches y directly (D22 is not zero); subtract D22 @ u from the measurement first")
+        return cls.from_system(parts, disturbances, performance, structure)
+
+    @classmethod
+    def from_system(
+        cls, system: LinearSystem, disturbances: int = 1, performance: int = 2, structure: ArrayLike | None = None
+    ) -> GeneralisedPlant:
+        """Split a system whose first inputs are w and whose first outputs are z; the path from u to y is left out."""
+        A, B, C, D = system
         w, z = slice(None, disturbances), slice(None, performance)
         u, y = slice(disturbances, None), slice(performance, None)
-        if np.any(D[y, u]):
-            raise InputError("u reaches y directly (D22 is not zero); subtract D22 @ u from the measurement first")
         return cls.from_matrices((A, B[:, w], B[:, u], C[z], C[y], D[z, w], D[z, u], D[y, w]), structure)
 
     @classmethod
@@ -212,11 +220,3 @@ def _structure(value: ArrayLike | None, shape: tuple[int, int]) -> NDArray[np.bo
     if not mask.any():
         raise InputError("structure leaves no gain free")
     return mask.astype(bool)
-
-
-def _check_split(disturbances: int, performance: int, shape: tuple[int, ...]) -> None:
-    outputs, inputs = shape
-    parts = (("disturbance inputs", disturbances, inputs), ("performance outputs", performance, outputs))
-    for name, count, total in parts:
-        if not 0 < count < total:
-            raise InputError(f"split: {count} {name} of {total}; at least one must be on each side")

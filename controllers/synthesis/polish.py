@@ -17,7 +17,6 @@ from scipy.optimize import minimize
 
 from controllers.synthesis.norm import find_local_peaks, hinf_norm, largest_singular_values
 from controllers.synthesis.objective import NormObjective, differentiate_singular_values
-from controllers.synthesis.plant import Loop
 from seatsim.schema.arrays import Array
 
 _ROUNDS = 40
@@ -65,18 +64,15 @@ def _peaks(objective: NormObjective, entries: Array, level: float) -> list[Array
     return found
 
 
-def _renewed(objective: NormObjective, entries: Array, old: list[Array], level: float) -> list[Array]:
-    """Frequencies of the peaks now, and those old ones that are still nearly as high and not about the same."""
-    new = _peaks(objective, entries, level)
-    loops = objective.loops(entries)
-    return [np.concatenate([n, _still_high(loop, o, n, level)]) for loop, o, n in zip(loops, old, new, strict=True)]
-
-
-def _still_high(loop: Loop, old: Array, new: Array, level: float) -> Array:
-    if not len(old):
-        return old
-    apart = ~np.isclose(old[:, None], new, rtol=1e-5, atol=1e-9).any(axis=1)
-    return old[apart & (largest_singular_values(loop, old) >= _ACTIVE * level)]
+def _renewed(objective: NormObjective, entries: Array, known: list[Array], level: float) -> list[Array]:
+    """Frequencies of the peaks now, and those known ones that are still nearly as high and not about the same."""
+    renewed = []
+    peaks = _peaks(objective, entries, level)
+    for loop, old, new in zip(objective.loops(entries), known, peaks, strict=True):
+        apart = ~np.isclose(old[:, None], new, rtol=1e-5, atol=1e-9).any(axis=1)
+        high = largest_singular_values(loop, old) >= _ACTIVE * level
+        renewed.append(np.append(new, old[apart & high]))
+    return renewed
 
 
 def _solve(

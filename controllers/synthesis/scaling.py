@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from controllers.synthesis.plant import GeneralisedPlant
+from controllers.synthesis.plant import GeneralisedPlant, LinearSystem
 from seatsim.schema.arrays import Array
 
 # Steps are powers of two, so that sweeps end where no factor changes; a guard where they circle.
@@ -50,18 +50,12 @@ def scale(plant: GeneralisedPlant, like: ScaledPlant | None = None) -> ScaledPla
             break
     states = states * _power_of_two(np.sqrt(_size(plant.B1 / states[:, None] / rate) / _size(plant.C1 * states)))
     controls, measured = (like.controls, like.measured) if like else _input_output(plant, states, rate)
-    moved = GeneralisedPlant(
-        plant.A * states / states[:, None] / rate,
-        plant.B1 / states[:, None] / rate,
-        plant.B2 * controls / states[:, None] / rate,
-        plant.C1 * states,
-        plant.C2 * states * measured[:, None],
-        plant.D11,
-        plant.D12 * controls,
-        plant.D21 * measured[:, None],
-        plant.structure,
-    )
-    return ScaledPlant(moved, controls, measured, rate)
+    nw, nz = plant.B1.shape[1], len(plant.C1)
+    A, B, C, D = plant.system
+    inputs, outputs = np.append(np.ones(nw), controls), np.append(np.ones(nz), measured)[:, None]
+    flow, drive = A * states / states[:, None] / rate, B * inputs / states[:, None] / rate
+    moved = LinearSystem(flow, drive, C * states * outputs, D * inputs * outputs)
+    return ScaledPlant(GeneralisedPlant.from_system(moved, nw, nz, plant.structure), controls, measured, rate)
 
 
 def _input_output(plant: GeneralisedPlant, states: Array, rate: float) -> tuple[Array, Array]:
@@ -79,8 +73,7 @@ def _balancing_step(plant: GeneralisedPlant, states: Array, rate: float) -> Arra
     r, c = np.linalg.norm(rows, axis=1), np.linalg.norm(columns, axis=0)
     ratio = np.divide(r, c, out=np.ones_like(r), where=(r > 0) & (c > 0))
     # A quarter of the exponent at a time: all states move at once, and full steps would overshoot.
-    step: Array = np.exp2(np.round(np.log2(ratio) / 4))
-    return step
+    return np.asarray(np.exp2(np.round(np.log2(ratio) / 4)))
 
 
 def _mean_rate(A: Array) -> float:

@@ -15,7 +15,6 @@ from controllers.synthesis.descent import (
     StabilisingGain,
     StartingGain,
     explore,
-    generate_convex_start,
     generate_starting_gains,
     improve,
     refine,
@@ -84,11 +83,15 @@ def search(
         objective = everything.on([scaled[i].plant for i in chosen])
         progress(f"plants {', '.join(map(str, chosen))} of {len(plants)}" if len(plants) > 1 else "searching")
         part = clock.part(1.0 if len(chosen) == len(scaled) else _SUBSET)
-        starts = _starts(objective, best, seed)
+        starts = generate_starting_gains(objective.plants, objective.gain(objective.unit), seed)
+        if best is not None:
+            known = StartingGain(objective.gain(best.entries), objective.gain(objective.sizes(best.entries)))
+            starts = chain([known], starts)
         found = _explore(objective, starts, part)
         if not found.candidates:
             _require_hope([plants[i] for i in chosen], limits, part.after(_PROVEN))
-            found = _explore_on(objective, starts, found, part.after(_REFINED))
+            while not found.candidates and time.monotonic() < part.after(_REFINED):
+                found = found.with_more(explore(objective, islice(starts, _STARTS), part.after(_REFINED)))
         if not found.candidates:
             raise SynthesisError(
                 f"no stabilising gain with {_permitted(limits)} was found from {found.starts} starts in at most"
@@ -103,24 +106,19 @@ def search(
         chosen.append(worst)
 
 
-def _starts(objective: NormObjective, known: StabilisingGain | None, seed: int) -> Iterator[StartingGain]:
-    starts = generate_starting_gains(objective.plants, objective.gain(objective.unit), seed)
-    if known is None:
-        return starts
-    return chain([StartingGain(objective.gain(known.entries), objective.gain(objective.sizes(known.entries)))], starts)
-
-
 def _explore(objective: NormObjective, starts: Iterator[StartingGain], clock: TimeBudget) -> Descent:
     """Descend from a few starts where all lead to the same value, from many where not, and on until one is stable."""
     deadline = clock.after(_EXPLORED)
     found = explore(objective, islice(starts, _STARTS), deadline)
     if found.agrees:
         return found
+    from controllers.synthesis.lmi import find_single_step_gain
+
     plant = objective.plants[0]
     size = float(np.linalg.norm(plant.B1) * np.linalg.norm(plant.C1)) or 1.0
-    gamma = found.gamma if found.candidates else size
-    convex = generate_convex_start(plant, max(gamma, 1e-9 * size), objective.gain(objective.unit), deadline)
-    found = found.with_more(explore(objective, convex, deadline))
+    gain = find_single_step_gain(plant, max(found.gamma if found.candidates else size, 1e-9 * size), deadline)
+    if gain is not None:
+        found = found.with_more(explore(objective, [StartingGain(gain, objective.gain(objective.unit))], deadline))
     fruitless = 0
     while 2 * fruitless < found.starts and time.monotonic() < deadline:
         more = explore(objective, islice(starts, _STARTS), deadline)
@@ -142,13 +140,6 @@ def _require_hope(plants: Sequence[GeneralisedPlant], limits: tuple[Array, Array
             )
 
 
-def _explore_on(objective: NormObjective, starts: Iterator[StartingGain], found: Descent, deadline: float) -> Descent:
-    """Go on with further starts until one is stable."""
-    while not found.candidates and time.monotonic() < deadline:
-        found = found.with_more(explore(objective, islice(starts, _STARTS), deadline))
-    return found
-
-
 def _permitted(limits: tuple[Array, Array]) -> str:
     return f"|gain| <= {np.abs(limits).max():g}"
 
@@ -164,8 +155,7 @@ def _lowest(
     """Refine the candidates; where starts disagree, improve upon the best, and go on while further starts gain."""
     progress(f"{found.starts} starts, {len(found.candidates)} stabilised, gamma {found.gamma:.6g}")
     best = refine(objective, found.candidates, clock.after(_REFINED))
-    deadline = clock.after(_IMPROVED)
-    tried, fruitless = found.starts, 0
+    deadline, tried, fruitless = clock.after(_IMPROVED), found.starts, 0
     while not found.agrees and 2 * fruitless < tried and time.monotonic() < deadline:
         if not fruitless:
             progress(f"gamma {best.gamma:.6g}, looking about it")

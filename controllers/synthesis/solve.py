@@ -5,16 +5,15 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import cast, overload
+from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from controllers.synthesis.certify import Certificate
 from controllers.synthesis.design import Design, verify
 from controllers.synthesis.kept import find_kept
 from controllers.synthesis.norm import build_frequency_grid, frequency_response
-from controllers.synthesis.plant import MATRICES, GeneralisedPlant, Loop, StateSpaceLike
+from controllers.synthesis.plant import MATRICES, GeneralisedPlant, LinearSystem, StateSpaceLike
 from controllers.synthesis.search import Progress, TimeBudget, search
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
@@ -25,51 +24,6 @@ _TIME_BUDGET = 60.0
 """Seconds of a search where none are stated."""
 SEAT_TIME_BUDGET = 900.0
 """Seconds in which the search for a seat's gain converges on a slow computer too, so that all find the same gain."""
-
-
-@overload
-def synthesise(
-    A: GeneralisedPlant | Sequence[GeneralisedPlant],
-    /,
-    *,
-    max_gain: float = ...,
-    bounds: tuple[ArrayLike, ArrayLike] | None = ...,
-    order: int = ...,
-    time_budget: float = ...,
-    seed: int = ...,
-    progress: Progress = ...,
-) -> Design: ...
-@overload
-def synthesise(
-    A: StateSpaceLike,
-    /,
-    *,
-    split: tuple[int, int],
-    max_gain: float = ...,
-    bounds: tuple[ArrayLike, ArrayLike] | None = ...,
-    order: int = ...,
-    time_budget: float = ...,
-    seed: int = ...,
-    progress: Progress = ...,
-) -> Design: ...
-@overload
-def synthesise(
-    A: ArrayLike,
-    B1: ArrayLike,
-    B2: ArrayLike,
-    C1: ArrayLike,
-    C2: ArrayLike,
-    D11: ArrayLike,
-    D12: ArrayLike,
-    D21: ArrayLike,
-    *,
-    max_gain: float = ...,
-    bounds: tuple[ArrayLike, ArrayLike] | None = ...,
-    order: int = ...,
-    time_budget: float = ...,
-    seed: int = ...,
-    progress: Progress = ...,
-) -> Design: ...
 
 
 def synthesise(
@@ -110,7 +64,9 @@ def synthesise(
     """
     begin = time.monotonic()
     plants = _collect_plants(A, (B1, B2, C1, C2, D11, D12, D21), split)
-    _check_options(max_gain, time_budget)
+    for name, value in (("max_gain", max_gain), ("time_budget", time_budget)):
+        if not 0 < value < np.inf:
+            raise InputError(f"{name} is {value}; a finite number above 0 is wanted")
     if order not in range(5):
         raise InputError(f"order is {order!r}; a controller of order 0 (a static gain) to 4 is wanted")
     plants = [plant.with_controller_states(order) for plant in plants] if order else plants
@@ -118,7 +74,14 @@ def synthesise(
     loops = tuple(verify(plant, gain, order) for plant in plants)
     design = Design(gain, float(max_gain), 0.0, loops, order=order)
     progress("the bound of any controller")
-    return replace(design, lower_bound=min(_find_largest_bound(design, begin + time_budget), design.gamma))
+    bound = max(compute_pointwise_bound(plant, gain) for plant in plants)
+    proof, deadline = design.certificate, begin + time_budget
+    # In the coordinates of the certificate the LMI is well scaled.
+    if proof is not None and time.monotonic() < deadline:
+        from controllers.synthesis.lmi import compute_full_order_bound
+
+        bound = max(bound, compute_full_order_bound(design.worst.plant, proof.factor, proof.gamma, deadline))
+    return replace(design, lower_bound=min(bound, design.gamma))
 
 
 def find_gain(plants: Sequence[GeneralisedPlant]) -> Array:
@@ -128,13 +91,6 @@ def find_gain(plants: Sequence[GeneralisedPlant]) -> Array:
     """
     limits, clock = _limits(plants[0], _MAX_GAIN, None), TimeBudget(time.monotonic(), SEAT_TIME_BUDGET)
     return find_kept(plants, lambda: search(plants, limits, 0, clock, lambda text: None))
-
-
-def _find_largest_bound(design: Design, deadline: float) -> float:
-    """Largest bound from any plant: from frequencies for all, from the LMI for the worst."""
-    worst = design.worst
-    bounds = [compute_pointwise_bound(loop.plant, design.gain) for loop in design.loops]
-    return max(*bounds, compute_lower_bound(worst.plant, design.gain, worst.certificate, deadline))
 
 
 def _collect_plants(
@@ -147,7 +103,12 @@ def _collect_plants(
         return [first]
     if isinstance(first, Sequence) and first and all(isinstance(plant, GeneralisedPlant) for plant in first):
         plants = list(cast("Sequence[GeneralisedPlant]", first))
-        _check_alike(plants)
+        for i, plant in enumerate(plants):
+            if not np.array_equal(plant.free, plants[0].free):
+                raise InputError(
+                    f"plant {i} has {plant.control_count} controls, {plant.measured_count} measurements and its own "
+                    f"structure; one gain for all wants those of plant 0: {plants[0].free.astype(int).tolist()}"
+                )
         return plants
     if isinstance(first, StateSpaceLike):
         if split is None:
@@ -157,21 +118,6 @@ def _collect_plants(
     if missing:
         raise InputError(f"the plant lacks {', '.join(missing)}; give all of {', '.join(MATRICES)}, or a plant object")
     return [GeneralisedPlant.from_matrices([cast(ArrayLike, first), *(part for part in others if part is not None)])]
-
-
-def _check_alike(plants: Sequence[GeneralisedPlant]) -> None:
-    for i, plant in enumerate(plants):
-        if not np.array_equal(plant.free, plants[0].free):
-            raise InputError(
-                f"plant {i} has {plant.control_count} controls, {plant.measured_count} measurements and its own "
-                f"structure; one gain for all wants those of plant 0: {plants[0].free.astype(int).tolist()}"
-            )
-
-
-def _check_options(max_gain: float, time_budget: float) -> None:
-    for name, value in (("max_gain", max_gain), ("time_budget", time_budget)):
-        if not 0 < value < np.inf:
-            raise InputError(f"{name} is {value}; a finite number above 0 is wanted")
 
 
 def _limits(
@@ -192,22 +138,6 @@ def _limits(
 Response = NDArray[np.complex128]
 
 
-def compute_lower_bound(
-    plant: GeneralisedPlant, stabilising: Array, certificate: Certificate | None, deadline: float
-) -> float:
-    """Return the larger of the pointwise and the full-order LMI bound.
-
-    `stabilising` is a gain (nu, ny) whose loop the certificate is for. The LMI is solved only where there is a
-    certificate, in whose coordinates it is well scaled, and time left before `deadline` (`time.monotonic()`).
-    """
-    bound = compute_pointwise_bound(plant, stabilising)
-    if certificate is not None and time.monotonic() < deadline:
-        from controllers.synthesis.lmi import compute_full_order_bound
-
-        bound = max(bound, compute_full_order_bound(plant, certificate.factor, certificate.gamma, deadline))
-    return bound
-
-
 def compute_pointwise_bound(plant: GeneralisedPlant, stabilising: Array) -> float:
     """Return a bound that no controller beats, whatever its order, from the frequency response alone.
 
@@ -222,9 +152,9 @@ def compute_pointwise_bound(plant: GeneralisedPlant, stabilising: Array) -> floa
     loop = plant.close(stabilising)
     omega = build_frequency_grid(loop)
     T = frequency_response(loop, omega)
-    from_control = frequency_response(Loop(loop.A, plant.B2, loop.C, plant.D12), omega)
-    to_measured = frequency_response(Loop(loop.A, loop.B, plant.C2, plant.D21), omega)
-    adjoint = _largest_unreached(np.conj(np.swapaxes(to_measured, 1, 2)), np.conj(np.swapaxes(T, 1, 2)))
+    from_control = frequency_response(LinearSystem(loop.A, plant.B2, loop.C, plant.D12), omega)
+    to_measured = frequency_response(LinearSystem(loop.A, loop.B, plant.C2, plant.D21), omega)
+    adjoint = _largest_unreached(to_measured.swapaxes(1, 2).conj(), T.swapaxes(1, 2).conj())
     return max(_largest_unreached(from_control, T), adjoint)
 
 
@@ -235,4 +165,4 @@ def _largest_unreached(path: Response, T: Response) -> float:
     if path.shape[1] <= reached:
         return 0.0
     basis = np.linalg.svd(path)[0][:, :, reached:]
-    return float(np.linalg.svd(np.conj(np.swapaxes(basis, 1, 2)) @ T, compute_uv=False).max())
+    return float(np.linalg.svd(basis.swapaxes(1, 2).conj() @ T, compute_uv=False).max())

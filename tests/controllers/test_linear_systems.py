@@ -4,13 +4,12 @@ import numpy as np
 import pytest
 
 from controllers.linear_systems import (
-    LinearSystem,
     connect_in_parallel,
     frequency_weighting,
     second_order_section,
 )
 from controllers.synthesis.norm import frequency_response
-from controllers.synthesis.plant import Loop
+from controllers.synthesis.plant import LinearSystem
 from seatsim.metrics import weighting
 from seatsim.rig.plant import zero_order_hold
 
@@ -18,7 +17,7 @@ OMEGA = np.geomspace(0.5, 300.0, 40)
 
 
 def gains(system):
-    return frequency_response(Loop(*system), OMEGA)
+    return frequency_response(LinearSystem(*system), OMEGA)
 
 
 @pytest.mark.parametrize("name", ["Wk", "Wd"])

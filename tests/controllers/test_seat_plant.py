@@ -7,11 +7,10 @@ import pytest
 
 import seatsim
 from controllers.laws.static_output_feedback import StaticOutputFeedback
-from controllers.linear_systems import LinearSystem
 from controllers.seat_plant import ActuatorLag, Weights, build_actuator, build_generalised_plant
 from controllers.synthesis import Design
 from controllers.synthesis.norm import frequency_response, hinf_norm
-from controllers.synthesis.plant import Loop
+from controllers.synthesis.plant import LinearSystem
 from seatsim.metrics import weighting
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import prepare_law
@@ -26,7 +25,7 @@ OMEGA = np.geomspace(0.5, 300.0, 40)
 
 
 def gains(system, omega=OMEGA):
-    return frequency_response(Loop(*system), omega)
+    return frequency_response(LinearSystem(*system), omega)
 
 
 def test_actuator_lags_as_coil_and_delay(conform):

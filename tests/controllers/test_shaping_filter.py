@@ -5,7 +5,7 @@ import pytest
 
 from controllers.seat_plant import fit_shaping_filter
 from controllers.synthesis.norm import frequency_response
-from controllers.synthesis.plant import Loop
+from controllers.synthesis.plant import LinearSystem
 from seatsim.excitations.iso7096 import Iso7096, acceleration_density
 from seatsim.rig.control import FloorRecord
 from seatsim.schema.errors import InputError
@@ -16,7 +16,7 @@ def test_white_noise_through_the_filter_has_unit_power_and_the_spectrum_of_the_f
     filtered = fit_shaping_filter(FloorRecord(0.001, acceleration)).as_system()
     assert np.linalg.eigvals(filtered.A).real.max() < 0
     frequency = np.arange(0.02, 20.0, 0.02)
-    density = np.abs(frequency_response(Loop(*filtered), 2 * np.pi * frequency)[:, 0, 0]) ** 2
+    density = np.abs(frequency_response(LinearSystem(*filtered), 2 * np.pi * frequency)[:, 0, 0]) ** 2
     # The density is two-sided: what lies above zero is half of the power.
     assert 2 * np.trapezoid(density, frequency) == pytest.approx(1.0, rel=0.1)
     wanted = acceleration_density(frequency, "EM2") / np.mean(acceleration**2) / 2

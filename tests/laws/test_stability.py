@@ -6,8 +6,9 @@ from scipy.linalg import expm
 from scipy.signal import cont2discrete
 
 from controllers.laws.quadratic import EstimateFeedback, SwitchedFeedback
-from controllers.linear_systems import LinearSystem, compute_margins
+from controllers.linear_systems import compute_margins
 from controllers.optimal import Noise, QuadraticWeights, design_kalman_filter
+from controllers.synthesis.plant import LinearSystem
 from seatsim.rig.control import prepare_law
 from seatsim.rig.plant import state_space
 from seatsim.rig.sampled_loop import build_sampled_loop, build_seat_with_coil

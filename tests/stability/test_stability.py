@@ -9,8 +9,9 @@ from numpy.polynomial import Polynomial
 
 import seatsim
 from controllers.laws.static_output_feedback import OutputFeedback
-from controllers.linear_systems import LinearSystem, compute_margins
+from controllers.linear_systems import compute_margins
 from controllers.seat_plant import ActuatorLag, Weights, build_generalised_plant
+from controllers.synthesis.plant import LinearSystem
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant, state_space
 from seatsim.rig.sampled_loop import build_sampled_loop

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from controllers.synthesis.certify import certify
+from controllers.synthesis.lmi import compute_full_order_bound
 from controllers.synthesis.norm import hinf_norm
 from controllers.synthesis.plant import GeneralisedPlant
-from controllers.synthesis.solve import compute_lower_bound, compute_pointwise_bound
+from controllers.synthesis.solve import compute_pointwise_bound, synthesise
 
 ZERO = np.zeros((1, 2))
 REST = ("B1", "B2", "C1", "C2", "D11", "D12", "D21")
@@ -53,9 +54,8 @@ def test_the_lmi_joins_where_there_is_a_certificate_and_time():
     plant = GeneralisedPlant(one, one, one, [[1], [0]], one, column, [[0], [1]], 0 * one)
     gain = -5 * one
     proof = certify(plant, gain, hinf_norm(plant.close(gain)).value)
-    pointwise = compute_pointwise_bound(plant, gain)
+    assert compute_pointwise_bound(plant, gain) == pytest.approx(np.sqrt(0.5), rel=1e-6)
     late, soon = time.monotonic() - 1, time.monotonic() + 30
-    assert compute_lower_bound(plant, gain, None, soon) == pointwise
-    assert compute_lower_bound(plant, gain, proof, late) == pointwise
-    assert pointwise == pytest.approx(np.sqrt(0.5), rel=1e-6)
-    assert compute_lower_bound(plant, gain, proof, soon) == pytest.approx(1.0, rel=1e-4)
+    assert compute_full_order_bound(plant, proof.factor, proof.gamma, late) == 0.0
+    assert compute_full_order_bound(plant, proof.factor, proof.gamma, soon) == pytest.approx(1.0, rel=1e-4)
+    assert synthesise(plant, max_gain=10.0, time_budget=30.0).lower_bound == pytest.approx(1.0, rel=1e-4)

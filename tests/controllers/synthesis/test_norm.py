@@ -6,13 +6,13 @@ from scipy.linalg import block_diag
 
 from controllers.synthesis import norm as module
 from controllers.synthesis.norm import find_highest_norm, grid_norm, hinf_norm, largest_singular_values
-from controllers.synthesis.plant import Loop
+from controllers.synthesis.plant import LinearSystem
 
 METHODS = [hinf_norm, grid_norm]
 
 
 def loop(A, B, C, D):
-    return Loop(*(np.array(matrix, dtype=float, ndmin=2) for matrix in (A, B, C, D)))
+    return LinearSystem(*(np.array(matrix, dtype=float, ndmin=2) for matrix in (A, B, C, D)))
 
 
 def random_loop(seed, n, nw, nz):
@@ -20,7 +20,7 @@ def random_loop(seed, n, nw, nz):
     A = random.standard_normal((n, n))
     A -= (np.linalg.eigvals(A).real.max() + 10 ** random.uniform(-3, 0)) * np.eye(n)
     D = random.standard_normal((nz, nw)) * random.integers(0, 2)
-    return Loop(A, random.standard_normal((n, nw)), random.standard_normal((nz, n)), D)
+    return LinearSystem(A, random.standard_normal((n, nw)), random.standard_normal((nz, n)), D)
 
 
 @pytest.mark.parametrize("norm", METHODS)
@@ -64,7 +64,7 @@ def test_bisection_agrees_with_the_grid(seed):
 def test_does_not_depend_on_units(seed):
     some = random_loop(seed, n=5, nw=2, nz=2)
     units = 10.0 ** np.random.default_rng(seed).uniform(-4, 4, 5)
-    moved = Loop(some.A * units / units[:, None], some.B / units[:, None], some.C * units, some.D)
+    moved = LinearSystem(some.A * units / units[:, None], some.B / units[:, None], some.C * units, some.D)
     assert hinf_norm(moved).value == pytest.approx(hinf_norm(some).value, rel=1e-9)
 
 
@@ -72,7 +72,7 @@ def test_does_not_depend_on_units(seed):
 @pytest.mark.parametrize("seed", range(6))
 def test_does_not_depend_on_the_unit_of_time(seed, rate):
     some = random_loop(seed, n=6, nw=2, nz=2)
-    peak, moved = hinf_norm(some), hinf_norm(Loop(rate * some.A, rate * some.B, some.C, some.D))
+    peak, moved = hinf_norm(some), hinf_norm(LinearSystem(rate * some.A, rate * some.B, some.C, some.D))
     assert moved.value == pytest.approx(peak.value, rel=1e-9)
     assert moved.frequency == pytest.approx(rate * peak.frequency, rel=1e-4)
 
@@ -88,7 +88,7 @@ def resonance(omega, damping, height):
 def test_the_higher_of_two_resonances_counts_where_the_poles_tell_of_the_lower(low, order):
     # At its pole the well damped one is 4 % below its peak, the sharp one nearly at it.
     both = [resonance(1.0, 0.01, low), resonance(1000.0, 0.5, 1.0)]
-    joint = Loop(*(block_diag(*(both[k][part] for k in order)) for part in range(4)))
+    joint = LinearSystem(*(block_diag(*(both[k][part] for k in order)) for part in range(4)))
     peak = hinf_norm(joint)
     assert peak.value == pytest.approx(1.0, rel=1e-9)
     assert peak.frequency == pytest.approx(1000.0 * np.sqrt(0.5), rel=1e-4)

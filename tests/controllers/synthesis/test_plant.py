@@ -6,7 +6,7 @@ import pytest
 
 from controllers import synthesise
 from controllers.synthesis.norm import frequency_response
-from controllers.synthesis.plant import GeneralisedPlant, Loop
+from controllers.synthesis.plant import GeneralisedPlant, LinearSystem
 from seatsim.schema.errors import InputError
 
 GAIN = np.array([[0.4, -0.2], [0.3, 0.1]])
@@ -25,7 +25,7 @@ def test_a_gain_closes_the_loop_that_the_equations_give(random_plant):
 
 def test_poles_are_sorted_from_the_right_and_the_abscissa_is_the_first():
     A = np.array([[-3.0, 0.0, 0.0, 0.0], [0.0, -1.0, 5.0, 0.0], [0.0, -5.0, -1.0, 0.0], [0.0, 0.0, 0.0, -2.0]])
-    loop = Loop(A, *(np.zeros((4, 4)),) * 3)
+    loop = LinearSystem(A, *(np.zeros((4, 4)),) * 3)
     np.testing.assert_allclose(loop.poles, [-1 + 5j, -1 - 5j, -2, -3])
     assert loop.abscissa == pytest.approx(-1.0)
 
