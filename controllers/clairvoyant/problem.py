@@ -126,7 +126,8 @@ class HeldForceProblem(NamedTuple):
     def minimise_lagrangian(self, band: ForceBand, multipliers: Array, barrier: float) -> LagrangianMinimum | None:
         """Return the minimum of the Lagrangian with its derivatives; None where it has none."""
         p, count, t = self.stage_matrices, self.intervals, self.transcription
-        gain, pivot, by = np.empty((count, len(p.V))), np.empty(count), np.empty((3, count))
+        # The pivots stand in for last forces too, whose proximity counts 0: 0 times what memory held could be NaN.
+        gain, pivot, by = np.empty((count, len(p.V))), np.zeros(count), np.empty((3, count))
         modes = np.zeros(count, dtype=np.int64)
         least = compiled(minimise_backwards, ())(p, band, multipliers, modes, 0.0, pivot, gain, pivot)
         if not np.isfinite(least):
