@@ -8,12 +8,18 @@ import pytest
 from controllers import synthesise
 from controllers.synthesis.certify import certify, largest_lmi_eigenvalue
 from controllers.synthesis.norm import hinf_norm
-from controllers.synthesis.plant import GeneralisedPlant
+from controllers.synthesis.plant import MATRICES, GeneralisedPlant
 
 
 def stable(plant, gain, margin=0.3):
     shift = (plant.close(gain).abscissa + margin) * np.eye(plant.order)
     return replace(plant, A=plant.A - shift)
+
+
+def undriven(order):
+    """A stable plant whose M is diagonal, with -2 for the states and -1 for w and z; and no gain."""
+    n, none = np.eye(order), np.zeros((1, 1))
+    return GeneralisedPlant(-n, 0 * n[:, :1], n[:, :1], 0 * n[:1], n[:1], none, none, none), none
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -26,20 +32,12 @@ def test_proves_the_norm_and_nothing_below(random_plant, seed, conform):
     claim = f"random plant {seed}: proven gamma over the norm, less 1"
     conform(claim, "bounded-real certificate", proof.gamma / gamma - 1, tolerance=1e-5)
     P = proof.matrix
-    M = np.block(
-        [
-            [loop.A.T @ P + P @ loop.A, P @ loop.B, loop.C.T],
-            [loop.B.T @ P, -proof.gamma * np.eye(2), loop.D.T],
-            [loop.C, loop.D, -proof.gamma * np.eye(3)],
-        ]
-    )
+    (A, B, C, D), g = loop, proof.gamma
+    M = np.block([[A.T @ P + P @ A, P @ B, C.T], [B.T @ P, -g * np.eye(2), D.T], [C, D, -g * np.eye(3)]])
     assert np.linalg.eigvalsh(P)[0] > 0 > np.linalg.eigvalsh(M)[-1]
     assert certify(plant, gain, gamma * 0.93) is None
     assert largest_lmi_eigenvalue(plant, gain, proof.factor, gamma * 0.99) > 0
     assert largest_lmi_eigenvalue(plant, gain, 0 * proof.factor, gamma) == np.inf
-
-
-NAMES = ("A", "B1", "B2", "C1", "C2", "D11", "D12", "D21")
 
 
 @pytest.mark.parametrize("below", [0.0, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2])
@@ -53,7 +51,7 @@ def test_every_certificate_is_confirmed_in_fractions_however_little_is_missing(
     proof = certify(plant, gain, norm * (1 - below))
     assert proof.gamma > norm and proof.largest_eigenvalue < 0 < proof.delta
     stated = {"factor": proof.factor.tolist(), "gamma": proof.gamma, "delta": proof.delta}
-    loop = {"plant": {name: getattr(plant, name).tolist() for name in NAMES}, "certificate": stated}
+    loop = {"plant": {name: getattr(plant, name).tolist() for name in MATRICES}, "certificate": stated}
     assert exact_certificates.is_proven(gain.tolist(), loop)
     stated["gamma"] = norm * (1 - 1e-9)
     assert largest_lmi_eigenvalue(plant, gain, proof.factor, stated["gamma"]) >= 0
@@ -62,8 +60,7 @@ def test_every_certificate_is_confirmed_in_fractions_however_little_is_missing(
 
 def test_a_factor_whose_inverse_is_lost_proves_nothing():
     # M < 0 whatever the factor, as nothing drives this plant; only P > 0 is in question.
-    n, none = -np.eye(14), np.zeros((1, 1))
-    quiet = GeneralisedPlant(n, 0 * n[:, :1], n[:, :1], 0 * n[:1], n[:1], none, none, none)
+    quiet, none = undriven(14)
     hilbert = 1.0 / (1.0 + np.add.outer(np.arange(14.0), np.arange(14.0)))
     assert largest_lmi_eigenvalue(quiet, none, np.eye(14), 1.0) < 0
     assert largest_lmi_eigenvalue(quiet, none, hilbert, 1.0) == np.inf
@@ -95,10 +92,7 @@ def test_bound_is_reached_where_the_whole_state_is_measured(conform):
 
 @pytest.mark.parametrize("order", [1, 4])
 def test_the_eigenvalue_is_raised_by_more_than_its_rounding(order):
-    # Here M is diagonal, with -2 for the states and -1 for w and z: eigenvalues without any rounding.
-    n, one, none = np.eye(order), np.eye(1), np.zeros((1, 1))
-    quiet = GeneralisedPlant(-n, 0 * n[:, :1], n[:, :1], 0 * n[:1], n[:1], none, none, none)
-    raised = largest_lmi_eigenvalue(quiet, none, n, 1.0) + 1.0
+    # The eigenvalues of a diagonal M are without any rounding.
+    raised = largest_lmi_eigenvalue(*undriven(order), np.eye(order), 1.0) + 1.0
     rounding = (order + 2) * np.finfo(float).eps * 2.0
     assert 2.0 * rounding <= raised <= 20.0 * rounding
-    assert largest_lmi_eigenvalue(quiet, none, n * one, 1.0) < 0

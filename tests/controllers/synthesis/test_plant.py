@@ -6,11 +6,10 @@ import pytest
 
 from controllers import synthesise
 from controllers.synthesis.norm import frequency_response
-from controllers.synthesis.plant import GeneralisedPlant, LinearSystem
+from controllers.synthesis.plant import MATRICES, GeneralisedPlant, LinearSystem
 from seatsim.schema.errors import InputError
 
 GAIN = np.array([[0.4, -0.2], [0.3, 0.1]])
-NAMES = ("A", "B1", "B2", "C1", "C2", "D11", "D12", "D21")
 
 
 def test_a_gain_closes_the_loop_that_the_equations_give(random_plant):
@@ -43,10 +42,9 @@ def test_free_gains(random_plant):
 
 def test_a_state_space_is_split(random_plant):
     p = random_plant(1)
-    D = np.block([[p.D11, p.D12], [p.D21, np.zeros((2, 2))]])
-    system = control.ss(p.A, np.hstack([p.B1, p.B2]), np.vstack([p.C1, p.C2]), D)
+    D, system = p.system.D, control.ss(*p.system)
     q = GeneralisedPlant.from_state_space(system, 2, 3, [[1, 1], [0, 1]])
-    for name in NAMES:
+    for name in MATRICES:
         np.testing.assert_array_equal(getattr(q, name), getattr(p, name))
     np.testing.assert_array_equal(q.free, [[True, True], [False, True]])
     for split, words in (((4, 3), "4 disturbance inputs of 4"), ((2, 0), "0 performance outputs of 5")):
@@ -74,12 +72,12 @@ def test_a_state_space_is_split(random_plant):
 )
 def test_wrong_matrices_are_named(seat, name, value, words):
     with pytest.raises(InputError, match=words):
-        synthesise(**{each: getattr(seat(30.0), each) for each in NAMES} | {name: value})
+        synthesise(**{each: getattr(seat(30.0), each) for each in MATRICES} | {name: value})
 
 
 def test_every_matrix_is_checked_and_none_can_be_changed(random_plant):
     p = random_plant(0)
-    parts = {name: getattr(p, name) for name in NAMES}
+    parts = {name: getattr(p, name) for name in MATRICES}
     for name, part in parts.items():
         for wrong, said in ((np.hstack([part, part]), "wanted is"), (np.inf * part, rf"{name}\[0, 0\] is -?inf")):
             with pytest.raises(InputError, match=said):

@@ -58,11 +58,7 @@ def test_a_controller_of_first_order_reaches_the_optimum_of_any_order(tmp_path):
     found.save(tmp_path / "design.yaml")
     K = Design.load(tmp_path / "design.yaml").controller
     assert K.nstates == 1
-    P = control.ss(
-        plant.A, np.hstack([plant.B1, plant.B2]), np.vstack([plant.C1, plant.C2]),
-        np.block([[plant.D11, plant.D12], [plant.D21, np.zeros((1, 1))]]),
-    )  # fmt: skip
-    loop = P.lft(K)
+    loop = control.ss(*plant.system).lft(K)
     response = loop(1j * np.geomspace(1e-3, 1e3, 4000)).transpose(2, 0, 1)
     assert loop.poles().real.max() < 0
     assert np.linalg.norm(response, 2, axis=(1, 2)).max() == pytest.approx(found.gamma, rel=1e-4)
