@@ -14,7 +14,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from seat_run import DAMPER, GAIN, PLANT, STEP
 
-from seatsim.kernel.inverse import CELLS, invert
+from seatsim.kernel.inverse import CELLS, Demand, invert
 from seatsim.rig.coil import Coil
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.arrays import Array
@@ -65,7 +65,7 @@ def compile_model() -> tuple[Callable[..., Sequence[float]], Callable[[float, fl
     cold = TemperatureScaling()
 
     def command(x: float, v: float, y: float, z: float) -> float:
-        return invert(DAMPER, KX * x + KV * v, x, v, cold, (y, z), TOP, np.empty(CELLS + 1)).current
+        return invert(Demand(DAMPER, KX * x + KV * v, x, v, cold, (y, z), TOP), np.empty(CELLS + 1)).current
 
     return numba.njit(lambda t, s, u, f: slope(force, abs, s, u, excite(f, t))), numba.njit(command)
 

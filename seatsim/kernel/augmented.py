@@ -54,24 +54,22 @@ class AugmentedDamper(NamedTuple):
 
     def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return the smooth force in N."""
-        effects, inner, outer = self.effects, leading_state(self.effects, z), effect_state(self.effects, z)
-        demanded = _demanded_force(self.damper, effects, x, v, i, scaling, inner, outer)
-        return _end_force(effects, x, v, outer, demanded)
+        at = _operate(self, x, i, scaling, z)
+        return _end_force(at, v, _demanded_force(at, v))
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return the rates of the damper's state, then of the effects'."""
-        effects, inner, outer = self.effects, leading_state(self.effects, z), effect_state(self.effects, z)
-        demanded = _demanded_force(self.damper, effects, x, v, i, scaling, inner, outer)
-        return _all_rates(self.damper, effects, x, v, i, scaling, inner, outer, demanded)
+        at = _operate(self, x, i, scaling, z)
+        return _all_rates(at, v, _demanded_force(at, v))
 
     def force_and_rates(
         self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State
     ) -> tuple[float, State]:
         """Return both; what they share, the demanded force, is most of their work."""
-        effects, inner, outer = self.effects, leading_state(self.effects, z), effect_state(self.effects, z)
-        demanded = _demanded_force(self.damper, effects, x, v, i, scaling, inner, outer)
-        changes = _all_rates(self.damper, effects, x, v, i, scaling, inner, outer, demanded)
-        return _end_force(effects, x, v, outer, demanded), changes
+        at = _operate(self, x, i, scaling, z)
+        demanded = _demanded_force(at, v)
+        changes = _all_rates(at, v, demanded)
+        return _end_force(at, v, demanded), changes
 
     def friction_limit(self, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return the limit of the set-valued friction in N: that of the yield force plus those of the effects."""
@@ -85,66 +83,64 @@ class AugmentedDamper(NamedTuple):
         return limit
 
 
+class _Operation(NamedTuple):
+    """A damper with effects in operation: displacement in m, current in A, temperature factors and both states."""
+
+    damper: DamperModel
+    effects: Effects
+    x: float
+    i: float
+    scaling: TemperatureScaling
+    inner: State
+    outer: State
+
+
 @jit
-def _end_force(effects: Effects, x: float, v: float, outer: State, demanded: float) -> float:
+def _operate(unit: AugmentedDamper, x: float, i: float, scaling: TemperatureScaling, z: State) -> _Operation:
+    effects = unit.effects
+    return _Operation(unit.damper, effects, x, i, scaling, leading_state(effects, z), effect_state(effects, z))
+
+
+@jit
+def _end_force(at: _Operation, v: float, demanded: float) -> float:
     """Return the smooth force in N at the damper's end, where the damper itself would bear `demanded`."""
-    transmitted = mount_force(effects, outer, math.nan)
+    transmitted = mount_force(at.effects, at.outer, math.nan)
     if math.isnan(transmitted):
-        transmitted = transmitted_share(effects, outer, 1.0, v, demanded) * demanded
-    return transmitted + added_force(effects, outer, x, v)
+        transmitted = transmitted_share(at.effects, at.outer, 1.0, v, demanded) * demanded
+    return transmitted + added_force(at.effects, at.outer, at.x, v)
 
 
 @jit
-def _all_rates(
-    damper: DamperModel,
-    effects: Effects,
-    x: float,
-    v: float,
-    i: float,
-    scaling: TemperatureScaling,
-    inner: State,
-    outer: State,
-    demanded: float,
-) -> State:
+def _all_rates(at: _Operation, v: float, demanded: float) -> State:
     """Return the rates of the damper's state, then of the effects', where the force is `demanded` in N."""
-    u = _piston_speed(damper, effects, x, v, i, scaling, inner, outer, demanded)
+    effects, x, i, outer = at.effects, at.x, at.i, at.outer
+    u = _piston_speed(at, v, demanded)
     target = 0.0
     if not math.isnan(yield_shape(effects, outer, math.nan, 0.0, 0.0)):
-        felt = part_scaling(effects, outer, scaling, u)
-        target = _split(damper, x, u, yield_current(effects, outer, i), felt, inner).shape
-    return rates(damper, x, u, i, scaling, inner) + effect_rates(effects, outer, x, v, u, i, demanded, target)
+        felt = part_scaling(effects, outer, at.scaling, u)
+        target = _split(at.damper, x, u, yield_current(effects, outer, i), felt, at.inner).shape
+    changes = rates(at.damper, x, u, i, at.scaling, at.inner)
+    return changes + effect_rates(effects, outer, x, v, u, i, demanded, target)
 
 
 @jit
-def _piston_speed(
-    damper: DamperModel,
-    effects: Effects,
-    x: float,
-    v: float,
-    i: float,
-    scaling: TemperatureScaling,
-    inner: State,
-    outer: State,
-    demanded: float,
-) -> float:
+def _piston_speed(at: _Operation, v: float, demanded: float) -> float:
     """Return the piston's speed u in m/s, with the damper's end at speed v, at which its force is `demanded` in N.
 
     Behind an elastic mount u solves `P(u) + (u - v) stiffness / SETTLING = S`, by false position (Illinois).
     """
-    transmitted = mount_force(effects, outer, math.nan)
+    transmitted = mount_force(at.effects, at.outer, math.nan)
     if math.isnan(transmitted):
-        return transmitted_share(effects, outer, 1.0, v, demanded) * v
-    slope = mount_stiffness(effects, outer) / SETTLING
+        return transmitted_share(at.effects, at.outer, 1.0, v, demanded) * v
+    slope = mount_stiffness(at.effects, at.outer) / SETTLING
     other, e_other = v, demanded - transmitted
     u = v - e_other / slope
-    e_u = _demanded_force(damper, effects, x, u, i, scaling, inner, outer) + (u - v) * slope - transmitted
+    e_u = _demanded_force(at, u) + (u - v) * slope - transmitted
     for _ in range(_TRIALS):
         if abs(e_u) < _FORCE_TOLERANCE or e_u == e_other:
             break
         trial = u - e_u * (u - other) / (e_u - e_other)
-        e_trial = (
-            _demanded_force(damper, effects, x, trial, i, scaling, inner, outer) + (trial - v) * slope - transmitted
-        )
+        e_trial = _demanded_force(at, trial) + (trial - v) * slope - transmitted
         if e_trial * e_u < 0.0:
             other, e_other = u, e_u
         else:
@@ -154,46 +150,22 @@ def _piston_speed(
 
 
 @jit
-def _demanded_force(
-    damper: DamperModel,
-    effects: Effects,
-    x: float,
-    v: float,
-    i: float,
-    scaling: TemperatureScaling,
-    inner: State,
-    outer: State,
-) -> float:
+def _demanded_force(at: _Operation, v: float) -> float:
     """Return the damper's force in N before the loss in a gap and without added forces."""
-    felt = part_scaling(effects, outer, scaling, v)
+    damper, effects, x, i, inner, outer = at.damper, at.effects, at.x, at.i, at.inner, at.outer
+    felt = part_scaling(effects, outer, at.scaling, v)
     i_y = yield_current(effects, outer, i)
-    rest = TemperatureScaling(felt.viscous, felt.stiffness, 0.0)
-    base = force(damper, x, v, i, rest, inner)
+    base = force(damper, x, v, i, _without_yield(felt), inner)
     if not math.isnan(yield_shape(effects, outer, math.nan, 0.0, 0.0)):
-        part = _shaped(damper, effects, x, v, i_y, felt, inner, outer)
+        now = _split(damper, x, v, i_y, felt, inner)
+        late = _split(damper, x, yield_speed(effects, outer, v), i_y, felt, inner).shape
+        part = now.middle + now.size * yield_shape(effects, outer, math.nan, now.shape, late)
     elif i_y == i:
         # By far the most common case: it saves one evaluation of the damper.
         part = force(damper, x, v, i, felt, inner) - base
     else:
-        part = _yield(damper, x, v, i_y, felt, rest, inner)
+        part = _yield(damper, x, v, i_y, felt, inner)
     return base + yield_force(effects, outer, part)
-
-
-@jit
-def _shaped(
-    damper: DamperModel,
-    effects: Effects,
-    x: float,
-    v: float,
-    i: float,
-    scaling: TemperatureScaling,
-    inner: State,
-    outer: State,
-) -> float:
-    """Return the yield part in N where it has a shape of its own."""
-    parts = _split(damper, x, v, i, scaling, inner)
-    late = _split(damper, x, yield_speed(effects, outer, v), i, scaling, inner).shape
-    return parts.middle + parts.size * yield_shape(effects, outer, math.nan, parts.shape, late)
 
 
 class YieldPart(NamedTuple):
@@ -207,20 +179,22 @@ class YieldPart(NamedTuple):
 @jit
 def _split(damper: DamperModel, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> YieldPart:
     """Return the yield part of a damper's force, with its set-valued friction."""
-    rest = TemperatureScaling(scaling.viscous, scaling.stiffness, 0.0)
-    rebound, compression = _yield(damper, x, _FAST, i, scaling, rest, z), _yield(damper, x, -_FAST, i, scaling, rest, z)
+    rebound, compression = _yield(damper, x, _FAST, i, scaling, z), _yield(damper, x, -_FAST, i, scaling, z)
     friction = coulomb(damper, i, scaling)
     middle, size = 0.5 * (rebound + compression), 0.5 * (rebound - compression) + friction
-    now = _yield(damper, x, v, i, scaling, rest, z) - middle + (0.0 if v == 0.0 else math.copysign(friction, v))
+    now = _yield(damper, x, v, i, scaling, z) - middle + (0.0 if v == 0.0 else math.copysign(friction, v))
     return YieldPart(middle, size, now / size if size > 0.0 else 0.0)
 
 
 @jit
-def _yield(
-    damper: DamperModel, x: float, v: float, i: float, scaling: TemperatureScaling, rest: TemperatureScaling, z: State
-) -> float:
-    """Return the yield part in N: the force less that under the factors `rest`, which have no yield force."""
-    return force(damper, x, v, i, scaling, z) - force(damper, x, v, i, rest, z)
+def _yield(damper: DamperModel, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
+    """Return the yield part in N: the force less that without a yield force."""
+    return force(damper, x, v, i, scaling, z) - force(damper, x, v, i, _without_yield(scaling), z)
+
+
+@jit
+def _without_yield(scaling: TemperatureScaling) -> TemperatureScaling:
+    return TemperatureScaling(scaling.viscous, scaling.stiffness, 0.0)
 
 
 def classes_of(damper: DamperModel) -> list[type]:

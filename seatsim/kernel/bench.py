@@ -7,23 +7,21 @@ parabola through the three samples of the step.
 
 from __future__ import annotations
 
-import math
+from typing import NamedTuple
 
 import numpy as np
 
 from seatsim.compilation.cached import compiled
 from seatsim.compilation.jit import jit
-from seatsim.kernel.generic import DamperModel, force, rates, scaling_at
-from seatsim.kernel.hooks import MOST_DEBT, axpy, combine, owe
+from seatsim.kernel.generic import DamperModel, Motion, force, rates, scaling_at, step_state
+from seatsim.kernel.hooks import MOST_DEBT, axpy, owe
 from seatsim.kernel.inverse import total_force
+from seatsim.kernel.loop import delay_of
 from seatsim.kernel.step import relaxed
 from seatsim.rig.coil import Coil
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 from seatsim.schema.arrays import Array
-
-_ROUNDING = 1e-9
-"""Share of a step by which a delay may miss a whole number of steps and still count as that many."""
 
 
 def simulate_current(coil: Coil, command: Array, step: float, start: float) -> Array:
@@ -39,9 +37,7 @@ def simulate_current(coil: Coil, command: Array, step: float, start: float) -> A
 
 def follow_command(coil: Coil, command: Array, step: float, start: float) -> Array:
     """Return the same as `simulate_current`, uncompiled; the last value of the command has no time to act."""
-    late = math.floor(coil.delay / step + _ROUNDING)
-    split = coil.delay - late * step
-    split = split if split >= _ROUNDING * step else 0.0
+    late, split, _ = delay_of(coil, step)
     out: Array = np.empty_like(command)
     out[0] = start
     for k in range(len(command) - 1):
@@ -54,6 +50,15 @@ def follow_command(coil: Coil, command: Array, step: float, start: float) -> Arr
 
 _Samples = Array | tuple[float, float, float]
 """What goes on in a step: its value at the beginning, in the middle and at the end."""
+
+
+class Course(NamedTuple):
+    """Displacement [m], velocity [m/s] and current [A] of a damper over a step."""
+
+    x: _Samples
+    v: _Samples
+    current: _Samples
+
 
 TOLERANCE = 1e-4
 """Error of the force that a step may add by default, relative to the force plus `FORCE_SCALE`."""
@@ -103,10 +108,8 @@ def run_bench(
         if k == out.shape[0] - 1:
             break
         if len(z) > 0:
-            span = slice(j, j + 3)
-            z, parts, good = advance_state(
-                damper, factor, x[span], v[span], current[span], z, step, parts, most_parts, tolerance
-            )
+            course = Course(x[j : j + 3], v[j : j + 3], current[j : j + 3])
+            z, parts, good = advance_state(damper, factor, course, z, step, parts, most_parts, tolerance)
             debt = owe(debt, parts)
             if not good or debt > MOST_DEBT:
                 return k + 1
@@ -117,9 +120,7 @@ def run_bench(
 def advance_state(
     damper: DamperModel,
     scaling: TemperatureScaling,
-    x: _Samples,
-    v: _Samples,
-    current: _Samples,
+    course: Course,
     z: State,
     step: float,
     parts: int,
@@ -130,7 +131,7 @@ def advance_state(
     while True:
         state, worst = z, 0.0
         for part in range(parts):
-            state, error = _part(damper, scaling, x, v, current, state, step / parts, part / parts, 1.0 / parts)
+            state, error = _part(damper, scaling, course, state, step / parts, part / parts, 1.0 / parts)
             if not error <= worst:
                 worst = error
         if worst <= tolerance or parts >= most_parts:
@@ -143,33 +144,24 @@ def advance_state(
 
 @jit
 def _part(
-    damper: DamperModel,
-    scaling: TemperatureScaling,
-    x: _Samples,
-    v: _Samples,
-    current: _Samples,
-    z: State,
-    h: float,
-    s: float,
-    ds: float,
+    damper: DamperModel, scaling: TemperatureScaling, course: Course, z: State, h: float, s: float, ds: float
 ) -> tuple[State, float]:
     """Return the state after a part of `h` seconds from the fraction `s` of the step, and its relative error.
 
     The error is the difference in force to an embedded solution of order 3, as in the time loop.
     """
-    middle, end = s + 0.5 * ds, s + ds
-    xm, vm, im = _between(x, middle), _between(v, middle), _between(current, middle)
-    xe, ve, ie = _between(x, end), _between(v, end), _between(current, end)
-    k1 = rates(damper, _between(x, s), _between(v, s), _between(current, s), scaling, z)
-    k2 = rates(damper, xm, vm, im, scaling, axpy(z, 0.5 * h, k1))
-    k3 = rates(damper, xm, vm, im, scaling, axpy(z, 0.5 * h, k2))
-    k4 = rates(damper, xe, ve, ie, scaling, axpy(z, h, k3))
-    state = combine(z, h, k1, k2, k3, k4)
-    k5 = rates(damper, xe, ve, ie, scaling, state)
+    end = _motion_at(course, s + ds)
+    state, k4 = step_state(damper, z, _motion_at(course, s), _motion_at(course, s + 0.5 * ds), end, scaling, h)
+    k5 = rates(damper, end.x, end.v, end.i, scaling, state)
     embedded = axpy(axpy(state, -h / 6.0, k4), h / 6.0, k5)
-    got = force(damper, xe, ve, ie, scaling, state)
-    error = abs(got - force(damper, xe, ve, ie, scaling, embedded))
+    got = force(damper, end.x, end.v, end.i, scaling, state)
+    error = abs(got - force(damper, end.x, end.v, end.i, scaling, embedded))
     return state, error / (FORCE_SCALE + abs(got))
+
+
+@jit
+def _motion_at(course: Course, s: float) -> Motion:
+    return Motion(_between(course.x, s), _between(course.v, s), _between(course.current, s))
 
 
 @jit

@@ -164,32 +164,39 @@ def model_scaling(model: InverseModel, true: TemperatureScaling, temperature: fl
     raise TypeError(f"{type(model).__name__} is no model for the inverse")
 
 
+class Motion(NamedTuple):
+    """What a damper is exposed to at an instant: displacement x in m, velocity v in m/s, current i in A."""
+
+    x: float
+    v: float
+    i: float
+
+
+@jit
+def step_state(
+    damper: DamperModel, z: State, first: Motion, middle: Motion, last: Motion, scaling: TemperatureScaling, h: float
+) -> tuple[State, State]:
+    """Return a damper's state `h` seconds after `z` and the fourth stage, by the classical Runge-Kutta method."""
+    k1 = rates(damper, first.x, first.v, first.i, scaling, z)
+    k2 = rates(damper, middle.x, middle.v, middle.i, scaling, axpy(z, 0.5 * h, k1))
+    k3 = rates(damper, middle.x, middle.v, middle.i, scaling, axpy(z, 0.5 * h, k2))
+    k4 = rates(damper, last.x, last.v, last.i, scaling, axpy(z, h, k3))
+    return combine(z, h, k1, k2, k3, k4), k4
+
+
 @jit
 def follow_state(
-    damper: DamperModel,
-    z: State,
-    x: float,
-    v: float,
-    x_next: float,
-    v_next: float,
-    i: float,
-    scaling: TemperatureScaling,
-    length: float,
+    damper: DamperModel, z: State, first: Motion, last: Motion, scaling: TemperatureScaling, length: float
 ) -> State:
     """Return an assumed damper's state `length` seconds after `z`, by the classical Runge-Kutta method.
 
-    Displacement [m] and velocity [m/s] go linearly from `x`, `v` to `x_next`, `v_next`; the current `i` [A] and the
+    Displacement and velocity go linearly from the `first` motion to the `last`; the current, that of the first, and the
     temperature factors are constant. The error is not checked: rates above about 1 / length are not tracked.
     """
     # Two half steps between samples, so that a hysteresis as stiff as the rig itself is tracked too.
-    h = 0.5 * length
+    dx, dv, i = last.x - first.x, last.v - first.v, first.i
     for part in range(2):
-        xa, va = x + 0.5 * part * (x_next - x), v + 0.5 * part * (v_next - v)
-        xb, vb = xa + 0.25 * (x_next - x), va + 0.25 * (v_next - v)
-        xc, vc = xa + 0.5 * (x_next - x), va + 0.5 * (v_next - v)
-        k1 = rates(damper, xa, va, i, scaling, z)
-        k2 = rates(damper, xb, vb, i, scaling, axpy(z, 0.5 * h, k1))
-        k3 = rates(damper, xb, vb, i, scaling, axpy(z, 0.5 * h, k2))
-        k4 = rates(damper, xc, vc, i, scaling, axpy(z, h, k3))
-        z = combine(z, h, k1, k2, k3, k4)
+        x, v = first.x + 0.5 * part * dx, first.v + 0.5 * part * dv
+        middle, end = Motion(x + 0.25 * dx, v + 0.25 * dv, i), Motion(x + 0.5 * dx, v + 0.5 * dv, i)
+        z, _ = step_state(damper, z, Motion(x, v, i), middle, end, scaling, 0.5 * length)
     return z

@@ -44,21 +44,27 @@ class InverseSolution(NamedTuple):
     served: float
 
 
+class Demand(NamedTuple):
+    """A force that a damper is to give: `wanted` in N, positive when it opposes extension.
+
+    x [m], v [m/s], `scaling` and z are motion, temperature factors and state with which the damper is evaluated,
+    `max_current` [A] is above zero.
+    """
+
+    damper: DamperModel
+    wanted: float
+    x: float
+    v: float
+    scaling: TemperatureScaling
+    z: State
+    max_current: float
+
+
 @jit
-def invert(
-    damper: DamperModel,
-    wanted: float,
-    x: float,
-    v: float,
-    scaling: TemperatureScaling,
-    z: State,
-    max_current: float,
-    grid: Array,
-) -> InverseSolution:
+def invert(demand: Demand, grid: Array) -> InverseSolution:
     """Return the least current in `[0, max_current]` whose force comes closest to `wanted`, clipped to the possible.
 
-    x [m], v [m/s], `scaling` and z are motion, temperature factors and state with which the damper is evaluated, wanted
-    [N] is positive when it opposes extension, max_current [A] is above zero. `grid`, shape (CELLS + 1,), is scratch.
+    `grid`, shape (CELLS + 1,), is scratch.
 
     Outside the dissipative quadrant (`wanted v <= 0`) the current is zero; inside, the wanted force is clipped to the
     range of forces over the permitted currents at this motion, temperature and state. Where the force of the damper's
@@ -68,29 +74,21 @@ def invert(
     end is taken. So is a map of that degree whose set-valued friction vanishes at some current, since it has a corner
     there.
     """
-    current = 0.0 if wanted * v <= 0.0 else find_current(damper, wanted, x, v, scaling, z, max_current, grid)
-    got = total_force(damper, x, v, current, scaling, z)
+    wanted = demand.wanted
+    current = 0.0 if wanted * demand.v <= 0.0 else find_current(demand, grid)
+    got = _force_at(demand, current)
     served = 1.0 if abs(got - wanted) <= SERVED * (1.0 + abs(wanted)) else 0.0
     return InverseSolution(current, got, served)
 
 
-def find_current(
-    damper: DamperModel,
-    target: float,
-    x: float,
-    v: float,
-    scaling: TemperatureScaling,
-    z: State,
-    top: float,
-    grid: Array,
-) -> float:
-    """Return the least current in `[0, top]` whose force is closest to the target, in the way of the damper's class."""
-    return _choose_way(type(damper))(damper, target, x, v, scaling, z, top, grid)
+def find_current(demand: Demand, grid: Array) -> float:
+    """Return the least current whose force is closest to the wanted one, in the way of the damper's class."""
+    return _choose_way(type(demand.damper))(demand, grid)
 
 
 @specialise(find_current)
-def _find_current(damper: types.Type, *arguments: types.Type) -> Callable[..., float]:
-    return _choose_way(record_class(damper))
+def _find_current(demand: types.NamedTuple, grid: types.Type) -> Callable[..., float]:
+    return _choose_way(record_class(demand.types[0]))
 
 
 def _choose_way(cls: type) -> Callable[..., float]:
@@ -99,14 +97,8 @@ def _choose_way(cls: type) -> Callable[..., float]:
     if order == 0:
         return _search
     if not (method_of(cls, "coulomb") or method_of(cls, "friction_limit")):
-        return lambda damper, target, x, v, scaling, z, top, grid: _closed_form(
-            damper, order, target, x, v, scaling, z, top
-        )
-    return lambda damper, target, x, v, scaling, z, top, grid: (
-        _search(damper, target, x, v, scaling, z, top, grid)
-        if _friction_vanishes(damper, v, scaling, z, top)
-        else _closed_form(damper, order, target, x, v, scaling, z, top)
-    )
+        return lambda demand, grid: _closed_form(demand, order)
+    return lambda demand, grid: _search(demand, grid) if _friction_vanishes(demand) else _closed_form(demand, order)
 
 
 @jit
@@ -118,33 +110,32 @@ def total_force(damper: DamperModel, x: float, v: float, i: float, scaling: Temp
 
 
 @jit
-def _friction_vanishes(damper: DamperModel, v: float, scaling: TemperatureScaling, z: State, top: float) -> bool:
+def _force_at(demand: Demand, i: float) -> float:
+    """Return the force in N at a current in A."""
+    return total_force(demand.damper, demand.x, demand.v, i, demand.scaling, demand.z)
+
+
+@jit
+def _friction_vanishes(demand: Demand) -> bool:
     """Return whether the set-valued friction is zero at one end of the range of currents, but not at the other."""
-    first, last = friction_limit(damper, v, 0.0, scaling, z), friction_limit(damper, v, top, scaling, z)
+    first = friction_limit(demand.damper, demand.v, 0.0, demand.scaling, demand.z)
+    last = friction_limit(demand.damper, demand.v, demand.max_current, demand.scaling, demand.z)
     return min(first, last) <= 0.0 < max(first, last)
 
 
 @jit
-def _closed_form(
-    damper: DamperModel,
-    order: int,
-    target: float,
-    x: float,
-    v: float,
-    scaling: TemperatureScaling,
-    z: State,
-    top: float,
-) -> float:
-    """Return the current in `[0, top]` whose force is closest to the target, of a force of degree 1 or 2.
+def _closed_form(demand: Demand, order: int) -> float:
+    """Return the current whose force is closest to the wanted one, of a force of degree 1 or 2.
 
-    With s = i / top the force is `f0 + b s + a s^2`, through its values at s = 0 and 1, and at 1/2 for a degree of 2.
+    With s = i / max_current the force is `f0 + b s + a s^2`, through its values at s = 0 and 1, and at 1/2 for a degree
+    of 2.
     """
-    f0 = total_force(damper, x, v, 0.0, scaling, z)
-    f2 = total_force(damper, x, v, top, scaling, z)
+    target, top = demand.wanted, demand.max_current
+    f0, f2 = _force_at(demand, 0.0), _force_at(demand, top)
     # Differences of forces come first: what does not depend on the current falls out of them without rounding.
     rise, a, c = f2 - f0, 0.0, f0 - target
     if order > 1:
-        a = 2.0 * (rise - 2.0 * (total_force(damper, x, v, 0.5 * top, scaling, z) - f0))
+        a = 2.0 * (rise - 2.0 * (_force_at(demand, 0.5 * top) - f0))
     # A square term of zero leaves a rounding error in a, whose second root would be far away or, by chance, near.
     if abs(a) <= _STRAIGHT * (abs(f0) + abs(f2)):
         a = 0.0
@@ -174,20 +165,12 @@ def _closed_form(
 
 
 @jit
-def _search(
-    damper: DamperModel,
-    target: float,
-    x: float,
-    v: float,
-    scaling: TemperatureScaling,
-    z: State,
-    top: float,
-    grid: Array,
-) -> float:
-    """Return the least current in `[0, top]` at which the grid shows that the target is met, or the closest one."""
+def _search(demand: Demand, grid: Array) -> float:
+    """Return the least current at which the grid shows that the wanted force is met, or the closest one."""
+    top = demand.max_current
     # The whole grid is evaluated first: without an early exit the compiler can evaluate several currents at once.
     for j in range(CELLS + 1):
-        grid[j] = total_force(damper, x, v, top * j / CELLS, scaling, z) - target
+        grid[j] = _force_at(demand, top * j / CELLS) - demand.wanted
     best, closest = 0.0, abs(grid[0])
     if closest <= CLOSE:
         return best
@@ -195,13 +178,13 @@ def _search(
     for j in range(CELLS + 1):
         left, right = top * max(j - 1, 0) / CELLS, top * min(j + 1, CELLS) / CELLS
         if j > 0 and side * grid[j] < 0.0:
-            return _bracket(damper, target, x, v, scaling, z, left, grid[j - 1], top * j / CELLS, grid[j])
+            return _bracket(demand, left, grid[j - 1], top * j / CELLS, grid[j])
         current, missed = top * j / CELLS, grid[j]
-        if _turns_near(damper, target, x, v, scaling, z, top, grid, side, j):
-            current, missed = _closest(damper, target, x, v, scaling, z, side, left, right)
+        if _turns_near(demand, grid, side, j):
+            current, missed = _closest(demand, side, left, right)
             # The turn may lie beyond the target, which is then met before it.
             if side * missed < 0.0:
-                return _bracket(damper, target, x, v, scaling, z, left, grid[max(j - 1, 0)], current, missed)
+                return _bracket(demand, left, grid[max(j - 1, 0)], current, missed)
         if abs(missed) < closest:
             best, closest = current, abs(missed)
         if closest <= CLOSE:
@@ -210,18 +193,7 @@ def _search(
 
 
 @jit
-def _turns_near(
-    damper: DamperModel,
-    target: float,
-    x: float,
-    v: float,
-    scaling: TemperatureScaling,
-    z: State,
-    top: float,
-    grid: Array,
-    side: float,
-    j: int,
-) -> bool:
+def _turns_near(demand: Demand, grid: Array, side: float, j: int) -> bool:
     """Return whether the force comes closest to the target, or passes it, about the grid's point `j`.
 
     `side` is the sign of force less target up to there. A force that stays the same from some current on comes closest
@@ -235,31 +207,21 @@ def _turns_near(
     if 0 < j < CELLS:
         return True
     inside = _INSIDE if j == 0 else CELLS - _INSIDE
-    near = side * (total_force(damper, x, v, top * inside / CELLS, scaling, z) - target)
+    near = side * (_force_at(demand, demand.max_current * inside / CELLS) - demand.wanted)
     turns: bool = near < here if j == 0 else near <= here
     return turns
 
 
 @jit
-def _closest(
-    damper: DamperModel,
-    target: float,
-    x: float,
-    v: float,
-    scaling: TemperatureScaling,
-    z: State,
-    side: float,
-    left: float,
-    right: float,
-) -> tuple[float, float]:
+def _closest(demand: Demand, side: float, left: float, right: float) -> tuple[float, float]:
     """Return the least current in `[left, right]` whose force is closest to the target, and force less target there.
 
     By golden section search, which ends as soon as the target is passed: `side` is the sign of the difference before.
     """
-    first, last, beside = left, right, _BESIDE * (right - left)
+    target, first, last, beside = demand.wanted, left, right, _BESIDE * (right - left)
     low, high = right - _GOLDEN * (right - left), left + _GOLDEN * (right - left)
-    f_low = total_force(damper, x, v, low, scaling, z) - target
-    f_high = total_force(damper, x, v, high, scaling, z) - target
+    f_low = _force_at(demand, low) - target
+    f_high = _force_at(demand, high) - target
     for _ in range(_TRIALS):
         if side * f_low < 0.0:
             return low, f_low
@@ -267,29 +229,25 @@ def _closest(
         if side * f_low <= side * f_high:
             right, high, f_high = high, low, f_low
             low = right - _GOLDEN * (right - left)
-            f_low = total_force(damper, x, v, low, scaling, z) - target
+            f_low = _force_at(demand, low) - target
         else:
             left, low, f_low = low, high, f_high
             high = left + _GOLDEN * (right - left)
-            f_high = total_force(damper, x, v, high, scaling, z) - target
+            f_high = _force_at(demand, high) - target
     # A corner is not where the parabola has its vertex: the force there is another one.
-    turn = _turn(damper, x, v, scaling, z, high, min(beside, high - first, last - high))
-    f_turn = total_force(damper, x, v, turn, scaling, z) - target
+    turn = _turn(demand, high, min(beside, high - first, last - high))
+    f_turn = _force_at(demand, turn) - target
     return (turn, f_turn) if side * (f_turn - f_high) <= CLOSE else (high, f_high)
 
 
 @jit
-def _turn(
-    damper: DamperModel, x: float, v: float, scaling: TemperatureScaling, z: State, i: float, beside: float
-) -> float:
+def _turn(demand: Demand, i: float, beside: float) -> float:
     """Return the current at the vertex of the parabola through the forces at `i` and `beside` it on either side.
 
     About a smooth turn the forces are equal but for rounding over the square root of it, so that comparing them places
     the turn no better. The forces some way off place it to rounding.
     """
-    before = total_force(damper, x, v, i - beside, scaling, z)
-    here = total_force(damper, x, v, i, scaling, z)
-    after = total_force(damper, x, v, i + beside, scaling, z)
+    before, here, after = _force_at(demand, i - beside), _force_at(demand, i), _force_at(demand, i + beside)
     bend = (after - here) - (here - before)
     if abs(after - before) >= abs(bend):
         return i
@@ -297,18 +255,7 @@ def _turn(
 
 
 @jit
-def _bracket(
-    damper: DamperModel,
-    target: float,
-    x: float,
-    v: float,
-    scaling: TemperatureScaling,
-    z: State,
-    left: float,
-    f_left: float,
-    right: float,
-    f_right: float,
-) -> float:
+def _bracket(demand: Demand, left: float, f_left: float, right: float, f_right: float) -> float:
     """Return the root in `[left, right]` by the Illinois method, which halves the value of an end that stays put.
 
     It goes on until no number is left between the ends, in whatever precision: with a tolerance, rounding would decide
@@ -320,7 +267,7 @@ def _bracket(
         middle = (left * f_right - right * f_left) / (f_right - f_left)
         if not left < middle < right:
             break
-        f_middle = total_force(damper, x, v, middle, scaling, z) - target
+        f_middle = _force_at(demand, middle) - demand.wanted
         if f_middle == 0.0:
             break
         if f_middle * f_left > 0.0:

@@ -7,6 +7,7 @@ import math
 from seatsim.compilation.jit import jit
 from seatsim.kernel.generic import (
     InverseModel,
+    Motion,
     advance_filters,
     evaluate_law,
     follow_state,
@@ -17,14 +18,13 @@ from seatsim.kernel.generic import (
     update,
     wants_force,
 )
-from seatsim.kernel.hooks import leading_state
-from seatsim.kernel.inverse import invert
-from seatsim.kernel.loop_data import ControlledRig, LoopInputs, LoopSetup, Sample, sample_of, step_inputs, write_row
-from seatsim.kernel.rig import Disturbance
+from seatsim.kernel.inverse import Demand, invert
+from seatsim.kernel.loop_data import LoopInputs, LoopSetup, Sample, disturbance_of, step_inputs, write_row
+from seatsim.kernel.rig import damper_state
 from seatsim.kernel.step import IntegratorState, advance, relaxed, start
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import CompiledLaw, Measurement
-from seatsim.rig.state import CUSHION_VELOCITY, DAMPER_WORK, DISPLACEMENT, MECHANICAL, VELOCITY, State
+from seatsim.rig.state import CUSHION_VELOCITY, DAMPER_WORK, DISPLACEMENT, VELOCITY, State
 from seatsim.rig.temperature import TemperatureScaling, Thermal
 from seatsim.schema.arrays import Array
 
@@ -50,10 +50,7 @@ def run_loop(
     temperature = inputs.temperature[0] if follows else inputs.start_temperature
     factors = scaling_at(setup.factors, temperature)
     mechanical = (inputs.start_displacement, inputs.start_velocity, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    disturbance = Disturbance(
-        inputs.floor_acceleration[0], sample_of(inputs.frame_force, 0), sample_of(inputs.driver_force, 0)
-    )
-    now = start(setup.rig, mechanical + rig_state, disturbance, current, factors, step)
+    now = start(setup.rig, mechanical + rig_state, disturbance_of(inputs, 0), current, factors, step)
     command, wanted, served, sensed = 0.0, math.nan, math.nan, inputs.sensed
 
     for k in range(samples):
@@ -65,22 +62,26 @@ def run_loop(
             speed, replayed = inputs.floor_velocity[k], inputs.replayed[k] if len(inputs.replayed) > 0 else math.nan
             true = measure(now, k * step, floor, speed, current, temperature, replayed)
             y, sensed = read(setup.sensors, true, inputs.noise, k // timing.sample_every, sensed)
-            command, wanted, served = decide(setup, y, now, factors, followed, law_state, grid)
+            z = model_state(model, damper_state(setup.rig, now.state), followed)
+            command, wanted, served = command_current(
+                setup.law, model, ratio, setup.max_command, y, factors, z, law_state, grid
+            )
             law_state = update(setup.law, y, law_state)
         write_row(out[k], now, Sample(floor, wanted, served, current, command, temperature))
         if k == samples - 1:
             break
         acting = step_inputs(setup, inputs, out, k, current, late, split, kept)
-        x, v, work = now.state[DISPLACEMENT], now.state[VELOCITY], now.state[DAMPER_WORK]
+        before = now.state
         now, next_current, good = advance(setup.rig, coil, acting, factors, now, timing.tolerance)
         if not good:
             return k
-        x_next, v_next = ratio * now.state[DISPLACEMENT], ratio * now.state[VELOCITY]
         felt, mean = model_scaling(model, factors, temperature), 0.5 * (current + next_current)
-        followed = follow_state(model.damper, followed, ratio * x, ratio * v, x_next, v_next, mean, felt, step)
+        first = Motion(ratio * before[DISPLACEMENT], ratio * before[VELOCITY], mean)
+        last = Motion(ratio * now.state[DISPLACEMENT], ratio * now.state[VELOCITY], mean)
+        followed = follow_state(model.damper, followed, first, last, felt, step)
         # Temperature is constant over a step: its change within one is far too small to affect the factors.
         if timing.self_heating:
-            work = now.state[DAMPER_WORK] - work
+            work = now.state[DAMPER_WORK] - before[DAMPER_WORK]
             temperature += warm_up(setup.thermal, coil, temperature, work, current, next_current, step)
             factors = scaling_at(setup.factors, temperature)
         elif follows and inputs.temperature[k + 1] != temperature:
@@ -100,23 +101,6 @@ def delay_of(coil: Coil, step: float) -> tuple[int, float, tuple[float, float]]:
 
 
 @jit
-def decide(
-    setup: ControlledRig,
-    y: Measurement,
-    now: IntegratorState,
-    factors: TemperatureScaling,
-    followed: State,
-    law_state: State,
-    grid: Array,
-) -> tuple[float, float, float]:
-    """Return the command in A, the force in N that the law wants (NaN: it wants a current), whether it is reached."""
-    true = leading_state(setup.rig.effects, now.state[MECHANICAL:])
-    model, ratio = setup.inverse_model, setup.rig.plant.damper_ratio
-    z = model_state(model, true, followed)
-    return command_current(setup.law, model, ratio, setup.max_command, y, factors, z, law_state, grid)
-
-
-@jit
 def command_current(
     law: CompiledLaw,
     model: InverseModel,
@@ -128,9 +112,10 @@ def command_current(
     law_state: State,
     grid: Array,
 ) -> tuple[float, float, float]:
-    """Return the same for an inverse whose damper is in the state z; `ratio` is the damper's stroke per travel.
+    """Return the command in A, the force in N that the law wants (NaN: it wants a current), whether it is reached.
 
-    The command of a law that gives no finite number is NaN.
+    z is the state of the inverse's damper, `ratio` the damper's stroke per travel, `top` the greatest command in A. The
+    command of a law that gives no finite number is NaN.
     """
     answer = evaluate_law(law, y, law_state)
     # What is no finite number must not become a current by being clipped: the command is NaN, at which the run ends.
@@ -139,7 +124,7 @@ def command_current(
         return min(max(answer, 0.0), top) if is_number else math.nan, math.nan, math.nan
     scaling = model_scaling(model, factors, y.temperature)
     x, v = ratio * y.displacement, ratio * y.velocity
-    found = invert(model.damper, answer, x, v, scaling, z, top, grid)
+    found = invert(Demand(model.damper, answer, x, v, scaling, z, top), grid)
     return found.current if is_number else math.nan, answer, found.served
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
 from seatsim.compilation.jit import jit
 from seatsim.kernel.generic import InverseModel
-from seatsim.kernel.rig import Rig
+from seatsim.kernel.rig import Disturbance, Rig
 from seatsim.kernel.step import IntegratorState, StepInputs
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import CompiledLaw
@@ -142,30 +142,12 @@ class LoopSetup(NamedTuple):
     sensors: Sensing = Direct()
 
 
-class ControlledRig(Protocol):
-    """What a decision of the law depends on beside what is measured: a `LoopSetup`, or that of an exported rig."""
-
-    @property
-    def rig(self) -> Rig:
-        """What moves."""
-
-    @property
-    def law(self) -> CompiledLaw:
-        """The law."""
-
-    @property
-    def inverse_model(self) -> InverseModel:
-        """The damper that the inverse uses."""
-
-    @property
-    def max_command(self) -> float:
-        """The greatest command in A."""
-
-
 @jit
-def sample_of(values: Array, k: int) -> float:
-    """Return sample `k` of an input, 0 where it is absent."""
-    return values[k] if len(values) > 0 else 0.0
+def disturbance_of(inputs: LoopInputs, k: int) -> Disturbance:
+    """Return what excites the seat at sample `k`; a force that is absent is 0."""
+    frame = inputs.frame_force[k] if len(inputs.frame_force) > 0 else 0.0
+    driver = inputs.driver_force[k] if len(inputs.driver_force) > 0 else 0.0
+    return Disturbance(inputs.floor_acceleration[k], frame, driver)
 
 
 @jit
@@ -185,25 +167,11 @@ def step_inputs(
     later, no more than the coil's driver can give; before the first of them acts, the coil's `start_current` stands.
     `kept` as in `StepInputs`.
     """
-    first, most, prescribed = inputs.start_current, setup.coil.max_current, len(inputs.prescribed) > 0
-    before = min(rows[k - late - 1, CURRENT_COMMAND] if k > late else first, most)
-    after = min(rows[k - late, CURRENT_COMMAND] if k >= late else first, most)
+    start, most, prescribed = inputs.start_current, setup.coil.max_current, len(inputs.prescribed) > 0
+    before = min(rows[k - late - 1, CURRENT_COMMAND] if k > late else start, most)
+    after = min(rows[k - late, CURRENT_COMMAND] if k >= late else start, most)
     if prescribed:
         after = inputs.prescribed[k + 1]
-    floor = inputs.floor_acceleration[k]
-    frame_force, driver_force = sample_of(inputs.frame_force, k), sample_of(inputs.driver_force, k)
-    return StepInputs(
-        setup.timing.step,
-        floor,
-        inputs.floor_acceleration[k + 1] - floor,
-        current,
-        before,
-        after,
-        split,
-        prescribed,
-        kept,
-        frame_force,
-        sample_of(inputs.frame_force, k + 1) - frame_force,
-        driver_force,
-        sample_of(inputs.driver_force, k + 1) - driver_force,
-    )
+    now, then = disturbance_of(inputs, k), disturbance_of(inputs, k + 1)
+    rise = Disturbance(then.floor - now.floor, then.frame_force - now.frame_force, then.driver_force - now.driver_force)
+    return StepInputs(setup.timing.step, now, rise, current, before, after, split, prescribed, kept)

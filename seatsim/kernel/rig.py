@@ -88,7 +88,7 @@ def derivative(
     """
     plant, effects = rig.plant, rig.effects
     x, v, xc, vc = s[DISPLACEMENT], s[VELOCITY], s[CUSHION_DISPLACEMENT], s[CUSHION_VELOCITY]
-    z, ze = leading_state(effects, s[MECHANICAL:]), effect_state(effects, s[MECHANICAL:])
+    z, ze = damper_state(rig, s), effect_state(effects, s)
     ratio = plant.damper_ratio
     smooth, dz = force_and_rates(rig.damper, ratio * x, ratio * v, current, scaling, z)
     spring = plant.suspension_stiffness * x
@@ -121,6 +121,12 @@ def derivative(
     )
     de = effect_rates(effects, ze, plant, SeatMotion(x, v, xc, vc, frame, driver))
     return (v, acceleration, vc, driver - frame) + works + dz + de, RigForces(damper_force, friction, limit)
+
+
+@jit
+def damper_state(rig: Rig, s: State) -> State:
+    """Return the damper's part of the state of a rig."""
+    return leading_state(rig.effects, s[MECHANICAL:])
 
 
 @jit

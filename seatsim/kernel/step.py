@@ -43,25 +43,21 @@ _REMAINDER = 1e-12
 class StepInputs(NamedTuple):
     """What acts on the rig during one step of `length` seconds.
 
-    Floor acceleration [m/s^2] runs linearly from `floor` by `floor_rise`, forces [N] on frame and driver from
-    `frame_force` and `driver_force` by their rises. The coil relaxes from `current` [A] towards the command `before`
-    for the first `split` seconds and towards `after` from then on; with a `prescribed` current it runs linearly to
-    `after`. `kept` is the share of the distance to the command after half a step, of a rising and a falling current.
+    Floor acceleration and forces run linearly from the `first` disturbance by `rise`. The coil relaxes from `current`
+    [A] towards the command `before` for the first `split` seconds and towards `after` from then on; with a `prescribed`
+    current it runs linearly to `after`. `kept` is the share of the distance to the command after half a step, of a
+    rising and a falling current.
     """
 
     length: float
-    floor: float
-    floor_rise: float
+    first: Disturbance
+    rise: Disturbance
     current: float
     before: float
     after: float
     split: float
     prescribed: bool
     kept: tuple[float, float]
-    frame_force: float = 0.0
-    frame_force_rise: float = 0.0
-    driver_force: float = 0.0
-    driver_force_rise: float = 0.0
 
 
 class IntegratorState(NamedTuple):
@@ -105,11 +101,11 @@ def _currents(coil: Coil, inputs: StepInputs, time: float, h: float) -> tuple[fl
 @jit
 def disturbance_at(inputs: StepInputs, time: float) -> Disturbance:
     """Return what excites the seat `time` seconds into the step."""
-    part = time / inputs.length
+    first, rise, part = inputs.first, inputs.rise, time / inputs.length
     return Disturbance(
-        inputs.floor + inputs.floor_rise * part,
-        inputs.frame_force + inputs.frame_force_rise * part,
-        inputs.driver_force + inputs.driver_force_rise * part,
+        first.floor + rise.floor * part,
+        first.frame_force + rise.frame_force * part,
+        first.driver_force + rise.driver_force * part,
     )
 
 

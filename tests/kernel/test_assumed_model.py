@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import pytest
 
-from seatsim.kernel.generic import AssumedModel, follow_state, model_scaling, model_state
+from seatsim.kernel.generic import AssumedModel, Motion, follow_state, model_scaling, model_state
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 
 from .uncompiled import Linear
@@ -37,7 +37,7 @@ def test_what_is_no_model_is_refused():
 
 def test_motion_runs_along_straight_lines_between_samples():
     x0, x1, v0, v1, length = 0.2, 0.9, -0.5, 0.7, 0.4
-    found = follow_state(Cubes(), (1.0, 2.0, 3.0), x0, v0, x1, v1, 0.6, HOT, length)
+    found = follow_state(Cubes(), (1.0, 2.0, 3.0), Motion(x0, v0, 0.6), Motion(x1, v1, 0.6), HOT, length)
     quartic = [length * (b**4 - a**4) / (4.0 * (b - a)) for a, b in ((x0, x1), (v0, v1))]
     expected = (1.0 + quartic[0], 2.0 + quartic[1], 3.0 + length * (0.6 + 0.7))
     assert found == pytest.approx(expected, rel=1e-13)

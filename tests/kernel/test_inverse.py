@@ -5,7 +5,7 @@ import pytest
 
 from seatsim.dampers.bingham import Bingham
 from seatsim.dampers.bouc_wen import BoucWen, ModifiedBoucWen
-from seatsim.kernel.inverse import CELLS, invert, total_force
+from seatsim.kernel.inverse import CELLS, Demand, invert, total_force
 from seatsim.rig.temperature import TemperatureScaling
 
 from .dampers import Bump, Parabola, Steep, Wavy
@@ -35,7 +35,7 @@ def draw(bounds, count):
 
 
 def ask(damper, wanted, x, v, z):
-    return invert(damper, wanted, x, v, HEAT, z, TOP, np.empty(CELLS + 1))
+    return invert(Demand(damper, wanted, x, v, HEAT, z, TOP), np.empty(CELLS + 1))
 
 
 def on_grid(damper, x, v, z):

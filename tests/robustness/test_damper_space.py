@@ -24,7 +24,7 @@ import pytest
 from numpy.typing import NDArray
 
 from seatsim.dampers.base import DamperSpecification
-from seatsim.kernel.inverse import CELLS, CLOSE, SERVED, invert, total_force
+from seatsim.kernel.inverse import CELLS, CLOSE, SERVED, Demand, invert, total_force
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 from seatsim.schema.errors import RunError
 from seatsim.schema.fields import bounds
@@ -144,7 +144,7 @@ def check_inverse(rng: np.random.Generator, case: Case) -> list[str]:
     wanted = float(rng.choice(forces)) if rng.uniform() < 0.3 else wanted
     if wanted * v <= 0.0:
         return []
-    answer = invert(case.damper, wanted, x, v, scaling, z, top, np.empty(CELLS + 1))
+    answer = invert(Demand(case.damper, wanted, x, v, scaling, z, top), np.empty(CELLS + 1))
     miss, missed = abs(answer.force - wanted), np.abs(forces - wanted)
     if miss > (missed.min() if _crossing(forces, wanted) is None else 0.0) + SAME * span + CLOSE:
         return ["inverse"]

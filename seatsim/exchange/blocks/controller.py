@@ -11,7 +11,7 @@ import numpy as np
 
 from seatsim.compilation.jit import jit
 from seatsim.exchange.block import Block
-from seatsim.kernel.generic import AssumedModel, follow_state, model_scaling, take, update, wants_force
+from seatsim.kernel.generic import AssumedModel, Motion, follow_state, model_scaling, take, update, wants_force
 from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.loop import command_current
 from seatsim.rig.control import CompiledLaw, Measurement
@@ -118,9 +118,8 @@ def _follow(p: ControllerParameters, state: ControllerState, y: Measurement) -> 
         x, x_next = _between(state.displacement, y.displacement, a), _between(state.displacement, y.displacement, b)
         v, v_next = _between(state.velocity, y.velocity, a), _between(state.velocity, y.velocity, b)
         current = _between(state.current, y.current, 0.5 * (a + b))
-        z = follow_state(
-            p.inverse_model.damper, z, ratio * x, ratio * v, ratio * x_next, ratio * v_next, current, scaling, h
-        )
+        first, last = Motion(ratio * x, ratio * v, current), Motion(ratio * x_next, ratio * v_next, current)
+        z = follow_state(p.inverse_model.damper, z, first, last, scaling, h)
     return z
 
 

@@ -7,7 +7,7 @@ from seatsim.compilation.jit import jit
 from seatsim.dampers.base import DAMPERS
 from seatsim.exchange.block import Block
 from seatsim.kernel.augmented import classes_of
-from seatsim.kernel.bench import MOST_PARTS, TOLERANCE, advance_state
+from seatsim.kernel.bench import MOST_PARTS, TOLERANCE, Course, advance_state
 from seatsim.kernel.generic import DamperModel, scaling_at
 from seatsim.kernel.inverse import total_force
 from seatsim.kernel.step import relaxed
@@ -87,8 +87,8 @@ def _advance_once(
         return DamperState(end, state.z, state.parts), True
     x = (_displacement(u, time), _displacement(u, time + 0.5 * h), _displacement(u, time + h))
     v = (_velocity(u, time), _velocity(u, time + 0.5 * h), _velocity(u, time + h))
-    i = (first, middle, end)
-    z, parts, good = advance_state(p.damper, factors, x, v, i, state.z, h, state.parts, MOST_PARTS, TOLERANCE)
+    course = Course(x, v, (first, middle, end))
+    z, parts, good = advance_state(p.damper, factors, course, state.z, h, state.parts, MOST_PARTS, TOLERANCE)
     return DamperState(end, z, parts), good
 
 

@@ -17,8 +17,8 @@ from seatsim.kernel import generic
 from seatsim.kernel.augmented import classes_of
 from seatsim.kernel.generic import InverseModel, advance_filters, follow_state, model_scaling, read, scaling_at, update
 from seatsim.kernel.inverse import CELLS
-from seatsim.kernel.loop import ROUNDING, decide, measure, warm_up
-from seatsim.kernel.rig import Disturbance, Rig
+from seatsim.kernel.loop import ROUNDING, command_current, measure, warm_up
+from seatsim.kernel.rig import Disturbance, Rig, damper_state
 from seatsim.kernel.step import IntegratorState, StepInputs, relaxed
 from seatsim.kernel.step import advance as advance_rig
 from seatsim.kernel.step import start as start_rig
@@ -189,7 +189,10 @@ def advance(p: RigParameters, u: RigInputs, state: RigState, age: float, length:
         noise[0, 3] = u.floor_noise
         y, sensed = read(p.sensors, true, noise, 0, sensed)
         grid = np.empty(CELLS + 1)
-        command, _wanted, _served = decide(p, y, now, factors, state.followed, law_state, grid)
+        z = generic.model_state(p.inverse_model, damper_state(p.rig, now.state), state.followed)
+        command, _wanted, _served = command_current(
+            p.law, p.inverse_model, p.rig.plant.damper_ratio, p.max_command, y, factors, z, law_state, grid
+        )
         law_state = update(p.law, y, law_state)
     # The oldest command of the state is of no use any more.
     commands = (command,) + state.commands[:-1]
@@ -222,10 +225,10 @@ def _follow(
 ) -> State:
     """Return the state of the inverse's damper after a step, as the inverse tracks it."""
     ratio, before, after = p.rig.plant.damper_ratio, now.state, later.state
-    return follow_state(
-        p.inverse_model.damper, z, ratio * before[DISPLACEMENT], ratio * before[VELOCITY], ratio * after[DISPLACEMENT],
-        ratio * after[VELOCITY], current, model_scaling(p.inverse_model, factors, temperature), p.step,
-    )  # fmt: skip
+    first = generic.Motion(ratio * before[DISPLACEMENT], ratio * before[VELOCITY], current)
+    last = generic.Motion(ratio * after[DISPLACEMENT], ratio * after[VELOCITY], current)
+    scaling = model_scaling(p.inverse_model, factors, temperature)
+    return follow_state(p.inverse_model.damper, z, first, last, scaling, p.step)
 
 
 @jit
@@ -239,10 +242,8 @@ def _step_inputs(
     most = p.coil.max_current
     before, after = min(commands[late + 1], most), min(commands[late], most)
     kept = (1.0 - relaxed(p.coil, 0.0, 1.0, 0.5 * p.step), relaxed(p.coil, 1.0, 0.0, 0.5 * p.step))
-    return StepInputs(
-        p.step, floor, rate * p.step, current, before, after, split, False, kept,
-        u.frame_force, 0.0, u.driver_force, 0.0,
-    )  # fmt: skip
+    first, rise = Disturbance(floor, u.frame_force, u.driver_force), Disturbance(rate * p.step, 0.0, 0.0)
+    return StepInputs(p.step, first, rise, current, before, after, split, False, kept)
 
 
 @jit
