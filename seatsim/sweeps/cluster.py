@@ -51,7 +51,11 @@ def open_cluster(jobs: int, address: str | None) -> Iterator[_ClusterEngine]:
     # What goes wrong is said once, by the error that reaches the user.
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
     with _embed(jobs) if address is None else _connect(address) as client:
-        _await_workers(client)
+        try:
+            client.wait_for_workers(1, timeout=LONGEST_SEARCH)
+        except TimeoutError as error:
+            problem = f"the dask scheduler has no worker; start some with 'dask worker {client.scheduler.address}'"
+            raise InputError(problem) from error
         yield _ClusterEngine(client)
 
 
@@ -68,11 +72,13 @@ class _ClusterEngine(NamedTuple):
         """
         from distributed import as_completed
 
-        waiting = iter(work.tasks)
+        waiting, own_code = iter(work.tasks), used_files()
+        # What a worker is given beside the runs: where histories go, the user's own code, the versions it must have.
+        given = work.histories.resolve() if work.histories else None, own_code, list_versions(LIBRARIES, own_code)
 
         def submit(count: int) -> list[Future]:
-            tasks = [_make_task(work, runs) for runs in islice(waiting, count)]
-            return [self.client.submit(_simulate, task, pure=False) for task in tasks]
+            parts = [work.plan.select(runs) for runs in islice(waiting, count)]
+            return [self.client.submit(_simulate, part, *given, pure=False) for part in parts]
 
         running = as_completed(submit(_AHEAD * len(self.client.scheduler_info()["workers"])))
         for future in running:
@@ -115,14 +121,6 @@ def _connect(address: str) -> Iterator[Client]:
         yield client
 
 
-def _await_workers(client: Client) -> None:
-    try:
-        client.wait_for_workers(1, timeout=LONGEST_SEARCH)
-    except TimeoutError as error:
-        problem = f"the dask scheduler has no worker; start some with 'dask worker {client.scheduler.address}'"
-        raise InputError(problem) from error
-
-
 def _await_outcomes(future: Future) -> list[Outcome]:
     """Return the outcomes of a task.
 
@@ -141,35 +139,22 @@ def _await_outcomes(future: Future) -> list[Outcome]:
     return outcomes
 
 
-class _Task(NamedTuple):
-    """What a worker is given: some runs, where histories go, the user's own code, and the versions it must have."""
-
-    selection: Selection
-    histories: Path | None
-    own_code: tuple[Path, ...]
-    versions: Mapping[str, str]
-
-
-def _make_task(work: Work, runs: Sequence[int]) -> _Task:
-    folder, own_code = work.histories.resolve() if work.histories else None, used_files()
-    return _Task(work.plan.select(runs), folder, own_code, list_versions(LIBRARIES, own_code))
-
-
-def _simulate(task: _Task) -> list[Outcome]:
+def _simulate(
+    selection: Selection, histories: Path | None, own_code: tuple[Path, ...], versions: Mapping[str, str]
+) -> list[Outcome]:
     """Simulate the runs of a task; called on a worker.
 
     Raises:
         RunError: the worker has other versions than the command, so that its figures may be others.
     """
-    use_all(task.own_code)
-    here = list_versions(LIBRARIES, task.own_code)
-    if here != task.versions:
-        differences = "; ".join(list_differences(task.versions, here))
+    use_all(own_code)
+    here = list_versions(LIBRARIES, own_code)
+    if here != versions:
+        differences = "; ".join(list_differences(versions, here))
         raise RunError(
             f"the worker on {socket.gethostname()} is not like this machine: {differences}; install the same there, and"
             " go on with --resume"
         )
-    selection, histories = task.selection, task.histories
     return [simulate_one(selection.plan, inner, number, histories) for number, inner in selection.runs]
 
 

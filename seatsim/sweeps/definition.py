@@ -285,8 +285,7 @@ def is_sweep(data: Mapping[str, object]) -> bool:
 def _read_design(source: Source) -> str:
     name = source.data.get("design", "cross")
     if name not in _DESIGNS:
-        problem = f"{name!r} is not permitted{permit(name, _DESIGNS)}"
-        raise source.error(("design",), problem)
+        raise source.error(("design",), f"{name!r} is not permitted{permit(name, _DESIGNS)}")
     return str(name)
 
 

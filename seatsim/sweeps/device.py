@@ -215,7 +215,10 @@ def _simulate_on_device(plan: Plan, runs: Sequence[int]) -> list[Outcome]:
     Raises:
         RunError: the device failed.
     """
-    read = [(run, scenario) for run in runs if (scenario := _read(plan, run))]
+    read: list[tuple[int, Scenario]] = []
+    for run in runs:
+        with suppress(SeatsimError):  # the engine `local` says what is wrong
+            read.append((run, plan.scenario(run)))
     scenarios = [scenario for _, scenario in read]
     outcomes = []
     try:
@@ -231,11 +234,3 @@ def _simulate_on_device(plan: Plan, runs: Sequence[int]) -> list[Outcome]:
             " --engine local"
         ) from error
     return outcomes
-
-
-def _read(plan: Plan, run: int) -> Scenario | None:
-    """Return the scenario of a run, None where it is wrong: the engine `local` says why."""
-    try:
-        return plan.scenario(run)
-    except SeatsimError:
-        return None

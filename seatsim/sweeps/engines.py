@@ -124,17 +124,14 @@ class _Crew:
             outcomes += found
             if future is self._here:
                 self._here = None
-                self._count_here(len(found))
+                # From the first outcomes on, since something may have been compiled for these.
+                if self._since:
+                    self._done_here += len(found)
+                else:
+                    self._since = time.monotonic()
         self.left -= len(outcomes)
         self._give()
         return outcomes
-
-    def _count_here(self, runs: int) -> None:
-        # From the first outcomes on, since something may have been compiled for these.
-        if self._since:
-            self._done_here += runs
-        else:
-            self._since = time.monotonic()
 
     def _give(self) -> None:
         """See to it that the thread has a run, and every process a batch beside the one that it works on."""

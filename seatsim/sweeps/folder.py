@@ -49,9 +49,11 @@ def identify_sweep(definition: SweepDefinition, plan: Plan) -> _Identity:
     stated = {key: value for key, value in definition.source.data.items() if key not in ("scenario", "seed", "limits")}
     configuration = {"scenario": definition.scenario.data, **stated, "files": dict(_digest_files(plan))}
     versions, design = list_versions(LIBRARIES, used_files()), _digest_design(plan, plan.runs)
+    # As it will be read from JSON, so that it equals what was written.
+    read_back: dict[str, object] = json.loads(_encode(configuration))
     whole = [configuration, design, versions, definition.seed]
     digest = hashlib.sha256(_encode(whole)).hexdigest()
-    return _Identity(digest, definition.seed, versions, _read_back(configuration), plan.runs, design)
+    return _Identity(digest, definition.seed, versions, read_back, plan.runs, design)
 
 
 def _digest_design(plan: Plan, runs: int) -> str:
@@ -94,12 +96,6 @@ def _texts(value: object) -> Iterator[str]:
 
 def _encode(value: object) -> bytes:
     return json.dumps(plain(value), sort_keys=True, default=str).encode()
-
-
-def _read_back(value: object) -> Mapping[str, object]:
-    """Return a mapping as it will be read from JSON, so that it equals what was written."""
-    found: Mapping[str, object] = json.loads(_encode(value))
-    return found
 
 
 def _shown(value: object) -> str:

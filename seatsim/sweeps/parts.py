@@ -108,23 +108,18 @@ def _read_part(path: Path, names: Sequence[str] | None = None) -> pa.Table:
 
 def write_outcomes(folder: Path, part: int, plan: Plan, schema: pa.Schema, outcomes: Iterable[Outcome]) -> Path:
     """Write the outcomes of a part, which takes the place of what it held; `schema` is that of `make_schema`."""
+    import pyarrow as pa
     import pyarrow.parquet as pq
 
-    table = _make_table(plan, schema, sorted(outcomes, key=lambda outcome: outcome.run))
-    write = partial(pq.write_table, table, compression="zstd", compression_level=1)
-    return write_whole(_part_path(folder, part), write, lasting=True)
-
-
-def _make_table(plan: Plan, schema: pa.Schema, outcomes: Sequence[Outcome]) -> pa.Table:
-    """Return outcomes with the values of their runs as a table."""
-    import pyarrow as pa
-
+    outcomes = sorted(outcomes, key=lambda outcome: outcome.run)
     values = [plan.values(outcome.run) for outcome in outcomes]
     columns: list[Sequence[object]] = [[getattr(outcome, name) for outcome in outcomes] for name in LEADING]
     columns += [[each[key] for each in values] for key in varied_keys(plan)]
     columns += map(list, zip(*(outcome.metrics for outcome in outcomes), strict=True))
     arrays = [_store(column, field.type) for column, field in zip(columns, schema, strict=True)]
-    return pa.Table.from_arrays(arrays, schema=schema)
+    table = pa.Table.from_arrays(arrays, schema=schema)
+    write = partial(pq.write_table, table, compression="zstd", compression_level=1)
+    return write_whole(_part_path(folder, part), write, lasting=True)
 
 
 def make_schema(plan: Plan, units: Mapping[str, str]) -> pa.Schema:
@@ -158,14 +153,9 @@ def _type_of(plan: Plan, key: str) -> pa.DataType:
 def _store(values: Sequence[object], kind: pa.DataType) -> pa.Array:
     """Return the values of a column: in one of texts, JSON of what is none."""
     if str(kind) == "string":
-        return store_texts([_as_text(value) for value in values])
+        return store_texts([value if isinstance(value, str) else json.dumps(value, default=str) for value in values])
     present = np.array([value is not None for value in values])
     return store_numbers(np.array([value if value is not None else 0 for value in values]), kind, present)
-
-
-def _as_text(value: object) -> str:
-    """Return any value of a scenario as text."""
-    return value if isinstance(value, str) else json.dumps(value, default=str)
 
 
 def read_sweep(folder: str | Path) -> pd.DataFrame:
@@ -190,14 +180,9 @@ def read_sweep(folder: str | Path) -> pd.DataFrame:
     except pa.ArrowInvalid as error:
         raise InputError(f"{folder}: holds parts of different sweeps: {error}; choose another folder") from error
     frame: pd.DataFrame = table.to_pandas()
-    frame.attrs["units"] = _units_of(table.schema)
+    stated = {field.name: (field.metadata or {}).get(b"unit", b"").decode() for field in table.schema}
+    frame.attrs["units"] = {name: unit for name, unit in stated.items() if unit}
     return frame
-
-
-def _units_of(schema: pa.Schema) -> dict[str, str]:
-    """Return the units of the columns that have one."""
-    stated = {field.name: (field.metadata or {}).get(b"unit", b"").decode() for field in schema}
-    return {name: unit for name, unit in stated.items() if unit}
 
 
 class SweepRows(NamedTuple):
@@ -274,14 +259,18 @@ _SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)
 NAMES = ("p05", "p25", "median", "p75", "p95")
 
 
-def _group_rows(rows: SweepRows) -> Iterator[tuple[dict[str, object], pd.DataFrame]]:
-    """Yield each combination of the texts that were varied with its runs; all runs where there is none, or too many."""
+def _group_values(rows: SweepRows, metrics: Iterable[str]) -> Iterator[tuple[dict[str, object], str, pd.Series]]:
+    """Yield each combination of the texts that were varied with each metric that it has, and its values in the runs.
+
+    All runs are one where no texts were varied, or too many.
+    """
     texts = rows.texts
-    if not texts or len(rows.usable.groupby(texts)) > _MOST_GROUPS:
-        yield dict.fromkeys(texts, "all"), rows.usable
-        return
-    for values, runs in rows.usable.groupby(texts, sort=False):
-        yield dict(zip(texts, values, strict=True)), runs
+    groups: list[tuple[dict[str, object], pd.DataFrame]] = [(dict.fromkeys(texts, "all"), rows.usable)]
+    if texts and len(rows.usable.groupby(texts)) <= _MOST_GROUPS:
+        named = rows.usable.groupby(texts, sort=False)
+        groups = [(dict(zip(texts, values, strict=True)), runs) for values, runs in named]
+    for group, runs in groups:
+        yield from ((group, metric, values) for metric in metrics if not (values := runs[metric].dropna()).empty)
 
 
 def tabulate_quantiles(rows: SweepRows) -> pd.DataFrame:
@@ -292,15 +281,10 @@ def tabulate_quantiles(rows: SweepRows) -> pd.DataFrame:
     import pandas as pd
 
     found = []
-    for group, runs in _group_rows(rows):
-        for metric in rows.metrics:
-            values = runs[metric].dropna()
-            if values.empty:
-                continue
-            quantiles = dict(zip(NAMES, values.quantile(list(_SHARES)), strict=True))
-            figures = {"mean": values.mean(), "std": values.std(), "min": values.min()}
-            figures |= {**quantiles, "max": values.max()}
-            found.append({**group, "metric": metric, "unit": rows.units[metric], "runs": len(values), **figures})
+    for group, metric, values in _group_values(rows, rows.metrics):
+        quantiles = dict(zip(NAMES, values.quantile(list(_SHARES)), strict=True))
+        figures = {"mean": values.mean(), "std": values.std(), "min": values.min(), **quantiles, "max": values.max()}
+        found.append({**group, "metric": metric, "unit": rows.units[metric], "runs": len(values), **figures})
     return pd.DataFrame(found)
 
 
@@ -328,13 +312,10 @@ def count_exceedances(rows: SweepRows) -> list[Exceedance]:
 
     limits = rows.manifest["limits"] or _DEFAULT_LIMITS
     found = []
-    for group, runs in _group_rows(rows):
-        for metric, limit in limits.items():
-            values = runs[metric].dropna()
-            if values.empty:
-                continue
-            exceeding = int((values > limit).sum())
-            interval = binomtest(exceeding, len(values)).proportion_ci(0.95, method="wilson")
-            share = exceeding / len(values)
-            found.append(Exceedance(group, metric, rows.units[metric], limit, exceeding, len(values), share, *interval))
+    for group, metric, values in _group_values(rows, limits):
+        limit, count = limits[metric], len(values)
+        exceeding = int((values > limit).sum())
+        interval = binomtest(exceeding, count).proportion_ci(0.95, method="wilson")
+        unit, share = rows.units[metric], exceeding / count
+        found.append(Exceedance(group, metric, unit, limit, exceeding, count, share, *interval))
     return found

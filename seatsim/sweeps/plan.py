@@ -28,6 +28,7 @@ from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, list_sentences, raise_all
 from seatsim.schema.yaml_source import Source
+from seatsim.simulation.naming import is_number
 from seatsim.sweeps.definition import MOST_RUNS, SPECIMENS, Axis, SweepDefinition
 
 _Columns = Mapping[str, list[object]]
@@ -172,9 +173,10 @@ class Plan:
         Raises:
             InputError: the values do not fit the scenario.
         """
-        replicate, _, base = self._locate(run)
-        label = self.values(run)
-        source = self._change(run)
+        replicate, point, base = self._locate(run)
+        label, source = self.values(run), self.bases[base].source.with_changes()
+        for key, values in self.columns.items():
+            source.put(key, values[point], self.places[key])
         first = self._first_scenarios.get(base)
         if first is None:
             first = self._first_scenarios[base] = read_scenario(source, label)
@@ -204,13 +206,6 @@ class Plan:
     def _locate(self, run: int) -> tuple[int, int, int]:
         rest, base = divmod(run, len(self.bases))
         return (*divmod(rest, self.points), base)
-
-    def _change(self, run: int) -> Source:
-        _, point, base = self._locate(run)
-        source = self.bases[base].source.with_changes()
-        for key, values in self.columns.items():
-            source.put(key, values[point], self.places[key])
-        return source
 
 
 class Selection(NamedTuple):
@@ -307,7 +302,7 @@ def _list_telling_runs(plan: Plan) -> Iterator[int]:
     numbers = {
         key: [float(str(value)) for value in values]
         for key, values in plan.columns.items()
-        if all(_is_number(value) for value in values)
+        if all(map(is_number, values))
     }
     others = [values for key, values in plan.columns.items() if key not in numbers]
     combinations: dict[str, list[int]] = {}
@@ -323,7 +318,3 @@ def _list_telling_runs(plan: Plan) -> Iterator[int]:
         points |= set(first.values()) if len(first) <= _MOST_LEVELS else set()
     for point in points:
         yield from range(point * per_point, (point + 1) * per_point)
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
