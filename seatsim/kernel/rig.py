@@ -145,8 +145,8 @@ def _friction(free: float, v: float, slip: float, limit: float, mass: float) -> 
 
 MASSES = 4
 """Masses that a body has room for."""
-Vector = tuple[float, float, float, float]
-Matrix = tuple[Vector, Vector, Vector, Vector]
+Vector = tuple[float, ...]
+Matrix = tuple[Vector, ...]
 
 
 class BodySpecification(NamedTuple):

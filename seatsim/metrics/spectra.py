@@ -83,8 +83,7 @@ def _average_bands(frequency: Array, power: Array) -> tuple[Array, Array]:
 
 def _is_resolved(frequency: Array) -> NDArray[np.bool_]:
     """Return which lines are drawn: those above `LOWEST` and above what a mean leaves."""
-    resolved: NDArray[np.bool_] = frequency >= max(LOWEST, frequency[FIRST_LINE])
-    return resolved
+    return np.asarray(frequency >= max(LOWEST, frequency[FIRST_LINE]))
 
 
 def _segments(values: Array, length: int) -> Array:

@@ -122,7 +122,10 @@ def frequency_response(frequency: ArrayLike, weighting: str = "Wk") -> ComplexAr
     high_pass = jf**2 / (jf**2 + math.sqrt(2) * c.f1 * jf + c.f1**2)
     low_pass = 1 / quadratic(jf, c.f2, math.sqrt(0.5))
     transition = (1 + jf / c.f3) / quadratic(jf, c.f4, c.Q4)
-    step = _upward_step(jf, c.step) if c.step else 1.0
+    step: ComplexArray | float = 1.0
+    if c.step:
+        rise = quadratic(jf, c.step.f5, c.step.Q5) / quadratic(jf, c.step.f6, c.step.Q6)
+        step = rise * (c.step.f5 / c.step.f6) ** 2
     h: ComplexArray = high_pass * low_pass * transition * step * c.K
     return h
 
@@ -131,11 +134,6 @@ def _constants(weighting: str) -> Weighting:
     if weighting not in WEIGHTINGS:
         raise InputError(f"no weighting is called '{weighting}'{permit(weighting, WEIGHTINGS)}")
     return WEIGHTINGS[weighting]
-
-
-def _upward_step(jf: ComplexArray, step: _UpwardStep) -> ComplexArray:
-    rise: ComplexArray = quadratic(jf, step.f5, step.Q5) / quadratic(jf, step.f6, step.Q6)
-    return rise * (step.f5 / step.f6) ** 2
 
 
 def quadratic(jf: ComplexArray, corner: float, quality: float) -> ComplexArray:
@@ -170,19 +168,10 @@ def weight(signal: ArrayLike, sample_rate: float, weighting: str = "Wk") -> Arra
             f"sample_rate: is {sample_rate} Hz; weighting {weighting} reaches {constants.f2:.4g} Hz and needs "
             f"{constants.minimum_rate:.4g} Hz or more"
         )
-    response, size = _transform_of(x.size, sample_rate, weighting)
-    weighted: Array = fft.irfft(fft.rfft(x, size) * response, size)
+    # The product of transforms is a circular convolution: zeros behind the record keep its end out of its start.
+    size = fft.next_fast_len(x.size + math.ceil(_DECAY / constants.f1 * sample_rate), real=True)
+    weighted: Array = fft.irfft(fft.rfft(x, size) * _response_at_bins(size, float(sample_rate), weighting), size)
     return weighted[: x.size]
-
-
-def _transform_of(samples: int, sample_rate: float, weighting: str = "Wk") -> tuple[ComplexArray, int]:
-    """Return the response at the bins of the transform that weights a record of so many samples, and its length.
-
-    The product of transforms is a circular convolution: zeros behind the record keep its end out of its start.
-    """
-    decay = math.ceil(_DECAY / _constants(weighting).f1 * sample_rate)
-    size = fft.next_fast_len(samples + decay, real=True)
-    return _response_at_bins(size, float(sample_rate), weighting), size
 
 
 def least_rate(weighting: str = "Wk") -> float:

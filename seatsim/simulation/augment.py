@@ -13,7 +13,7 @@ from seatsim.effects.base import EFFECTS, ON_DAMPER, ON_SEAT, acts_on, off
 from seatsim.kernel.augmented import AugmentedDamper
 from seatsim.kernel.generic import DamperModel
 from seatsim.kernel.hooks import Effects, state_at_rest
-from seatsim.kernel.rig import MASSES, Matrix, SeatedBody, Vector
+from seatsim.kernel.rig import MASSES, SeatedBody
 from seatsim.rig.coil import Coil
 from seatsim.rig.drivers import BODIES, SINGLE_MASS, Driver, body_matrices
 from seatsim.rig.plant import Plant
@@ -58,13 +58,11 @@ def undo_reading(effects: Sequence[object], values: Array, channel: str, step: f
 
 def read_sensors(effects: Sequence[object], step: float, true: Mapping[str, Array]) -> dict[str, Array]:
     """Return what the sensors say of true channels that are sampled every `step` seconds, shape (N,) each."""
-    return {name: _read_sensor(effects, values, name, step) for name, values in true.items()}
-
-
-def _read_sensor(effects: Sequence[object], values: Array, channel: str, step: float) -> Array:
+    found = dict(true)
     for effect, read in _with(effects, "reading"):
-        values = _checked(effect, f"reading of {channel}", read(channel, step, values), values, step)
-    return values
+        for name, values in found.items():
+            found[name] = _checked(effect, f"reading of {name}", read(name, step, values), values, step)
+    return found
 
 
 def sum_frame_forces(effects: Sequence[object], time: Array, seed: int) -> Array:
@@ -114,8 +112,13 @@ def select_in_loop(effects: Sequence[object], carry_all: bool | None = None) -> 
     """
 
     def select(hooks: tuple[str, ...]) -> Effects:
-        chosen = _chosen(effects, hooks)
-        return _carried(chosen, hooks) if carry_all or (carry_all is None and chosen) else chosen
+        chosen = tuple(effect for effect in effects if acts_on(type(effect), hooks))
+        if carry_all is False or not (carry_all or chosen):
+            return chosen
+        first = {type(effect): effect for effect in reversed(chosen)}
+        carried = [first.get(cls) or off(cls) for cls in _acting(EFFECTS.classes(), hooks)]
+        further = [effect for effect in chosen if not any(effect is kept for kept in carried)]
+        return (*carried, *further)
 
     return select(ON_DAMPER), select(ON_SEAT)
 
@@ -138,30 +141,8 @@ def seat_driver(driver: Driver, plant: Plant, effects: Sequence[object]) -> Effe
         raise InputError(problem)
     found = body_matrices(BODIES[driver.model], plant.driver_mass)
     room = (0, MASSES - len(found.masses))
-    masses, stiffness, damping = (np.pad(each, room) for each in found)
-    return (SeatedBody(_as_vector(masses), _as_matrix(stiffness), _as_matrix(damping)),)
-
-
-def _as_vector(values: Array) -> Vector:
-    a, b, c, d = values.tolist()
-    return a, b, c, d
-
-
-def _as_matrix(rows: Array) -> Matrix:
-    a, b, c, d = map(_as_vector, rows)
-    return a, b, c, d
-
-
-def _chosen(effects: Sequence[object], hooks: tuple[str, ...]) -> Effects:
-    return tuple(effect for effect in effects if acts_on(type(effect), hooks))
-
-
-def _carried(chosen: Effects, hooks: tuple[str, ...]) -> Effects:
-    registered = _acting(EFFECTS.classes(), hooks)
-    first = {type(effect): effect for effect in reversed(chosen)}
-    carried = [first.get(cls) or off(cls) for cls in registered]
-    further = [effect for effect in chosen if not any(effect is kept for kept in carried)]
-    return (*carried, *further)
+    masses, stiffness, damping = (np.pad(each, room).tolist() for each in found)
+    return (SeatedBody(tuple(masses), tuple(map(tuple, stiffness)), tuple(map(tuple, damping))),)
 
 
 @cache

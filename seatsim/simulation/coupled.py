@@ -127,7 +127,15 @@ class _CoupledRig(Rig):
         else:
             miss(2.0 * force - self.before)
         later, current, self.before = *found[:2], force
-        self._go_on(coil, acting, now.state, later.state, current)
+        self.reached += 1
+        # The damper's temperature in degC is followed as the loop does.
+        if self.setup.timing.self_heating:
+            work = later.state[DAMPER_WORK] - now.state[DAMPER_WORK]
+            self.temperature += warm_up(
+                self.setup.thermal, coil, self.temperature, work, acting.current, current, acting.length
+            )
+        else:
+            self.temperature = float(self.inputs.temperature[self.reached])
         at_end = disturbance_at(acting, acting.length)
         return self._feel(found[2], later.state, at_end, current, scaling, later.substep), current, reached
 
@@ -147,17 +155,6 @@ class _CoupledRig(Rig):
         """Return the integration begun in a state under a force of the unit in N."""
         rig, parts = self._under(force)
         return compiled(_start, parts)(rig, state, disturbance, current, scaling, substep)
-
-    def _go_on(self, coil: Coil, acting: StepInputs, first: State, last: State, current: float) -> None:
-        """Count a step, and follow the damper's temperature in degC as the loop does."""
-        self.reached += 1
-        if self.setup.timing.self_heating:
-            work = last[DAMPER_WORK] - first[DAMPER_WORK]
-            self.temperature += warm_up(
-                self.setup.thermal, coil, self.temperature, work, acting.current, current, acting.length
-            )
-        else:
-            self.temperature = float(self.inputs.temperature[self.reached])
 
     def _motion(self, first: State, last: State, current: float) -> dict[str, float]:
         """Return what the unit is given for a step: where it begins, and how it goes on where that can be said.

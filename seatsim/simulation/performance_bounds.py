@@ -96,15 +96,11 @@ def place_runs(result: Result) -> list[RigBounds]:
 
 def explain_runs_below_bound(runs: Sequence[Run], found: Mapping[str, PerformanceBounds]) -> list[str]:
     """Return a sentence for each run below the bound of its rig: the ideal damper has no hysteresis, a real one has."""
-    below = [
-        run
-        for run in runs
-        if run.scenario.rig in found and measure_distance(run, found[run.scenario.rig]).above_bound < 0
-    ]
     return [
         f"{run.scenario.title} is below its bound, which holds for dampers without hysteresis: in so short strokes the"
         " damper hardly yields"
-        for run in below
+        for run in runs
+        if run.scenario.rig in found and measure_distance(run, found[run.scenario.rig]).above_bound < 0
     ]
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline, UnivariateSpline
@@ -29,7 +30,7 @@ from seatsim.simulation.augment import (
     undo_reading,
 )
 from seatsim.simulation.damper_bench import bench_force
-from seatsim.simulation.inputs import BenchInputs, RigInputs, SeatInputs
+from seatsim.simulation.inputs import BenchInputs, RigInputs
 from seatsim.simulation.simulate import simulate
 
 FINER = 16
@@ -48,8 +49,15 @@ def _simulate_bench(scenario: Scenario, inputs: BenchInputs, carry_all_effects: 
         InputError: an effect acts on a part that a bench does not have. RunError: the damper's state ran away.
     """
     effects, interval = scenario.effects, inputs.interval
-    _check_effects(scenario)
-    true = _undo_readings(effects, inputs)
+    for effect in effects:
+        if acts_on(type(effect), (*ON_SEAT, "plant", "frame_force")):
+            name = name_of("effect", type(effect))
+            raise InputError(f"{scenario.name}: a damper bench has no part on which {name} acts; remove it")
+    # As they truly were, but for displacement and command.
+    read = {name: getattr(inputs, name) for name in ("velocity", "coil_current", "damper_temperature")}
+    stated = {name: values for name, values in read.items() if values is not None}
+    undone: dict[str, Any] = {name: undo_reading(effects, each, name, interval) for name, each in stated.items()}
+    true = inputs._replace(**undone)
     rows = interval * np.arange(len(true.displacement), dtype=np.float64)
     fine = np.arange(2 * len(rows) - 1, dtype=np.float64) * 0.5 * interval
     position, velocity = _undo_motion(effects, inputs, rows, fine)
@@ -61,27 +69,6 @@ def _simulate_bench(scenario: Scenario, inputs: BenchInputs, carry_all_effects: 
     factors = augment_factors(effects, scenario.damper.factors)
     force = bench_force(damper, position, velocity, current, temperature, interval, factors, state)
     return read_sensors(effects, interval, {"damper_force": force, "coil_current": current[::2]})
-
-
-def _check_effects(scenario: Scenario) -> None:
-    """Raise InputError at the first effect that acts on seat, plant or frame."""
-    for effect in scenario.effects:
-        if acts_on(type(effect), (*ON_SEAT, "plant", "frame_force")):
-            name = name_of("effect", type(effect))
-            raise InputError(f"{scenario.name}: a damper bench has no part on which {name} acts; remove it")
-
-
-def _undo_readings(effects: tuple[object, ...], inputs: BenchInputs) -> BenchInputs:
-    """Return the inputs as they truly were, but for displacement and command."""
-
-    def true(channel: str, values: Array | None) -> Array | None:
-        return None if values is None else undo_reading(effects, values, channel, inputs.interval)
-
-    return inputs._replace(
-        velocity=true("velocity", inputs.velocity),
-        coil_current=true("coil_current", inputs.coil_current),
-        damper_temperature=true("damper_temperature", inputs.damper_temperature),
-    )
 
 
 def _undo_motion(effects: tuple[object, ...], inputs: BenchInputs, rows: Array, fine: Array) -> tuple[Array, Array]:
@@ -168,10 +155,6 @@ def respond(scenario: Scenario, inputs: RigInputs, carry_all_effects: bool = Fal
     """
     if isinstance(inputs, BenchInputs):
         return _simulate_bench(scenario, inputs, carry_all_effects)
-    return _respond_seat(scenario, inputs, carry_all_effects)
-
-
-def _respond_seat(scenario: Scenario, inputs: SeatInputs, carry_all_effects: bool) -> dict[str, Array]:
     solver = scenario.solver._replace(step=inputs.floor.step)
     at_rest = dataclasses.replace(scenario, solver=solver, start=Start())
     history = simulate(at_rest, inputs.floor, inputs.forces, carry_all_effects or None)

@@ -33,8 +33,7 @@ def run(scenario: str | Path | Mapping[str, object] | Scenario, settings: Mappin
     Raises:
         InputError: the file is wrong. RunError: a run could not be carried to its end.
     """
-    scenarios = [scenario] if isinstance(scenario, Scenario) else load(scenario, settings)
-    return _run_all(scenarios)
+    return _run_all([scenario] if isinstance(scenario, Scenario) else load(scenario, settings))
 
 
 def compare(paths: Iterable[str | Path], settings: Mapping[str, object] | None = None) -> Result:

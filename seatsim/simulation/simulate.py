@@ -170,9 +170,8 @@ def _prepare_inputs(scenario: Scenario, control: Control, floor: Floor, forces: 
         temperature = augment_temperature(effects, step, stated)
     command = NONE if floor.command is None else undo_reading(effects, floor.command, "current_command", step)
     replays = specification_of(type(control.law)).replays
-    flowing = NONE
-    if floor.coil_current is not None:
-        flowing = undo_reading(effects, floor.coil_current, "coil_current", step)
+    measured = floor.coil_current
+    flowing = NONE if measured is None else undo_reading(effects, measured, "coil_current", step)
     start = float(flowing[0]) if flowing.size else 0.0
     prescribed = flowing if replays and floor.command is None else NONE
     frame_force = sum_frame_forces(effects, floor.time, scenario.seed)

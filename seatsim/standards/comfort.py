@@ -151,7 +151,9 @@ def comfort(
             fit into a day or name runs beside `runs`.
     """
     named = {axis.lower(): column for axis, column in (channels or {}).items()}
-    _check_axes(named)
+    for axis in named:
+        if axis not in _AXES:
+            raise InputError(f"no axis is called '{axis}'{permit(axis, _AXES)}")
     day = _check_hours(hours, runs) if isinstance(hours, Mapping) else {}
     records = _chosen(load_accelerations(source, rate, unit, [*named.values()]), [*day] or runs, source)
     named = named or choose_axes(records[0].name, records[0].columns, records[0].notes)
@@ -198,12 +200,6 @@ def _chosen(records: list[AccelerationRecord], runs: Sequence[str], source: str 
         if name not in known:
             raise InputError(f"{source}: no run is called '{name}'{permit(name, known)}")
     return [record for record in records if not runs or record.name in runs]
-
-
-def _check_axes(named: Mapping[str, str]) -> None:
-    for axis in named:
-        if axis not in _AXES:
-            raise InputError(f"no axis is called '{axis}'{permit(axis, _AXES)}")
 
 
 def _check_hours(hours: Mapping[str, float], runs: Sequence[str]) -> Mapping[str, float]:

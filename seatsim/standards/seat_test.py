@@ -10,7 +10,7 @@ import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from pathlib import Path
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -31,7 +31,6 @@ from seatsim.schema.errors import InputError, RunError, permit
 from seatsim.schema.registry import specification_of
 from seatsim.schema.text import join_names
 from seatsim.simulation.augment import augment_plant
-from seatsim.simulation.result import History
 from seatsim.simulation.simulate import simulate
 from seatsim.standards.seat_rows import (
     LIMITS,
@@ -215,12 +214,14 @@ def _assess_simulated_seats(
             for person in PERSONS
         }
         damping = {title: pool.submit(_run_damping_test, seat.scenario, seat.plant) for title, seat in seats.items()}
-        _count([*(future for futures in trials.values() for future in futures), *damping.values()], progress)
+        every: list[Future[Any]] = [*(future for futures in trials.values() for future in futures), *damping.values()]
+        for done, _ in enumerate(as_completed(every), 1):
+            progress(done, len(every))
     failures: list[SeatFailure] = []
-    done = {key: _finished(runs, (*key,), failures) for key, runs in trials.items()}
+    results = {key: _finished(runs, (*key,), failures) for key, runs in trials.items()}
     ended = {title: _finished([future], (title, None, _INERT), failures) for title, future in damping.items()}
     tested = {title: found[0] for title, found in ended.items() if found}
-    rows = tuple(state_row(*key, found, len(found) == RUNS) for key, found in done.items() if found)
+    rows = tuple(state_row(*key, found, len(found) == RUNS) for key, found in results.items() if found)
     if not rows and not tested:
         raise RunError(failures[0].reason)
     return SeatTest(
@@ -271,11 +272,6 @@ def _run_trial(seat: _Seat, spectral_class: SpectralClass, person: str, seed: in
     return _evaluate(signals, 1 / history.step, seat.plant.end_stops)
 
 
-def _count(futures: Sequence[Future[Trial] | Future[DampingTest]], progress: _Progress) -> None:
-    for done, _ in enumerate(as_completed(futures), 1):
-        progress(done, len(futures))
-
-
 def _notes(seats: Mapping[str, _Seat]) -> Iterator[str]:
     yield RECALLED
     yield UNKNOWN_EDITION
@@ -305,17 +301,11 @@ def _run_damping_test(scenario: Scenario, plant: Plant) -> DampingTest:
         excitation=SteppedSine(tones, _CYCLES, 0.5 * stroke),
         effects=(*scenario.effects, Mass(INERT_MASS - plant.driver_mass)),
     )
-    ratios = _ratios(simulate(tested), tones)
-    largest = int(np.argmax(ratios))
-    return DampingTest(tones[largest], ratios[largest], stroke, tones, tuple(ratios))
-
-
-def _ratios(history: History, tones: tuple[float, ...]) -> list[float]:
-    ends = np.cumsum([(_CYCLES + 2 * _FADE) / tone for tone in tones])
-    ratios = []
-    for tone, end in zip(tones, ends, strict=True):
+    history, ratios = simulate(tested), []
+    for tone, end in zip(tones, np.cumsum([(_CYCLES + 2 * _FADE) / tone for tone in tones]), strict=True):
         last = round((end - _FADE / tone) / history.step)
         steady = slice(last - round(_EVALUATED / tone / history.step), last)
-        seat, floor = (history[name][steady] for name in ("driver_acceleration", "floor_acceleration"))
+        seat, floor = (history[name][steady] for name in _NEEDED)
         ratios.append(rms(seat) / rms(floor))
-    return ratios
+    largest = int(np.argmax(ratios))
+    return DampingTest(tones[largest], ratios[largest], stroke, tones, tuple(ratios))
