@@ -116,3 +116,7 @@ def write_sweep_report(folder: str | Path, out: str | Path | None = None) -> Swe
     write = partial(write_each, contents)
     paths = print_reports(write_together(out, write)) if is_own else write_outputs(out, contents)
     return SweepReport(" ".join(state_importance(found, rows)), exceeded, found.rows, paths)
+
+
+sweep_report = write_sweep_report
+"""Its public name in `seatsim`."""
