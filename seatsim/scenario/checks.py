@@ -17,11 +17,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import NamedTuple, cast
+from typing import Any, NamedTuple
 
 from seatsim.metrics.table import METRICS
 from seatsim.schema.errors import nearest
-from seatsim.schema.fields import validated
 from seatsim.schema.json_schema import TEXT, Schema, mapping_schema
 from seatsim.schema.validation import check_keys, mapping, read_number
 from seatsim.schema.yaml_source import Source
@@ -105,23 +104,13 @@ def require_variants(checks: Iterable[Check], variants: Iterable[object], source
                 raise source.error(("checks", check.name, "per"), problem)
 
 
-class Published(NamedTuple):
-    """The published figures of a file: where they stand, and a row for each run, of labels and metrics in SI units."""
+def published_figures(source: Source) -> tuple[str, Sequence[Mapping[str, Any]]]:
+    """Return where the published figures of a file stand, and a row for each run: labels, and metrics in SI units.
 
-    source: str
-    rows: list[Mapping[str, object]]
-
-    def figure(self, row: int, metric: str) -> float:
-        """Return a metric that a row states."""
-        return float(cast("float", self.rows[row][metric]))  # as `check_published` has found
-
-
-def published_figures(source: Source) -> Published | None:
-    """Return the published figures of a file that `check_published` has passed, or None where it has none."""
-    if "published" not in source.data:
-        return None
-    stated = mapping(source.data["published"], source, ("published",))
-    return validated(Published, {"source": str(stated.get("source", "published figures")), "rows": stated["rows"]})
+    The file is one that `check_published` has passed; one without published figures has no rows.
+    """
+    stated: Any = source.data.get("published", {})
+    return str(stated.get("source", "published figures")), stated.get("rows", ())
 
 
 def check_published(source: Source, labels: Sequence[str]) -> None:
@@ -132,8 +121,9 @@ def check_published(source: Source, labels: Sequence[str]) -> None:
     check_keys(published, ("source", "rows"), source, ("published",))
     rows = published.get("rows")
     if not isinstance(rows, list) or not rows:
-        problem = "a list of at least one row, such as '- {variant: I, seat_factor: 0.8}'"
-        raise source.error(("published", "rows"), problem)
+        raise source.error(
+            ("published", "rows"), "a list of at least one row, such as '- {variant: I, seat_factor: 0.8}'"
+        )
     for index, row in enumerate(rows):
         keys = ("published", "rows", index)
         naming = [key for key in mapping(row, source, keys) if key in labels or "." in key]

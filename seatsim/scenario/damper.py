@@ -5,15 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import cast
 
+from seatsim.cosimulation import description
 from seatsim.cosimulation.damper import PREFIX, FmuDamper
-from seatsim.cosimulation.description import (
-    FORCE,
-    QUANTITIES,
-    check_parameter,
-    describe_unit,
-    find_conversion_of,
-    find_variable,
-)
+from seatsim.cosimulation.description import FORCE, QUANTITIES
 from seatsim.dampers.base import DAMPERS, Damper
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.scenario.scenario import DamperChoice
@@ -40,7 +34,7 @@ def _stated_unit(stated: Mapping[str, object], source: Source, keys: KeyPath) ->
     path = source.path.parent / str(stated["model"]).removeprefix(PREFIX)
     with placed(source.place((*keys, "model"))):
         check_in_use(path)
-        unit = describe_unit(path)
+        unit = description.describe_unit(path)
     inputs = _names(stated, "inputs", tuple(QUANTITIES), source, keys)
     outputs = _names(stated, "outputs", (FORCE,), source, keys)
     if not inputs or FORCE not in outputs:
@@ -49,11 +43,11 @@ def _stated_unit(stated: Mapping[str, object], source: Source, keys: KeyPath) ->
     for section, names, causality in (("inputs", inputs, "input"), ("outputs", outputs, "output")):
         for quantity, name in names.items():
             with placed(source.place((*keys, section, quantity))):
-                find_conversion_of(find_variable(unit, name, causality), quantity)
+                description.find_conversion_of(description.find_variable(unit, name, causality), quantity)
     values: dict[str, float] = {}
     for name, value in mapping(stated.get("parameters", {}), source, (*keys, "parameters")).items():
         with placed(source.place((*keys, "parameters", name))):
-            values[name] = check_parameter(unit, name, value)
+            values[name] = description.check_parameter(unit, name, value)
     return cast("Damper", FmuDamper(str(path), tuple(inputs.items()), outputs[FORCE], tuple(values.items())))
 
 

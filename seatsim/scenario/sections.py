@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Annotated, NamedTuple, cast
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, TypeVar, cast
 
 from seatsim.effects.base import EFFECTS
 from seatsim.rig.coil import Coil
-from seatsim.rig.control import LAWS, Law
+from seatsim.rig.control import LAWS
 from seatsim.rig.drivers import Driver
 from seatsim.rig.plant import Plant
 from seatsim.rig.sensors import Sensors
@@ -21,21 +21,10 @@ from seatsim.rig.temperature import TemperatureFactors, Thermal
 from seatsim.scenario.checks import checks_schema, read_checks
 from seatsim.scenario.damper import damper_schema, read_damper, schema_of_models
 from seatsim.scenario.scenario import Control, Inverse, Solver, Start
+from seatsim.schema import json_schema
 from seatsim.schema.errors import read_each
 from seatsim.schema.fields import param
-from seatsim.schema.json_schema import (
-    ANYTHING,
-    BY_KEY,
-    TEXT,
-    Schema,
-    cases_schema,
-    head_schema,
-    mapping_schema,
-    name_schema,
-    named_schema,
-    properties_of,
-    record_schema,
-)
+from seatsim.schema.json_schema import ANYTHING, BY_KEY, TEXT, Schema, mapping_schema, name_schema, record_schema
 from seatsim.schema.registry import Record, Registry, find
 from seatsim.schema.text import explain_bad_name
 from seatsim.schema.validation import build, check_keys, chosen_class, is_finite_number, mapping, read_whole
@@ -51,6 +40,7 @@ FILES = (("controller", "design"), ("excitation", "path"))
 """_Section and key under which a scenario names a file, from its own folder."""
 # An excitation may read a recording, whose nominal is a scenario: their package builds on this one.
 _EXCITATIONS: Registry[Excitation, object] = Registry("excitation")
+_P = TypeVar("_P")
 
 
 class _Sampling(NamedTuple):
@@ -86,8 +76,7 @@ def _read_name(value: object, source: Source) -> str:
     """Return the name of a scenario, which its folder of results has."""
     if isinstance(value, dict | list) or value is None:
         raise source.error(("name",), f"{value!r} is no name; write it as text")
-    problem = explain_bad_name(str(value))
-    if problem:
+    if problem := explain_bad_name(str(value)):
         raise source.error(("name",), f"{str(value)!r} {problem}")
     return str(value)
 
@@ -107,14 +96,9 @@ def _read_control(values: object, source: Source) -> Control:
     keys: KeyPath = ("controller",)
     stated = mapping(values, source, keys)
 
-    def read_law() -> Law:
-        cls = chosen_class(LAWS, stated, "law", source, keys)
-        # What is registered as a law has one of the methods of `Law`: its decorator is applied to nothing else.
-        return cast("Law", build(cls, _own_keys(stated, ("law", *_CONTROL), "design", source), source, keys))
-
     sensors, sampling = (*keys, "sensors"), {key: stated[key] for key in _Sampling._fields if key in stated}
     readers: dict[str, Callable[[], object]] = {
-        "law": read_law,
+        "law": lambda: _read_named(LAWS, stated, ("law", *_CONTROL), "design", source, keys),
         "inverse": lambda: _read_inverse(stated["inverse"], source) if "inverse" in stated else None,
         "sensors": lambda: build(Sensors, stated["sensors"], source, sensors) if "sensors" in stated else None,
         "sample_time": lambda: build(_Sampling, sampling, source, keys).sample_time,
@@ -142,25 +126,31 @@ def _read_inverse(values: object, source: Source) -> Inverse:
 
 
 _CONTROL: Mapping[str, Callable[[], Schema]] = {
-    "sample_time": lambda: cast("Schema", properties_of(record_schema(_Sampling))["sample_time"]),
+    "sample_time": lambda: cast("Schema", json_schema.properties_of(record_schema(_Sampling))["sample_time"]),
     "inverse": lambda: damper_schema({"temperature": ANYTHING}),
     "sensors": lambda: record_schema(Sensors),
-    "floors": lambda: {"type": "array", "items": named_schema("excitation", "kind", {})},
+    "floors": lambda: {"type": "array", "items": json_schema.named_schema("excitation", "kind", {})},
 }
 """Keys of a controller that stand beside those of its law."""
 
 
 def _read_excitation(values: object, source: Source, keys: KeyPath = ("excitation",)) -> Excitation:
+    return _read_named(_EXCITATIONS, values, ("kind",), "path", source, keys)
+
+
+def _read_named(
+    registry: Registry[_P, Any], values: object, others: tuple[str, ...], path: str, source: Source, keys: KeyPath
+) -> _P:
+    """Return the record of a class whose keys stand beside its name, which is the first of `others`, and these.
+
+    A file under the key `path` lies beside the source.
+    """
     stated = mapping(values, source, keys)
-    cls = chosen_class(_EXCITATIONS, stated, "kind", source, keys)
-    return build(cls, _own_keys(stated, ("kind",), "path", source), source, keys)
-
-
-def _own_keys(stated: Mapping[str, object], others: tuple[str, ...], path: str, source: Source) -> dict[str, object]:
-    """Return the keys of a named class beside its name; a file under the key `path` lies beside the source."""
+    cls = chosen_class(registry, stated, others[0], source, keys)
     own = {key: value for key, value in stated.items() if key not in others}
-    name = own.get(path)
-    return own | {path: str(source.path.parent / name)} if isinstance(name, str) else own
+    if isinstance(name := own.get(path), str):
+        own[path] = str(source.path.parent / name)
+    return build(cls, own, source, keys)
 
 
 def _read_effects(values: object, source: Source) -> tuple[Record, ...]:
@@ -182,7 +172,8 @@ def _effects_schema() -> Schema:
         return {"properties": {"parameters": record_schema(find("effect", name))}}
 
     keys = {"effect": name_schema("effect"), "parameters": BY_KEY}
-    return {"type": "array", "items": mapping_schema(keys, ("effect",)) | cases_schema("effect", "effect", own)}
+    items = mapping_schema(keys, ("effect",)) | json_schema.cases_schema("effect", "effect", own)
+    return {"type": "array", "items": items}
 
 
 SECTIONS: Mapping[str, _Section] = {
@@ -200,10 +191,10 @@ SECTIONS: Mapping[str, _Section] = {
     "temperature": _Section(_read_temperature, _temperature_schema, Thermal),
     "controller": _Section(
         _read_control,
-        lambda: named_schema("law", "law", {key: schema() for key, schema in _CONTROL.items()}),
+        lambda: json_schema.named_schema("law", "law", {key: schema() for key, schema in _CONTROL.items()}),
         field="control",
     ),
-    "excitation": _Section(_read_excitation, lambda: named_schema("excitation", "kind", {})),
+    "excitation": _Section(_read_excitation, lambda: json_schema.named_schema("excitation", "kind", {})),
     "effects": _Section(_read_effects, _effects_schema),
     "solver": _of_record("solver", Solver),
     "start": _of_record("start", Start),
@@ -228,4 +219,5 @@ RECORDS: Mapping[str, type] = {key: section.record for key, section in SECTIONS.
 def scenario_schema() -> Schema:
     """Return the JSON Schema of a scenario, with the keys of every damper, law, excitation and effect by its name."""
     keys = {key: section.schema() for key, section in SECTIONS.items()}
-    return head_schema("seatsim scenario", mapping_schema(keys | dict(OF_ALL_RUNS), NEEDED) | schema_of_models())
+    whole = mapping_schema(keys | dict(OF_ALL_RUNS), NEEDED) | schema_of_models()
+    return json_schema.head_schema("seatsim scenario", whole)

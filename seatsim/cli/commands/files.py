@@ -27,8 +27,7 @@ _NEXT = {
 
 
 def new(
-    kind: Annotated[str, typer.Argument(autocompletion=complete(*_NEXT))],
-    name: Annotated[str, typer.Argument()],
+    kind: Annotated[str, typer.Argument(autocompletion=complete(*_NEXT))], name: Annotated[str, typer.Argument()]
 ) -> None:
     """Write a commented file that works as it stands, to be changed.
 
@@ -46,10 +45,7 @@ def new(
     answer(NewAnswer(kind), paths)
 
 
-def check(
-    file: Annotated[Path, typer.Argument()],
-    run: Annotated[bool, typer.Option("--run")] = False,
-) -> None:
+def check(file: Annotated[Path, typer.Argument()], run: Annotated[bool, typer.Option("--run")] = False) -> None:
     """Read a file as the other commands would, and say what is wrong or doubtful; it is run by --run alone.
 
     Options:
@@ -87,9 +83,7 @@ def _complete_schema(incomplete: str) -> list[str]:
     return complete(*_list_schemas())(incomplete)
 
 
-def schema(
-    kind: Annotated[str, typer.Argument(autocompletion=_complete_schema)] = "scenario",
-) -> None:
+def schema(kind: Annotated[str, typer.Argument(autocompletion=_complete_schema)] = "scenario") -> None:
     """Print a JSON Schema, with which an editor completes and checks a file.
 
     Options:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from contextlib import nullcontext
 from pathlib import Path
 from threading import Thread
-from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -25,18 +25,7 @@ if TYPE_CHECKING:
     from seatsim.simulation.result import Run
 
 
-class _Group(NamedTuple):
-    """Scenarios that share a table and a folder."""
-
-    scenarios: list[Scenario]
-    folder: Path
-
-
-def run(
-    scenarios: Scenarios,
-    out_folder: Out = None,
-    settings: Settings = None,
-) -> None:
+def run(scenarios: Scenarios, out_folder: Out = None, settings: Settings = None) -> None:
     """Simulate scenarios and print a table for each."""
     several = out_folder is not None and len(scenarios) > 1
     folders = [out_folder / Path(path).stem if several and out_folder else out_folder for path in scenarios]
@@ -61,21 +50,19 @@ def _execute(
     files: Sequence[Sequence[str]], folders: Sequence[Path | None], settings: dict[str, object], bracket: bool = False
 ) -> None:
     """Run every group of files as one result, then print its table and write its files; exit 1 where a run failed."""
-    from seatsim.cli.outputs.simulated import RunAnswer
+    from seatsim.cli.outputs.simulated import RunAnswer, RunTable
 
     groups = _load_groups(files, folders, settings)
-    scenarios = [scenario for group in groups for scenario in group.scenarios]
-    found, interrupted = _simulate(scenarios)
-    failures = [str(each) for each in found if isinstance(each, SeatsimError)]
-    in_order, tables, paths = iter(found), [], []
-    for group in groups:
-        of_group = list(itertools.islice(in_order, len(group.scenarios)))
-        runs = [each for each in of_group if not isinstance(each, SeatsimError)]
-        if runs:
-            failed = [str(each) for each in of_group if isinstance(each, SeatsimError)]
+    found, interrupted = _simulate([scenario for scenarios, _ in groups for scenario in scenarios])
+    in_order, tables, paths, failures = iter(found), list[RunTable](), list[Path](), list[str]()
+    for scenarios, folder in groups:
+        of_group = list(itertools.islice(in_order, len(scenarios)))
+        failed = [str(each) for each in of_group if isinstance(each, SeatsimError)]
+        failures += failed
+        if runs := [each for each in of_group if not isinstance(each, SeatsimError)]:
             # What an interrupt left done is kept before the process ends.
             with uncut() if interrupted else nullcontext():
-                table, written = _present(runs, failed, group.folder, bracket, interrupted)
+                table, written = _present(runs, failed, folder, bracket, interrupted)
             tables.append(table)
             paths += written
     if interrupted:
@@ -87,16 +74,16 @@ def _execute(
 
 def _load_groups(
     files: Sequence[Sequence[str]], folders: Sequence[Path | None], settings: dict[str, object]
-) -> list[_Group]:
-    """Load the scenarios of every group; where no folder was chosen it bears the group's title."""
+) -> list[tuple[list[Scenario], Path]]:
+    """Load the scenarios that share a table, with the folder of each group: the one chosen, or one of its title."""
     from seatsim.scenario.loading import load
 
     groups = []
     for paths, chosen in zip(files, folders, strict=True):
         scenarios = [scenario for path in paths for scenario in load(path, settings)]
-        groups.append(_Group(scenarios, chosen or Path("out") / _title(scenarios)))
-    for folder in [group.folder for group in groups]:
-        if sum(group.folder == folder for group in groups) > 1:
+        groups.append((scenarios, chosen or Path("out") / _title(scenarios)))
+    for _, folder in groups:
+        if sum(other == folder for _, other in groups) > 1:
             raise InputError(f"two of the files would write to {folder}; give them other names, or run them one by one")
     return groups
 

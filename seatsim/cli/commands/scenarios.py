@@ -91,10 +91,9 @@ def synthesise(
 
     def write(part: Path) -> list[Path]:
         design.save(part / "design.yaml")
-        if design.proof is None:
-            return [part / "design.yaml"]
-        design.proof.save(part / "global.json")
-        return [part / "design.yaml", part / "global.json"]
+        if design.proof is not None:
+            design.proof.save(part / "global.json")
+        return sorted(part.iterdir())
 
     paths = write_documented(folder, write, chosen.seed)
     wrote(folder, paths)

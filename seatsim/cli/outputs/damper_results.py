@@ -23,14 +23,7 @@ from seatsim.identification.settings import IdentificationSettings
 from seatsim.plots.bench.characterisation import plot_characterisation
 from seatsim.plots.bench.identification import plot_predictions
 from seatsim.recordings.bench_tables import BenchRecord
-from seatsim.report.dampers import (
-    report_characterisation,
-    report_identification,
-    tabulate_fit,
-    tabulate_parameters,
-    tabulate_rows,
-    tabulate_steps,
-)
+from seatsim.report import dampers as report
 from seatsim.schema.content import to_content
 from seatsim.schema.files import write_together
 from seatsim.schema.yaml_text import dump
@@ -49,7 +42,7 @@ _NO_COIL = "# No command that changes was recorded: the rates of the actuator ar
 
 def present_characterisation(found: Characterisation, folder: Path) -> None:
     """Print cycles, steps and limits; write `cycles.csv`, `characterisation.json`, `.xlsx`, the report and pictures."""
-    show_report_tables([*tabulate_rows(found), *tabulate_steps(found.responses)])
+    show_report_tables([*report.tabulate_rows(found), *report.tabulate_steps(found.responses)])
     for check in found.sheet.limits:
         (say if check.passes else complain)(str(check))
     warn(found.remarks)
@@ -59,7 +52,7 @@ def present_characterisation(found: Characterisation, folder: Path) -> None:
         "cycles.csv": [row_columns(row) for row in found.rows],
         "characterisation.json": found,
         "characterisation.xlsx": list_tables(found.sheet),
-        "report.html": report_characterisation(found, figures, found.remarks, command),
+        "report.html": report.report_characterisation(found, figures, found.remarks, command),
         **name_pictures(figures),
     }
     conclude(found, folder, write_outputs(folder, contents))
@@ -72,7 +65,7 @@ def identify_damper(
     with show_progress() as progress:
         found = predict_records(identify_records(records, model, settings, progress), beside)
         paths = write_identification(found, folder, settings.seed)
-    show_report_tables([*tabulate_fit(found), *tabulate_parameters(found)])
+    show_report_tables([*report.tabulate_fit(found), *report.tabulate_parameters(found)])
     warn(found.notes)
     conclude(found, folder, paths)
 
@@ -82,17 +75,12 @@ def write_identification(found: Identification, folder: str | Path, seed: int = 
     return write_outputs(Path(folder), _contents_of_fit(found), seed, {"fit.json": _TIMES})
 
 
-def _write_member(found: Identification, folder: Path) -> None:
-    """Write the same files of one fit among several, whose folder has no manifest of its own."""
-    write_together(folder, partial(write_each, _contents_of_fit(found)))
-
-
 def _contents_of_fit(found: Identification) -> dict[str, object]:
     figures = {"loops": plot_predictions(found)}
     return {
         "parameters.yaml": _HEAD + ("" if found.commanded else _NO_COIL) + dump(found.to_scenario(), line_each=True),
         "fit.json": found,
-        "report.html": report_identification(found, figures, f"seatsim identify DATA --model {found.model}"),
+        "report.html": report.report_identification(found, figures, f"seatsim identify DATA --model {found.model}"),
         **name_pictures(figures),
     }
 
@@ -110,7 +98,8 @@ def identify_specimens(
         for name, records in specimens.items():
             progress(name)
             found[name] = predict_records(identify_records(records, model, settings, progress), beside)
-            _write_member(found[name], folder / name)  # at once, so that an interrupt keeps it
+            # At once, so that an interrupt keeps it; the folder of one among several has no manifest of its own.
+            write_together(folder / name, partial(write_each, _contents_of_fit(found[name])))
         gathered = gather_specimens(found)
         mean, values = dump(gathered.damper, line_each=True), dump(to_content(gathered))
         paths = write_outputs(folder, {"damper.yaml": _MEAN + mean, "specimens.yaml": values}, settings.seed)
@@ -132,7 +121,7 @@ def compare_models(
     """Fit several models, each in a folder of its name, print and write the league; exit 1 where one failed."""
 
     def keep(found: Identification) -> None:
-        _write_member(found, folder / found.model.rpartition(":")[2])
+        write_together(folder / found.model.rpartition(":")[2], partial(write_each, _contents_of_fit(found)))
 
     with show_progress() as progress:
         places = benchmark_models(records, models, settings, beside, folder, progress, keep)

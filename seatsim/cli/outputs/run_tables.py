@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from statistics import fmean
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from rich.markup import escape
 from rich.table import Table
@@ -15,7 +15,7 @@ from seatsim.cli.show_table import format_number, make_table
 from seatsim.metrics.motion import ratio
 from seatsim.metrics.table import SHORT
 from seatsim.rig.designs import BoxProof, CheckedLaw, Clipping, DesignedLoop, SynthesisedDesign, unit_of_gain
-from seatsim.scenario.checks import Published, published_figures
+from seatsim.scenario.checks import published_figures
 from seatsim.scenario.scenario import Scenario, condition_of, group_by_condition, is_condition
 from seatsim.simulation.checks import describe_sampled_loop
 from seatsim.simulation.performance_bounds import PerformanceBounds, measure_distance
@@ -65,7 +65,7 @@ def make_comparison_table(runs: Sequence[Run], title: str) -> Table:
     Of several runs under one condition the best comfort and travel are bold. Runs whose figures are unverified are
     marked, and never the best. End-stop hits have a column where there are any.
     """
-    keys, columns = _label_keys(runs), [column for column in _COLUMNS if _is_shown(runs, column)]
+    keys, columns = _label_keys(runs), _list_shown(runs)
     groups = group_by_condition((run.scenario, run) for run in runs if not run.unverified)
     rivals = {id(run): group for group in groups for run in group if len(group) > 1}
     rows = []
@@ -93,7 +93,7 @@ def make_overall_table(runs: Sequence[Run]) -> list[Table]:
     )
     if len(conditions) < 2 or len(choices) < 2 or not complete or any(run.unverified for run in runs):
         return []
-    columns = [column for column in _COLUMNS if _is_shown(runs, column)]
+    columns = _list_shown(runs)
     totals = {labels: [_summarise(of, each) for each in columns] for labels, of in choices.items()}
     least = [min(filter(math.isfinite, column), default=math.nan) for column in zip(*totals.values(), strict=True)]
     rows = []
@@ -106,23 +106,23 @@ def make_overall_table(runs: Sequence[Run]) -> list[Table]:
     return [make_table(title, headings, rows, range(len(keys)))]
 
 
+def _values(runs: Sequence[Run], column: _Column) -> list[float]:
+    return [run.metrics[column.metric].value for run in runs if column.metric in run.metrics]
+
+
 def _summarise(runs: Sequence[Run], column: _Column) -> float:
-    values = [run.metrics[column.metric].value for run in runs if column.metric in run.metrics]
+    values = _values(runs, column)
     return column.summarise(values) if values else math.nan
 
 
-def _is_shown(runs: Sequence[Run], column: _Column) -> bool:
-    hits = (run.metrics[column.metric].value for run in runs if column.metric in run.metrics)
-    return column.metric != "end_stop_hits" or any(value > 0 for value in hits)
+def _list_shown(runs: Sequence[Run]) -> list[_Column]:
+    return [column for column in _COLUMNS if column.metric != "end_stop_hits" or any(_values(runs, column))]
 
 
 def _cell(run: Run, column: _Column, rivals: Sequence[Run]) -> str:
     """Return a figure of a run, bold where none of its rivals has a smaller one."""
-    if column.metric not in run.metrics:
-        return "-"
-    value = run.metrics[column.metric].value
-    others = [rival.metrics[column.metric].value for rival in rivals if column.metric in rival.metrics]
-    return _write(value, column, value == min(filter(math.isfinite, others), default=math.nan))
+    least = min(filter(math.isfinite, _values(rivals, column)), default=math.nan)
+    return next((_write(value, column, value == least) for value in _values([run], column)), "-")
 
 
 def _write(value: float, column: _Column, is_best: bool) -> str:
@@ -165,33 +165,27 @@ def make_bracket_table(runs: Sequence[Run], brackets: Mapping[str, PerformanceBo
 
 def make_published_tables(runs: Sequence[Run]) -> list[Table]:
     """Return one table for each file with published figures: ours, published, and the difference, metric by metric."""
-    of_files: dict[str, list[Run]] = {}
-    for run in runs:
-        if run.scenario.source:
-            of_files.setdefault(str(run.scenario.source.path), []).append(run)
     tables = []
-    for of_file in of_files.values():
-        source = of_file[0].scenario.source
-        if source and (found := published_figures(source)):
+    for source in {str(run.scenario.source.path): run.scenario.source for run in runs if run.scenario.source}.values():
+        place, published = published_figures(source)
+        of_file = [run for run in runs if run.scenario.source and run.scenario.source.path == source.path]
+        rows = [cells for row in published for run in of_file for cells in _compare_published(row, run)]
+        if published:
             headings = ("run", "metric", "ours", "published", "difference")
-            tables.append(make_table(f"beside {found.source}", headings, _list_published(found, of_file), (0, 1)))
+            tables.append(make_table(f"beside {place}", headings, rows, (0, 1)))
     return tables
 
 
-def _list_published(published: Published, runs: Sequence[Run]) -> list[list[str]]:
-    rows = []
-    for index, row in enumerate(published.rows):
-        for run in runs:
-            label = run.scenario.label
-            if any(label.get(key) != value for key, value in row.items() if key in label):
-                continue
-            title = ", ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in label.values())
-            for name in [key for key in row if key in run.metrics]:
-                ours, theirs = run.metrics[name].value, published.figure(index, name)
-                difference = f"{100 * (ours / theirs - 1):+.1f} %" if theirs else "-"
-                metric = escape(f"{name} [{run.metrics[name].unit}]")
-                rows.append([escape(title), metric, f"{ours:.4g}", f"{theirs:.4g}", difference])
-    return rows
+def _compare_published(row: Mapping[str, Any], run: Run) -> Iterator[list[str]]:
+    """Yield the cells of each metric that a row of published figures states of a run, none for another run's row."""
+    label = run.scenario.label
+    if all(label.get(key) == value for key, value in row.items() if key in label):
+        title = ", ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in label.values())
+        for name in [key for key in row if key in run.metrics]:
+            ours, theirs = run.metrics[name].value, float(row[name])
+            difference = f"{100 * (ours / theirs - 1):+.1f} %" if theirs else "-"
+            metric = escape(f"{name} [{run.metrics[name].unit}]")
+            yield [escape(title), metric, f"{ours:.4g}", f"{theirs:.4g}", difference]
 
 
 def make_design_table(design: SynthesisedDesign, scenario: Scenario) -> Table:
