@@ -123,7 +123,6 @@ def _is_own(status: os.stat_result) -> bool:
 
 
 _F = TypeVar("_F", bound=Callable[..., object])
-
 _OUTSIDE = ("numba", "numpy", "scipy", "llvmlite", "pydantic", "control", "cvxpy")
 """Libraries whose sources change with their version only: they are not part of the key."""
 _STANDARD = Path(sysconfig.get_path("stdlib"))
@@ -185,9 +184,9 @@ def _compiled(function: Callable[..., object], plugged: frozenset[type]) -> Call
         dispatcher: Callable[..., object] = numba.njit(nogil=True, **ARITHMETIC)(function)
         if folder is not None:
             vars(dispatcher)["_cache"] = CheckedCache(function)
+        return dispatcher
     finally:
         numba.config.CACHE_DIR = previous
-    return dispatcher
 
 
 def find_folder(name: str) -> Path | None:
@@ -195,8 +194,7 @@ def find_folder(name: str) -> Path | None:
     folder = cache_folder() / name
     try:
         _make_private(folder)
-        foreign = find_foreign(folder)
-        if foreign is not None:
+        if (foreign := find_foreign(folder)) is not None:
             folder = _private_cache(cache_folder(), foreign) / name
             _make_private(folder)
     except OSError:
@@ -231,8 +229,7 @@ def _private_cache(wanted: Path, foreign: Path) -> Path:
 
 def cache_folder() -> Path:
     """Return the folder of compiled runs: `SEATSIM_CACHE_DIR`, or the user's cache folder."""
-    chosen = os.environ.get("SEATSIM_CACHE_DIR")
-    return Path(chosen) if chosen else _user_cache()
+    return Path(os.environ.get("SEATSIM_CACHE_DIR") or _user_cache())
 
 
 def _user_cache() -> Path:
@@ -255,8 +252,7 @@ def digest(modules: Iterable[ModuleType]) -> str:
 
 def _reachable(modules: Iterable[ModuleType]) -> set[ModuleType]:
     """Return the modules and those whose parts they name, directly or not, without libraries that do not change."""
-    found: set[ModuleType] = set()
-    waiting = list(modules)
+    found, waiting = set[ModuleType](), list(modules)
     while waiting:
         module = waiting.pop()
         if module not in found and _changes(module):

@@ -52,7 +52,10 @@ def explain(error: Exception) -> str:
     text = str(error).strip()
     inner = text.rpartition(_FAILED)[2].strip()
     if not is_compilation(error) or not inner:
-        return f"{_place_in_own_code(error)}{type(error).__name__}: {text.partition(chr(10))[0]}"
+        own = set(map(str, used_files()))
+        lines = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename in own]
+        where = f"{Path(lines[-1].filename).name}, line {lines[-1].lineno}: " if lines else ""
+        return f"{where}{type(error).__name__}: {text.partition(chr(10))[0]}"
     place = re.search(r'File "([^"<]+)", line (\d+)', inner)  # what is generated has no file
     where = f"{Path(place[1]).name}, line {place[2]}: " if place else ""
     return f"{where}cannot be compiled: {_state_reason(inner)}"
@@ -74,9 +77,3 @@ def _shorten(text: str) -> str:
     while (shorter := re.sub(r"(?<=\w)\([^()]*\)", "", text)) != text:
         text = shorter
     return text
-
-
-def _place_in_own_code(error: Exception) -> str:
-    own = set(map(str, used_files()))
-    lines = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename in own]
-    return f"{Path(lines[-1].filename).name}, line {lines[-1].lineno}: " if lines else ""

@@ -18,7 +18,7 @@ from typing import NamedTuple
 from seatsim.provenance import statement
 from seatsim.provenance.statement import EXAMPLE, MANIFEST, REPEATABLE, Manifest, read_manifest, state_file
 from seatsim.scenario.loading import EXAMPLES
-from seatsim.schema.errors import InputError, RunError, nearest
+from seatsim.schema.errors import InputError, RunError, permit
 from seatsim.schema.guarded import expect, is_there, read_bytes, temporary_folder
 
 _LARGEST = 2**32
@@ -65,14 +65,11 @@ def _is_same(old: bytes, new: bytes, name: str, measured: Sequence[str]) -> bool
     if old == new or not measured:
         return old == new
     with expect(name, "file with measured times"):
-        return _without(old, name, measured) == _without(new, name, measured)
-
-
-def _without(content: bytes, name: str, fields: Sequence[str]) -> object:
-    """Return the content of a JSON or CSV file without some keys or columns."""
-    text = content.decode("utf-8")
-    rows = [json.loads(text)] if name.endswith(".json") else csv.DictReader(io.StringIO(text))
-    return [{key: value for key, value in row.items() if key not in fields} for row in rows]
+        parts = []
+        for text in (old.decode("utf-8"), new.decode("utf-8")):
+            rows = [json.loads(text)] if name.endswith(".json") else csv.DictReader(io.StringIO(text))
+            parts.append([{key: value for key, value in row.items() if key not in measured} for row in rows])
+        return parts[0] == parts[1]
 
 
 ANSWER = "reproduce.json"
@@ -118,10 +115,9 @@ def reproduce(
     if changed:
         return Reproduction(command, False, [], changed, versions, unnamed)
     with temporary_folder() as place:
-        again = place / manifest.folder
         runs = f": {manifest.counts['runs']} runs" if manifest.counts else ""
         tell(f"running {command} again{runs}")
-        again = _run(command, arguments, own_code, directory, again)
+        again = _run(command, arguments, own_code, directory, place / manifest.folder)
         differences = list(compare_outputs(manifest, folder, read_manifest(again), again))
     compared = [each.path for each in manifest.outputs]
     return Reproduction(command, not differences, compared, differences, versions, unnamed)
@@ -131,10 +127,7 @@ def _check_arguments(manifest: Manifest, folder: Path) -> list[str]:
     """Return the arguments, refused where one could do more than say what is computed."""
     command, arguments = manifest.command, manifest.arguments
     if command not in REPEATABLE:
-        raise _refuse(
-            folder,
-            f"command {command!r} is not run again{nearest(command, REPEATABLE)}; permitted: {', '.join(REPEATABLE)}",
-        )
+        raise _refuse(folder, f"command {command!r} is not run again{permit(command, REPEATABLE)}")
     if "--" not in arguments:
         raise _refuse(folder, "its arguments have no '--' before the files")
     for text in arguments[: arguments.index("--")]:
@@ -210,12 +203,8 @@ def _list_unnamed(manifest: Manifest, folder: Path) -> list[str]:
     """Return the files of a folder, but for folders with a manifest of their own, of which nothing is known."""
     known = {MANIFEST, ANSWER, *(each.path for each in manifest.outputs)}
     others = [path.parent for path in folder.glob(f"*/**/{MANIFEST}")]
-    found = [
-        path.relative_to(folder).as_posix()
-        for path in folder.rglob("*")
-        if path.is_file() and not any(path.is_relative_to(other) for other in others)
-    ]
-    return sorted(set(found) - known)
+    files = (path for path in folder.rglob("*") if path.is_file() and not any(map(path.is_relative_to, others)))
+    return sorted({path.relative_to(folder).as_posix() for path in files} - known)
 
 
 def _run(command: str, arguments: Sequence[str], own_code: Sequence[Path], directory: Path, out: Path) -> Path:
@@ -227,10 +216,8 @@ def _run(command: str, arguments: Sequence[str], own_code: Sequence[Path], direc
     code = [word for path in own_code for word in ("--with", str(path.absolute()))]
     words = [sys.executable, "-P", "-m", "seatsim", command, "--json", "--out", str(out), *code, *arguments]
     # What the process would leave behind in the middle goes with the folder.
-    place = {"TMPDIR": str(out.parent)}
-    done = subprocess.run(
-        words, cwd=directory, capture_output=True, stdin=subprocess.DEVNULL, check=False, env=os.environ | place
-    )
+    place = os.environ | {"TMPDIR": str(out.parent)}
+    done = subprocess.run(words, cwd=directory, capture_output=True, stdin=subprocess.DEVNULL, check=False, env=place)
     for folder in (out, out / out.name):
         if (folder / MANIFEST).is_file():
             return folder

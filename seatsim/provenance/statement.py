@@ -183,6 +183,11 @@ class Invocation(NamedTuple):
     directory: Path
     reads: dict[Path, _StatedFile]
 
+    def keep(self, path: Path, content: bytes) -> None:
+        """Keep what the manifest will state of a file that was read."""
+        whole = os.path.abspath(self.directory / path)
+        self.reads[Path(whole)] = state_file(whole, content)
+
 
 _current: ContextVar[Invocation | None] = ContextVar("invocation", default=None)
 
@@ -202,7 +207,7 @@ def at_work(command: str, options: Sequence[tuple[str, object]], operands: Seque
     invocation = Invocation(command, arguments, Path.cwd(), {})
     token = _current.set(invocation)
     try:
-        with watch_reads(lambda path, content: _keep(invocation, path, content)):
+        with watch_reads(invocation.keep):
             yield
     finally:
         _current.reset(token)
@@ -225,11 +230,6 @@ def state_command(otherwise: str) -> str:
     options, operands = invocation.arguments[:split], invocation.arguments[split + 1 :]
     code = [word for path in used_files() for word in ("--with", path.name)]
     return shlex.join(["seatsim", invocation.command, *operands, *options, *code])
-
-
-def _keep(invocation: Invocation, path: Path, content: bytes) -> None:
-    whole = os.path.abspath(invocation.directory / path)
-    invocation.reads[Path(whole)] = state_file(whole, content)
 
 
 def _shorten(value: object) -> str:

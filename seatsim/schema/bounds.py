@@ -58,17 +58,15 @@ def check_parts(roots: Iterable[Hashable], part: Callable[[Hashable], Part], siz
     """
     made: dict[Hashable, int] = {}
     open_parts: dict[Hashable, Part] = {}
-    stack = list(roots)[::-1]
-    top = list(stack)
+    top = list(roots)
+    stack = top[::-1]
     while stack:
         name = stack[-1]
-        if name in made:
-            stack.pop()
-            continue
         if name in open_parts:
             own, others = open_parts.pop(name)
             made[name] = own + BYTES_OF_PART + sum(made[each] for each in others)
             check_made(made[name], size)
+        if name in made:
             stack.pop()
             continue
         found = open_parts[name] = part(name)

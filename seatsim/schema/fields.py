@@ -61,20 +61,17 @@ class FieldSpecification(NamedTuple):
 
 def field_names(record: type) -> tuple[str, ...]:
     """Return the names of the fields of a record class, in order; none for a class that is no record."""
-    names: tuple[str, ...] = getattr(record, "_fields", ())
-    return names
+    return tuple(getattr(record, "_fields", ()))
 
 
 def default_values(record: type) -> Mapping[str, object]:
     """Return the defaults of a record class by field, without the fields that have none."""
-    defaults: Mapping[str, object] = getattr(record, "_field_defaults", {})
-    return defaults
+    return dict(getattr(record, "_field_defaults", {}))
 
 
 def validated(record: type[_R], values: object) -> _R:
     """Return the record of a class with the given values; raises `pydantic.ValidationError` where they do not fit."""
-    known: type = record
-    return cast("_R", adapter(known).validate_python(values))
+    return cast("_R", adapter(cast("type", record)).validate_python(values))
 
 
 def read_packaged(path: Path, kind: type[_R]) -> _R:
@@ -94,11 +91,9 @@ def describe(record: type) -> list[FieldSpecification]:
     specifications = []
     for name, hint in _hints(record).items():
         info, known = _field_info(hint), _extra_of(hint)
-        unit, stated = str(known.get("unit", "")), known.get("usual")
-        usual = [each for each in stated if isinstance(each, int | float)] if isinstance(stated, list) else None
-        meaning = (info.description or "") if info else ""
-        required, default = name not in defaults, defaults.get(name)
-        specifications.append(FieldSpecification(name, unit, meaning, default, required, usual))
+        unit, meaning = str(known.get("unit", "")), (info.description or "") if info else ""
+        usual = cast("Sequence[float] | None", known.get("usual"))  # as `param` states it
+        specifications.append(FieldSpecification(name, unit, meaning, defaults.get(name), name not in defaults, usual))
     return specifications
 
 
@@ -177,23 +172,20 @@ def doubt(field: FieldSpecification, value: object) -> str:
     if field.usual is None or value == field.default:
         return ""
     low, high = field.usual
-    numbers = value if isinstance(value, tuple) else (value,)
-    odd = next((number for number in numbers if isinstance(number, int | float) and not _is_usual(number, field)), None)
-    if odd is None:
-        return ""
     unit = "" if field.unit == "-" else f" {field.unit}"
-    return f"{odd:g}{unit} {UNUSUAL} {low:g} to {high:g}{unit}{guess(odd, field)}"
+    for odd in value if isinstance(value, tuple) else (value,):
+        if isinstance(odd, int | float) and not _is_usual(odd, field):
+            return f"{odd:g}{unit} {UNUSUAL} {low:g} to {high:g}{unit}{guess(odd, field)}"
+    return ""
 
 
 def guess(value: object, field: FieldSpecification) -> str:
     """Return the unit in which a value would be usual, as the end of a sentence; empty where there is none."""
-    if not isinstance(value, int | float):
-        return ""
-    for unit in _MISTAKEN.get(field.unit, ()):
-        factor, zero = conversion(unit, field.unit)
-        meant = factor * value + zero
-        if field.usual is not None and _is_usual(meant, field):
-            return f"; {value:g} {unit} would be {meant:.4g} {field.unit}"
+    if isinstance(value, int | float) and field.usual is not None:
+        for unit in _MISTAKEN.get(field.unit, ()):
+            factor, zero = conversion(unit, field.unit)
+            if _is_usual(meant := factor * value + zero, field):
+                return f"; {value:g} {unit} would be {meant:.4g} {field.unit}"
     return ""
 
 

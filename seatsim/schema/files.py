@@ -36,25 +36,21 @@ def write_whole(path: Path, write: Callable[[Path], object], lasting: bool = Fal
         InputError: the folder or the file cannot be written. OutputError: the disk is full, or failed.
     """
     _check_place(path)
-    part = _name_part(path)
-    with noted(part):
-        _fill(part, path, write, lasting)
+    with noted(_name_part(path)) as part:
+        try:
+            # As any file of the user: its mode is what the umask leaves of 0o666.
+            part.touch(exist_ok=False)
+            write(part)
+            if lasting:
+                with part.open("rb") as file:
+                    os.fsync(file.fileno())
+            with uncut():
+                part.replace(path)
+        except OSError as error:
+            raise OutputError(f"{path}: cannot be written: {error.strerror or error}; nothing of it is left") from error
+        finally:
+            part.unlink(missing_ok=True)
     return path
-
-
-def _fill(part: Path, path: Path, write: Callable[[Path], object], lasting: bool) -> None:
-    try:
-        # As any file of the user: its mode is what the umask leaves of 0o666.
-        os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
-        write(part)
-        if lasting:
-            _synchronise(part)
-        with uncut():
-            part.replace(path)
-    except OSError as error:
-        raise OutputError(f"{path}: cannot be written: {error.strerror or error}; nothing of it is left") from error
-    finally:
-        part.unlink(missing_ok=True)
 
 
 def write_packed(path: Path, write: Callable[[gzip.GzipFile], object], level: int = 6) -> Path:
@@ -80,8 +76,7 @@ def write_together(folder: Path, write: Callable[[Path], Iterable[Path]]) -> lis
     # Within a folder that is there: the one above it may not be writable.
     above = folder if folder.is_dir() else folder.parent
     remove_left(above)
-    part = _name_part(above / os.path.basename(os.path.abspath(folder)))
-    with noted(part):
+    with noted(_name_part(above / os.path.basename(os.path.abspath(folder)))) as part:
         try:
             part.mkdir()
             names = [path.relative_to(part) for path in write(part)]
@@ -101,7 +96,7 @@ def _put_in_place(part: Path, folder: Path, names: Iterable[Path]) -> None:
         return
     before = part / ".before"
     before.mkdir()
-    moved: list[tuple[Path, Path | None]] = []
+    moved: list[tuple[Path, Path]] = []
     try:
         for number, name in enumerate(names):
             place, kept = folder / name, before / str(number)
@@ -109,21 +104,20 @@ def _put_in_place(part: Path, folder: Path, names: Iterable[Path]) -> None:
             if place.is_dir():
                 raise IsADirectoryError(f"{place} is a folder")
             place.parent.mkdir(parents=True, exist_ok=True)
-            is_there = place.exists()
-            if is_there:
+            if place.exists():
                 # A second name, where the disk has such: the file stays in its place until the new one takes it.
                 try:
                     os.link(place, kept)
                 except OSError:
                     shutil.copy2(place, kept)
-            moved.append((place, kept if is_there else None))
+            moved.append((place, kept))
             (part / name).replace(place)
     except BaseException:
-        for place, old in reversed(moved):
-            if old is None:
-                place.unlink(missing_ok=True)
+        for place, kept in reversed(moved):
+            if kept.exists():
+                kept.replace(place)
             else:
-                old.replace(place)
+                place.unlink(missing_ok=True)
         raise
 
 
@@ -207,19 +201,9 @@ def _is_running(process: int) -> bool:
         return True
     try:
         os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    except OSError:
-        return True
+    except OSError as error:
+        return not isinstance(error, ProcessLookupError)
     return True
-
-
-def _synchronise(path: Path) -> None:
-    handle = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
 
 
 def write_text(path: Path, text: str, lasting: bool = False) -> Path:

@@ -93,22 +93,21 @@ def use(path: str | Path) -> ModuleType | Path:
     Raises:
         InputError: there is no such file, its name is no module name or that of another module, or its import fails.
     """
-    if Path(path).suffix == UNIT:
-        unit = _UsedFile(Path(path).resolve(), _fingerprint(Path(path)))
-        _used[str(unit.path)] = unit
-        return unit.path
-    file = _UsedFile(Path(path).resolve(), _read(Path(path)))
-    name = Path(path).stem
+    shown = Path(path)
+    where, name = shown.resolve(), shown.stem
+    if shown.suffix == UNIT:
+        _used[str(where)] = _UsedFile(where, _fingerprint(shown))
+        return where
+    file = _UsedFile(where, _read(shown))
     if _used.get(name) == file:
         return sys.modules[name]
-    _check_name_is_free(name, file.path)
+    _check_name_is_free(name, where)
     # First, so that a name which a plug-in has is an error of the file that takes it, and not of the plug-in.
     load_plugins()
-    module = sys.modules.get(name) if name not in _used else None
-    if module is None:
-        module = _load(name, Path(path), file.path)
+    if name in _used or name not in sys.modules:
+        _load(name, shown, where)
     _used[name] = file
-    return module
+    return sys.modules[name]
 
 
 def check_in_use(path: Path) -> None:
@@ -156,13 +155,11 @@ def import_named(name: str, beside: Path | None = None) -> ModuleType:
         if top not in sys.modules:
             _import_installed(top)
         return importlib.import_module(name)
-    except ModuleNotFoundError as error:
-        if error.name is not None and f"{name}.".startswith(f"{error.name}."):
-            raise _missing(name, beside) from error
-        raise InputError(f"module '{name}' cannot be imported: {error}") from error
     except ImportError as error:
         if isinstance(error.__cause__, KeyboardInterrupt):  # modules in C++ make such an error of it
             raise KeyboardInterrupt from error
+        if isinstance(error, ModuleNotFoundError) and error.name and f"{name}.".startswith(f"{error.name}."):
+            raise _missing(name, beside) from error
         raise InputError(f"module '{name}' cannot be imported: {error}") from error
 
 
@@ -177,17 +174,17 @@ def started_elsewhere() -> Iterator[None]:
     try:
         yield
     finally:
-        if previous is None:
-            del os.environ[_SAFE_PATH]
-        else:
+        del os.environ[_SAFE_PATH]
+        if previous is not None:
             os.environ[_SAFE_PATH] = previous
 
 
 def _read(path: Path) -> bytes:
     """Return the content of a Python file whose name can be that of a module."""
     if path.suffix != ".py" or not path.stem.isidentifier():
-        problem = f"{path}: not a Python file that can be imported; its name has letters, digits and _, then .py"
-        raise InputError(problem)
+        raise InputError(
+            f"{path}: not a Python file that can be imported; its name has letters, digits and _, then .py"
+        )
     try:
         return path.read_bytes()
     except OSError as error:
@@ -196,13 +193,9 @@ def _read(path: Path) -> bytes:
 
 def _check_name_is_free(name: str, path: Path) -> None:
     """Raise InputError where the name is that of another module: one of the two would be taken for the other."""
-    if name in sys.modules:
-        origin = getattr(sys.modules[name], "__file__", None)
-    elif (spec := _find_installed(name)) is not None:
-        origin = spec.origin
-    else:
-        return
-    if origin is None or Path(origin).resolve() != path:
+    spec = None if name in sys.modules else _find_installed(name)
+    origin = spec.origin if spec else getattr(sys.modules.get(name), "__file__", None)
+    if (spec or name in sys.modules) and (origin is None or Path(origin).resolve() != path):
         raise InputError(f"{path}: '{name}' is the name of another module, {origin or 'built in'}; rename the file")
 
 
@@ -214,13 +207,13 @@ class _FreshLoader(SourceFileLoader):
         raise OSError
 
 
-def _load(name: str, shown: Path, path: Path) -> ModuleType:
+def _load(name: str, shown: Path, path: Path) -> None:
     """Execute a file as a new module; the one that it replaces stays where that fails."""
     # A .py file always has one. An `assert` here, which pytest rewrites, would change the key of what is compiled.
     spec = cast("ModuleSpec", importlib.util.spec_from_file_location(name, path, loader=_FreshLoader(name, str(path))))
     previous = sys.modules.get(name)
     try:
-        return _execute(spec)
+        _execute(spec)
     except Exception as error:
         if previous is not None:
             sys.modules[name] = previous
@@ -235,17 +228,15 @@ def _import_installed(name: str) -> None:
     _execute(spec)
 
 
-def _execute(spec: ModuleSpec) -> ModuleType:
+def _execute(spec: ModuleSpec) -> None:
     module = importlib.util.module_from_spec(spec)
-    loader = cast("Loader", spec.loader)  # `module_from_spec` has asked for it
     # Before its execution, because the decorators and numba look a class up by the name of its module.
     sys.modules[spec.name] = module
     try:
-        loader.exec_module(module)
+        cast("Loader", spec.loader).exec_module(module)  # `module_from_spec` has asked for it
     except BaseException:
         del sys.modules[spec.name]
         raise
-    return sys.modules[spec.name]
 
 
 def _find_installed(name: str) -> ModuleSpec | None:
@@ -289,8 +280,7 @@ def _missing(name: str, beside: Path | None) -> MissingModuleError:
     candidates = [folder / f"{name}.py" for folder in (beside, Path()) if folder is not None]
     file = next((path for path in candidates if path.is_file()), None)
     if file is None:
-        return MissingModuleError(
-            f"{problem}; name its file: --with {name}.py, in Python seatsim.use('{name}.py')", None
-        )
+        how = f"--with {name}.py, in Python seatsim.use('{name}.py')"
+        return MissingModuleError(f"{problem}; name its file: {how}", None)
     how = f"--with {shlex.quote(str(file))}, in Python seatsim.use({str(file)!r})"
     return MissingModuleError(f"{problem}, and {file} runs only where it is named: {how}", file)

@@ -51,8 +51,7 @@ def read_table(path: Path) -> pd.DataFrame:
     """
     import pyarrow as pa
 
-    content = unpack(read_bytes(path, LARGEST_FILE, "a table"), path)
-    content = content.removeprefix(b"\xef\xbb\xbf")
+    content = unpack(read_bytes(path, LARGEST_FILE, "a table"), path).removeprefix(b"\xef\xbb\xbf")
     _check_text(content, path)
     names = _read_names(content, path)
     rows = content.count(b"\n")
@@ -61,7 +60,12 @@ def read_table(path: Path) -> pd.DataFrame:
         table, bad = parse_rows(content, path, names, skip=1, use_threads=len(content) > _SHORT)
     else:
         table, bad = pa.table({name: pa.array([], pa.float64()) for name in names}), []
-    _check_rows(bad, path)
+    if bad:
+        # Several threads do not tell the line of a row.
+        place = f"{path}, line {bad[0].number}" if bad[0].number else str(path)
+        seen = f"has {bad[0].actual_columns} columns where the others have {bad[0].expected_columns}"
+        more = f" (and {len(bad) - 1} more lines)" if len(bad) > 1 else ""
+        raise InputError(f"{place}: {seen}{more}; the file is truncated or damaged: export it again")
     _check_quotes(content, table.num_rows, path)
     frame: pd.DataFrame = table.to_pandas()
     return frame
@@ -106,15 +110,6 @@ def parse_rows(
     return table, bad
 
 
-def _check_rows(bad: Sequence[arrow_csv.InvalidRow], path: Path) -> None:
-    """Raise InputError at the first row of another length than the names; several threads do not tell its line."""
-    if bad:
-        place = f"{path}, line {bad[0].number}" if bad[0].number else str(path)
-        seen = f"has {bad[0].actual_columns} columns where the others have {bad[0].expected_columns}"
-        more = f" (and {len(bad) - 1} more lines)" if len(bad) > 1 else ""
-        raise InputError(f"{place}: {seen}{more}; the file is truncated or damaged: export it again")
-
-
 def unpack(content: bytes, path: Path) -> bytes:
     """Return the bytes of a table, unpacked where they are packed by gzip, bzip2, xz or as the only file of a ZIP.
 
@@ -124,24 +119,20 @@ def unpack(content: bytes, path: Path) -> bytes:
     opened = next((opens for magic, opens in _UNPACKED.items() if content.startswith(magic)), None)
     if opened is None:
         if content and path.suffix in _PACKED:
-            raise InputError(
-                f"{path}: cannot be read as a table: its name ends in {path.suffix}, but it is not packed;"
-                " copy it again"
-            )
+            problem = f"its name ends in {path.suffix}, but it is not packed; copy it again"
+            raise InputError(f"{path}: cannot be read as a table: {problem}")
         return content
-    parts: list[bytes] = []
-    size = 0
+    unpacked = bytearray()
     try:
         with opened(io.BytesIO(content)) as file:
             while part := file.read(_CHUNK):
-                size += len(part)
-                check_made(size, len(content), "what it unpacks to")
-                parts.append(part)
+                unpacked += part
+                check_made(len(unpacked), len(content), "what it unpacks to")
     except TooMuchError as error:
         raise InputError(f"{path}: {error}") from error
     except UNPACKING_ERRORS as error:
         raise InputError(f"{path}: cannot be unpacked ({error}); it is truncated: copy it again") from error
-    return b"".join(parts)
+    return bytes(unpacked)
 
 
 def numbers(frame: pd.DataFrame, column: str) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
@@ -158,8 +149,9 @@ def _check_text(content: bytes, path: Path) -> None:
         content.isascii() or content.decode()
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
-        problem = f"{path}, line {line}: cannot be read as a table: is not UTF-8 text; save it as such"
-        raise InputError(problem) from error
+        raise InputError(
+            f"{path}, line {line}: cannot be read as a table: is not UTF-8 text; save it as such"
+        ) from error
 
 
 def _check_quotes(content: bytes, rows: int, path: Path) -> None:
@@ -168,8 +160,7 @@ def _check_quotes(content: bytes, rows: int, path: Path) -> None:
     if b'"' not in content or rows == content.count(b"\n") - content.endswith(b"\n"):
         return
     if rows != sum(bool(line.strip()) for line in content.splitlines()) - 1:
-        lines = enumerate(content.splitlines(), 1)
-        line = next((number for number, text in lines if text.count(b'"') % 2), 1)
+        line = next((k for k, text in enumerate(content.splitlines(), 1) if text.count(b'"') % 2), 1)
         raise InputError(f"{path}, line {line}: a quotation mark is not closed in its line; remove it")
 
 

@@ -76,19 +76,8 @@ OWN_SPELLINGS = {
     "m": {'"': "inch", "in": "inch", "zoll": "inch"},
 }
 """Spellings that mean something else, or nothing, to pint, by the unit that is wanted: `g` of a mass is a gram."""
-_SIGNS = {
-    "⁻²": "^-2",
-    "²": "^2",
-    "³": "^3",
-    "°": "deg",
-    "℃": "degC",
-    "℉": "degF",
-    "µ": "u",
-    "μ": "u",
-    "·": "*",
-    "⋅": "*",
-}
-
+_SIGNS = {"⁻²": "^-2", "²": "^2", "³": "^3", "°": "deg", "℃": "degC", "℉": "degF"}
+_SIGNS |= dict.fromkeys("µμ", "u") | dict.fromkeys("·⋅", "*")
 _NO_UNITS = ("links",)
 """Words in names that pint takes for units: `links` is German for left."""
 
@@ -141,12 +130,10 @@ def _look_up(unit: str, wanted: str) -> Conversion | None:
     text, target = _spelt(unit, wanted), _spelt(wanted, wanted)
     if text == target:
         return Conversion(1.0)
-
     registry = _registry()
     try:
         source = registry.Unit(text)
-        at_zero = float(registry.Quantity(0.0, source).to(target).magnitude)
-        at_one = float(registry.Quantity(1.0, source).to(target).magnitude)
+        at_zero, at_one = (float(registry.Quantity(each, source).to(target).magnitude) for each in (0.0, 1.0))
     except Exception:
         # Pint parses an expression, and a text that is none fails in many ways.
         return None
@@ -158,11 +145,10 @@ def _spelt(unit: str, wanted: str) -> str:
     """Return a unit as pint spells it: `m_s2`, `m/s²` and `m/s2` are `m/s**2`."""
     plain = unit.strip().strip("[]()")
     own = OWN_SPELLINGS.get(wanted, {}).get(plain.lower())
-    if own is not None:
-        plain = own
+    plain = own or plain
     for sign, ascii_sign in _SIGNS.items():
         plain = plain.replace(sign, ascii_sign)
-    plain = re.sub(r"^([A-Za-z]+)_([A-Za-z]+\d?)$", r"\1/\2", plain) if own is None else plain
+    plain = plain if own else re.sub(r"^([A-Za-z]+)_([A-Za-z]+\d?)$", r"\1/\2", plain)
     plain = re.sub(r"\bsec\b", "s", plain)
     return re.sub(r"([A-Za-z])\^?(-?\d)", r"\1**\2", plain)
 

@@ -87,9 +87,7 @@ def check_keys(values: Mapping[str, object], known: Iterable[str], source: Sourc
 def _find_unknown(
     values: Mapping[str, object], known: Sequence[str], source: Source, keys: KeyPath
 ) -> Iterator[InputError]:
-    for key in values:
-        if key not in known:
-            yield source.error((*keys, key), f"unknown key{permit(key, known)}")
+    yield from (source.error((*keys, key), f"unknown key{permit(key, known)}") for key in values if key not in known)
 
 
 def choose(values: Mapping[str, object], key: str, source: Source, keys: KeyPath) -> str:
@@ -113,9 +111,8 @@ def chosen_class(
 def read_number(value: object, source: Source, keys: KeyPath, unit: str = "") -> float:
     """Return a value as a number if it is a finite one, else raise InputError."""
     if not is_finite_number(value):
-        raise source.error(
-            keys, f"{value!r} is not permitted; it must be a finite number{f' in {unit}' if unit else ''}"
-        )
+        in_unit = f" in {unit}" if unit else ""
+        raise source.error(keys, f"{value!r} is not permitted; it must be a finite number{in_unit}")
     return float(value)
 
 
@@ -142,6 +139,11 @@ def _find_infinite(value: object, source: Source, keys: KeyPath) -> Iterator[tup
             yield from _find_infinite(item, source, (*keys, key))
 
 
+_BOUNDS = {"greater_than_equal": ("at least", "ge"), "less_than_equal": ("at most", "le")}
+_BOUNDS |= {"greater_than": ("greater than", "gt"), "less_than": ("less than", "lt")}
+"""What pydantic calls a bound that is not met: its words, and where the bound stands."""
+
+
 def _problem(record: type, error: ErrorDetails) -> str:
     """Translate pydantic's finding into what is wrong, what is permitted, and in which unit."""
     context, value = error.get("ctx") or {}, _shown(error["input"])
@@ -150,10 +152,8 @@ def _problem(record: type, error: ErrorDetails) -> str:
     unit = field.unit if field else ""
     suffix = f" {unit}" if unit and unit != "-" else ""
     meant = guess(error["input"], field) if field else ""
-    bounds = {"greater_than_equal": ("at least", "ge"), "less_than_equal": ("at most", "le")}
-    bounds |= {"greater_than": ("greater than", "gt"), "less_than": ("less than", "lt")}
-    if error["type"] in bounds:
-        word, bound = bounds[error["type"]]
+    if error["type"] in _BOUNDS:
+        word, bound = _BOUNDS[error["type"]]
         return f"{value} is not permitted; it must be {word} {context[bound]:g}{suffix}{meant}"
     if error["type"] == "missing":
         return "this key is missing"

@@ -109,8 +109,7 @@ def _compose(text: str) -> yaml.Node | None:
     try:
         return _Composer(text).get_single_node()
     except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        problem = (error.problem or "not YAML").split("\n")[0]
+        mark, problem = error.problem_mark or error.context_mark, (error.problem or "not YAML").split("\n")[0]
         plain = f"{problem}; write each key once, as 'key: value'"
         said = next((ours for theirs, ours in _PROBLEMS.items() if theirs in problem), plain)
         raise YamlError(said, mark.line + 1 if mark else 1) from error
