@@ -57,7 +57,7 @@ def _try_class(kind: str, name: str, cls: type) -> list[str]:
 
 
 def _try_damper(name: str, cls: type) -> Iterator[str]:
-    values = {field: _choose_value(cls, field) for field in field_names(cls)}
+    values = _choose_values(cls)
     record = cls(**values)
     state = DAMPERS.specification_of(cls).initial
     scaling = TemperatureScaling()
@@ -72,8 +72,7 @@ def _try_damper(name: str, cls: type) -> Iterator[str]:
 
 
 def _try_law(name: str, cls: type) -> Iterator[str]:
-    values = {field: _choose_value(cls, field) for field in field_names(cls)}
-    _simulate({"controller": {"law": name, **values}})
+    _simulate({"controller": {"law": name, **_choose_values(cls)}})
     return iter(())
 
 
@@ -95,12 +94,10 @@ def _state(name: str, values: Mapping[str, object]) -> dict[str, object]:
     return {"effect": name, "parameters": values}
 
 
-def _choose_value(cls: type, field: str) -> object:
-    """Return the default of a field, or a value between its bounds."""
-    if field in (defaults := default_values(cls)):
-        return defaults[field]
-    low, high = bounds(cls, field)
-    return 0.5 * (low + high) if np.isfinite(low + high) else 1.0
+def _choose_values(cls: type) -> dict[str, object]:
+    """Return the default of each field, or the middle of its bounds, or 1 where it has none."""
+    middles = {field: 0.5 * sum(bounds(cls, field)) for field in field_names(cls)}
+    return {field: middle if np.isfinite(middle) else 1.0 for field, middle in middles.items()} | default_values(cls)
 
 
 def _simulate(settings: dict[str, object]) -> Run:
@@ -153,7 +150,8 @@ def check_file(path: Path) -> Checked:
     if {"model", "bench"} & set(stated):
         return Checked("parameters", [load_specimen(None, path).name], [])
     if is_sweep(stated):
-        return _check_sweep(path)
+        prepared = prepare(path)
+        return Checked("sweep", [f"{prepared.plan.runs} runs over {', '.join(prepared.plan.keys)}"], prepared.doubts)
     if "channels" in stated:
         found = read_map(path)
         return Checked(f"map of a {found.rig}", list(found.channels), [])
@@ -170,12 +168,6 @@ def _check_scenario(path: Path) -> Checked:
                 scenario.excitation.floor(scenario.solver.step, scenario.seed)
     doubts = dict.fromkeys(sentence for scenario in scenarios for sentence in list_doubts(scenario))
     return Checked("scenario", [scenario.title for scenario in scenarios], list(doubts))
-
-
-def _check_sweep(path: Path) -> Checked:
-    prepared = prepare(path)
-    keys = ", ".join(prepared.plan.keys)
-    return Checked("sweep", [f"{prepared.plan.runs} runs over {keys}"], prepared.doubts)
 
 
 def _check_recording(folder: Path) -> Checked:

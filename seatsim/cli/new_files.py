@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from functools import partial
 from pathlib import Path
 
 from seatsim.cli.outputs.answers import FILES
 from seatsim.scenario.loading import EXAMPLES
 from seatsim.schema.errors import InputError, permit
-from seatsim.schema.files import write_together
+from seatsim.schema.files import write_bytes, write_together
 from seatsim.schema.registry import names
 
 _TEMPLATES = Path(__file__).with_name("templates")
@@ -36,14 +35,7 @@ def write_new(kind: str, path: Path) -> list[Path]:
         if file.exists():
             raise InputError(f"{file}: is there already, and is not replaced; give another name")
     folder = path if kind == "recording" else path.parent
-    by_name = {file.name: content for file, content in contents.items()}
-    return write_together(folder, partial(_write_all, contents=by_name))
-
-
-def _write_all(part: Path, contents: Mapping[str, bytes]) -> list[Path]:
-    for name, content in contents.items():
-        (part / name).write_bytes(content)
-    return [part / name for name in contents]
+    return write_together(folder, lambda part: [write_bytes(part / file.name, contents[file]) for file in contents])
 
 
 def _scenario(path: Path) -> Mapping[Path, bytes]:
@@ -63,8 +55,8 @@ def _recording(path: Path) -> Mapping[Path, bytes]:
 def _code(kind: str, path: Path) -> Mapping[Path, bytes]:
     name = path.name.removesuffix(".py")
     if not name.isidentifier():
-        problem = f"{path}: '{name}' cannot be the name of a module; letters, digits and _ can, such as my_{kind}"
-        raise InputError(problem)
+        problem = f"'{name}' cannot be the name of a module; letters, digits and _ can, such as my_{kind}"
+        raise InputError(f"{path}: {problem}")
     taken = [known.rpartition(".")[2] for known in names(REGISTERED[kind])]
     if name in taken:
         raise InputError(f"{path}: there is a {REGISTERED[kind]} called '{name}' already; give another name")

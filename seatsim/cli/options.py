@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Sequence
 from functools import wraps
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -100,16 +100,9 @@ Out = Annotated[
 NewFolder = Annotated[
     Path, typer.Option("--out", help="Folder of the recordings.", show_default=False, callback=check_out)
 ]
-Scenarios = Annotated[
-    list[str],
-    typer.Argument(help="Scenario files, or names of examples.", show_default=False, autocompletion=_complete_scenario),
-]
-OneScenario = Annotated[
-    str,
-    typer.Argument(
-        help="A scenario file, or the name of an example.", show_default=False, autocompletion=_complete_scenario
-    ),
-]
+_COMPLETED: dict[str, Any] = {"show_default": False, "autocompletion": _complete_scenario}
+Scenarios = Annotated[list[str], typer.Argument(help="Scenario files, or names of examples.", **_COMPLETED)]
+OneScenario = Annotated[str, typer.Argument(help="A scenario file, or the name of an example.", **_COMPLETED)]
 RecordingFolder = Annotated[
     Path, typer.Argument(help="The folder of a recording: it holds recording.yaml.", show_default=False)
 ]

@@ -96,26 +96,17 @@ def _fit(table: Table) -> list[str]:
     """Drop columns of figures until the others have room, and return the headings of those that went."""
     for column in table.columns:
         column.overflow, column.no_wrap = "fold", column.justify == "right"
-        column.min_width = _longest_word(column)
+        texts = [_unmarked(column.header), *map(_unmarked, column.cells)]
+        column.min_width = max((cell_len(word) for text in texts for word in text.split()), default=1)
     left_out: list[str] = []
-    while _measure_least(table) > out.width:
+    # Rich measures a table within the width of its options: these have more than any table needs.
+    while Measurement.get(out, out.options.update(width=_WIDEST), table).minimum > out.width:
         last = next((column for column in reversed(table.columns) if column.justify == "right"), None)
         if last is None:
-            return left_out
+            break
         table.columns.remove(last)
         left_out.insert(0, _plain(last.header))
     return left_out
-
-
-def _measure_least(table: Table) -> int:
-    # Rich measures a table within the width of its options: these have more than any table needs.
-    return Measurement.get(out, out.options.update(width=_WIDEST), table).minimum
-
-
-def _longest_word(column: Column) -> int:
-    """Return the letters of the longest word of a column, its heading included; the least is 1."""
-    texts = [_unmarked(column.header), *map(_unmarked, column.cells)]
-    return max((cell_len(word) for text in texts for word in text.split()), default=1)
 
 
 def _pad(column: Column, with_heading: bool) -> list[str]:

@@ -33,9 +33,8 @@ _LIBRARIES = ("numpy", "scipy", "numba", "pyarrow", "pandas", "matplotlib", "cvx
 
 def list_versions(libraries: Iterable[str] = _LIBRARIES, files: Iterable[Path] = ()) -> Mapping[str, str]:
     """Return the versions of Python, seatsim and some libraries, with a hash over all sources and `files`."""
-    found = {"python": platform.python_version(), "seatsim": seatsim.__version__}
-    found |= {name: _read_version(name) for name in libraries}
-    return found | {"sources": _digest_sources(tuple(files))}
+    own = {"python": platform.python_version(), "seatsim": seatsim.__version__}
+    return own | {name: _read_version(name) for name in libraries} | {"sources": _digest_sources(tuple(files))}
 
 
 @cache
@@ -305,7 +304,6 @@ def _name_input(path: Path, folder: Path) -> str:
     """Return the path of an input relative to the folder of the manifest, or as an example of seatsim."""
     from seatsim.scenario.loading import EXAMPLES  # takes longer to load than a command that checks its options
 
-    for examples in EXAMPLES:
-        if path.is_relative_to(examples):
-            return f"{EXAMPLE}{path.relative_to(examples).as_posix()}"
+    for examples in filter(path.is_relative_to, EXAMPLES):
+        return f"{EXAMPLE}{path.relative_to(examples).as_posix()}"
     return relate(path, folder)

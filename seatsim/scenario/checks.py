@@ -72,15 +72,12 @@ def checks_schema() -> Schema:
 
 def _read_check(name: str, value: object, source: Source) -> Check:
     keys: KeyPath = ("checks", name)
-    if name == STABLE:
-        stated = {} if value is True else mapping(value, source, keys)
-        check_keys(stated, ("per",), source, keys)
-        return Check(name, variants=_variants(stated, source, keys))
-    stated = mapping(value, source, keys)
-    check_keys(stated, ("min", "max", "per"), source, keys)
+    is_stability = name == STABLE
+    stated = {} if is_stability and value is True else mapping(value, source, keys)
+    check_keys(stated, ("per",) if is_stability else ("min", "max", "per"), source, keys)
     bounds = {key: read_number(stated[key], source, (*keys, key)) for key in ("min", "max") if key in stated}
     low, high = bounds.get("min", -math.inf), bounds.get("max", math.inf)
-    if not bounds or low > high:
+    if not is_stability and (not bounds or low > high):
         raise source.error(keys, "states no range; write {min: x}, {max: x}, or both with min below max")
     return Check(name, low, high, _variants(stated, source, keys))
 

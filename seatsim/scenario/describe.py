@@ -92,11 +92,9 @@ def _format_list(pages: list[Page]) -> str:
     wide = max(len(page.name) for page in pages)
     lines = []
     for kind in (*KINDS, "section"):
-        lines += [f"{kind}s"]
-        lines += [
-            f"  {page.name:{wide}}  {'(own) ' * page.own}{page.title}".rstrip() for page in pages if page.kind == kind
-        ]
-        lines += [""]
+        of_kind = [page for page in pages if page.kind == kind]
+        named = (f"  {page.name:{wide}}  {'(own) ' * page.own}{page.title}".rstrip() for page in of_kind)
+        lines += [f"{kind}s", *named, ""]
     return "\n".join([*lines, "seatsim describe NAME shows the keys of one."])
 
 

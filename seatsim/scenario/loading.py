@@ -35,7 +35,9 @@ def expand(source: Source, settings: Mapping[str, object]) -> Iterator[tuple[Sou
     """Yield the content of every run with the label that sets it apart."""
     base = source.with_changes()
     for key, value in settings.items():
-        base.put(key, value, _place_of_setting(key, value))
+        stated_as = value if isinstance(value, str) else json.dumps(value, default=str)
+        # That option, not a line of the file.
+        base.put(key, value, f"--set {key}={cut(stated_as)}")
     variants = mapping(base.data.pop("variants", {}), base, ("variants",))
     stated = mapping(base.data.pop("sweep", {}), base, ("sweep",))
     sweep = dict(stated)
@@ -64,11 +66,6 @@ def _swept_values(values: object, source: Source, key: str) -> list[object]:
     return values
 
 
-def _place_of_setting(dotted: str, value: object) -> str:
-    """Return the place of a value that an option states: that option, not a line of the file."""
-    return f"--set {dotted}={cut(value if isinstance(value, str) else json.dumps(value, default=str))}"
-
-
 def _replace(source: Source, dotted: str, value: object, origin: KeyPath) -> None:
     """Put a value under a dotted key; its place is then that of the variant, by name, or sweep it comes from."""
     stated = (*origin, dotted)
@@ -93,10 +90,9 @@ def find_file(path: Path) -> Path:
         return path
     if not path.is_absolute():
         inside = Path(*path.parts[1:]) if path.parts[:1] == ("scenarios",) else path
-        for folder in EXAMPLES:
-            for name in (inside, inside.with_name(f"{inside.name}.yaml")):
-                if is_there(folder / name):
-                    return folder / name
+        names = (inside, inside.with_name(f"{inside.name}.yaml"))
+        for file in filter(is_there, (folder / name for folder in EXAMPLES for name in names)):
+            return file
     known = list_examples()
     near = nearest(path, [*known, *(str(file) for file in path.parent.glob("*.yaml"))])
     raise InputError(f"{path}: no such file{near}; give the path of a scenario, or an example: {', '.join(known)}")

@@ -145,8 +145,7 @@ def list_doubts(scenario: Scenario) -> list[str]:
     doubts = []
     for section, record in _list_records(scenario).items():
         for field in describe(type(record)):
-            problem = doubt(field, getattr(record, field.name))
-            if problem:
+            if problem := doubt(field, getattr(record, field.name)):
                 is_number = section == TEMPERATURE and not _is_thermal(scenario)
                 keys = (section,) if is_number else (*section.split("."), field.name)
                 doubts.append(f"{scenario.place(*keys)}: {problem}")

@@ -84,23 +84,17 @@ def list_written(record: type) -> tuple[_WrittenField, ...]:
         if not form.left_out:
             key = form.key or (f"{name}_{form.unit}" if form.unit else name)
             found.append(_WrittenField(name, key, form, str if form.file else hints[name]))
-    for name, function in _list_properties(record):
-        form = vars(function)["form"]
-        hint = get_type_hints(function, include_extras=True)["return"]
-        found.append(_WrittenField(name, form.key or name, form, hint))
+    for name, value in ((name, value) for kind in reversed(record.__mro__) for name, value in vars(kind).items()):
+        if isinstance(value, property) and value.fget and "form" in vars(value.fget):
+            form = vars(value.fget)["form"]
+            hint = get_type_hints(value.fget, include_extras=True)["return"]
+            found.append(_WrittenField(name, form.key or name, form, hint))
     return tuple(found)
 
 
 def _find_form(hint: object) -> Form:
     marks = get_args(hint)[1:] if get_origin(hint) is Annotated else ()
     return next((mark for mark in marks if isinstance(mark, Form)), Form())
-
-
-def _list_properties(record: type) -> Iterator[tuple[str, Callable[..., object]]]:
-    for kind in reversed(record.__mro__):
-        for name, value in vars(kind).items():
-            if isinstance(value, property) and value.fget and "form" in vars(value.fget):
-                yield name, value.fget
 
 
 def find_record(hint: object) -> type | None:

@@ -64,7 +64,7 @@ def field_names(record: type) -> tuple[str, ...]:
     return tuple(getattr(record, "_fields", ()))
 
 
-def default_values(record: type) -> Mapping[str, object]:
+def default_values(record: type) -> dict[str, object]:
     """Return the defaults of a record class by field, without the fields that have none."""
     return dict(getattr(record, "_field_defaults", {}))
 

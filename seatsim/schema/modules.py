@@ -23,7 +23,7 @@ from functools import cache
 from importlib.machinery import ModuleSpec, SourceFileLoader
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, NamedTuple, NoReturn, cast
+from typing import TYPE_CHECKING, NoReturn, cast
 
 from seatsim.schema.errors import InputError
 from seatsim.schema.guarded import read_bytes
@@ -41,11 +41,6 @@ class MissingModuleError(InputError):
         self.file = file
 
 
-class _UsedFile(NamedTuple):
-    path: Path
-    content: bytes
-
-
 UNIT = ".fmu"
 """Ending of the name of a functional mock-up unit."""
 LARGEST_UNIT = 256 * 2**20
@@ -53,8 +48,8 @@ LARGEST_UNIT = 256 * 2**20
 _SAFE_PATH = "PYTHONSAFEPATH"
 _HOME = Path(__file__).resolve().parents[2]
 """The folder that seatsim lies in."""
-_used: dict[str, _UsedFile] = {}
-"""What `use` has loaded, by module name, in the order in which it was named."""
+_used: dict[str, tuple[Path, bytes]] = {}
+"""What `use` has loaded, by module name, in the order in which it was named: where it lies, and its content."""
 
 
 @cache
@@ -96,9 +91,9 @@ def use(path: str | Path) -> ModuleType | Path:
     shown = Path(path)
     where, name = shown.resolve(), shown.stem
     if shown.suffix == UNIT:
-        _used[str(where)] = _UsedFile(where, _fingerprint(shown))
+        _used[str(where)] = (where, _fingerprint(shown))
         return where
-    file = _UsedFile(where, _read(shown))
+    file = (where, _read(shown))
     if _used.get(name) == file:
         return sys.modules[name]
     _check_name_is_free(name, where)
@@ -120,7 +115,7 @@ def check_in_use(path: Path) -> None:
     how = f"--with {shlex.quote(str(path))}, in Python seatsim.use({str(path)!r})"
     if used is None:
         raise MissingModuleError(f"{path} holds native code, which runs only where the file is named: {how}", path)
-    if used.content != _fingerprint(path):
+    if used[1] != _fingerprint(path):
         raise InputError(f"{path}: has changed since it was named; name it again: {how}")
 
 
@@ -136,7 +131,7 @@ def use_all(paths: Iterable[str | Path]) -> None:
 
 def used_files() -> tuple[Path, ...]:
     """Return the files in use, in the order in which they were named."""
-    return tuple(file.path for file in _used.values())
+    return tuple(path for path, _ in _used.values())
 
 
 def import_named(name: str, beside: Path | None = None) -> ModuleType:
@@ -158,7 +153,8 @@ def import_named(name: str, beside: Path | None = None) -> ModuleType:
     except ImportError as error:
         if isinstance(error.__cause__, KeyboardInterrupt):  # modules in C++ make such an error of it
             raise KeyboardInterrupt from error
-        if isinstance(error, ModuleNotFoundError) and error.name and f"{name}.".startswith(f"{error.name}."):
+        is_named = isinstance(error, ModuleNotFoundError) and error.name is not None
+        if is_named and f"{name}.".startswith(f"{error.name}."):
             raise _missing(name, beside) from error
         raise InputError(f"module '{name}' cannot be imported: {error}") from error
 

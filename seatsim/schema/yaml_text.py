@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 import yaml
 
@@ -54,27 +54,20 @@ class YamlError(Exception):
         self.line = line
 
 
-class _Content(NamedTuple):
-    """The value of a text, and the line of every key and entry."""
-
-    value: object
-    lines: dict[KeyPath, int]
-
-
-def parse(text: str) -> _Content:
-    """Return the value of a text.
+def parse(text: str) -> tuple[object, dict[KeyPath, int]]:
+    """Return the value of a text, and the line of every key and entry.
 
     Raises:
         YamlError: it is no YAML, or beyond the limits.
     """
     reader = _Reader()
     node = _compose(text)
-    return _Content(None if node is None else reader.read(node, ()), reader.lines)
+    return None if node is None else reader.read(node, ()), reader.lines
 
 
 def parse_value(text: str) -> object:
     """Return a value that stands alone, such as that of an option or of a cell; YamlError as for `parse`."""
-    return parse(text).value
+    return parse(text)[0]
 
 
 class _Composer(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]  # its types are not known

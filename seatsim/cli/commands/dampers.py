@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, cast
+from typing import Annotated, cast
 
 import typer
 
 from seatsim.cli.options import Out, complete_kind, pairs
 from seatsim.cli.terminal import show_progress
 from seatsim.schema.errors import InputError
-
-if TYPE_CHECKING:
-    from seatsim.characterisation.summary import Characterisation
 
 
 def characterise(
@@ -47,15 +44,21 @@ def characterise(
         window: Part of the stroke over which forces are averaged.
         last: Last steady cycles that count; 0 for all.
     """
-    from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
+    from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen, model_peaks
     from seatsim.characterisation.sheet import check_limits
+    from seatsim.characterisation.summary import characterise as characterise_records
     from seatsim.cli.outputs.damper_results import present_characterisation
+    from seatsim.recordings.bench_tables import NAMED
 
     grid = (currents, temperatures, amplitudes, frequencies)
     if (data is None) == (model is None and parameters is None) or (data is not None and any(grid)):
         raise InputError("characterise either DATA, or a model by --model or --parameters with its tests; see --help")
     if data is not None:
-        found = _characterise_data(data, beside, pattern, window, last)
+        specimen = load_specimen(None, beside) if beside else None
+        with show_progress() as progress:
+            names = (_title(data), data.resolve().name)
+            found = characterise_records(data, *names, window, pattern or NAMED, progress, last)
+        found = found.set_beside(model_peaks(specimen, found.rows, window)) if specimen else found
     elif beside or pattern or last:
         raise InputError("--beside, --pattern and --last are of DATA; leave them out for a model")
     else:
@@ -64,18 +67,6 @@ def characterise(
     if limits:
         found = found.set_limits(check_limits(found.sheet, limits))
     present_characterisation(found, out_folder or Path("out") / f"characterise-{found.name}")
-
-
-def _characterise_data(data: Path, beside: Path | None, pattern: str, window: float, last: int) -> Characterisation:
-    """Return what bench tables show of a damper, with the forces of another one beside where it is named."""
-    from seatsim.characterisation.model_tests import load_specimen, model_peaks
-    from seatsim.characterisation.summary import characterise as of_records
-    from seatsim.recordings.bench_tables import NAMED
-
-    specimen = load_specimen(None, beside) if beside else None
-    with show_progress() as progress:
-        found = of_records(data, _title(data), data.resolve().name, window, pattern or NAMED, progress, last)
-    return found.set_beside(model_peaks(specimen, found.rows, window)) if specimen else found
 
 
 def identify(

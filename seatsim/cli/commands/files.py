@@ -118,22 +118,17 @@ def describe(
             f"--picture {picture}: one damper, as {', '.join(_ENDINGS)}: seatsim describe bouc_wen --picture loops.svg"
         )
     say(describe_name(name))
-    paths = _draw_loops(name, picture) if picture else []
-    for path in paths:
-        wrote_one(path)
-    answer(Pages(pages), paths)
+    if picture is not None:
+        from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
+        from seatsim.plots.bench.loops import plot_loops
+        from seatsim.plots.saving import save_figure
+        from seatsim.schema.files import write_whole
 
-
-def _draw_loops(model: str, picture: Path) -> list[Path]:
-    """Draw the loops of a damper as `seatsim characterise --model` does, and return the path of the picture."""
-    from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
-    from seatsim.plots.bench.loops import plot_loops
-    from seatsim.plots.saving import save_figure
-    from seatsim.schema.files import write_whole
-
-    tested = load_specimen(model, None)
-    found = characterise_model(tested, choose_settings(tested))
-    return [write_whole(picture, partial(save_figure, plot_loops(found)))]
+        # As `seatsim characterise --model` does.
+        tested = load_specimen(name, None)
+        loops = plot_loops(characterise_model(tested, choose_settings(tested)))
+        wrote_one(write_whole(picture, partial(save_figure, loops)))
+    answer(Pages(pages), [picture] if picture else [])
 
 
 def reproduce(

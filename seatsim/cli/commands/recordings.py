@@ -129,9 +129,9 @@ def _show(found: Inspection) -> None:
         for each in channels:
             rate = "" if each.rate is None else f"{each.rate:.6g}"
             noise = "" if each.noise is None else f"{each.noise:.2g}"
-            figures = [f"{value:.4g}" for value in (each.low, each.high, each.rms)]
-            others = (each.spark, f"{each.mean:.4g}", each.channel or "", str(each.rows))
-            rows.append((escape(each.name), escape(each.unit) or "?", rate, *figures, noise, *others))
+            low, high, rms, mean = (f"{value:.4g}" for value in (each.low, each.high, each.rms, each.mean))
+            names = (escape(each.name), escape(each.unit) or "?")
+            rows.append((*names, rate, low, high, rms, noise, each.spark, mean, each.channel or "", str(each.rows)))
         show_table(make_table(make_printable(title), headings, rows, left=(0, 1, 7, 9)))
 
 

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import reduce
-from importlib import import_module
 from operator import or_
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import NamedTuple
 
 from seatsim.recordings.header import Header, RunEntry
@@ -96,13 +96,10 @@ _ANSWERS = {
 
 def list_answers() -> Mapping[str, object]:
     """Return the type of what each command prints, by its name."""
-
-    def find(name: str) -> type:
-        home, _, own = name.rpartition(".")
-        found: type = getattr(import_module(f"seatsim.{home}"), own)
-        return found
-
-    return {command: reduce(or_, map(find, names.split())) for command, names in _ANSWERS.items()}
+    return {
+        command: reduce(or_, (resolve_name(f"seatsim.{name}") for name in names.split()))
+        for command, names in _ANSWERS.items()
+    }
 
 
 def describe_answer(command: str) -> dict[str, object]:

@@ -113,12 +113,9 @@ def make_tables(diagnosis: Diagnosis) -> list[Table]:
 
 def _make_cause_table(diagnosis: Diagnosis) -> Table:
     listed = diagnosis.causes[:_LISTED]
-    rows = [
-        (_label(cause.effect), f"{cause.probability:.2f}", f"{cause.shrink:.2f}", ", ".join(cause.ends))
-        for cause in listed
-    ]
-    rows += [("none", f"{diagnosis.probability_none:.2f}", "", "")]
-    rows += [("unknown", f"{diagnosis.probability_unknown:.2f}", "", "")]
+    rows = [(_label(c.effect), f"{c.probability:.2f}", f"{c.shrink:.2f}", ", ".join(c.ends)) for c in listed]
+    for name, probability in (("none", diagnosis.probability_none), ("unknown", diagnosis.probability_unknown)):
+        rows.append((name, f"{probability:.2f}", "", ""))
     shown = 4 if any(cause.ends for cause in listed) else 3
     headings = ("effect", "probability", "own shrink", "at end of range")[:shown]
     return make_table(f"verdict: {diagnosis.verdict}", headings, [row[:shown] for row in rows], left=(0, 3))
@@ -130,11 +127,8 @@ def _label(effect: str) -> str:
 
 
 def _make_forms_table(diagnosis: Diagnosis) -> Table:
-    replaced = diagnosis.alternatives[0].replaces
-    rows = [
-        (form.model, ", ".join(form.beside), f"{form.shrink:.2f}", f"{form.refitted:.2f}")
-        for form in diagnosis.alternatives[:_LISTED]
-    ]
+    replaced, listed = diagnosis.alternatives[0].replaces, diagnosis.alternatives[:_LISTED]
+    rows = [(form.model, ", ".join(form.beside), f"{form.shrink:.2f}", f"{form.refitted:.2f}") for form in listed]
     headings = ("form", "beside", "shrink", f"{replaced} as free")
     return make_table(f"other forms of the damper than {replaced}", headings, rows, left=(0, 1))
 

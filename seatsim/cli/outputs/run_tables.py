@@ -14,7 +14,7 @@ from rich.table import Table
 from seatsim.cli.show_table import format_number, make_table
 from seatsim.metrics.motion import ratio
 from seatsim.metrics.table import SHORT
-from seatsim.rig.designs import BoxProof, CheckedLaw, Clipping, DesignedLoop, SynthesisedDesign, unit_of_gain
+from seatsim.rig.designs import BoxProof, CheckedLaw, Clipping, SynthesisedDesign, unit_of_gain
 from seatsim.scenario.checks import published_figures
 from seatsim.scenario.scenario import Scenario, condition_of, group_by_condition, is_condition
 from seatsim.simulation.checks import describe_sampled_loop
@@ -210,7 +210,10 @@ def make_design_table(design: SynthesisedDesign, scenario: Scenario) -> Table:
     if design.proof is not None:
         rows["best gain"] = _describe_proof(design.proof)
     if len(design.loops) > 1:
-        rows["plants"] = _describe_loops(design.loops)
+        norms = [loop.gamma for loop in design.loops]
+        proven = sum(loop.certificate is not None for loop in design.loops)
+        span = f"gamma {min(norms):.6g} to {max(norms):.6g}, the worst is shown"
+        rows["plants"] = f"{len(norms)}, of which {proven} certified; {span}"
     if not all(loop.norms_agree for loop in design.loops):
         rows["norms"] = "bisection and frequency grid differ by more than 1e-6: gamma may be too small"
     for name, value in {**rows, **_check_loop(design, scenario)}.items():
@@ -238,11 +241,6 @@ def _describe_clipping(clipping: Clipping) -> str:
         f"driver Wk RMS {clipping.delivered:.3g} m/s², {clipping.promised:.3g} if the damper gave all that is wanted;"
         f" its force misses that by {100 * clipping.force_error:.0f} % RMS"
     )
-
-
-def _describe_loops(loops: Sequence[DesignedLoop]) -> str:
-    norms, proven = [loop.gamma for loop in loops], sum(loop.certificate is not None for loop in loops)
-    return f"{len(loops)}, of which {proven} certified; gamma {min(norms):.6g} to {max(norms):.6g}, the worst is shown"
 
 
 def _check_loop(design: SynthesisedDesign, scenario: Scenario) -> Mapping[str, str]:
