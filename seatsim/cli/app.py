@@ -140,7 +140,11 @@ def main() -> None:
     # Python would print a line of seatsim's own code with each warning, and no color.
     warnings.showwarning = lambda message, *_, **__: warn([str(message)], "warning")
     try:
-        _refuse_settings_of_libraries()
+        for name in (".numba_config.yaml", "matplotlibrc"):
+            # The folder may be a stranger's, and libraries obey what lies there: the one can name a folder of compiled
+            # code, the other a preamble of TeX.
+            if Path(name).exists():
+                raise InputError(f"{name}: changes how libraries work in this folder; start seatsim in another one")
         app(prog_name="seatsim")
     except SeatsimError as error:
         refuse(error)
@@ -172,13 +176,3 @@ def _describe_fault(error: Exception) -> str:
         f"seatsim failed at what it does not foresee: {type(error).__name__}: {said} ({Path(last.filename).name}, line"
         f" {last.lineno}); please report the command with its files; {TRACEBACK}=1 shows the whole traceback"
     )
-
-
-def _refuse_settings_of_libraries() -> None:
-    """Raise InputError where the current folder, perhaps a stranger's, holds what libraries obey that lies there.
-
-    The one can name a folder of compiled code, the other a preamble of TeX.
-    """
-    for name in (".numba_config.yaml", "matplotlibrc"):
-        if Path(name).exists():
-            raise InputError(f"{name}: changes how libraries work in this folder; start seatsim in another one")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import linecache
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numba
 from numba.extending import overload, register_jitable
@@ -29,14 +29,12 @@ INLINED: dict[str, object] = ARITHMETIC | {"forceinline": True, "no_cfunc_wrappe
 
 def jit(function: _F) -> _F:
     """Return `function` such that compiled code may call it, inlined; called from Python it stays what it is."""
-    registered: _F = register_jitable(**INLINED)(function)
-    return registered
+    return cast("_F", register_jitable(**INLINED)(function))
 
 
 def jit_apart(function: _F) -> _F:
     """Return `function` compiled apart from its callers, so that these keep to the registers: it is seldom called."""
-    called: _F = numba.njit(no_cfunc_wrapper=True, **ARITHMETIC)(function)
-    return called
+    return cast("_F", numba.njit(no_cfunc_wrapper=True, **ARITHMETIC)(function))
 
 
 GENERIC: dict[object, _Resolve] = {}
@@ -62,5 +60,4 @@ def define(source: str, name: str, namespace: dict[str, Any]) -> Callable[..., A
     file = f"<{name} {hashlib.sha256(source.encode()).hexdigest()[:16]}>"
     linecache.cache[file] = (len(source), None, source.splitlines(keepends=True), file)
     exec(compile(source, file, "exec"), namespace)
-    function: Callable[..., Any] = namespace[name]
-    return function
+    return cast("Callable[..., Any]", namespace[name])

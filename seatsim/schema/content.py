@@ -80,7 +80,7 @@ def list_written(record: type) -> tuple[_WrittenField, ...]:
     hints = get_type_hints(record, include_extras=True)
     found = []
     for name in getattr(record, "_fields", None) or [field.name for field in dataclasses.fields(record)]:
-        form = _find_form(hints[name])
+        form = next((mark for mark in get_args(hints[name]) if isinstance(mark, Form)), Form())
         if not form.left_out:
             key = form.key or (f"{name}_{form.unit}" if form.unit else name)
             found.append(_WrittenField(name, key, form, str if form.file else hints[name]))
@@ -90,11 +90,6 @@ def list_written(record: type) -> tuple[_WrittenField, ...]:
             hint = get_type_hints(value.fget, include_extras=True)["return"]
             found.append(_WrittenField(name, form.key or name, form, hint))
     return tuple(found)
-
-
-def _find_form(hint: object) -> Form:
-    marks = get_args(hint)[1:] if get_origin(hint) is Annotated else ()
-    return next((mark for mark in marks if isinstance(mark, Form)), Form())
 
 
 def find_record(hint: object) -> type | None:

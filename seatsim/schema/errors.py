@@ -97,8 +97,7 @@ def find_nearest(name: object, known: Iterable[str]) -> str:
     """Return the known name closest to `name`, an empty string where none is close."""
     if len(str(name)) > _LONGEST:
         return ""
-    matches = difflib.get_close_matches(str(name), [str(k) for k in known], n=1, cutoff=0.5)
-    return matches[0] if matches else ""
+    return next(iter(difflib.get_close_matches(str(name), [str(k) for k in known], n=1, cutoff=0.5)), "")
 
 
 def permit(name: object, known: Collection[str]) -> str:

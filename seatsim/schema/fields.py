@@ -15,7 +15,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple, TypeVar, cast, get_args, get_origin, get_type_hints
+from typing import Any, Literal, NamedTuple, TypeVar, cast, get_args, get_origin, get_type_hints
 
 from annotated_types import Ge, Gt, Le
 from pydantic import Field, JsonValue, TypeAdapter
@@ -135,8 +135,6 @@ def _hints(record: type) -> Mapping[str, object]:
 
 
 def _field_info(hint: object) -> FieldInfo | None:
-    if get_origin(hint) is not Annotated:
-        return None
     return next((part for part in get_args(hint) if isinstance(part, FieldInfo)), None)
 
 

@@ -105,14 +105,12 @@ def specification_of(cls: type) -> Any:  # any kind: `Registry.specification_of`
 
 def initial_state(cls: type) -> tuple[float, ...]:
     """Return the state at rest that a damper, law or effect was registered with; empty where it has no state."""
-    initial: tuple[float, ...] = getattr(_specifications[cls], "initial", ())
-    return initial
+    return tuple(getattr(_specifications[cls], "initial", ()))
 
 
 def current_order(cls: type) -> int:
     """Return the degree of a damper's force as a polynomial in the current, 0 where it is none or not stated."""
-    order: int = getattr(_specifications.get(cls), "current_order", 0)
-    return order
+    return int(getattr(_specifications.get(cls), "current_order", 0))
 
 
 def name_of(kind: str, cls: type) -> str:
