@@ -1,21 +1,16 @@
 """Bingham dampers: a viscous dashpot beside Coulomb friction, and their extensions by further terms."""
 
-from __future__ import annotations
-
 import math
 from typing import Annotated, NamedTuple
 
-from seatsim.dampers.base import damper
+from seatsim.dampers import State, TemperatureScaling, damper, param
 from seatsim.dampers.pieces import CurrentLaw, cubic, power, utfsm_damper
-from seatsim.rig.state import State
-from seatsim.rig.temperature import TemperatureScaling
-from seatsim.schema.fields import param
 
 _SET_VALUED_BELOW = 1e-6
 """m/s; a sharper `v_ref` than this is taken as the set-valued sign itself."""
 
 
-@damper("bingham", current_order=1, complete=True, confidence="published", fixed=("v_ref",))
+@damper("bingham", current_order=1, complete=True, fixed=("v_ref",))
 class Bingham(NamedTuple):
     """Bingham damper with laws linear in the current.
 
@@ -47,7 +42,7 @@ class Bingham(NamedTuple):
         return 0.0
 
 
-@damper("original_bingham", max_speed=0.13, max_current=1.0, confidence="published")
+@damper("original_bingham", max_speed=0.13, max_current=1.0)
 class OriginalBingham(NamedTuple):
     """Bingham damper with cubic current laws and a set-valued yield force: `F = c0(I) v + fc(I) sgn(v) + f0`.
 

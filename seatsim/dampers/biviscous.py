@@ -1,13 +1,10 @@
 """Bi-viscous dampers: steep damping before yield, flat damping after it, with hysteresis of three kinds."""
 
-from __future__ import annotations
-
 import math
 from typing import Annotated, NamedTuple
 
-from seatsim.compilation.jit import jit
+from seatsim.dampers import State, TemperatureScaling, jit, param
 from seatsim.dampers.pieces import (
-    BRANCH_STATE,
     SETTLING,
     CurrentLaw,
     between,
@@ -15,11 +12,9 @@ from seatsim.dampers.pieces import (
     branch_rate,
     cubic,
     limited,
+    utfsm_branch_damper,
     utfsm_damper,
 )
-from seatsim.rig.state import State
-from seatsim.rig.temperature import TemperatureScaling
-from seatsim.schema.fields import param
 
 
 @jit
@@ -56,9 +51,7 @@ class Biviscous(NamedTuple):
         return two_slopes(pre, post, cubic(self.fy, held) * scaling.yield_force, v, 0.0) + self.f0
 
 
-@utfsm_damper(
-    "hysteretic_biviscous", initial=(0.0,), state=BRANCH_STATE, centred=True, confidence="recalled", smooth=True
-)
+@utfsm_branch_damper("hysteretic_biviscous", confidence="recalled")
 class HystereticBiviscous(NamedTuple):
     """Nonlinear hysteretic bi-viscous damper: the pre-yield line crosses zero force at a speed v0, not at rest.
 
@@ -96,9 +89,7 @@ class HystereticBiviscous(NamedTuple):
         return branch_rate(v, z)
 
 
-@utfsm_damper(
-    "hysteretic_arctangent", initial=(0.0,), state=BRANCH_STATE, centred=True, confidence="recalled", smooth=True
-)
+@utfsm_branch_damper("hysteretic_arctangent", confidence="recalled")
 class HystereticArctangent(NamedTuple):
     """Nonlinear hysteretic arctangent damper: the hysteretic bi-viscous one with rounded corners.
 

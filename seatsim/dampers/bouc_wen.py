@@ -1,27 +1,14 @@
 """Bouc-Wen dampers: simple, and modified after Spencer."""
 
-from __future__ import annotations
-
 from typing import Annotated, NamedTuple
 
-from seatsim.dampers.base import damper
+from seatsim.dampers import State, TemperatureScaling, damper, param
 from seatsim.dampers.pieces import CurrentLaw, bouc_wen_rate, cubic
-from seatsim.rig.state import State
-from seatsim.rig.temperature import TemperatureScaling
-from seatsim.schema.fields import param
 
 _HYSTERESIS = "z, the hysteretic displacement"
 
 
-@damper(
-    "bouc_wen",
-    initial=(0.0,),
-    state=_HYSTERESIS,
-    current_order=1,
-    complete=True,
-    confidence="published",
-    fixed=("A", "x0"),
-)
+@damper("bouc_wen", initial=(0.0,), state=_HYSTERESIS, current_order=1, complete=True, fixed=("A", "x0"))
 class BoucWen(NamedTuple):
     """Simple Bouc-Wen damper with laws linear in the current.
 
@@ -56,15 +43,7 @@ class BoucWen(NamedTuple):
         return (bouc_wen_rate(self.A, self.beta, self.gamma, self.n, v, z[0]),)
 
 
-@damper(
-    "simple_bouc_wen",
-    initial=(0.0,),
-    state=_HYSTERESIS,
-    max_speed=0.13,
-    max_current=1.0,
-    confidence="published",
-    fixed=("A",),
-)
+@damper("simple_bouc_wen", initial=(0.0,), state=_HYSTERESIS, max_speed=0.13, max_current=1.0, fixed=("A",))
 class SimpleBoucWen(NamedTuple):
     """Simple Bouc-Wen damper of the RD-1005-3 with cubic current laws.
 
@@ -80,11 +59,8 @@ class SimpleBoucWen(NamedTuple):
 
     c0: Annotated[CurrentLaw, param("N s/m", "viscous damping c0(I)")] = (855.0, 11200.0, 18970.0, -18690.0)
     alpha: Annotated[CurrentLaw, param("N/m", "hysteretic stiffness alpha(I)")] = (
-        9350.0,
-        116600.0,
-        173900.0,
-        -158300.0,
-    )
+        9350.0, 116600.0, 173900.0, -158300.0,
+    )  # fmt: skip
     k0: Annotated[float, param("N/m", "stiffness")] = 1984.0
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     A: Annotated[float, param("-", "slope of the hysteresis", above=0)] = 30.852
@@ -108,7 +84,6 @@ class SimpleBoucWen(NamedTuple):
     state="y, displacement behind the series dashpot; z, hysteretic displacement",
     max_speed=0.13,
     max_current=1.0,
-    confidence="published",
     fixed=("A", "x0"),
 )
 class ModifiedBoucWen(NamedTuple):
@@ -127,23 +102,14 @@ class ModifiedBoucWen(NamedTuple):
     """
 
     c0: Annotated[CurrentLaw, param("N s/m", "damping c0(I) of the inner dashpot")] = (
-        590.0,
-        11020.0,
-        10510.0,
-        -11730.0,
-    )
+        590.0, 11020.0, 10510.0, -11730.0,
+    )  # fmt: skip
     c1: Annotated[CurrentLaw, param("N s/m", "damping c1(I) of the series dashpot")] = (
-        4730.0,
-        64570.0,
-        57030.0,
-        -54400.0,
-    )
+        4730.0, 64570.0, 57030.0, -54400.0,
+    )  # fmt: skip
     alpha: Annotated[CurrentLaw, param("N/m", "hysteretic stiffness alpha(I)")] = (
-        38240.0,
-        412520.0,
-        905140.0,
-        -826670.0,
-    )
+        38240.0, 412520.0, 905140.0, -826670.0,
+    )  # fmt: skip
     k0: Annotated[float, param("N/m", "stiffness of the inner spring")] = 1121.0
     k1: Annotated[float, param("N/m", "stiffness of the accumulator")] = 0.0
     x0: Annotated[float, param("m", "displacement at which the accumulator is without force")] = 0.0

@@ -3,12 +3,10 @@
 The parameters of the last saturate in the current, and follow the excitation.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Annotated, NamedTuple
 
-from seatsim.compilation.jit import jit
+from seatsim.dampers import State, TemperatureScaling, jit, param
 from seatsim.dampers.pieces import (
     BRANCH_MEMORY,
     CurrentLaw,
@@ -20,9 +18,6 @@ from seatsim.dampers.pieces import (
     power,
     utfsm_damper,
 )
-from seatsim.rig.state import State
-from seatsim.rig.temperature import TemperatureScaling
-from seatsim.schema.fields import param
 
 NORMALISED = "w, hysteretic variable from -1 to 1"
 

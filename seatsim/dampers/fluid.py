@@ -5,11 +5,8 @@ from __future__ import annotations
 import math
 from typing import Annotated, NamedTuple
 
-from seatsim.compilation.jit import jit
+from seatsim.dampers import State, TemperatureScaling, jit, param
 from seatsim.dampers.pieces import SETTLING, CurrentLaw, between, cubic, utfsm_damper
-from seatsim.rig.state import State
-from seatsim.rig.temperature import TemperatureScaling
-from seatsim.schema.fields import param
 
 _V_REF = 0.1
 """m/s, the speed at which the power law has the force K(I)."""

@@ -1,14 +1,10 @@
 """Friction that builds up over a travel: the dampers after Dahl, and the bristles of LuGre."""
 
-from __future__ import annotations
-
 from typing import Annotated, NamedTuple
 
+from seatsim.dampers import State, TemperatureScaling, param
 from seatsim.dampers.bouc_wen_variants import NORMALISED
 from seatsim.dampers.pieces import CurrentLaw, between, cubic, utfsm_damper
-from seatsim.rig.state import State
-from seatsim.rig.temperature import TemperatureScaling
-from seatsim.schema.fields import param
 
 
 @utfsm_damper("modified_dahl", initial=(0.0,), state=NORMALISED, current_order=1, confidence="recalled")
@@ -45,7 +41,7 @@ class ModifiedDahl(NamedTuple):
         return (self.sigma * (v - abs(v) * z[0]),)
 
 
-@utfsm_damper("viscous_dahl", initial=(0.0,), state=NORMALISED, confidence="published")
+@utfsm_damper("viscous_dahl", initial=(0.0,), state=NORMALISED)
 class ViscousDahl(NamedTuple):
     """Viscous Dahl damper: a dashpot beside Dahl friction.
 

@@ -1,7 +1,5 @@
 """Pieces that several damper models share: powers, current laws, the branch of a loop, elements in series."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 from typing import Annotated
@@ -11,19 +9,14 @@ from seatsim.dampers.base import damper
 from seatsim.rig.state import State
 from seatsim.schema.fields import param
 
-QuadraticLaw = tuple[
-    Annotated[float, param("", "constant")],
-    Annotated[float, param("1/A", "linear")],
-    Annotated[float, param("1/A^2", "quadratic")],
-]
+_Constant = Annotated[float, param("", "constant")]
+_Linear = Annotated[float, param("1/A", "linear")]
+_Quadratic = Annotated[float, param("1/A^2", "quadratic")]
+LinearLaw = tuple[_Constant, _Linear]
+"""Coefficients of a linear law in the current."""
+QuadraticLaw = tuple[_Constant, _Linear, _Quadratic]
 """Coefficients of a quadratic law in the current."""
-
-CurrentLaw = tuple[
-    Annotated[float, param("", "constant")],
-    Annotated[float, param("1/A", "linear")],
-    Annotated[float, param("1/A^2", "quadratic")],
-    Annotated[float, param("1/A^3", "cubic")],
-]
+CurrentLaw = tuple[_Constant, _Linear, _Quadratic, Annotated[float, param("1/A^3", "cubic")]]
 """Coefficients of a cubic law in the current."""
 
 UTFSM = (
@@ -42,6 +35,10 @@ utfsm_damper = partial(damper, max_speed=0.13, max_current=1.0, temperatures=(20
 """`damper` for a model with such defaults: the data reach 0.13 m/s and 1 A, at 20 degC."""
 
 BRANCH_STATE = "w, the displacement in m about its recent mean, whose sign is the branch of the loop"
+branch_damper = partial(damper, initial=(0.0,), state=BRANCH_STATE, centred=True, smooth=True)
+"""`damper` for a model whose only state is that of its branch (`branch`)."""
+utfsm_branch_damper = partial(utfsm_damper, initial=(0.0,), state=BRANCH_STATE, centred=True, smooth=True)
+"""The same, with such defaults."""
 _BRANCH_WIDTH = 5e-4
 """Displacement in m over which a branch changes sign, tanh(w / 0.5 mm)."""
 BRANCH_MEMORY = 1.0

@@ -1,37 +1,25 @@
 """S-curves of the velocity, shifted by the branch of the loop: arctangent, hyperbolic tangent, sigmoid."""
 
-from __future__ import annotations
-
 import math
 from typing import Annotated, NamedTuple
 
-from seatsim.compilation.jit import jit
-from seatsim.dampers.base import damper
+from seatsim.dampers import State, TemperatureScaling, jit, param
 from seatsim.dampers.pieces import (
     BRANCH_STATE,
     CurrentLaw,
     QuadraticLaw,
     branch,
+    branch_damper,
     branch_rate,
     cubic,
     quadratic,
+    utfsm_branch_damper,
     utfsm_damper,
 )
 from seatsim.dampers.yu import envelope_rate
-from seatsim.rig.state import State
-from seatsim.rig.temperature import TemperatureScaling
-from seatsim.schema.fields import param
 
 
-@utfsm_damper(
-    "weng_arctangent",
-    initial=(0.0,),
-    state=BRANCH_STATE,
-    centred=True,
-    max_speed=0.126,
-    confidence="published",
-    smooth=True,
-)
+@utfsm_branch_damper("weng_arctangent", max_speed=0.126)
 class WengArctangent(NamedTuple):
     """Arctangent S-curve with a hysteresis of constant width in velocity.
 
@@ -66,17 +54,7 @@ class WengArctangent(NamedTuple):
         return branch_rate(v, z)
 
 
-@damper(
-    "kwok_tanh",
-    initial=(0.0,),
-    state=BRANCH_STATE,
-    centred=True,
-    max_speed=0.1,
-    max_current=2.0,
-    temperatures=(20.0, 20.0),
-    confidence="recalled",
-    smooth=True,
-)
+@branch_damper("kwok_tanh", max_speed=0.1, max_current=2.0, temperatures=(20.0, 20.0), confidence="recalled")
 class KwokTanh(NamedTuple):
     """Hyperbolic tangent of the velocity, shifted by the branch of the loop.
 

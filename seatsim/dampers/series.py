@@ -4,11 +4,9 @@ The force is that of a spring, which the current reaches only through the state:
 model to assume.
 """
 
-from __future__ import annotations
-
 from typing import Annotated, NamedTuple
 
-from seatsim.compilation.jit import jit
+from seatsim.dampers import State, TemperatureScaling, jit, param
 from seatsim.dampers.pieces import (
     SETTLING,
     CurrentLaw,
@@ -20,14 +18,9 @@ from seatsim.dampers.pieces import (
     slip,
     utfsm_damper,
 )
-from seatsim.rig.state import State
-from seatsim.rig.temperature import TemperatureScaling
-from seatsim.schema.fields import param
 
 
-@utfsm_damper(
-    "modified_bingham", initial=(0.0,), state="e = x - x1, deflection in m of the series spring", confidence="published"
-)
+@utfsm_damper("modified_bingham", initial=(0.0,), state="e = x - x1, deflection in m of the series spring")
 class ModifiedBingham(NamedTuple):
     """Bingham element (displacement x1) in series with a spring k1.
 

@@ -1,7 +1,5 @@
 """Sigmoid and Gaussian dampers after Hong et al., the mean of a loop and its thickness: as tables, and as laws."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import cache
@@ -11,12 +9,9 @@ import numpy as np
 from numba import types
 
 from seatsim.compilation.jit import jit, specialise
-from seatsim.dampers.base import damper
-from seatsim.dampers.pieces import BRANCH_STATE, CurrentLaw, branch, branch_rate, cubic
-from seatsim.rig.state import State
-from seatsim.rig.temperature import TemperatureScaling
+from seatsim.dampers import State, TemperatureScaling, param
+from seatsim.dampers.pieces import CurrentLaw, branch, branch_damper, branch_rate, cubic
 from seatsim.schema.arrays import Array
-from seatsim.schema.fields import param
 
 _Row = tuple[float, float, float, float, float]
 
@@ -83,17 +78,8 @@ def _at(c: Array, s: float) -> float:
     return value
 
 
-@damper(
-    "hong_sigmoid_gaussian",
-    initial=(0.0,),
-    state=BRANCH_STATE,
-    centred=True,
-    max_speed=0.1,
-    max_current=2.0,
-    temperatures=(20.0, 20.0),
-    confidence="published",
-    fixed=("test", "v_unit"),
-    smooth=True,
+@branch_damper(
+    "hong_sigmoid_gaussian", max_speed=0.1, max_current=2.0, temperatures=(20.0, 20.0), fixed=("test", "v_unit")
 )
 class HongSigmoidGaussian(NamedTuple):
     """Sigmoid G for the mean of the loop, Gaussian D for its thickness, with the tables of the paper.
@@ -137,17 +123,7 @@ class HongSigmoidGaussian(NamedTuple):
         return branch_rate(v, z)
 
 
-@damper(
-    "sigmoid_gaussian",
-    initial=(0.0,),
-    state=BRANCH_STATE,
-    centred=True,
-    max_speed=0.09,
-    max_current=1.0,
-    temperatures=(20.0, 20.0),
-    confidence="published",
-    smooth=True,
-)
+@branch_damper("sigmoid_gaussian", max_speed=0.09, max_current=1.0, temperatures=(20.0, 20.0))
 class SigmoidGaussian(NamedTuple):
     """Sigmoid and Gaussian damper with laws in the current instead of tables, so that it can be fitted.
 

@@ -1,15 +1,10 @@
 """Visco-elastic-plastic dampers: a solid before yield, a flow past it; elasto-slide, and lumped elements."""
 
-from __future__ import annotations
-
 import math
 from typing import Annotated, NamedTuple
 
-from seatsim.compilation.jit import jit
+from seatsim.dampers import State, TemperatureScaling, jit, param
 from seatsim.dampers.pieces import SETTLING, CurrentLaw, cubic, inertance, inertance_rate, limited, slip, utfsm_damper
-from seatsim.rig.state import State
-from seatsim.rig.temperature import TemperatureScaling
-from seatsim.schema.fields import param
 
 
 @jit

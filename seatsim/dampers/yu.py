@@ -1,16 +1,19 @@
 """The dampers of Yu et al.: asymmetric and temperature-dependent (2019), and their conventional model (2017)."""
 
-from __future__ import annotations
-
 import math
 from typing import Annotated, NamedTuple
 
-from seatsim.compilation.jit import jit
-from seatsim.dampers.base import damper
-from seatsim.dampers.pieces import BRANCH_STATE, QuadraticLaw, branch, branch_rate, quadratic, utfsm_damper
-from seatsim.rig.state import State
-from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
-from seatsim.schema.fields import param
+from seatsim.dampers import State, TemperatureFactors, TemperatureScaling, jit, param
+from seatsim.dampers.pieces import (
+    BRANCH_STATE,
+    LinearLaw,
+    QuadraticLaw,
+    branch,
+    branch_damper,
+    branch_rate,
+    quadratic,
+    utfsm_damper,
+)
 
 _RISE_TIME = 0.01
 """Time in s in which the envelope of the speed takes up a higher speed."""
@@ -30,7 +33,6 @@ def envelope_rate(speed: float, envelope: float) -> float:
     state=f"{BRANCH_STATE}; e, envelope of the speed in m/s, for the cycle's peak speed",
     centred=True,
     max_speed=0.126,
-    confidence="published",
     fixed=("c_i2", "d2"),
 )
 class Yu2017(NamedTuple):
@@ -84,7 +86,6 @@ _Three = tuple[_Coefficient, _Coefficient, _Coefficient]
 _Four = tuple[_Coefficient, _Coefficient, _Coefficient, _Coefficient]
 _Six = tuple[_Coefficient, _Coefficient, _Coefficient, _Coefficient, _Coefficient, _Coefficient]
 _Seven = tuple[_Coefficient, _Coefficient, _Coefficient, _Coefficient, _Coefficient, _Coefficient, _Coefficient]
-_LinearLaw = tuple[Annotated[float, param("", "constant")], Annotated[float, param("1/A", "linear")]]
 
 
 @jit
@@ -107,19 +108,14 @@ def opening(q: _Seven, d: _Six, u: float) -> float:
     return top / (1.0 + u * (d[0] + u * (d[1] + u * (d[2] + u * (d[3] + u * (d[4] + u * d[5]))))))
 
 
-@damper(
+@branch_damper(
     "yu2019",
-    initial=(0.0,),
-    state=BRANCH_STATE,
     current_order=2,
-    centred=True,
     max_speed=0.035,
     max_current=1.2,
     temperatures=(20.0, 80.0),
     factors=TemperatureFactors(-0.00667, -0.00667, -0.00667, 20.0),
-    confidence="published",
     fixed=("p_den", "n_den", "q_den", "held_from", "asymmetry"),
-    smooth=True,
 )
 class Yu2019(NamedTuple):
     """Asymmetric damper: viscous, elastic, and a hysteresis that differs between extension and compression.
@@ -154,7 +150,7 @@ class Yu2019(NamedTuple):
     """
 
     c: Annotated[QuadraticLaw, param("N s/m", "viscous damping c(I)")] = (120.0, 600.0, -100.0)
-    k: Annotated[_LinearLaw, param("N/m", "stiffness k(I)")] = (100.0, 600.0)
+    k: Annotated[LinearLaw, param("N/m", "stiffness k(I)")] = (100.0, 600.0)
     alpha: Annotated[QuadraticLaw, param("N", "height alpha(I) of the hysteresis")] = (41.0, 435.0, -108.0)
     p: Annotated[_Three, param("-", "numerator of P: u^0, u^2, u^4")] = (0.0, 3586.0, 1.298e6)
     p_den: Annotated[_Three, param("-", "denominator of P: u^2, u^4, u^6")] = (14600.0, 1.18e6, 0.0)
