@@ -1,11 +1,10 @@
 """A damper that is a functional mock-up unit: what a scenario states of it, and its force as the time loop sees it."""
 
-import math
 from typing import NamedTuple
 
 from seatsim.dampers.base import DamperSpecification
 from seatsim.rig.state import State
-from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
+from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import register
 
@@ -46,21 +45,7 @@ class CoupledForce(NamedTuple):
         return self.newton
 
 
-_SPECIFICATION = DamperSpecification(
-    source="the supplier's unit",
-    initial=(),
-    state="",
-    current_order=0,
-    centred=False,
-    max_speed=math.inf,
-    max_current=math.inf,
-    temperatures=(-273.15, math.inf),
-    factors=TemperatureFactors(),
-    complete=True,
-    confidence="derived",
-    fixed=(),
-    smooth=False,
-)
+_SPECIFICATION = DamperSpecification("the supplier's unit", complete=True, confidence="derived")
 # Not among the dampers: what fits, compares or prints each of those can do none of it with a unit.
 for _cls in (FmuDamper, CoupledForce):
     register("coupled damper", _cls.__name__, _SPECIFICATION)(_cls)

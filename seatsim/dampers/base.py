@@ -12,6 +12,7 @@ arithmetic and `math` only; what they call from their module is decorated with `
 from __future__ import annotations
 
 import inspect
+import math
 from collections.abc import Callable
 from typing import Literal, NamedTuple, Protocol, TypeVar
 
@@ -46,7 +47,8 @@ class DamperSpecification(NamedTuple):
     initial: state at rest. current_order: degree (1 or 2) of `force` as a polynomial in the current at fixed
     motion and state, 0 where it is none; it decides whether the inverse has a closed form. centred: the
     model branches on sgn(x) or sgn(dv/dt), so that it is wrong where the motion is not centred about x = 0.
-    The ranges of speed [m/s], current [A] and temperature [degC] are those of the data behind it. complete: the
+    The ranges of speed [m/s], current [A] and temperature [degC] are those of the data behind it, without limit where
+    they are not stated. complete: the
     model is a form without a parameter set of its own; a scenario states all of its parameters.
     confidence: a word of `CONFIDENCE`. fixed: fields that an identification does not fit, beside `law_end`: they
     state the model's range, or no data tell them from the others. smooth: the rates are smooth functions of
@@ -54,18 +56,18 @@ class DamperSpecification(NamedTuple):
     """
 
     source: str
-    initial: State
-    state: str
-    current_order: int
-    centred: bool
-    max_speed: float
-    max_current: float
-    temperatures: tuple[float, float]
-    factors: TemperatureFactors
-    complete: bool
-    confidence: Confidence
-    fixed: tuple[str, ...]
-    smooth: bool
+    initial: State = ()
+    state: str = ""
+    current_order: int = 0
+    centred: bool = False
+    max_speed: float = math.inf
+    max_current: float = math.inf
+    temperatures: tuple[float, float] = (-273.15, math.inf)
+    factors: TemperatureFactors = TemperatureFactors()
+    complete: bool = False
+    confidence: Confidence = "published"
+    fixed: tuple[str, ...] = ()
+    smooth: bool = False
 
 
 DAMPERS: Registry[Damper, DamperSpecification] = Registry("damper")
