@@ -1,7 +1,5 @@
 """The tests of a bench on a damper model: which model, at which settings, sines and steps of the command."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterator, Sequence

@@ -1,7 +1,5 @@
 """Steady cycles of a record, and the response of a force or a current to steps of the current."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from itertools import pairwise
@@ -9,6 +7,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from seatsim.metrics.motion import ratio
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.schema.arrays import Array
 from seatsim.schema.content import Form, Unwritten
@@ -127,8 +126,7 @@ def find_drift(record: BenchRecord, cycles: Sequence[Cycle]) -> float:
 
 def average_loops(loops: Sequence[SineTest]) -> SineTest:
     """Return the mean of loops of equally many samples, phase by phase."""
-    time, x, v, force = (np.mean([loop[part] for loop in loops], axis=0) for part in range(4))
-    return SineTest(time, x, v, force)
+    return SineTest(*(np.mean([loop[part] for loop in loops], axis=0) for part in range(4)))
 
 
 SHARES = (0.05, 0.90, 0.95)
@@ -220,7 +218,7 @@ def estimate_response(ensemble: StepEnsemble, blank: Response, window: int = 1) 
     rate = math.log(19.0) / (t95 - t5) if t95 > t5 else math.nan
     return blank._replace(
         t5=t5, t90=t90, t95=t95, t95_sd=_deviation(top, bottom, time, window),
-        rate_90=_over(math.log(10.0), t90), rate_95=_over(math.log(20.0), t95), rate=rate,
+        rate_90=ratio(math.log(10.0), t90), rate_95=ratio(math.log(20.0), t95), rate=rate,
         delay=t5 - math.log(20.0 / 19.0) / rate, time=time, share=share,
     )  # fmt: skip
 
@@ -259,7 +257,3 @@ def _deviation(top: Array, bottom: Array, time: Array, window: int) -> float:
     curves = (_curve(a, b, time, window)[0] for a, b in zip(counts @ top, counts @ bottom, strict=True))
     times = [find_crossing(time, curve, SHARES[-1]) for curve in curves]
     return float(np.std([t for t in times if math.isfinite(t)])) if any(map(math.isfinite, times)) else math.nan
-
-
-def _over(value: float, time: float) -> float:
-    return value / time if time > 0.0 else math.nan

@@ -1,7 +1,5 @@
 """One row of the table of a characterisation: what a record's cycles, or a record without cycles, amount to."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Annotated, NamedTuple, TypeVar
@@ -18,7 +16,7 @@ from seatsim.characterisation.response import (
     resample_loops,
     select_steady_cycles,
 )
-from seatsim.metrics.motion import rms
+from seatsim.metrics.motion import ratio, rms
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.recordings.quality.damage import Doubter, doubt_dropouts, flat_tops, plateaus
 from seatsim.schema.arrays import Array
@@ -160,8 +158,8 @@ def summarise_loops(
         temperature=float(np.mean(warmth)), temperature_range=float(np.ptp(warmth)),
         amplitude=0.5 * float(np.ptp(loop.displacement)), frequency=1.0 / float(loop.time[-1]),
         peak_speed=float(np.max(np.abs(loop.velocity))), centre=0.5 * (mean["peak_rebound"] + mean["peak_compression"]),
-        force_rms=rms(force), asymmetry=_ratio(rms(part), rms(force)), asymmetry_peak=float(np.max(np.abs(part))),
-        asymmetry_of_shape=_ratio(rms(part - offset), rms(force - offset)), notes=tuple(notes), loop=loop,
+        force_rms=rms(force), asymmetry=ratio(rms(part), rms(force)), asymmetry_peak=float(np.max(np.abs(part))),
+        asymmetry_of_shape=ratio(rms(part - offset), rms(force - offset)), notes=tuple(notes), loop=loop,
         cycle_values={name: list(map(float, v)) for name, v in values.items()},
         peak_rebound=mean["peak_rebound"], peak_rebound_sd=sd["peak_rebound"],
         peak_compression=mean["peak_compression"], peak_compression_sd=sd["peak_compression"],
@@ -191,7 +189,10 @@ def summarise_record(record: BenchRecord, window: float = WINDOW, last: int = 0)
     drift = find_drift(record, steady)
     loops = resample_loops(record, steady, drift)
     moved = drift * (steady[-1].first - steady[0].first) / record.rate
-    notes = [*_of_damage(record), *_of_current(record), *_of_loops(loops), *_of_zero(record, moved), *_of_sign(record)]
+    notes = [*_of_damage(record), *_of_current(record), *_of_loops(loops)]
+    if abs(moved) > _WANDERS * 0.5 * float(np.ptp(record.force)):
+        notes.append(f"the mean force drifts by {moved:+.3g} N over the cycles: a drifting zero, or a gas that warms")
+    notes += _of_sign(record)
     if min(cycle.length for cycle in steady) < _COARSE:
         notes.append(f"fewer than {_COARSE} rows a cycle: peaks and areas are coarse")
     steady, loops = steady[-last:], loops[-last:]
@@ -237,11 +238,6 @@ def _of_damage(record: BenchRecord) -> Iterator[str]:
             yield issue.sentence
 
 
-def _of_zero(record: BenchRecord, moved: float) -> list[str]:
-    large = abs(moved) > _WANDERS * 0.5 * float(np.ptp(record.force))
-    return [f"the mean force drifts by {moved:+.3g} N over the cycles: a drifting zero, or a gas that warms"] * large
-
-
 def _of_current(record: BenchRecord) -> list[str]:
     low, high = (float(q) for q in np.percentile(record.current, (1, 99)))
     drive, unit = ("voltage", "V") if record.in_volts else ("current", "A")
@@ -264,7 +260,7 @@ def _of_loops(loops: Sequence[SineTest]) -> list[str]:
     if abs(over_stroke - energy) > _DISAGREE * abs(energy):
         notes.append(f"velocity and displacement disagree: the area over displacement is {over_stroke:.3g} J")
     moved = loop._replace(force=loop.displacement - np.mean(loop.displacement[:-1]))
-    uneven = _ratio(rms(moved.asymmetric_part), rms(moved.force))
+    uneven = ratio(rms(moved.asymmetric_part), rms(moved.force))
     if uneven > _UNEVEN:
         notes.append(f"the motion itself is asymmetric by {uneven:.0%}")
     if len(loops) > 2:
@@ -279,19 +275,14 @@ def _average_cycles(values: Array, cycles: Sequence[Cycle]) -> Array:
     return np.array([float(np.mean(values[cycle.rows])) for cycle in cycles])
 
 
-def _ratio(part: float, whole: float) -> float:
-    return part / whole if whole > 0.0 else math.nan
-
-
 def group_rows(rows: Iterable[_T], alike: Callable[[_T, _T], bool]) -> list[list[_T]]:
     """Return rows in groups, each row with the first group whose first row is like it, in the order they come."""
     groups: list[list[_T]] = []
     for row in rows:
         group = next((group for group in groups if alike(group[0], row)), None)
         if group is None:
-            groups.append([row])
-        else:
-            group.append(row)
+            groups.append(group := [])
+        group.append(row)
     return groups
 
 

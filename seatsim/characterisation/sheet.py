@@ -3,8 +3,6 @@
 Limits that a damper has to keep are on figures of these tables.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Steps of a current, and the response times that measured records show while the motion goes on."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from itertools import pairwise
@@ -39,11 +37,6 @@ class _CurrentStep(NamedTuple):
     row: float
     before: _Plateau
     after: _Plateau
-
-    @property
-    def rises(self) -> bool:
-        """Whether the current rises."""
-        return self.after.level > self.before.level
 
 
 def find_steps(current: Array, rate: float, commanded: bool) -> list[_CurrentStep]:

@@ -88,36 +88,30 @@ def characterise(
     A record whose current rests at several levels, with steady cycles at one of them, has a row for each such stretch;
     any other record has one row.
     """
-    found, examine = _Findings([], [], []), partial(_examine, window, last)
-    parts: Iterable[_Findings]
+    examine = partial(_examine, window, last)
+    parts: Iterable[tuple[list[Row], list[Response], list[str]]]
     if isinstance(data, str | Path):
         name, parts = name or Path(data).stem, map_bench(data, examine, pattern)
     else:
         name, parts = name or data[0].name, [examine(data)]
-    for number, part in enumerate(parts, 1):
-        found.rows.extend(part.rows)
-        found.responses.extend(part.responses)
-        found.unused.extend(part.unused)
+    rows, responses, unused = list[Row](), list[Response](), list[str]()
+    for number, (more_rows, more_responses, more_unused) in enumerate(parts, 1):
+        rows += more_rows
+        responses += more_responses
+        unused += more_unused
         progress(f"tables characterised: {number}")
-    sheet = make_sheet(found.rows, found.responses, window)
-    return Characterisation(name, source or name, True, found.rows, found.responses, note_unused(found.unused), sheet)
+    sheet = make_sheet(rows, responses, window)
+    return Characterisation(name, source or name, True, rows, responses, note_unused(unused), sheet)
 
 
-class _Findings(NamedTuple):
-    """What some records show, without their samples: rows, responses, columns that are not used."""
-
-    rows: list[Row]
-    responses: list[Response]
-    unused: list[str]
-
-
-def _examine(window: float, last: int, records: Iterable[BenchRecord]) -> _Findings:
-    found = _Findings([], [], [])
+def _examine(window: float, last: int, records: Iterable[BenchRecord]) -> tuple[list[Row], list[Response], list[str]]:
+    """Return what some records show, without their samples: rows, responses, columns that are not used."""
+    rows, responses, unused = list[Row](), list[Response](), list[str]()
     for record in records:
-        found.rows.extend(_rows(record, window, last))
-        found.responses.extend(measure_responses(record))
-        found.unused.extend(record.unused)
-    return found
+        rows += _rows(record, window, last)
+        responses += measure_responses(record)
+        unused += record.unused
+    return rows, responses, unused
 
 
 def _rows(record: BenchRecord, window: float, last: int) -> list[Row]:

@@ -1,7 +1,5 @@
 """From the rows and responses of a damper to the tables of its bench day, hysteresis in the current among them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 
@@ -62,7 +60,7 @@ def make_sheet(rows: Sequence[Row], responses: Iterable[Response], window: float
         peak_forces=peaks,
         response=[_describe_step(each) for each in responses if each.time is not None and each.share is not None],
         gas_force=[_measure_gas(group, peak) for group, peak in slow],
-        friction=[Friction(*peak[:3], 0.5 * (peak.rebound - peak.compression)) for _, peak in slow],
+        friction=[Friction(*peak[:3], _size(peak)) for _, peak in slow],
         dynamic_range=[_divide(peak, ladder[0]) for ladder in ladders for peak in ladder[-1:]],
         linearity=[_place(peak, ladder[0], ladder[-1]) for ladder in ladders for peak in ladder],
         hysteresis=[_measure_hysteresis(group, peak) for group, peak in zip(groups, peaks, strict=True)],
