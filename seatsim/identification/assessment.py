@@ -3,8 +3,6 @@
 What the data say of each parameter is its Fisher information, which respects that residuals are not independent.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from concurrent.futures import Executor
@@ -190,16 +188,11 @@ def measure_coverage(records: Sequence[BenchRecord]) -> VisitedRanges:
     """Return the ranges that the records visit."""
     steady = {round(record.mean_current, _SAME_CURRENT) for record in records if np.ptp(record.current) == 0.0}
     temperatures = [record.temperature for record in records if record.temperature is not None]
-    bands = [_band(record) for record in records]
-    return VisitedRanges(
-        displacement=_range([record.displacement for record in records]),
-        velocity=_range([record.velocity for record in records]),
-        current=_range([record.current for record in records]),
-        steady_currents=sorted(steady),
-        temperature=_range(temperatures) if temperatures else None,
-        frequency=[min(low for low, _ in bands), max(high for _, high in bands)],
-        speeds=_shares_of_time(records),
-    )
+    names = ("displacement", "velocity", "current")
+    x, v, current = (_range([getattr(record, name) for record in records]) for name in names)
+    warmth = _range(temperatures) if temperatures else None
+    frequency = _range([np.array(_band(record)) for record in records])
+    return VisitedRanges(x, v, current, sorted(steady), warmth, frequency, _shares_of_time(records))
 
 
 def note_limits(
@@ -214,8 +207,8 @@ def note_limits(
         fitted = max(_largest(record, name) for record in train)
         tested = max((_largest(record, name) for record in test), default=0.0)
         if tested > _BEYOND * fitted:
-            text = f"held-out records reach {tested:.3g} {unit} of {name}, the fitted ones {fitted:.3g} {unit} only"
-            notes.append(text)
+            beyond = f"held-out records reach {tested:.3g} {unit} of {name}"
+            notes.append(f"{beyond}, the fitted ones {fitted:.3g} {unit} only")
     return notes
 
 
@@ -365,11 +358,8 @@ def _values(problem: IdentificationProblem, vector: Array) -> Array:
 
 def _parameter_derivatives(problem: IdentificationProblem, vector: Array) -> Array:
     """Return the derivatives of the parameters by the vector, shape (P, P)."""
-    values = _values(problem, vector)
-    moved = [
-        (_values(problem, vector + _DIFFERENCE_STEP * unit) - values) / _DIFFERENCE_STEP for unit in np.eye(len(vector))
-    ]
-    return np.column_stack(moved)
+    values, steps = _values(problem, vector), _DIFFERENCE_STEP * np.eye(len(vector))
+    return np.column_stack([(_values(problem, vector + step) - values) / _DIFFERENCE_STEP for step in steps])
 
 
 def _sizes(problem: IdentificationProblem, values: Array) -> list[float]:

@@ -6,8 +6,6 @@ coefficients, which are strongly correlated; these values stay at least zero whe
 damping below zero lets a state run away at currents that the data hardly hold.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Mapping, Sequence

@@ -1,7 +1,5 @@
 """Identification of a damper model: split, search, refine, assess on what took no part in the fit."""
 
-from __future__ import annotations
-
 import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -186,19 +184,12 @@ def identify_records(
         *note_limits(DAMPERS.specification_of(cls), parts.fitted, tests, origin),
     ]
     return Identification(
-        model=model,
-        bench=bench,
-        origin=origin,
-        assessments=assessments,
-        information=known,
-        bic=known.bic(cost),
-        seconds=time.perf_counter() - began,
-        ns_per_step=_time_step(bench, problem.inputs),
-        warm=problem.reference is not None,
-        commanded=any(record.commanded for record in parts.fitted),
+        model=model, bench=bench, origin=origin, assessments=assessments, information=known, bic=known.bic(cost),
+        seconds=time.perf_counter() - began, ns_per_step=_time_step(bench, problem.inputs),
+        warm=problem.reference is not None, commanded=any(record.commanded for record in parts.fitted),
         coverage=measure_coverage(parts.fitted),
         notes=[*notes, *_note_divergence(assessments), *note_unused(n for each in records for n in each.unused)],
-    )
+    )  # fmt: skip
 
 
 def _solve(
@@ -241,9 +232,8 @@ def predict_records(found: Identification, data: PredictionData) -> Identificati
 
 def _note_parameters(problem: IdentificationProblem, vector: Array, known: Information) -> Iterator[str]:
     """Yield what is to be known of the parameters."""
-    unknown = [estimate.name for estimate in known.estimates if not estimate.identified]
-    if unknown:
-        yield f"the data do not identify {', '.join(unknown)}"
+    if known.not_identified:
+        yield f"the data do not identify {', '.join(known.not_identified)}"
     ends = problem.labels_at_bounds(vector)
     if ends:
         yield f"at the end of its range: {', '.join(ends)}"

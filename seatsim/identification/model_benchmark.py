@@ -1,7 +1,5 @@
 """Several identifications: of models on the same records, the best prediction first, and of specimens of a damper."""
 
-from __future__ import annotations
-
 import math
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -81,10 +79,9 @@ def benchmark_models(
         path = folder / "league" / f"{model.rpartition(':')[2]}-{key}.json"
         if path.exists():
             entries.append(_read_entry(path))
-            continue
-        entry = _benchmark_model(records, model, settings, data, progress, keep)
-        write_json(path, entry)
-        entries.append(entry)
+        else:
+            entries.append(_benchmark_model(records, model, settings, data, progress, keep))
+            write_json(path, entries[-1])
     return rank_entries(entries)
 
 
@@ -105,22 +102,9 @@ def _benchmark_model(
         nothing = (math.nan, math.nan, 0, math.nan, math.nan, math.nan)
         return BenchmarkEntry(model, *nothing, str(error), find_confidence(find_model(model)))
     keep(predict_records(found, data))
-    return _summarise(found)
-
-
-def _summarise(found: Identification) -> BenchmarkEntry:
-    """Return the entry of an identification."""
-    train, test = found.mean("train"), found.mean("test")
-    return BenchmarkEntry(
-        found.model,
-        train.fit_percent if train else math.nan,
-        test.fit_percent if test else math.nan,
-        len(found.information.estimates),
-        found.ns_per_step,
-        found.bic,
-        found.seconds,
-        confidence=find_confidence(type(found.bench.damper)),
-    )
+    train, test = (mean.fit_percent if mean else math.nan for mean in (found.train, found.test))
+    figures = len(found.information.estimates), found.ns_per_step, found.bic, found.seconds
+    return BenchmarkEntry(found.model, train, test, *figures, confidence=found.confidence)
 
 
 def rank_entries(entries: Sequence[BenchmarkEntry]) -> list[BenchmarkEntry]:

@@ -3,8 +3,6 @@
 The force that a model predicts on a record counts also on one whose owner smoothed it.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from concurrent.futures import Executor

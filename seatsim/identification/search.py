@@ -1,7 +1,5 @@
 """Search: a global start by CMA-ES on short stretches of the records, then least squares on all of them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from concurrent.futures import Executor
 from typing import NamedTuple
@@ -110,13 +108,9 @@ def search_globally(
 
     problem.cost(start)  # compiles, which threads must not do at once
     low, high = problem.bounds
-    options = {
-        "seed": seed + 1,  # 0 would draw from the clock
-        "verbose": -9,
-        "bounds": [list(low), list(high)],
-        "maxfevals": evaluations,
-        "tolfun": 1e-7,
-    }
+    # A seed of 0 would draw from the clock.
+    options = {"seed": seed + 1, "verbose": -9, "bounds": [list(low), list(high)], "maxfevals": evaluations}
+    options["tolfun"] = 1e-7
     strategy = cma.CMAEvolutionStrategy(list(start), _INITIAL_DEVIATION, options)
     while not strategy.stop():
         candidates = strategy.ask()
@@ -145,9 +139,10 @@ def refine(
         return residuals
 
     def differentiate(vector: Array) -> Array:
-        key = vector.tobytes()
-        residuals = last[key] if key in last else problem.residuals(vector)
-        return compute_jacobian(problem, vector, residuals, executor)
+        residuals = last.get(vector.tobytes())
+        return compute_jacobian(
+            problem, vector, problem.residuals(vector) if residuals is None else residuals, executor
+        )
 
     low, high = problem.bounds
     found = least_squares(

@@ -1,7 +1,5 @@
 """What is asked of an identification, and which records, and parts of them, it may see."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from fnmatch import fnmatch
 from typing import NamedTuple
@@ -48,17 +46,12 @@ def split_records(records: Sequence[BenchRecord], settings: IdentificationSettin
         raise InputError(f"--test {' '.join(settings.test)} holds out every record; leave some to fit to")
     fitted = [record.part(0, round((1.0 - share) * len(record.force))) for record in train]
     for record, part in zip(train, fitted, strict=True):
-        _check_length(record, part, share)
+        rows = len(part.force)
+        least = min(rows, len(record.force) - rows) if share else rows
+        if least < LEAST_ROWS:
+            cut = f"--test-fraction {share:g} cuts off {least} rows of '{record.name}'"
+            raise InputError(f"{cut}; a part has at least {LEAST_ROWS}")
     return Split(train, fitted, held_out)
-
-
-def _check_length(record: BenchRecord, fitted: BenchRecord, share: float) -> None:
-    """Refuse a fraction that leaves too few rows on either side of the cut."""
-    least = min(len(fitted.force), len(record.force) - len(fitted.force) if share else len(fitted.force))
-    if least < LEAST_ROWS:
-        raise InputError(
-            f"--test-fraction {share:g} cuts off {least} rows of '{record.name}'; a part has at least {LEAST_ROWS}"
-        )
 
 
 def _match_records(records: Sequence[BenchRecord], patterns: Sequence[str]) -> list[BenchRecord]:
@@ -72,8 +65,9 @@ def _match_records(records: Sequence[BenchRecord], patterns: Sequence[str]) -> l
         found = [r for r in records if any(fnmatch(name, pattern) for name in (r.file, stem(r.file), r.name))]
         if not found:
             known = list(dict.fromkeys(stem(record.file) for record in records))
-            hint = nearest(pattern, known)
-            raise InputError(f"--test {pattern} matches no record{hint}; there are {', '.join(known)}")
+            raise InputError(
+                f"--test {pattern} matches no record{nearest(pattern, known)}; there are {', '.join(known)}"
+            )
         chosen += [record for record in found if not _is_among(record, chosen)]
     return chosen
 
