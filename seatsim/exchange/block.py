@@ -91,9 +91,8 @@ class ExportedBlock(NamedTuple):
 
 def list_variables(block: Block) -> list[Variable]:
     """List the parameters, inputs and outputs of a block, in this order."""
-    found = [*_walk("", "parameters", block.parameters, Variable("", "parameter", 0.0, ""))]
-    found += _walk("", "inputs", block.inputs, Variable("", "input", 0.0, ""))
-    found += _walk("", "outputs", block.outputs, Variable("", "output", 0.0, ""))
+    parts = {"parameters": block.parameters, "inputs": block.inputs, "outputs": block.outputs}
+    found = [v for name, part in parts.items() for v in _walk("", name, part, Variable("", name[:-1], 0.0, ""))]
     # A number that is absent is NaN, which other programs do not take for one.
     return [v for v in found if not v.name.startswith(block.hidden) and not math.isnan(v.value)]
 
@@ -103,12 +102,11 @@ def _walk(name: str, place: str, value: object, what: Variable) -> Iterator[Vari
     if isinstance(value, bool | int | float):
         # A float of numpy is one of Python's, too, but is not written as one.
         yield what._replace(name=name, place=place, value=float(value) if isinstance(value, float) else value)
-    elif isinstance(value, AugmentedDamper):
+    elif isinstance(value, AugmentedDamper | Rig):
+        if isinstance(value, Rig):
+            yield from _walk("plant", f"{place}.plant", value.plant, what)
+            name = "damper"
         yield from _walk(name, f"{place}.damper", value.damper, what)
-        yield from _walk_effects(f"{place}.effects", value.effects, what)
-    elif isinstance(value, Rig):
-        yield from _walk("plant", f"{place}.plant", value.plant, what)
-        yield from _walk("damper", f"{place}.damper", value.damper, what)
         yield from _walk_effects(f"{place}.effects", value.effects, what)
     elif hasattr(value, "_fields"):
         yield from _walk_record(name, place, value, what)

@@ -34,13 +34,9 @@ def fill(name: str, **words: object) -> str:
     import jinja2
 
     environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("seatsim.exchange", "."),
-        autoescape=jinja2.select_autoescape(["xml"]),
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
+        loader=jinja2.PackageLoader("seatsim.exchange", "."), autoescape=jinja2.select_autoescape(["xml"]),
+        undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True,
+    )  # fmt: skip
     return environment.get_template(name).render(words)
 
 
@@ -60,11 +56,10 @@ def print_model(block: Block) -> str:
     records = {"Parameters": block.parameters, "Inputs": block.inputs, "State": block.rest}
     results = {"Outputs": block.outputs, "Advanced": (block.initial, True)}
     names = {name: program.types.name(numba.typeof(value)) for name, value in (records | results).items()}
+    called = zip(("nominal_parameters", "first_inputs", "rest_state"), records.items(), strict=True)
     constants = [
         f"static const {names[kind]} {name} = {_initialiser(value, numba.typeof(value))};"
-        for name, (kind, value) in zip(
-            ("nominal_parameters", "first_inputs", "rest_state"), records.items(), strict=True
-        )
+        for name, (kind, value) in called
     ]
     model = fill("c/model.h", START=start, OBSERVE=observe, ADVANCE=advance, block=block, **names)
     return "\n".join([fill("c/prelude.h"), program.source(), *constants, "", model, ""])
@@ -85,8 +80,7 @@ def _call(
     printed = program.function(function, kinds)
     if printed.passed is not None:
         return codes[printed.passed]
-    pairs = zip(codes, kinds, strict=True)
-    listed = [code for code, kind in pairs if not is_empty(kind.type)]
+    listed = (code for code, kind in zip(codes, kinds, strict=True) if not is_empty(kind.type))
     return f"{printed.name}({', '.join(listed)})"
 
 

@@ -20,11 +20,8 @@ from seatsim.schema.registry import Record
 
 _LONGEST_NAME = 31
 """Letters that a name in a MAT file may have."""
-BLOCKS: dict[str, Callable[[Scenario], Block]] = {
-    "rig": rig_block,
-    "damper": damper_block,
-    "controller": controller_block,
-}
+BLOCKS: dict[str, Callable[[Scenario], Block]]
+BLOCKS = {"rig": rig_block, "damper": damper_block, "controller": controller_block}
 """What can be exported."""
 
 
@@ -64,12 +61,8 @@ def write_mat(block: Block, scenario: Scenario, path: Path) -> None:
     # Takes its time to load, and only this file format needs it.
     from scipy.io import savemat
 
-    content: dict[str, Any] = {
-        "name": block.name,
-        "step": block.step,
-        "parameters": _as_struct(block.parameters),
-        "notes": np.array(block.notes, dtype=object),
-    }
+    content: dict[str, Any] = {"name": block.name, "step": block.step, "parameters": _as_struct(block.parameters)}
+    content["notes"] = np.array(block.notes, dtype=object)
     if scenario.plant is not None:
         content["plant"] = _linear_plant(scenario.plant)
     write_whole(path, lambda part: savemat(str(part), content, appendmat=False, oned_as="row"))

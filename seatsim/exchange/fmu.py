@@ -12,7 +12,7 @@ import shutil
 import subprocess
 import uuid
 import zipfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from hashlib import sha256
 from pathlib import Path
 
@@ -50,13 +50,13 @@ def write_fmu(block: Block, version: int, path: Path) -> None:
         library = folder / "library"
         compile_library(folder / f"fmi{version}.c", library)
         files[name_library(version, identifier(block))] = library.read_bytes()
-    write_whole(path, lambda part: _pack(files, part))
 
+    def pack(part: Path) -> None:
+        with zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED) as archive:
+            for name, content in files.items():
+                archive.writestr(zipfile.ZipInfo(name, _FIRST_DAY), content, zipfile.ZIP_DEFLATED)
 
-def _pack(files: Mapping[str, bytes], path: Path) -> None:
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, content in files.items():
-            archive.writestr(zipfile.ZipInfo(name, _FIRST_DAY), content, zipfile.ZIP_DEFLATED)
+    write_whole(path, pack)
 
 
 def make_files(block: Block, version: int) -> dict[str, bytes]:
@@ -125,10 +125,9 @@ def find_compiler() -> str:
         InputError: there is none, or not the one that CC names.
     """
     chosen = _read_choice()[:1]
-    for name in chosen or ("cc", "gcc", "clang"):
-        found = shutil.which(name)
-        if found:
-            return found
+    found = next(filter(None, map(shutil.which, chosen or ("cc", "gcc", "clang"))), None)
+    if found:
+        return found
     if chosen:
         problem = f"the variable CC names '{chosen[0]}', and there is no such program; name a C compiler, or none"
         raise InputError(problem)

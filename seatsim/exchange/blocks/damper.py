@@ -123,23 +123,17 @@ def damper_block(scenario: Scenario) -> Block:
     on_damper, _ = select_in_loop(scenario.effects, False)
     damper, z = augment_damper(scenario.damper.record, on_damper)
     coil = augment_coil(scenario.effects, scenario.coil)
-    parameters = DamperParameters(
-        damper,
-        augment_factors(scenario.effects, scenario.damper.factors),
-        coil._replace(delay=0.0),
-        False,
-        scenario.solver.step,
-    )
-    start_temperature = scenario.temperature
-    temperature = start_temperature.start if isinstance(start_temperature, Thermal) else start_temperature
+    factors, step = augment_factors(scenario.effects, scenario.damper.factors), scenario.solver.step
+    parameters = DamperParameters(damper, factors, coil._replace(delay=0.0), False, step)
+    stated = scenario.temperature
+    temperature = stated.start if isinstance(stated, Thermal) else stated
     inputs = DamperInputs(temperature=float(temperature))
     name = DAMPERS.name_of(type(scenario.damper.record))
     notes = []
     if coil.delay > 0.0:
         notes.append(f"the delay of {coil.delay:g} s from command to coil is not part of the damper; delay the command")
-    if isinstance(start_temperature, Thermal):
+    if isinstance(stated, Thermal):
         notes.append("the damper does not warm up by itself; its temperature is an input")
     title, said, rest = f"{scenario.name} damper", f"MR damper with its coil: {name}", DamperState(0.0, z, 1)
     parts, texts = tuple(classes_of(damper)), (("coil.delay", "coil.resistance"), tuple(notes))
-    step = scenario.solver.step
     return Block(title, said, parameters, inputs, rest, start, observe, advance, step, False, parts, *texts)

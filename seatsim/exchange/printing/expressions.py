@@ -244,7 +244,9 @@ def _print_call(node: ast.Call, scope: Scope) -> Value:
     if isinstance(thing, tuple):
         thing, owner = thing
         if getattr(thing, "__name__", "") == "_replace":
-            return _replace(scope, owner, named)
+            held = scope.keep(owner)
+            items = [named.get(name) or element(scope, held, k) for k, name in enumerate(owner.type.fields)]
+            return build_tuple(scope, items, owner.type.instance_class)
         given = [owner, *given]
     if isinstance(thing, type) and issubclass(thing, tuple) and hasattr(thing, "_fields"):
         return build_tuple(scope, _bind(thing, given, named, node, scope), thing)
@@ -281,13 +283,6 @@ def _default(value: object, node: ast.Call, scope: Scope) -> Value:
     if value == ():
         return Value("", types.Tuple(()))
     raise scope.refuse(node, "defaults of arguments must be numbers")
-
-
-def _replace(scope: Scope, owner: Value, named: Mapping[str, Value]) -> Value:
-    """Return a record with other values of some fields."""
-    held = scope.keep(owner)
-    items = [named.get(name) or element(scope, held, k) for k, name in enumerate(owner.type.fields)]
-    return build_tuple(scope, items, owner.type.instance_class)
 
 
 def _print_own(function: FunctionType, values: list[Value], scope: Scope) -> Value:

@@ -48,7 +48,7 @@ def print_function(
         if is_known(only) and not is_tuple(only.type):
             return Printed(name, result, value=only)
     if not is_empty(result):
-        program.functions.append(_definition(program, function, name, result, parameters, scope))
+        program.functions.append(_definition(name, result, parameters, scope))
     return Printed(name, result)
 
 
@@ -63,19 +63,12 @@ def _parameter(scope: Scope, name: str, argument: Signature) -> str:
     return f"{written} {code}".replace("* ", "*")
 
 
-def _definition(
-    program: Program,
-    function: Callable[..., object],
-    name: str,
-    result: types.Type,
-    parameters: list[str],
-    scope: Scope,
-) -> str:
+def _definition(name: str, result: types.Type, parameters: list[str], scope: Scope) -> str:
     """Return the text of a function."""
     listed = ", ".join(filter(None, parameters))
-    head = f"INLINED {program.types.name(result)} {name}({listed or 'void'})"
+    head = f"INLINED {scope.program.types.name(result)} {name}({listed or 'void'})"
     lines = [*scope.declared, *_used(scope.lines)]
-    return "\n".join([f"/* {origin(function)} */", head, "{", *_unused(parameters, lines), *lines, "}", ""])
+    return "\n".join([f"/* {origin(scope.function)} */", head, "{", *_unused(parameters, lines), *lines, "}", ""])
 
 
 def _unused(parameters: list[str], lines: list[str]) -> list[str]:
@@ -141,11 +134,8 @@ def _print_statement(node: ast.stmt, scope: Scope) -> bool:
             _print_for(node, scope)
         case ast.While():
             _print_while(node, scope)
-        case ast.Break():
-            scope.write("break;")
-            return True
-        case ast.Continue():
-            scope.write("continue;")
+        case ast.Break() | ast.Continue():
+            scope.write(f"{ast.unparse(node)};")
             return True
         case _:
             raise scope.refuse(node, "this statement has no counterpart in C")
