@@ -26,7 +26,7 @@ def test_steps_are_found_where_they_are():
     current = square(1.0, 0.2, 1.0)(t) + 0.005 * np.random.default_rng(0).standard_normal(len(t))
     steps = find_steps(current, 1000.0, True)
     assert [round(step.row) for step in steps] == [500, 1000, 1500, 2000, 2500, 3000, 3500]
-    assert [step.rises for step in steps] == [True, False] * 3 + [True]
+    assert [step.after.level > step.before.level for step in steps] == [True, False] * 3 + [True]
     assert steps[0].after.level == pytest.approx(1.0, abs=0.01)
 
 
