@@ -114,13 +114,9 @@ def choose_settings(
     if not fast:
         top = next((f for f in _FASTEST if f * max(far) <= reach), _FASTEST[-1])
         fast = [0.25 * top, 0.5 * top, top]
-    return _SweepSettings(
-        _parse_numbers("--currents", currents, "A", "0,0.5,1", low=0.0)
-        or [round(share * largest, 9) for share in _SHARES],
-        _parse_numbers("--temperatures", temperatures, "degC", "20,50,80", low=-50.0, high=200.0) or list(warm),
-        far,
-        fast,
-    )
+    flowing = _parse_numbers("--currents", currents, "A", "0,0.5,1", low=0.0)
+    warmth = _parse_numbers("--temperatures", temperatures, "degC", "20,50,80", low=-50.0, high=200.0)
+    return _SweepSettings(flowing or [round(share * largest, 9) for share in _SHARES], warmth or warm, far, fast)
 
 
 def _round_down(value: float) -> float:

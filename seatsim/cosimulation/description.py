@@ -176,7 +176,10 @@ def describe_unit(path: Path) -> UnitDescription:
             said = stated[1].decode(errors="replace") if stated else "no version"
             raise InputError(f"{path}: is of FMI {said}; permitted: 2.0 and 3.0")
         try:
-            described = read_model_description(_alone(text), validate=False)
+            # An archive that holds the description alone is what FMPy reads.
+            with zipfile.ZipFile(alone := io.BytesIO(), "w") as described_only:
+                described_only.writestr("modelDescription.xml", text)
+            described = read_model_description(alone, validate=False)
         except Exception as error:  # lxml's and FMPy's own errors have no common class
             said = str(error).strip().split("\n")[0]
             raise InputError(f"{path}: its description cannot be read: {said}") from error
@@ -188,15 +191,6 @@ def describe_unit(path: Path) -> UnitDescription:
     saves = getattr(model, "canGetAndSetFMUstate", False) or getattr(model, "canGetAndSetFMUState", False)
     variables = {v.name: v for v in described.modelVariables}
     return UnitDescription(version, identifier, described, variables, bool(saves))
-
-
-def _alone(text: bytes) -> io.BytesIO:
-    """Return an archive that holds the description alone, which is what FMPy reads."""
-    content = io.BytesIO()
-    with zipfile.ZipFile(content, "w") as archive:
-        archive.writestr("modelDescription.xml", text)
-    content.seek(0)
-    return content
 
 
 def find_variable(unit: UnitDescription, name: str, causality: str) -> ScalarVariable:

@@ -369,10 +369,9 @@ def _sizes(problem: IdentificationProblem, values: Array) -> list[float]:
     for c, value in pairs:
         if c.at is not None:
             laws[c.field] = max(laws.get(c.field, c.natural), abs(value) * end ** (c.position or 0))
-    return [_size(c, value, laws, end) for c, value in pairs]
-
-
-def _size(c: Component, value: float, laws: dict[str, float], end: float) -> float:
-    if c.at is not None:
-        return laws[c.field] / end ** (c.position or 0)
-    return abs(value) if c.logarithmic else max(abs(value), c.natural)
+    return [
+        laws[c.field] / end ** (c.position or 0)
+        if c.at is not None
+        else max(abs(value), 0.0 if c.logarithmic else c.natural)
+        for c, value in pairs
+    ]

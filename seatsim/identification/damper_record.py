@@ -141,16 +141,12 @@ def fix_parameters(record: R, values: Mapping[str, float]) -> R:
             raise InputError(f"--fix {name}: no such number{permit(name, known)}")
         low, high = bounds(type(record), name)
         whole = isinstance(record._asdict()[name], int)
-        if not _is_permitted(value, low, high, whole):
+        # A value may be any word of the command line.
+        if not is_finite_number(value) or not low <= value <= high or (whole and value != int(value)):
             kind = "a whole number" if whole else "a number"
             raise InputError(f"--fix {name}={value} is not permitted; it must be {kind} from {low:g} to {high:g}")
         record = record._replace(**{name: int(value) if whole else float(value)})
     return record
-
-
-def _is_permitted(value: object, low: float, high: float, whole: bool) -> bool:
-    """Whether a value, which may be any word of the command line, is a finite number within bounds."""
-    return is_finite_number(value) and low <= value <= high and not (whole and value != int(value))
 
 
 def numeric_fields(cls: type) -> list[str]:
@@ -183,7 +179,7 @@ class Component(NamedTuple):
     logarithmic: bool
     low: float
     high: float
-    at: float | None
+    at: float | None = None
 
     @property
     def name(self) -> str:
@@ -252,15 +248,13 @@ class Coordinates:
             least = max(low, min(size, natural) / _SPAN)
             most = high if math.isfinite(high) else _SPAN * max(size, natural)
             ends = math.log(least / size), math.log(most / size)
-            return [Component(name, None, unit, size, natural, True, *ends, None)]
-        return [Component(name, None, unit, size, natural, False, low / size, high / size, None)]
+            return [Component(name, None, unit, size, natural, True, *ends)]
+        return [Component(name, None, unit, size, natural, False, low / size, high / size)]
 
     def _of_tuple(self, name: str, unit: str, value: tuple[float, ...], natural: float) -> list[Component]:
         if not is_current_law(self.cls, name):
             size = float(np.max(np.abs(value))) or natural
-            return [
-                Component(name, k, unit, size, natural, False, -math.inf, math.inf, None) for k in range(len(value))
-            ]
+            return [Component(name, k, unit, size, natural, False, -math.inf, math.inf) for k in range(len(value))]
         at = np.linspace(0.0, self.end, min(len(value), self.levels or len(value)))
         values = evaluate_law(value, at)
         size = float(np.max(np.abs(values))) or natural

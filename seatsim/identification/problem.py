@@ -259,9 +259,9 @@ def read_bench(bench: BenchModel) -> dict[str, float]:
 def _list_beside(fits_coil: bool, fits_temperature: bool) -> list[Component]:
     """Return what is free beside the damper: rates of the coil, temperature factors and the growth of the offset."""
     span, most = math.log(_COIL_RATE_SPAN), _MOST_PER_KELVIN / _PER_KELVIN
-    coil = [Component(name, None, "1/s", COIL_RATE, COIL_RATE, True, -span, span, None) for name in _COIL]
-    warm = [Component(name, None, "1/K", _PER_KELVIN, _PER_KELVIN, False, -most, most, None) for name in _FACTORS]
-    offset = Component(_OFFSET, None, "N/K", _OFFSET_PER_KELVIN, _OFFSET_PER_KELVIN, False, -math.inf, math.inf, None)
+    coil = [Component(name, None, "1/s", COIL_RATE, COIL_RATE, True, -span, span) for name in _COIL]
+    warm = [Component(name, None, "1/K", _PER_KELVIN, _PER_KELVIN, False, -most, most) for name in _FACTORS]
+    offset = Component(_OFFSET, None, "N/K", _OFFSET_PER_KELVIN, _OFFSET_PER_KELVIN, False, -math.inf, math.inf)
     return coil * fits_coil + [*warm, offset] * fits_temperature
 
 

@@ -192,25 +192,19 @@ def element(scope: Scope, owner: Value, index: int | Value, node: ast.AST | None
             raise scope.refuse(node or ast.Pass(), "the position in a tuple of several types must be a constant")
         return Value(f"{scope.keep(owner).code}.at[{index.code}]", owner.type.dtype)
     index %= len(owner.type)
-    if isinstance(owner.known, tuple):
-        return _known_element(scope, owner, index)
     kind = tuple(owner.type)[index]
+    if isinstance(owner.known, tuple):
+        found = owner.known[index]
+        if not isinstance(found, tuple):
+            return values.number(found)
+        pairs = zip(found, kind, strict=True)
+        return build_tuple(scope, [values.number(float(v) if k == values.REAL else v) for v, k in pairs])
     if values.is_empty(kind):
         return Value("", kind)
     held = scope.keep(owner)
     if values.is_row(owner.type):
         return Value(f"{held.code}.at[{index}]", kind)
     return Value(f"{held.code}.{values.field_names(owner.type)[index]}", kind)
-
-
-def _known_element(scope: Scope, owner: Value, index: int) -> Value:
-    found = owner.known[index]
-    if not isinstance(found, tuple):
-        return values.number(found)
-    kinds = tuple(owner.type)[index]
-    return build_tuple(
-        scope, [values.number(float(v) if k == values.REAL else v) for v, k in zip(found, kinds, strict=True)]
-    )
 
 
 def part(scope: Scope, owner: Value, span: slice) -> Value:

@@ -133,11 +133,8 @@ class Declarations:
             return "void"
         if not is_tuple(kind):
             raise NotPrintableError(f"a value of type {kind} has no counterpart in C")
-        if kind not in self.names:
-            self._declare(kind)
-        return self.names[kind]
-
-    def _declare(self, kind: types.Type) -> None:
+        if kind in self.names:
+            return self.names[kind]
         items = tuple(kind)
         if is_row(kind):
             name, body = f"{self.name(items[0])}_{len(items)}", f"    {self.name(items[0])} at[{len(items)}];\n"
@@ -148,6 +145,7 @@ class Declarations:
             name = cls.__name__ if cls else "tuple"
         self.names[kind] = free_name(identifier(name), self.names.values())
         self.text.append(f"typedef struct {{\n{body}}} {self.names[kind]};\n")
+        return self.names[kind]
 
 
 def is_row(kind: types.Type) -> bool:
