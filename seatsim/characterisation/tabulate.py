@@ -6,21 +6,9 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.characterisation import sheet
 from seatsim.characterisation.response import LEAST_RANGE, Response, find_crossing
 from seatsim.characterisation.rows import WARMER, WINDOW, Row, group_rows, has_same_motion, is_alike, measure_forces
-from seatsim.characterisation.sheet import (
-    BenchSheet,
-    CurrentHysteresis,
-    CycleEnergy,
-    Fade,
-    Friction,
-    Hysteresis,
-    PeakForce,
-    Share,
-    SlowForce,
-    StepResponse,
-    WarmUp,
-)
 from seatsim.metrics.motion import ratio
 from seatsim.schema.arrays import Array
 from seatsim.simulation.damper_bench import SineTest
@@ -35,7 +23,7 @@ _SETTLED = 0.05
 """Half width of the band, over the change of force, within which a response has settled."""
 
 
-def make_sheet(rows: Sequence[Row], responses: Iterable[Response], window: float = WINDOW) -> BenchSheet:
+def make_sheet(rows: Sequence[Row], responses: Iterable[Response], window: float = WINDOW) -> sheet.BenchSheet:
     """Return the tables of a damper's rows and responses.
 
     With F+ and F- the means of the force in rebound and compression over `window` of the stroke about its middle,
@@ -56,11 +44,11 @@ def make_sheet(rows: Sequence[Row], responses: Iterable[Response], window: float
     slow = [min(alike, key=lambda pair: pair[1].speed) for alike in group_rows(zip(groups, peaks, strict=True), _slow)]
     families = group_rows(peaks, lambda a, b: is_alike(a.speed, b.speed) and _as_warm(a.temperature, b.temperature))
     ladders = [family for family in families if len(family) > 1]
-    return BenchSheet(
+    return sheet.BenchSheet(
         peak_forces=peaks,
         response=[_describe_step(each) for each in responses if each.time is not None and each.share is not None],
         gas_force=[_measure_gas(group, peak) for group, peak in slow],
-        friction=[Friction(*peak[:3], _size(peak)) for _, peak in slow],
+        friction=[sheet.Friction(*peak[:3], _size(peak)) for _, peak in slow],
         dynamic_range=[_divide(peak, ladder[0]) for ladder in ladders for peak in ladder[-1:]],
         linearity=[_place(peak, ladder[0], ladder[-1]) for ladder in ladders for peak in ladder],
         hysteresis=[_measure_hysteresis(group, peak) for group, peak in zip(groups, peaks, strict=True)],
@@ -71,19 +59,19 @@ def make_sheet(rows: Sequence[Row], responses: Iterable[Response], window: float
     )
 
 
-def measure_peak(rows: Sequence[Row], window: float) -> PeakForce:
+def measure_peak(rows: Sequence[Row], window: float) -> sheet.PeakForce:
     """Return the force at the peak speed of rows that are repeats, each with a loop."""
     forces = np.array([measure_forces(row.loop, window) for row in rows if row.loop is not None])
     rebound, compression = map(float, np.mean(forces, axis=0))
     spread = float(np.max(np.std(forces, axis=0, ddof=1))) if len(rows) > 1 else math.nan
     current, temperature, speed = (_average_of(rows, name) for name in ("current", "temperature", "peak_speed"))
-    return PeakForce(current, temperature, speed, rebound, compression, len(rows), spread)
+    return sheet.PeakForce(current, temperature, speed, rebound, compression, len(rows), spread)
 
 
-def _measure_gas(rows: Sequence[Row], peak: PeakForce) -> SlowForce:
+def _measure_gas(rows: Sequence[Row], peak: sheet.PeakForce) -> sheet.SlowForce:
     """Return the gas force of slow tests, with its slope where reversals are far: what both directions share there."""
     stiffness = float(np.mean([_measure_slope(row.loop) for row in rows if row.loop is not None]))
-    return SlowForce(*peak[:3], 0.5 * (peak.rebound + peak.compression), stiffness)
+    return sheet.SlowForce(*peak[:3], 0.5 * (peak.rebound + peak.compression), stiffness)
 
 
 def _measure_slope(loop: SineTest) -> float:
@@ -96,24 +84,24 @@ def _measure_slope(loop: SineTest) -> float:
     return float(np.polyfit(grid - grid[0], both, 1)[0])
 
 
-def _forces(peak: PeakForce) -> tuple[float, float, float]:
+def _forces(peak: sheet.PeakForce) -> tuple[float, float, float]:
     """Return the force of either direction, and half their difference."""
     return peak.rebound, peak.compression, _size(peak)
 
 
-def _divide(peak: PeakForce, soft: PeakForce) -> Share:
-    return Share(*peak[:3], *map(ratio, _forces(peak), _forces(soft)))
+def _divide(peak: sheet.PeakForce, soft: sheet.PeakForce) -> sheet.Share:
+    return sheet.Share(*peak[:3], *map(ratio, _forces(peak), _forces(soft)))
 
 
-def _place(peak: PeakForce, soft: PeakForce, hard: PeakForce) -> Share:
+def _place(peak: sheet.PeakForce, soft: sheet.PeakForce, hard: sheet.PeakForce) -> sheet.Share:
     forces = zip(_forces(peak), _forces(soft), _forces(hard), strict=True)
-    return Share(*peak[:3], *(ratio(force - low, high - low) for force, low, high in forces))
+    return sheet.Share(*peak[:3], *(ratio(force - low, high - low) for force, low, high in forces))
 
 
-def _measure_hysteresis(rows: Sequence[Row], peak: PeakForce) -> Hysteresis:
+def _measure_hysteresis(rows: Sequence[Row], peak: sheet.PeakForce) -> sheet.Hysteresis:
     loops = [row.loop for row in rows if row.loop is not None]
     widths = [np.mean([_measure_width(loop, share) for loop in loops]) for share in (0.0, 0.5)]
-    return Hysteresis(*peak[:3], *map(float, widths))
+    return sheet.Hysteresis(*peak[:3], *map(float, widths))
 
 
 def _measure_width(loop: SineTest, share: float) -> float:
@@ -129,40 +117,40 @@ def _measure_width(loop: SineTest, share: float) -> float:
     return max(widths)
 
 
-def _measure_energy(rows: Sequence[Row]) -> CycleEnergy:
+def _measure_energy(rows: Sequence[Row]) -> sheet.CycleEnergy:
     names = ("current", "temperature", "amplitude", "frequency", "peak_speed", "energy", "damping", "asymmetry")
-    return CycleEnergy(*(_average_of(rows, name) for name in names))
+    return sheet.CycleEnergy(*(_average_of(rows, name) for name in names))
 
 
-def _measure_fade(peaks: Sequence[PeakForce]) -> list[Fade]:
+def _measure_fade(peaks: Sequence[sheet.PeakForce]) -> list[sheet.Fade]:
     found = []
     for family in group_rows(peaks, lambda a, b: is_alike(a.speed, b.speed) and _same_current(a.current, b.current)):
         warmth, force = (np.array(part) for part in zip(*((p.temperature, _size(p)) for p in family), strict=True))
         if len(family) > 1 and np.ptp(warmth) >= WARMER:
             low, high = float(np.min(warmth)), float(np.max(warmth))
-            found.append(Fade(family[0].current, family[0].speed, low, high, _find_slope(warmth, force)))
+            found.append(sheet.Fade(family[0].current, family[0].speed, low, high, _find_slope(warmth, force)))
     return found
 
 
-def _list_warm_up(row: Row) -> list[WarmUp]:
+def _list_warm_up(row: Row) -> list[sheet.WarmUp]:
     """Return the cycles of a record with the energy that was absorbed before each."""
     values = row.cycle_values or {}
     absorbed = np.cumsum([0.0, *values["energy"][:-1]])
     cycles = zip(map(float, absorbed), values["temperature"], values["force"], strict=True)
     return [
-        WarmUp(row.record, row.current, row.peak_speed, energy, warmth, force, force / values["force"][0])
+        sheet.WarmUp(row.record, row.current, row.peak_speed, energy, warmth, force, force / values["force"][0])
         for energy, warmth, force in cycles
     ]
 
 
-def _measure_warm_up(row: Row, cycles: Sequence[WarmUp]) -> Fade:
+def _measure_warm_up(row: Row, cycles: Sequence[sheet.WarmUp]) -> sheet.Fade:
     absorbed, warmth, force = (
         np.array([getattr(cycle, name) for cycle in cycles]) for name in ("absorbed", "temperature", "force")
     )
     low, high = float(np.min(warmth)), float(np.max(warmth))
     per_kelvin = _find_slope(warmth, force) if high - low >= WARMER else math.nan
     slope = 1e3 * _find_slope(absorbed, force)
-    return Fade(row.current, row.peak_speed, low, high, per_kelvin, row.record, float(absorbed[-1]), slope)
+    return sheet.Fade(row.current, row.peak_speed, low, high, per_kelvin, row.record, float(absorbed[-1]), slope)
 
 
 def _find_slope(cause: Array, force: Array) -> float:
@@ -171,12 +159,12 @@ def _find_slope(cause: Array, force: Array) -> float:
     return float(slope / start)
 
 
-def _size(peak: PeakForce) -> float:
+def _size(peak: sheet.PeakForce) -> float:
     """Return half the difference of both directions, which has no gas force."""
     return 0.5 * (peak.rebound - peak.compression)
 
 
-def _describe_step(found: Response) -> StepResponse:
+def _describe_step(found: Response) -> sheet.StepResponse:
     assert found.time is not None and found.share is not None
     start = found.current_t10 if math.isfinite(found.current_t10) else 0.0
     share = found.share
@@ -185,7 +173,7 @@ def _describe_step(found: Response) -> StepResponse:
     )
     again = _find_last(found.time, share < 0.9) - start
     lowest = float(np.min(share[found.time - start >= t90], initial=1.0))
-    return StepResponse(
+    return sheet.StepResponse(
         found.before, found.after, found.speed, found.direction, t5, t10, t63, t90,
         settling=_find_last(found.time, np.abs(share - 1.0) > _SETTLED) - start,
         recovery=max(again - t90, 0.0), overshoot=max(float(np.max(share)) - 1.0, 0.0),
@@ -203,7 +191,7 @@ def _is_repeat(a: Row, b: Row) -> bool:
     return has_same_motion(a, b) and _same_current(a.current, b.current) and _as_warm(a.temperature, b.temperature)
 
 
-def _slow(a: tuple[Sequence[Row], PeakForce], b: tuple[Sequence[Row], PeakForce]) -> bool:
+def _slow(a: tuple[Sequence[Row], sheet.PeakForce], b: tuple[Sequence[Row], sheet.PeakForce]) -> bool:
     return _same_current(a[1].current, b[1].current) and _as_warm(a[1].temperature, b[1].temperature)
 
 
@@ -225,7 +213,7 @@ _EDGE = 0.25
 """Part of a level by which its edges are moved: no ladder of fewer than 32 equal steps then has a step at an edge."""
 
 
-def measure_current_hysteresis(rows: Sequence[Row]) -> list[CurrentHysteresis]:
+def measure_current_hysteresis(rows: Sequence[Row]) -> list[sheet.CurrentHysteresis]:
     """Return the widths of records whose current rises and falls slowly, in a ramp or in steps, under one motion.
 
         width(i) = F_falling(i) - F_rising(i)
@@ -238,7 +226,7 @@ def measure_current_hysteresis(rows: Sequence[Row]) -> list[CurrentHysteresis]:
     return [width for test in tests for width in _measure_test(test)]
 
 
-def _measure_test(rows: Sequence[Row]) -> list[CurrentHysteresis]:
+def _measure_test(rows: Sequence[Row]) -> list[sheet.CurrentHysteresis]:
     current, force = (np.concatenate([(row.cycle_values or {})[name] for row in rows]) for name in ("current", "force"))
     span = float(np.ptp(current))
     if span < LEAST_RANGE:
@@ -255,7 +243,7 @@ def _measure_test(rows: Sequence[Row]) -> list[CurrentHysteresis]:
     pairs = zip(rising[compared], pushed[compared], np.interp(rising, falling, pulled)[compared], strict=True)
     speed = float(np.mean([row.peak_speed for row in rows]))
     found = (tuple(map(float, pair)) for pair in pairs)
-    return [CurrentHysteresis(rows[0].test, i, speed, up, down, down - up) for i, up, down in found]
+    return [sheet.CurrentHysteresis(rows[0].test, i, speed, up, down, down - up) for i, up, down in found]
 
 
 def _follow(level: Array) -> tuple[Array, list[int]]:

@@ -10,20 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.dampers.base import DAMPERS, find_confidence
-from seatsim.identification.assessment import (
-    Agreement,
-    Assessment,
-    Information,
-    PredictionData,
-    VisitedRanges,
-    assess_fit,
-    assess_predictions,
-    compute_information,
-    load_prediction_data,
-    mean_agreement,
-    measure_coverage,
-    note_limits,
-)
+from seatsim.identification import assessment
 from seatsim.identification.damper_record import find_model
 from seatsim.identification.problem import (
     BenchModel,
@@ -60,20 +47,20 @@ class Identification(NamedTuple):
     model: str
     bench: Unwritten[BenchModel]
     origin: Unwritten[float]
-    assessments: Unwritten[list[Assessment]]
-    information: Joined[Information]
+    assessments: Unwritten[list[assessment.Assessment]]
+    information: Joined[assessment.Information]
     bic: float
     seconds: float
     ns_per_step: float
     warm: Unwritten[bool]
     commanded: Unwritten[bool]
-    coverage: VisitedRanges
+    coverage: assessment.VisitedRanges
     notes: list[str]
 
-    def mean(self, part: str) -> Agreement | None:
+    def mean(self, part: str) -> assessment.Agreement | None:
         """Return the mean agreement over the records of a part (train, test, predicted), None where it has none."""
-        each = [assessment.agreement for assessment in self.assessments if assessment.part == part]
-        return mean_agreement(each) if each else None
+        each = [one.agreement for one in self.assessments if one.part == part]
+        return assessment.mean_agreement(each) if each else None
 
     @property
     @written()
@@ -83,33 +70,33 @@ class Identification(NamedTuple):
 
     @property
     @written()
-    def train(self) -> Agreement | None:
+    def train(self) -> assessment.Agreement | None:
         """Mean agreement over the fitted records."""
         return self.mean("train")
 
     @property
     @written()
-    def test(self) -> Agreement | None:
+    def test(self) -> assessment.Agreement | None:
         """Mean agreement over the records that were held out, None where none were."""
         return self.mean("test")
 
     @property
-    def assessed(self) -> Agreement | None:
+    def assessed(self) -> assessment.Agreement | None:
         """Mean agreement on the records that were held out, on the fitted ones where none were."""
         return self.test or self.train
 
     @property
     @written(if_any=True)
-    def predicted(self) -> Agreement | None:
+    def predicted(self) -> assessment.Agreement | None:
         """Mean agreement over the records that were predicted only."""
         return self.mean("predicted")
 
     @property
     @written()
-    def records(self) -> dict[str, Assessment]:
+    def records(self) -> dict[str, assessment.Assessment]:
         """The agreement on each record by its name, with its part, or a number, where names alone are ambiguous."""
         names = Counter(each.record.name for each in self.assessments)
-        found: dict[str, Assessment] = {}
+        found: dict[str, assessment.Assessment] = {}
         for each in self.assessments:
             name = each.record.name if names[each.record.name] == 1 else f"{each.record.name} ({each.part})"
             again = sum(other.record.name == each.record.name and other.part == each.part for other in found.values())
@@ -170,7 +157,7 @@ def identify_records(
     problem, short = state_problem(parts.fitted, cls, origin, settings)
     vector, known = _solve(model, problem, short, settings.seed, progress)
     bench = problem.to_bench(vector)
-    assessments = assess_fit(bench, parts, origin)
+    assessments = assessment.assess_fit(bench, parts, origin)
     diverged = [each.record.name for each in assessments if each.part == "train" and not each.complete]
     if diverged:
         raise RunError(f"{model}: no parameters were found with which its state stays finite on {', '.join(diverged)}")
@@ -181,20 +168,20 @@ def identify_records(
     tests = [each.record for each in assessments if each.part == "test"]
     notes = [
         *_note_parameters(problem, vector, known),
-        *note_limits(DAMPERS.specification_of(cls), parts.fitted, tests, origin),
+        *assessment.note_limits(DAMPERS.specification_of(cls), parts.fitted, tests, origin),
     ]
     return Identification(
         model=model, bench=bench, origin=origin, assessments=assessments, information=known, bic=known.bic(cost),
         seconds=time.perf_counter() - began, ns_per_step=_time_step(bench, problem.inputs),
         warm=problem.reference is not None, commanded=any(record.commanded for record in parts.fitted),
-        coverage=measure_coverage(parts.fitted),
+        coverage=assessment.measure_coverage(parts.fitted),
         notes=[*notes, *_note_divergence(assessments), *note_unused(n for each in records for n in each.unused)],
     )  # fmt: skip
 
 
 def _solve(
     model: str, problem: IdentificationProblem, short: IdentificationProblem, seed: int, progress: Progress
-) -> tuple[Array, Information]:
+) -> tuple[Array, assessment.Information]:
     """Return the best vector, shape (P,), and what the data say of it.
 
     Raises:
@@ -205,7 +192,7 @@ def _solve(
         with ThreadPoolExecutor() as executor:
             vector = search_parameters(problem, short, seed, executor, progress)
             progress("assessing the parameters")
-            return vector, compute_information(problem, vector, executor)
+            return vector, assessment.compute_information(problem, vector, executor)
     except (ArithmeticError, np.linalg.LinAlgError) as error:
         raise RunError(f"{model}: the fit failed: {error}; hold a parameter by --fix") from error
 
@@ -221,16 +208,16 @@ def predict(
     Raises:
         InputError: the data or the moving average are not as they must be.
     """
-    return predict_records(found, load_prediction_data([data], moving_average, centred))
+    return predict_records(found, assessment.load_prediction_data([data], moving_average, centred))
 
 
-def predict_records(found: Identification, data: PredictionData) -> Identification:
+def predict_records(found: Identification, data: assessment.PredictionData) -> Identification:
     """Return an identification with its predictions of more records; see `predict`."""
-    more = assess_predictions(found.bench, found.origin, data)
+    more = assessment.assess_predictions(found.bench, found.origin, data)
     return found._replace(assessments=[*found.assessments, *more], notes=[*found.notes, *_note_divergence(more)])
 
 
-def _note_parameters(problem: IdentificationProblem, vector: Array, known: Information) -> Iterator[str]:
+def _note_parameters(problem: IdentificationProblem, vector: Array, known: assessment.Information) -> Iterator[str]:
     """Yield what is to be known of the parameters."""
     if known.not_identified:
         yield f"the data do not identify {', '.join(known.not_identified)}"
@@ -239,7 +226,7 @@ def _note_parameters(problem: IdentificationProblem, vector: Array, known: Infor
         yield f"at the end of its range: {', '.join(ends)}"
 
 
-def _note_divergence(assessments: Sequence[Assessment]) -> Iterator[str]:
+def _note_divergence(assessments: Sequence[assessment.Assessment]) -> Iterator[str]:
     """Yield on which records the state ran away."""
     diverged = [f"{each.record.name} ({each.part})" for each in assessments if not each.complete]
     if diverged:
