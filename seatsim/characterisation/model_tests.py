@@ -104,7 +104,7 @@ def choose_settings(
     specification, factors = tested.specification, tested.factors
     largest = min(specification.max_current, tested.coil.max_current)
     low, high = specification.temperatures
-    warm = (low, 0.5 * (low + high), high) if any(factors[:3]) and high > low else (factors.reference,)
+    warm = [low, 0.5 * (low + high), high] if any(factors[:3]) and high > low else [factors.reference]
     far = _parse_numbers("--amplitudes", amplitudes, "m", "0.005,0.01", above=0.0)
     fast = _parse_numbers("--frequencies", frequencies, "Hz", "0.5,1,2", above=0.0)
     reach = specification.max_speed / (2.0 * math.pi)
