@@ -11,6 +11,7 @@ from seatsim.characterisation.model_tests import characterise_model, choose_sett
 from seatsim.cli.app import app
 from seatsim.schema.errors import InputError
 
+from ..identification.benches import columns
 from ..text import words
 from .conftest import DAMPER
 
@@ -19,21 +20,11 @@ def command(*arguments):
     return CliRunner().invoke(app, ["characterise", *map(str, arguments)])
 
 
-def table_of(record, path):
-    columns = {
-        "time_s": record.time,
-        "displacement_mm": 1e3 * record.displacement,
-        "velocity_m_s": record.velocity,
-        "force_N": record.force,
-        "current_A": record.current,
-    }
-    pd.DataFrame(columns).to_csv(path, index=False)
-
-
 def test_a_bench_table_gives_files_and_a_table(record, sine, tmp_path):
     motion, seconds = sine(0.01, 2.0)
     for name, current in (("low", 0.0), ("high", 1.0)):
-        table_of(record(motion, seconds, lambda t, i=current: i + 0.0 * t), tmp_path / f"{name}.csv")
+        made = record(motion, seconds, lambda t, i=current: i + 0.0 * t)
+        columns(made).to_csv(tmp_path / f"{name}.csv", index=False)
     done = command(tmp_path, "--out", tmp_path / "out")
     assert done.exit_code == 0, done.output
     assert "rebound [N]" in done.stdout.splitlines()[1]

@@ -97,10 +97,15 @@ def test_energy_is_the_area_and_hysteresis_the_width_of_the_loop(sheet):
         assert width.width == pytest.approx(2 * SPRING * energy.amplitude, abs=0.03 * GAS + 8.0)
 
 
-def test_responses_count_from_the_current(tmp_path):
+def there_and_back():
+    """Eight seconds at 0.1 m/s over 40 mm, out and back: time, displacement, velocity."""
     time = np.arange(round(8.0 * RATE)) / RATE
     phase = (time / 0.4) % 2
-    x, v = 0.04 * (np.where(phase < 1, phase, 2 - phase) - 0.5), np.where(phase < 1, 0.1, -0.1)
+    return time, 0.04 * (np.where(phase < 1, phase, 2 - phase) - 0.5), np.where(phase < 1, 0.1, -0.1)
+
+
+def test_responses_count_from_the_current(tmp_path):
+    time, x, v = there_and_back()
     coil, command = Coil(rate=130.0, rate_fall=80.0), np.where((time + 0.2) % 0.8 < 0.4, 0.0, 1.0)
     current = np.array(command)
     for k in range(1, len(current)):
@@ -234,11 +239,8 @@ def test_rising_and_falling_current_stand_apart(kind):
         assert row.width == pytest.approx(width, abs=3.0) and row.speed == pytest.approx(0.04 * np.pi, rel=0.01)
 
 
-def test_overshoots_of_current_and_force_and_a_dip_stand_apart(tmp_path):
-    rate, share = 2000.0, np.zeros(0)
-    time = np.arange(round(8.0 * rate)) / rate
-    phase = (time / 0.4) % 2
-    x, v = 0.04 * (np.where(phase < 1, phase, 2 - phase) - 0.5), np.where(phase < 1, 0.1, -0.1)
+def test_overshoots_of_current_and_force_and_a_dip_stand_apart():
+    time, x, v = there_and_back()
     since = (time + 0.2) % 0.4
     raised = (time + 0.2) % 0.8 >= 0.4
     # An oscillation of the coil's controller: peak exp(-pi d / sqrt(1 - d^2)) with a damping d of 0.5 at 40 Hz.
@@ -249,7 +251,7 @@ def test_overshoots_of_current_and_force_and_a_dip_stand_apart(tmp_path):
     shape = np.interp(since, [0.0, 0.01, 0.02, 0.03, 0.05, 0.06], [0.0, 0.95, 0.95, 0.8, 0.8, 1.0])
     current, follows = np.where(raised, share, 1.0 - share), np.where(raised, shape, 1.0 - shape)
     force = (100.0 + 500.0 * follows) * np.sign(v) + GAS
-    record = BenchRecord("steps", "steps.csv", rate, x, v, force, current, False, None)
+    record = BenchRecord("steps", "steps.csv", RATE, x, v, force, current, False, None)
     rows = characterise([record]).sheet.response
     assert len(rows) == 2
     for row in rows:

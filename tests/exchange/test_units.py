@@ -45,12 +45,9 @@ def open_unit(units, tmp_path):
     folder = fmpy.extract(str(units / "damper2.fmu"), str(tmp_path))
     told = []
     logger = fmpy.fmi2.fmi2CallbackLoggerTYPE(lambda *values: told.append(values[2]))
-    unit = fmpy.fmi2.FMU2Slave(
-        guid=description.guid,
-        unzipDirectory=folder,
-        modelIdentifier=description.coSimulation.modelIdentifier,
-        instanceName="damper",
-    )
+    model = description.coSimulation.modelIdentifier
+    named = {"guid": description.guid, "modelIdentifier": model, "instanceName": "damper"}
+    unit = fmpy.fmi2.FMU2Slave(unzipDirectory=folder, **named)
     callbacks = fmpy.fmi2.fmi2CallbackFunctions()
     callbacks.logger = logger
     callbacks.allocateMemory = fmpy.fmi2.fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
@@ -200,12 +197,9 @@ def test_a_step_from_a_saved_state_gives_the_same_again(open_unit):
 
 def test_a_parameter_keeps_its_bounds_and_acts(open_unit):
     unit, number = open_unit, open_unit.numbers
-    with pytest.raises(fmpy.fmi1.FMICallException):
-        unit.setReal([number["damper.n"]], [25.0])
-    with pytest.raises(fmpy.fmi1.FMICallException):
-        unit.setReal([number["force"]], [1.0])
-    with pytest.raises(fmpy.fmi1.FMICallException):
-        unit.setReal([999], [1.0])
+    for reference, value in ((number["damper.n"], 25.0), (number["force"], 1.0), (999, 1.0)):
+        with pytest.raises(fmpy.fmi1.FMICallException):
+            unit.setReal([reference], [value])
     unit.setReal([number["damper.f0"]], [33.0])
     unit.enterInitializationMode()
     assert unit.getReal([number["force"]]) == [33.0]
