@@ -7,15 +7,7 @@ from typing import Annotated, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from seatsim.characterisation.response import (
-    LEAST_RANGE,
-    Cycle,
-    average_loops,
-    find_cycles,
-    find_drift,
-    resample_loops,
-    select_steady_cycles,
-)
+from seatsim.characterisation import response
 from seatsim.metrics.motion import ratio, rms
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.recordings.quality.damage import Doubter, doubt_dropouts, flat_tops, plateaus
@@ -112,7 +104,7 @@ class Row(NamedTuple):
     def ramps(self) -> bool:
         """Whether the current differs from cycle to cycle."""
         current = (self.cycle_values or {}).get("current", [0.0])
-        return max(current) - min(current) > max(_VARIES * max(current), LEAST_RANGE)
+        return max(current) - min(current) > max(_VARIES * max(current), response.LEAST_RANGE)
 
 
 _FIGURES: dict[str, Callable[[SineTest], float]] = {
@@ -144,7 +136,7 @@ def summarise_loops(
 
     `window` is the part of the stroke over which the force at the peak speed is averaged.
     """
-    loop = average_loops(loops)
+    loop = response.average_loops(loops)
     flowing, warmth = (np.broadcast_to(np.asarray(y, dtype=float), len(loops)) for y in (current, temperature))
     each = {name: np.array([figure(one) for one in loops]) for name, figure in _FIGURES.items()}
     mean = {name: float(np.mean(values)) for name, values in each.items()}
@@ -182,12 +174,12 @@ def summarise_record(record: BenchRecord, window: float = WINDOW, last: int = 0)
     `window` is the part of the stroke over which the force at the peak speed is averaged; only so many of the `last`
     steady cycles count, all where 0. Drift and damage are sought in all of them.
     """
-    found = find_cycles(record.displacement)
-    steady = select_steady_cycles(found)
+    found = response.find_cycles(record.displacement)
+    steady = response.select_steady_cycles(found)
     if not steady:
         return summarise_aperiodic_record(record, found)
-    drift = find_drift(record, steady)
-    loops = resample_loops(record, steady, drift)
+    drift = response.find_drift(record, steady)
+    loops = response.resample_loops(record, steady, drift)
     moved = drift * (steady[-1].first - steady[0].first) / record.rate
     notes = [*_of_damage(record), *_of_current(record), *_of_loops(loops)]
     if abs(moved) > _WANDERS * 0.5 * float(np.ptp(record.force)):
@@ -203,7 +195,7 @@ def summarise_record(record: BenchRecord, window: float = WINDOW, last: int = 0)
     return row._replace(test=record.name)
 
 
-def summarise_aperiodic_record(record: BenchRecord, found: Sequence[Cycle]) -> Row:
+def summarise_aperiodic_record(record: BenchRecord, found: Sequence[response.Cycle]) -> Row:
     """Return the row of a record that is no steady cycle: peaks, RMS and mean of the force, and what the motion is."""
     warmth = record.temperature if record.temperature is not None else np.array([math.nan])
     every = slice(None, None, max(1, len(record.force) // _MOST_POINTS))
@@ -218,7 +210,7 @@ def summarise_aperiodic_record(record: BenchRecord, found: Sequence[Cycle]) -> R
     )  # fmt: skip
 
 
-def _motion(record: BenchRecord, found: Sequence[Cycle]) -> str:
+def _motion(record: BenchRecord, found: Sequence[response.Cycle]) -> str:
     if len(found) < 2:
         return f"not cyclic: {len(found)} whole cycle{'' if len(found) == 1 else 's'} in {record.time[-1]:.3g} s"
     low, high = np.percentile([record.rate / cycle.length for cycle in found], (5, 95))
@@ -254,7 +246,7 @@ def _of_sign(record: BenchRecord) -> list[str]:
 
 def _of_loops(loops: Sequence[SineTest]) -> list[str]:
     notes = []
-    loop = average_loops(loops)
+    loop = response.average_loops(loops)
     energy = loop.dissipated_energy
     over_stroke = float(np.trapezoid(loop.force, loop.displacement))
     if abs(over_stroke - energy) > _DISAGREE * abs(energy):
@@ -271,7 +263,7 @@ def _of_loops(loops: Sequence[SineTest]) -> list[str]:
     return notes
 
 
-def _average_cycles(values: Array, cycles: Sequence[Cycle]) -> Array:
+def _average_cycles(values: Array, cycles: Sequence[response.Cycle]) -> Array:
     return np.array([float(np.mean(values[cycle.rows])) for cycle in cycles])
 
 
