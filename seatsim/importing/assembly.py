@@ -34,19 +34,6 @@ class Assembled(NamedTuple):
     doubts: list[Issue]
 
 
-class _Used(NamedTuple):
-    """Channels of a run by group and name, the file of each group, and the group that each channel is taken from."""
-
-    by_group: dict[str, dict[str, Channel]]
-    file_of: dict[str, str]
-    taken_from: dict[str, str]
-
-    @property
-    def reference(self) -> str:
-        """The group whose clock counts: that of the first channel."""
-        return next(iter(self.taken_from.values()))
-
-
 def assemble(files: Sequence[DataFile], stated: ImportMap) -> Assembled:
     """Return the runs that a map makes of files.
 
@@ -62,8 +49,7 @@ def assemble(files: Sequence[DataFile], stated: ImportMap) -> Assembled:
     rate = stated.resample or max(each.axis.rate for _, clocked in parts for each in clocked)
     runs, align = dict[str, dict[str, Array]](), dict(stated.align)
     for name, clocked in parts:
-        used = _use_channels(name, clocked, stated, doubts, notes)
-        runs[name] = _tabulate(name, used, _align(used, align, notes), stated, rate, notes)
+        runs[name] = _tabulate(name, _use_channels(name, clocked, stated, align, doubts, notes), stated, rate, notes)
     return Assembled(runs, rate, stated._replace(align=align), list(dict.fromkeys(notes)), doubts)
 
 
@@ -78,21 +64,28 @@ def _group_runs(files: Sequence[DataFile], stated: ImportMap) -> list[tuple[str,
     by_name = {file.path.name: file for file in files}
     if stated.runs:
         return [(run, [by_name[name] for name in names]) for run, names in stated.runs.items()]
-    if len(files) > 1 and not all(_has_all(file, stated) for file in files):
+    needed = {channel.column for channel in stated.channels.values()} - {None}
+    are_complete = all(needed <= {s.name for group in file.groups for s in group.signals} for file in files)
+    if len(files) == 1 or not are_complete:
         return [("run-a", list(files))]
-    return [(file.path.name.split(".")[0] if len(files) > 1 else "run-a", [file]) for file in files]
-
-
-def _has_all(file: DataFile, stated: ImportMap) -> bool:
-    columns = {signal.name for group in file.groups for signal in group.signals}
-    return all(channel.column in columns for channel in stated.channels.values() if channel.column is not None)
+    return [(file.path.name.split(".")[0], [file]) for file in files]
 
 
 def _use_channels(
-    run: str, clocked: Sequence[Clocked], stated: ImportMap, doubts: list[Issue], notes: list[str]
-) -> _Used:
-    """Return the channels of a run, each taken from the first group that has its column."""
-    used = _Used({each.label: {} for each in clocked}, {each.label: each.file for each in clocked}, {})
+    run: str,
+    clocked: Sequence[Clocked],
+    stated: ImportMap,
+    align: dict[str, float],
+    doubts: list[Issue],
+    notes: list[str],
+) -> dict[str, Channel]:
+    """Return the channels of a run, each taken from the first group that has its column, on the clock of the first one.
+
+    The times of each group move by as much as is stated, as is estimated (put into `align`), or not at all. Groups of
+    one file share its clock, so that what one of them lags behind another is not taken for an offset.
+    """
+    by_group: dict[str, dict[str, Channel]] = {each.label: {} for each in clocked}
+    taken_from: dict[str, Clocked] = {}
     for name, entry in stated.channels.items():
         if entry.column is None:
             continue
@@ -102,32 +95,34 @@ def _use_channels(
         for each in holders:
             is_taken = each is holders[0]
             channel, found = make_channel(name, entry, each, CHANNELS[stated.rig][name], notes if is_taken else [])
-            used.by_group[each.label][name] = channel
+            by_group[each.label][name] = channel
             doubts += place_in_run(run, found) if is_taken else []
-        used.taken_from[name] = holders[0].label
-    return used
+        taken_from[name] = holders[0]
+    reference = next(iter(taken_from.values()))
+    for label, file in {each.label: each.file for each in taken_from.values()}.items():
+        if label not in align and file != reference.file:
+            offset = estimate_offset(by_group[reference.label], by_group[label])
+            notes.append(describe_offset(label, reference.label, offset))
+            if offset is not None and offset.is_clear:
+                align[label] = offset.seconds
+    taken = {name: (by_group[each.label][name], align.get(each.label, 0.0)) for name, each in taken_from.items()}
+    return {name: channel._replace(start=channel.start + seconds) for name, (channel, seconds) in taken.items()}
 
 
 def _tabulate(
-    run: str, used: _Used, moved: Mapping[str, float], stated: ImportMap, rate: float, notes: list[str]
+    run: str, held: Mapping[str, Channel], stated: ImportMap, rate: float, notes: list[str]
 ) -> dict[str, Array]:
     """Return the table of a run on one time base, over the time that all its channels have in common."""
-    taken = {name: (used.by_group[label][name], moved[label]) for name, label in used.taken_from.items()}
-    held = {name: channel._replace(start=channel.start + seconds) for name, (channel, seconds) in taken.items()}
     begin = max(each.start for each in held.values())
     end = min(each.start + (len(each.values) - 1) / each.rate for each in held.values())
     shortest = min(held.values(), key=lambda each: len(each.values) / each.rate)
     lasts = (len(shortest.values) - 1) / shortest.rate
     if lasts < SHORTEST_RUN:
-        raise InputError(
-            f"{run}: lasts {lasts:.3g} s by its times, {len(shortest.values)} rows at {shortest.rate:.6g} Hz; a run"
-            f" needs {SHORTEST_RUN:g} s: check the rate, or the unit under time"
-        )
+        seen = f"lasts {lasts:.3g} s by its times, {len(shortest.values)} rows at {shortest.rate:.6g} Hz"
+        raise InputError(f"{run}: {seen}; a run needs {SHORTEST_RUN:g} s: check the rate, or the unit under time")
     if end - begin < SHORTEST_RUN:
-        raise InputError(
-            f"{run}: its files have less than {SHORTEST_RUN:g} s in common ({max(0.0, end - begin):.3g} s at"
-            f" {rate:.6g} Hz); check their times and the unit under time, or state align"
-        )
+        common = f"less than {SHORTEST_RUN:g} s in common ({max(0.0, end - begin):.3g} s at {rate:.6g} Hz)"
+        raise InputError(f"{run}: its files have {common}; check their times and the unit under time, or state align")
     times = begin + np.arange(int((end - begin) * rate + 1e-6) + 1) / rate
     table = {}
     for name, entry in stated.channels.items():
@@ -142,19 +137,3 @@ def _tabulate(
             notes.append(f"{name}: resampled from {each.rate:.6g} to {rate:.6g} Hz, {how}")
         table[name] = take(each.values, each.start - entry.delay, each.rate, times)
     return table
-
-
-def _align(used: _Used, align: dict[str, float], notes: list[str]) -> dict[str, float]:
-    """Return by how much the times of each group move, in s: as stated, as estimated (put into `align`), or 0.
-
-    Groups of one file share its clock, so that what one of them lags behind another is not taken for an offset.
-    """
-    moved: dict[str, float] = {}
-    for label in dict.fromkeys(used.taken_from.values()):
-        if label not in align and used.file_of[label] != used.file_of[used.reference]:
-            found = estimate_offset(used.by_group[used.reference], used.by_group[label])
-            notes.append(describe_offset(label, used.reference, found))
-            if found is not None and found.is_clear:
-                align[label] = found.seconds
-        moved[label] = align.get(label, 0.0)
-    return moved

@@ -14,8 +14,8 @@ from seatsim.importing.alignment import Channel, evened
 from seatsim.importing.doubts import doubt_channel, doubt_time
 from seatsim.importing.import_map import PRIMITIVE, AxisMap, ChannelMap, ImportMap
 from seatsim.importing.names import quantity_of
-from seatsim.importing.signals import LISTED, DataFile, Group
-from seatsim.importing.time_axis import Axis, check_is_history, even_axis, find_clock, measured_axis
+from seatsim.importing.signals import LISTED, DataFile, Group, Signal
+from seatsim.importing.time_axis import Axis, check_is_history, find_clock, measured_axis
 from seatsim.recordings.quality.damage import find_spikes
 from seatsim.recordings.quality.issue import Issue
 from seatsim.schema.arrays import Array
@@ -46,9 +46,8 @@ def clock_groups(files: Sequence[DataFile], stated: ImportMap, doubts: list[Issu
     Raises:
         InputError: the time of a group is neither stated nor to be found.
     """
-    columns = {name for entry in stated.channels.values() for name in (entry.column, entry.minus)}
     every = [(file, group) for file in files for group in file.groups]
-    used = [each for each in every if any(signal.name in columns for signal in each[1].signals)]
+    used = [each for each in every if any(signal.name in stated.columns for signal in each[1].signals)]
     return [_clock(file, group, stated, doubts) for file, group in used or every]
 
 
@@ -62,13 +61,11 @@ def _clock(file: DataFile, group: Group, stated: ImportMap, doubts: list[Issue])
         group, axis = _timed(label, group, time, stated.sample_rate, doubts)
         return Clocked(file.path.name, label, group, axis)
     if rate is not None:
-        return Clocked(file.path.name, label, group, even_axis(group.rows, rate, group.start or 0.0))
+        return Clocked(file.path.name, label, group, Axis((group.start or 0.0) + np.arange(group.rows) / rate, rate))
     names = [signal.name for signal in group.signals]
     lacking = f"no column '{stated.time.column}'{nearest(stated.time.column, names)}" if stated.time else "no rate"
-    raise InputError(
-        f"{file.path}: states {lacking}; write sample_rate: or time: {{column: ...}} in the map; columns are"
-        f" {name_some(names, LISTED)}"
-    )
+    remedy = "write sample_rate: or time: {column: ...} in the map"
+    raise InputError(f"{file.path}: states {lacking}; {remedy}; columns are {name_some(names, LISTED)}")
 
 
 def _time_column(group: Group, stated: ImportMap, label: str, doubts: list[Issue]) -> AxisMap | None:
@@ -94,7 +91,7 @@ def _timed(label: str, group: Group, time: AxisMap, rate: float | None, doubts: 
     if axis is None:
         raise InputError(f"{label}: column '{time.column}' does not rise as a time does; name another one under time")
     if axis.resolution and rate is not None:
-        return group, even_axis(group.rows, rate, float(axis.times[0]))
+        return group, Axis(axis.times[0] + np.arange(group.rows) / rate, rate)
     found = list(doubt_time(axis, f"{label}, {time.column}"))
     if axis.resolution and not axis.is_even:
         raise InputError(found[-1].sentence)
@@ -149,9 +146,8 @@ def _without_repeats(clocked: Clocked) -> Clocked:
         raise InputError(f"{clocked.label}: time runs back, which cannot be filled; write gaps: split")
     longest = float(np.max(steps))
     if longest > _LONGEST_FILL + 1.0 / clocked.axis.rate:
-        raise InputError(
-            f"{clocked.label}: a gap of {longest:.3g} s is not filled, {_LONGEST_FILL} s at most are; write gaps: split"
-        )
+        seen = f"a gap of {longest:.3g} s is not filled, {_LONGEST_FILL} s at most are"
+        raise InputError(f"{clocked.label}: {seen}; write gaps: split")
     kept = np.concatenate([[True], steps > 0.0])
     axis = Axis(times[kept], clocked.axis.rate, is_even=False)
     return clocked._replace(group=clocked.group.take(kept), axis=axis)
@@ -165,10 +161,10 @@ def make_channel(
     Raises:
         InputError: a column is not there, a unit is not stated or wrong, or rows hold no number.
     """
-    values = _column(name, entry, entry.column, clocked)
-    if entry.minus is not None:
-        values = values - _column(name, entry, entry.minus, clocked)
-    values = _in_si(name, entry, values, clocked, wanted)
+    columns = (column for column in (entry.column, entry.minus) if column is not None)
+    first, *minus = (_find_column(name, entry, column, clocked) for column in columns)
+    values = first.values - minus[0].values if minus else first.values
+    values = _in_si(name, entry, values, first.unit, wanted)
     rate = clocked.axis.rate
     # What is still to be differentiated is a position or a velocity.
     quantity = {0: quantity_of(name), 1: None, 2: "displacement"}[entry.differentiate]
@@ -186,17 +182,16 @@ def no_column(name: str, column: str | None, group: str | None, clocked: Sequenc
     return InputError(f"channels.{name}: no column '{column}'{where}{hint}; columns are {name_some(names, LISTED)}")
 
 
-def _column(name: str, entry: ChannelMap, column: str | None, clocked: Clocked) -> Array:
-    signal = clocked.group.find(column or "")
+def _find_column(name: str, entry: ChannelMap, column: str, clocked: Clocked) -> Signal:
+    signal = clocked.group.find(column)
     if signal is None:
         raise no_column(name, column, entry.group, [clocked])
-    return signal.values
+    return signal
 
 
-def _in_si(name: str, entry: ChannelMap, values: Array, clocked: Clocked, wanted: str) -> Array:
+def _in_si(name: str, entry: ChannelMap, values: Array, stated: str, wanted: str) -> Array:
     base = PRIMITIVE[wanted, entry.differentiate] if entry.differentiate else wanted
-    signal = clocked.group.find(entry.column or "")
-    unit = entry.unit or (signal.unit if signal else "") or (base if entry.column == name else "")
+    unit = entry.unit or stated or (base if entry.column == name else "")
     if not unit:
         problem = f"channels.{name}: neither the map nor the file states the unit of '{entry.column}'; write unit"
         raise InputError(problem)
@@ -225,9 +220,8 @@ def _filled(name: str, entry: ChannelMap, values: Array, clocked: Clocked, notes
     missing = int(np.sum(np.isnan(values[inner])))
     if missing and not entry.fill:
         at = f"the first after {clocked.axis.times[there[np.argmax(every > 1)]]:.5g} s"
-        raise InputError(
-            f"{clocked.label}, {name}: {missing} rows hold no number, {at}; fill: true in the map interpolates them"
-        )
+        seen = f"{missing} rows hold no number, {at}; fill: true in the map interpolates them"
+        raise InputError(f"{clocked.label}, {name}: {seen}")
     if missing:
         notes.append(f"{name}: {missing} rows that held no number are interpolated")
     rows = np.arange(len(values))

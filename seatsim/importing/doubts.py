@@ -4,7 +4,7 @@
 """
 
 from collections.abc import Collection, Iterator, Mapping
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from seatsim.importing.time_axis import Axis
 from seatsim.recordings.quality import relations
 from seatsim.recordings.quality.channels import say_implausible
 from seatsim.recordings.quality.damage import MOST_ROWS, Doubter, doubt_dropouts, doubt_shape, plateaus
-from seatsim.recordings.quality.issue import Issue
+from seatsim.recordings.quality.issue import Issue, Table
 from seatsim.schema.arrays import Array
 from seatsim.schema.units import STANDARD_GRAVITY
 
@@ -61,32 +61,25 @@ def doubt_channel(channel: str, raw: Array, rate: float | None, quantity: str | 
     if np.ptp(values) == 0.0:
         yield doubter.say("warning", "constant", f"is {values[0]:.6g} throughout; a dead sensor, or a stated value")
         return
-    yield from _of_quantity(doubter, values, quantity)
+    if quantity == "acceleration":
+        yield from _constant_part(doubter, values)
+    elif quantity in _ZERO:
+        yield from _rest(doubter, values, quantity)
+    elif quantity == "temperature":
+        yield from _warming(doubter, values)
+    if quantity in BY_UNIT and (text := say_implausible(values, SI_UNITS[quantity])):
+        yield doubter.say("warning", "unit", text)
     lengths, starts = plateaus(values)
     if len(np.unique(values[starts[:_MOST_CHANGES]])) <= _FEW_LEVELS:
         if len(lengths) < 0.2 * len(values):
-            levels = len(np.unique(values[starts]))
-            text = f"has {levels} levels and no noise; a command or a nominal value, not measured"
-            yield doubter.say("note", "levels", text)
+            seen = f"has {len(np.unique(values[starts]))} levels and no noise"
+            yield doubter.say("note", "levels", f"{seen}; a command or a nominal value, not measured")
         return
     for issue in doubt_shape(doubter, values, lengths):
         # A command is logged at the rate of its controller, and holds until the next.
         yield issue._replace(severity="note") if issue.kind == "held" and quantity in _SWITCHED else issue
     if rate is not None and quantity not in _SWITCHED:
         yield from doubt_dropouts(doubter, values, lengths, starts)
-
-
-def _of_quantity(doubter: Doubter, values: Array, quantity: str | None) -> Iterator[Issue]:
-    """Yield what the size and the mean of a known quantity show."""
-    mean = float(np.mean(values))
-    if quantity == "acceleration":
-        yield from _constant_part(doubter, values, mean)
-    elif quantity in _ZERO:
-        yield from _rest(doubter, values, mean, quantity)
-    elif quantity == "temperature":
-        yield from _warming(doubter, values)
-    if quantity in BY_UNIT and (text := say_implausible(values, SI_UNITS[quantity])):
-        yield doubter.say("warning", "unit", text)
 
 
 def _warming(doubter: Doubter, values: Array) -> Iterator[Issue]:
@@ -98,34 +91,33 @@ def _warming(doubter: Doubter, values: Array) -> Iterator[Issue]:
     if rate is None:
         return
     rows = max(1, round(0.5 * rate))
-    means = values[: len(values) // rows * rows].reshape(-1, rows).mean(axis=1)
+    means = _windows(values, rows).mean(axis=1)
     fastest = float(np.max(np.abs(np.diff(means)), initial=0.0)) * rate / rows
     if fastest > _WARMING:
         text = f"changes by up to {fastest:.2g} K/s, faster than a damper warms: a disturbed or a surface reading"
         yield doubter.say("warning", "warming", text)
 
 
-def _constant_part(doubter: Doubter, values: Array, mean: float) -> Iterator[Issue]:
+def _constant_part(doubter: Doubter, values: Array) -> Iterator[Issue]:
     """Yield gravity, an offset, or the mean of one that gravity in g has."""
-    spread = float(np.std(values))
+    mean = float(np.mean(values))
     if abs(abs(mean) / STANDARD_GRAVITY - 1.0) <= _NEAR:
         text = f"its mean of {mean:.4g} m/s^2 is gravity ({abs(mean) - STANDARD_GRAVITY:+.2g} is offset or tilt); "
         yield doubter.say("warning", "gravity", f"{text}remove_mean: true takes it out")
-    elif abs(abs(mean) - 1.0) <= _NEAR and spread < 0.5:
+    elif abs(abs(mean) - 1.0) <= _NEAR and float(np.std(values)) < 0.5:
         text = f"its mean of {mean:.4g} is gravity in g, but m/s^2 is stated; state unit: g, and remove_mean: true"
         yield doubter.say("warning", "unit", text)
     elif abs(mean) > _OFFSET:
-        text = f"its mean is {mean:.4g} m/s^2, an offset; remove_mean: true takes it out"
-        yield doubter.say("warning", "offset", text)
+        said = f"its mean is {mean:.4g} m/s^2, an offset; remove_mean: true takes it out"
+        yield doubter.say("warning", "offset", said)
 
 
-def _rest(doubter: Doubter, values: Array, mean: float, quantity: str) -> Iterator[Issue]:
+def _rest(doubter: Doubter, values: Array, quantity: str) -> Iterator[Issue]:
     """Yield the offset of a channel that swings about another value than zero."""
     low, high = np.quantile(values[:: max(1, len(values) // MOST_ROWS)], (0.01, 0.99))
-    swing = 0.5 * float(high - low)
-    unit = SI_UNITS[quantity]
+    mean, swing = float(np.mean(values)), 0.5 * float(high - low)
     if swing > 0.0 and abs(mean) > (_ABSOLUTE if quantity == "elevation" else _OFF_CENTRE) * swing:
-        text = f"its mean is {mean:.4g} {unit}, {abs(mean) / swing:.0%} of its swing: {_ZERO[quantity]}"
+        text = f"its mean is {mean:.4g} {SI_UNITS[quantity]}, {abs(mean) / swing:.0%} of its swing: {_ZERO[quantity]}"
         yield doubter.say("note", "offset", text)
     if quantity == "displacement" and values[0] == 0.0 and swing > 0.0:
         yield doubter.say("note", "zeroed", "begins at exactly 0: counted from its start, its own zero is lost")
@@ -135,34 +127,27 @@ def _rest(doubter: Doubter, values: Array, mean: float, quantity: str) -> Iterat
 
 def doubt_time(axis: Axis, channel: str) -> Iterator[Issue]:
     """Yield what is wrong with a column of time."""
-    doubter = Doubter(channel, None)
+    found = {}
     if axis.backwards:
-        first = int(axis.breaks[0])
-        text = f"runs back {axis.backwards} times, the first at row {first}; gaps: split makes runs of the parts"
-        yield doubter.say("warning", "restart", text)
+        text = f"runs back {axis.backwards} times, the first at row {axis.breaks[0]}"
+        found["restart"] = f"{text}; gaps: split makes runs of the parts"
     if axis.repeated:
-        text = f"{axis.repeated} rows repeat the time before; gaps: fill leaves the repeats out"
-        yield doubter.say("warning", "repeated", text)
+        found["repeated"] = f"{axis.repeated} rows repeat the time before; gaps: fill leaves the repeats out"
     if axis.lost:
-        first = next(int(row) for row in axis.breaks if axis.times[row] - axis.times[row - 1] > 0.0)
-        text = f"{axis.lost} rows are missing, the first at {axis.times[first - 1]:.6g} s; gaps: split or gaps: fill"
-        yield doubter.say("warning", "gap", text)
+        first = next(row for row in axis.breaks if axis.times[row] - axis.times[row - 1] > 0.0)
+        text = f"{axis.lost} rows are missing, the first at {axis.times[first - 1]:.6g} s"
+        found["gap"] = f"{text}; gaps: split or gaps: fill"
     if axis.resolution:
-        yield doubter.say("warning", "rounded", _say_rounded(axis))
+        text = f"; the rate is estimated as {axis.rate:.6g} Hz: state it"
+        text = text if axis.is_even else ", and the rows are not even by them; state the rate"
+        steps = f"its stamps go in steps of {axis.resolution:.4g} s, about as coarse as the rows or coarser"
+        found["rounded"] = f"{steps}{text} by sample_rate in the map, or by --rate"
     elif not axis.is_even:
-        text = f"rows are not evenly spaced; they are interpolated at {axis.rate:.5g} Hz"
-        yield doubter.say("warning", "uneven", text)
+        found["uneven"] = f"rows are not evenly spaced; they are interpolated at {axis.rate:.5g} Hz"
     if not _SLOWEST <= axis.rate <= _FASTEST:
-        text = f"rows are {1.0 / axis.rate:.4g} s apart, {axis.rate:.4g} Hz; is its unit another one, such as ms?"
-        yield doubter.say("warning", "rate", text)
-
-
-def _say_rounded(axis: Axis) -> str:
-    """Return what stamps that are about as coarse as the rows, or coarser, say of the rate."""
-    steps = f"its stamps go in steps of {axis.resolution:.4g} s, about as coarse as the rows or coarser"
-    if axis.is_even:
-        return f"{steps}; the rate is estimated as {axis.rate:.6g} Hz: state it by sample_rate in the map, or by --rate"
-    return f"{steps}, and the rows are not even by them; state the rate by sample_rate in the map, or by --rate"
+        text = f"rows are {1.0 / axis.rate:.4g} s apart, {axis.rate:.4g} Hz"
+        found["rate"] = f"{text}; is its unit another one, such as ms?"
+    yield from (Doubter(channel, None).say("warning", kind, text) for kind, text in found.items())
 
 
 def doubt_pairs(
@@ -172,84 +157,61 @@ def doubt_pairs(
     commands: Collection[str] = (),
 ) -> Iterator[Issue]:
     """Yield copies, derived velocities and what follows its command late, among channels of one time base."""
-    part = {
-        name: centred
-        for name, values in channels.items()
-        if (centred := _centred(values[: relations.MOST_ROWS])) is not None
-    }
+    first_rows = {name: values[: relations.MOST_ROWS] for name, values in channels.items()}
+    varying = {name: values for name, values in first_rows.items() if np.ptp(values) > 0.0}
+    part = {name: values - float(np.mean(values)) for name, values in varying.items()}
     for first, second in combinations(part, 2):
         same = quantities.get(first) == quantities.get(second)
-        if np.array_equal(channels[first][: relations.MOST_ROWS], channels[second][: relations.MOST_ROWS]):
+        if np.array_equal(varying[first], varying[second]):
             yield Issue("warning", "duplicate", f"{second}: holds the same values as {first}", second)
         elif rate and same and (first in commands) != (second in commands):
-            yield from _delayed(first, second, part[first], part[second], rate)
-    yield from _unconfirmed(channels, quantities, commands)
-    if rate:
-        yield from _derived(part, rate, quantities)
-        yield from _relaxed(part, rate, quantities)
-
-
-def _centred(values: Array) -> Array | None:
-    if np.isnan(values).any() or np.ptp(values) == 0.0:
-        return None
-    return values - float(np.mean(values))
-
-
-def _derived(part: Mapping[str, Array], rate: float, quantities: Mapping[str, str | None]) -> Iterator[Issue]:
-    """Yield velocities that were computed from a displacement: they are no measurement of their own."""
-    for velocity in (name for name in part if quantities.get(name) == "velocity"):
-        for name in (name for name in part if quantities.get(name) == "displacement"):
-            gain, alike = relations.regress(np.gradient(part[name], 1.0 / rate), part[velocity], rate)
-            if alike > 0.98 and abs(gain - 1.0) < 0.1:
-                text = f"is the derivative of {name} (gain {gain:.3f}); computed from it, no sensor of its own"
-                yield Issue("note", "derived", f"{velocity}: {text}", velocity)
-                break
-            if alike > 0.98 and (said := relations.read_gain(gain, "m/s")):
-                text = f"{velocity}: is {gain:.4g} times the derivative of {name}: {said}"
-                yield Issue("warning", relations.kind_of(gain), text, velocity)
-                break
-
-
-def _unconfirmed(
-    channels: Mapping[str, Array], quantities: Mapping[str, str | None], commands: Collection[str]
-) -> Iterator[Issue]:
-    """Yield commanded forces and motions of which nothing was measured: no data tell their sign and their size."""
+            rows, alike = relations.find_delay(part[second], part[first], round(0.2 * rate))
+            if alike > _ALIKE and abs(rows) >= 2:
+                late, early = (second, first) if rows > 0 else (first, second)
+                text = f"follows {early} by {1e3 * abs(rows) / rate:.3g} ms (correlation {alike:.3f})"
+                yield Issue("note", "late", f"{late}: {text}", late)
+    # No data tell the sign and the size of commanded forces and motions of which nothing was measured.
     measured = {quantities.get(name) for name in channels if name not in commands}
-    for name in channels:
+    for name in commands:
         quantity = quantities.get(name)
-        if name in commands and quantity in ("force", "velocity", "displacement") and quantity not in measured:
+        if name in channels and quantity in ("force", "velocity", "displacement") and quantity not in measured:
             text = f"is a command by its name, and no {quantity} was measured: nothing here shows its sign or scale"
             yield Issue("note", "command", f"{name}: {text}", name)
+    if rate:
+        of = {each: {name: part[name] for name in part if quantities.get(name) == each} for each in BY_UNIT}
+        yield from _derived(of["displacement"], of["velocity"], rate)
+        yield from _relaxed(of["displacement"], of["force"], rate)
 
 
-def _relaxed(part: Mapping[str, Array], rate: float, quantities: Mapping[str, str | None]) -> Iterator[Issue]:
+def _derived(displacements: Table, velocities: Table, rate: float) -> Iterator[Issue]:
+    """Yield velocities that were computed from a displacement: they are no measurement of their own."""
+    for (velocity, speed), (name, travel) in product(velocities.items(), displacements.items()):
+        gain, alike = relations.regress(np.gradient(travel, 1.0 / rate), speed, rate)
+        if alike > 0.98 and abs(gain - 1.0) < 0.1:
+            text = f"is the derivative of {name} (gain {gain:.3f}); computed from it, no sensor of its own"
+            yield Issue("note", "derived", f"{velocity}: {text}", velocity)
+        elif alike > 0.98 and (said := relations.read_gain(gain, "m/s")):
+            text = f"{velocity}: is {gain:.4g} times the derivative of {name}: {said}"
+            yield Issue("warning", relations.kind_of(gain), text, velocity)
+
+
+def _relaxed(displacements: Table, forces: Table, rate: float) -> Iterator[Issue]:
     """Yield forces that change while the motion stands still after it has moved, as those that relax do."""
     rows = round(_REST * rate)
-    if rows < _FEWEST:
-        return
-    for name in (name for name in part if quantities.get(name) == "displacement"):
-        still = _still(part[name], rows)
-        for force in (each for each in part if quantities.get(each) == "force"):
-            piece = np.array([np.mean(part[force][at : at + rows // 4]) for at in still])
-            later = np.array([np.mean(part[force][at + rows - rows // 4 : at + rows]) for at in still])
-            change = np.abs(later - piece)
-            if len(change) and np.max(change) > _RELAXED * np.ptp(part[force]):
+    for (name, motion), (force, values) in product(displacements.items(), forces.items()):
+        if _FEWEST <= rows <= len(motion):
+            swing = np.ptp(_windows(motion, rows), axis=1)
+            calm = swing < _STANDING * float(np.ptp(motion))
+            # The windows in which the motion has come to rest.
+            still = _windows(values, rows)[1:][calm[1:] & ~calm[:-1]]
+            quarter = rows // 4
+            change = np.abs(np.mean(still[:, -quarter:], axis=1) - np.mean(still[:, :quarter], axis=1))
+            if np.max(change, initial=0.0) > _RELAXED * np.ptp(values):
                 text = f"changes by up to {np.max(change):.3g} N in {_REST:g} s after {name} has come to rest"
                 said = f"{force}: {text}: it relaxes, its zero drifts, or its current changes"
                 yield Issue("note", "relaxation", said, force)
 
 
-def _still(motion: Array, rows: int) -> list[int]:
-    """Return the rows at which a motion comes to rest for so many rows."""
-    windows = len(motion) // rows
-    swing = np.ptp(motion[: windows * rows].reshape(windows, rows), axis=1) if windows else np.empty(0)
-    calm = swing < _STANDING * float(np.ptp(motion))
-    return [int(k) * rows for k in np.flatnonzero(calm[1:] & ~calm[:-1]) + 1]
-
-
-def _delayed(first: str, second: str, one: Array, other: Array, rate: float) -> Iterator[Issue]:
-    rows, alike = relations.find_delay(other, one, round(0.2 * rate))
-    if alike > _ALIKE and abs(rows) >= 2:
-        late, early = (second, first) if rows > 0 else (first, second)
-        text = f"follows {early} by {1e3 * abs(rows) / rate:.3g} ms (correlation {alike:.3f})"
-        yield Issue("note", "late", f"{late}: {text}", late)
+def _windows(values: Array, rows: int) -> Array:
+    """Return values in windows of so many rows, shape (windows, rows), without the rows at the end that fill none."""
+    return values[: len(values) // rows * rows].reshape(-1, rows)

@@ -77,6 +77,11 @@ class ImportMap(NamedTuple):
     runs: Mapping[str, Annotated[tuple[str, ...], Field(min_length=1)]] = {}
     comments: Mapping[str, str] = {}
 
+    @property
+    def columns(self) -> set[str | None]:
+        """Columns that channels are taken from."""
+        return {name for entry in self.channels.values() for name in (entry.column, entry.minus)}
+
 
 _KEYS = ("rig", "time", "sample_rate", "resample", "channels", "csv", "gaps", "actuator", "align", "repeats", "runs")
 """Keys of a file, in the order in which they are written."""
@@ -108,24 +113,20 @@ def _channels(entries: Mapping[str, object], rig: Rig, source: Source) -> dict[s
         raise source.error((), "key 'channels' is missing; write channels: {floor_acceleration: {column: a, unit: g}}")
     check_keys(entries, CHANNELS[rig], source, ("channels",))
     channels: dict[str, ChannelMap] = {}
-    for name, entry in entries.items():
-        channels[name] = build(ChannelMap, entry, source, ("channels", name))
-        if (channels[name].column is None) == (channels[name].value is None):
+    for name, content in entries.items():
+        entry = channels[name] = build(ChannelMap, content, source, ("channels", name))
+        if (entry.column is None) == (entry.value is None):
             raise source.error(("channels", name), "give either the name of its column, or value for a constant")
-        _check_unit(name, channels[name], CHANNELS[rig][name], source)
+        wanted, times = CHANNELS[rig][name], entry.differentiate
+        base = PRIMITIVE.get((wanted, times)) if times else wanted
+        if base is None:
+            problem = f"{times} is none for a channel in {wanted}; leave it out"
+            raise source.error(("channels", name, "differentiate"), problem)
+        with placed(source.place(("channels", name, "unit"))):
+            conversion(entry.unit or base, base)
     if DRIVERS[rig] not in channels:
         raise source.error(("channels",), f"channel '{DRIVERS[rig]}' is missing; it drives the simulation of this rig")
     return channels
-
-
-def _check_unit(name: str, entry: ChannelMap, wanted: str, source: Source) -> None:
-    base = PRIMITIVE.get((wanted, entry.differentiate)) if entry.differentiate else wanted
-    if base is None:
-        problem = f"{entry.differentiate} is none for a channel in {wanted}; leave it out"
-        raise source.error(("channels", name, "differentiate"), problem)
-    if entry.unit:
-        with placed(source.place(("channels", name, "unit"))):
-            conversion(entry.unit, base)
 
 
 def check_files(runs: Mapping[str, Sequence[str]], files: Sequence[str], path: Path) -> None:
@@ -144,17 +145,15 @@ def write_map(path: Path, stated: ImportMap) -> Path:
 
 def render_map(stated: ImportMap) -> str:
     """Return the text of a map."""
-    content = stated._asdict() | {key: _stated(getattr(stated, key)) for key in _PARTS}
+    parts = {key: part._asdict() if (part := getattr(stated, key)) else {} for key in _PARTS}
+    content = stated._asdict()
+    content |= {key: {name: value for name, value in part.items() if value is not None} for key, part in parts.items()}
     content["channels"] = {name: _shown(channel) for name, channel in stated.channels.items()}
     content["align"] = {label: float(f"{value:.7g}") for label, value in stated.align.items()}
     content["runs"] = {name: list(files) for name, files in stated.runs.items()}
     lines = dump({key: content[key] for key in _KEYS if content[key] not in (None, {})}).splitlines()
     behind = {f"  {name}": f"   # {comment}" for name, comment in stated.comments.items()}
     return "".join(f"{line}{behind.get(line.partition(':')[0], '')}\n" for line in lines)
-
-
-def _stated(part: AxisMap | TextLayout | VoltageGain | None) -> dict[str, object]:
-    return {key: value for key, value in part._asdict().items() if value is not None} if part else {}
 
 
 def _shown(channel: ChannelMap) -> dict[str, object]:

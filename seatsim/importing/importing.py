@@ -23,7 +23,6 @@ from seatsim.schema.content import Form, Unwritten, written
 from seatsim.schema.errors import InputError
 from seatsim.schema.guarded import temporary_folder
 from seatsim.schema.text import name_some
-from seatsim.schema.yaml_source import Source
 
 _OWN_FILES = (".yaml", ".yml", ".json", ".md", ".png", ".pdf", ".html")
 """Endings of files that lie beside data and hold none."""
@@ -82,79 +81,61 @@ def import_files(
     files = [read_file(path, stated.csv if stated else None) for path in _data_files(paths)]
     notes = [f"{file.path.name}: {note}" for file in files for note in file.notes]
     if stated is None:
-        used = _proposed(files, folder)
+        used, open_ends = propose(files)
+        if open_ends:
+            raise _to_be_completed(f"{files[0].path}: {'; '.join(open_ends)}", used, folder)
         clocks = (find_clock(group) for file in files for group in file.groups)
         notes += [said for clock in clocks if clock for said in clock.assumptions] + _say_left_out(files, used)
+        try:
+            assembled = assemble(files, used)
+        except InputError as error:
+            raise _to_be_completed(str(error), used, folder) from error
+        assembled = assembled._replace(map=_commented(assembled))
     else:
         used = stated
         check_files(used.runs, [file.path.name for file in files], map_file or Path(FILE))
-    assembled = _assembled(files, used, folder, stated is None)
+        assembled = assemble(files, used)
     scenario = _make_nominal(nominal, used.rig, used.channels) if nominal else None
     found = [*assembled.doubts, *([] if scenario else doubt_runs(assembled))]
-    doubts = merge_issues(found, len(assembled.runs)) + (_examined(assembled, scenario) if scenario else [])
-    written = _write_recording(folder, assembled, scenario)
+    doubts = merge_issues(found, len(assembled.runs))
+    if scenario:  # the issues that `gap` and `diagnose` will name
+        with temporary_folder() as place:
+            _write_recording(place, assembled, scenario)
+            doubts += examine(load_recording(place)).issues
+    paths = _write_recording(folder, assembled, scenario)
     notes += assembled.notes
-    return Import(folder, assembled.map, stated is None, written, notes, doubts, assembled.rate, tuple(assembled.runs))
+    return Import(folder, assembled.map, stated is None, paths, notes, doubts, assembled.rate, tuple(assembled.runs))
 
 
 def _data_files(paths: Sequence[Path]) -> list[Path]:
     """Return the files, those of a folder in the order of their names."""
     found = []
     for path in paths:
-        if path.is_dir():
-            inside = sorted(each for each in path.iterdir() if each.is_file() and not each.name.startswith("."))
-            found += [each for each in inside if not each.name.lower().endswith(_OWN_FILES)]
-        else:
-            found.append(path)
+        inside = sorted(each for each in path.iterdir() if each.is_file()) if path.is_dir() else []
+        own = [each for each in inside if each.name.startswith(".") or each.name.lower().endswith(_OWN_FILES)]
+        found += [each for each in inside if each not in own] if path.is_dir() else [path]
     if not found:
         raise InputError(f"{paths[0]}: holds no data file; give files, or a folder of them")
     return found
 
 
-def _proposed(files: Sequence[DataFile], folder: Path) -> ImportMap:
-    """Return the proposed map.
-
-    Raises:
-        InputError: something is open in it; it was written to the folder to be completed.
-    """
-    proposal = propose(files)
-    if proposal.open:
-        raise _to_be_completed(f"{files[0].path}: {'; '.join(proposal.open)}", proposal.map, folder)
-    return proposal.map
-
-
 def _say_left_out(files: Sequence[DataFile], used: ImportMap) -> list[str]:
     """Return a sentence on the columns that a proposed map does not use, if there are any."""
-    taken = {used.time.column} if used.time else set[str | None]()
-    taken |= {name for entry in used.channels.values() for name in (entry.column, entry.minus)}
     groups = [group for file in files for group in file.groups]
-    taken |= {clock.column for group in groups if (clock := find_clock(group))}
+    clocks = [used.time, *map(find_clock, groups)]
+    taken = used.columns | {clock.column for clock in clocks if clock}
     columns = [signal.name for group in groups for signal in group.signals]
     left = [f"'{name}'" for name in dict.fromkeys(columns) if name not in taken]
-    if not left:
-        return []
     channels = ", ".join(name for name in CHANNELS[used.rig] if name not in used.channels)
-    return [
-        f"left out, for want of a channel with such a name: {name_some(left, LISTED)}; to use one, state it"
-        f" under channels of the map" + (f" as one of {channels}" if channels else "")
-    ]
+    use = f"to use one, state it under channels of the map{f' as one of {channels}' if channels else ''}"
+    names = name_some(left, LISTED) if left else ""
+    return [f"left out, for want of a channel with such a name: {names}; {use}"] if left else []
 
 
 def _to_be_completed(problem: str, proposed: ImportMap, folder: Path) -> InputError:
     """Write a proposed map that cannot be used as it is, and return the error that asks to complete it."""
     path = write_map(folder / FILE, proposed)
     return InputError(f"{problem}; the map so far is in {path}: complete it and give it by --map {path}")
-
-
-def _assembled(files: Sequence[DataFile], used: ImportMap, folder: Path, is_proposed: bool) -> Assembled:
-    """Return the runs of a map; one that was proposed is kept where it does not work, and commented where it does."""
-    if not is_proposed:
-        return assemble(files, used)
-    try:
-        assembled = assemble(files, used)
-    except InputError as error:
-        raise _to_be_completed(str(error), used, folder) from error
-    return assembled._replace(map=_commented(assembled))
 
 
 def _commented(assembled: Assembled) -> ImportMap:
@@ -170,13 +151,6 @@ def _commented(assembled: Assembled) -> ImportMap:
         if said:
             comments[name] = "; ".join(said)
     return assembled.map._replace(comments=comments)
-
-
-def _examined(assembled: Assembled, scenario: Mapping[str, object]) -> list[Issue]:
-    """Return the issues that `gap` and `diagnose` will name, from a copy in a temporary folder."""
-    with temporary_folder() as place:
-        _write_recording(place, assembled, scenario)
-        return examine(load_recording(place)).issues
 
 
 def _write_recording(folder: Path, assembled: Assembled, nominal: Mapping[str, object] | None) -> list[Path]:
@@ -204,18 +178,12 @@ def _make_nominal(scenario: str, rig: Rig, recorded: Collection[str]) -> Mapping
     source = load(scenario)[0].source
     if source is None:
         raise InputError(f"{scenario}: states no rig; give the file of a scenario")
-    return state_nominal(source.data, rig, {} if rig == "damper_bench" else _law(source, recorded))
-
-
-def _law(source: Source, recorded: Collection[str]) -> dict[str, object]:
-    if any(name in recorded for name in CURRENTS):
-        return {"law": "replay"}
-    law = source.data.get("controller")
-    current = law.get("current") if isinstance(law, Mapping) else None
-    if current is None:
-        problem = "no current was recorded, and the scenario states no constant one"
-        raise source.error(
-            ("controller",),
-            f"{problem}; write controller: {{law: constant, current: 0.0}} with the current that flowed",
-        )
-    return {"law": "replay", "current": current}
+    law: dict[str, object] = {"law": "replay"}
+    if rig == "seat" and not any(name in recorded for name in CURRENTS):
+        stated = source.data.get("controller")
+        law["current"] = stated.get("current") if isinstance(stated, Mapping) else None
+        if law["current"] is None:
+            problem = "no current was recorded, and the scenario states no constant one; write controller:"
+            remedy = "{law: constant, current: 0.0} with the current that flowed"
+            raise source.error(("controller",), f"{problem} {remedy}")
+    return state_nominal(source.data, rig, law)

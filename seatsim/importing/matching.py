@@ -12,12 +12,17 @@ from seatsim.importing.import_map import AxisMap, ChannelMap, Gaps, ImportMap, R
 from seatsim.importing.names import SI_UNITS, Meaning, is_of, read_name, without_unit
 from seatsim.importing.signals import LISTED, DataFile, Group, Signal
 from seatsim.importing.time_axis import check_is_history, find_clock, is_spectrum
-from seatsim.recordings.recording import CHANNELS
+from seatsim.recordings.recording import ACCELEROMETERS, CHANNELS
 from seatsim.schema.text import name_some
 from seatsim.schema.units import USUAL
 
 _NEEDED = {"seat": ("floor_acceleration",), "damper_bench": ("displacement", "damper_force")}
-_BENCH_ONLY = ("displacement", "velocity", "command_voltage")
+_CHANNEL_OF = {
+    "seat": {"acceleration": "{}_acceleration", "displacement": "suspension_displacement"},
+    "damper_bench": {"displacement": "displacement", "velocity": "velocity", "voltage": "command_voltage"},
+}
+_OF_BOTH = {"force": "damper_force", "temperature": "damper_temperature"}
+"""Channel that a quantity is, at a place, by rig and on any."""
 
 
 class Column(NamedTuple):
@@ -28,15 +33,8 @@ class Column(NamedTuple):
     meaning: Meaning
 
 
-class _Proposal(NamedTuple):
-    """A map, and sentences on what is open in it: without any it can be used."""
-
-    map: ImportMap
-    open: tuple[str, ...]
-
-
-def propose(files: Sequence[DataFile]) -> _Proposal:
-    """Return the map of some files that belong to one rig.
+def propose(files: Sequence[DataFile]) -> tuple[ImportMap, list[str]]:
+    """Return the map of some files that belong to one rig, and sentences on what is open: without any it can be used.
 
     Raises:
         InputError: they hold nothing but spectra.
@@ -48,11 +46,10 @@ def propose(files: Sequence[DataFile]) -> _Proposal:
     chosen = _rig_of(columns)
     candidates = _candidates(columns, chosen)
     channels, open_ends = {}, []
-    for name in CHANNELS[chosen]:
+    for name, unit in CHANNELS[chosen].items():
         if name in candidates:
-            entry, problem = _entry(name, candidates[name], CHANNELS[chosen][name])
-            channels[name] = entry
-            open_ends += [problem] if problem else []
+            channels[name], problem = _entry(name, candidates[name], unit)
+            open_ends.append(problem)
         elif name in _NEEDED[chosen]:
             open_ends.append(_missing(name, columns, channels))
             channels[name] = ChannelMap()
@@ -60,8 +57,7 @@ def propose(files: Sequence[DataFile]) -> _Proposal:
         open_ends.append("command_voltage: write actuator: {gain: 1.0}, with the commanded current per volt in A/V")
     holding = [column.group for held in candidates.values() for column in held]
     time, problem, gaps = _time([c for c in columns if any(c.group is group for group in holding)], len(files) == 1)
-    open_ends += [problem] if problem else []
-    return _Proposal(ImportMap(channels, chosen, time, gaps=gaps), tuple(open_ends))
+    return ImportMap(channels, chosen, time, gaps=gaps), list(filter(None, [*open_ends, problem]))
 
 
 def read_columns(group: Group) -> list[Column]:
@@ -89,11 +85,8 @@ def _along_axes(name: str) -> set[str]:
 def _rig_of(columns: Sequence[Column]) -> Rig:
     """Return the rig that the columns are of: a bench has force and displacement, and no acceleration of a place."""
     quantities = {column.meaning.quantity for column in columns}
-    names = {without_unit(column.signal.name, column.meaning.unit) for column in columns}
-    placed = {"floor_acceleration", "frame_acceleration", "driver_acceleration"}
-    if placed & names or any(_seat_channel(column.meaning) in placed for column in columns):
-        return "seat"
-    return "damper_bench" if {"displacement", "force"} <= quantities else "seat"
+    is_of_seat = any(_named_channel(column, "seat") in ACCELEROMETERS for column in columns)
+    return "damper_bench" if {"displacement", "force"} <= quantities and not is_of_seat else "seat"
 
 
 def channel_of(column: Column, rig: Rig) -> str | None:
@@ -102,34 +95,24 @@ def channel_of(column: Column, rig: Rig) -> str | None:
 
 
 def _named_channel(column: Column, rig: Rig) -> str | None:
-    exact = without_unit(column.signal.name, column.meaning.unit)
+    meaning, place = column.meaning, column.meaning.place
+    exact = without_unit(column.signal.name, meaning.unit)
     if exact in CHANNELS[rig]:
         return exact
-    return _seat_channel(column.meaning) if rig == "seat" else _bench_channel(column.meaning)
-
-
-def _seat_channel(meaning: Meaning) -> str | None:
-    if meaning.quantity == "acceleration":
-        return f"{meaning.place}_acceleration" if meaning.place and not meaning.is_lateral else None
-    if meaning.quantity == "displacement" and not meaning.is_command and meaning.place != "floor":
-        return "suspension_displacement"
-    return None if meaning.quantity in _BENCH_ONLY or meaning.quantity == "voltage" else _damper_channel(meaning)
-
-
-def _bench_channel(meaning: Meaning) -> str | None:
-    if meaning.quantity in ("displacement", "velocity"):
-        return None if meaning.is_command else meaning.quantity
-    return "command_voltage" if meaning.quantity == "voltage" else _damper_channel(meaning)
-
-
-def _damper_channel(meaning: Meaning) -> str | None:
-    # A force or a temperature of the seat or the floor is not the damper's, unless it says so.
-    is_there = meaning.is_damper or meaning.place is None
     if meaning.quantity == "current":
         return "current_command" if meaning.is_command else "coil_current"
-    if meaning.quantity == "force":
-        return "damper_force" if is_there and not meaning.is_command else None
-    return "damper_temperature" if meaning.quantity == "temperature" and is_there else None
+    if meaning.is_command and meaning.quantity in ("force", "displacement", "velocity"):
+        return None
+    # A force or a temperature of the seat or the floor is not the damper's, unless it says so.
+    is_elsewhere = {
+        "force": place is not None and not meaning.is_damper,
+        "temperature": place is not None and not meaning.is_damper,
+        "acceleration": place is None or meaning.is_lateral,
+        "displacement": place == "floor" and rig == "seat",
+    }
+    quantity = meaning.quantity or ""
+    channel = (_CHANNEL_OF[rig] | _OF_BOTH).get(quantity, "").format(place)
+    return None if is_elsewhere.get(quantity) else channel or None
 
 
 def _candidates(columns: Sequence[Column], rig: Rig) -> dict[str, list[Column]]:
@@ -167,7 +150,7 @@ def _entry(name: str, candidates: Sequence[Column], unit: str) -> tuple[ChannelM
 def _missing(name: str, columns: Sequence[Column], channels: dict[str, ChannelMap]) -> str:
     taken = {entry.column for entry in channels.values()}
     names = dict.fromkeys(column.signal.name for column in columns if column.meaning.quantity != "time")
-    left = [name for name in names if name not in taken]
+    left = [each for each in names if each not in taken]
     listed = ", ".join(left[:LISTED]) + (", ..." if len(left) > LISTED else "") or "none"
     return f"{name}: no column is it by name; write channels: {{{name}: {{column: ..., unit: ...}}}}; left are {listed}"
 
@@ -179,9 +162,8 @@ def _time(columns: Sequence[Column], is_one_file: bool) -> tuple[AxisMap | None,
     """
     clock = next((found for column in columns if (found := find_clock(column.group))), None)
     if clock is None:
-        if all(column.group.rate for column in columns):
-            return None, "", None
-        return None, "time: no column holds the time; write sample_rate: in Hz, or time: {column: ..., unit: s}", None
+        problem = "time: no column holds the time; write sample_rate: in Hz, or time: {column: ..., unit: s}"
+        return None, "" if all(column.group.rate for column in columns) else problem, None
     gaps: Gaps | None = "split" if clock.axis is not None and len(clock.axis.breaks) and is_one_file else None
     problem = f"time: {clock.open}; write time: {{column: {clock.column}, unit: ms}} or s" if clock.open else ""
     return AxisMap(clock.column, clock.unit), problem, gaps

@@ -47,11 +47,6 @@ class Axis(NamedTuple):
     backwards: int = 0
 
 
-def even_axis(rows: int, rate: float, start: float) -> Axis:
-    """Return the axis of rows at a stated rate."""
-    return Axis(start + np.arange(rows) / rate, rate)
-
-
 def measured_axis(times: Array) -> Axis | None:
     """Return the axis of a column of times in s, None where it does not rise."""
     steps = np.diff(times)
@@ -69,7 +64,7 @@ def measured_axis(times: Array) -> Axis | None:
     spans = np.array([part[-1] - part[0] for part in parts])
     counted = np.array([len(part) - 1 for part in parts])
     rate = _whole_rate(float(np.sum(counted) / np.sum(spans)))
-    off = max(float(np.max(np.abs(part - np.linspace(part[0], part[-1], len(part))))) for part in parts)
+    off = max(map(_find_deviation, parts))
     jumps = steps[breaks - 1]
     lost = int(np.sum(np.round(jumps[jumps > 0.0] * rate) - 1))
     repeated, backwards = int(np.sum(jumps == 0.0)), int(np.sum(jumps < 0.0))
@@ -86,7 +81,10 @@ def _rounded_axis(times: Array, steps: Array) -> Axis | None:
     is_shared = usual == 0.0
     if not is_shared and np.sum(np.abs(steps - usual) > _EVEN * usual) < _IRREGULAR:
         return None
-    resolution = _resolution(times, steps)
+    # The step of which all others are multiples, apart from the digits of a number.
+    digits = int(np.floor(-np.log10(16.0 * np.spacing(np.max(np.abs(times)) + 1e-300))))
+    different = np.unique(np.round(steps, min(digits, 12)))
+    resolution = float(np.min(np.diff(different)) if len(different) > 1 else different[0])
     rows = np.arange(len(times))
     changes = np.flatnonzero(steps > 0.0) + 1
     first, last = changes[0], changes[-1]
@@ -96,13 +94,6 @@ def _rounded_axis(times: Array, steps: Array) -> Axis | None:
         rate = _whole_rate(1.0 / slope, 1.0 / len(rows))
         return Axis(times[first] + (rows - first) / rate, rate, resolution=resolution)
     return Axis(times, 1.0 / slope, is_even=False, resolution=resolution) if is_shared else None
-
-
-def _resolution(times: Array, steps: Array) -> float:
-    """Return the step in s of which all steps of time stamps are multiples, apart from the digits of a number."""
-    digits = int(np.floor(-np.log10(16.0 * np.spacing(np.max(np.abs(times)) + 1e-300))))
-    different = np.unique(np.round(steps, min(digits, 12)))
-    return float(np.min(np.diff(different))) if len(different) > 1 else float(different[0])
 
 
 def _whole_rate(rate: float, near: float = _WHOLE) -> float:
@@ -137,11 +128,10 @@ class Clock(NamedTuple):
         said = []
         if not self.is_named and self.axis is not None:
             seen = f"this one rises evenly and is taken for it, in s ({self.axis.rate:.6g} Hz)"
-            said.append(f"{self.column}: no column is called time; {seen}")
+            said.append(f"no column is called time; {seen}")
         if self.others:
-            text = f"{self.column}: is taken for the time of all columns; {', '.join(self.others)} has another rate"
-            said.append(text)
-        return said
+            said.append(f"is taken for the time of all columns; {', '.join(self.others)} has another rate")
+        return [f"{self.column}: {each}" for each in said]
 
 
 def find_clock(group: Group) -> Clock | None:
@@ -154,26 +144,21 @@ def find_clock(group: Group) -> Clock | None:
     named = [_clock(signal, meaning.unit) for signal, meaning in meanings if meaning.quantity == "time"]
     if named:
         best = min(named, key=lambda clock: _flaws(clock.axis))
-        return best._replace(others=tuple(each.column for each in named if _differs(each, best)))
+        known = [(each.column, each.axis.rate) for each in named if each.axis and each.unit]
+        own = best.axis.rate if best.axis and best.unit else np.nan
+        return best._replace(others=tuple(column for column, rate in known if abs(rate / own - 1.0) > _SAME_RATE))
     first, meaning = meanings[0]
     if group.rate is not None or first.unit or meaning.quantity is not None:
         return None
     clock = _clock(first, "")._replace(is_named=False)
-    return clock if clock.unit and _is_exact(clock.axis) and not (np.diff(first.values) == 1.0).all() else None
+    if not clock.unit or clock.axis is None or _flaws(clock.axis) or (np.diff(first.values) == 1.0).all():
+        return None
+    return clock if _find_deviation(clock.axis.times) * clock.axis.rate <= _EXACT else None
 
 
-def _differs(clock: Clock, other: Clock) -> bool:
-    """Say whether two columns of time, both in a known unit, have different rates."""
-    if clock.axis is None or other.axis is None or not (clock.unit and other.unit):
-        return False
-    return abs(clock.axis.rate / other.axis.rate - 1.0) > _SAME_RATE
-
-
-def _is_exact(axis: Axis | None) -> bool:
-    if axis is None or _flaws(axis):
-        return False
-    times = axis.times
-    return bool(np.max(np.abs(times - np.linspace(times[0], times[-1], len(times)))) * axis.rate <= _EXACT)
+def _find_deviation(times: Array) -> float:
+    """Return how far times are from even spacing between the first and the last of them, in s."""
+    return float(np.max(np.abs(times - np.linspace(times[0], times[-1], len(times)))))
 
 
 def _clock(signal: Signal, stated: str) -> Clock:
@@ -187,9 +172,7 @@ def _clock(signal: Signal, stated: str) -> Clock:
 
 def _flaws(axis: Axis | None) -> int:
     """Return how far an axis is from even: 0 for one without a flaw."""
-    if axis is None:
-        return 4
-    return 3 if not axis.is_even else 2 if len(axis.breaks) else int(axis.resolution > 0.0)
+    return 4 if axis is None else 3 if not axis.is_even else 2 if len(axis.breaks) else int(axis.resolution > 0.0)
 
 
 def is_spectrum(group: Group) -> bool:
@@ -201,7 +184,5 @@ def is_spectrum(group: Group) -> bool:
 def check_is_history(group: Group, place: str) -> None:
     """Raise InputError where a group is a spectrum."""
     if is_spectrum(group):
-        raise InputError(
-            f"{place}: its rows stand over '{group.signals[0].name}', not over time: it is a spectrum; export the time"
-            " histories"
-        )
+        seen = f"its rows stand over '{group.signals[0].name}', not over time"
+        raise InputError(f"{place}: {seen}: it is a spectrum; export the time histories")

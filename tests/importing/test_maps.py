@@ -43,30 +43,26 @@ def file_of(tmp_path, names, time="Zeit [s]"):
 
 @pytest.mark.parametrize("language", NAMES)
 def test_columns_are_matched_by_name_and_unit(tmp_path, language):
-    proposal = propose([read_file(file_of(tmp_path, NAMES[language]))])
-    assert proposal.open == ()
+    proposal, open_ends = propose([read_file(file_of(tmp_path, NAMES[language]))])
+    assert open_ends == []
     columns = [name.split(" [")[0].split(" (")[0] for name in NAMES[language]]
-    assert {name: entry.column for name, entry in proposal.map.channels.items()} == dict(
-        zip(SEAT, columns, strict=True)
-    )
-    assert all(entry.sign == 1 for entry in proposal.map.channels.values())
+    assert {name: entry.column for name, entry in proposal.channels.items()} == dict(zip(SEAT, columns, strict=True))
+    assert all(entry.sign == 1 for entry in proposal.channels.values())
 
 
 def test_lateral_axes_and_commands_of_other_things_are_left(tmp_path):
     names = ["acc_floor_x [g]", "acc_floor_y [g]", "acc_floor_z [g]", "displacement_cmd [mm]", "engine temp [C]"]
     names += ["Sitzkraft [N]", "seat temperature [C]"]
-    proposal = propose([read_file(file_of(tmp_path, names))])
-    assert {name: entry.column for name, entry in proposal.map.channels.items()} == {
-        "floor_acceleration": "acc_floor_z"
-    }
+    proposal, _ = propose([read_file(file_of(tmp_path, names))])
+    assert {name: entry.column for name, entry in proposal.channels.items()} == {"floor_acceleration": "acc_floor_z"}
 
 
 def test_a_bench_is_recognised(tmp_path):
     names = ["Weg_mm", "Kraft_N", "Strom_A", "Geschwindigkeit_mm_s"]
-    proposal = propose([read_file(file_of(tmp_path, names, "t_ms"))])
-    assert proposal.map.rig == "damper_bench"
-    assert set(proposal.map.channels) == {"displacement", "damper_force", "coil_current", "velocity"}
-    assert proposal.map.channels["velocity"].unit == "mm/s"
+    proposal, _ = propose([read_file(file_of(tmp_path, names, "t_ms"))])
+    assert proposal.rig == "damper_bench"
+    assert set(proposal.channels) == {"displacement", "damper_force", "coil_current", "velocity"}
+    assert proposal.channels["velocity"].unit == "mm/s"
 
 
 @pytest.mark.parametrize(

@@ -50,15 +50,15 @@ def test_the_unit_decides_between_the_words_of_a_name(name, unit, quantity, stat
 
 def test_of_a_force_in_volts_and_one_in_newtons_the_second_is_the_force(tmp_path):
     file = file_of(tmp_path, ("Force", "V"), ("Force 2", "N"), ("Displacement", "mm"))
-    found = propose([file])
-    assert found.open == () and found.map.rig == "damper_bench"
-    assert found.map.channels["damper_force"].column == "Force 2"
+    found, open_ends = propose([file])
+    assert open_ends == [] and found.rig == "damper_bench"
+    assert found.channels["damper_force"].column == "Force 2"
     columns = {each.signal.name: channel_of(each, "damper_bench") for each in read_columns(file.groups[0])}
     assert columns == {"t": None, "Force": None, "Force 2": "damper_force", "Displacement": "displacement"}
 
 
 def test_a_force_in_volts_alone_is_asked_for_by_its_true_reason(tmp_path):
-    (problem,) = propose([file_of(tmp_path, ("Force", "V"), ("Displacement", "mm"))]).open
+    _, (problem,) = propose([file_of(tmp_path, ("Force", "V"), ("Displacement", "mm"))])
     assert "'Force' is stated in V, which is no unit of it; write unit, such as N" in problem
 
 
@@ -74,7 +74,7 @@ def test_a_force_in_volts_alone_is_asked_for_by_its_true_reason(tmp_path):
     ],
 )
 def test_a_displacement_and_a_force_alone_are_of_a_bench(tmp_path, columns, rig):
-    assert propose([file_of(tmp_path, *columns)]).map.rig == rig
+    assert propose([file_of(tmp_path, *columns)])[0].rig == rig
 
 
 def test_x_beside_y_and_z_is_an_axis_and_no_displacement(tmp_path):
