@@ -20,7 +20,8 @@ from seatsim.schema.tables import LARGEST_FILE
 
 if TYPE_CHECKING:
     import h5py
-
+else:
+    h5py = need("h5py", "HDF5")
 _COLUMNS = ("columns", "names", "channels", "channel_names", "column_names")
 """Attributes that name the columns of a matrix."""
 _HERE = "."
@@ -42,8 +43,6 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
 
 def _gather(name: str, folder: h5py.Group, above: Mapping[str, object], gathered: Channels, notes: list[str]) -> None:
     """Gather the data sets of a folder, then those of the folders in it; `above` holds what was stated of all."""
-    import h5py
-
     stated = {**above, **folder.attrs}
     signals: list[Signal] = []
     inner = []
@@ -55,9 +54,8 @@ def _gather(name: str, folder: h5py.Group, above: Mapping[str, object], gathered
         elif item.size == 1:
             stated[key] = item[()]
         else:
-            found = _signals(key, item, notes)
-            signals += found
-            stated = {**stated, **{each: value for each, value in item.attrs.items() if each.lower() not in _COLUMNS}}
+            signals += (found := _signals(key, item, notes))
+            stated |= {each: value for each, value in item.attrs.items() if each.lower() not in _COLUMNS}
             if not found:
                 notes.append(f"'{item.name}' is left out: it holds no vector or matrix of real numbers")
     for signal in signals:
@@ -74,9 +72,9 @@ def _signals(key: str, item: h5py.Dataset, notes: list[str]) -> list[Signal]:
     if item.dtype.names is not None:
         table = item[()]
         return [signal for name in item.dtype.names for signal in signals_of(name, np.asarray(table[name]))]
-    columns = next((_texts(value) for each, value in attributes.items() if each.lower() in _COLUMNS), [])
-    units = next((_texts(value) for each, value in attributes.items() if each.lower() == "units"), [])
-    return signals_of(key, item[()], stated_unit(attributes), columns, units)
+    texts = {each.lower(): [as_text(text) for text in np.atleast_1d(value)] for each, value in attributes.items()}
+    columns = next((texts[each] for each in texts if each in _COLUMNS), [])
+    return signals_of(key, item[()], stated_unit(attributes), columns, texts.get("units", []))
 
 
 def _never_written(item: h5py.Dataset) -> float:
@@ -89,10 +87,6 @@ def _never_written(item: h5py.Dataset) -> float:
     return 1.0 - float(int(item.id.get_num_chunks()) / every)
 
 
-def _texts(value: object) -> list[str]:
-    return [as_text(each) for each in np.atleast_1d(np.asarray(value))]
-
-
 @contextmanager
 def open_checked(path: Path, content: bytes, follows: bool = False) -> Iterator[h5py.File]:
     """Open a file whose every part was checked; `follows` says that what its data sets refer to will be read too.
@@ -101,7 +95,6 @@ def open_checked(path: Path, content: bytes, follows: bool = False) -> Iterator[
         InputError: it links to another file or keeps numbers there, or numbers of a virtual data set are missing.
         TooMuchError: it states more than a file of its size may make.
     """
-    h5py = need("h5py", "HDF5")
     with h5py.File(io.BytesIO(content), "r") as file:
         sources: set[Path] = set()
         check_parts([file["/"]], lambda item: _part(item, path, len(content), follows, sources), len(content))
@@ -116,8 +109,6 @@ def open_checked(path: Path, content: bytes, follows: bool = False) -> Iterator[
 
 def _part(item: Hashable, path: Path, size: int, follows: bool, sources: set[Path]) -> Part:
     """Return what an object makes and refers to, and add the files of its virtual data sets to `sources`."""
-    import h5py
-
     place = f"{path}, {getattr(item, 'name', None) or 'an object without a name'}"
     made = sum(_bytes_of(item.attrs.get_id(name)) for name in item.attrs) if isinstance(item, h5py.HLObject) else 0
     if isinstance(item, h5py.Group):
@@ -143,8 +134,6 @@ def _bytes_of(array: h5py.Dataset) -> int:
 
 def _members(group: h5py.Group, place: str) -> Iterator[h5py.HLObject]:
     """Yield what lies in a group."""
-    import h5py
-
     for name in group:
         link = group.get(name, getlink=True)
         if isinstance(link, h5py.ExternalLink):
@@ -157,8 +146,6 @@ def _members(group: h5py.Group, place: str) -> Iterator[h5py.HLObject]:
 
 def _sources(item: h5py.Dataset, place: str, path: Path, sources: set[Path]) -> Iterator[h5py.HLObject]:
     """Yield the data sets of the same file of which a virtual one is made, and check those of the files beside it."""
-    import h5py
-
     covered = 0
     for each in item.virtual_sources():
         needed = each.vspace.get_select_npoints()
@@ -182,8 +169,6 @@ def _sources(item: h5py.Dataset, place: str, path: Path, sources: set[Path]) -> 
 
 def _check_source(path: Path, name: str, needed: int, missing: str) -> None:
     """Check a file from which a virtual data set takes numbers, which may hold no virtual data set itself."""
-    import h5py
-
     content = read_bytes(path, LARGEST_FILE, "a file of measured data")
     with open_checked(path, content) as file:
         source = file.get(name)

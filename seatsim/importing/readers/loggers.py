@@ -70,7 +70,7 @@ def read_mdf(path: Path, content: bytes, layout: TextLayout) -> DataFile:
             wanted = [(None, index, number) for number in range(len(group.channels)) if number != master]
             chosen = file.select(wanted, ignore_value2text_conversions=True) if wanted else []
             found = [each for each in chosen if each.samples.dtype.kind in "fiu" and each.samples.ndim == 1]
-            left_out += [each.name for each in chosen if each.samples.dtype.kind not in "fiu" or each.samples.ndim != 1]
+            left_out += [each.name for each in chosen if not any(each is other for other in found)]
             if found:
                 signals = [Signal(each.name, each.unit or "", each.samples.astype(np.float64)) for each in found]
                 gathered.add_timed(f"group {index + 1}", found[0].timestamps.astype(np.float64), signals)
@@ -111,11 +111,8 @@ def _close(file: MDF) -> None:
 
 def _check_blocks(content: bytes) -> None:
     """Raise TooMuchError where blocks refer to themselves over others, or make too much together."""
-    if content[8:9] == b"4":
-        check_parts([_BEGIN], lambda address: _block_4(content, address), len(content))
-    else:
-        order = "<" if content[24:26] == b"\0\0" else ">"
-        check_parts([_BEGIN], lambda address: _block_3(content, address, order), len(content))
+    block = _block_4 if content[8:9] == b"4" else _block_3
+    check_parts([_BEGIN], lambda address: block(content, address), len(content))
 
 
 def _block_4(content: bytes, address: Hashable) -> Part:
@@ -153,9 +150,9 @@ def _unpacked(content: bytes, address: int) -> int:
     return int(stated)
 
 
-def _block_3(content: bytes, address: Hashable, order: str) -> Part:
+def _block_3(content: bytes, address: Hashable) -> Part:
     assert isinstance(address, int)
-    kind = content[address : address + 2]
+    kind, order = content[address : address + 2], "<" if content[24:26] == b"\0\0" else ">"
     count = min(_OWNED_3.get(kind, 0), (len(content) - address - 4) // 4)
     links = struct.unpack_from(f"{order}{max(0, count)}I", content, address + 4)
     _check_kinds(content, kind, links, 0)

@@ -17,19 +17,15 @@ from collections.abc import Callable, Iterator, Sequence
 from math import prod
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
-from seatsim.importing.readers.hdf5 import open_checked
 from seatsim.importing.readers.reading import HDF5, USER_BLOCK, need
 from seatsim.importing.signals import TIME, in_seconds
 from seatsim.schema.bounds import BYTES_OF_PART, LEAST, check_made, permitted_of
-
-if TYPE_CHECKING:
-    import pandas as pd
-
 
 AnyArray: TypeAlias = NDArray[np.generic]
 Resolve: TypeAlias = Callable[[AnyArray, str, str], object]
@@ -111,7 +107,10 @@ class _Elements:
         if kind == _OPAQUE:
             name, system, class_name, value = parts
             held = self.read_array(value.content, depth + 1)[1]
-            return _text(name), self._object(held, _text(system), _text(class_name))
+            is_object = _text(class_name) != _FILE_WRAPPER
+            if is_object and self.resolve and isinstance(held, np.ndarray):
+                return _text(name), self.resolve(held, _text(system), _text(class_name))
+            return _text(name), None if is_object else held
         dimensions, name, *parts = parts
         shape = tuple(self.numbers(dimensions).astype(int).tolist())
         if any(length < 0 for length in shape):
@@ -176,16 +175,9 @@ class _Elements:
             raise ValueError(f"an element of the type {element.kind} stands where numbers should")
         return np.frombuffer(element.content, self.order + _NUMBERS[element.kind])
 
-    def _object(self, held: object, system: str, class_name: str) -> object:
-        if class_name == _FILE_WRAPPER:
-            return held
-        return self.resolve(held, system, class_name) if self.resolve and isinstance(held, np.ndarray) else None
 
-
-def read_variables(content: bytes, open_objects: Callable[[AnyArray, str], Resolve]) -> dict[str, object]:
+def _read_variables(content: bytes) -> dict[str, object]:
     """Return the variables of a file by name, as `_Elements.read_array` does.
-
-    `open_objects` returns what resolves objects, of the structure that holds them all and the order of bytes.
 
     Raises:
         ValueError: the file is damaged.
@@ -202,13 +194,14 @@ def read_variables(content: bytes, open_objects: Callable[[AnyArray, str], Resol
         if variable.kind == _ARRAY:
             name, value = elements.read_array(variable.content)
             if not name and isinstance(value, np.ndarray) and value.dtype == np.uint8:
-                elements.resolve = _open_inner(value.tobytes(), len(content), open_objects)
+                elements.resolve = _open_inner(value.tobytes(), len(content))
             else:
                 found[name] = value
     return dict(reversed(found.items()))
 
 
-def _open_inner(content: bytes, size: int, open_objects: Callable[[AnyArray, str], Resolve]) -> Resolve | None:
+def _open_inner(content: bytes, size: int) -> Resolve | None:
+    """Return what resolves objects, of which the inner file holds all that they hold."""
     order = _ORDERS.get(content[2:4])
     if order is None:
         return None
@@ -217,7 +210,7 @@ def _open_inner(content: bytes, size: int, open_objects: Callable[[AnyArray, str
         variable = elements.unpack(element)
         _, value = elements.read_array(variable.content) if variable.kind == _ARRAY else ("", None)
         if isinstance(value, np.ndarray) and value.dtype.names:
-            return open_objects(value, order)
+            return _subsystem(value, order).load_opaque_object  # type: ignore[no-any-return]
     return None
 
 
@@ -249,10 +242,12 @@ def read_values(path: Path, content: bytes) -> dict[str, Value]:
         if content.startswith(b"MATLAB 7.3") or content[USER_BLOCK : USER_BLOCK + len(HDF5)] == HDF5:
             return _read_hdf5(path, content)
         plain = _Plain(len(content))
-        return {name: plain.of(value) for name, value in read_variables(content, _open_objects).items()}
+        return {name: plain.of(value) for name, value in _read_variables(content).items()}
 
 
 def _read_hdf5(path: Path, content: bytes) -> dict[str, Value]:
+    from seatsim.importing.readers.hdf5 import open_checked  # needs a library that version 5 does not
+
     with open_checked(path, content, follows=True) as file:
         reader = _need_matio("matio.v7.matreader7", "MAT v7.3").MatRead7(file)
         if _SUBSYSTEM in file:
@@ -270,14 +265,8 @@ def _read_hdf5(path: Path, content: bytes) -> dict[str, Value]:
 
 def _need_matio(module: str, kind: str) -> ModuleType:
     """Return a part of mat-io; its import changes for the whole process how pandas keeps texts, which is put back."""
-    import pandas as pd
-
     with pd.option_context("future.infer_string", pd.get_option("future.infer_string")):
         return need(module, kind)
-
-
-def _open_objects(held: AnyArray, order: str) -> Resolve:
-    return _subsystem(held, order).load_opaque_object  # type: ignore[no-any-return]
 
 
 def _subsystem(held: AnyArray, order: str) -> Any:
@@ -291,7 +280,10 @@ def _subsystem(held: AnyArray, order: str) -> Any:
             self.left -= 1
             if self.left < 0:
                 raise ValueError(f"its objects hold each other more than {_MOST_OBJECTS} times")
-            _check_reference(metadata)
+            if isinstance(metadata, np.ndarray) and metadata.dtype.kind == "u" and metadata.size > 2:
+                flat = metadata.ravel()
+                if flat[0] == _REFERENCE and np.prod(flat[2 : 2 + int(flat[1])], dtype=float) > flat.size:
+                    raise ValueError("an array of objects states more of them than it has")
             return super().load_opaque_object(metadata, type_system, classname)
 
     subsystem = Bounded(order, add_table_attrs=True)
@@ -299,14 +291,6 @@ def _subsystem(held: AnyArray, order: str) -> Any:
     if any(np.min(each, initial=0) < 0 for each in (subsystem.saveobj_metadata, subsystem.nobj_metadata)):
         raise ValueError("what its objects hold is damaged")
     return subsystem
-
-
-def _check_reference(numbers: object) -> None:
-    """Raise ValueError where an array states more objects than it has numbers."""
-    if isinstance(numbers, np.ndarray) and numbers.dtype.kind == "u" and numbers.size > 2:
-        flat = numbers.ravel()
-        if flat[0] == _REFERENCE and np.prod(flat[2 : 2 + int(flat[1])], dtype=float) > flat.size:
-            raise ValueError("an array of objects states more of them than it has")
 
 
 class _Plain:
@@ -317,8 +301,6 @@ class _Plain:
 
     def of(self, value: object) -> Value:
         """Return a plain value; an object counts as often as something holds it."""
-        import pandas as pd
-
         self.parts += 1
         check_made(BYTES_OF_PART * self.parts, self.size)
         if isinstance(value, pd.DataFrame):

@@ -87,12 +87,16 @@ class _Reader:
         channel = _channel_of(held)
         own = _clock(held, stated, _ABSCISSAS if channel else _TIMES)
         label = stated_text(stated, _LABELS) or label
+        clock = own if own.times or own.rate else above
         if channel:
             signals = signals_of(label or channel, np.asarray(held[channel]), stated_unit(stated))
-            self._add(name, signals, _own_clock(own, above, stated), name or channel)
+            # Of several times above it a channel may name one.
+            index = next((scalar(value) for key, value in stated.items() if bare(key) == _INDEX), None)
+            if clock is above and index is not None and 1 <= index <= len(above.times):
+                clock = above._replace(times=(above.times[int(index) - 1],))
+            self._add(name, signals, clock, name or channel)
             return
         before = len(self.gathered)
-        clock = own if own.times or own.rate else above
         inner = {key: value for key, value in held.items() if isinstance(value, dict | list)}
         vectors = {key: value for key, value in held.items() if isinstance(value, np.ndarray) and value.size > 1}
         # Nothing but times is there for the channels in the structures below.
@@ -140,16 +144,6 @@ class _Reader:
                 self.gathered.add(name, signal, clock.rate, clock.start)
 
 
-def _own_clock(own: _Clock, above: _Clock, stated: _Structure) -> _Clock:
-    """Return the clock of a channel: its own times or rate, else those above it, of which it may name one."""
-    if own.times or own.rate:
-        return own
-    index = next((scalar(value) for key, value in stated.items() if bare(key) == _INDEX), None)
-    if index is not None and 1 <= index <= len(above.times):
-        return above._replace(times=(above.times[int(index) - 1],))
-    return above
-
-
 def _channel_of(held: _Structure) -> str | None:
     """Return the field that holds the values of a channel, None where a structure is no channel."""
     key = next((each for name in _VALUES for each in held if bare(each) == name and _is_vector(held[each])), None)
@@ -167,16 +161,11 @@ def _times(held: _Structure, names: Sequence[str]) -> tuple[Array, ...]:
         for each in value if isinstance(value, list) else [value]:
             channel = _channel_of(each) if isinstance(each, dict) and bare(key) in _ABSCISSAS else None
             times = each[channel] if isinstance(each, dict) and channel else each if bare(key) in names else None
-            if _is_vector(times):
-                vector = np.squeeze(np.asarray(times))
-                if vector.dtype.kind in "fiu" and vector.ndim == 1 and _rises(vector):
+            if _is_vector(times) and (vector := np.squeeze(np.asarray(times))).dtype.kind in "fiu" and vector.ndim == 1:
+                steps = np.diff(vector.astype(np.float64))
+                if (steps >= 0.0).all() and (steps > 0.0).any():
                     found.append(vector.astype(np.float64))
     return tuple(found)
-
-
-def _rises(vector: AnyArray) -> bool:
-    steps = np.diff(vector.astype(np.float64))
-    return bool((steps >= 0.0).all() and (steps > 0.0).any())
 
 
 def _clock(held: _Structure, stated: _Structure, names: Sequence[str]) -> _Clock:
@@ -185,14 +174,9 @@ def _clock(held: _Structure, stated: _Structure, names: Sequence[str]) -> _Clock
     unit = stated_text(stated, _UNITS_OF_TIME) or stated_unit(info)
     found = find_conversion(unit, DIMENSIONS["time"]) if unit else None
     factor = found.factor if found else 1.0
-    start = _start(stated)
-    times = tuple(factor * each for each in _times(held, names))
-    return _Clock(times, stated_rate(stated, factor), factor * start if start is not None else None)
-
-
-def _start(stated: _Structure) -> float | None:
-    found = (scalar(value) for key, value in stated.items() if bare(key) in _STARTS)
-    return next((each for each in found if each is not None and abs(each) < _LATEST), None)
+    starts = (scalar(value) for key, value in stated.items() if bare(key) in _STARTS)
+    start = next((factor * each for each in starts if each is not None and abs(each) < _LATEST), None)
+    return _Clock(tuple(factor * each for each in _times(held, names)), stated_rate(stated, factor), start)
 
 
 def _join_flat(variables: Mapping[str, Value]) -> dict[str, Value]:

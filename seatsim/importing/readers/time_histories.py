@@ -81,26 +81,17 @@ def _why_not(kind: int, held: _DataSet) -> str:
 
 def _signal(place: str, held: _DataSet) -> tuple[Signal, Array]:
     """Return a channel and its times in s."""
-    values, times = _array(held, "data"), _array(held, "x")
+    values, times = (np.real(np.asarray(held[key])).astype(np.float64) for key in ("data", "x"))
     stated = int(held["num_pts"])
     if min(len(values), len(times)) < stated:
         raise InputError(f"{place}: has {len(values)} of {stated} values; the file is truncated: export it again")
     if len(values) >= stated + _OF_LINE:
         raise InputError(f"{place}: has {len(values)} values where it states {stated}; correct the number of them")
-    name = next((str(held[key]).strip() for key in _NAMES if str(held.get(key, "")).strip().lower() not in _NONE), "")
+    texts = {key: text for key, value in held.items() if (text := str(value).strip()).lower() not in _NONE}
     node = f"{held.get('rsp_node', '')}:{held.get('rsp_dir', '')}"
-    unit = _unit(held, "ordinate_axis_units_lab")
-    of_time = conversion(_unit(held, "abscissa_axis_units_lab") or "s", DIMENSIONS["time"]).factor
-    return Signal(name or node, unit, values[:stated]), of_time * times[:stated]
-
-
-def _unit(held: _DataSet, key: str) -> str:
-    unit = str(held.get(key, "")).strip()
-    return "" if unit.lower() in _NONE else unit
-
-
-def _array(held: _DataSet, key: str) -> Array:
-    return np.real(np.asarray(held[key])).astype(np.float64)
+    name = next((texts[key] for key in _NAMES if key in texts), node)
+    of_time = conversion(texts.get("abscissa_axis_units_lab", "s"), DIMENSIONS["time"]).factor
+    return Signal(name, texts.get("ordinate_axis_units_lab", ""), values[:stated]), of_time * times[:stated]
 
 
 def read_rpc(path: Path, content: bytes, layout: TextLayout) -> DataFile:
@@ -113,31 +104,25 @@ def read_rpc(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     keys = ("CHANNELS", "FRAMES", "PTS_PER_FRAME", "PTS_PER_GROUP")
     count, frames, per_frame, per_group = (int(header[key]) for key in keys)
     if min(count, frames, per_frame, per_group) < 1:
-        problem = f"{path}: states {count} channels of {frames} frames of {per_frame} points; each is at least 1"
-        raise InputError(problem)
+        stated = f"{count} channels of {frames} frames of {per_frame} points"
+        raise InputError(f"{path}: states {stated}; each is at least 1")
     kind, order = header.get("DATA_TYPE", "SHORT_INTEGER"), header.get("FORMAT", "BINARY")
     if kind not in _TYPES or order not in _ORDERS:
         permitted = f"{', '.join(_TYPES)} in {', '.join(_ORDERS)}"
         raise InputError(f"{path}: numbers are {kind} in {order}; permitted: {permitted}")
     values = np.frombuffer(content[int(header["NUM_HEADER_BLOCKS"]) * _BLOCK :], dtype="u1")
     table = _demultiplex(path, values, _ORDERS[order] + _TYPES[kind], (count, frames * per_frame, per_group))
-    scales = [_scale(header, number, kind) for number in range(1, count + 1)]
-    kept, notes = _kept(table, per_frame)
-    signals = []
-    for number, (scale, row) in enumerate(zip(scales, table, strict=True), 1):
-        name = header.get(f"DESC.CHAN_{number}", f"channel {number}")
-        signals.append(Signal(name, header.get(f"UNITS.CHAN_{number}", ""), scale * row[:kept]))
-    return DataFile(path, "", (Group("", tuple(signals), 1.0 / float(header["DELTA_T"])),), notes)
-
-
-def _kept(table: Array, per_frame: int) -> tuple[int, tuple[str, ...]]:
-    """Return how many points there are without the zeros that fill the last frame, and a sentence on them."""
     used = np.flatnonzero(table[:, -per_frame:].any(axis=0))
     filled = per_frame - 1 - int(used[-1]) if len(used) else 0
-    if not filled:
-        return table.shape[1], ()
     note = f"the last {filled} points of every channel are zero: they fill the last frame and are left out"
-    return table.shape[1] - filled, (note,)
+    whole = float(header.get("INT_FULL_SCALE", _FULL_SCALE))
+    signals = []
+    for number, row in enumerate(table[:, : table.shape[1] - filled], 1):
+        name = header.get(f"DESC.CHAN_{number}", f"channel {number}")
+        scale = 1.0 if kind == "FLOATING_POINT" else float(header[f"SCALE.CHAN_{number}"]) * whole / _FULL_SCALE
+        signals.append(Signal(name, header.get(f"UNITS.CHAN_{number}", ""), scale * row))
+    group = Group("", tuple(signals), 1.0 / float(header["DELTA_T"]))
+    return DataFile(path, "", (group,), (note,) if filled else ())
 
 
 def _header(path: Path, content: bytes) -> dict[str, str]:
@@ -166,12 +151,6 @@ def _demultiplex(path: Path, raw: np.ndarray, kind: str, shape: tuple[int, int, 
         raise InputError(f"{path}: {stated} and {len(raw)} are there; the file is truncated: export it again")
     values = raw[: wanted * size].view(kind).astype(np.float64).reshape(groups, count, per_group)
     return values.transpose(1, 0, 2).reshape(count, -1)[:, :points]
-
-
-def _scale(header: Mapping[str, str], number: int, kind: str) -> float:
-    if kind == "FLOATING_POINT":
-        return 1.0
-    return float(header[f"SCALE.CHAN_{number}"]) * float(header.get("INT_FULL_SCALE", _FULL_SCALE)) / _FULL_SCALE
 
 
 def read_sep005(path: Path, content: bytes, layout: TextLayout) -> DataFile:
