@@ -146,10 +146,9 @@ def numbers(frame: pd.DataFrame, column: str, file: Path) -> Array:
     values, bad = tables.numbers(frame, column)
     if bad.size:
         more = f" (and {bad.size - 1} more rows)" if bad.size > 1 else ""
-        raise InputError(
-            f"{file}, line {frame.index[bad[0]] + 2}, {column}: '{frame[column].iloc[bad[0]]}'{more} is not a finite"
-            " number; correct it, or mark such rows by 0 in a column 'valid'"
-        )
+        place = f"{file}, line {frame.index[bad[0]] + 2}, {column}: '{frame[column].iloc[bad[0]]}'{more}"
+        remedy = "correct it, or mark such rows by 0 in a column 'valid'"
+        raise InputError(f"{place} is not a finite number; {remedy}")
     return known.in_si(values) if known else values
 
 
@@ -160,10 +159,9 @@ def check_needed(there: Iterable[str], columns: Sequence[str], file: Path) -> No
         quantity = lacking[0]
         hint, others = nearest(quantity, columns), ", ".join(_QUANTITIES[quantity][0][1:])
         rate = f", or give '{_RATES[0]}' in {file.name.partition('.csv')[0]}.yaml" if quantity == "time" else ""
-        raise InputError(
-            f"{file}: no column holds the {quantity}{hint}; name it {_spelt(quantity)} (also {others} with the unit)"
-            f"{rate}; there are {', '.join(columns[:_LISTED])}{', ...' * (len(columns) > _LISTED)}"
-        )
+        name = f"name it {_spelt(quantity)} (also {others} with the unit){rate}"
+        there_are = f"there are {', '.join(columns[:_LISTED])}{', ...' * (len(columns) > _LISTED)}"
+        raise InputError(f"{file}: no column holds the {quantity}{hint}; {name}; {there_are}")
 
 
 def _spelt(quantity: str) -> str:
@@ -370,11 +368,8 @@ def _split(table: _Table, file: Path, lines: NDArray[np.int64]) -> Iterator[Benc
     if uneven:
         place = f"{file}, line {lines[uneven[0]]}, {time[uneven[0]]:g} s"
         raise InputError(f"{place}: rows are not evenly spaced in time; resample them to a constant rate")
-    yield from _name_records([_record({name: y[part] for name, y in table.items()}, file) for part in parts])
-
-
-def _name_records(records: Sequence[BenchRecord]) -> Iterator[BenchRecord]:
-    """Yield the records of a file under distinct names, by their current where that is constant."""
+    records = [_record({name: y[part] for name, y in table.items()}, file) for part in parts]
+    # Names are distinct: by the current where that is constant.
     titles = [f"{r.name}, {r.mean_current:g} A" if np.ptp(r.current) == 0.0 else r.name for r in records]
     for number, (record, title) in enumerate(zip(records, titles, strict=True), 1):
         yield record._replace(name=f"{title}, part {number}" if titles.count(title) > 1 else title)
@@ -404,10 +399,9 @@ def _recorded(folder: Path) -> list[BenchRecord]:
     """Return the runs of a recording of a bench."""
     recording = load_recording(folder)
     if recording.header.rig != "damper_bench" or "damper_force" not in recording.channels:
-        raise InputError(
-            f"{folder / HEADER}: rig '{recording.header.rig}' with {', '.join(recording.channels)}; a damper is"
-            " identified from a recording of 'rig: damper_bench' with the channel damper_force"
-        )
+        stated = f"rig '{recording.header.rig}' with {', '.join(recording.channels)}"
+        wanted = "a damper is identified from a recording of 'rig: damper_bench' with the channel damper_force"
+        raise InputError(f"{folder / HEADER}: {stated}; {wanted}")
     records = []
     for name, entry in recording.runs.items():
         if entry.set:

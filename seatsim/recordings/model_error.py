@@ -87,11 +87,9 @@ class ModelError(NamedTuple):
     @written()
     def by_run(self) -> list[RunError]:
         """What was left of each run."""
-        found = []
-        for k, run in enumerate(self.runs):
-            missed = {name: float(np.sqrt(values[k])) for name, values in self.missed.items()}
-            found.append(RunError(run, {name: values[k] for name, values in self.error.items()}, missed))
-        return found
+        missed = [{name: float(np.sqrt(v[k])) for name, v in self.missed.items()} for k in range(len(self.runs))]
+        errors = [{name: values[k] for name, values in self.error.items()} for k in range(len(self.runs))]
+        return list(map(RunError, self.runs, errors, missed))
 
     def predict_amplitude(self, channel: str, simulated: Array, rate: float) -> Array:
         """Return the mean square to be expected of a measured channel by band, in the first place that of all bands."""

@@ -84,15 +84,11 @@ def list_nuisances(
             # Rates and times have no scale: a coil without a delay has none, and not one that is known to be small.
             largest = own.get(key, usual) * (abs(value) if value else scales.get(specification.unit, 0.0))
             if largest > 0.0:
-                permitted = _range(type(record), name, value)
-                found.append(Nuisance(section, name, float(value), largest, *permitted, specification.unit))
+                low, high = bounds(type(record), name)
+                # What may not be negative keeps a share of what it is nominally.
+                low = max(low, _LEAST_SHARE * value) if low >= 0.0 else low
+                found.append(Nuisance(section, name, float(value), largest, low, high, specification.unit))
     return found
-
-
-def _range(record: type, name: str, value: float) -> tuple[float, float]:
-    """Return the values that a field permits; what may not be negative keeps a share of what it is nominally."""
-    low, high = bounds(record, name)
-    return (max(low, _LEAST_SHARE * value), high) if low >= 0.0 else (low, high)
 
 
 def vary(scenario: Scenario, parameters: Sequence[Nuisance], deviations: Array) -> Scenario:
@@ -102,6 +98,5 @@ def vary(scenario: Scenario, parameters: Sequence[Nuisance], deviations: Array) 
         changes[parameter.section][parameter.name] = parameter.at(deviation)
     plant = None if scenario.plant is None else replace_fields(scenario.plant, changes["plant"])
     damper = dataclasses.replace(scenario.damper, record=replace_fields(scenario.damper.record, changes["damper"]))
-    return dataclasses.replace(
-        scenario, plant=plant, damper=damper, coil=replace_fields(scenario.coil, changes["coil"])
-    )
+    coil = replace_fields(scenario.coil, changes["coil"])
+    return dataclasses.replace(scenario, plant=plant, damper=damper, coil=coil)

@@ -98,7 +98,9 @@ def predict_gap(
     """
     recording = recording if isinstance(recording, Recording) else load_recording(recording)
     augmented = scenario if isinstance(scenario, Scenario) else single(scenario)
-    stated = _read_diagnosis(Path(diagnosis))
+    stated = read_json(Path(diagnosis), "diagnosis")
+    if not isinstance(stated, dict):
+        raise InputError(f"{Path(diagnosis)}: is no diagnosis; name the diagnosis.json that 'seatsim diagnose' wrote")
     with expect(diagnosis, "diagnosis"):
         error, causes = read_model_error(stated, str(diagnosis)), _read_causes(stated)
         _check_rig(augmented, error, recording, diagnosis)
@@ -219,11 +221,3 @@ def _read_causes(content: Mapping[str, object]) -> list[_StatedCause]:
         stds = {name: float(value["std"]) for name, value in stated.items() if isinstance(value, dict) and value["std"]}
         found.append(_StatedCause(cause["effect"], stated.get("channel"), stds))
     return found
-
-
-def _read_diagnosis(path: Path) -> Mapping[str, object]:
-    """Return the content of a `diagnosis.json`."""
-    content = read_json(path, "diagnosis")
-    if not isinstance(content, dict):
-        raise InputError(f"{path}: is no diagnosis; name the diagnosis.json that 'seatsim diagnose' wrote")
-    return content

@@ -213,9 +213,8 @@ def _read_table(path: Path, channels: tuple[str, ...], stamp: _Stamp) -> dict[st
         raise InputError(f"{path}: holds {len(frame)} rows; a run has at least two")
     missing = [name for name in channels if name not in frame]
     if missing:
-        raise InputError(
-            f"{path}: column '{missing[0]}' is missing{nearest(missing[0], map(str, frame))}; recording.yaml lists it"
-        )
+        hint = nearest(missing[0], map(str, frame))
+        raise InputError(f"{path}: column '{missing[0]}' is missing{hint}; recording.yaml lists it")
     table = {}
     for name in channels:
         values, bad = numbers(frame, name)
@@ -297,10 +296,8 @@ def _say(first: Recording, second: Recording, shared: list[str]) -> Iterator[str
     for one, other in ((first, second), (second, first)):
         dropped = [name for name in one.channels if name not in shared]
         if dropped:
-            yield (
-                f"{', '.join(dropped)}: left out, since {other.folder.name} does not have it;"
-                f" what it alone shows needs a diagnosis of {one.folder.name} alone"
-            )
+            remedy = f"what it alone shows needs a diagnosis of {one.folder.name} alone"
+            yield f"{', '.join(dropped)}: left out, since {other.folder.name} does not have it; {remedy}"
     for name in shared:
         noises = first.channels[name].noise_rms, second.channels[name].noise_rms
         if noises[0] != noises[1]:

@@ -142,9 +142,7 @@ def _turned(recorded: Array, simulated: Array) -> float:
 
 def _delay(channel: str, rows: int, rate: float, may_be_effect: bool) -> _DataFault:
     says = f"is {abs(rows) / rate:.3g} s {'late' if rows > 0 else 'early'}"
-    return _DataFault(
-        "late", (channel,), says, lambda table: {**table, channel: _moved(table[channel], rows)}, may_be_effect
-    )
+    return _DataFault("late", (channel,), says, lambda t: {**t, channel: _moved(t[channel], rows)}, may_be_effect)
 
 
 def _moved(values: Array, rows: int) -> Array:

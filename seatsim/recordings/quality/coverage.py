@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
+import scipy  # loads `scipy.signal` where it is first used
 
 from seatsim.recordings.recording import DRIVERS, Recording
 from seatsim.rig.temperature import Thermal
@@ -96,8 +97,6 @@ def _current(recording: Recording, table: dict[str, Array]) -> Array | None:
 
 def _velocity(recording: Recording, table: dict[str, Array]) -> Array | None:
     """Return the velocity across the damper in m/s, shape (N,); None where no channel determines it."""
-    from scipy.signal import butter, sosfiltfilt
-
     rate = recording.header.sample_rate
     if "velocity" in table:
         return table["velocity"]
@@ -107,20 +106,20 @@ def _velocity(recording: Recording, table: dict[str, Array]) -> Array | None:
     if "frame_acceleration" not in table:
         return None
     relative = np.cumsum(table["frame_acceleration"] - table["floor_acceleration"]) / rate
-    return np.asarray(sosfiltfilt(butter(2, 0.5, "highpass", fs=rate, output="sos"), relative))
+    sections = scipy.signal.butter(2, 0.5, "highpass", fs=rate, output="sos")
+    return np.asarray(scipy.signal.sosfiltfilt(sections, relative))
 
 
 def _slope(values: Array, noise: float, rate: float) -> Array:
     """Return the derivative below the frequency at which the spectrum falls to four times that of the noise."""
-    from scipy.signal import butter, sosfiltfilt, welch
-
     rows = min(len(values), max(64, round(2.0 * rate)))
-    frequency, density = welch(values, rate, nperseg=rows)
+    frequency, density = scipy.signal.welch(values, rate, nperseg=rows)
     above = np.flatnonzero(density > 4.0 * 2.0 * noise**2 / rate)
     corner = float(frequency[above[-1]]) if above.size else 0.0
     smooth = values
     if corner < 0.4 * rate:
-        smooth = sosfiltfilt(butter(2, max(corner, 1.0 / rows * rate), fs=rate, output="sos"), values)
+        sections = scipy.signal.butter(2, max(corner, 1.0 / rows * rate), fs=rate, output="sos")
+        smooth = scipy.signal.sosfiltfilt(sections, values)
     return np.asarray(np.gradient(smooth, 1.0 / rate))
 
 
@@ -136,12 +135,10 @@ def _largest_drop(currents: Sequence[Array], rate: float) -> float:
 
 def _band(recording: Recording, tables: list[dict[str, Array]]) -> tuple[float, float] | None:
     """Return the band that holds 98 % of the power of the excitation's acceleration (a bench: of its velocity)."""
-    from scipy.signal import welch
-
     rate = recording.header.sample_rate
     channel = DRIVERS[recording.header.rig]
     rows = min([len(table[channel]) for table in tables] + [round(8.0 * rate)])
-    spectra = [welch(table[channel], rate, nperseg=rows) for table in tables]
+    spectra = [scipy.signal.welch(table[channel], rate, nperseg=rows) for table in tables]
     frequency = spectra[0][0]
     weight = 1.0 if channel == "floor_acceleration" else frequency**2
     floor = 2.0 * recording.channels[channel].noise_rms ** 2 / rate

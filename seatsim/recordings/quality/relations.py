@@ -14,6 +14,7 @@ import functools
 from collections.abc import Iterator
 
 import numpy as np
+import scipy  # loads `scipy.signal` where it is first used
 
 from seatsim.recordings.quality.issue import Issue, RunUnderTest, Severity, Table
 from seatsim.recordings.recording import SEAT_CHANNELS
@@ -222,27 +223,21 @@ def _unlike(first: Array, second: Array) -> float:
 
 def filter_band(run: RunUnderTest, values: Array) -> Array:
     """Return values, shape (..., N), between 0.5 and 8 Hz (a bench: below 8 Hz, without their mean)."""
-    from scipy.signal import sosfiltfilt
-
     sections, rows = _filter(run.rate, run.recording.header.rig == "seat"), values.shape[-1]
     swinging = values - np.mean(values, axis=-1, keepdims=True)
-    return np.asarray(sosfiltfilt(sections, swinging, padlen=min(3 * rows // 4, 100)))
+    return np.asarray(scipy.signal.sosfiltfilt(sections, swinging, padlen=min(3 * rows // 4, 100)))
 
 
 @functools.cache
 def _filter(rate: float, on_seat: bool) -> Array:
-    from scipy.signal import butter
-
     high = min(8.0, 0.4 * rate)
     edges = (min(0.5, 0.5 * high), high) if on_seat else high
-    return np.asarray(butter(2, edges, "bandpass" if on_seat else "lowpass", fs=rate, output="sos"))
+    return np.asarray(scipy.signal.butter(2, edges, "bandpass" if on_seat else "lowpass", fs=rate, output="sos"))
 
 
 def find_delay(first: Array, second: Array, most: int) -> tuple[int, float]:
     """Return the delay of the first relative to the second in rows, and their correlation at that delay."""
-    from scipy.signal import correlate
-
-    product = correlate(first, second, mode="full", method="fft")[len(second) - 1 - most : len(second) + most]
+    product = scipy.signal.correlate(first, second, method="fft")[len(second) - 1 - most : len(second) + most]
     size = float(np.linalg.norm(first) * np.linalg.norm(second))
     peak = int(np.argmax(product))
     return peak - most, float(product[peak]) / size if size > 0.0 else 0.0

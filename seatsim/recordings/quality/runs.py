@@ -25,7 +25,6 @@ _BEYOND_CHANCE = 5.0
 """Ratio to the number of rows that channels repeat together by chance from which rows were written twice."""
 _NOISY = 1e-4
 """Noise as a share of the swing above which it is that of a sensor, and not of arithmetic."""
-_NOTHING = np.empty(0)
 _STEP = 16.0
 """A step of the travel over lost rows is so many times as large as what its steps usually differ by."""
 _SLOWEST, _FASTEST = 10.0, 200_000.0
@@ -84,8 +83,7 @@ def find_repeated_rows(channels: Array) -> NDArray[np.intp]:
 
 def _check_stated(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     """Report that nothing states the current, or that no noise is stated of any channel."""
-    recording, nominal = runs[0].recording, runs[0].nominal
-    source = nominal.source
+    recording, source = runs[0].recording, runs[0].nominal.source
     stated = source.data.get("controller") if source else None
     if (
         recording.header.rig == "seat"
@@ -97,13 +95,9 @@ def _check_stated(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
         text = "neither current_command nor coil_current is recorded, and the nominal scenario states no current"
         text += "; 0 A is taken: write controller.current"
         yield issue_in_all_runs("warning", "current", text, "current_command")
-    command = [run.table.get("current_command", _NOTHING) for run in runs]
-    flowing = [run.table.get("coil_current", _NOTHING) for run in runs]
-    if (
-        any(each.size for each in command)
-        and not any(map(np.any, command))
-        and any(each.size and np.ptp(each) > 0.0 for each in flowing)
-    ):
+    command = [run.table["current_command"] for run in runs if "current_command" in run.table]
+    flowing = [run.table["coil_current"] for run in runs if "coil_current" in run.table]
+    if command and not any(map(np.any, command)) and any(np.ptp(each) > 0.0 for each in flowing):
         text = "is 0 throughout while coil_current changes; log the command, or remove the channel"
         yield issue_in_all_runs("warning", "current", text, "current_command")
     channel = next((name for name in MOTION if name in recording.channels), "")

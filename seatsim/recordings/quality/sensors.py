@@ -101,13 +101,18 @@ def check_noise(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
         all_of = measure_unrepeated(repeated)
         text = f"noise_rms is stated as {stated:g}, but about {seen.fourth:.2g} is seen"
         is_too_small = seen.third > _NOISE_OFF * stated and seen.fourth > _WHITE * seen.third
-        if is_too_small and (reason := _not_of_the_sensor(seen, repeated, runs[0].rate)):
+        levels = (measure_level(values, runs[0].rate).fourth for values in repeated)
+        reason = ""
+        if is_too_small and seen.lively > _GROWS * seen.calm:
+            reason = "grows with the motion"
+        elif is_too_small and any(level < _REPEATS * seen.fourth for level in levels):
+            reason = "comes again when the excitation is repeated"
+        if reason:
             yield issue_in_all_runs("note", "noise", f"{text}, which {reason}: it is no noise of the sensor", channel)
-        elif is_too_small:
-            yield issue_in_all_runs("warning", "noise", f"{text}; correct it, all thresholds hang on it", channel)
-        elif all_of < stated / _NOISE_OFF:
-            text = f"noise_rms is stated as {stated:g}, but repeats differ by {all_of:.2g} only"
-            yield issue_in_all_runs("warning", "noise", f"{text}; correct it, all thresholds hang on it", channel)
+        elif is_too_small or all_of < stated / _NOISE_OFF:
+            repeats = f"noise_rms is stated as {stated:g}, but repeats differ by {all_of:.2g} only"
+            said = f"{text if is_too_small else repeats}; correct it, all thresholds hang on it"
+            yield issue_in_all_runs("warning", "noise", said, channel)
         elif seen.fourth < stated / _NOISE_OFF and not all_of >= stated / _NOISE_OFF:
             yield _less_is_seen(runs, channel, seen, stated)
 
@@ -138,15 +143,6 @@ def list_unrepeated(entries: Mapping[str, RunEntry], tables: Mapping[str, Table]
 def measure_unrepeated(unrepeated: Sequence[Array]) -> float:
     """Return the RMS of what does not repeat itself, at all frequencies, NaN without repeats."""
     return min((float(np.std(values)) for values in unrepeated), default=np.nan)
-
-
-def _not_of_the_sensor(seen: Level, repeated: Sequence[Array], rate: float) -> str:
-    """Return why what is seen is not the sensor's noise, an empty string where it may be."""
-    if seen.lively > _GROWS * seen.calm:
-        return "grows with the motion"
-    if any(measure_level(values, rate).fourth < _REPEATS * seen.fourth for values in repeated):
-        return "comes again when the excitation is repeated"
-    return ""
 
 
 def check_floor_sensor(run: RunUnderTest) -> Iterator[Issue]:
