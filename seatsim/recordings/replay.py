@@ -84,10 +84,9 @@ def note_unused_log(scenario: Scenario, recording: Recording) -> list[str]:
     if scenario.control is None or not logged or specification_of(type(scenario.control.law)).replays:
         return []
     law = LAWS.name_of(type(scenario.control.law))
-    return [
-        f"{scenario.name}: its law '{law}' drives the coil, and the recorded {' and '.join(logged)} do not; to drive it"
-        " with what was recorded, state 'controller: {law: replay}' in the scenario"
-    ]
+    seen = f"its law '{law}' drives the coil, and the recorded {' and '.join(logged)} do not"
+    remedy = "to drive it with what was recorded, state 'controller: {law: replay}' in the scenario"
+    return [f"{scenario.name}: {seen}; {remedy}"]
 
 
 def replay_table(scenario: Scenario, recording: Recording, table: Mapping[str, Array]) -> dict[str, Array]:

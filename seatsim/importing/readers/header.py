@@ -317,11 +317,10 @@ def fit_names(path: Path, above: Sequence[str], rows: Rows, dialect: Dialect, is
         return [*fitted[:last], [_ROW, *fitted[last]]]
     if is_stated:
         return [[] for _ in above]
-    raise InputError(
-        f"{path}, line {last + 1}: has {len(fitted[last])} names, {quote(above[last])}, but the rows have"
-        f" {rows.columns} columns, such as {quote(rows.line)}; correct that line (a name that holds the delimiter"
-        " stands in quotation marks), or state csv.header in a map: then columns are called by their number"
-    )
+    seen = f"has {len(fitted[last])} names, {quote(above[last])}, but the rows have {rows.columns} columns"
+    correct = "correct that line (a name that holds the delimiter stands in quotation marks), or state csv.header"
+    remedy = f"{correct} in a map: then columns are called by their number"
+    raise InputError(f"{path}, line {last + 1}: {seen}, such as {quote(rows.line)}; {remedy}")
 
 
 def _names(line: str, cells: Sequence[str], dialect: Dialect) -> bool:

@@ -153,8 +153,7 @@ def _sample(content: bytes) -> list[str]:
 
 def _without_lines(content: bytes, count: int) -> bytes:
     """Return the content below so many lines."""
-    begin = sum(len(line) for line in content[:_SAMPLE].splitlines(keepends=True)[:count])
-    return content[begin:]
+    return content[sum(map(len, content[:_SAMPLE].splitlines(keepends=True)[:count])) :]
 
 
 def _clean(body: bytes, head: _Head) -> tuple[bytes, list[str]]:
@@ -229,10 +228,8 @@ def _check_texts(path: Path, table: pa.Table, signals: Sequence[Signal]) -> None
     for row in np.flatnonzero(empty):
         texts = [text for column in table.columns if isinstance(text := column[int(row)].as_py(), str)]
         if len(texts) >= len(signals):
-            raise InputError(
-                f"{path}: among the numbers stands a row of texts, {quote(', '.join(texts))}; if another table begins"
-                " there, split the file, else remove that line"
-            )
+            seen = f"among the numbers stands a row of texts, {quote(', '.join(texts))}"
+            raise InputError(f"{path}: {seen}; if another table begins there, split the file, else remove that line")
 
 
 def _find(lines: Sequence[str], text: str) -> int:
@@ -338,5 +335,4 @@ def _as_csv(rows: Iterable[Sequence[object]]) -> bytes:
 
 def _read_cells(place: Path, content: bytes, layout: TextLayout) -> DataFile:
     """Return the columns of a table that was written with commas and decimal points, as `read` does."""
-    head = _read_head(place, _sample(content), Dialect(",", "."), layout.header)
-    return _read_table(place, content, head)
+    return _read_table(place, content, _read_head(place, _sample(content), Dialect(",", "."), layout.header))
