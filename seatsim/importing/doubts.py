@@ -172,9 +172,9 @@ def doubt_pairs(
                 yield Issue("note", "late", f"{late}: {text}", late)
     # No data tell the sign and the size of commanded forces and motions of which nothing was measured.
     measured = {quantities.get(name) for name in channels if name not in commands}
-    for name in commands:
+    for name in channels:
         quantity = quantities.get(name)
-        if name in channels and quantity in ("force", "velocity", "displacement") and quantity not in measured:
+        if name in commands and quantity in ("force", "velocity", "displacement") and quantity not in measured:
             text = f"is a command by its name, and no {quantity} was measured: nothing here shows its sign or scale"
             yield Issue("note", "command", f"{name}: {text}", name)
     if rate:
@@ -185,14 +185,17 @@ def doubt_pairs(
 
 def _derived(displacements: Table, velocities: Table, rate: float) -> Iterator[Issue]:
     """Yield velocities that were computed from a displacement: they are no measurement of their own."""
-    for (velocity, speed), (name, travel) in product(velocities.items(), displacements.items()):
-        gain, alike = relations.regress(np.gradient(travel, 1.0 / rate), speed, rate)
-        if alike > 0.98 and abs(gain - 1.0) < 0.1:
-            text = f"is the derivative of {name} (gain {gain:.3f}); computed from it, no sensor of its own"
-            yield Issue("note", "derived", f"{velocity}: {text}", velocity)
-        elif alike > 0.98 and (said := relations.read_gain(gain, "m/s")):
-            text = f"{velocity}: is {gain:.4g} times the derivative of {name}: {said}"
-            yield Issue("warning", relations.kind_of(gain), text, velocity)
+    for velocity, speed in velocities.items():
+        for name, travel in displacements.items():
+            gain, alike = relations.regress(np.gradient(travel, 1.0 / rate), speed, rate)
+            if alike > 0.98 and abs(gain - 1.0) < 0.1:
+                text = f"is the derivative of {name} (gain {gain:.3f}); computed from it, no sensor of its own"
+                yield Issue("note", "derived", f"{velocity}: {text}", velocity)
+                break
+            if alike > 0.98 and (said := relations.read_gain(gain, "m/s")):
+                text = f"{velocity}: is {gain:.4g} times the derivative of {name}: {said}"
+                yield Issue("warning", relations.kind_of(gain), text, velocity)
+                break
 
 
 def _relaxed(displacements: Table, forces: Table, rate: float) -> Iterator[Issue]:
