@@ -6,7 +6,7 @@ standard error of the offsets that parts of the record show by themselves, and a
 
 from collections.abc import Mapping
 from itertools import combinations
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -146,15 +146,16 @@ def resample(values: Array, start: float, rate: float, times: Array, new_rate: f
     """
     rows = (times - start) * rate
     near = np.round(rows)
-    if rate <= new_rate * (1.0 + 1e-9) and np.max(np.abs(rows - near), initial=0.0) < _SAME * max(
-        1.0, len(values) * 1e-3
-    ):
+    off = np.max(np.abs(rows - near), initial=0.0)
+    if rate <= new_rate * (1.0 + 1e-9) and off < _SAME * max(1.0, len(values) * 1e-3):
         return np.asarray(values[np.clip(near.astype(int), 0, len(values) - 1)])
     if np.ptp(values) == 0.0:
         return np.full(len(times), values[0])
     band = _ROLL * min(1.0, new_rate / rate) if new_rate < rate else 1.0
     reach = int(np.ceil(_HALF / band))
-    padded = _extended(values, reach)
+    # Mirrored through the end value, or continued as it where there are too few values.
+    mirrored: dict[str, Any] = {"mode": "reflect", "reflect_type": "odd"}
+    padded = np.pad(values, reach, **(mirrored if len(values) > reach + 1 else {"mode": "edge"}))
     clipped = np.clip(rows, 0.0, len(values) - 1.0)
     parts = [_interpolate(padded, clipped[at : at + _CHUNK], reach, band) for at in range(0, len(clipped), _CHUNK)]
     return np.concatenate(parts)
@@ -164,13 +165,6 @@ def hold(values: Array, start: float, rate: float, times: Array) -> Array:
     """Return at other times, shape (M,), the value of the last row before each; the first and last one outside."""
     rows = np.floor((times - start) * rate + _SAME * len(values))
     return np.asarray(values[np.clip(rows.astype(int), 0, len(values) - 1)])
-
-
-def _extended(values: Array, reach: int) -> Array:
-    """Return values continued at both ends, mirrored through the end value, or as the end value where too short."""
-    if len(values) <= reach + 1:
-        return np.pad(values, reach, mode="edge")
-    return np.concatenate([2 * values[0] - values[reach:0:-1], values, 2 * values[-1] - values[-2 : -reach - 2 : -1]])
 
 
 def _interpolate(padded: Array, rows: Array, reach: int, band: float) -> Array:

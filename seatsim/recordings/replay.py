@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from seatsim.excitations.recording import interpolate_floor
-from seatsim.recordings.recording import Recording
+from seatsim.recordings.recording import CURRENTS, Recording
 from seatsim.rig.control import LAWS
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
@@ -48,17 +48,9 @@ def recorded_inputs(recording: Recording, table: Mapping[str, Array], largest_st
     """
     interval = 1.0 / recording.header.sample_rate
     if recording.header.rig == "damper_bench":
-        return BenchInputs(
-            interval,
-            table["displacement"],
-            recording.channels["displacement"].noise_rms,
-            table.get("velocity"),
-            table.get("current_command"),
-            table.get("command_voltage"),
-            recording.voltage_gain,
-            table.get("coil_current"),
-            table.get("damper_temperature"),
-        )
+        noise, gain = recording.channels["displacement"].noise_rms, recording.voltage_gain
+        others = {name: table.get(name) for name in ("velocity", *CURRENTS, "damper_temperature")}
+        return BenchInputs(interval, table["displacement"], noise, voltage_gain=gain, **others)
     steps = max(1, math.ceil(interval / largest_step - _SAME_STEP))
     return SeatInputs(interpolate_floor(table, steps, interval / steps), interval)
 

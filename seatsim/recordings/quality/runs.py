@@ -163,18 +163,16 @@ def _duplicates(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
 
 
 def _repeats(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
+    """Report repeats whose excitation is another one, up to a shift of a second."""
     named = {run.name: run for run in runs}
     for run in runs:
-        other = run.recording.runs[run.name].repeat_of
-        if other is not None and other in named and not _is_repeat(run, named[other]):
-            yield run.issue("error", "repeat", f"is no repeat of {other}, their excitations differ; remove repeat_of")
-
-
-def _is_repeat(run: RunUnderTest, other: RunUnderTest) -> bool:
-    """Say whether two runs have the same excitation, up to a shift of a second."""
-    first, second = (filter_band(r, r.table[r.driver]) for r in (run, other))
-    rows = min(len(first), len(second))
-    return find_delay(first[:rows], second[:rows], round(run.rate))[1] > 0.8
+        other = named.get(run.recording.runs[run.name].repeat_of or "")
+        if other is not None:
+            first, second = (filter_band(each, each.table[each.driver]) for each in (run, other))
+            rows = min(len(first), len(second))
+            if find_delay(first[:rows], second[:rows], round(run.rate))[1] <= 0.8:
+                text = f"is no repeat of {other.name}, their excitations differ; remove repeat_of"
+                yield run.issue("error", "repeat", text)
 
 
 def _at_rest(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
