@@ -127,12 +127,6 @@ def find_body(kinds: Sequence[Sequence[Kind]]) -> tuple[int, int]:
     return best
 
 
-def check_header(header: int, lines: int, place: str) -> None:
-    """Raise InputError where no row is left below so many lines above the first row of numbers."""
-    if header >= lines:
-        raise InputError(f"{place}: has {lines} lines; csv.header {header} counts those above the first row of numbers")
-
-
 def find_first_row(rows: Sequence[Sequence[Kind]], place: str) -> int:
     """Return the first row of the table; `rows` say of each cell what it holds.
 

@@ -128,11 +128,6 @@ class Cells(NamedTuple):
     parted: str = ""
 
     @property
-    def holds_numbers(self) -> bool:
-        """Say whether there is any."""
-        return not np.isnan(self.values).all()
-
-    @property
     def is_date(self) -> bool:
         """Say whether these are dates without a time of day."""
         return self.unit == "s" and not (self.values[np.isfinite(self.values)] % _DAY).any()

@@ -22,7 +22,6 @@ from seatsim.importing.readers.header import (
     MISSING,
     Dialect,
     Rows,
-    check_header,
     count_columns,
     find_first_row,
     fit_names,
@@ -128,8 +127,10 @@ def _read_head(path: Path, lines: Sequence[str], dialect: Dialect, header: int |
         first = find_first_row(kinds, str(path))
         first += first == 0 and len(rows) > 1 and count_columns(rows[0])
     else:
-        first = sum(index < header for index in used)
-        check_header(header, used[-1] + 1, str(path))
+        first, count = sum(index < header for index in used), used[-1] + 1
+        if header >= count:
+            said = f"csv.header {header} counts those above the first row of numbers"
+            raise InputError(f"{path}: has {count} lines; {said}")
     above = used[first] if header is None else header
     table = Rows(lines[used[first]], rows[first:], kinds[first:])
     names = fit_names(path, lines[:above], table, dialect, header is not None)
@@ -160,7 +161,8 @@ def _clean(body: bytes, head: _Head) -> tuple[bytes, list[str]]:
     """Return rows as pyarrow reads them, without remarks and names among them, and sentences on those."""
     for sign in ("\u2212", "\u2013"):
         body = body.replace(sign.encode(), b"-")
-    names = {line.strip().encode() for line in head.above if line.strip()} if _repeats(body, head.above) else set()
+    above = [line.strip().encode() for line in head.above if line.strip()]
+    names = {*above} if above and above[-1] in body else set[bytes]()
     marks = tuple(mark for mark in (b"#", b"%", b"//") if body.startswith(mark) or b"\n" + mark in body)
     is_parted_by_blanks = head.dialect.delimiter == " "
     if not (names or marks or is_parted_by_blanks):
@@ -196,11 +198,6 @@ def _is_row(line: bytes, dialect: Dialect) -> bool:
 def _cells_of_blanks(line: bytes) -> list[bytes]:
     cells = BLANKS.findall(line.decode(errors="replace"))
     return [(cell if cell.startswith('"') else "".join(cell.split())).encode() for cell in cells]
-
-
-def _repeats(body: bytes, above: Sequence[str]) -> bool:
-    last = next((line for line in reversed(above) if line.strip()), None)
-    return last is not None and last.strip().encode() in body
 
 
 def _check_rows(path: Path, content: bytes, bad: Sequence[tuple[str, int]], head: _Head, notes: list[str]) -> None:
@@ -242,7 +239,7 @@ def _signals(table: pa.Table, head: _Head, notes: list[str]) -> list[Signal]:
     signals, left_out, days = [], [], None
     for (name, unit), column in zip(head.columns, table.columns, strict=True):
         found = read_column(column, head.dialect.decimal)
-        if found is None or not found.holds_numbers:
+        if found is None or np.isnan(found.values).all():
             left_out += [] if re.fullmatch(r"column \d+", name) else [name]
         elif found.is_date:
             days = found.values
