@@ -12,6 +12,7 @@ import threading
 import webbrowser
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 from threading import Lock, get_ident
 from typing import TYPE_CHECKING
@@ -63,32 +64,26 @@ class Guard:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request or refuse it."""
-        if scope["type"] == "lifespan":
-            await self._app(scope, receive, send)
-            return
-        refused = self._refuse(scope, Headers(scope=scope))
-        if refused is not None:
-            await refused(scope, receive, send)
-        elif self._has_token(QueryParams(scope["query_string"]).get("token")):
-            # The token leaves the address, which stays in the browser's history.
-            answer = RedirectResponse("/", status_code=303)
-            answer.set_cookie(self._cookie, self._token, httponly=True, samesite="strict")
-            await answer(scope, receive, send)
-        elif self._has_token(HTTPConnection(scope).cookies.get(self._cookie)):
-            await self._app(scope, receive, send)
-        else:
-            text = "Open the address that seatsim explore printed: it holds the token of this page.\n"
-            await PlainTextResponse(text, status_code=403)(scope, receive, send)
+        await (self._app if scope["type"] == "lifespan" else self._choose(scope))(scope, receive, send)
 
-    def _refuse(self, scope: Scope, headers: Headers) -> PlainTextResponse | None:
+    def _choose(self, scope: Scope) -> ASGIApp:
+        """Return the page for a request that may pass, or else an answer that refuses it or takes its token."""
+        headers = Headers(scope=scope)
         if scope["type"] != "http" or headers.get("host") not in self._hosts:
             return PlainTextResponse("This page is served to this machine alone.\n", status_code=403)
-        origin = headers.get("origin")
-        if origin is not None and origin not in {f"http://{host}" for host in self._hosts}:
+        if headers.get("origin", f"http://{headers['host']}") not in {f"http://{host}" for host in self._hosts}:
             return PlainTextResponse("Requests of other pages are refused.\n", status_code=403)
         if int(headers.get("content-length") or 0) > _LARGEST_BODY or "transfer-encoding" in headers:
             return PlainTextResponse("The request is too large.\n", status_code=413)
-        return None
+        if self._has_token(QueryParams(scope["query_string"]).get("token")):
+            # The token leaves the address, which stays in the browser's history.
+            answer = RedirectResponse("/", status_code=303)
+            answer.set_cookie(self._cookie, self._token, httponly=True, samesite="strict")
+            return answer
+        if self._has_token(HTTPConnection(scope).cookies.get(self._cookie)):
+            return self._app
+        text = "Open the address that seatsim explore printed: it holds the token of this page.\n"
+        return PlainTextResponse(text, status_code=403)
 
     def _has_token(self, given: str | None) -> bool:
         return hmac.compare_digest((given or "").encode(), self._token.encode())
@@ -108,9 +103,9 @@ def make_app(target: Future[ScenarioView | RecordingView], folder: Path, token: 
     Until its target is loaded, the page says so; every other request waits.
     """
     page = _Page(target, folder)
-    posted = {"/view": page.compute, "/save": page.save, "/stop": page.stop}
-    routes = [Route("/", page.show, methods=["GET"])]
-    routes += [Route(path, answer, methods=["POST"]) for path, answer in posted.items()]
+    routes = [Route("/", page.show, methods=["GET"]), Route("/stop", page.stop, methods=["POST"])]
+    for path, compute in (("/view", page.view), ("/save", page.save)):
+        routes.append(Route(path, partial(page.answer, compute), methods=["POST"]))
     return Guard(Starlette(routes=routes), token, port)
 
 
@@ -144,14 +139,6 @@ class _Page:
         text = self._page.render(target=self._target.result(), view=view, **self._given)
         return HTMLResponse(text, headers=self._headers)
 
-    async def compute(self, request: Request) -> Response:
-        """Return what is shown of some values."""
-        return await self._answer(request, self._show)
-
-    async def save(self, request: Request) -> Response:
-        """Write a scenario of some values into the folder."""
-        return await self._answer(request, self._save)
-
     async def stop(self, _request: Request) -> Response:
         """End what is being computed, after the step of compiled code that it is in, once."""
         thread, self._thread = self._thread, None
@@ -159,7 +146,7 @@ class _Page:
             ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), ctypes.py_object(Stopped))
         return JSONResponse({}, headers=self._headers)
 
-    async def _answer(self, request: Request, compute: Callable[[Mapping[str, object]], object]) -> Response:
+    async def answer(self, compute: Callable[[Mapping[str, object]], object], request: Request) -> Response:
         """Return what follows from the values of a request, or what is wrong with them."""
         try:
             found = await run_in_threadpool(compute, await _read_values(request))
@@ -167,7 +154,8 @@ class _Page:
             return JSONResponse({"error": str(error)}, status_code=422, headers=self._headers)
         return JSONResponse(found, headers=self._headers)
 
-    def _show(self, values: Mapping[str, object]) -> object:
+    def view(self, values: Mapping[str, object]) -> object:
+        """Return what is shown of some values."""
         view = self._compute(values)
         parts = {name: str(getattr(self._parts.module, name)(view)) for name in ("tables", "gains")}
         return {"answer": view.answer, "signals": view.signals.data, "fitted": view.fitted, **parts}
@@ -182,7 +170,8 @@ class _Page:
             finally:
                 self._thread = None
 
-    def _save(self, values: Mapping[str, object]) -> object:
+    def save(self, values: Mapping[str, object]) -> object:
+        """Write a scenario of some values into the folder; return its name."""
         # Loading these takes longer than everything that the first page needs.
         from seatsim.scenario.loading import single
 
@@ -302,11 +291,7 @@ def serve(path: Path, folder: Path, port: int, browser: bool, say: Callable[[str
     app = make_app(target, folder.resolve(), token, taken)
     settings = uvicorn.Config(app, http=Impatient, log_level="warning", access_log=False, server_header=False)
     server = uvicorn.Server(settings)
-
-    def end_where_failed(loaded: Future[ScenarioView | RecordingView]) -> None:
-        server.should_exit = loaded.exception() is not None
-
-    target.add_done_callback(end_where_failed)
+    target.add_done_callback(lambda loaded: setattr(server, "should_exit", loaded.exception() is not None))
     say(address)
     if browser:
         threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()

@@ -13,7 +13,6 @@ from seatsim.diagnosis.objective import Parameters
 from seatsim.diagnosis.trial import Trial, name_candidate
 from seatsim.metrics.motion import rms
 from seatsim.page.scenario_view import Choice, Slider, Switch, View, make_slider, read_number
-from seatsim.report.blocks import Table
 from seatsim.report.formatting import describe_effect, format_noise, format_sentence, say_noise, show_table
 from seatsim.report.packing import MEASURED, QUICK, pack_traces
 from seatsim.schema.arrays import Array
@@ -55,10 +54,13 @@ class RecordingView:
             parameters = self.trial.fit(parameters)
             fitted = self._read_sliders(parameters)
         after = self.trial.simulate(parameters) if parameters.terms else self.trial.nominal
-        gaps = self.trial.measure(after)
+        gaps, rows = self.trial.measure(after), []
+        for channel, old, new, noise in zip(self.problem.channels, self.before, gaps, self.floor, strict=True):
+            first, second, shrink = map(format_percent, (old, new, 1 - new / old))
+            rows.append([channel.replace("_", " "), first, second, format_noise(noise), shrink])
         lines = {"measured": ("measured", MEASURED), "nominal": ("nominal", 1), "after": ("with effects", 0)}
         signals = pack_traces(self.trial.list_traces(after), lines, QUICK)
-        return View(self._say(len(parameters.terms), gaps), [*self._tabulate(gaps)], signals, fitted=fitted)
+        return View(self._say(len(parameters.terms), gaps), [*show_table("trial", rows)], signals, fitted=fitted)
 
     def choose(self, request: Mapping[str, object]) -> Parameters:
         """Return the effects of a request with their values."""
@@ -66,11 +68,11 @@ class RecordingView:
         if not isinstance(wanted, dict):
             raise InputError("effects: a mapping of effects to the values of their parameters")
         found = Parameters(self.problem.nominal)
-        switches = {switch.name: switch for switch in self.switches}
+        sliders = {switch.name: switch.sliders for switch in self.switches}
         for name, values in wanted.items():
-            if name not in switches or not isinstance(values, dict):
+            if name not in sliders or not isinstance(values, dict):
                 raise InputError(f"{name!r} is no effect that this recording can show")
-            numbers = [read_number(values, slider) for slider in switches[name].sliders]
+            numbers = [read_number(values, slider) for slider in sliders[name]]
             found = found.add(self.trial.candidates[name], np.array(numbers))
         return found
 
@@ -80,10 +82,9 @@ class RecordingView:
 
     def _read_sliders(self, parameters: Parameters) -> dict[str, dict[str, float]]:
         """Return where the sliders of the effects stand at these parameters."""
-        switches = {switch.name: switch.sliders for switch in self.switches}
-        found: dict[str, dict[str, float]] = {}
+        sliders, found = {switch.name: switch.sliders for switch in self.switches}, {}
         for name, values in zip(map(name_candidate, parameters.terms), parameters.values, strict=True):
-            moved = zip(switches[name], values, strict=True)
+            moved = zip(sliders[name], values, strict=True)
             found[name] = {own.name: float(np.clip(own.factor * value, own.low, own.high)) for own, value in moved}
         return found
 
@@ -91,18 +92,8 @@ class RecordingView:
         before, now, floor = map(rms, (self.before, gaps, self.floor))
         if not effects:
             return f"The nominal simulation is off by {format_percent(before)}; {say_noise(floor)}."
-        change = "shrinks" if now < before else "grows"
-        return (
-            f"With {effects} effect{'s' * (effects > 1)} the gap {change} from {format_percent(before)} to"
-            f" {format_percent(now)}; {say_noise(floor)}."
-        )
-
-    def _tabulate(self, gaps: Array) -> list[Table]:
-        rows = []
-        for channel, old, new, noise in zip(self.problem.channels, self.before, gaps, self.floor, strict=True):
-            first, second, shrink = map(format_percent, (old, new, 1 - new / old))
-            rows.append([channel.replace("_", " "), first, second, format_noise(noise), shrink])
-        return show_table("trial", rows)
+        change = f"{'shrinks' if now < before else 'grows'} from {format_percent(before)} to {format_percent(now)}"
+        return f"With {effects} effect{'s' * (effects > 1)} the gap {change}; {say_noise(floor)}."
 
 
 def _make_switch(name: str, candidate: Candidate) -> Switch:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from seatsim.metrics.table import SHORT
 from seatsim.plots.runs.looks import Shown
-from seatsim.plots.runs.spectra import plot_psd, plot_transmissibility
+from seatsim.plots.runs.signals import plot_psd, plot_transmissibility
 from seatsim.plots.style import make_entries
 from seatsim.report.blocks import Block, Signals, Table, show_pictures
 from seatsim.report.formatting import format_quantity
@@ -127,24 +127,20 @@ class ScenarioView:
         Raises:
             InputError: the file is wrong, or holds a damper bench, which has neither driver nor road.
         """
-        self.path = path
-        scenarios = load(path)
+        self.path, scenarios = path, load(path)
         first = scenarios[0]
         if first.plant is None:
             raise InputError(f"{path}: is a damper bench; seatsim characterise shows it")
-        self.name = first.name
-        titles = [str(scenario.title) for scenario in scenarios]
+        self.name, mass = first.name, first.plant.driver_mass
         roads = [(OWN, "as in the file"), *((road, f"ISO 8608 class {road}, {SPEED:g} m/s") for road in _ROADS)]
         laws = [(OWN, "as in the file"), ("off", "no current"), *((law, law.replace("_", " ")) for law in LAWS)]
-        temperature = first.temperature if isinstance(first.temperature, int | float) else 20.0
-        mass = first.plant.driver_mass
         self.sliders = [Slider("mass", "Driver mass", "kg", min(30.0, mass), max(150.0, mass), mass)]
         if any(any(scenario.damper.factors[:3]) for scenario in scenarios):
-            self.sliders.append(Slider("temperature", "Damper temperature", "°C", -20.0, 100.0, float(temperature)))
-        self.choices = [Choice("road", "Road", roads), Choice("law", "Controller", laws)]
-        if len(titles) > 1:
-            numbered = [(str(k), title) for k, title in enumerate(titles)]
-            self.choices.insert(0, Choice("run", "Run of the file", numbered))
+            start = float(first.temperature) if isinstance(first.temperature, int | float) else 20.0
+            self.sliders.append(Slider("temperature", "Damper temperature", "°C", -20.0, 100.0, start))
+        numbered = [(str(k), str(scenario.title)) for k, scenario in enumerate(scenarios)]
+        self.choices = [Choice("run", "Run of the file", numbered)] if len(numbered) > 1 else []
+        self.choices += [Choice("road", "Road", roads), Choice("law", "Controller", laws)]
 
     def show(self, request: Mapping[str, object]) -> View:
         """Return the run of a request.
@@ -154,36 +150,37 @@ class ScenarioView:
             RunError: the run cannot be carried to its end.
         """
         base = self.choose({**request, "gains": {}})
-        gains = list_gains(base)
         run, own = run_one(self.choose(request) if request.get("gains") else base), self._own
         shown = Shown("", run.scenario.name, [own, run], make_entries(["as in the file", "as set"]), "")
         figures = {"transmissibility": plot_transmissibility(shown), "psd": plot_psd(shown)}
-        blocks = [_compare(own, run), *show_pictures(figures, "transmissibility", "psd")]
-        return View(describe_run(run), blocks, show_signals([shown], QUICK), gains)
+        rows = [
+            [words, *(format_quantity(each.metrics[name].value, each.metrics[name].unit) for each in (own, run))]
+            for name, words in SHORT.items()
+            if name in own.metrics and name in run.metrics
+        ]
+        table = Table("First run of the file, and the run as set", ["figure", "as in the file", "as set"], rows)
+        blocks = [table, *show_pictures(figures, "transmissibility", "psd")]
+        return View(describe_run(run), blocks, show_signals([shown], QUICK), list_gains(base))
 
     def choose(self, request: Mapping[str, object]) -> Scenario:
         """Return the scenario that a request describes."""
         chosen = {choice.name: read_choice(request, choice) for choice in self.choices}
-        numbers = {slider.name: read_number(request, slider) for slider in self.sliders}
-        index = int(chosen.get("run", "0"))
-        base = load(self.path)[index]
-        settings: dict[str, object] = {}
-        for slider, key in zip(self.sliders, ("plant.driver_mass", "temperature"), strict=False):
-            if numbers[slider.name] != slider.value:
-                settings[key] = numbers[slider.name]
-        if chosen["road"] != OWN:
-            road = {"kind": "road", "road_class": chosen["road"], "speed": SPEED, "duration": DURATION}
-            settings["excitation"] = road
-        if chosen["law"] != OWN:
-            settings["controller"] = self._state_law(base, chosen["law"])
-        label = dict(base.label) | ({"variant": chosen["law"].replace("_", " ")} if chosen["law"] != OWN else {})
-        found = self._reload(base, settings, label) if settings else base
+        base, road, law = load(self.path)[int(chosen.get("run", "0"))], chosen["road"], chosen["law"]
+        numbers = [(slider, read_number(request, slider)) for slider in self.sliders]
+        keys, label = {"mass": "plant.driver_mass", "temperature": "temperature"}, dict(base.label)
+        settings: dict[str, object] = {keys[own.name]: value for own, value in numbers if value != own.value}
+        if road != OWN:
+            settings["excitation"] = {"kind": "road", "road_class": road, "speed": SPEED, "duration": DURATION}
+        if law != OWN:
+            settings["controller"] = _state_law(base, law)
+            label["variant"] = law.replace("_", " ")
+        found = _reload(base, settings, label) if settings else base
         if not (gains := request.get("gains")):
             return found
         if not isinstance(gains, dict):
             raise InputError("gains: a mapping of numbers of the law to their values")
         moved = {f"controller.{slider.name}": read_number(gains, slider) for slider in list_gains(found)}
-        return self._reload(base, settings | moved, label)
+        return _reload(base, settings | moved, label)
 
     def encode(self, request: Mapping[str, object]) -> dict[str, object]:
         """Return the scenario of a request as the content of a file."""
@@ -193,25 +190,28 @@ class ScenarioView:
         assert isinstance(content, dict)
         return content
 
-    def _state_law(self, base: Scenario, law: str) -> dict[str, object]:
-        """Return the section of a law, with what the scenario states of sensors and sampling."""
-        stated = base.source.data.get("controller", {}) if base.source is not None else {}
-        shared = ("sample_time", "sensors", "inverse")
-        kept = {key: stated[key] for key in shared if isinstance(stated, dict) and key in stated}
-        return {"law": "constant", "current": 0.0} if law == "off" else {"law": law, **kept}
-
-    def _reload(self, base: Scenario, settings: Mapping[str, object], label: Mapping[str, object]) -> Scenario:
-        """Return a run of the file with some values replaced, whatever its variant states."""
-        assert base.source is not None
-        source = base.source.with_changes()
-        for key, value in settings.items():
-            source.put(key, value, f"the page, {key}")
-        return read_scenario(source, label)
-
     @cached_property
     def _own(self) -> Run:
         """The first run as the file has it."""
         return run_one(load(self.path)[0])
+
+
+def _state_law(base: Scenario, law: str) -> dict[str, object]:
+    """Return the section of a law, with what the scenario states of sensors and sampling."""
+    assert base.source is not None
+    stated = base.source.data.get("controller", {})
+    shared = ("sample_time", "sensors", "inverse")
+    kept = {key: stated[key] for key in shared if isinstance(stated, dict) and key in stated}
+    return {"law": "constant", "current": 0.0} if law == "off" else {"law": law, **kept}
+
+
+def _reload(base: Scenario, settings: Mapping[str, object], label: Mapping[str, object]) -> Scenario:
+    """Return a run of the file with some values replaced, whatever its variant states."""
+    assert base.source is not None
+    source = base.source.with_changes()
+    for key, value in settings.items():
+        source.put(key, value, f"the page, {key}")
+    return read_scenario(source, label)
 
 
 def list_gains(scenario: Scenario) -> list[Slider]:
@@ -225,12 +225,3 @@ def list_gains(scenario: Scenario) -> list[Slider]:
             low, high = bounds(type(record), field.name)
             found.append(make_slider(field, low if value < 0 else max(low, 0.0), high, float(value), REACH))
     return found
-
-
-def _compare(own: Run, run: Run) -> Table:
-    rows = [
-        [words, *(format_quantity(each.metrics[name].value, each.metrics[name].unit) for each in (own, run))]
-        for name, words in SHORT.items()
-        if name in own.metrics and name in run.metrics
-    ]
-    return Table("First run of the file, and the run as set", ["figure", "as in the file", "as set"], rows)

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from seatsim.diagnosis.result import Diagnosis
 from seatsim.identification.identify import Identification
 from seatsim.plots.bench.identification import plot_predictions
-from seatsim.plots.diagnosis.draw import plot_all_of_gap, plot_diagnosis
+from seatsim.plots.diagnosis import plot_all_of_gap, plot_diagnosis
 from seatsim.plots.runs.draw import plot_result
 from seatsim.recordings.gap import Gap
 from seatsim.schema.errors import InputError, nearest

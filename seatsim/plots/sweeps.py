@@ -14,18 +14,7 @@ from numpy.typing import NDArray
 from seatsim.metrics.table import COMFORT, METRICS, TRAVEL
 from seatsim.plots import style
 from seatsim.plots.labels import clean_text, describe_metric
-from seatsim.plots.style import (
-    COLOURS,
-    DARK,
-    ROW,
-    Entry,
-    Grid,
-    draw_bars,
-    make_page,
-    make_rows,
-    measure_names,
-    name_rows,
-)
+from seatsim.plots.style import COLOURS, DARK, ROW, Entry, Grid
 from seatsim.scenario.scenario import is_condition
 from seatsim.schema.arrays import Array
 from seatsim.schema.printing import Quantity, describe_channel, format_number, format_percent, format_unit
@@ -68,17 +57,15 @@ def plot_shares(found: Sequence[Sensitivity], words: str) -> Figure:
         f"Figures: the parameter alone / with its interactions.{cut} What is fitted to the runs explains"
         f" {format_percent(found[0].explained)} of the variance; the rest is in no bar."
     )
-    legend = (
-        Entry("the parameter alone", COLOURS[0], width=8),
-        Entry("with its interactions, 95 % interval", "black", width=1.6),
-    )
-    names = [row.key for row in rows]
+    alone = Entry("the parameter alone", COLOURS[0], width=8)
+    legend = (alone, Entry("with its interactions, 95 % interval", "black", width=1.6))
     texts = [f"{format_percent(row.first)} / {format_percent(row.total)}" for row in rows]
     grid = Grid((), right=0.25 + style.LETTER * max(map(len, (*texts, _BESIDE))))
-    figure, [axes] = make_rows(f"What determines the {words}", note, names, legend, [0], grid)
-    draw_bars(axes, [100 * _clip(row.first) for row in rows], [COLOURS[0]] * len(rows), [""] * len(rows))
+    title, names = f"What determines the {words}", [row.key for row in rows]
+    figure, [axes] = style.make_rows(title, note, names, legend, [0], grid)
+    style.draw_bars(axes, [_clip(row.first) for row in rows], [COLOURS[0]] * len(rows), [""] * len(rows))
     for k, (row, text) in enumerate(zip(rows, texts, strict=True)):
-        ends = [100 * _clip(end) for end in (row.total_low, row.total_high)]
+        ends = [_clip(row.total_low), _clip(row.total_high)]
         axes.plot(ends, [k, k], color="black", linewidth=1.6, zorder=3)
         axes.annotate(text, (1.02, k), xycoords=("axes fraction", "data"), va="center", fontsize=style.FONT)
     axes.annotate(_BESIDE, (1.02, 1.0), xycoords="axes fraction", va="bottom", fontsize=style.FONT, color=DARK)
@@ -90,17 +77,14 @@ def plot_tornado(found: Sequence[Sensitivity], rows: SweepRows) -> Figure:
     """Return from where to where the mean of a metric goes between a low and a high value of each key."""
     shown, strongest = describe_column(found[0].metric, rows.units), found[:_MOST_KEYS]
     note = "Where a parameter is a text: at the values with the smallest and with the largest mean."
-    legend = [
-        Entry(f"mean at its {share} % quantile", COLOURS[0], "none", mark="o", hollow=share == 5) for share in (5, 95)
-    ]
-    names = []
-    for row in strongest:
-        unit = format_unit(rows.units.get(row.key, "")).removesuffix("-")
-        names.append(f"{row.key}: {format_level(row.low)} to {format_level(row.high)} {unit}".strip())
+    high = Entry("mean at its 95 % quantile", COLOURS[0], "none", mark="o")
+    legend = [high._replace(label="mean at its 5 % quantile", hollow=True), high]
     grid = Grid((2 * ROW * len(strongest) + 0.1,), left=0.3, right=0.3)
-    figure, [[axes]] = make_page(f"How far each parameter moves the mean {shown.words}", note, grid, legend)
-    name_rows(axes, [""] * len(strongest))
-    for k, (row, name) in enumerate(zip(strongest, names, strict=True)):
+    figure, [[axes]] = style.make_page(f"How far each parameter moves the mean {shown.words}", note, grid, legend)
+    style.name_rows(axes, [""] * len(strongest))
+    for k, row in enumerate(strongest):
+        unit = format_unit(rows.units.get(row.key, "")).removesuffix("-")
+        name = f"{row.key}: {format_level(row.low)} to {format_level(row.high)} {unit}".strip()
         ends = [shown.factor * row.at_low, shown.factor * row.at_high]
         axes.plot(ends, [k, k], color=COLOURS[0], linewidth=4, solid_capstyle="butt", zorder=2)
         for end, face in zip(ends, ("1.0", COLOURS[0]), strict=True):
@@ -128,8 +112,8 @@ def plot_comfort(rows: SweepRows, order: Sequence[str]) -> Figure | None:
     if road is not None:
         parts = [(f"{road.removeprefix(ROAD)} {format_level(value)}", part) for value, part in shown.groupby(road)]
     values = [] if colour is None else sorted(shown[colour].unique())
-    looks = [Entry(format_level(value), COLOURS[k], "none", mark="o") for k, value in enumerate(values)]
-    looks = looks or [Entry("a run", COLOURS[0], "none", mark="o")]
+    names = [*map(format_level, values)] or ["a run"]
+    looks = [Entry(name, COLOURS[k], "none", mark="o") for k, name in enumerate(names)]
     most = _MOST_POINTS // len(parts)
     drawn = sum(min(most, len(part)) for _, part in parts)
     some = f" {drawn} of {len(shown)} runs are drawn." if drawn < len(shown) else ""
@@ -139,13 +123,13 @@ def plot_comfort(rows: SweepRows, order: Sequence[str]) -> Figure | None:
     note = f"Lower left is better.{style.OWN_SCALES * (len(parts) > 1)}{said}{some}"
     # Runs under different conditions, as with drivers of another mass, are no rivals.
     has_front = not any(is_condition(key) for key in order if key != road)
-    page = make_page("Comfort against travel", note, grid, [*looks, *[_FRONT] * has_front])
+    page = style.make_page("Comfort against travel", note, grid, [*looks, *[_FRONT] * has_front])
     for axes, (title, part) in zip(page.list_panels(len(parts)), parts, strict=True):
         dots = part.sample(most, random_state=0) if len(part) > most else part
-        for k, group in enumerate([dots] if colour is None else [dots[dots[colour] == value] for value in values]):
-            axes.scatter(
-                1e3 * group[TRAVEL], group[COMFORT], s=14, linewidths=0, alpha=0.7, color=COLOURS[k], rasterized=True
-            )
+        groups = [dots] if colour is None else [dots[dots[colour] == value] for value in values]
+        for group, look in zip(groups, looks, strict=False):
+            x, y = 1e3 * group[TRAVEL], group[COMFORT]
+            axes.scatter(x, y, s=14, linewidths=0, alpha=0.7, color=look.colour, rasterized=True)
         travel, comfort = (part[name].to_numpy(float) for name in (TRAVEL, COMFORT))
         if has_front:
             front = find_front(travel, comfort)
@@ -160,9 +144,7 @@ def find_front(travel: Array, comfort: Array) -> NDArray[np.intp]:
     """Return the indices of the runs that no other is better than in both, by rising travel."""
     order = np.lexsort((comfort, travel))
     best = np.minimum.accumulate(comfort[order])
-    keep = np.concatenate([[True], comfort[order][1:] < best[:-1]])
-    front: NDArray[np.intp] = order[keep]
-    return front
+    return np.asarray(order[np.concatenate([[True], comfort[order][1:] < best[:-1]])], np.intp)
 
 
 def plot_means(rows: SweepRows, order: Sequence[str], metric: str) -> Figure | None:
@@ -180,16 +162,16 @@ def plot_means(rows: SweepRows, order: Sequence[str], metric: str) -> Figure | N
     means = pd.DataFrame({"x": cells[0], "y": cells[1], "z": shown.factor * rows.usable[metric]})
     table = means.groupby(["y", "x"], observed=True)["z"].mean().unstack()
     values = table.to_numpy()
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
     names = [str(name) for name in table.index]
     label = clean_text(describe_column(keys[1], rows.units).axis)
     height = max(1.6, 0.32 * len(names), style.LETTER * (max(map(len, label.split())) + 1))
-    grid = Grid((height,), left=measure_names(names) + 2 * style.LINE, right=0.15, bottom=0.55)
+    grid = Grid((height,), left=style.measure_names(names) + 2 * style.LINE, right=0.15, bottom=0.55)
     every = " of all variants" * ("variant" in order)
     note = f"Mean over the runs{every} of each cell, in {shown.unit}; the darker, the larger."
-    figure, [[axes]] = make_page(f"Mean {shown.words} over {keys[0]} and {keys[1]}", note, grid)
+    figure, [[axes]] = style.make_page(f"Mean {shown.words} over {keys[0]} and {keys[1]}", note, grid)
     axes.grid(False)
     axes.pcolormesh(values, cmap=colormaps["Blues"], rasterized=True)
-    low, high = float(np.nanmin(values)), float(np.nanmax(values))
     for (row, column), value in np.ndenumerate(values):
         if np.isfinite(value):
             # Black and white stay so on dark paper, since the cells do.
@@ -216,4 +198,5 @@ def _group(values: pd.Series) -> pd.Series | None:
 
 
 def _clip(share: float) -> float:
-    return min(1.0, max(0.0, share)) if np.isfinite(share) else 0.0
+    """Return a share in per cent, within 0 and 100."""
+    return 100.0 * min(1.0, max(0.0, share)) if np.isfinite(share) else 0.0

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from importlib.metadata import version
-from typing import NamedTuple
 
 from seatsim.plots.densities import METHOD
 from seatsim.provenance.statement import state_command
@@ -15,26 +14,16 @@ from seatsim.report.formatting import format_sentence, read_words, show_table
 _PACKAGES = ("seatsim", "numpy", "scipy", "numba")
 
 
-class Closing(NamedTuple):
-    """What stands at the end of a report.
-
-    notes: on the data. factors: of its credibility. command: what makes it again; of a command at work, this one with
-    its options is stated instead. settings: tables of them.
-    """
-
-    notes: Sequence[str]
-    factors: Sequence[Factor]
-    command: str
-    settings: Sequence[Block] = ()
-
-
 def compose(
     kind: str,
     about: str,
     answer: Sequence[str],
     next_steps: Sequence[str],
     sections: Mapping[str, Sequence[Block]],
-    closing: Closing,
+    notes: Sequence[str],
+    factors: Sequence[Factor],
+    command: str,
+    settings: Sequence[Block] = (),
     **facts: str,
 ) -> Report:
     """Return a report.
@@ -45,10 +34,13 @@ def compose(
         answer: in a sentence, and further ones.
         next_steps: what to do next.
         sections: its own by anchor; notes, credibility and method follow them.
-        closing: of what these are made.
+        notes: on the data.
+        factors: of its credibility.
+        command: what makes it again; of a command at work, this one with its options is stated instead.
+        settings: tables of them.
         facts: what the sentences on the method leave open.
     """
-    words, (notes, factors, command, settings) = read_words(), closing
+    words = read_words()
     method = [text.format(density=METHOD, **facts) for text in words.methods[kind]]
     versions = show_table("versions", [(name, version(name)) for name in _PACKAGES], 2)
     again: list[Block] = [Text("This command makes the report again:"), Code(state_command(command))]

@@ -17,14 +17,13 @@ from seatsim.identification.identify import Identification
 from seatsim.metrics.motion import ratio
 from seatsim.plots.bench.identification import PARTS, name_records, select_records
 from seatsim.report.blocks import Block, Code, Figures, Report, Table, Text, show_pictures, tabulate
-from seatsim.report.composing import Closing, compose
+from seatsim.report.composing import compose
 from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs, validate
-from seatsim.report.formatting import format_quantity, read_words, show_table
+from seatsim.report.formatting import choose_advice, format_quantity, read_words, show_table
 from seatsim.report.packing import MEASURED, Panel, pack_signals
 from seatsim.schema.content import list_written
 from seatsim.schema.fields import head_columns
 from seatsim.schema.printing import format_number, format_unit
-from seatsim.schema.text import join_names
 
 ROWS = 3000
 """Most rows of a record that are drawn over time, from the stretch with the highest speed."""
@@ -34,21 +33,26 @@ GOOD, FAIR = 90.0, 75.0
 
 def report_identification(found: Identification, figures: Figures, command: str) -> Report:
     """Return the report of an identified damper; `command` makes it again."""
-    fit, chosen = [*show_pictures(figures, "loops"), *tabulate_fit(found)], select_records(found.assessments)
     sections: dict[str, Sequence[Block]] = {
-        "figures": fit,
-        "signals": [_show_time(chosen)],
+        "figures": [*show_pictures(figures, "loops"), *tabulate_fit(found)],
+        "signals": [_show_time(select_records(found.assessments))],
         "parameters": tabulate_parameters(found),
     }
-    about, closing = f"Identification: {found.model}", Closing(found.notes, _judge_fit(found), command)
-    return compose("identification", about, [_say_fit(found)], _advise_on_fit(found), sections, closing)
+    loose = [each.name for each in found.information.estimates if not each.identified]
+    advice = choose_advice(
+        hold_out=found.mean("test") is None,
+        other_models=found.assessed is not None and found.assessed.fit_percent < FAIR,
+        undetermined=loose,
+        copy=True,
+    )
+    about, factors = f"Identification: {found.model}", _judge_fit(found, loose)
+    return compose("identification", about, [_say_fit(found)], advice, sections, found.notes, factors, command)
 
 
-def _judge_fit(found: Identification) -> list[Factor]:
+def _judge_fit(found: Identification, loose: Sequence[str]) -> list[Factor]:
     """Return how far an identified damper may be trusted, on held-out records where there are some."""
     mean, parts = found.assessed, [each.part for each in found.assessments]
     error = None if mean is None else 1.0 - mean.fit_percent / 100.0
-    loose = [each.name for each in found.information.estimates if not each.identified]
     return [
         validate(len(parts), parts.count("test"), error),
         trace_inputs([], [type(found.bench.damper)], True, loose),
@@ -63,42 +67,21 @@ def _say_fit(found: Identification) -> str:
     if mean is None:
         return f"{found.model} was fitted, but no record assesses it."
     word = "well" if mean.fit_percent >= GOOD else "usably" if mean.fit_percent >= FAIR else "poorly"
-    where = (
-        "on records that took no part in the fit"
-        if found.mean("test")
-        else "on the records it was fitted to; none was held out"
-    )
+    held_out, fitted = "that took no part in the fit", "it was fitted to; none was held out"
+    where = f"on records {held_out}" if found.mean("test") else f"on the records {fitted}"
     return (
         f"{found.model} predicts the damper's force {word}: a fit of {format_number(mean.fit_percent)} %, an error of"
         f" {format_quantity(mean.rmse, 'N')} RMS, {where}."
     )
 
 
-def _advise_on_fit(found: Identification) -> list[str]:
-    texts = []
-    loose = [each.name for each in found.information.estimates if not each.identified]
-    if found.mean("test") is None:
-        texts.append("Hold out records with --test, or the last part of each with --test-fraction, before trusting it.")
-    if found.assessed is not None and found.assessed.fit_percent < FAIR:
-        texts.append("Try other models: --model all compares them on the same records.")
-    if loose:
-        texts.append(f"The data do not determine {join_names(loose)}: fix them with --fix, or record other motions.")
-    texts.append("Copy the sections damper and actuator of parameters.yaml into a scenario, and run it.")
-    return texts
-
-
 def tabulate_fit(found: Identification) -> list[Table]:
     """Return the table of the agreement on each record, and of its means."""
-    every = found.assessments
-    judged = [
-        (name, PARTS[each.part], each.record.mean_current, each.agreement)
-        for name, each in zip(name_records(every), every, strict=True)
-    ]
+    named = zip(name_records(found.assessments), found.assessments, strict=True)
+    judged = [(name, PARTS[each.part], each.record.mean_current, each.agreement) for name, each in named]
     means = [(f"mean, {words}", words, "", mean) for part, words in PARTS.items() if (mean := found.mean(part))]
-    rows = [
-        (*name, agreement.fit_percent, format_number(agreement.r2, 5), agreement.rmse, agreement.md)
-        for *name, agreement in [*judged, *means]
-    ]
+    every = [*judged, *means]
+    rows = [(*name, each.fit_percent, format_number(each.r2, 5), each.rmse, each.md) for *name, each in every]
     return show_table("fit", rows, 2, range(len(judged), len(rows)))
 
 
@@ -116,13 +99,12 @@ def _show_time(chosen: Sequence[Assessment]) -> Block:
 
 def tabulate_parameters(found: Identification) -> list[Table]:
     """Return the table of the parameters, and that of the pairs that can replace each other."""
-    known = found.information
-    rows = []
-    for each in known.estimates:
+    estimates, rows = found.information.estimates, []
+    for each in estimates:
         figures = (format_number(each.value, 5), format_number(1.96 * each.std, 2))
         rows.append((each.name + " (not determined)" * (not each.identified), format_unit(each.unit), *figures))
-    strong = [k for k, each in enumerate(known.estimates) if not each.identified]
-    return [*show_table("parameters", rows, 2, strong), *show_table("pairs", known.correlated, 2)]
+    strong = [k for k, each in enumerate(estimates) if not each.identified]
+    return [*show_table("parameters", rows, 2, strong), *show_table("pairs", found.information.correlated, 2)]
 
 
 MOST_ROWS = 60
@@ -133,28 +115,28 @@ ROUNDING = 1e-9
 def report_characterisation(found: Characterisation, figures: Figures, remarks: Sequence[str], command: str) -> Report:
     """Return the report of a characterisation; `remarks` are sentences on it, `command` makes it again."""
     tested: list[Block] = [Text("What was tested:"), Code(found.source, "What was tested")]
-    steps = [*show_pictures(figures, "steps"), *tabulate_steps(found.responses)]
     sections: dict[str, Sequence[Block]] = {
         "loops": show_pictures(figures, "loops", "energy", "asymmetry", "warm_up"),
         "figures": tabulate_rows(found),
         "limits": _tabulate_sheet(found.sheet, {"limits": "Worst figure against each limit"}),
-        "steps": steps,
+        "steps": [*show_pictures(figures, "steps"), *tabulate_steps(found.responses)],
         "sheet": _tabulate_sheet(found.sheet, read_words().captions),
     }
-    about = f"Characterisation: {found.name}"
-    closing = Closing(remarks, _judge_characterisation(found), command, tested)
-    return compose("characterisation", about, [_say_character(found)], _advise_on_character(found), sections, closing)
-
-
-def _judge_characterisation(found: Characterisation) -> list[Factor]:
-    """Return how far the figures of a bench's records, or of a model's tests, may be trusted."""
     models = [] if found.measured or found.name not in DAMPERS.names() else [DAMPERS.find(found.name)]
     doubts = dict.fromkeys([*found.notes, *(note for row in found.rows for note in row.notes)])
-    return [
+    factors = [
         trace_inputs(list(doubts), models, is_measured=found.measured),
         state_intervals(["the response times"] * any(math.isfinite(each.t95_sd) for each in found.responses)),
         count_variations(len(found.rows)),
     ]
+    advice = choose_advice(
+        characterise=not found.measured,
+        identify=found.measured,
+        record_steps=found.measured and not any(math.isfinite(answer.t95) for answer in found.responses),
+        record_currents=found.measured and len({round(row.current, 2) for row in found.rows}) < 3,
+    )
+    kind, about = "characterisation", f"Characterisation: {found.name}"
+    return compose(kind, about, [_say_character(found)], advice, sections, remarks, factors, command, tested)
 
 
 def _say_character(found: Characterisation) -> str:
@@ -166,23 +148,11 @@ def _say_character(found: Characterisation) -> str:
         force = f"up to {format_quantity(high.peak_rebound, 'N')} at {high.current:.3g} A"
         said = f"Moved by {_name_motion(high)}, the damper gives {force}"
         if high.current > low.current and low.peak_rebound > 0:
-            ratio = format_number(high.peak_rebound / low.peak_rebound, 2)
-            said += f", {ratio} times its force at {low.current:.3g} A"
-    times = [answer.t95 for answer in found.responses if math.isfinite(answer.t95)]
-    if times:
+            growth = format_number(high.peak_rebound / low.peak_rebound, 2)
+            said += f", {growth} times its force at {low.current:.3g} A"
+    if times := [answer.t95 for answer in found.responses if math.isfinite(answer.t95)]:
         said += f"; it follows a step of the current within {format_number(1e3 * float(np.median(times)))} ms"
     return f"{said}."
-
-
-def _advise_on_character(found: Characterisation) -> list[str]:
-    if not found.measured:
-        return ["Compare it with a measured damper: seatsim characterise takes a folder of bench tables, too."]
-    texts = ["Fit a model to these records: seatsim identify takes the same folder."]
-    if not any(math.isfinite(answer.t95) for answer in found.responses):
-        texts.append("Record steps of the current at constant speed: nothing here shows how fast the force follows.")
-    if len({round(row.current, 2) for row in found.rows}) < 3:
-        texts.append("Record at three currents or more: the force's growth with current is a curve.")
-    return texts
 
 
 def _name_motion(row: Row) -> str:

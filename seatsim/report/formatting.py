@@ -14,6 +14,7 @@ from seatsim.schema import registry
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import validated
 from seatsim.schema.printing import MINUS, UNKNOWN, describe_channel, format_number, format_percent
+from seatsim.schema.text import join_names
 from seatsim.schema.yaml_text import parse_value
 
 
@@ -79,7 +80,8 @@ class Words(NamedTuple):
 
     By kind of report the headings of its sections and sentences on its method; paragraphs that explain figures; caption
     and headings of tables; captions of the tables of a bench sheet, in their order; conditions of each level of
-    credibility; name and explanation of each verdict; words for each effect.
+    credibility; name and explanation of each verdict; what to do next, by the fact that asks for it; words for each
+    effect.
     """
 
     headings: Mapping[str, Mapping[str, str]]
@@ -89,6 +91,7 @@ class Words(NamedTuple):
     captions: Mapping[str, str]
     conditions: Mapping[str, Sequence[str]]
     verdicts: Mapping[str, tuple[str, str]]
+    advice: Mapping[str, str]
     effects: Mapping[str, _EffectWords]
 
 
@@ -109,3 +112,9 @@ def show_table(
 def explain(name: str, **facts: str) -> list[Text]:
     """Return the paragraphs that explain some figures; `facts` are what they leave open."""
     return [Text(text.format(**facts)) for text in read_words().explanations[name]]
+
+
+def choose_advice(**facts: object) -> list[str]:
+    """Return what to do next: of each fact that holds the advice of its name, in which names or a number state it."""
+    held = {name: join_names(fact) if isinstance(fact, list) else fact for name, fact in facts.items() if fact}
+    return [read_words().advice[name].format(fact) for name, fact in held.items()]

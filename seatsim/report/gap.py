@@ -13,14 +13,21 @@ import numpy as np
 from seatsim.diagnosis.residuals import group_by_channel, list_traces, nominal_gap
 from seatsim.metrics.motion import rms
 from seatsim.metrics.objective_rating import GRADES
-from seatsim.plots.diagnosis.answer import SMALLEST
-from seatsim.plots.diagnosis.draw import plot_all_of_gap
+from seatsim.plots.diagnosis import SMALLEST, plot_all_of_gap
 from seatsim.recordings.gap import Gap
 from seatsim.recordings.recording import load_recording
 from seatsim.report.blocks import Block, Items, Report, Table, show_pictures
-from seatsim.report.composing import Closing, compose
+from seatsim.report.composing import compose
 from seatsim.report.credibility import NEAR_NOISE, Factor, count_variations, state_intervals, trace_inputs, validate
-from seatsim.report.formatting import explain, format_noise, format_quantity, say_noise, scale_row, show_table
+from seatsim.report.formatting import (
+    choose_advice,
+    explain,
+    format_noise,
+    format_quantity,
+    say_noise,
+    scale_row,
+    show_table,
+)
 from seatsim.report.packing import MEASURED, pack_traces
 from seatsim.scenario.loading import single
 from seatsim.schema.printing import UNKNOWN, format_percent
@@ -41,8 +48,8 @@ def report_gap(name: str, found: Gap, factors: Sequence[Factor], command: str) -
         "signals": [*show_pictures(figures, "signal_"), pack_traces(list_traces(found), lines)],
         "agreement": show_agreement(found),
     }
-    closing = Closing(found.notes, factors, command)
-    return compose("gap", f"Gap: {name}", [say_gap(found)], _advise(found), sections, closing)
+    advice = choose_advice(use_scenario=_is_explained(found), diagnose=not _is_explained(found))
+    return compose("gap", f"Gap: {name}", [say_gap(found)], advice, sections, found.notes, factors, command)
 
 
 def judge_gap(scenario: str, folder: Path, found: Gap) -> list[Factor]:
@@ -61,14 +68,10 @@ def judge_gap(scenario: str, folder: Path, found: Gap) -> list[Factor]:
 
 def say_gap(found: Gap) -> str:
     """Return in a sentence how far a simulation is from its recording."""
-    worst = max(found.channels, key=lambda name: found.channels[name])
-    size = f"The simulation is off by {format_percent(found.overall)} of the recorded signals' spread"
-    if _is_explained(found):
-        return f"{size}; {say_noise(found.floor.overall)}: there is nothing left to explain."
-    return (
-        f"{size}; {say_noise(found.floor.overall)}. It is furthest off in the"
-        f" {worst.replace('_', ' ')}, by {format_percent(found.channels[worst])}."
-    )
+    worst, size = max(found.channels.items(), key=lambda pair: pair[1])
+    noise = f"{format_percent(found.overall)} of the recorded signals' spread; {say_noise(found.floor.overall)}"
+    rest = f". It is furthest off in the {worst.replace('_', ' ')}, by {format_percent(size)}."
+    return f"The simulation is off by {noise}{': there is nothing left to explain.' if _is_explained(found) else rest}"
 
 
 def _is_explained(found: Gap) -> bool:
@@ -76,18 +79,11 @@ def _is_explained(found: Gap) -> bool:
     return found.overall <= max(NEAR_NOISE * found.floor.overall, SMALLEST)
 
 
-def _advise(found: Gap) -> list[str]:
-    if _is_explained(found):
-        return ["Use the scenario as it is; test it on a recording of another road or driver."]
-    return ["Find the cause with seatsim diagnose: it names the effect, and says how far the gap shrinks with it."]
-
-
 def _tabulate_gaps(found: Gap) -> list[Table]:
     """Return the gaps over all runs, then, where there are several, those of each."""
     rows = [["overall", format_percent(found.overall), format_noise(found.floor.overall), UNKNOWN, UNKNOWN]]
-    each_run: list[list[str]] = []
-    runs, groups = list(found.replayed), group_by_channel(list_traces(found))
-    for name, traces in groups.items():
+    each_run, runs = list[list[str]](), list(found.replayed)
+    for name, traces in group_by_channel(list_traces(found)).items():
         words, unit = name.replace("_", " "), traces[0].unit
         left = np.concatenate([trace.measured - trace.nominal for trace in traces])
         sizes = [format_quantity(size, unit) for size in (rms(left), float(np.mean(left)))]

@@ -10,13 +10,13 @@ from seatsim.metrics.table import SEAT, SHORT
 from seatsim.plots.runs.looks import Shown, show_runs
 from seatsim.plots.style import COLOURS
 from seatsim.report.blocks import Figures, Report, Signals, Table, show_pictures, tabulate
-from seatsim.report.composing import Closing, compose
+from seatsim.report.composing import compose
 from seatsim.report.credibility import Factor, count_variations, trace_inputs, verify
-from seatsim.report.formatting import format_quantity, format_sentence, format_setting, show_table
+from seatsim.report.formatting import choose_advice, format_quantity, format_sentence, format_setting, show_table
 from seatsim.report.headline import SAME, compare_runs, count_times, describe_run, find_best
 from seatsim.report.packing import FINEST, Panel, pack_signals
 from seatsim.scenario.numbers import find_unit, list_numbers
-from seatsim.scenario.scenario import Scenario, condition_of
+from seatsim.scenario.scenario import condition_of
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import RunError
 from seatsim.schema.printing import describe_channel, format_number, format_unit
@@ -45,18 +45,29 @@ def report_runs(
         title: what they are on.
         failures: why others were not carried to their end.
     """
-    bars, signals = show_pictures(figures, "pareto", "comparison"), show_pictures(figures, "time_histories")
     sections = {
-        "figures": [*bars, *_tabulate_figures(runs)],
-        "signals": [*signals, show_signals(show_runs(runs))],
+        "figures": [*show_pictures(figures, "pareto", "comparison"), *_tabulate_figures(runs)],
+        "signals": [*show_pictures(figures, "time_histories"), show_signals(show_runs(runs))],
         "spectra": show_pictures(figures, "transmissibility", "psd"),
         "loops": show_pictures(figures, "damper_loops", "force_velocity"),
     }
-    single = len(runs) == 1
-    about = f"Simulated run: {title}" if single else f"Comparison of {len(runs)} simulated runs: {title}"
-    answer = [*([describe_run(runs[0])] if single else compare_runs(runs)), *_list_gaps(runs, failures)]
-    closing = Closing(_state_notes(runs), judge_runs(runs), command, _list_settings(runs[0].scenario))
-    return compose("runs", about, answer, advise_on_runs(runs), sections, closing, same=f"{100 * SAME:g} %")
+    about, said = f"Comparison of {len(runs)} simulated runs: {title}", compare_runs(runs)
+    if len(runs) == 1:
+        about, said = f"Simulated run: {title}", [describe_run(runs[0])]
+    # What the answer leaves out: figures that cannot be relied on, and runs that failed.
+    doubtful = [f"“{name}”" for name, run in zip(label_runs(runs), runs, strict=True) if run.unverified]
+    gaps = [f"The figures of {name_some(doubtful)} cannot be relied on; the notes say why."] if doubtful else []
+    if failures:
+        others = f", and {len(failures) - 1} others" if len(failures) > 1 else ""
+        gaps.append(f"{len(failures)} of {len(runs) + len(failures)} runs failed: {failures[0]}{others}")
+    notes = [f"{run.scenario.title} is unverified: {reason}" for run in runs for reason in run.unverified]
+    notes += [sentence for run in runs for sentence in run.warnings]
+    notes += [f"{run.scenario.title}: {sentence}" for run in runs for sentence in run.history.notes]
+    scenario, numbers = runs[0].scenario, list_numbers(runs[0].scenario).items()
+    rows = [(key, format_unit(find_unit(scenario, key)) or "-", format_setting(value)) for key, value in numbers]
+    settings = show_table("settings", rows, 2, folded=True, title=str(scenario.title))
+    answer, advice, same = [*said, *map(format_sentence, gaps)], advise_on_runs(runs), f"{100 * SAME:g} %"
+    return compose("runs", about, answer, advice, sections, notes, judge_runs(runs), command, settings, same=same)
 
 
 def judge_runs(runs: Sequence[Run]) -> list[Factor]:
@@ -73,21 +84,16 @@ def judge_runs(runs: Sequence[Run]) -> list[Factor]:
 def advise_on_runs(runs: Sequence[Run]) -> list[str]:
     """Return what to do next, each in a sentence or two; the worst run comes first, and others are counted."""
     named = [(f"“{name}”", run) for name, run in zip(label_runs(runs), runs, strict=True) if not run.unverified]
-    found = []
-    hitting = _rank_above(named, HITS, 0.0)
-    if hitting:
-        counts = [f"{name} ({count_times(run.read_metric(HITS))})" for name, run in hitting]
-        found.append(f"Look at the travel of {name_some(counts)}: the suspension meets its end stops.")
-    amplifying = _rank_above(named, SEAT, 1.0 + SAME)
-    if amplifying:
-        listed = [f"{name} (SEAT factor {format_number(run.read_metric(SEAT))})" for name, run in amplifying]
-        feels = f"The driver feels more than the floor moves in {name_some(listed)}."
-        found.append(f"{feels}{_say_trials(*amplifying[0], share_a_loop(run.scenario for run in runs))}")
-    if len(runs) == 1:
-        found.append("Compare it with other laws or settings: seatsim compare takes several scenarios or a sweep.")
-    elif len({condition_of(run.scenario) for run in runs}) == 1:
-        found.append("Check that the order holds on other roads and with other drivers: seatsim sweep varies both.")
-    return found
+    hitting, amplifying = _rank_above(named, HITS, 0.0), _rank_above(named, SEAT, 1.0 + SAME)
+    counts = [f"{name} ({count_times(run.read_metric(HITS))})" for name, run in hitting]
+    listed = [f"{name} (SEAT factor {format_number(run.read_metric(SEAT))})" for name, run in amplifying]
+    trials = _say_trials(*amplifying[0], share_a_loop(run.scenario for run in runs)) if amplifying else ""
+    return choose_advice(
+        travel=counts and name_some(counts),
+        amplifies=listed and f"{name_some(listed)}.{trials}",
+        compare=len(runs) == 1,
+        other_conditions=len(runs) > 1 and len({condition_of(run.scenario) for run in runs}) == 1,
+    )
 
 
 def _rank_above(named: Sequence[tuple[str, Run]], metric: str, limit: float) -> list[tuple[str, Run]]:
@@ -109,14 +115,12 @@ def _say_trials(name: str, run: Run, carry_all_effects: bool | None) -> str:
     keys = join_names(list(dict.fromkeys(each.key for each in known)))
     part = f"the first {STRETCH:g} s of " if run.history["time"][-1] > STRETCH else ""
     tried = f" Half and twice of {keys} were tried on {part}{name}"
-    before, after = own.metrics[SEAT].value, best.metrics[SEAT].value
+    (before, peak), (after, lower) = ((each.metrics[SEAT].value, each.metrics[_PEAK].value) for each in (own, best))
     if after > (1 - SAME) * before:
         return f"{tried}: none lowers its SEAT factor of {format_number(before)}."
-    peaks = (format_quantity(each.metrics[_PEAK].value, "m") for each in (best, own))
-    return (
-        f"{tried}: {best.key} {best.value:g} lowers its SEAT factor the most, to {format_number(after)} from"
-        f" {format_number(before)}, with travel up to {' in place of '.join(peaks)}."
-    )
+    change = f"to {format_number(after)} from {format_number(before)}"
+    travel = f"{format_quantity(lower, 'm')} in place of {format_quantity(peak, 'm')}"
+    return f"{tried}: {best.key} {best.value:g} lowers its SEAT factor the most, {change}, with travel up to {travel}."
 
 
 def show_signals(groups: Sequence[Shown], finest: int = FINEST) -> Signals:
@@ -130,17 +134,14 @@ def show_signals(groups: Sequence[Shown], finest: int = FINEST) -> Signals:
         known = [[each for each in part if each is not None] for part in values.values()]
         # One that never changes, such as the temperature of most dampers, is a setting and no signal.
         if any(float(np.nanmax(line)) > float(np.nanmin(line)) for part in known for line in part):
-            panels.append(Panel(channel, UNITS[channel], _note_equal(known), values))
+            # Of lines that lie on each other a picture shows one.
+            several = [part for part in known if len(part) > 1]
+            same = all(np.array_equal(part[0], line, equal_nan=True) for part in several for line in part[1:])
+            sentence = "The same in all runs." if several and same else ""
+            panels.append(Panel(channel, UNITS[channel], sentence, values))
     caption = "The list above the pictures has every scenario." if len(groups) > 1 else "All runs over time."
     omitted = next((shown.omission for shown in groups if shown.omission), "")
     return pack_signals(f"{caption}{omitted}", lines, time, panels, finest)
-
-
-def _note_equal(groups: Sequence[Sequence[Array]]) -> str:
-    """Return a sentence where the lines of several runs lie on each other, which a picture does not show."""
-    several = [group for group in groups if len(group) > 1]
-    same = all(np.array_equal(group[0], each, equal_nan=True) for group in several for each in group[1:])
-    return "The same in all runs." if several and same else ""
 
 
 def _read(shown: Shown, channel: str, names: Sequence[str], length: int) -> list[Array | None]:
@@ -154,16 +155,6 @@ def _read(shown: Shown, channel: str, names: Sequence[str], length: int) -> list
     return found
 
 
-def _list_gaps(runs: Sequence[Run], failures: Sequence[str]) -> list[str]:
-    """Return what the answer leaves out: runs that failed, and those whose figures cannot be relied on."""
-    doubtful = [f"“{name}”" for name, run in zip(label_runs(runs), runs, strict=True) if run.unverified]
-    texts = [f"The figures of {name_some(doubtful)} cannot be relied on; the notes say why."] if doubtful else []
-    if failures:
-        others = f", and {len(failures) - 1} others" if len(failures) > 1 else ""
-        texts.append(f"{len(failures)} of {len(runs) + len(failures)} runs failed: {failures[0]}{others}")
-    return [format_sentence(text) for text in texts]
-
-
 def _tabulate_figures(runs: Sequence[Run]) -> list[Table]:
     """Return every figure of one run, or the figures of several side by side."""
     if len(runs) == 1:
@@ -174,30 +165,12 @@ def _tabulate_figures(runs: Sequence[Run]) -> list[Table]:
     shown = {name: describe_channel(words, units[name]) for name, words in SHORT.items() if name in units}
     rows = []
     for name, run in zip(label_runs(runs), runs, strict=True):
-        values = (_format_metric(metric, each.factor * run.read_metric(metric)) for metric, each in shown.items())
-        rows.append((f"{name} *" if run.unverified else name, *values))
-    best = find_best(runs)
-    several = len({condition_of(run.scenario) for run in runs}) > 1
+        values = ((metric, each.factor * run.read_metric(metric)) for metric, each in shown.items())
+        # End stops are counted.
+        texts = (f"{x:.0f}" if metric == HITS and np.isfinite(x) else format_number(x) for metric, x in values)
+        rows.append((f"{name}{' *' * bool(run.unverified)}", *texts))
+    best, several = find_best(runs), len({condition_of(run.scenario) for run in runs}) > 1
     bold = f" In bold: the most comfortable{' of each condition' * several}." if best else ""
     mark = f" {UNVERIFIED}" if any(run.unverified for run in runs) else ""
     head = ["run", *(each.axis for each in shown.values())]
     return tabulate(f"Figures of each run; summary.csv has more.{bold}{mark}", head, rows, 1, best)
-
-
-def _format_metric(name: str, value: float) -> str:
-    return f"{value:.0f}" if name == "end_stop_hits" and np.isfinite(value) else format_number(value)
-
-
-def _state_notes(runs: Sequence[Run]) -> list[str]:
-    texts = [f"{run.scenario.title} is unverified: {reason}" for run in runs for reason in run.unverified]
-    texts += [sentence for run in runs for sentence in run.warnings]
-    return texts + [f"{run.scenario.title}: {sentence}" for run in runs for sentence in run.history.notes]
-
-
-def _list_settings(scenario: Scenario) -> list[Table]:
-    """Return the numbers of the first scenario by dotted key, with their units."""
-    rows = [
-        (key, format_unit(find_unit(scenario, key)) or "-", format_setting(value))
-        for key, value in list_numbers(scenario).items()
-    ]
-    return show_table("settings", rows, 2, folded=True, title=str(scenario.title))

@@ -9,9 +9,9 @@ from seatsim.metrics.exposure import DAY, Exposure, ValueReached
 from seatsim.metrics.spine import SpinalLoad
 from seatsim.plots.bench.vibration import plot_damping
 from seatsim.report.blocks import Block, Figures, Report, Table, show_pictures, tabulate
-from seatsim.report.composing import Closing, compose
-from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs
-from seatsim.report.formatting import format_sentence, show_table
+from seatsim.report.composing import compose
+from seatsim.report.credibility import count_variations, state_intervals, trace_inputs
+from seatsim.report.formatting import choose_advice, format_sentence, show_table
 from seatsim.schema.printing import format_percent
 from seatsim.schema.text import join_names
 from seatsim.standards.comfort import Comfort
@@ -32,8 +32,13 @@ def report_comfort(found: Comfort, figures: Figures, command: str) -> Report:
         "axes": [*tabulate_axes(found), *show_pictures(figures, "running_rms", "spectra")],
         "seat": tabulate_seat(found),
     }
-    closing = Closing(found.notes, _judge_comfort(found), command)
-    return compose("comfort", f"Vibration of {found.name}", answer, [*_advise_on_comfort(found)], sections, closing)
+    factors = [
+        trace_inputs(found.notes, is_measured=True),
+        state_intervals(_INTERVALS * any(each.within_spread is not None for each in found.seat.values())),
+        count_variations(len(found.runs)),
+    ]
+    about, advice = f"Vibration of {found.name}", _advise_on_comfort(found)
+    return compose("comfort", about, answer, advice, sections, found.notes, factors, command)
 
 
 def list_comfort_sentences(found: Comfort) -> Iterator[str]:
@@ -54,9 +59,8 @@ def list_comfort_sentences(found: Comfort) -> Iterator[str]:
 
 
 def _say_spine(load: SpinalLoad) -> str:
-    risks = ", ".join(
-        f"{name} R {risk.factor:.2f}, risk {format_percent(risk.probability)}" for name, risk in load.risks.items()
-    )
+    named = ((name, risk.factor, format_percent(risk.probability)) for name, risk in load.risks.items())
+    risks = ", ".join(f"{name} R {factor:.2f}, risk {probability}" for name, factor, probability in named)
     return (
         f"lumbar spine (ISO 2631-5:2018): dose D_z {load.dose:.2f} m/s², of a day {load.daily_dose:.2f} m/s²;"
         f" after work from 20 to 64 years of age: {risks}"
@@ -97,37 +101,20 @@ def _say_comfort(found: Comfort) -> str:
     return f"{day.hours:g} h a day of this vibration give A(8) = {day.a8:.2f} m/s² along {day.a8_axis}, {judged}."
 
 
-def _advise_on_comfort(found: Comfort) -> Iterator[str]:
-    day = found.exposure
+def _advise_on_comfort(found: Comfort) -> list[str]:
+    day, texts = found.exposure, []
     if day and len(found.operations) > 1:
         most = max(found.operations, key=lambda each: each.share)
-        yield f"Begin with {most.name}: it makes {format_percent(most.share)} of the day's A(8)²."
-    if day and day.action_value.exceeded_by_a8:
-        until = f"{day.action_value.hours_to_a8:.2g} h a day"
-        yield f"Shorten the work to {until}, or lower its vibration: then A(8) keeps to the action value."
-    if found.seat:
-        yield "Try other seats on the measured floor: excitation: {kind: table} in a scenario."
-    else:
-        yield "Measure the floor beside the seat: then the SEAT factor says what the seat itself takes away."
-
-
-def _judge_comfort(found: Comfort) -> list[Factor]:
-    """Return how far the figures may be trusted."""
-    repeated = any(each.within_spread is not None for each in found.seat.values())
-    return [
-        trace_inputs(found.notes, is_measured=True),
-        state_intervals(["the SEAT factors, by the spread of their runs"] * repeated),
-        count_variations(len(found.runs)),
-    ]
+        texts.append(f"Begin with {most.name}: it makes {format_percent(most.share)} of the day's A(8)².")
+    shorter = f"{day.action_value.hours_to_a8:.2g}" if day and day.action_value.exceeded_by_a8 else ""
+    return texts + choose_advice(shorten=shorter, other_seats=bool(found.seat), measure_floor=not found.seat)
 
 
 def tabulate_operations(found: Comfort) -> list[Table]:
     """Return the table of the parts of a working day, where its runs have hours of their own."""
     axes = [*found.operations[0].a8] if found.operations else []
-    rows = [
-        (each.name, each.hours, *each.a8.values(), *each.vdv8.values(), format_percent(each.share))
-        for each in found.operations
-    ]
+    parts = ((each, [*each.a8.values(), *each.vdv8.values()]) for each in found.operations)
+    rows = [(each.name, each.hours, *exposures, format_percent(each.share)) for each, exposures in parts]
     units = {"A(8)": "m/s²", "VDV": "m/s¹·⁷⁵"}
     exposures = [f"{name} {axis} [{unit}]" for name, unit in units.items() for axis in axes]
     return tabulate("Partial exposure of each operation", ["operation", "hours", *exposures, "share of A(8)²"], rows)
@@ -156,6 +143,7 @@ def tabulate_seat(found: Comfort) -> list[Table]:
 
 
 PASSED = ("no", "yes")
+_INTERVALS = ["the SEAT factors, by the spread of their runs"]
 NAMED = 3
 """Failures that the answer names."""
 
@@ -170,27 +158,19 @@ def report_seat_test(found: SeatTest, name: str, is_measured: bool, command: str
         command: what makes the report again.
     """
     notes = [*found.notes, *(f"{each.run} failed: {each.reason}" for each in found.failures)]
-    curves = show_pictures(plot_damping(found), "damping")
     sections: dict[str, Sequence[Block]] = {
         "classes": tabulate_classes(found.rows),
-        "damping": [*tabulate_damping(found.damping_rows), *curves],
+        "damping": [*tabulate_damping(found.damping_rows), *show_pictures(plot_damping(found), "damping")],
     }
-    answer, closing = [say_seat_test(found)], Closing(notes, _judge_seat_test(found, is_measured), command)
-    recalled = format_sentence(RECALLED)
-    return compose(
-        "seat_test", f"Seat test: {name}", answer, _advise_on_seat_test(found), sections, closing, recalled=recalled
-    )
-
-
-def _judge_seat_test(found: SeatTest, is_measured: bool) -> list[Factor]:
-    """Return how far a seat test may be trusted."""
-    has_spread = any(row.within_spread is not None for row in found.rows)
-    several = len({row.person for row in found.rows}) > 1
-    return [
+    varied = ["spectral class", "mass of the test person"] * (len({row.person for row in found.rows}) > 1)
+    factors = [
         trace_inputs([*found.notes, *(failure.reason for failure in found.failures)], is_measured=is_measured),
-        state_intervals(["the SEAT factors, by the spread of their runs"] * has_spread),
-        count_variations(len(found.rows), ["spectral class", "mass of the test person"] * several),
+        state_intervals(_INTERVALS * any(row.within_spread is not None for row in found.rows)),
+        count_variations(len(found.rows), varied),
     ]
+    about, answer, advice = f"Seat test: {name}", [say_seat_test(found)], _advise_on_seat_test(found)
+    recalled = format_sentence(RECALLED)
+    return compose("seat_test", about, answer, advice, sections, notes, factors, command, recalled=recalled)
 
 
 def say_seat_test(found: SeatTest) -> str:
@@ -209,9 +189,7 @@ def _advise_on_seat_test(found: SeatTest) -> list[str]:
         where = f"{worst.run} on {worst.spectral_class} under a driver of {worst.mass:g} kg"
         share = format_percent(worst.seat / worst.limit)
         texts.append(f"Begin with {where}: its SEAT factor is {share} of the limit.")
-    if any(row.end_stop_hits for row in found.rows):
-        texts.append("Look at the travel: the seat hits its end stops, for which the standard has no limit.")
-    return [*texts, "Try other laws and settings on the floor of a class: excitation: {kind: iso7096} in a scenario."]
+    return texts + choose_advice(end_stops=any(row.end_stop_hits for row in found.rows), other_laws=True)
 
 
 def tabulate_classes(rows: Sequence[SeatRow]) -> list[Table]:
@@ -226,8 +204,6 @@ def tabulate_classes(rows: Sequence[SeatRow]) -> list[Table]:
 
 def tabulate_damping(rows: Sequence[DampingRow]) -> list[Table]:
     """Return the table of the damping test, a row for each seat and class."""
-    lines = [
-        (row.run, row.spectral_class, PASSED[row.passed], row.resonance, row.transmissibility, row.limit)
-        for row in rows
-    ]
+    tested = ((row, (row.resonance, row.transmissibility, row.limit)) for row in rows)
+    lines = [(row.run, row.spectral_class, PASSED[row.passed], *figures) for row, figures in tested]
     return show_table("damping", lines, 3, [k for k, row in enumerate(rows) if not row.passed], clause=DAMPING)

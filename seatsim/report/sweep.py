@@ -8,18 +8,11 @@ from typing import TYPE_CHECKING, Any
 from seatsim.dampers.base import DAMPERS
 from seatsim.metrics.table import COMFORT, TRAVEL
 from seatsim.plots.sweeps import describe_column, format_level, plot_comfort, plot_means, plot_shares, plot_tornado
+from seatsim.report import credibility
 from seatsim.report.blocks import Block, Figures, Report, Table, Text, show_pictures, tabulate
-from seatsim.report.composing import Closing, compose
-from seatsim.report.credibility import (
-    ENOUGH_RUNS,
-    EXPLAINED,
-    Factor,
-    count_variations,
-    state_intervals,
-    trace_inputs,
-    verify,
-)
-from seatsim.report.formatting import format_quantity, show_table
+from seatsim.report.composing import compose
+from seatsim.report.credibility import EXPLAINED, count_variations, state_intervals, trace_inputs, verify
+from seatsim.report.formatting import choose_advice, explain, format_quantity, show_table
 from seatsim.scenario.scenario import is_condition
 from seatsim.schema.printing import format_number, format_percent
 from seatsim.sweeps.outcome import FAILED, UNVERIFIED
@@ -42,7 +35,13 @@ def report_sweep(
     rows: SweepRows, quantiles: pd.DataFrame, found: Sensitivities, exceeded: Sequence[Exceedance]
 ) -> Report:
     """Return the report of a sweep from its rows and the statistics on them."""
-    settings = [Text(_say_seeds(rows)), Text(f"Identity of the sweep: {rows.manifest['identity']}")]
+    # Over how many random floors the runs are.
+    seeds = (
+        "All runs have one seed, so that equal roads are the same random floor; replicates in the sweep adds others."
+    )
+    if (count := rows.usable.seed.nunique()) > 1:
+        seeds = f"The runs have {count} seeds: as many random floors and noises of each kind."
+    settings = [Text(seeds), Text(f"Identity of the sweep: {rows.manifest['identity']}")]
     figures = draw_figures(found, rows)
     sections: dict[str, Sequence[Block]] = {
         "limits": _show_limits(exceeded, rows),
@@ -54,8 +53,8 @@ def report_sweep(
         "states": _show_states(rows),
     }
     answer, factors = [*state_importance(found, rows), _count_runs(rows)], _judge(rows, found, exceeded)
-    closing = Closing([], factors, f"seatsim sweep-report {rows.folder.name}", settings)
-    return compose("sweep", f"Sweep: {rows.folder.name}", answer, _advise(found, exceeded, rows), sections, closing)
+    about, command = f"Sweep: {rows.folder.name}", f"seatsim sweep-report {rows.folder.name}"
+    return compose("sweep", about, answer, _advise(found, exceeded, rows), sections, [], factors, command, settings)
 
 
 def state_importance(found: Sensitivities, rows: SweepRows) -> list[str]:
@@ -69,16 +68,13 @@ def state_importance(found: Sensitivities, rows: SweepRows) -> list[str]:
     many = len(rows.drawn or [row for row in here if row.key != "variant"])
     first = max(here, key=lambda row: row.total)
     lead = [f"{first.key} explains {format_percent(first.total)} of the variance of the {words}."]
-    total = format_percent(chosen.total)
-    interval = f"95 % interval {format_percent(chosen.total_low)} to {format_percent(chosen.total_high)}"
+    total, low, high = map(format_percent, (chosen.total, chosen.total_low, chosen.total_high))
+    said = f"{chosen.key}, the only one of the {what}, explains {total} of the variance of the {words}"
     if many > 1:
         said = f"Of {many} {what} {chosen.key} matters most to the {words}: it explains {total} of the variance"
-    else:
-        said = f"{chosen.key}, the only one of the {what}, explains {total} of the variance of the {words}"
-    choice = choose_choice(here, rows) if is_condition(chosen.key) else None
-    said += f" together with its interactions ({interval})."
+    said += f" together with its interactions (95 % interval {low} to {high})."
     texts = [*lead * (first is not chosen), said]
-    if choice is not None:
+    if (choice := choose_choice(here, rows) if is_condition(chosen.key) else None) is not None:
         share = format_percent(choice.total)
         texts.append(f"It is a condition; of the choices {choice.key} matters most and explains {share}.")
     return texts
@@ -90,11 +86,9 @@ def advise_on_keys(found: Sequence[Sensitivity], rows: SweepRows) -> list[str]:
     choice = choose_choice(found, rows)
     if choice is not None:
         share = f"of the choices it explains the most of the variance, {format_percent(choice.total)}"
-        verb = "Tighten the tolerance of" if choice.key in rows.drawn else "Settle"
-        if choice.total < _MATTERS:
-            texts.append(f"Leave {choice.key} as it is, and the other varied choices: {share}.")
-        else:
-            texts.append(f"{verb} {choice.key} first: {share}.")
+        lead = f"{'Tighten the tolerance of' if choice.key in rows.drawn else 'Settle'} {choice.key} first"
+        lead = f"Leave {choice.key} as it is, and the other varied choices" if choice.total < _MATTERS else lead
+        texts.append(f"{lead}: {share}.")
     condition = choose_key([row for row in found if is_condition(row.key)], rows)
     if condition is not None:
         shown = describe_column(condition.metric, rows.units)
@@ -112,17 +106,15 @@ def tabulate_best(rows: SweepRows) -> list[Table]:
     keys, best = find_best_choices(rows)
     if best is None:
         return []
-    lines = [
-        [*map(format_level, line[:-1]), format_number(float(line[-1]))]
-        for line in best.head(MOST_LINES).itertuples(index=False, name=None)
-    ]
+    shown = best.head(MOST_LINES).itertuples(index=False, name=None)
+    lines = [[*map(format_level, line[:-1]), format_number(float(line[-1]))] for line in shown]
     left = len(best) - len(lines)
     others = f"; and {left} other conditions" if left else ""
     caption = f"Most comfortable choice under each condition, the worst condition first{others}"
     return tabulate(caption, [*keys, describe_column(COMFORT, rows.units).axis], lines, len(keys))
 
 
-def _judge(rows: SweepRows, found: Sensitivities, exceeded: Sequence[Exceedance]) -> list[Factor]:
+def _judge(rows: SweepRows, found: Sensitivities, exceeded: Sequence[Exceedance]) -> list[credibility.Factor]:
     """Return how far a sweep may be trusted, whose identity keeps the hashes of its inputs."""
     stated = rows.manifest["configuration"]
     damper = stated["scenario"].get("damper", {}) if isinstance(stated.get("scenario"), dict) else {}
@@ -134,21 +126,16 @@ def _judge(rows: SweepRows, found: Sensitivities, exceeded: Sequence[Exceedance]
     intervals = ["shares of the variance"] * bool(found.rows) + ["shares above limits"] * bool(exceeded)
     energy = list(rows.usable["energy_residual"].dropna()) if "energy_residual" in rows.metrics else list[float]()
     reasons = sorted({str(text) for text in rows.every.reason.dropna() if text})
-    explains, is_judged = (explained or 0.0) >= EXPLAINED, len(rows.usable) >= ENOUGH_RUNS and rows.drawn and exceeded
+    explains, is_judged = (
+        (explained or 0.0) >= EXPLAINED,
+        len(rows.usable) >= credibility.ENOUGH_RUNS and rows.drawn and exceeded,
+    )
     return [
         verify("up to {} of the energy is unaccounted for", energy),
         trace_inputs(reasons, models, inputs=1 + len(stated.get("files", {}))),
         state_intervals(intervals, bool(rows.drawn), bool(found.rows)),
         count_variations(len(rows.usable), rows.keys, said, explains, bool(is_judged)),
     ]
-
-
-def _say_seeds(rows: SweepRows) -> str:
-    """Return over how many random floors the runs are."""
-    count = rows.usable.seed.nunique()
-    if count > 1:
-        return f"The runs have {count} seeds: as many random floors and noises of each kind."
-    return "All runs have one seed, so that equal roads are the same random floor; replicates in the sweep adds others."
 
 
 def _count_runs(rows: SweepRows) -> str:
@@ -168,10 +155,8 @@ def _advise(found: Sensitivities, exceeded: Sequence[Exceedance], rows: SweepRow
         limit = format_quantity(worst.limit, rows.units[worst.metric])
         above = f"{worst.exceeding} of {worst.runs} runs are above the limit of {limit}"
         texts.append(f"Begin with the {words}{f' of {where}' * bool(where)}: {above}.")
-    texts += advise_on_keys(found.leading, rows)
-    if len(rows.every) < rows.manifest["counts"]["runs"]:
-        texts.append("Go on with the sweep: seatsim sweep with --resume.")
-    return texts
+    resume = len(rows.every) < rows.manifest["counts"]["runs"]
+    return [*texts, *advise_on_keys(found.leading, rows), *choose_advice(resume=resume)]
 
 
 def _list_metrics(found: Sensitivities, rows: SweepRows) -> list[str]:
@@ -202,20 +187,14 @@ def _show_sensitivity(found: Sensitivities, rows: SweepRows, figures: Figures) -
         blocks += show_pictures(figures, f"shares_{metric}", f"tornado_{metric}")
         explained, words = found.of(metric)[0].explained, describe_column(metric, rows.units).words
         if explained < EXPLAINED:
-            known = format_percent(max(0.0, explained))
-            rest = "The rest is the random road, sensor noise, or interactions that it has no terms for."
-            said = f"predicts {known} of the variance of the {words} in runs left out of its fit. {rest}"
-            blocks.append(Text(f"The shares rest on a polynomial that {said}"))
+            blocks += explain("polynomial", known=format_percent(max(0.0, explained)), words=words)
     return blocks
 
 
 def _show_limits(exceeded: Sequence[Exceedance], rows: SweepRows) -> list[Block]:
     if not exceeded:
         return []
-    what, lead = ("probability", "The interval holds for runs that were drawn independently of each other.")
-    if not rows.is_random:
-        what = "share of the runs"
-        lead = "No key is drawn from a distribution: these are shares of the runs of the design, no probabilities."
+    what, lead = ("probability", "drawn") if rows.is_random else ("share of the runs", "not_drawn")
     lines = []
     for row in exceeded[:MOST_LINES]:
         metric = describe_column(row.metric, rows.units).words
@@ -225,7 +204,7 @@ def _show_limits(exceeded: Sequence[Exceedance], rows: SweepRows) -> list[Block]
         lines.append((*map(format_level, row.group.values()), metric, limit, *counted))
     groups = list(exceeded[0].group)
     head = [*groups, "metric", "limit", "runs above", what, "95 % interval"]
-    return [Text(lead), *tabulate("Runs above each limit", head, lines, len(groups) + 1)]
+    return [*explain(lead), *tabulate("Runs above each limit", head, lines, len(groups) + 1)]
 
 
 def _show_quantiles(quantiles: pd.DataFrame, rows: SweepRows) -> list[Table]:

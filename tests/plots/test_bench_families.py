@@ -6,7 +6,13 @@ import numpy as np
 
 from seatsim.characterisation.rows import Cloud, Row
 from seatsim.plots.bench import loops as families
-from seatsim.plots.bench.trends import BY_CURRENT, BY_FREQUENCY, BY_TEMPERATURE, choose_abscissas, choose_looks
+from seatsim.plots.bench.characterisation import (
+    BY_CURRENT,
+    BY_FREQUENCY,
+    BY_TEMPERATURE,
+    choose_abscissas,
+    choose_looks,
+)
 from seatsim.simulation.damper_bench import SineTest
 
 PHASE = np.linspace(0.0, 2.0 * np.pi, 101)

@@ -18,12 +18,10 @@ from PIL import Image
 from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
 from seatsim.characterisation.sheet import WarmUp
 from seatsim.diagnosis.residuals import drop_start, find_worst
-from seatsim.plots.bench.characterisation import plot_characterisation
+from seatsim.plots.bench.characterisation import plot_characterisation, plot_warm_up
 from seatsim.plots.bench.identification import plot_predictions
-from seatsim.plots.bench.trends import plot_warm_up
 from seatsim.plots.bench.vibration import plot_damping, plot_vibration
-from seatsim.plots.diagnosis.answer import select_stages
-from seatsim.plots.diagnosis.draw import plot_all_of_gap, plot_diagnosis
+from seatsim.plots.diagnosis import plot_all_of_gap, plot_diagnosis, select_stages
 from seatsim.plots.runs.draw import plot_result
 from seatsim.plots.saving import render_inline
 from seatsim.plots.style import WIDTH

@@ -9,10 +9,10 @@ from matplotlib.colors import to_hex
 from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.effects.base import EFFECTS
 from seatsim.plots.loops import SIGNS
-from seatsim.plots.runs import histories, looks, spectra
+from seatsim.plots.runs import looks, signals
 from seatsim.plots.runs.comparison import plot_comparison, plot_pareto
-from seatsim.plots.runs.dampers import choose_amplitude, find_dampers, plot_damper_loops, plot_force_velocity
-from seatsim.plots.runs.histories import CLOSE_UP
+from seatsim.plots.runs.dampers import choose_amplitude, group_by_damper, plot_damper_loops, plot_force_velocity
+from seatsim.plots.runs.signals import CLOSE_UP
 from seatsim.plots.style import GREY
 from seatsim.plots.thinning import BINS, thin_line
 from seatsim.rig.coil import Coil
@@ -27,15 +27,15 @@ def texts(figure):
 
 
 def plot_time_histories(runs):
-    return histories.plot_time_histories(*looks.show_runs(runs))
+    return signals.plot_time_histories(*looks.show_runs(runs))
 
 
 def plot_psd(runs):
-    return spectra.plot_psd(*looks.show_runs(runs))
+    return signals.plot_psd(*looks.show_runs(runs))
 
 
 def plot_transmissibility(runs):
-    return spectra.plot_transmissibility(*looks.show_runs(runs))
+    return signals.plot_transmissibility(*looks.show_runs(runs))
 
 
 def legend(figure):
@@ -148,7 +148,7 @@ def test_loops_by_current_and_by_temperature(made_up):
 def test_distinct_dampers(made_up):
     run, other = made_up({"variant": "a"}), made_up({"variant": "b"}, factors=TemperatureFactors())
     strong = replace(run, scenario=replace(run.scenario, coil=Coil(max_current=2.0)))
-    assert [len(damper.runs) for damper in find_dampers([run, other, run, strong])] == [2, 1, 1]
+    assert list(map(len, group_by_damper([run, other, run, strong]))) == [2, 1, 1]
     titles = [axes.get_title(loc="left") for axes in plot_damper_loops([run, other]).axes[::2]]
     assert titles == ["bouc_wen (a) at 20 °C", "bouc_wen (a) at 1 A", "bouc_wen (b) at 20 °C"]
 

@@ -18,7 +18,7 @@ from seatsim.diagnosis.result import (
     Share,
 )
 from seatsim.report.diagnosis import advise, report_diagnosis, say_diagnosis
-from seatsim.report.diagnosis_sections import format_estimate, say_action, say_cause
+from seatsim.report.diagnosis import format_estimate, say_action, say_cause
 from seatsim.report.formatting import format_sentence, read_words
 from seatsim.report.rendering import render_report
 from seatsim.schema.printing import format_percent

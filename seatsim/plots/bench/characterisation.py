@@ -1,24 +1,30 @@
-"""All figures of a characterisation, and the response of the force to steps of the current."""
+"""All figures of a characterisation but its loops: force, energy, damping and asymmetry over current and temperature.
+
+And the response of the force to steps of the current, and the warm-up.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from seatsim.characterisation.response import Response
-from seatsim.characterisation.sheet import StepResponse
-from seatsim.characterisation.summary import Characterisation
+from seatsim.characterisation.rows import WARMER, Row
+from seatsim.characterisation.sheet import StepResponse, WarmUp
+from seatsim.characterisation.summary import Characterisation, group_by_setting
 from seatsim.plots import style
-from seatsim.plots.bench.loops import plot_loops
-from seatsim.plots.bench.trends import plot_asymmetry, plot_energy, plot_warm_up
+from seatsim.plots.bench.loops import describe_setting, plot_loops, select_largest_current, select_lowest_temperature
 from seatsim.plots.style import GREY, Entry, Grid
 from seatsim.plots.thinning import spread_evenly
+from seatsim.schema.arrays import Array
 
-MOST = 6
+MOST_STEPS = 6
 """Most responses in a panel."""
 SHOWN = 3.6
 """Length of a panel over the longest time to 90 %."""
@@ -26,6 +32,8 @@ SYMMETRIC = 1e-3
 """Asymmetric part over the RMS force up to which it is no more than rounding and noise."""
 _TIMES = (("t10", 0.1), ("t63", 1.0 - math.exp(-1.0)), ("t90", 0.9))
 """Times that are marked, with the shares of the change that they are of."""
+MOST = 8
+"""Most settings that lines of one panel can tell apart."""
 
 
 def plot_characterisation(found: Characterisation) -> dict[str, Figure]:
@@ -52,29 +60,28 @@ def plot_steps(found: Characterisation) -> Figure:
     known = list(zip(answers, found.sheet.response, strict=True))
     speeds = {f"{answer.speed:.3g} m/s" for answer in answers if math.isfinite(answer.speed)}
     at = f", at {speeds.pop()}" if len(speeds) == 1 else ""
-    starts = {True: "the current's own 10 %", False: "the commanded step"}
+    starts = ("the commanded step", "the current's own 10 %")
     start = " or ".join(starts[own] for own in sorted({math.isfinite(each.current_t10) for each in answers}))
     note = f"Share of the force's change that is covered{at}. Time counts from {start}."
-    title = f"Response to steps of current: {found.name}"
-    shown = [spread_evenly([pair for pair in known if pair[0].rises == rises], MOST) for rises in (True, False)]
+    shown = [spread_evenly([pair for pair in known if pair[0].rises == rises], MOST_STEPS) for rises in (True, False)]
     if (count := sum(map(len, shown))) < len(known):
         note += f" {count} of {len(known)} steps are shown."
     # The legends stand below the panels, where they cover nothing.
     room = 0.75 + style.LINE * max(map(len, shown))
-    page = style.make_page(title, note, Grid((3.0,), columns=2, top=0.3, bottom=room, gap=(0.3, 0.0)))
-    for axes, words, pairs in zip(page.rows[0], ("rises", "falls"), shown, strict=True):
+    grid = Grid((3.0,), columns=2, top=0.3, bottom=room, gap=(0.3, 0.0))
+    figure, [[left, right]] = style.make_page(f"Response to steps of current: {found.name}", note, grid)
+    for axes, words, pairs in zip((left, right), ("rises", "falls"), shown, strict=True):
         _draw_responses(axes, pairs)
         style.set_title(axes, f"current {words}")
-    page.rows[0][0].set_ylabel("share of the change [-]")
-    page.rows[0][1].tick_params(labelleft=False)
-    return style.name_coincident(page.figure)
+    left.set_ylabel("share of the change [-]")
+    right.tick_params(labelleft=False)
+    return style.name_coincident(figure)
 
 
 def _draw_responses(axes: Axes, shown: list[tuple[Response, StepResponse]]) -> None:
     if not shown:
         return style.explain_empty(axes, "none determined")
-    end = SHOWN * max((row.t90 for _, row in shown if math.isfinite(row.t90)), default=0.05)
-    top = 1.2
+    end, top = SHOWN * max((row.t90 for _, row in shown if math.isfinite(row.t90)), default=0.05), 1.2
     for (answer, row), colour in zip(shown, style.sample_colours("viridis", len(shown)), strict=True):
         assert answer.time is not None and answer.share is not None
         start = answer.current_t10 if math.isfinite(answer.current_t10) else 0.0
@@ -85,15 +92,150 @@ def _draw_responses(axes: Axes, shown: list[tuple[Response, StepResponse]]) -> N
         top = max(top, float(np.max(answer.share)) + 0.05)
     for time, share in _TIMES:
         axes.axhline(share, color=GREY, linewidth=0.7, linestyle=(0.0, (1.0, 2.0)))
-        words = _say_time(time, [row for _, row in shown])
+        # The time in words, of all responses of the panel together.
+        known = sorted(round(1e3 * value, 1) + 0.0 for _, row in shown if math.isfinite(value := getattr(row, time)))
+        ends = " to ".join(f"{each:g}" for each in sorted({*known[:1], *known[-1:]}))
+        words = f"{time} = {ends} ms" if known else f"{time} is not reached"
         axes.text(0.99e3 * end, share - 0.02, words, fontsize=9, horizontalalignment="right", verticalalignment="top")
     axes.set(xlabel="time [ms]", xlim=(-0.08e3 * end, 1e3 * end), ylim=(-0.15, top))
     axes.set_yticks([0, *(share for _, share in _TIMES)], ["0", *(f"{share:.2g}" for _, share in _TIMES)])
     axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.17), fontsize=style.FONT, frameon=False, borderaxespad=0)
 
 
-def _say_time(time: str, rows: Sequence[StepResponse]) -> str:
-    """Return a time in words, of all responses of a panel together."""
-    known = sorted(round(1e3 * value, 1) + 0.0 for row in rows if math.isfinite(value := getattr(row, time)))
-    ends = " to ".join(f"{each:g}" for each in sorted({*known[:1], *known[-1:]}))
-    return f"{time} = {ends} ms" if known else f"{time} is not reached"
+class _Figure(NamedTuple):
+    """A figure of a row: the label of its axis, its name, factor from SI to the unit shown, least end of the axis."""
+
+    label: str
+    name: str
+    factor: float = 1.0
+    least: float = 0.0
+
+    def read(self, row: Row) -> tuple[float, float, Array]:
+        """Return value, spread over the cycles, and the values of these where they are kept."""
+        spread = getattr(row, f"{self.name}_sd", np.nan)
+        cycles = np.array((row.cycle_values or {}).get(self.name, ()))
+        return self.factor * getattr(row, self.name), abs(self.factor) * spread, self.factor * cycles
+
+
+class Abscissa(NamedTuple):
+    """What figures are drawn over: the label of the axis, its value, and the name of what a line holds fixed."""
+
+    label: str
+    value: Callable[[Row], float]
+    fixed: Callable[[Row], str]
+
+
+_ENERGY = (
+    _Figure("peak force\nin rebound [N]", "peak_rebound"),
+    _Figure("peak force in\ncompression [N]", "peak_compression", -1.0),
+    _Figure("energy per cycle [J]", "energy"),
+    _Figure("equivalent damping\n[kN·s/m]", "damping", 1e-3),
+)
+_ASYMMETRY = (
+    _Figure("asymmetric part /\nRMS force [%]", "asymmetry", 100.0, 2.0),
+    _Figure("asymmetry without the\nmean force [%]", "asymmetry_of_shape", 100.0, 2.0),
+)
+BY_CURRENT = Abscissa("current [A]", lambda r: r.current, lambda r: f"{r.temperature:.0f} °C")
+BY_TEMPERATURE = Abscissa("temperature [°C]", lambda r: r.temperature, lambda r: f"{r.current:.3g} A")
+BY_FREQUENCY = Abscissa("frequency [Hz]", lambda r: r.frequency, lambda r: "")
+
+
+def plot_energy(found: Characterisation) -> Figure:
+    """Return peaks, energy and damping over the current, and over the temperature where it varies, line by setting."""
+    return _plot_trends(f"Peak force, energy and damping: {found.name}", "", found, _ENERGY)
+
+
+def plot_asymmetry(found: Characterisation) -> Figure:
+    """Return the asymmetric part of the loops over the same."""
+    formula = "½ (F(t) + F(t + T/2))".replace(" ", "\u00a0")
+    note = f"Asymmetric part: difference from the centrosymmetric loop, {formula}; RMS over a cycle. "
+    return _plot_trends(f"Asymmetry: {found.name}", note, found, _ASYMMETRY)
+
+
+def plot_warm_up(found: Characterisation) -> Figure:
+    """Return the force of each cycle, over that of the first, against the energy that the damper absorbed before it."""
+    records = dict[str, list[WarmUp]]()
+    for cycle in found.sheet.warm_up:
+        records.setdefault(cycle.record, []).append(cycle)
+    shown = spread_evenly([*records.values()], MOST)
+    names = [f"{one.record}, {one.current:.3g} A, from {one.temperature:.0f} °C" for one, *_ in shown]
+    looks = style.make_entries([name.removesuffix(", from nan °C") for name in names])
+    note = "Force at the peak speed of each cycle. The number at the end of a line is the damper's last temperature."
+    title = f"Fade as the damper warms up: {found.name}"
+    figure, [[panel]] = style.make_page(title, note, Grid((2.8,), right=0.6), looks)
+    for cycles, look in zip(shown, looks, strict=True):
+        energy, share = [1e-3 * each.absorbed for each in cycles], [each.relative_force for each in cycles]
+        style.draw_line(panel, energy, share, look)
+        if np.isfinite(cycles[-1].temperature):
+            panel.text(energy[-1], share[-1], f" {cycles[-1].temperature:.0f} °C", fontsize=style.FONT, va="center")
+    panel.set(xlabel="absorbed energy [kJ]", ylabel="force / that of the first cycle [-]")
+    return style.name_coincident(figure)
+
+
+def _plot_trends(title: str, note: str, found: Characterisation, figures: Sequence[_Figure]) -> Figure:
+    rows = [row for row in found.rows if row.loop is not None]
+    blocks = choose_abscissas(rows)
+    looks, fixed = choose_looks(blocks)
+    if any(np.isfinite(getattr(row, f"{figure.name}_sd", np.nan)) for row in rows for figure in figures):
+        fixed += " Error bars, where larger than a dot: standard deviation over the cycles."
+    if any(row.temperature_range > WARMER and row.cycle_values for row in rows):
+        fixed += " Small dots: each cycle."
+    grid = Grid((1.9,) * (len(figures) // 2 * len(blocks)), columns=2, gap=(0.9, 0.65))
+    page = style.make_page(title, note + fixed, grid, list(looks.values()))
+    for axes, (block, figure) in zip(page.list_panels(), product(blocks, figures), strict=True):
+        _draw_trend(axes, *block, figure, looks)
+    return style.name_coincident(page.figure)
+
+
+def choose_abscissas(rows: Sequence[Row]) -> list[tuple[Abscissa, list[list[Row]]]]:
+    """Return what figures are drawn over, with the groups of rows that make a line each.
+
+    Over the current at the lowest temperature of each setting; over the temperature at its largest current; over the
+    frequency where neither varies.
+    """
+    groups = group_by_setting(rows)
+    currents, warmed = (list(map(select, groups)) for select in (select_lowest_temperature, select_largest_current))
+    blocks = []
+    if any(len({row.current for row in group}) > 1 for group in currents):
+        blocks.append((BY_CURRENT, currents))
+    known = [row.temperature for row in rows if np.isfinite(row.temperature)]
+    if (known and max(known) - min(known) > WARMER) or any(row.temperature_range > WARMER for row in rows):
+        blocks.append((BY_TEMPERATURE, warmed))
+    return blocks or [(BY_FREQUENCY, groups)]
+
+
+def choose_looks(blocks: Sequence[tuple[Abscissa, list[list[Row]]]]) -> tuple[dict[str, Entry], str]:
+    """Return the look of each setting, and a note on what is held fixed and what is left out."""
+    names = list(dict.fromkeys(describe_setting(group[0]) for _, groups in blocks for group in groups))
+    looks = {entry.label: entry._replace(mark="o") for entry in style.make_entries(names[:MOST])}
+    parts = []
+    for across, groups in blocks:
+        fixed = {across.fixed(group[0]) for group in groups}
+        if len(fixed) == 1 and not fixed & {"", "nan °C"}:
+            parts.append(f"over {across.label.split(' [')[0]} at {fixed.pop()}")
+    note = f"{'; '.join(parts)}." if parts else "One line for each amplitude and frequency."
+    more = f" {MOST} of {len(names)} settings are shown." if len(names) > MOST else ""
+    return looks, f"{note[0].upper()}{note[1:]}{more}"
+
+
+def _draw_trend(
+    axes: Axes, across: Abscissa, groups: Sequence[Sequence[Row]], figure: _Figure, looks: dict[str, Entry]
+) -> None:
+    """Draw a figure of some groups of rows over a quantity: a line where no two rows are at the same place."""
+    shown = [(group, looks[name]) for group in groups if (name := describe_setting(group[0])) in looks]
+    for group, look in shown:
+        ordered = sorted(group, key=across.value)
+        places = [across.value(row) for row in ordered]
+        values, spreads, cycles = zip(*map(figure.read, ordered), strict=True)
+        apart = bool(np.all(np.diff(places) > (WARMER if across is BY_TEMPERATURE else 0.0)))
+        style.draw_line(axes, places, values, look if apart else look._replace(dashes="none"))
+        ends = np.nan_to_num(spreads)
+        axes.errorbar(places, values, ends, fmt="none", ecolor=look.colour, capsize=2.5, elinewidth=0.9)
+        for row, each in zip(ordered, cycles, strict=True):
+            if across is BY_TEMPERATURE and row.temperature_range > WARMER and len(each):
+                warmth = (row.cycle_values or {})["temperature"]
+                axes.plot(warmth, each, ".", color=look.colour, markersize=3, alpha=0.5, zorder=1)
+    low, high = axes.get_ylim()
+    # A marker at the top is whole although the axis begins at 0, far from the lowest.
+    high = max(high, 1.05 * axes.dataLim.y1, figure.least)
+    axes.set(xlabel=across.label, ylabel=figure.label, ylim=(min(0.0, low), high))

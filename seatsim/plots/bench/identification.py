@@ -52,14 +52,9 @@ def plot_predictions(found: Identification) -> Figure:
     grid = Grid(heights=(1.9,) * len(chosen), columns=3, right=0.7, top=0.3, gap=(0.2, 0.8))
     note, mean = f"{len(chosen)} of {len(found.assessments)} records", found.assessed
     note += f"; mean fit {mean.fit_percent:.1f} %{' of held-out records' * bool(found.mean('test'))}" if mean else ""
-    note += f", without the first {START:g} s"
-    legend = (MEASURED, _PREDICTED, _DIFFERENCE)
-    page = style.make_page(
-        f"{found.model}: measured and predicted force",
-        f"{note}. {FIT} {SIGNS}",
-        grid,
-        legend,
-    )
+    note += f", without the first {START:g} s. {FIT} {SIGNS}"
+    title, legend = f"{found.model}: measured and predicted force", (MEASURED, _PREDICTED, _DIFFERENCE)
+    page = style.make_page(title, note, grid, legend)
     for panels, judged, name in zip(page.rows, chosen, name_records(chosen), strict=True):
         title = f"{name} ({PARTS[judged.part]}), fit {judged.agreement.fit_percent:.1f} %"
         panels[0].set_title(clean_text(title, 64), loc="left", fontsize=style.FONT)

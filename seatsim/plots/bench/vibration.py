@@ -19,6 +19,10 @@ from seatsim.standards.seat_rows import SeatTest
 
 MOST = 4
 """Stretches, and axes, that have a panel of their own; more are chosen evenly."""
+_RUNNING = (
+    "RMS of the weighted acceleration over the last second, without multiplying factor. The first second, in which the"
+    " window fills, is left out. The largest value of all stretches is MTVV."
+)
 HIGHEST = 100.0
 """Hz up to which a spectrum is drawn: above it no weighting of the body lets much through."""
 
@@ -34,14 +38,10 @@ def plot_vibration(found: Comfort) -> dict[str, Figure]:
 
 def _plot_running_rms(found: Comfort, axes: Sequence[str]) -> Figure:
     """Return the running RMS of each axis, a panel for each stretch."""
-    highest = {axis: found.axes[axis].dose.mtvv for axis in axes}
-    looks = style.make_entries([f"{axis}, MTVV {value:.3g} m/s²" for axis, value in highest.items()])
+    highest = [found.axes[axis].dose.mtvv for axis in axes]
+    looks = style.make_entries([f"{axis}, MTVV {value:.3g} m/s²" for axis, value in zip(axes, highest, strict=True)])
     chosen = spread_evenly(range(len(found.stretches[axes[0]])), MOST)
-    note = (
-        "RMS of the weighted acceleration over the last second, without multiplying factor. The first second, in which"
-        " the window fills, is left out. The largest value of all stretches is MTVV."
-    )
-    page = style.make_page("Vibration over time", note, Grid((1.5,) * len(chosen), top=0.3), looks)
+    page = style.make_page("Vibration over time", _RUNNING, Grid((1.5,) * len(chosen), top=0.3), looks)
     for panel, k in zip(page.list_panels(), chosen, strict=True):
         for axis, look in zip(axes, looks, strict=True):
             part = found.stretches[axis][k]
@@ -49,16 +49,14 @@ def _plot_running_rms(found: Comfort, axes: Sequence[str]) -> Figure:
             time = np.arange(len(values)) / part.sample_rate
             style.draw_line(panel, *thin_line(time[filled:], values[filled:]), look)
         style.set_title(panel, found.stretches[axes[0]][k].run)
-        panel.set(ylim=(0.0, 1.05 * max(highest.values()) or 1.0))
-        panel.set(xlabel="time [s]", ylabel="a$_w$ over 1 s [m/s²]")
+        panel.set(ylim=(0.0, 1.05 * max(highest) or 1.0), xlabel="time [s]", ylabel="a$_w$ over 1 s [m/s²]")
     return style.name_coincident(page.figure)
 
 
 def _plot_spectra(found: Comfort, axes: Sequence[str]) -> Figure:
     """Return the power spectral densities, as recorded and weighted, a panel for each axis."""
     looks = [Entry("as recorded", GREY, width=2.0), Entry("weighted", style.COLOURS[0])]
-    chosen = spread_evenly(axes, MOST)
-    densities = []
+    chosen, densities = spread_evenly(axes, MOST), []
     for stretches in (found.stretches[axis] for axis in chosen):
         signals = [part.acceleration for part in stretches], [part.weighted for part in stretches]
         densities.append([estimate_density(1.0 / stretches[0].sample_rate, each) for each in signals])
@@ -74,18 +72,18 @@ def _plot_spectra(found: Comfort, axes: Sequence[str]) -> Figure:
 
 def _plot_operations(day: Exposure, operations: Sequence[Operation]) -> Figure:
     """Return the partial exposure of each operation, and that of the day, along the axis that decides."""
-    axis, hours = day.a8_axis, [*((each.name, each.hours) for each in operations), ("the whole day", day.hours)]
-    values = [*(each.a8[axis] for each in operations), day.a8]
+    axis = day.a8_axis
+    parts = [*((each.name, each.hours, each.a8[axis]) for each in operations), ("the whole day", day.hours, day.a8)]
     # A text at the end of a bar would stand in the way of the two values.
-    names = [f"{name}, {lasts:g} h: {value:.2f}" for (name, lasts), value in zip(hours, values, strict=True)]
-    levels = [("action value", day.action_value.a8), ("limit value", day.limit_value.a8)]
-    looks = [Entry(f"{name}, {level:g} m/s²", style.DARK, style.DASHES[k]) for k, (name, level) in enumerate(levels)]
+    names = [f"{name}, {lasts:g} h: {value:.2f}" for name, lasts, value in parts]
+    levels = {"action value": day.action_value.a8, "limit value": day.limit_value.a8}
+    styled = zip(levels.items(), style.DASHES, strict=False)
+    looks = [Entry(f"{name}, {level:g} m/s²", style.DARK, dashes) for (name, level), dashes in styled]
     note = f"A(8) along {axis}, where the day's is largest; the squares of the parts add up to that of the day."
-    title = "What each operation adds to the day"
-    figure, [panel] = style.make_rows(title, note, names, looks, [len(names) - 1])
-    colours = [*(style.COLOURS[0] for _ in operations), style.COLOURS[1]]
-    style.draw_bars(panel, values, colours, [""] * len(values))
-    for (_, level), look in zip(levels, looks, strict=True):
+    figure, [panel] = style.make_rows("What each operation adds to the day", note, names, looks, [len(names) - 1])
+    colours = [style.COLOURS[0]] * len(operations) + [style.COLOURS[1]]
+    style.draw_bars(panel, [value for _, _, value in parts], colours, [""] * len(parts))
+    for level, look in zip(levels.values(), looks, strict=True):
         panel.axvline(level, color=look.colour, linestyle=look.dashes, linewidth=1.2, zorder=3)
     panel.set_xlabel("A(8) [m/s²]")
     return figure
@@ -97,9 +95,8 @@ def plot_damping(found: SeatTest) -> dict[str, Figure]:
         return {}
     looks = [each._replace(mark=".", width=1.6) for each in style.make_entries(list(found.damping))]
     note = "Sines from half to twice the resonance that is expected of the seat."
-    figure, [[axes]] = style.make_page(
-        "Damping test: motion of the mass over that of the floor", note, Grid((2.6,)), looks
-    )
+    title = "Damping test: motion of the mass over that of the floor"
+    figure, [[axes]] = style.make_page(title, note, Grid((2.6,)), looks)
     for look, test in zip(looks, found.damping.values(), strict=True):
         style.draw_line(axes, test.frequencies, test.transmissibilities, look)
     axes.set_ylim(bottom=0.0)

@@ -7,9 +7,8 @@ from matplotlib.figure import Figure
 from seatsim.cosimulation.damper import FmuDamper
 from seatsim.plots.runs.comparison import plot_comparison, plot_pareto
 from seatsim.plots.runs.dampers import plot_damper_loops, plot_force_velocity
-from seatsim.plots.runs.histories import plot_time_histories
 from seatsim.plots.runs.looks import show_runs
-from seatsim.plots.runs.spectra import plot_psd, plot_transmissibility
+from seatsim.plots.runs.signals import plot_psd, plot_time_histories, plot_transmissibility
 from seatsim.simulation.result import Result
 
 

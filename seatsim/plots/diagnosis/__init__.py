@@ -1,1 +1,0 @@
-"""Figures of a diagnosis, as pictures with title and caption for the report; nothing here writes HTML."""

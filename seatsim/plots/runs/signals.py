@@ -1,0 +1,172 @@
+"""Channels of runs over time, as a whole and close up, and over frequency: densities, transmissibility."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import cycle
+from textwrap import fill
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from seatsim.metrics.spectra import POWER, TRUSTED, estimate_density, trusted_gain
+from seatsim.plots import style
+from seatsim.plots.densities import draw_densities, find_first, find_problem, state_method
+from seatsim.plots.runs.looks import Shown
+from seatsim.plots.style import COLOURS, DARK, DASHES, GREY, WIDTH, Entry, Grid
+from seatsim.plots.thinning import BINS, Window, find_loudest, thin_line
+from seatsim.schema.arrays import Array
+from seatsim.schema.errors import InputError
+from seatsim.schema.printing import describe_channel
+from seatsim.simulation.augment import augment_plant
+from seatsim.simulation.naming import distinguish_runs
+from seatsim.simulation.result import UNITS, Run
+
+CLOSE_UP = 6.0
+"""Length in s of the close-up: about nine swings of a seat suspension."""
+RASTER = 0.1
+"""Raster in s on which a close-up begins, the digits that its title has."""
+LETTERS = 13
+"""Letters of a line of a label beside a panel that is this low."""
+NEAR = 0.2
+"""Share of an end stop's distance that the motion must reach for the stop to be drawn; else it would look flat."""
+CHANNELS = ("driver_acceleration", "suspension_displacement", "damper_force", "coil_current")
+TEMPERATURE = "damper_temperature"
+TARGETS = {"damper_force": "wanted_force", "coil_current": "current_command"}
+"""Channels that others should follow."""
+RUN = Entry("the run", COLOURS[0], width=1.1)
+TARGET = Entry("wanted force, commanded current", COLOURS[5], "-", 2.0, 0.6)
+LIMIT = Entry("end stop begins", DARK, ":")
+HIGHEST = 50.0
+"""Hz; what the seat can change, and more than the driver feels."""
+GRID = Grid((2.9,))
+SAME = Entry("driver moves as much as the floor", GREY, width=1.0)
+NOTE = (
+    f"Drawn where the floor has power ({POWER:g} of its highest density or more) and explains most of the driver's"
+    f" motion (coherence {TRUSTED:g} or more)."
+)
+
+
+def plot_time_histories(shown: Shown) -> Figure:
+    """Return driver acceleration, suspension displacement, damper force, current, and a changing temperature.
+
+    Close up is the window with the largest RMS of the first run's driver acceleration, within all runs. What
+    was wanted and commanded is drawn for a single run only, which is shown as a whole, too.
+    """
+    single = len(shown.runs) == 1
+    first, common = shown.runs[0].history, float(min(run.history["time"][-1] for run in shown.runs))
+    window = find_loudest(first["driver_acceleration"][first["time"] <= common], first.step, CLOSE_UP, RASTER)
+    note = f"{window}, where the driver's RMS acceleration is largest{' in the first run' * (not single)}."
+    views = [window]
+    if not np.any(first["driver_acceleration"]):
+        views, note = [Window(0.0, common)], "The whole run, at rest."
+    elif window.end >= common:
+        note = "The whole run."
+    elif single:
+        views, note = [Window(0.0, common), window], f"Left: whole run. Right (grey on the left): {note}"
+    limits, warms = _find_limits(shown.runs), any(np.ptp(run.history[TEMPERATURE]) > 0 for run in shown.runs)
+    channels = (*CHANNELS, TEMPERATURE) if warms else CHANNELS
+    # A law that states a current wants no force.
+    target = TARGET if np.isfinite(first["wanted_force"]).any() else TARGET._replace(label="commanded current")
+    looks = [RUN] if single else shown.looks
+    legend = [*looks, *[target] * single, *[LIMIT] * bool(limits)]
+    grid = Grid((1.2,) * len(channels), len(views), left=1.12, gap=(0.4, 0.3))
+    page = style.make_page(f"Time histories: {shown.title}", note + shown.omission, grid, legend)
+    for row, channel in zip(page.rows, channels, strict=True):
+        lines = [(run, channel, look) for run, look in zip(shown.runs, looks, strict=True)]
+        if single and channel in TARGETS and np.isfinite(first[TARGETS[channel]]).any():
+            lines.insert(0, (shown.runs[0], TARGETS[channel], target))
+        for axes, view in zip(row, views, strict=True):
+            for line in lines:
+                _draw_line(axes, *line, view)
+            axes.set_xlim(*view)
+            for limit in limits if channel == "suspension_displacement" else ():
+                axes.axhline(1e3 * limit, color=LIMIT.colour, linestyle=":", linewidth=LIMIT.width)
+            axes.tick_params(labelbottom=row is page.rows[-1])
+        row[0].set_ylabel(fill(describe_channel(channel, UNITS[channel]).axis, LETTERS))
+        row[0].yaxis.set_label_coords(-0.5 / (row[0].get_position().width * WIDTH), 0.5)
+        # The close-up has the scale of the whole run, on which it is marked.
+        for close in row[1:]:
+            row[0].axvspan(*window, color=style.AREA, zorder=0)
+            close.set_ylim(row[0].get_ylim())
+            close.tick_params(labelleft=False)
+    for axes in page.rows[-1]:
+        axes.set_xlabel("time [s]")
+    return style.name_coincident(page.figure)
+
+
+def _draw_line(axes: Axes, run: Run, channel: str, look: Entry, view: Window) -> None:
+    """Draw a channel of a run within a window."""
+    part = view.part(run.history.step)
+    values = describe_channel(channel, UNITS[channel]).factor * run.history[channel][part]
+    # The whole of a run has swings beside each other, with gaps between them where bins are wider than dots.
+    bins = BINS * (2 if view.end - view.start > CLOSE_UP else 1)
+    thinned = thin_line(run.history["time"][part], values, round(bins * axes.get_position().width))
+    style.draw_line(axes, *thinned, look)
+
+
+def _find_limits(runs: Sequence[Run]) -> list[float]:
+    """Return the displacements in m of the end stops that the runs come near to."""
+    peak = max(float(np.max(np.abs(run.history["suspension_displacement"]))) for run in runs)
+    seats = (augment_plant(run.scenario.effects, run.scenario.plant) for run in runs if run.scenario.plant)
+    stated = {limit for seat in seats for limit in seat.end_stops or ()}
+    return sorted(limit for limit in stated if abs(limit) * NEAR <= peak)
+
+
+def plot_psd(shown: Shown) -> Figure:
+    """Return the power spectral density of the driver's acceleration, run by run, with the floor's."""
+    groups: dict[bytes, list[Run]] = {}
+    for run in shown.runs:
+        groups.setdefault(run.history["floor_acceleration"].tobytes(), []).append(run)
+    names = [distinguish_runs(group, shown.runs)[0] for group in groups.values()] if len(groups) > 1 else [""]
+    floors = [
+        Entry(f"floor: {name}".removesuffix(": "), f"{0.7 - 0.5 * k / len(names):.2f}", dashes, 2.2)
+        for k, (name, dashes) in enumerate(zip(names, cycle(DASHES), strict=False))
+    ]
+    drivers = shown.looks if len(shown.runs) > 1 else [shown.looks[0]._replace(label="driver")]
+    signals = [(group[0].history, "floor_acceleration") for group in groups.values()]
+    signals += [(run.history, "driver_acceleration") for run in shown.runs]
+    found = [estimate_density(history.step, [history[channel]]) for history, channel in signals]
+    first, legend = find_first(found), [] if find_problem(found, HIGHEST) else [*drivers, *floors]
+    title, note = f"Driver acceleration over frequency: {shown.title}", state_method(first) + shown.omission
+    figure, [[axes]] = style.make_page(title, note, GRID, legend)
+    style.scale_frequency_axis(axes, first, HIGHEST)
+    axes.set_ylabel("power density [(m/s²)²/Hz]")
+    draw_densities(axes, found, [*floors, *drivers], HIGHEST)
+    return style.name_coincident(figure)
+
+
+def plot_transmissibility(shown: Shown) -> Figure:
+    """Return the magnitude of the transmissibility from floor to driver where it can be trusted."""
+    gains = [_estimate_gain(run) for run in shown.runs]
+    places, values = (np.concatenate([each[k] for each in gains]) for k in (0, 1))
+    places, known = places[values > 0], values[values > 0]
+    resolution = max((frequency[1] - frequency[0] for frequency, _, _ in gains if len(frequency)), default=np.inf)
+    looks = shown.looks if len(shown.runs) > 1 else [shown.looks[0]._replace(label="the run")]
+    lines = f" Lines up to {resolution:.2g} Hz apart." * bool(known.size)
+    title, note = f"Transmissibility, floor to driver: {shown.title}", NOTE + lines + shown.omission
+    figure, [[axes]] = style.make_page(title, note, GRID, [*looks, SAME] if known.size else [])
+    axes.set_ylabel("|driver / floor| [-]")
+    if not known.size:
+        style.scale_frequency_axis(axes, resolution, HIGHEST)
+        style.explain_empty(axes, "; ".join(dict.fromkeys(problem for _, _, problem in gains)))
+        return figure
+    style.scale_frequency_axis(axes, float(places.min()), min(HIGHEST, 1.1 * float(places.max())))
+    axes.axhline(1.0, color=SAME.colour, linewidth=SAME.width, zorder=1)
+    axes.set_yscale("log")
+    for (frequency, gain, _), look in zip(gains, looks, strict=True):
+        style.draw_line(axes, frequency, gain, look)
+    style.scale_log(axes, "y", min(0.5, float(known.min())) / 1.2, max(1.0, float(known.max())) * 1.2)
+    return style.name_coincident(figure)
+
+
+def _estimate_gain(run: Run) -> tuple[Array, Array, str]:
+    """Return frequency and gain of a run, NaN where it cannot be trusted, and why that would be everywhere."""
+    floor, driver = run.history["floor_acceleration"], run.history["driver_acceleration"]
+    try:
+        known = trusted_gain(floor, driver, 1 / run.history.step, HIGHEST)
+    except InputError as error:
+        return np.empty(0), np.empty(0), str(error)
+    problem = f"the floor explains less than {TRUSTED:g} of the driver's motion" if np.any(floor) else "no floor motion"
+    return *known, problem
