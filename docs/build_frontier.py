@@ -18,10 +18,9 @@ from matplotlib.figure import Figure
 import seatsim
 from seatsim.metrics.table import COMFORT, SEAT, TRAVEL
 from seatsim.plots import style
-from seatsim.plots.labels import describe_metric
 from seatsim.plots.runs.comparison import BEST, BOUND, FLOOR, draw_bounds
 from seatsim.plots.saving import save_figure
-from seatsim.plots.style import Entry, Grid
+from seatsim.plots.style import Entry, Grid, describe_metric
 from seatsim.simulation.performance_bounds import PerformanceBounds, compute_performance_bounds
 from seatsim.simulation.result import Run
 

@@ -10,8 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PathCollection
 
 from seatsim.plots import style
-from seatsim.plots.labels import clean_text
-from seatsim.plots.style import Entry, Grid, Page
+from seatsim.plots.style import Entry, Grid, Page, clean_text
 from seatsim.schema.arrays import Array
 from seatsim.simulation.damper_bench import SineTest
 

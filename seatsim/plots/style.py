@@ -1,4 +1,4 @@
-"""The common look of all pictures: colours, pages with fixed margins, legends above the panels, scales.
+"""The common look of all pictures: colours, pages with fixed margins, legends above the panels, scales, texts.
 
 Pages are laid out in inches: that costs nothing, where matplotlib's own layout engines draw every text first. A page is
 as wide as a telephone shows it legibly; a screen shows two side by side.
@@ -22,8 +22,8 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 from matplotlib.typing import LineStyleType
 from numpy.typing import ArrayLike
 
-from seatsim.plots.labels import clean_text
-from seatsim.schema.printing import LONGEST, RAISED
+from seatsim.metrics.table import METRICS, SHORT
+from seatsim.schema.printing import LONGEST, RAISED, Quantity, describe_channel, shorten
 from seatsim.schema.text import join_names, name_some
 
 WIDTH = 5.8
@@ -130,10 +130,24 @@ class _RoomyLocator(MaxNLocator):
         return ticks
 
 
+def describe_metric(name: str) -> Quantity:
+    """Return how a metric of a run is shown, in few words."""
+    return describe_channel(SHORT.get(name, name), METRICS[name].unit)
+
+
+def clean_text(text: str, longest: int = LONGEST) -> str:
+    """Return a text of at most `longest` letters that matplotlib prints as it stands.
+
+    Names come from scenarios and recordings. matplotlib would set what stands between two dollar signs as a formula,
+    and hides a label that begins with an underscore.
+    """
+    short = shorten(text, longest)
+    return (f" {short}" if short.startswith("_") else short).replace("$", r"\$")
+
+
 def make_entries(labels: Sequence[str]) -> list[Entry]:
     """Return a look for each of some lines: after eight the colours begin anew, with other dashes."""
-    looks = zip(labels, cycle(COLOURS), cycle(DASHES), strict=False)
-    return [Entry(label, colour, dashes) for label, colour, dashes in looks]
+    return [Entry(*look) for look in zip(labels, cycle(COLOURS), cycle(DASHES), strict=False)]
 
 
 def shade(name: str) -> ListedColormap:
@@ -156,8 +170,7 @@ def make_page(title: str, note: str, grid: Grid, legend: Sequence[Entry] = ()) -
     head, columns = measure_head(*map(len, lines)), _count_columns(legend)
     top = head + LINE * -(-len(legend) // columns) + grid.top
     height = top + sum(grid.heights) + grid.gap[1] * (len(grid.heights) - 1) + grid.bottom
-    figure = Figure(figsize=(WIDTH, height))
-    left = _MARGIN / WIDTH
+    figure, left = Figure(figsize=(WIDTH, height)), _MARGIN / WIDTH
     figure.text(left, 1 - _MARGIN / height, "\n".join(lines[0]), fontsize=11.5, fontweight="bold", va="top")
     below = _MARGIN + LINE * (len(lines[0]) + 0.15)
     figure.text(left, 1 - below / height, "\n".join(lines[1]), fontsize=FONT, color=DARK, va="top")
@@ -207,8 +220,8 @@ def add_colour_bar(axes: Axes, drawn: ScalarMappable, label: str, extend: str = 
 def name_coincident(figure: Figure) -> Figure:
     """Return a finished figure; its note says which lines lie on each other, and where, if not in all their panels."""
     # matplotlib gives lines of its own a label that begins with an underscore.
-    labelled = [[(str(line.get_label()), line) for line in axes.lines] for axes in figure.axes]
-    panels = [{name: line for name, line in lines if name.strip() and name[0] != "_"} for lines in labelled]
+    labelled = [{str(line.get_label()): line for line in axes.lines} for axes in figure.axes]
+    panels = [{name: line for name, line in lines.items() if name.strip() and name[0] != "_"} for lines in labelled]
     places: dict[tuple[str, ...], list[Axes]] = {}
     for axes, panel in zip(figure.axes, panels, strict=True):
         groups: dict[str, list[str]] = {}
@@ -258,8 +271,8 @@ def _lengthen_note(figure: Figure, sentence: str) -> None:
 
 def set_title(axes: Axes, text: str) -> None:
     """Put a title above a panel, as wide as the panel at most."""
-    width = axes.get_position().width * WIDTH
-    axes.set_title(clean_text(text, int(width / LETTER)), loc="left", fontsize=FONT)
+    longest = int(axes.get_position().width * WIDTH / LETTER)
+    axes.set_title(clean_text(text, longest), loc="left", fontsize=FONT)
 
 
 def scale_log(axes: Axes, which: Literal["x", "y"], low: float, high: float) -> None:
@@ -365,20 +378,16 @@ def _add_panels(figure: Figure, grid: Grid, top: float) -> list[list[Axes]]:
 
 
 def _add_panel(figure: Figure, place: tuple[float, float, float, float]) -> Axes:
+    """Return new axes with numbers at multiples of 1, 2 or 5, as many as there is room for."""
     axes = figure.add_axes(place)
     axes.grid(True, color="0.9", linewidth=0.7)
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
     axes.tick_params(labelsize=FONT)
-    _place_ticks(axes)
-    return axes
-
-
-def _place_ticks(axes: Axes) -> None:
-    """Put numbers along the axes of a panel, at multiples of 1, 2 or 5, as many as there is room for."""
     along, up = _count_ticks(axes)
     axes.xaxis.set_major_locator(_RoomyLocator(along, axes.bbox.width / axes.figure.dpi))
     axes.yaxis.set_major_locator(MaxNLocator(up, steps=(1, 2, 5, 10)))
+    return axes
 
 
 def _count_ticks(axes: Axes) -> tuple[int, int]:

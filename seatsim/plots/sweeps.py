@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from seatsim.metrics.table import COMFORT, METRICS, TRAVEL
 from seatsim.plots import style
-from seatsim.plots.labels import clean_text, describe_metric
-from seatsim.plots.style import COLOURS, DARK, ROW, Entry, Grid
+from seatsim.plots.style import COLOURS, DARK, ROW, Entry, Grid, clean_text, describe_metric
 from seatsim.scenario.scenario import is_condition
 from seatsim.schema.arrays import Array
 from seatsim.schema.printing import Quantity, describe_channel, format_number, format_percent, format_unit

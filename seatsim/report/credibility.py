@@ -60,9 +60,8 @@ def show_card(factors: Sequence[Factor]) -> Section:
         # What the next level asks for, where this kind of result can reach one.
         asked = [*read_conditions()[each.name][: len(each.holds)], UNKNOWN][each.level]
         rows.append((each.name, f"{each.level}\u00a0of\u00a0{len(each.holds)}", format_sentence(each.evidence), asked))
-    return Section(
-        "credibility", "How far to trust this", [*explain("credibility"), *show_table("credibility", rows, 4)]
-    )
+    blocks = [*explain("credibility"), *show_table("credibility", rows, 4)]
+    return Section("credibility", "How far to trust this", blocks)
 
 
 def say_doubt(factors: Sequence[Factor]) -> str:
@@ -91,9 +90,8 @@ def validate(compared: int, held_out: int, error: float | None, noise: float | N
         return Factor("validation", "no recording of this rig was compared", (False,) * 4)
     is_measured = noise is None or 0.0 < noise < NEAR_NOISE * error
     alone = f", sensor noise alone makes {_format_share(noise)}" if noise else ""
-    kept = (
-        f"{held_out} of {compared} runs {'was' if held_out == 1 else 'were'}" if held_out else "no run is known to be"
-    )
+    kept = f"{held_out} of {compared} runs {'was' if held_out == 1 else 'were'}" if held_out else ""
+    kept = kept or "no run is known to be"
     said = f"the error is {_format_share(error)} of the signals' spread{alone}; {kept} kept out of all fits"
     good = held_out > 1 and error <= max(GOOD, NEAR_NOISE * (noise or 0.0))
     return Factor("validation", said, (True, held_out > 0, is_measured and error <= FAIR, good))
@@ -140,11 +138,8 @@ def trace_inputs(
 
 def state_intervals(intervals: Sequence[str], *further: bool) -> Factor:
     """Return the factor of uncertainty: what has an interval, and which further conditions hold."""
-    said = (
-        f"intervals are stated for {join_names(intervals)}"
-        if intervals
-        else "no figure has an interval or a standard deviation"
-    )
+    said = f"intervals are stated for {join_names(intervals)}" if intervals else ""
+    said = said or "no figure has an interval or a standard deviation"
     return Factor("uncertainty", said, (bool(intervals), *further))
 
 
@@ -157,11 +152,10 @@ def count_variations(runs: int, varied: Sequence[str] | None = None, said: str =
         said: what stands behind the number of runs.
         further: which further conditions hold.
     """
+    words = "not studied" if runs < 2 else f"{runs} runs side by side; no tolerance was varied"
     if varied:
         keys = join_names(varied) if len(varied) <= 3 else f"{len(varied)} keys"
         words = f"{keys} varied over {runs} runs{said}"
-    else:
-        words = "not studied" if runs < 2 else f"{runs} runs side by side; no tolerance was varied"
     own = [] if varied is None else [bool(varied)]
     return Factor("robustness", words, (runs > 1, *own, *further))
 

@@ -49,9 +49,9 @@ def list_alternatives(runs: Sequence[Run]) -> list[Alternatives]:
         pairs = zip(group, names, strict=True)
         named = [pair for pair in pairs if np.isfinite(measure_comfort(pair[0])) and not pair[0].unverified]
         known = [pair for pair in named if COMFORT in pair[0].metrics or not is_weighted]
+        known.sort(key=lambda pair: measure_comfort(pair[0]))
         if known:
-            ordered = sorted(known, key=lambda pair: measure_comfort(pair[0]))
-            found.append(Alternatives(condition, *zip(*ordered, strict=True)))
+            found.append(Alternatives(condition, *zip(*known, strict=True)))
     return sorted(found, key=lambda group: -measure_comfort(group.runs[0]))
 
 
@@ -123,8 +123,7 @@ def describe_run(run: Run) -> str:
         change = compare_figures(seat)
         said += f", {change} {'as' if change == EQUAL else 'than'} the floor moves"
     said += f"; the suspension travels up to {format_quantity(travel, 'm')} from its rest"
-    hits = run.read_metric("end_stop_hits")
-    if np.isfinite(hits):
+    if np.isfinite(hits := run.read_metric("end_stop_hits")):
         said += f" and meets its end stops {count_times(hits)}" if hits else " and never meets its end stops"
     return f"{said}."
 
@@ -151,14 +150,11 @@ def _state_range(groups: Sequence[Alternatives]) -> list[str]:
     """Return what runs come to of which no two share a condition, the worst first, so that none is called better."""
     worst, mildest = groups[0], groups[-1]
     low, high = measure_comfort(mildest.runs[0]), measure_comfort(worst.runs[0])
-    lead = f"Under {len(groups)} conditions the driver feels"
+    ends = f"{format_quantity(low, 'm/s^2')} to {state_comfort(worst.runs[0])}"
+    said = f"{ends}; the worst is “{_name_alone(worst)}”, the mildest “{_name_alone(mildest)}”."
     if high <= (1 + SAME) * low:
-        said = f"{lead} the same, {state_comfort(worst.runs[0])}."
-    else:
-        said = (
-            f"{lead} {format_quantity(low, 'm/s^2')} to {state_comfort(worst.runs[0])}; the worst is"
-            f" “{_name_alone(worst)}”, the mildest “{_name_alone(mildest)}”."
-        )
+        said = f"the same, {state_comfort(worst.runs[0])}."
+    said = f"Under {len(groups)} conditions the driver feels {said}"
     if len({choice_of(group.runs[0].scenario) for group in groups}) == 1:
         return [said]
     return [said, "No two runs share floor, temperature and driver, so that none is called better than another."]
@@ -172,14 +168,12 @@ def _state_one(group: Alternatives) -> str:
     """Return which runs of one condition are the most comfortable, and by how much."""
     count, leaders = len(group.runs), group.leaders
     under = f"{group.condition}: " if group.condition else ""
-    if leaders == count:
-        every = f"All {count}" if count > 2 else "Both"
-        return (
-            f"{under}{every} runs are alike in comfort, within {100 * SAME:g} %: the driver feels {state_best(group)}."
-        )
     names = [f"“{name}”" for name in group.names[:leaders]]
     which = f"{names[0]} is" if leaders == 1 else f"{name_some(names)} are alike and"
-    return f"{under}Of {count} runs {which} the most comfortable: the driver feels {state_best(group)}."
+    said = f"Of {count} runs {which} the most comfortable"
+    if leaders == count:
+        said = f"{f'All {count}' if count > 2 else 'Both'} runs are alike in comfort, within {100 * SAME:g} %"
+    return f"{under}{said}: the driver feels {state_best(group)}."
 
 
 def _state_several(groups: Sequence[Alternatives]) -> list[str]:
@@ -189,11 +183,8 @@ def _state_several(groups: Sequence[Alternatives]) -> list[str]:
     always = set.intersection(*leading)
     for name, run in zip(worst.names, worst.runs, strict=True):
         if choice_of(run.scenario) in always:
-            every = f"all {count}" if count > 2 else "both"
-            return [
-                f"“{name}” is the most comfortable under {every} conditions. The worst of them is {worst.condition}:"
-                f" the driver feels {state_best(worst)}."
-            ]
+            lead = f"“{name}” is the most comfortable under {f'all {count}' if count > 2 else 'both'} conditions."
+            return [f"{lead} The worst of them is {worst.condition}: the driver feels {state_best(worst)}."]
     first, *others = [f"“{group.names[0]}”: the driver feels {state_best(group)}." for group in groups]
     named = [f"At {group.condition} it is {said}" for group, said in zip(groups[1:], others, strict=True)]
     more = [f"And {len(named) - LISTED} other conditions, which are milder."] if len(named) > LISTED else []

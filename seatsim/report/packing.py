@@ -13,7 +13,7 @@ from seatsim.diagnosis.result import Trace
 from seatsim.plots.thinning import thin_line
 from seatsim.report.blocks import Line, Signals
 from seatsim.schema.arrays import Array
-from seatsim.schema.printing import describe_channel
+from seatsim.schema.printing import Quantity, describe_channel
 
 BUDGET = 200_000
 """Bytes that the lines of one group of pictures take on the page together."""
@@ -62,12 +62,11 @@ def pack_signals(
     drawn, longest = [Line(*line) for line in lines], max(time.values(), key=len)
     bins = min(finest, -(-len(longest) // 2))
     shown = [describe_channel(panel.quantity, panel.unit) for panel in panels]
-    factors = [each.factor for each in shown]
-    packed = _pack_panels(panels, factors, list(time), bins)
-    while bins > _COARSEST and _measure(packed) > BUDGET:
+    packed, size = _pack_panels(panels, shown, list(time), bins)
+    while bins > _COARSEST and size > BUDGET:
         # What noise there is takes the same bits in each value, whatever their number.
-        bins = max(_COARSEST, int(0.95 * bins * BUDGET / _measure(packed)))
-        packed = _pack_panels(panels, factors, list(time), bins)
+        bins = max(_COARSEST, int(0.95 * bins * BUDGET / size))
+        packed, size = _pack_panels(panels, shown, list(time), bins)
     if len(longest) > 2 * bins:
         interval = 1000.0 * float(longest[-1] - longest[0]) / bins
         caption += f" Drawn are the least and the largest value in every {interval:.3g} ms; figures use all samples."
@@ -76,8 +75,8 @@ def pack_signals(
         "runs": [_pack_time(values, bins) for values in time.values()],
         "panels": [{"unit": each.unit, "runs": runs} for each, runs in zip(shown, packed, strict=True)],
     }
-    names = [f"{each.axis[:1].upper()}{each.axis[1:]}" for each in shown]
-    titles = [(name, panel.sentence) for name, panel in zip(names, panels, strict=True)]
+    named = zip(shown, panels, strict=True)
+    titles = [(f"{each.axis[:1].upper()}{each.axis[1:]}", panel.sentence) for each, panel in named]
     return Signals("signals-time", caption, list(time), drawn, titles, data)
 
 
@@ -116,28 +115,23 @@ def pack_line(values: Array) -> _Line:
     return {"at": middle, "step": step, "bits": base64.b64encode(bits).decode("ascii")}
 
 
-def _measure(packed: Sequence[Sequence[Sequence[_Line | None]]]) -> int:
-    """Return the bytes of the lines of packed panels."""
-    return sum(len(str(line["bits"])) for panel in packed for run in panel for line in run if line)
-
-
 def _pack_time(values: Array, bins: int) -> dict[str, float]:
     """Return the first place of the values of a run, and the distance of the next."""
-    length = len(values)
-    interval = float(values[-1] - values[0]) / max(1, length - 1)
-    if length > 2 * bins:
-        half = 0.5 * interval * -(-length // bins)
-        return {"first": float(values[0]) + 0.5 * half, "step": half}
-    return {"first": float(values[0]), "step": interval}
+    first, interval = float(values[0]), float(values[-1] - values[0]) / max(1, len(values) - 1)
+    if len(values) > 2 * bins:
+        half = 0.5 * interval * -(-len(values) // bins)
+        return {"first": first + 0.5 * half, "step": half}
+    return {"first": first, "step": interval}
 
 
 def _pack_panels(
-    panels: Sequence[Panel], factors: Sequence[float], runs: Sequence[str], bins: int
-) -> list[list[list[_Line | None]]]:
-    """Return the lines of each run of each panel, times the factor of the panel."""
+    panels: Sequence[Panel], shown: Sequence[Quantity], runs: Sequence[str], bins: int
+) -> tuple[list[list[list[_Line | None]]], int]:
+    """Return the lines of each run of each panel, in the unit in which it is shown, and the bytes of all lines."""
 
     def pack(line: Array | None, factor: float) -> _Line | None:
         return None if line is None else pack_line(factor * thin_line(line, line, bins)[1])
 
-    scaled = zip(panels, factors, strict=True)
-    return [[[pack(line, factor) for line in panel.values[run]] for run in runs] for panel, factor in scaled]
+    scaled = zip(panels, shown, strict=True)
+    packed = [[[pack(line, each.factor) for line in panel.values[run]] for run in runs] for panel, each in scaled]
+    return packed, sum(len(str(line["bits"])) for panel in packed for run in panel for line in run if line)

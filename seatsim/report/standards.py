@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from seatsim.metrics.exposure import DAY, Exposure, ValueReached
-from seatsim.metrics.spine import SpinalLoad
+from seatsim.metrics.exposure import DAY
 from seatsim.plots.bench.vibration import plot_damping
 from seatsim.report.blocks import Block, Figures, Report, Table, show_pictures, tabulate
 from seatsim.report.composing import compose
@@ -45,40 +44,23 @@ def list_comfort_sentences(found: Comfort) -> Iterator[str]:
     """Yield what is said of all axes: sums, the day's exposure, the zones, and what the basic method lacks."""
     totals = ", ".join(f"{point} {value:.3f}" for point, value in found.totals.items())
     yield f"vibration total value a_v [m/s²]: {totals}"
-    for axis, assessed in found.axes.items():
-        if assessed.shocks:
-            reasons = join_names(assessed.shocks)
-            yield f"{axis}: report MTVV or VDV beside a_w, as {reasons} (ISO 2631-1, 6.2.2 and 6.3.3)"
-    if found.motion_sickness:
-        sickness = found.motion_sickness
+    for axis, reasons in ((axis, join_names(each.shocks)) for axis, each in found.axes.items() if each.shocks):
+        yield f"{axis}: report MTVV or VDV beside a_w, as {reasons} (ISO 2631-1, 6.2.2 and 6.3.3)"
+    if (sickness := found.motion_sickness) is not None:
         yield f"motion sickness (Wf): a_w {sickness.rms:.3f} m/s², MSDV {sickness.msdv:.2f} m/s¹·⁵"
-    if found.spine:
-        yield _say_spine(found.spine)
-    if found.exposure:
-        yield from _say_exposure(found.exposure)
-
-
-def _say_spine(load: SpinalLoad) -> str:
-    named = ((name, risk.factor, format_percent(risk.probability)) for name, risk in load.risks.items())
-    risks = ", ".join(f"{name} R {factor:.2f}, risk {probability}" for name, factor, probability in named)
-    return (
-        f"lumbar spine (ISO 2631-5:2018): dose D_z {load.dose:.2f} m/s², of a day {load.daily_dose:.2f} m/s²;"
-        f" after work from 20 to 64 years of age: {risks}"
-    )
-
-
-def _say_exposure(day: Exposure) -> Iterator[str]:
-    vdv8 = f"VDV(8) {day.vdv8:.2f} m/s¹·⁷⁵ ({day.vdv8_axis})"
-    yield f"{day.hours:g} h a day: A(8) {day.a8:.3f} m/s² ({day.a8_axis}), {vdv8}"
-    yield _say_value("action value", day.action_value)
-    yield _say_value("limit value", day.limit_value)
-    yield f"ISO 2631-1, annex B, by A(8): {day.zone_a8_text}; by estimated VDV: {day.zone_vdv}"
-
-
-def _say_value(name: str, value: ValueReached) -> str:
-    by_a8 = _say_reach(f"A(8) {value.a8:g} m/s²", value.exceeded_by_a8, value.hours_to_a8)
-    by_vdv = _say_reach(f"VDV {value.vdv:g} m/s¹·⁷⁵", value.exceeded_by_vdv, value.hours_to_vdv)
-    return f"{name} of 2002/44/EC: {by_a8}; {by_vdv}"
+    if (load := found.spine) is not None:
+        named = ((name, risk.factor, format_percent(risk.probability)) for name, risk in load.risks.items())
+        risks = ", ".join(f"{name} R {factor:.2f}, risk {probability}" for name, factor, probability in named)
+        doses = f"dose D_z {load.dose:.2f} m/s², of a day {load.daily_dose:.2f} m/s²"
+        yield f"lumbar spine (ISO 2631-5:2018): {doses}; after work from 20 to 64 years of age: {risks}"
+    if (day := found.exposure) is not None:
+        vdv8 = f"VDV(8) {day.vdv8:.2f} m/s¹·⁷⁵ ({day.vdv8_axis})"
+        yield f"{day.hours:g} h a day: A(8) {day.a8:.3f} m/s² ({day.a8_axis}), {vdv8}"
+        for name, value in (("action value", day.action_value), ("limit value", day.limit_value)):
+            by_a8 = _say_reach(f"A(8) {value.a8:g} m/s²", value.exceeded_by_a8, value.hours_to_a8)
+            by_vdv = _say_reach(f"VDV {value.vdv:g} m/s¹·⁷⁵", value.exceeded_by_vdv, value.hours_to_vdv)
+            yield f"{name} of 2002/44/EC: {by_a8}; {by_vdv}"
+        yield f"ISO 2631-1, annex B, by A(8): {day.zone_a8_text}; by estimated VDV: {day.zone_vdv}"
 
 
 def _say_reach(value: str, exceeded: bool, hours: float) -> str:
@@ -92,12 +74,12 @@ def _say_comfort(found: Comfort) -> str:
     day = found.exposure
     if day is None:
         return f"The vibration total value is {found.totals['overall']:.2f} m/s²."
-    action, limit = day.action_value, day.limit_value
-    judged = f"below the action value of {action.a8:g} m/s²"
-    if action.exceeded_by_a8:
-        judged = f"above the action value of {action.a8:g} m/s² and below the limit value of {limit.a8:g} m/s²"
-    if limit.exceeded_by_a8:
-        judged = f"above the limit value of {limit.a8:g} m/s²"
+    action, limit = (
+        f"the action value of {day.action_value.a8:g} m/s²",
+        f"the limit value of {day.limit_value.a8:g} m/s²",
+    )
+    judged = f"above {action} and below {limit}" if day.action_value.exceeded_by_a8 else f"below {action}"
+    judged = f"above {limit}" if day.limit_value.exceeded_by_a8 else judged
     return f"{day.hours:g} h a day of this vibration give A(8) = {day.a8:.2f} m/s² along {day.a8_axis}, {judged}."
 
 

@@ -4,8 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from seatsim.plots import style
-from seatsim.plots.labels import clean_text
-from seatsim.plots.style import Grid
+from seatsim.plots.style import Grid, clean_text
 
 
 def test_a_text_is_cut_in_the_middle_and_never_a_formula():

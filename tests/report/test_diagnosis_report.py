@@ -17,8 +17,7 @@ from seatsim.diagnosis.result import (
     ProposedExperiment,
     Share,
 )
-from seatsim.report.diagnosis import advise, report_diagnosis, say_diagnosis
-from seatsim.report.diagnosis import format_estimate, say_action, say_cause
+from seatsim.report.diagnosis import advise, format_estimate, report_diagnosis, say_action, say_cause, say_diagnosis
 from seatsim.report.formatting import format_sentence, read_words
 from seatsim.report.rendering import render_report
 from seatsim.schema.printing import format_percent

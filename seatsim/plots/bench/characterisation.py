@@ -42,16 +42,14 @@ def plot_characterisation(found: Characterisation) -> dict[str, Figure]:
     `loops` is always there, `energy` where there are cycles, `asymmetry` where one of them has some, `steps` where a
     response was determined, `warm_up` where a record has many cycles.
     """
-    figures = {"loops": plot_loops(found)}
-    if any(row.loop is not None for row in found.rows):
-        figures["energy"] = plot_energy(found)
-    if any(row.asymmetry > SYMMETRIC for row in found.rows):
-        figures["asymmetry"] = plot_asymmetry(found)
-    if any(answer.share is not None for answer in found.responses):
-        figures["steps"] = plot_steps(found)
-    if found.sheet.warm_up:
-        figures["warm_up"] = plot_warm_up(found)
-    return figures
+    plots = {
+        plot_loops: True,
+        plot_energy: any(row.loop is not None for row in found.rows),
+        plot_asymmetry: any(row.asymmetry > SYMMETRIC for row in found.rows),
+        plot_steps: any(answer.share is not None for answer in found.responses),
+        plot_warm_up: bool(found.sheet.warm_up),
+    }
+    return {plot.__name__.removeprefix("plot_"): plot(found) for plot, is_known in plots.items() if is_known}
 
 
 def plot_steps(found: Characterisation) -> Figure:

@@ -12,9 +12,8 @@ from matplotlib.figure import Figure
 from seatsim.identification.assessment import Assessment
 from seatsim.identification.identify import Identification
 from seatsim.plots import style
-from seatsim.plots.labels import clean_text
 from seatsim.plots.loops import SIGNS
-from seatsim.plots.style import MEASURED, Entry, Grid
+from seatsim.plots.style import MEASURED, Entry, Grid, clean_text
 from seatsim.plots.thinning import spread_evenly
 from seatsim.schema.text import shorten_paths
 

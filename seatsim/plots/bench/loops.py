@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from seatsim.characterisation.rows import WARMER, Row, group_rows
 from seatsim.characterisation.summary import Characterisation, group_by_setting
 from seatsim.plots import style
-from seatsim.plots.labels import clean_text
 from seatsim.plots.loops import Family, draw_samples, label_panels, make_loop_page
+from seatsim.plots.style import clean_text
 from seatsim.plots.thinning import spread_evenly
 from seatsim.simulation.damper_bench import SineTest
 

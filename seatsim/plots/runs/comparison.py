@@ -12,10 +12,9 @@ from matplotlib.figure import Figure
 
 from seatsim.metrics.table import COMFORT, SEAT, TRAVEL, UNWEIGHTED
 from seatsim.plots import style
-from seatsim.plots.labels import describe_metric
 from seatsim.plots.runs.looks import MOST as MOST_LINES
 from seatsim.plots.runs.looks import choose_looks, explain_grey
-from seatsim.plots.style import DARK, ROW, Entry, Grid
+from seatsim.plots.style import DARK, ROW, Entry, Grid, describe_metric
 from seatsim.scenario.scenario import condition_of
 from seatsim.schema.arrays import Array
 from seatsim.schema.printing import format_number
@@ -72,8 +71,8 @@ def plot_pareto(runs: Sequence[Run], brackets: Mapping[str, PerformanceBounds]) 
         name: Entry(f"{_letter(k)}  {name}", looks[id(run)].colour, "none", mark="o")
         for k, (name, run) in enumerate(named.items())
     }
-    legend = [*points.values(), *([BOUND, BEST] if any(panel.bracket for panel in shown) else [])]
-    legend += [FLOOR] if any(panel.runs and np.isfinite(panel.floor) for panel in shown) else []
+    legend = [*points.values(), *[BOUND, BEST] * any(panel.bracket for panel in shown)]
+    legend += [FLOOR] * any(panel.runs and np.isfinite(panel.floor) for panel in shown)
     note = "Over the whole run; on the same floor, lower left is better."
     note += style.OWN_SCALES * (len(shown) > 1) + explain_grey(looks)
     note += f" {len(shown)} of {len(found)} rigs are shown." if len(shown) < len(found) else ""
@@ -120,8 +119,8 @@ def _draw_panel(axes: Axes, panel: Panel, looks: Mapping[str, Entry]) -> None:
         travel = np.append(travel, 1e3 * panel.bracket.travel)
         comfort = np.append(comfort, [*panel.bracket.acceleration, panel.bracket.bound(1e-3 * np.max(travel))])
         draw_bounds(axes, np.linspace(*_pad(travel), 200), panel.bracket)
-    axes.set(xlim=_pad(travel), ylim=_pad(comfort))
-    axes.set(xlabel=describe_metric(TRAVEL).axis, ylabel=describe_metric(COMFORT).axis)
+    axes.set(xlim=_pad(travel), xlabel=describe_metric(TRAVEL).axis)
+    axes.set(ylim=_pad(comfort), ylabel=describe_metric(COMFORT).axis)
     # The most comfortable one on top of those that it meets.
     for point, name in sorted(zip(panel.points.tolist(), panel.names, strict=True), key=lambda pair: -pair[0][1]):
         axes.scatter(point[0], point[1], s=150, color=looks[name].colour, edgecolors="1.0", zorder=4)
@@ -163,8 +162,7 @@ NOTE = "Over the whole run; on the same floor, the smaller the better."
 
 def plot_comparison(runs: Sequence[Run]) -> Figure:
     """Return bars run by run, or lines over the number that is swept, one line for each variant."""
-    key = naming.find_swept_number(runs)
-    series: dict[str, list[Run]] = {}
+    key, series = naming.find_swept_number(runs), dict[str, list[Run]]()
     for name, run in zip(naming.label_runs(runs, without=[key]), runs, strict=True):
         series.setdefault(name, []).append(run)
     title = f"Comparison: {naming.make_title(runs)}"
@@ -179,9 +177,8 @@ def _plot_bars(title: str, runs: Sequence[Run]) -> Figure:
     for k, (axes, metric) in enumerate(zip(page.list_panels(), COMPARED, strict=True)):
         shown = describe_metric(metric)
         values = [shown.factor * run.read_metric(metric) for run in runs]
-        texts = [format_number(value) for value in values]
         style.name_rows(axes, [""] * len(names) if k % 2 else names)
-        style.draw_bars(axes, values, [looks[id(run)].colour for run in runs], texts)
+        style.draw_bars(axes, values, [looks[id(run)].colour for run in runs], list(map(format_number, values)))
         # Room for the figures at the ends of the bars.
         end = (1.0 + 0.45 / grid.width) * float(np.max(np.nan_to_num(values)))
         axes.set(xlim=(0.0, end or 1.0), xlabel=f"{shown.words} [{shown.unit}]")
@@ -189,17 +186,16 @@ def _plot_bars(title: str, runs: Sequence[Run]) -> Figure:
 
 
 def _plot_lines(title: str, key: str, series: dict[str, list[Run]]) -> Figure:
-    runs = [run for group in series.values() for run in group]
-    of_runs = choose_looks(runs)
+    of_runs = choose_looks([run for group in series.values() for run in group])
     looks = [of_runs[id(group[0])]._replace(label=name) for name, group in series.items()]
+    axis = naming.label_axis(next(iter(series.values()))[0].scenario, key)
     page = style.make_page(title, NOTE, Grid((1.8, 1.8), 2, left=0.85, gap=(0.9, 0.65)), looks[1:] and looks)
     for axes, metric in zip(page.list_panels(), COMPARED, strict=True):
         shown = describe_metric(metric)
         for look, group in zip(looks, series.values(), strict=True):
-            ordered = sorted(group, key=lambda run: float(run.scenario.label[key]))
-            places = [float(run.scenario.label[key]) for run in ordered]
-            values = [shown.factor * run.read_metric(metric) for run in ordered]
-            style.draw_line(axes, places, values, look._replace(width=1.6, mark="o"))
-        axes.set(xlabel=naming.label_axis(runs[0].scenario, key), ylabel=f"{shown.words} [{shown.unit}]")
+            points = [(float(run.scenario.label[key]), shown.factor * run.read_metric(metric)) for run in group]
+            points.sort(key=lambda point: point[0])
+            style.draw_line(axes, *zip(*points, strict=True), look._replace(width=1.6, mark="o"))
+        axes.set(xlabel=axis, ylabel=f"{shown.words} [{shown.unit}]")
         axes.set_ylim(0, 1.05 * axes.get_ylim()[1])
     return style.name_coincident(page.figure)
