@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from seatsim.dampers.base import CONFIDENCE, DAMPERS, find_confidence
 from seatsim.provenance.statement import current_invocation
-from seatsim.report.blocks import Section
+from seatsim.report.blocks import Block, Section
 from seatsim.report.formatting import explain, format_sentence, read_words, show_table
 from seatsim.schema.printing import UNKNOWN, format_number, format_percent
 from seatsim.schema.registry import name_of
@@ -60,7 +60,7 @@ def show_card(factors: Sequence[Factor]) -> Section:
         # What the next level asks for, where this kind of result can reach one.
         asked = [*read_conditions()[each.name][: len(each.holds)], UNKNOWN][each.level]
         rows.append((each.name, f"{each.level}\u00a0of\u00a0{len(each.holds)}", format_sentence(each.evidence), asked))
-    blocks = [*explain("credibility"), *show_table("credibility", rows, 4)]
+    blocks: list[Block] = [*explain("credibility"), *show_table("credibility", rows, 4)]
     return Section("credibility", "How far to trust this", blocks)
 
 

@@ -27,7 +27,7 @@ def render_report(report: Report) -> str:
         make_environment().get_template("report.html"),
         {"script": Markup(script), "style": Markup(style)},
     )
-    return template.render(report=report, sections=sections, policy=policy, **assets)
+    return template.render(assets, report=report, sections=sections, policy=policy)
 
 
 def write_html(report: Report, path: Path) -> Path:

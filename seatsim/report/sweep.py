@@ -35,14 +35,9 @@ def report_sweep(
     rows: SweepRows, quantiles: pd.DataFrame, found: Sensitivities, exceeded: Sequence[Exceedance]
 ) -> Report:
     """Return the report of a sweep from its rows and the statistics on them."""
-    # Over how many random floors the runs are.
-    seeds = (
-        "All runs have one seed, so that equal roads are the same random floor; replicates in the sweep adds others."
-    )
-    if (count := rows.usable.seed.nunique()) > 1:
-        seeds = f"The runs have {count} seeds: as many random floors and noises of each kind."
-    settings = [Text(seeds), Text(f"Identity of the sweep: {rows.manifest['identity']}")]
-    figures = draw_figures(found, rows)
+    figures, count = draw_figures(found, rows), rows.usable.seed.nunique()
+    seeds = explain("seeds" if count > 1 else "one_seed", count=str(count))
+    settings = [*seeds, Text(f"Identity of the sweep: {rows.manifest['identity']}")]
     sections: dict[str, Sequence[Block]] = {
         "limits": _show_limits(exceeded, rows),
         "choices": tabulate_best(rows),
@@ -83,21 +78,21 @@ def state_importance(found: Sensitivities, rows: SweepRows) -> list[str]:
 def advise_on_keys(found: Sequence[Sensitivity], rows: SweepRows) -> list[str]:
     """Return what to do about the strongest choice, and where the strongest condition is the worst."""
     texts = []
-    choice = choose_choice(found, rows)
-    if choice is not None:
+    if (choice := choose_choice(found, rows)) is not None:
         share = f"of the choices it explains the most of the variance, {format_percent(choice.total)}"
         lead = f"{'Tighten the tolerance of' if choice.key in rows.drawn else 'Settle'} {choice.key} first"
         lead = f"Leave {choice.key} as it is, and the other varied choices" if choice.total < _MATTERS else lead
         texts.append(f"{lead}: {share}.")
-    condition = choose_key([row for row in found if is_condition(row.key)], rows)
-    if condition is not None:
-        shown = describe_column(condition.metric, rows.units)
+    if (condition := choose_key([row for row in found if is_condition(row.key)], rows)) is not None:
+        words, unit = (
+            describe_column(condition.metric, rows.units).words,
+            describe_column(condition.key, rows.units).unit,
+        )
         ends = ((condition.at_low, condition.low), (condition.at_high, condition.high))
         worst, level = max(ends, key=lambda end: end[0])
-        unit = describe_column(condition.key, rows.units).unit
         at = f"{format_level(level)} {unit}".removesuffix(" -")
         mean = format_quantity(worst, rows.units[condition.metric])
-        texts.append(f"Judge every choice at {condition.key} {at}: there the mean {shown.words} is largest, {mean}.")
+        texts.append(f"Judge every choice at {condition.key} {at}: there the mean {words} is largest, {mean}.")
     return texts
 
 
@@ -126,15 +121,12 @@ def _judge(rows: SweepRows, found: Sensitivities, exceeded: Sequence[Exceedance]
     intervals = ["shares of the variance"] * bool(found.rows) + ["shares above limits"] * bool(exceeded)
     energy = list(rows.usable["energy_residual"].dropna()) if "energy_residual" in rows.metrics else list[float]()
     reasons = sorted({str(text) for text in rows.every.reason.dropna() if text})
-    explains, is_judged = (
-        (explained or 0.0) >= EXPLAINED,
-        len(rows.usable) >= credibility.ENOUGH_RUNS and rows.drawn and exceeded,
-    )
+    explains, is_judged, count = (explained or 0.0) >= EXPLAINED, bool(rows.drawn and exceeded), len(rows.usable)
     return [
         verify("up to {} of the energy is unaccounted for", energy),
         trace_inputs(reasons, models, inputs=1 + len(stated.get("files", {}))),
         state_intervals(intervals, bool(rows.drawn), bool(found.rows)),
-        count_variations(len(rows.usable), rows.keys, said, explains, bool(is_judged)),
+        count_variations(count, rows.keys, said, explains, is_judged and count >= credibility.ENOUGH_RUNS),
     ]
 
 

@@ -30,8 +30,7 @@ class Plain:
     choices = (Choice("law", "Controller", [("file", "as in the file"), ("off", "no current")]),)
 
     def show(self, request):
-        mass = read_number(request, self.sliders[0])
-        time = np.arange(10.0)
+        mass, time = read_number(request, self.sliders[0]), np.arange(10.0)
         panel = Panel("damper_force", "N", "", {"": [mass * time]})
         signals = pack_signals("", [("as set", 0)], {"": time}, [panel])
         return View(f"{mass:g} kg <b>", [Table("t", ["a", "b"], [["<i>", f"{mass:g}"]])], signals)
@@ -75,13 +74,9 @@ def ask(app, method, path, token=TOKEN, base=HOME, **options):
 
 @pytest.mark.parametrize(
     ("sent", "answered"),
-    [
-        (b"", False),
-        (b"GET / HTTP/1.1\r\nHost:", False),
-        (b"POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 9\r\n\r\n12", False),
-        (b"GET / HTTP/1.1\r\nHost: a\r\n\r\n", True),
-    ],
-)
+    [(b"", False), (b"GET / HTTP/1.1\r\nHost:", False), (b"GET / HTTP/1.1\r\nHost: a\r\n\r\n", True),
+     (b"POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 9\r\n\r\n12", False)],
+)  # fmt: skip
 def test_a_connection_without_a_whole_request_is_closed(sent, answered):
     class Quick(Impatient):
         idle = 0.1
@@ -108,17 +103,16 @@ def test_a_connection_without_a_whole_request_is_closed(sent, answered):
 
 def test_a_page_keeps_its_cookie_when_another_port_is_opened(app, tmp_path):
     other = make_app(loaded(Plain()), tmp_path, "other-token", PORT + 1)
-    opened = [ask(app, "GET", f"/?token={TOKEN}", token=""),
-              ask(other, "GET", "/?token=other-token", token="", base=f"http://127.0.0.1:{PORT + 1}")]  # fmt: skip
+    pages = ((app, TOKEN, HOME), (other, "other-token", f"http://127.0.0.1:{PORT + 1}"))
+    opened = [ask(page, "GET", f"/?token={token}", token="", base=base) for page, token, base in pages]
     jar = "; ".join(answer.headers["set-cookie"].partition(";")[0] for answer in opened)
-    for page, base in ((app, HOME), (other, f"http://127.0.0.1:{PORT + 1}")):
+    for page, _, base in pages:
         assert ask(page, "GET", "/", token="", base=base, headers={"cookie": jar}).status_code == 200
 
 
 def test_a_token_opens_the_page_and_leaves_the_address(app):
-    assert ask(app, "GET", "/", token="").status_code == 403
-    assert ask(app, "GET", "/", token="another").status_code == 403
-    assert ask(app, "GET", "/?token=another", token="").status_code == 403
+    for path, token in (("/", ""), ("/", "another"), ("/?token=another", "")):
+        assert ask(app, "GET", path, token=token).status_code == 403
     opened = ask(app, "GET", f"/?token={TOKEN}", token="")
     assert opened.status_code == 303 and opened.headers["location"] == "/"
     assert "HttpOnly" in opened.headers["set-cookie"] and "SameSite=strict" in opened.headers["set-cookie"]
@@ -128,10 +122,10 @@ def test_a_token_opens_the_page_and_leaves_the_address(app):
 
 
 def test_a_foreign_host_or_origin_is_refused(app):
-    for host in ("evil.example", f"evil.example:{PORT}", "127.0.0.1:1", f"[::1]:{PORT}", ""):
-        assert ask(app, "GET", "/", headers={"host": host}).status_code == 403, host
-    for origin in ("http://evil.example", "null", f"https://127.0.0.1:{PORT}", "http://127.0.0.1"):
-        assert ask(app, "POST", "/view", json={}, headers={"origin": origin}).status_code == 403, origin
+    hosts = ("evil.example", f"evil.example:{PORT}", "127.0.0.1:1", f"[::1]:{PORT}", "")
+    origins = ("http://evil.example", "null", f"https://127.0.0.1:{PORT}", "http://127.0.0.1")
+    for headers in (*({"host": host} for host in hosts), *({"origin": origin} for origin in origins)):
+        assert ask(app, "POST", "/view", json={}, headers=headers).status_code == 403, headers
     assert ask(app, "POST", "/view", json={}, headers={"origin": HOME}).status_code == 200
 
 
@@ -167,8 +161,8 @@ def test_values_are_shown_and_wrong_ones_are_said(app):
     assert found["answer"] == "95 kg <b>" and "&lt;i&gt;" in found["tables"] and found["signals"]["panels"]
     wrong = ask(app, "POST", "/view", json={"mass": 1e9})
     assert wrong.status_code == 422 and "30 to 150 kg" in wrong.json()["error"]
-    assert ask(app, "POST", "/view", content=b"{", headers={"content-type": "application/json"}).status_code == 422
-    assert ask(app, "POST", "/view", content=b"{}", headers={"content-type": "text/plain"}).status_code == 422
+    for content, kind in ((b"{", "application/json"), (b"{}", "text/plain")):
+        assert ask(app, "POST", "/view", content=content, headers={"content-type": kind}).status_code == 422
     assert ask(app, "GET", "/view").status_code == 405
 
 
@@ -237,23 +231,25 @@ def test_a_temperature_without_effect_has_no_slider(road):
     assert names == ["mass", "temperature"]
 
 
+RUBS = {"damper.seal_friction": {"force": 60.0}}
+
+
 def test_a_fit_finds_the_effect_that_the_recording_holds(recorded):
-    first = recorded.show({"effects": {"damper.seal_friction": {"force": 60.0}}, "fit": True})
-    before, after = (each.tables[0].rows for each in (recorded.show({}), first))
-    assert first.fitted["damper.seal_friction"]["force"] < 60.0
-    shown = recorded.show({"effects": first.fitted}).tables[0].rows
+    fitted = recorded.show({"effects": RUBS, "fit": True})
+    assert fitted.fitted["damper.seal_friction"]["force"] < 60.0
+    before, after, shown = (
+        each.tables[0].rows for each in (recorded.show({}), fitted, recorded.show({"effects": fitted.fitted}))
+    )
     assert [row[1] for row in after] == [row[1] for row in before] and shown == after
 
 
 def test_an_effect_that_is_not_there_makes_the_gap_grow(recorded):
-    name = next(switch.name for switch in recorded.switches if switch.name == "damper.seal_friction")
-    before, after = recorded.show({}), recorded.show({"effects": {name: {"force": 60.0}}})
+    before, after = recorded.show({}), recorded.show({"effects": RUBS})
     assert before.answer.startswith("The nominal simulation is off by") and "grows" in after.answer
     # What a slider shows in millimetres is stated in metres.
     assert {slider.unit for switch in recorded.switches for slider in switch.sliders} & {"m", "mm"} == {"mm"}
-    saved = recorded.encode({"effects": {name: {"force": 60.0, "presliding": 0.5}}})
-    assert saved["effects"][-1]["parameters"]["presliding"] == pytest.approx(5e-4)
-    saved = recorded.encode({"effects": {name: {"force": 60.0}}})
-    assert saved["effects"][-1]["effect"] == name and saved["effects"][-1]["parameters"]["force"] == 60.0
+    saved = recorded.encode({"effects": {"damper.seal_friction": {"force": 60.0, "presliding": 0.5}}})["effects"][-1]
+    assert saved["parameters"]["presliding"] == pytest.approx(5e-4)
+    assert saved["effect"] == "damper.seal_friction" and saved["parameters"]["force"] == 60.0
     with pytest.raises(InputError, match="no effect"):
         recorded.show({"effects": {"damper.none": {}}})

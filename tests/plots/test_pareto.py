@@ -1,6 +1,7 @@
 """Comfort against travel: its panels, its names, its bracket."""
 
 import dataclasses
+from itertools import product
 
 import numpy as np
 import pytest
@@ -24,15 +25,12 @@ class Fake:
 def runs(made_up):
     def build(names, temperatures=(20.0,)):
         base, rng, found = made_up(seconds=1.0), np.random.default_rng(2), []
-        for temperature in temperatures:
-            for name in names:
-                label = {"variant": name} | ({"temperature": temperature} if len(temperatures) > 1 else {})
-                scenario = dataclasses.replace(base.scenario, temperature=temperature, label=label)
-                metrics = base.metrics | {
-                    "driver_acceleration_weighted": Metric(float(rng.uniform(0.6, 1.6)), "m/s^2", ""),
-                    "suspension_displacement_rms": Metric(float(rng.uniform(0.005, 0.015)), "m", ""),
-                }
-                found.append(Run(scenario, base.history, metrics))
+        for temperature, name in product(temperatures, names):
+            label = {"variant": name} | ({"temperature": temperature} if len(temperatures) > 1 else {})
+            scenario = dataclasses.replace(base.scenario, temperature=temperature, label=label)
+            felt, travel = Metric(rng.uniform(0.6, 1.6), "m/s^2", ""), Metric(rng.uniform(0.005, 0.015), "m", "")
+            metrics = {"driver_acceleration_weighted": felt, "suspension_displacement_rms": travel}
+            found.append(Run(scenario, base.history, base.metrics | metrics))
         return found
 
     return build
@@ -43,8 +41,7 @@ def test_panels_are_titled_and_points_named_by_what_sets_them_apart(runs):
     assert [axes.get_title(loc="left") for axes in figure.axes] == ["20 °C", "80 °C"]
     named = [text.get_text() for text in figure.legends[0].get_texts()]
     assert sorted(name.partition("  ")[2] for name in named if name[1] == " ") == ["hard", "soft"]
-    letters = {text.get_text(): text.xy[1] for text in figure.axes[0].texts}
-    assert set(letters) == {"A", "B"}
+    assert {text.get_text() for text in figure.axes[0].texts} == {"A", "B"}
 
 
 def test_bracket_is_drawn_where_there_is_one(runs):
@@ -52,8 +49,7 @@ def test_bracket_is_drawn_where_there_is_one(runs):
     figure = plot_pareto(both, {both[0].scenario.rig: Fake()})
     with_bracket, without = figure.axes
     assert [line.get_label() for line in with_bracket.lines] == [BOUND.label, BEST.label]
-    assert not without.lines
-    assert with_bracket.get_ylim()[0] < 0.4
+    assert not without.lines and with_bracket.get_ylim()[0] < 0.4
     assert {BOUND.label, BEST.label} <= {text.get_text() for text in figure.legends[0].get_texts()}
 
 
@@ -67,7 +63,6 @@ def test_without_weighted_accelerations_it_says_so(runs):
 def test_the_floor_is_a_line_where_the_seat_factor_is_one_unless_it_is_far_above(factor, lines, runs):
     found = runs(["soft", "hard"])
     for run in found:
-        seat_factor = factor * run.metrics["driver_acceleration_weighted"].value
-        run.metrics["seat_factor"] = Metric(seat_factor, "-", "")
+        run.metrics["seat_factor"] = Metric(factor * run.metrics["driver_acceleration_weighted"].value, "-", "")
     axes = plot_pareto(found, {}).axes[0]
     assert [line.get_ydata()[0] for line in axes.lines] == pytest.approx([1 / factor] * lines)

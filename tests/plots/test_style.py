@@ -13,17 +13,12 @@ def test_a_text_is_cut_in_the_middle_and_never_a_formula():
     assert clean_text("$x$", 20) == r"\$x\$"
 
 
-def test_ticks_of_a_logarithmic_axis_are_plain_numbers():
+def test_ticks_of_a_logarithmic_axis_are_plain_numbers_or_over_many_decades_powers_of_ten():
     axes = Figure().add_subplot()
     style.scale_log(axes, "x", 0.9, 60)
     inside = [tick for tick in axes.get_xticks() if 0.9 <= tick <= 60]
-    np.testing.assert_allclose(inside, [1, 2, 5, 10, 20, 50])
     assert [axes.xaxis.get_major_formatter()(tick, 0) for tick in inside] == ["1", "2", "5", "10", "20", "50"]
     assert len(axes.xaxis.get_minorticklocs()) == 0
-
-
-def test_a_logarithmic_axis_of_many_decades_has_powers_of_ten():
-    axes = Figure().add_subplot()
     style.scale_log(axes, "y", 1e-6, 1e2)
     named = [axes.yaxis.get_major_formatter()(tick, 0) for tick in axes.get_yticks() if 1e-6 <= tick <= 1e2]
     assert named[:2] == ["10⁻⁶", "10⁻⁵"] and named[-3:] == ["1", "10", "10²"]
@@ -56,9 +51,3 @@ def test_lines_that_coincide_are_named_in_the_note_and_nothing_else_changes():
 def _without_note(figure):
     figure.texts[1].set_text("")
     return figure
-
-
-def test_an_empty_panel_says_why():
-    axes = style.make_page("title", "note", Grid((2.0,))).rows[0][0]
-    style.explain_empty(axes, "nothing was recorded")
-    assert axes.texts[0].get_text() == "nothing was recorded" and len(axes.get_yticks()) == 0

@@ -5,33 +5,16 @@ from functools import cache
 
 import numpy as np
 
-from seatsim.diagnosis.result import (
-    CalibratedParameter,
-    Cause,
-    Collinearity,
-    ComfortFigure,
-    Diagnosis,
-    DiscrepancySignal,
-    Estimate,
-    Evidence,
-    GapFigures,
-    Gaps,
-    ProposedExperiment,
-    RunGaps,
-    Share,
-    Trace,
-)
+from seatsim.diagnosis import result
+from seatsim.diagnosis.result import Cause, Estimate, GapFigures, Gaps
 
-from ..text import parse, words
+from ..text import words
 
 RATE = 500.0
 SEAT = {
-    "damper_force": ("N", 2.5),
-    "frame_acceleration": ("m/s^2", 0.03),
-    "driver_acceleration": ("m/s^2", 0.015),
-    "suspension_displacement": ("m", 5e-5),
-    "coil_current": ("A", 0.003),
-}
+    "damper_force": ("N", 2.5), "frame_acceleration": ("m/s^2", 0.03), "driver_acceleration": ("m/s^2", 0.015),
+    "suspension_displacement": ("m", 5e-5), "coil_current": ("A", 0.003),
+}  # fmt: skip
 EFFECTS = words("""
     damper.remanence damper.magnetic_saturation damper.seal_friction suspension.friction coil.lag
     damper.thermal_fade suspension.progressive_spring cushion.hardening driver.mass sensor.gain
@@ -63,17 +46,8 @@ def rig(seconds=24.0, bench=False):
     lacks = 70 * np.tanh(v / 0.02) * (np.gradient(current) < 0) * current
     force = 300 * v + (60 + 600 * current) * np.tanh(v / 0.03) + lacks
     shaking = 1.2 * narrow(rng, n, 1.0, 12.0)
-    true = {
-        "damper_force": force,
-        "frame_acceleration": shaking - lacks / 20,
-        "driver_acceleration": 0.5 * shaking,
-        "suspension_displacement": x,
-        "coil_current": current,
-    }
-    part = parse("""
-        {damper_force: 1.0, frame_acceleration: -0.05, driver_acceleration: 0.006,
-         suspension_displacement: 3e-06, coil_current: 2e-05}
-    """)
+    true = dict(zip(SEAT, (force, shaking - lacks / 20, 0.5 * shaking, x, current), strict=True))
+    part = dict(zip(SEAT, (1.0, -0.05, 0.006, 3e-06, 2e-05), strict=True))
     motion = {"velocity": v, "displacement": x, "coil_current": current}
     motion |= {} if bench else {"damper_temperature": 20 + 15 * np.linspace(0, 1, n)}
     return motion, true, {name: factor * lacks for name, factor in part.items()}
@@ -88,7 +62,7 @@ def traces(channels, after=0.1, gap=1.0, runs=("run-c",), bench=False):
             measured = true[name] + noise * rng.standard_normal(len(true[name]))
             nominal, better = (true[name] - part * lacks[name] for part in (gap, after * gap))
             rows = np.arange(len(measured)) / RATE
-            found.append(Trace(run, name, unit, noise, rows, measured, nominal, nominal, better))
+            found.append(result.Trace(run, name, unit, noise, rows, measured, nominal, nominal, better))
     return found
 
 
@@ -110,7 +84,7 @@ def alike():
     matrix = np.clip((matrix + matrix.T) / 2, 0, 1)
     matrix[2, 3] = matrix[3, 2] = 0.99
     np.fill_diagonal(matrix, 1)
-    return Collinearity(EFFECTS, matrix)
+    return result.Collinearity(EFFECTS, matrix)
 
 
 def ranked(first):
@@ -122,36 +96,33 @@ def ranked(first):
 
 def known(channels=tuple(SEAT), bench=False, runs=("run-c",)):
     found = traces(channels, bench=bench, runs=runs)
-    comfort = [ComfortFigure("RMS driver acceleration", "m/s^2", 0.61, 0.72, 0.615)]
-    return Diagnosis(
+    comfort = [result.ComfortFigure("RMS driver acceleration", "m/s^2", 0.61, 0.72, 0.615)]
+    return result.Diagnosis(
         name="field-07", verdict="known",
         sentence="the yield force remembers past current (damper.remanence, 0.08 A): it explains 87 % of the gap",
-        where=[Share("damper", 0.93), Share("coil", 0.04), Share("sensor", 0.03)],
+        where=[result.Share("damper", 0.93), result.Share("coil", 0.04), result.Share("sensor", 0.03)],
         causes=ranked({"damper.remanence": 0.97}), probability_none=0.0, probability_unknown=0.02,
         selected=["damper.remanence"], stochastic="", indistinguishable=[], experiment=None, held_out=list(runs),
         isolable=[["damper"], ["coil"], ["suspension", "floor"], ["cushion"], ["driver", "sensor"]],
         gap=gaps_of(found), notes=["no run is warmer than 35 degC: thermal fade cannot be assessed"],
         augmented={},
-        evidence=Evidence(found, rig(bench=bench)[0], None, alike(), [] if bench else comfort),
-        parameters=[CalibratedParameter("plant.suspension_damping", 150.0, 147.0, (147.0, 153.0), True, "N s/m"),
-                    CalibratedParameter("plant.frame_mass", 20.0, 20.2, (19.6, 20.4), False, "kg")],
+        evidence=result.Evidence(found, rig(bench=bench)[0], None, alike(), [] if bench else comfort),
+        parameters=[result.CalibratedParameter("plant.suspension_damping", 150.0, 147.0, (147.0, 153.0), True, "N s/m"),
+                    result.CalibratedParameter("plant.frame_mass", 20.0, 20.2, (19.6, 20.4), False, "kg")],
     )  # fmt: skip
 
 
 def ambiguous():
     first = {"suspension.friction": 0.55, "damper.seal_friction": 0.45}
     reason = "at zero current the damper's own force is small, so that a load cell sees the friction of the seal alone"
+    sentence = "friction of 45 N in the linkage or at the damper's seal explains 83 % of the gap"
     return replace(
-        known(("frame_acceleration", "driver_acceleration", "suspension_displacement")),
-        verdict="ambiguous",
-        sentence="friction of 45 N in the linkage or at the damper's seal explains 83 % of the gap; without a load"
-        " cell they cannot be distinguished",
-        where=[Share("suspension", 0.5), Share("damper", 0.5)],
-        causes=ranked(first),
-        selected=["suspension.friction"],
+        known(("frame_acceleration", "driver_acceleration", "suspension_displacement")), verdict="ambiguous",
+        sentence=f"{sentence}; without a load cell they cannot be distinguished", causes=ranked(first),
+        where=[result.Share("suspension", 0.5), result.Share("damper", 0.5)], selected=["suspension.friction"],
         indistinguishable=[list(first)],
-        experiment=ProposedExperiment("intervention", "add_load_cell", reason, 0.9876, 0.3456),
-    )
+        experiment=result.ProposedExperiment("intervention", "add_load_cell", reason, 0.9876, 0.3456),
+    )  # fmt: skip
 
 
 def unknown(channels=tuple(SEAT)):
@@ -159,36 +130,23 @@ def unknown(channels=tuple(SEAT)):
     rows = np.arange(len(motion["velocity"])) / RATE
     force = lacks["damper_force"] + 3 * np.random.default_rng(6).standard_normal(len(rows))
     words = ["It follows the sign of the velocity.", "It is there only while the current falls."]
-    discrepancy = DiscrepancySignal("damper", "force", "N", rows, force, words)
+    discrepancy = result.DiscrepancySignal("damper", "force", "N", rows, force, words)
     base = known(channels)
     found = [replace(trace, after=trace.calibrated) for trace in base.evidence.traces]
     return replace(
-        base,
-        verdict="unknown",
-        sentence="a force of 70 N in the damper stays that no effect of the library explains",
-        causes=ranked({"damper.magnetic_saturation": 0.3}),
-        probability_unknown=0.94,
-        selected=[],
-        gap=gaps_of(found),
+        base, verdict="unknown", sentence="a force of 70 N in the damper stays that no effect of the library explains",
+        causes=ranked({"damper.magnetic_saturation": 0.3}), probability_unknown=0.94, selected=[], gap=gaps_of(found),
         evidence=replace(base.evidence, traces=found, discrepancy=discrepancy),
-    )
+    )  # fmt: skip
 
 
 def none():
-    base = known()
-    found = traces(tuple(SEAT), gap=0.0)
+    base, found = known(), traces(tuple(SEAT), gap=0.0)
     return replace(
-        base,
-        verdict="none",
-        sentence="there is no gap beyond noise and the tolerance of the parameters",
-        where=[],
-        causes=ranked({}),
-        probability_none=0.98,
-        probability_unknown=0.01,
-        selected=[],
-        gap=gaps_of(found),
+        base, verdict="none", sentence="there is no gap beyond noise and the tolerance of the parameters", where=[],
+        causes=ranked({}), probability_none=0.98, probability_unknown=0.01, selected=[], gap=gaps_of(found),
         evidence=replace(base.evidence, traces=found),
-    )
+    )  # fmt: skip
 
 
 def bench():
@@ -197,20 +155,11 @@ def bench():
 
 def with_every_run():
     """A diagnosis of three runs of 24 s at 500 Hz, two of which were fitted."""
-    base = known()
-    others = traces(tuple(SEAT), runs=("run-a", "run-b"))
-    gap = base.gap
-    gaps = [
-        RunGaps(run, gap.before, gap.calibrated, gap.after, gap.floor, gap.shrink)
-        for run in ("run-a", "run-b", "run-c")
-    ]
+    base, others = known(), traces(tuple(SEAT), runs=("run-a", "run-b"))
+    sizes = (base.gap.before, base.gap.calibrated, base.gap.after, base.gap.floor, base.gap.shrink)
+    gaps = [result.RunGaps(run, *sizes) for run in ("run-a", "run-b", "run-c")]
     return replace(base, evidence=replace(base.evidence, other_traces=others), gap=replace(base.gap, by_run=gaps))
 
 
-CASES = {
-    "none": none,
-    "known": with_every_run,
-    "ambiguous": ambiguous,
-    "unknown": lambda: unknown(("damper_force",)),
-    "bench": bench,
-}
+CASES = {"none": none, "known": with_every_run, "ambiguous": ambiguous, "unknown": lambda: unknown(("damper_force",)),
+         "bench": bench}  # fmt: skip

@@ -6,17 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.result import (
-    Cause,
-    Collinearity,
-    ComfortFigure,
-    Estimate,
-    Evidence,
-    GapFigures,
-    Gaps,
-    ProposedExperiment,
-    Share,
-)
+from seatsim.diagnosis import result
+from seatsim.diagnosis.result import Cause, Estimate, GapFigures
 from seatsim.report.diagnosis import advise, format_estimate, report_diagnosis, say_action, say_cause, say_diagnosis
 from seatsim.report.formatting import format_sentence, read_words
 from seatsim.report.rendering import render_report
@@ -31,12 +22,9 @@ from .outline import Outline
 SHORT = ["gaps", "signals", "comfort", "notes", "credibility", "method"]
 FULL = ["causes", "gaps", "signals", "confusions", "maps", "comfort", "notes", "credibility", "method"]
 SHOWN = {
-    "none": SHORT,
-    "known": FULL,
-    "ambiguous": FULL,
+    "none": SHORT, "known": FULL, "ambiguous": FULL, "bench": [name for name in FULL if name != "comfort"],
     "unknown": words("causes gaps signals missing confusions maps comfort notes credibility method"),
-    "bench": [name for name in FULL if name != "comfort"],
-}
+}  # fmt: skip
 ANSWERS = {
     "none": "The simulation fits the recording",
     "known": "The damper remembers past current (0.0812 A stays behind). That explains ",
@@ -98,11 +86,11 @@ def test_hostile_names_are_text():
     traces = [replace(trace, run=bad, channel=bad, unit=bad) for trace in found.evidence.traces]
     found = replace(
         found, name=bad, sentence=bad, notes=[bad], held_out=[bad], selected=[bad], isolable=[[bad]],
-        where=[Share(bad, 1.0)], causes=[Cause(bad, 0.9, 0.8, {bad: Estimate(1.0, 0.1, bad), "in": bad})],
-        indistinguishable=[[bad, "coil.lag"]], experiment=ProposedExperiment("none", bad, bad, 1.0, 1.0),
+        where=[result.Share(bad, 1.0)], causes=[Cause(bad, 0.9, 0.8, {bad: Estimate(1.0, 0.1, bad), "in": bad})],
+        indistinguishable=[[bad, "coil.lag"]], experiment=result.ProposedExperiment("none", bad, bad, 1.0, 1.0),
         evidence=replace(
-            found.evidence, traces=traces, comfort=[ComfortFigure(bad, bad, 1.0, 1.0, 1.0)],
-            collinearity=Collinearity([bad, "b"], np.eye(2)),
+            found.evidence, traces=traces, comfort=[result.ComfortFigure(bad, bad, 1.0, 1.0, 1.0)],
+            collinearity=result.Collinearity([bad, "b"], np.eye(2)),
         ),
     )  # fmt: skip
     text = render_report(report_diagnosis(found))
@@ -117,11 +105,10 @@ def test_hostile_names_are_text():
 def test_little_is_known():
     """No traces, no motion, no gaps by channel, numbers that are none: what is left is printed."""
     found = known()
-    nothing = Evidence([], {}, None, Collinearity([], np.zeros((0, 0))), [])
-    gap = Gaps(*[GapFigures(size, {}) for size in (0.3, 0.29, 0.1, np.nan)], np.nan, (np.nan, np.nan))
-    found = replace(
-        found, evidence=nothing, gap=gap, notes=[], held_out=[], isolable=[], where=[], selected=[], parameters=[]
-    )
+    nothing = result.Evidence([], {}, None, result.Collinearity([], np.zeros((0, 0))), [])
+    gap = result.Gaps(*[GapFigures(size, {}) for size in (0.3, 0.29, 0.1, np.nan)], np.nan, (np.nan, np.nan))
+    lists = dict.fromkeys(("notes", "held_out", "isolable", "where", "selected", "parameters"), ())
+    found = replace(found, evidence=nothing, gap=gap, **lists)
     outline = Outline(render_report(report_diagnosis(found)))
     assert outline.anchors == ["causes", "gaps", "credibility", "method"]
     assert "–" in outline.words and not any("nan" in words for words in outline.words)
@@ -142,10 +129,9 @@ def test_the_nominal_simulation_is_not_called_one_with_effects(pages):
 
 def test_every_effect_is_said_in_plain_words():
     assert set(read_words().effects) == set(names("effect"))
-    late = {"shift": Estimate(0.0166, 0.0001, "s")}
-    assert say_cause(Cause("sensor.clock_skew", 1.0, 0.9, late)) == "the controller's log is 16.6 ms late"
-    early = {"shift": Estimate(-0.0166, 0.0001, "s")}
-    assert say_cause(Cause("sensor.clock_skew", 1.0, 0.9, early)).endswith("16.6 ms early")
+    for shift, side in ((0.0166, "late"), (-0.0166, "early")):
+        cause = Cause("sensor.clock_skew", 1.0, 0.9, {"shift": Estimate(shift, 0.0001, "s")})
+        assert say_cause(cause) == f"the controller's log is 16.6 ms {side}"
     gain = {"channel": "driver_acceleration", "error": Estimate(0.1, 0.01, "-")}
     assert say_cause(Cause("sensor.gain", 1.0, 0.9, gain)) == "the channel driver acceleration reads with a wrong scale"
     assert all("{" not in say_cause(Cause(name, 1.0, 0.9, {})) and say_action(name) for name in read_words().effects)

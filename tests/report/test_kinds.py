@@ -36,14 +36,10 @@ def test_a_comparison_names_the_most_comfortable_run_and_marks_it():
 
 
 def test_conditions_with_several_runs_are_compared_each_by_itself():
-    others = [
-        replace(
-            run,
-            scenario=replace(run.scenario, name="smoother", seed=2),
-            metrics={name: metric._replace(value=0.5 * metric.value) for name, metric in run.metrics.items()},
-        )
-        for run in runs()
-    ]
+    others = []
+    for run in runs():
+        half = {name: metric._replace(value=0.5 * metric.value) for name, metric in run.metrics.items()}
+        others.append(replace(run, scenario=replace(run.scenario, name="smoother", seed=2), metrics=half))
     report = report_runs([*runs(), *others], {}, "seatsim compare a b", "two")
     said = "“skyhook” is the most comfortable under both conditions. The worst of them is seat: the driver"
     assert report.answer.startswith(said)
@@ -83,11 +79,9 @@ def test_noise_that_is_not_stated_is_not_printed_as_none():
 
 
 def test_a_short_recording_has_no_spectrum():
-    short = pair(1.0)
-    short = short._replace(
-        time=short.time[:40], measured={"damper_force": short.measured["damper_force"][:40]},
-        simulated={"damper_force": short.simulated["damper_force"][:40]},
-    )  # fmt: skip
+    whole = pair(1.0)
+    signals = [{"damper_force": each["damper_force"][:40]} for each in (whole.measured, whole.simulated)]
+    short = whole._replace(time=whole.time[:40], measured=signals[0], simulated=signals[1])
     outline = Outline(render_report(report_gap("x", gap(0.3, run=short), JUDGED, "seatsim gap a b")))
     assert "frequency [Hz]" not in outline.words and "time [s]" in outline.words
 

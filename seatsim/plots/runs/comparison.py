@@ -194,8 +194,8 @@ def _plot_lines(title: str, key: str, series: dict[str, list[Run]]) -> Figure:
         shown = describe_metric(metric)
         for look, group in zip(looks, series.values(), strict=True):
             points = [(float(run.scenario.label[key]), shown.factor * run.read_metric(metric)) for run in group]
-            points.sort(key=lambda point: point[0])
-            style.draw_line(axes, *zip(*points, strict=True), look._replace(width=1.6, mark="o"))
+            places, values = zip(*sorted(points, key=lambda point: point[0]), strict=True)
+            style.draw_line(axes, places, values, look._replace(width=1.6, mark="o"))
         axes.set(xlabel=axis, ylabel=f"{shown.words} [{shown.unit}]")
         axes.set_ylim(0, 1.05 * axes.get_ylim()[1])
     return style.name_coincident(page.figure)

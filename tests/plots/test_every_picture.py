@@ -1,10 +1,8 @@
-"""Every picture of every kind of result: legible, inside its page, free of collisions, fit for a page of HTML.
-
-`contact_sheet.png`, in the folder of pytest's temporary files, shows all of them.
-"""
+"""Every picture of every kind of result: legible, inside its page, free of collisions, fit for a page of HTML."""
 
 import re
 from dataclasses import replace
+from itertools import combinations
 from types import SimpleNamespace
 from urllib.parse import unquote
 from xml.etree import ElementTree
@@ -13,7 +11,6 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
-from PIL import Image
 
 from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
 from seatsim.characterisation.sheet import WarmUp
@@ -49,16 +46,9 @@ RUNS = {
 
 def draw_gap():
     traces, found = diagnoses.known().evidence.traces, diagnoses.known().gap.before
-    names, units, measured, nominal = zip(*((t.channel, t.unit, t.measured, t.nominal) for t in traces), strict=True)
-    signals = (dict(zip(names, each, strict=True)) for each in (measured, nominal, units))
-    runs = {"run-c": ReplayedPair(traces[0].time, *signals)}
-    return plot_all_of_gap(
-        Gap(found.overall, found.channels, GapFigures(0.0, dict.fromkeys(names, 0.0)), replayed=runs)
-    )
-
-
-def draw_identification():
-    return {"loops": plot_predictions(kinds.identification(["test", "test"]))}
+    signals = ({t.channel: getattr(t, name) for t in traces} for name in ("measured", "nominal", "unit"))
+    runs, floor = {"run-c": ReplayedPair(traces[0].time, *signals)}, dict.fromkeys(found.channels, 0.0)
+    return plot_all_of_gap(Gap(found.overall, found.channels, GapFigures(0.0, floor), replayed=runs))
 
 
 def draw_bench():
@@ -76,16 +66,13 @@ def draw_seat_test():
     return plot_damping(SimpleNamespace(damping=dict.fromkeys(("em1", "em5"), kinds.seat_test().damping["seat"])))
 
 
-def draw_study():
-    return draw_figures(analyse_sensitivity(kinds.sweep()), kinds.sweep())
-
-
 OTHERS = {
     **{f"diagnosis, {name}": lambda make=make: plot_diagnosis(make()) for name, make in diagnoses.CASES.items()},
-    "gap": draw_gap, "identification": draw_identification, "bench": draw_bench, "seat test": draw_seat_test,
-    "study": draw_study, "comfort": lambda: plot_vibration(kinds.working_day()),
+    "gap": draw_gap, "bench": draw_bench,
+    "identification": lambda: {"loops": plot_predictions(kinds.identification(["test", "test"]))},
+    "seat test": draw_seat_test, "study": lambda: draw_figures(analyse_sensitivity(kinds.sweep()), kinds.sweep()),
+    "comfort": lambda: plot_vibration(kinds.working_day()),
 }  # fmt: skip
-DRAWN = []
 
 
 @pytest.fixture(scope="module", params=[*RUNS, *OTHERS])
@@ -94,7 +81,6 @@ def figures(request, made_up):
     drawn = plot_result(Result(RUNS[kind](made_up))) if kind in RUNS else OTHERS[kind]()
     for figure in drawn.values():
         FigureCanvasAgg(figure).draw()
-        DRAWN.append(Image.fromarray(np.asarray(figure.canvas.buffer_rgba())))
     return drawn
 
 
@@ -119,18 +105,16 @@ def test_no_two_texts_collide(figures):
                 ticks = axis.get_major_ticks()
                 texts += [tick.label1 for tick in ticks if low <= tick.get_loc() <= high and tick.label1.get_visible()]
         boxes = [(text, text.get_window_extent()) for text in texts if text.get_text().strip() and text.get_visible()]
-        for k, (text, box) in enumerate(boxes):
-            for other, second in boxes[:k]:
-                assert not box.padded(-1).overlaps(second.padded(-1)), (name, text, other)
+        for (text, box), (other, second) in combinations(boxes, 2):
+            assert not box.padded(-1).overlaps(second.padded(-1)), (name, text, other)
 
 
 def test_every_axis_that_is_numbered_has_a_unit_and_lines_have_a_legend(figures):
     for name, figure in figures.items():
-        for axes in figure.axes:
-            for axis in (axes.xaxis, axes.yaxis):
-                texts = [tick.label1.get_text() for tick in axis.get_major_ticks() if tick.label1.get_visible()]
-                numbered = any(re.match(r"[−\d.]+$", text) for text in texts)
-                assert not numbered or axis.get_label_text().endswith("]"), (name, texts)
+        for axis in (axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)):
+            texts = [tick.label1.get_text() for tick in axis.get_major_ticks() if tick.label1.get_visible()]
+            numbered = any(re.match(r"[−\d.]+$", text) for text in texts)
+            assert not numbered or axis.get_label_text().endswith("]"), (name, texts)
         if any(len(axes.lines) > 2 for axes in figure.axes) and "run" not in name:
             assert figure.legends or any(axes.get_legend() for axes in figure.axes) or "ranking" in name, name
 
@@ -180,16 +164,3 @@ def test_a_run_is_not_changed_by_drawing_it(made_up):
     plot_result(Result([run]))
     for name, values in run.history.channels.items():
         np.testing.assert_array_equal(values, before[name])
-
-
-def test_the_contact_sheet(tmp_path_factory):
-    """All pictures that were drawn, in columns of one picture each; to be looked at."""
-    heights, places = [0] * 8, []
-    for image in DRAWN:
-        column = heights.index(min(heights))
-        places.append((column * (image.width + 20), heights[column]))
-        heights[column] += image.height + 20
-    sheet = Image.new("RGB", (8 * 600, max(*heights, 1)), "#999")
-    for image, place in zip(DRAWN, places, strict=True):
-        sheet.paste(image, place)
-    sheet.save(tmp_path_factory.getbasetemp() / "contact_sheet.png")
