@@ -184,9 +184,8 @@ def plot_ranking(diagnosis: Diagnosis) -> Figure | None:
         " two effects can both be near 100 %."
     )
     strong = [k for k, colour in enumerate(colours) if colour == _CHOSEN]
-    figure, [left, right] = make_rows(
-        title, note, names, [], strong, Grid((), 2, right=0.45, bottom=0.7, gap=(0.7, 0.0))
-    )
+    grid = Grid((), 2, right=0.45, bottom=0.7, gap=(0.7, 0.0))
+    figure, [left, right] = make_rows(title, note, names, [], strong, grid)
     for axes in (left, right):
         axes.axhline(len(names) - 2.5, color="0.8", linewidth=0.8)
     draw_bars(left, probabilities, colours, texts)
@@ -200,9 +199,8 @@ def plot_ranking(diagnosis: Diagnosis) -> Figure | None:
 def _list_rows(diagnosis: Diagnosis) -> list[tuple[str, float, float, str, str]]:
     """Return of each row its name, probability and shrink in per cent, the colour, and the text of the probability."""
     looks = dict.fromkeys(_find_equivalent(diagnosis), _EQUIVALENT) | dict.fromkeys(diagnosis.selected, _CHOSEN)
-    shown = [each for each in diagnosis.causes if each.effect in diagnosis.selected or each.probability >= LIKELY][
-        :MOST
-    ]
+    likely = [each for each in diagnosis.causes if each.effect in diagnosis.selected or each.probability >= LIKELY]
+    shown = likely[:MOST]
     rows = [(each.effect, each.probability, each.shrink, looks.get(each.effect, OTHER), "") for each in shown]
     if rest := [each.probability for each in diagnosis.causes if each not in shown]:
         most = f"at most {_format_percent(100 * max(rest))}" if max(rest) >= LIKELY else f"below {100 * LIKELY:g} %"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from textwrap import fill
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 from matplotlib import colormaps
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
@@ -19,9 +19,6 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.printing import Quantity, describe_channel, format_number, format_percent, format_unit
 from seatsim.sweeps.parts import SweepRows, is_number
 from seatsim.sweeps.sensitivity import Sensitivity
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 ROAD = "excitation."
 """How the keys of the excitation begin; the first of them with few values gives each value a panel of its own."""
@@ -151,8 +148,6 @@ def plot_means(rows: SweepRows, order: Sequence[str], metric: str) -> Figure | N
 
     None too where one of them is a text with too many values.
     """
-    import pandas as pd
-
     keys = [key for key in order if key != "variant"][:2]
     cells = [_group(rows.usable[key]) for key in keys]
     if len(keys) < 2 or metric not in rows.metrics or any(each is None for each in cells):
@@ -185,8 +180,6 @@ def plot_means(rows: SweepRows, order: Sequence[str], metric: str) -> Figure | N
 
 def _group(values: pd.Series) -> pd.Series | None:
     """Return the values as ordered names of cells."""
-    import pandas as pd
-
     if values.nunique() <= _MOST_LEVELS:
         names = pd.Categorical(values.map(format_level), [format_level(x) for x in sorted(values.unique())], True)
         return pd.Series(names, index=values.index)

@@ -20,14 +20,7 @@ from seatsim.report import formatting
 from seatsim.report.blocks import Block, Figures, Items, Report, Table, Text, show_pictures, tabulate
 from seatsim.report.composing import compose
 from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs, validate, verify
-from seatsim.report.formatting import (
-    choose_advice,
-    describe_effect,
-    format_quantity,
-    format_sentence,
-    read_words,
-    show_table,
-)
+from seatsim.report.formatting import choose_advice, format_quantity, format_sentence, read_words, show_table
 from seatsim.report.packing import MEASURED, pack_traces
 from seatsim.schema.fields import UNUSUAL
 from seatsim.schema.printing import MINUS, UNKNOWN, describe_channel, format_number, format_percent, format_unit
@@ -180,7 +173,7 @@ def say_cause(cause: Cause) -> str:
     """Return what is the matter in a clause; of an effect of the reader's own, its documentation."""
     words = read_words().effects.get(cause.effect)
     if words is None:
-        return f"{cause.effect} is at work ({describe_effect(cause.effect) or 'an effect of your own'})"
+        return f"{cause.effect} is at work ({formatting.describe_effect(cause.effect) or 'an effect of your own'})"
     channel, shift = cause.parameters.get("channel"), cause.parameters.get("shift")
     side = "early" if isinstance(shift, Estimate) and shift.value < 0 else "late"
     name = channel.replace("_", " ") if isinstance(channel, str) else "of one sensor"
@@ -198,7 +191,7 @@ def show_causes(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
     shown = [each for each in diagnosis.causes if each.probability >= LIKELY or each.effect in diagnosis.selected]
     rows = []
     for cause in shown:
-        meaning = format_sentence(describe_effect(cause.effect)) or UNKNOWN
+        meaning = format_sentence(formatting.describe_effect(cause.effect)) or UNKNOWN
         shares = (format_percent(cause.probability), format_percent(cause.shrink))
         sizes = "; ".join(f"{name} {format_estimate(value)}" for name, value in cause.parameters.items()) or UNKNOWN
         rows.append((cause.effect, meaning, sizes, *shares))
@@ -208,13 +201,10 @@ def show_causes(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
 
 def show_confusions(diagnosis: Diagnosis) -> list[Block]:
     """Return which effects this recording cannot tell apart, and what would decide."""
-    blocks: list[Block] = [
-        Text(f"This recording cannot distinguish {join_names(group)}: each explains the gap equally well.")
-        for group in diagnosis.indistinguishable
-        if len(group) > 1
-    ]
-    found = diagnosis.experiment
-    if found is not None:
+    groups = [join_names(group) for group in diagnosis.indistinguishable if len(group) > 1]
+    said = "This recording cannot distinguish {}: each explains the gap equally well."
+    blocks: list[Block] = [Text(said.format(group)) for group in groups]
+    if (found := diagnosis.experiment) is not None:
         row = (found.name.replace("_", " "), found.kind, found.likeness_now, found.likeness_then)
         blocks += [*show_table("experiment", [row], 2), Text(format_sentence(found.reason))]
     names, matrix = diagnosis.evidence.collinearity

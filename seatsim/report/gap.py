@@ -16,18 +16,11 @@ from seatsim.metrics.objective_rating import GRADES
 from seatsim.plots.diagnosis import SMALLEST, plot_all_of_gap
 from seatsim.recordings.gap import Gap
 from seatsim.recordings.recording import load_recording
+from seatsim.report import formatting
 from seatsim.report.blocks import Block, Items, Report, Table, show_pictures
 from seatsim.report.composing import compose
 from seatsim.report.credibility import NEAR_NOISE, Factor, count_variations, state_intervals, trace_inputs, validate
-from seatsim.report.formatting import (
-    choose_advice,
-    explain,
-    format_noise,
-    format_quantity,
-    say_noise,
-    scale_row,
-    show_table,
-)
+from seatsim.report.formatting import format_noise, format_quantity, say_noise, scale_row, show_table
 from seatsim.report.packing import MEASURED, pack_traces
 from seatsim.scenario.loading import single
 from seatsim.schema.printing import UNKNOWN, format_percent
@@ -48,7 +41,7 @@ def report_gap(name: str, found: Gap, factors: Sequence[Factor], command: str) -
         "signals": [*show_pictures(figures, "signal_"), pack_traces(list_traces(found), lines)],
         "agreement": show_agreement(found),
     }
-    advice = choose_advice(use_scenario=_is_explained(found), diagnose=not _is_explained(found))
+    advice = formatting.choose_advice(use_scenario=_is_explained(found), diagnose=not _is_explained(found))
     return compose("gap", f"Gap: {name}", [say_gap(found)], advice, sections, found.notes, factors, command)
 
 
@@ -106,9 +99,14 @@ def show_agreement(found: Gap) -> list[Block]:
         for name, each in found.iso18571.items()
     ]
     grades = ", ".join(f"{grade} above {least:g}" for grade, least in GRADES.items() if least > 0)
-    meanings = Items([each.text for each in explain("ratings", grades=grades)])
+    meanings = Items([each.text for each in formatting.explain("ratings", grades=grades)])
     errors = [
         scale_row(name, each.unit, (each.error, each.u_val, each.u_num, each.u_input, each.u_d))
         for name, each in found.v_and_v.items()
     ]
-    return [*show_table("ratings", ratings, 2), meanings, *show_table("errors", errors, 2), *explain("errors")]
+    return [
+        *show_table("ratings", ratings, 2),
+        meanings,
+        *show_table("errors", errors, 2),
+        *formatting.explain("errors"),
+    ]

@@ -23,11 +23,8 @@ def render_report(report: Report) -> str:
     script, style = read_asset(SCRIPTS), read_asset(STYLES)
     sections = [section for section in report.sections if section.blocks]
     policy = f"default-src 'none'; script-src {digest_of(script)}; img-src data:; style-src {digest_of(style)}"
-    template, assets = (
-        make_environment().get_template("report.html"),
-        {"script": Markup(script), "style": Markup(style)},
-    )
-    return template.render(assets, report=report, sections=sections, policy=policy)
+    facts = {"report": report, "sections": sections, "policy": policy}
+    return make_environment().get_template("report.html").render(facts, script=Markup(script), style=Markup(style))
 
 
 def write_html(report: Report, path: Path) -> Path:

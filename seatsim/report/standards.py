@@ -74,10 +74,8 @@ def _say_comfort(found: Comfort) -> str:
     day = found.exposure
     if day is None:
         return f"The vibration total value is {found.totals['overall']:.2f} m/s²."
-    action, limit = (
-        f"the action value of {day.action_value.a8:g} m/s²",
-        f"the limit value of {day.limit_value.a8:g} m/s²",
-    )
+    action = f"the action value of {day.action_value.a8:g} m/s²"
+    limit = f"the limit value of {day.limit_value.a8:g} m/s²"
     judged = f"above {action} and below {limit}" if day.action_value.exceeded_by_a8 else f"below {action}"
     judged = f"above {limit}" if day.limit_value.exceeded_by_a8 else judged
     return f"{day.hours:g} h a day of this vibration give A(8) = {day.a8:.2f} m/s² along {day.a8_axis}, {judged}."

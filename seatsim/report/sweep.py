@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import pandas as pd
 
 from seatsim.dampers.base import DAMPERS
 from seatsim.metrics.table import COMFORT, TRAVEL
@@ -18,9 +20,6 @@ from seatsim.schema.printing import format_number, format_percent
 from seatsim.sweeps.outcome import FAILED, UNVERIFIED
 from seatsim.sweeps.parts import NAMES, Exceedance, SweepRows, find_best_choices
 from seatsim.sweeps.sensitivity import Sensitivities, Sensitivity, choose_choice, choose_key
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 _MATTERS = 0.1
 """Share of the variance from which on a key is worth a step."""
@@ -84,13 +83,10 @@ def advise_on_keys(found: Sequence[Sensitivity], rows: SweepRows) -> list[str]:
         lead = f"Leave {choice.key} as it is, and the other varied choices" if choice.total < _MATTERS else lead
         texts.append(f"{lead}: {share}.")
     if (condition := choose_key([row for row in found if is_condition(row.key)], rows)) is not None:
-        words, unit = (
-            describe_column(condition.metric, rows.units).words,
-            describe_column(condition.key, rows.units).unit,
-        )
+        words = describe_column(condition.metric, rows.units).words
         ends = ((condition.at_low, condition.low), (condition.at_high, condition.high))
         worst, level = max(ends, key=lambda end: end[0])
-        at = f"{format_level(level)} {unit}".removesuffix(" -")
+        at = f"{format_level(level)} {describe_column(condition.key, rows.units).unit}".removesuffix(" -")
         mean = format_quantity(worst, rows.units[condition.metric])
         texts.append(f"Judge every choice at {condition.key} {at}: there the mean {words} is largest, {mean}.")
     return texts

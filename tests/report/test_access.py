@@ -1,50 +1,27 @@
 """What a screen reader, a keyboard and weak eyes need of every kind of report, as axe-core asks for it."""
 
 import re
-from html.parser import HTMLParser
 from itertools import pairwise
-from xml.etree.ElementTree import TreeBuilder
 
 import pytest
 
 from seatsim.report.rendering import STYLES, read_asset
 
 from .kinds import KINDS, render
-from .outline import VOID
+from .outline import Parser, text_of
 
 NAMED = ("a", "button", "summary", "caption", "h1", "h2", "h3", "th", "legend")
 """Elements that are nothing without a text."""
 
 
-class Parser(HTMLParser):
-    """Makes a tree of a page."""
-
-    def __init__(self):
-        super().__init__()
-        self.builder = TreeBuilder()
-
-    def handle_starttag(self, tag, attrs):
-        self.builder.start(tag, {key: value or "" for key, value in attrs})
-        if tag in VOID:
-            self.builder.end(tag)
-
-    def handle_endtag(self, tag):
-        self.builder.end(tag)
-
-    def handle_data(self, data):
-        self.builder.data(data)
-
-
 @pytest.fixture(scope="module", params=KINDS)
 def page(request):
     text = render(request.param)
-    parser = Parser()
-    parser.feed(text)
-    return text, parser.builder.close()
+    return text, Parser(text).root
 
 
 def words(element):
-    return " ".join("".join(element.itertext()).split())
+    return " ".join(text_of(element).split())
 
 
 def test_a_report_can_be_heard_and_used_without_a_mouse(page):

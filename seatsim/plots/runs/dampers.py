@@ -147,9 +147,8 @@ def _make_families(group: Sequence[Run], called: str, amplitude: float) -> Itera
     """Yield the loops of the damper of some runs by current, and by temperature."""
     first, damper, most = group[0], group[0].scenario.damper, group[0].scenario.coil.max_current
     start, fades = _start_temperature(first), any(damper.factors[:3])
-    by_current = _drop_equal(
-        (f"{i:g} A", _test(first, amplitude, i, start)) for i in (share * most for share in SHARES)
-    )
+    currents = [share * most for share in SHARES]
+    by_current = _drop_equal((f"{current:g} A", _test(first, amplitude, current, start)) for current in currents)
     # Where no current changes it, the loops by temperature show all.
     if len(by_current) > 1 or not fades:
         yield Family(f"{called} at {start:g} °C", "current", by_current)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 from matplotlib.figure import Figure
 
 from seatsim.cosimulation.damper import FmuDamper
@@ -27,13 +29,9 @@ def plot_result(result: Result) -> dict[str, Figure]:
         figures["pareto"] = plot_pareto(result.runs, result.brackets)
     if len(result.runs) > 1:
         figures["comparison"] = plot_comparison(result.runs)
-    for shown in show_runs(result.runs):
-        end = f"_{shown.scenario}" * bool(shown.scenario)
-        figures |= {
-            f"time_histories{end}": plot_time_histories(shown),
-            f"psd{end}": plot_psd(shown),
-            f"transmissibility{end}": plot_transmissibility(shown),
-        }
+    plots = {"time_histories": plot_time_histories, "psd": plot_psd, "transmissibility": plot_transmissibility}
+    for shown, (name, plot) in product(show_runs(result.runs), plots.items()):
+        figures[f"{name}_{shown.scenario}".removesuffix("_")] = plot(shown)
     # A damper that is a unit of another program is not put to a sine test.
     models = [run for run in result.runs if not isinstance(run.scenario.damper.record, FmuDamper)]
     if models:
