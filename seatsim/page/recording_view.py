@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 
 from seatsim.diagnosis.answer import write_augmented
-from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.objective import Parameters
 from seatsim.diagnosis.trial import Trial, name_candidate
 from seatsim.metrics.motion import rms
@@ -40,7 +39,13 @@ class RecordingView:
         self.name, self.trial = folder.resolve().name, Trial(folder)
         self.problem = problem = self.trial.problem
         self.before, self.floor = self.trial.measure(self.trial.nominal), problem.noise / problem.spread
-        self.switches = [_make_switch(name, candidate) for name, candidate in self.trial.candidates.items()]
+        self.switches = list[Switch]()
+        for name, candidate in self.trial.candidates.items():
+            fields = {field.name: field for field in describe(candidate.cls)}
+            ranges = zip(candidate.free, candidate.low, candidate.high, candidate.start, strict=True)
+            sliders = [make_slider(fields[free], low, high, start, REACH) for free, low, high, start in ranges]
+            meaning = format_sentence(describe_effect(candidate.effect))
+            self.switches.append(Switch(name, name.replace(":", ", "), meaning, sliders))
 
     def show(self, request: Mapping[str, object]) -> View:
         """Return the gap with the effects of a request, at its values or, where it says so, fitted to the recording.
@@ -94,10 +99,3 @@ class RecordingView:
             return f"The nominal simulation is off by {format_percent(before)}; {say_noise(floor)}."
         change = f"{'shrinks' if now < before else 'grows'} from {format_percent(before)} to {format_percent(now)}"
         return f"With {effects} effect{'s' * (effects > 1)} the gap {change}; {say_noise(floor)}."
-
-
-def _make_switch(name: str, candidate: Candidate) -> Switch:
-    fields = {field.name: field for field in describe(candidate.cls)}
-    ranges = zip(candidate.free, candidate.low, candidate.high, candidate.start, strict=True)
-    sliders = [make_slider(fields[free], low, high, start, REACH) for free, low, high, start in ranges]
-    return Switch(name, name.replace(":", ", "), format_sentence(describe_effect(candidate.effect)), sliders)

@@ -18,7 +18,7 @@ from seatsim.metrics.motion import ratio
 from seatsim.plots.bench.identification import PARTS, name_records, select_records
 from seatsim.report.blocks import Block, Code, Figures, Report, Table, Text, show_pictures, tabulate
 from seatsim.report.composing import compose
-from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs, validate
+from seatsim.report.credibility import count_variations, state_intervals, trace_inputs, validate
 from seatsim.report.formatting import choose_advice, format_quantity, read_words, show_table
 from seatsim.report.packing import MEASURED, Panel, pack_signals
 from seatsim.schema.content import list_written
@@ -38,27 +38,23 @@ def report_identification(found: Identification, figures: Figures, command: str)
         "signals": [_show_time(select_records(found.assessments))],
         "parameters": tabulate_parameters(found),
     }
-    loose = [each.name for each in found.information.estimates if not each.identified]
+    loose, mean = [each.name for each in found.information.estimates if not each.identified], found.assessed
     advice = choose_advice(
         hold_out=found.mean("test") is None,
-        other_models=found.assessed is not None and found.assessed.fit_percent < FAIR,
+        other_models=mean is not None and mean.fit_percent < FAIR,
         undetermined=loose,
         copy=True,
     )
-    about, factors = f"Identification: {found.model}", _judge_fit(found, loose)
-    return compose("identification", about, [_say_fit(found)], advice, sections, found.notes, factors, command)
-
-
-def _judge_fit(found: Identification, loose: Sequence[str]) -> list[Factor]:
-    """Return how far an identified damper may be trusted, on held-out records where there are some."""
-    mean, parts = found.assessed, [each.part for each in found.assessments]
+    parts = [each.part for each in found.assessments]
     error = None if mean is None else 1.0 - mean.fit_percent / 100.0
-    return [
+    factors = [
         validate(len(parts), parts.count("test"), error),
         trace_inputs([], [type(found.bench.damper)], True, loose),
         state_intervals(["the parameters"], True),
         count_variations(len(parts)),
     ]
+    about = f"Identification: {found.model}"
+    return compose("identification", about, [_say_fit(found)], advice, sections, found.notes, factors, command)
 
 
 def _say_fit(found: Identification) -> str:

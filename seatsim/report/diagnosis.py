@@ -37,6 +37,8 @@ EXPLAINED = "Refitted is the nominal scenario with its parameters moved inside t
 def report_diagnosis(diagnosis: Diagnosis) -> Report:
     """Return the report of a diagnosis; without a gap it has no evidence for causes."""
     figures = plot_diagnosis(diagnosis)
+    # What the error of the stated scenario is made of on the held-out run, by channel.
+    errors = [formatting.scale_row(channel, unit, parts) for channel, unit, *parts in diagnosis.error_budget]
     sections: dict[str, Sequence[Block]] = {
         "causes": show_causes(diagnosis, figures),
         "gaps": show_gaps(diagnosis, figures),
@@ -45,7 +47,7 @@ def report_diagnosis(diagnosis: Diagnosis) -> Report:
         "forms": show_forms(diagnosis),
         "confusions": show_confusions(diagnosis),
         "maps": show_pictures(figures, "maps"),
-        "budget": show_budget(diagnosis),
+        "budget": [*formatting.explain("budget"), *show_table("budget", errors, 2)] if errors else [],
         "comfort": show_comfort(diagnosis),
     }
     if diagnosis.verdict == "none":
@@ -297,12 +299,6 @@ def show_comfort(diagnosis: Diagnosis) -> list[Table]:
         errors = [_format_error(value, each.measured) for value in (each.nominal, each.after)]
         rows.append((each.quantity.replace("_", " "), measured, nominal, errors[0], after, errors[1]))
     return show_table("comfort", rows, last=find_last(diagnosis).label)
-
-
-def show_budget(diagnosis: Diagnosis) -> list[Block]:
-    """Return what the error of the stated scenario is made of on the held-out run, by channel."""
-    rows = [formatting.scale_row(channel, unit, parts) for channel, unit, *parts in diagnosis.error_budget]
-    return [*formatting.explain("budget"), *show_table("budget", rows, 2)] if rows else []
 
 
 def list_notes(diagnosis: Diagnosis) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import pandas as pd
@@ -46,7 +46,11 @@ def report_sweep(
         "quantiles": _show_quantiles(quantiles, rows),
         "states": _show_states(rows),
     }
-    answer, factors = [*state_importance(found, rows), _count_runs(rows)], _judge(rows, found, exceeded)
+    states = {state: int((rows.every.state == state).sum()) for state in (FAILED, UNVERIFIED)}
+    out = " and ".join(f"{count} {state}" for state, count in states.items() if count)
+    ended = f"{len(rows.every)} of {rows.manifest['counts']['runs']} runs have ended."
+    left = f" {out}: these take no part in any figure." if out else ""
+    answer, factors = [*state_importance(found, rows), f"{ended}{left}"], _judge(rows, found, exceeded)
     about, command = f"Sweep: {rows.folder.name}", f"seatsim sweep-report {rows.folder.name}"
     return compose("sweep", about, answer, _advise(found, exceeded, rows), sections, [], factors, command, settings)
 
@@ -124,14 +128,6 @@ def _judge(rows: SweepRows, found: Sensitivities, exceeded: Sequence[Exceedance]
         state_intervals(intervals, bool(rows.drawn), bool(found.rows)),
         count_variations(count, rows.keys, said, explains, is_judged and count >= credibility.ENOUGH_RUNS),
     ]
-
-
-def _count_runs(rows: SweepRows) -> str:
-    counts: Mapping[str, int] = rows.manifest["counts"]
-    states = {state: int((rows.every.state == state).sum()) for state in (FAILED, UNVERIFIED)}
-    out = [f"{count} {state}" for state, count in states.items() if count]
-    left = f" {' and '.join(out)}: these take no part in any figure." if out else ""
-    return f"{len(rows.every)} of {counts['runs']} runs have ended.{left}"
 
 
 def _advise(found: Sensitivities, exceeded: Sequence[Exceedance], rows: SweepRows) -> list[str]:

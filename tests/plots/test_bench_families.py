@@ -35,16 +35,11 @@ def names_of(family):
     return [name for name, _ in family.loops]
 
 
-def test_loops_are_ordered_by_current_at_the_lowest_temperature():
-    rows = [row(i, t) for i in (2.0, 0.0, 1.0) for t in (20.0, 60.0)]
-    family = families.order_by_current(rows)
+def test_loops_are_ordered_by_current_when_coldest_and_by_temperature_at_the_largest_current():
+    family = families.order_by_current([row(i, t) for i in (2.0, 0.0, 1.0) for t in (20.0, 60.0)])
     assert names_of(family) == ["0 A", "1 A", "2 A"] and family.legend == "current"
     assert family.title == "10 mm, 1 Hz, 20 °C"
-
-
-def test_loops_are_ordered_by_temperature_at_the_largest_current():
-    rows = [row(i, t) for i in (0.0, 1.0, 0.99) for t in (60.0, 20.0)]
-    family = families.order_by_temperature(rows)
+    family = families.order_by_temperature([row(i, t) for i in (0.0, 1.0, 0.99) for t in (60.0, 20.0)])
     assert names_of(family) == ["20 °C", "20 °C", "60 °C", "60 °C"] and family.legend == "temperature"
 
 

@@ -86,8 +86,7 @@ def test_a_force_is_wanted_only_where_a_law_wants_one(made_up):
 def test_the_density_of_white_noise_is_flat(made_up):
     run = made_up(seconds=60.0)
     floor, _ = plot_psd([run]).axes[0].lines
-    level = 2 * run.history.step * np.var(run.history["floor_acceleration"])
-    high = floor.get_xdata() > 5
+    level, high = 2 * run.history.step * np.var(run.history["floor_acceleration"]), floor.get_xdata() > 5
     np.testing.assert_allclose(floor.get_ydata()[high], level, rtol=0.6)
     assert np.mean(floor.get_ydata()[high]) == pytest.approx(level, rel=0.05)
 
@@ -132,11 +131,10 @@ def test_an_empty_spectrum_says_which_cause_empties_it(picture, change, reason, 
 
 def test_the_test_has_the_rms_of_the_run_to_one_digit(made_up):
     run = made_up()
-    assert choose_amplitude([run]) == pytest.approx(0.02)
     twice = with_scenario(run, plant=run.scenario.plant._replace(damper_ratio=2.0))
-    assert choose_amplitude([run, twice]) == pytest.approx(0.04)
-    assert choose_amplitude([made_up(motion=0.0)]) == 0.01
-    assert choose_amplitude([made_up(motion=1e-4)]) == 0.001
+    for runs, amplitude in (([run], 0.02), ([run, twice], 0.04), ([made_up(motion=0.0)], 0.01),
+                            ([made_up(motion=1e-4)], 0.001)):  # fmt: skip
+        assert choose_amplitude(runs) == pytest.approx(amplitude)
 
 
 def test_loops_by_current_and_by_temperature(made_up):
@@ -159,8 +157,7 @@ def test_distinct_dampers(made_up):
 
 def test_force_velocity_shows_the_run_within_the_dampers_curves(made_up):
     run = made_up()
-    figure = plot_force_velocity([run])
-    axes = figure.axes[0]
+    axes, bar = (figure := plot_force_velocity([run])).axes
     dots = axes.collections[0].get_offsets()
     every = -(-len(run.history["time"]) // len(dots))
     np.testing.assert_allclose(np.sort(dots[:, 1]), np.sort(run.history["damper_force"][::every]))
@@ -168,7 +165,7 @@ def test_force_velocity_shows_the_run_within_the_dampers_curves(made_up):
     tests = ["sine test at 0 A", "sine test at 1 A"]
     assert legend(figure) == ["the run (colour: current)", *tests, "the damper gives energy back"]
     ends = (0.0, np.quantile(run.history["coil_current"], 0.99))
-    assert axes.collections[0].get_clim() == ends and figure.axes[1].get_ylim() == ends
+    assert axes.collections[0].get_clim() == ends and bar.get_ylim() == ends
 
 
 def test_a_sweep_is_compared_over_its_number(made_up):

@@ -79,10 +79,8 @@ def pictures():
 
 
 def pair(noise):
-    time = 1.0 + np.arange(2000) / 500
-    measured = {"damper_force": 100 * np.sin(9 * time)}
-    rng = np.random.default_rng(0)
-    simulated = {"damper_force": measured["damper_force"] + noise * rng.standard_normal(2000)}
+    time, errors = 1.0 + np.arange(2000) / 500, noise * np.random.default_rng(0).standard_normal(2000)
+    measured, simulated = ({"damper_force": 100 * np.sin(9 * time) + each} for each in (0.0, errors))
     return ReplayedPair(time, measured, simulated, {"damper_force": "N"})
 
 
@@ -96,17 +94,14 @@ def identification(parts):
     x = 0.01 * np.sin(np.arange(900) / 30)
     force = 500 * np.gradient(x) * 500
     record = BenchRecord("sine, 1 A", "sine.csv", 500.0, x, np.gradient(x) * 500, force, np.ones(900), False, None)
-    judged = [
-        Assessment(
-            record._replace(folder=f"rig-{k}"), part, force + rng.standard_normal(900), Agreement(0.99, 0.02, 5.0, 93.2)
-        )
-        for k, part in enumerate(parts)
-    ]
+    agreement, noise = Agreement(0.99, 0.02, 5.0, 93.2), rng.standard_normal((len(parts), 900))
+    records = [record._replace(folder=f"rig-{k}") for k in range(len(parts))]
+    judged = [Assessment(*each, agreement) for each in zip(records, parts, force + noise, strict=True)]
     known = [ParameterEstimate("c_a", 500.0, 2.0, "N s/m", True), ParameterEstimate("k0", 3.0, 30.0, "N/m", False)]
     return SimpleNamespace(
         model="bouc_wen", bench=SimpleNamespace(damper=None), assessments=judged,
         information=Information(known, [("c_a", "k0", 0.99)], 100.0), notes=[], assessed=judged[0].agreement,
-        mean=lambda part: Agreement(0.99, 0.02, 5.0, 93.2) if part in parts else None,
+        mean=lambda part: agreement if part in parts else None,
     )  # fmt: skip
 
 
@@ -157,10 +152,6 @@ def working_day():
     return comfort("scenarios/data/recording", hours={"run-1": 3.0, "run-2": 1.5})
 
 
-def _report_comfort():
-    return report_comfort(working_day(), plot_vibration(working_day()), "seatsim comfort recording")
-
-
 def _report_sweep():
     rows = sweep()
     return report_sweep(rows, tabulate_quantiles(rows), analyse_sensitivity(rows), count_exceedances(rows))
@@ -189,6 +180,6 @@ KINDS = {
     "diagnosis": lambda: report_diagnosis(with_every_run()),
     "identification": _report_identification,
     "characterisation": _report_characterisation,
-    "comfort": _report_comfort,
+    "comfort": lambda: report_comfort(working_day(), plot_vibration(working_day()), "seatsim comfort recording"),
     "seat test": lambda: report_seat_test(seat_test(), "seat", False, "seatsim seat-test seat"),
 }
