@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import product
-
 from matplotlib.figure import Figure
 
 from seatsim.cosimulation.damper import FmuDamper
@@ -30,8 +28,9 @@ def plot_result(result: Result) -> dict[str, Figure]:
     if len(result.runs) > 1:
         figures["comparison"] = plot_comparison(result.runs)
     plots = {"time_histories": plot_time_histories, "psd": plot_psd, "transmissibility": plot_transmissibility}
-    for shown, (name, plot) in product(show_runs(result.runs), plots.items()):
-        figures[f"{name}_{shown.scenario}".removesuffix("_")] = plot(shown)
+    for shown in show_runs(result.runs):
+        end = f"_{shown.scenario}" * bool(shown.scenario)
+        figures |= {f"{name}{end}": plot(shown) for name, plot in plots.items()}
     # A damper that is a unit of another program is not put to a sine test.
     models = [run for run in result.runs if not isinstance(run.scenario.damper.record, FmuDamper)]
     if models:
