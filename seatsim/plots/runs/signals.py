@@ -141,7 +141,7 @@ def plot_transmissibility(shown: Shown) -> Figure:
     """Return the magnitude of the transmissibility from floor to driver where it can be trusted."""
     gains = [_estimate_gain(run) for run in shown.runs]
     places, values = (np.concatenate([each[k] for each in gains]) for k in (0, 1))
-    places, known = places[values > 0], values[values > 0]
+    places, known = (each[np.isfinite(values) & (values > 0)] for each in (places, values))
     resolution = max((frequency[1] - frequency[0] for frequency, _, _ in gains if len(frequency)), default=np.inf)
     looks = shown.looks if len(shown.runs) > 1 else [shown.looks[0]._replace(label="the run")]
     lines = f" Lines up to {resolution:.2g} Hz apart." * bool(known.size)
