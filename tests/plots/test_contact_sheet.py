@@ -1,4 +1,7 @@
-"""Every picture of every kind of result: legible, inside its page, free of collisions, fit for a page of HTML."""
+"""Every picture of every kind of result: legible, inside its page, free of collisions, fit for a page of HTML.
+
+`contact_sheet.png`, in the folder of pytest's temporary files, shows all of them.
+"""
 
 import re
 from dataclasses import replace
@@ -11,6 +14,7 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
+from PIL import Image
 
 from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
 from seatsim.characterisation.sheet import WarmUp
@@ -73,6 +77,7 @@ OTHERS = {
     "seat test": draw_seat_test, "study": lambda: draw_figures(analyse_sensitivity(kinds.sweep()), kinds.sweep()),
     "comfort": lambda: plot_vibration(kinds.working_day()),
 }  # fmt: skip
+DRAWN = []
 
 
 @pytest.fixture(scope="module", params=[*RUNS, *OTHERS])
@@ -81,6 +86,7 @@ def figures(request, made_up):
     drawn = plot_result(Result(RUNS[kind](made_up))) if kind in RUNS else OTHERS[kind]()
     for figure in drawn.values():
         FigureCanvasAgg(figure).draw()
+        DRAWN.append(Image.fromarray(np.asarray(figure.canvas.buffer_rgba())))
     return drawn
 
 
@@ -164,3 +170,16 @@ def test_a_run_is_not_changed_by_drawing_it(made_up):
     plot_result(Result([run]))
     for name, values in run.history.channels.items():
         np.testing.assert_array_equal(values, before[name])
+
+
+def test_the_contact_sheet(tmp_path_factory):
+    """All pictures that were drawn, in columns of one picture each; to be looked at."""
+    heights, places = [0] * 8, []
+    for image in DRAWN:
+        column = heights.index(min(heights))
+        places.append((column * (image.width + 20), heights[column]))
+        heights[column] += image.height + 20
+    sheet = Image.new("RGB", (8 * 600, max(*heights, 1)), "#999")
+    for image, place in zip(DRAWN, places, strict=True):
+        sheet.paste(image, place)
+    sheet.save(tmp_path_factory.getbasetemp() / "contact_sheet.png")
