@@ -38,14 +38,7 @@ def relate_to_material(problem: DiagnosisProblem, movements: Array) -> Array:
 
 def is_material(problem: DiagnosisProblem, evaluation: Evaluation) -> bool:
     """Whether every effect of a set moves some channel by a material size and by more than its noise."""
-    return not name_immaterial(problem, evaluation)
-
-
-def name_immaterial(problem: DiagnosisProblem, evaluation: Evaluation) -> list[str]:
-    """Return the names of the effects of a set that move no channel by a material size and by more than its noise."""
-    moves = measure_relative_movements(problem, evaluation)
-    terms = evaluation.parameters.terms
-    return [term.effect for term, move in zip(terms, moves, strict=True) if not np.any(move > 1.0)]
+    return all(np.any(move > 1.0) for move in measure_relative_movements(problem, evaluation))
 
 
 def measure_remainders(problem: DiagnosisProblem, evaluation: Evaluation) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.special import softmax
 
 from seatsim.diagnosis.candidates import Candidate
-from seatsim.diagnosis.decide import Decision, Verdict, decide_verdict
+from seatsim.diagnosis.decide import Decision, decide_verdict
 from seatsim.diagnosis.localise.discrepancy import Discrepancy
 from seatsim.diagnosis.movement import group_equivalent, measure_remainders
 from seatsim.diagnosis.objective import Evaluation, Objective
@@ -91,18 +91,11 @@ def weigh_effects(sets: Sequence[tuple[frozenset[str], float]], effects: Sequenc
     return {name: sum(weight for names, weight in known if name in names) for name in effects}
 
 
-def decide_without(problem: DiagnosisProblem, decision: Decision, rig: Evaluation, given_up: Sequence[str]) -> Decision:
-    """Return the decision without effects that were given up; `rig` is the chosen set refitted without them.
-
-    Where no effect is left the verdict is `unknown`, or `none` where the rig leaves no channel a material gap.
-    """
-    settings = problem.settings.decision
+def give_up_effects(problem: DiagnosisProblem, decision: Decision, calibrated: Evaluation) -> Decision:
+    """Return the decision without its effects: `unknown`, or `none` where the calibrated rig leaves no material gap."""
+    settings, given_up = problem.settings.decision, decision.chosen.parameters.names
     probabilities = {name: 0.0 if name in given_up else value for name, value in decision.probabilities.items()}
-    groups = [group for group in decision.groups if not set(group) & set(given_up)]
-    left = dataclasses.replace(decision, chosen=rig, groups=groups, probabilities=probabilities)
-    if not rig.parameters.terms:
-        if np.any(measure_remainders(problem, rig) >= settings.material):
-            return call_unknown(settings, left)
-        return dataclasses.replace(left, verdict="none", none=settings.none_if_none)
-    verdict: Verdict = "known" if decision.verdict == "ambiguous" and not groups else decision.verdict
-    return dataclasses.replace(left, verdict=verdict)
+    left = dataclasses.replace(decision, chosen=calibrated, groups=[], probabilities=probabilities)
+    if np.any(measure_remainders(problem, calibrated) >= settings.material):
+        return call_unknown(settings, left)
+    return dataclasses.replace(left, verdict="none", none=settings.none_if_none)

@@ -9,12 +9,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.diagnosis.fit import fit, refit_on
-from seatsim.diagnosis.movement import measure_movements, name_immaterial, share_removable
+from seatsim.diagnosis.fit import refit_on
+from seatsim.diagnosis.movement import measure_movements, share_removable
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
 from seatsim.diagnosis.result import Gaps, RunGaps
-from seatsim.diagnosis.solution import Solution, call_unknown, decide_without
+from seatsim.diagnosis.solution import Solution, call_unknown, give_up_effects
 from seatsim.recordings.gap import GapFigures, Signals, compare_signals, loud_channels
 from seatsim.recordings.model_error import ModelError, measure_model_error
 from seatsim.recordings.replay import replay
@@ -212,9 +212,6 @@ def validate_on_held_out(solution: Solution) -> Validation:
         if not chosen.parameters.terms:
             raise
         return validate_on_held_out(_give_up(solution, f"cannot be simulated as fitted without {run}"))
-    if weak := name_immaterial(problem, objective.evaluate([augmented.parameters])[0]):
-        reason = f"moves no channel by a material size as fitted without {run}"
-        return validate_on_held_out(_give_up(solution, reason, weak))
     # A single run has no spread: its standard deviation with n - 1 degrees of freedom would be NaN.
     spread = float(np.std(shrink, ddof=min(1, len(shrink) - 1)))
     gaps = measure_gaps(problem, next(each for each in runs if each.name == run), spread)
@@ -237,17 +234,10 @@ def _name_raised_gap(gaps: Gaps, held_out: str) -> str:
     return "the gap of all runs" if raised else ""
 
 
-def _give_up(solution: Solution, reason: str, given_up: Sequence[str] = ()) -> Solution:
-    """Return the solution without some of its effects, all where none is named; a note names them with the reason."""
-    objective, decision, selection = solution.objective, solution.decision, solution.selection
-    given_up = given_up or sorted(decision.chosen.parameters.names)
-    noted = dataclasses.replace(
-        selection, notes=(*selection.notes, f"{' with '.join(given_up)} was given up, since it {reason}")
-    )
-    kept = decision.chosen.parameters.remove(*given_up)
-    rig = selection.calibrated
-    if kept.terms:
-        rig = fit(objective, objective.evaluate([kept])[0], selection.nuisances)
-    left = decide_without(objective.problem, decision, rig, given_up)
-    where = () if left.verdict == "none" else solution.where
-    return solution._replace(selection=noted, decision=left, where=where)
+def _give_up(solution: Solution, reason: str) -> Solution:
+    """Return the solution without its effects; a note names them with the reason."""
+    selection, names = solution.selection, sorted(solution.decision.chosen.parameters.names)
+    note = f"{' with '.join(names)} was given up, since it {reason}"
+    left = give_up_effects(solution.objective.problem, solution.decision, selection.calibrated)
+    noted, where = dataclasses.replace(selection, notes=(*selection.notes, note)), solution.where
+    return solution._replace(selection=noted, decision=left, where=() if left.verdict == "none" else where)

@@ -11,7 +11,7 @@ from seatsim.diagnosis.localise.discrepancy import Discrepancy
 from seatsim.diagnosis.localise.disturbance import Disturbance
 from seatsim.diagnosis.score import WEIGHTS, Search, list_hypotheses, weigh_hypotheses
 from seatsim.diagnosis.select import Selection
-from seatsim.diagnosis.solution import decide_without, weigh_effects
+from seatsim.diagnosis.solution import give_up_effects, weigh_effects
 
 from .toy import offer, place, pose_tones
 
@@ -172,26 +172,16 @@ def test_the_dearer_a_wrong_name_the_more_is_unknown(rig):
     assert verdicts == ["known", "unknown"]
 
 
-@pytest.mark.parametrize(
-    ("kept", "verdict", "groups"),
-    [
-        ({"b.two": 0.5}, "ambiguous", [["b.two", "d.four"]]),
-        ({"a.one": 1.0}, "known", []),
-        ({}, "unknown", []),
-        (both(), "none", []),
-    ],
-)
-def test_what_is_left_once_an_effect_was_given_up(rig, kept, verdict, groups):
+@pytest.mark.parametrize(("left", "verdict"), [({}, "unknown"), (both(), "none")])
+def test_what_is_left_once_the_effects_were_given_up(rig, left, verdict):
     known = decide(rig, 10.0, [({"b.two": 0.5}, 5.0)], [(both(), 0.1)])
-    given_up = list(EFFECTS) if verdict == "none" else [name for name in both() if name not in kept]
-    rest = state(rig, kept, 1.0)
-    if verdict == "none":
-        # All that was found is taken for the rig without effects, which then leaves no gap.
-        rest = dataclasses.replace(rest, parameters=rest.parameters.remove(*EFFECTS))
+    rest = state(rig, left, 1.0)
+    # All that was found is taken for the rig without effects, which then leaves no gap.
+    rest = dataclasses.replace(rest, parameters=rest.parameters.remove(*EFFECTS))
     ambiguous = dataclasses.replace(known, verdict="ambiguous", groups=[["b.two", "d.four"]])
-    found = decide_without(rig.problem, ambiguous, rest, given_up)
-    assert (found.verdict, found.groups, found.chosen) == (verdict, groups, rest)
-    assert all(found.probabilities[name] == 0.0 for name in given_up)
+    found = give_up_effects(rig.problem, ambiguous, rest)
+    assert (found.verdict, found.groups, found.chosen) == (verdict, [], rest)
+    assert all(found.probabilities[name] == 0.0 for name in both())
 
 
 def test_the_weight_of_an_effect_is_that_of_the_sets_that_hold_it():

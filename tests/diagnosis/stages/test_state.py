@@ -66,18 +66,6 @@ def harmful(objective, verdict):
     return make_solution(dataclasses.replace(other, problem=problem), verdict, ONE)
 
 
-@pytest.mark.parametrize(("truth", "stated", "verdict"), [(TRUTH[:1], [ONE.effect], "known"), ((), [], "none")])
-def test_an_effect_of_negligible_size_is_given_up_with_a_note(folder, truth, stated, verdict):
-    solution = make_solution(make_objective(folder, truth=truth), "known", ONE, TWO, where=[Share("damper", 1.0)])
-    given_up = [name for name in (ONE.effect, TWO.effect) if name not in stated]
-    found = validate_on_held_out(solution)
-    decision, (note,) = found.solution.decision, found.solution.selection.notes
-    assert (decision.verdict, sorted(decision.chosen.parameters.names)) == (verdict, stated)
-    assert note.startswith(f"{' with '.join(given_up)} was given up, since it moves no channel by a material size")
-    assert [decision.probabilities[name] for name in given_up] == [0.0] * len(given_up)
-    assert bool(found.solution.where) is bool(stated)
-
-
 def test_a_known_effect_that_takes_too_little_off_the_held_out_run_stays_beside_an_unknown_cause(objective):
     solution = harmful(objective, "known")
     found = validate_on_held_out(solution)
