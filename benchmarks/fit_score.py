@@ -17,7 +17,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import re
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -32,7 +31,7 @@ from threadpoolctl import threadpool_limits
 from seatsim.blind.sealed import Label, unseal
 from seatsim.diagnosis import score
 from seatsim.diagnosis.decide import decide_verdict
-from seatsim.diagnosis.localise.disturbance import find_disturbance
+from seatsim.diagnosis.localise.disturbance import list_disturbances
 from seatsim.diagnosis.problem import pose_problem
 from seatsim.diagnosis.solution import search
 from seatsim.diagnosis.solve import adopt, pose_search, search_beside, search_by_gap
@@ -40,6 +39,7 @@ from seatsim.recordings.recording import load_recording
 from seatsim.schema.arrays import Array
 from seatsim.schema.files import write_json, write_text
 from seatsim.schema.processes import run_jobs
+from seatsim.schema.yaml_text import dump
 
 RIDGE, SURE, PARTS = 3.0, 0.9, 5
 HYPOTHESES = "hypotheses.json"
@@ -62,8 +62,8 @@ def list_hypotheses(case: Path) -> None:
         first, found = search(task, objective), list[score.Hypothesis]()
         if first.decision.verdict != "none":
             searches = [score.Search(objective, first.selection)]
-            if disturbance := find_disturbance(objective, first.selection):
-                searches.append(search_beside(task, objective, first.selection, disturbance))
+            found_beside = list_disturbances(objective, first.selection)
+            searches += [search_beside(task, objective, first.selection, each) for each in found_beside]
             if decide_verdict(searches, task.effects).verdict == "unknown":
                 by_gap = search_by_gap(task, objective, first.selection)
                 searches[0] = score.Search(objective, adopt(objective, first.selection, by_gap.selection))
@@ -127,13 +127,9 @@ def main() -> None:
         found = {name: json.loads((base / name / HYPOTHESES).read_text()) for name in labels}
         cases += [label_case(found[name], label) for name, label in labels.items() if found[name]]
     print(cross_validate(cases))
-    lines = [
-        f'{name}: {{weight: {weight:.3f}, means: "{score.WEIGHTS[name].means}"}}\n'
-        for name, weight in zip(NAMES, fit_weights(cases), strict=True)
-    ]
-    file = Path(score.__file__).with_name("score.yaml")
-    head, before, rest = re.split(r"(\d+)", file.read_text().splitlines()[0], maxsplit=1)
-    write_text(file, f"{head}{int(before) + len(cases)}{rest}\n{''.join(lines)}")
+    weights = dict(zip(NAMES, fit_weights(cases).round(3).tolist(), strict=True))
+    features = {name: {"weight": weights[name], "means": score.WEIGHTS[name].means} for name in NAMES}
+    write_text(score.FILE, dump({"cases": score.CASES + len(cases), "features": features}))
 
 
 if __name__ == "__main__":

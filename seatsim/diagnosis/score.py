@@ -42,8 +42,15 @@ class Weight(NamedTuple):
     weight: float
 
 
-WEIGHTS = read_packaged(Path(__file__).with_name("score.yaml"), dict[str, Weight])
-"""Weight of each feature, by name."""
+class _Fit(NamedTuple):
+    """To how many cases with a gap the weights were fitted, and the weight of each feature by its name."""
+
+    cases: int
+    features: dict[str, Weight]
+
+
+FILE = Path(__file__).with_name("score.yaml")
+CASES, WEIGHTS = read_packaged(FILE, _Fit)
 
 
 class Search(NamedTuple):

@@ -13,7 +13,7 @@ from seatsim.diagnosis.cross_validate import select_by_cross_validation
 from seatsim.diagnosis.decide import decide_verdict
 from seatsim.diagnosis.fit import refit_on
 from seatsim.diagnosis.localise.discrepancy import describe_discrepancy
-from seatsim.diagnosis.localise.disturbance import Disturbance, find_bias_drift, find_disturbance, put_beside
+from seatsim.diagnosis.localise.disturbance import Disturbance, find_bias_drift, list_disturbances, put_beside
 from seatsim.diagnosis.localise.input_estimate import estimate_nonrepeatable_force
 from seatsim.diagnosis.localise.localisation import localise_remainder, share_gap
 from seatsim.diagnosis.movement import measure_gap_taken
@@ -181,7 +181,7 @@ def _localise(task: SearchTask, solution: Solution) -> Solution:
 
 
 def _decide_beside_disturbance(task: SearchTask, first: Solution, without: Sequence[str]) -> Solution:
-    """Return the solution of both searches, without a disturbance and beside one that one of the best sets leaves.
+    """Return the solution of the searches without a disturbance and beside each that one of the best sets leaves.
 
     Of a set that explains the gap only a drift of a sensor may be left; of others, whatever such a signal may be.
     """
@@ -190,11 +190,11 @@ def _decide_beside_disturbance(task: SearchTask, first: Solution, without: Seque
         return first
     if verdict == "unknown":
         task.progress("asking whether a disturbance hides the effects")
-        found = [find_disturbance(objective, selection), find_bias_drift(objective, selection.calibrated)]
+        found = list_disturbances(objective, selection)
     else:
-        found = [find_bias_drift(objective, first.decision.chosen)]
-    by_effect = {each.effect: each for each in found if each and each.effect not in without}
-    beside = [search_beside(task, objective, selection, each) for each in by_effect.values()]
+        drift = find_bias_drift(objective, first.decision.chosen)
+        found = [drift] if drift else []
+    beside = [search_beside(task, objective, selection, each) for each in found if each.effect not in without]
     return _decide(task, first._replace(beside=beside)) if beside else first
 
 

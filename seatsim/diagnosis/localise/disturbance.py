@@ -44,6 +44,12 @@ class Disturbance(NamedTuple):
         return np.asarray(np.sqrt(np.mean(traces**2, axis=1)) / problem.spread)
 
 
+def list_disturbances(objective: Objective, selection: Selection) -> list[Disturbance]:
+    """Return what may hide the effects: the random signal beside the best sets, and a drift of the calibrated rig."""
+    found = find_bias_drift(objective, selection.calibrated), find_disturbance(objective, selection)
+    return list({each.effect: each for each in found if each}.values())
+
+
 def find_disturbance(objective: Objective, selection: Selection) -> Disturbance | None:
     """Return the random signal beside which one of the best sets leaves least, None where it is no such effect.
 
