@@ -59,8 +59,11 @@ class SimpleBoucWen(NamedTuple):
 
     c0: Annotated[CurrentLaw, param("N s/m", "viscous damping c0(I)")] = (855.0, 11200.0, 18970.0, -18690.0)
     alpha: Annotated[CurrentLaw, param("N/m", "hysteretic stiffness alpha(I)")] = (
-        9350.0, 116600.0, 173900.0, -158300.0,
-    )  # fmt: skip
+        9350.0,
+        116600.0,
+        173900.0,
+        -158300.0,
+    )
     k0: Annotated[float, param("N/m", "stiffness")] = 1984.0
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     A: Annotated[float, param("-", "slope of the hysteresis", above=0)] = 30.852
@@ -102,14 +105,23 @@ class ModifiedBoucWen(NamedTuple):
     """
 
     c0: Annotated[CurrentLaw, param("N s/m", "damping c0(I) of the inner dashpot")] = (
-        590.0, 11020.0, 10510.0, -11730.0,
-    )  # fmt: skip
+        590.0,
+        11020.0,
+        10510.0,
+        -11730.0,
+    )
     c1: Annotated[CurrentLaw, param("N s/m", "damping c1(I) of the series dashpot")] = (
-        4730.0, 64570.0, 57030.0, -54400.0,
-    )  # fmt: skip
+        4730.0,
+        64570.0,
+        57030.0,
+        -54400.0,
+    )
     alpha: Annotated[CurrentLaw, param("N/m", "hysteretic stiffness alpha(I)")] = (
-        38240.0, 412520.0, 905140.0, -826670.0,
-    )  # fmt: skip
+        38240.0,
+        412520.0,
+        905140.0,
+        -826670.0,
+    )
     k0: Annotated[float, param("N/m", "stiffness of the inner spring")] = 1121.0
     k1: Annotated[float, param("N/m", "stiffness of the accumulator")] = 0.0
     x0: Annotated[float, param("m", "displacement at which the accumulator is without force")] = 0.0

@@ -210,7 +210,8 @@ def _open_inner(content: bytes, size: int) -> Resolve | None:
         variable = elements.unpack(element)
         _, value = elements.read_array(variable.content) if variable.kind == _ARRAY else ("", None)
         if isinstance(value, np.ndarray) and value.dtype.names:
-            return _subsystem(value, order).load_opaque_object  # type: ignore[no-any-return]
+            resolve: Resolve = _subsystem(value, order).load_opaque_object
+            return resolve
     return None
 
 
