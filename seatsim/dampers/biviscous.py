@@ -138,7 +138,7 @@ class LumpedBiviscous(NamedTuple):
 
         m x1'' = k (x - x1) - Fb(x1'),   F = k (x - x1) + f0,   Fb as in `biviscous`
 
-    The form is recalled. k = k_a + k_b I. To keep the flow from settling faster than tau = `pieces_series.SETTLING`
+    The form is recalled. k = k_a + k_b I. To keep the flow from settling faster than tau = `pieces.SETTLING`
     before yield, where c_pre / m can be 10^4 1/s, the mass counts as m + tau dFb/du (ours): a mass that depends on
     the speed still stores what it takes, so the model stays passive, and motion slow against tau does not feel it.
     The mass scales with the viscous factor of the temperature (ours), so that three equal factors scale the whole

@@ -82,7 +82,7 @@ class LargeScaleBoucWen(NamedTuple):
         u' = (v - u) / tau
 
     The form is recalled, not read in the paper; its hysteresis is normalised here. The paper has m v' where we have
-    an inertance behind a dashpot m / tau, tau = `pieces_series.INERTANCE_TIME`: the same in slow motion, and passive
+    an inertance behind a dashpot m / tau, tau = 2 ms: the same in slow motion, and passive
     without need of the acceleration. a1 exp{..} is stiction at low speed and shear thinning at high speed.
 
     Defaults: derived by us from measurement, steady cycles of 2-25 mm and 0.5-5 Hz at 0-1 A, offset

@@ -135,7 +135,7 @@ class HydroMechanical(NamedTuple):
     p is the difference of the chambers' pressures. The form is vaguely recalled, this reading ours. For a flat gap
     of width w, height h and length l, R = 12 mu l / (w h^3), P_y = 2 to 3 l tau_y / h, L = rho l / (w h). Q_r
     regularises the sign of the yield pressure. To keep the flow from settling faster than tau =
-    `pieces_series.SETTLING`, L counts as L + tau d(R Q + P_y tanh)/dQ (ours): an inertance that depends on the flow
+    `pieces.SETTLING`, L counts as L + tau d(R Q + P_y tanh)/dQ (ours): an inertance that depends on the flow
     still stores what it takes, so the model stays passive, and motion slow against tau does not feel it. L scales
     with the viscous factor of the temperature (ours), so that three equal factors scale the whole force. The
     seal's friction fs is set-valued; k_g is the accumulator's. R and P_y are cubic laws, held beyond `law_end`.

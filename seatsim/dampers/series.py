@@ -165,8 +165,8 @@ class MaxwellNonlinearSlider(NamedTuple):
 
     The form is recalled; below the transition speed v_t the power law goes on as its tangent. The change of mode is
     ours: the Maxwell element's force is limited to the slider's, and what k e exceeds it by relaxes within
-    `pieces_series.SETTLING`, which is continuous and lets the element unload at a reversal. m0 |v|' is an inertance
-    behind a dashpot m0 / tau, tau = `pieces_series.INERTANCE_TIME`; it scales with the viscous factor of the
+    `pieces.SETTLING`, which is continuous and lets the element unload at a reversal. m0 |v|' is an inertance
+    behind a dashpot m0 / tau, tau = 2 ms; it scales with the viscous factor of the
     temperature and fades out below v_t, so that the force has no jump at a reversal (ours). Both directions share one
     law. k = k_a + k_b I, c = c_a + c_b I; a and b are cubic laws, held beyond `law_end`.
 

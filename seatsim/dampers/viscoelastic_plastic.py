@@ -38,7 +38,7 @@ class ViscoelasticPlastic(NamedTuple):
     equilibrium spring, which would make the force depend on where the motion started. The speed is split (ours):
     each branch is driven by its share, S_ve v or S_vi v, because a branch that is weighted in force but driven by
     all of v can return more work than it took. m u' stands for m v': an inertance behind a dashpot m / tau, tau =
-    `pieces_series.INERTANCE_TIME`; it scales with the viscous factor of the temperature (ours). k1 = k_a + k_b I;
+    2 ms; it scales with the viscous factor of the temperature (ours). k1 = k_a + k_b I;
     c1, c and fc are cubic laws, held beyond `law_end`. The defaults are derived by us (see `pieces.UTFSM`),
     with m and vy chosen; rms error 22, 44, 74, 102, 140 N at 0, 0.25, 0.5, 0.75, 1 A. Valid to 0.13 m/s and 1 A.
     Temperature scales c1, c, m (viscous), k1 (elastic) and fc (yield).
@@ -89,10 +89,10 @@ class LiViscoelasticPlastic(NamedTuple):
         |f| = fc:  F = fc(I) sgn(v) + cv(I) v + R v' + fs sgn(v) + f0
 
     Vaguely recalled: the two modes and the criterion. Ours is what makes their passage continuous and passive: at
-    yield the solid slips at y' = (f - fc sgn f) / (k tau), k = k1 + k2, tau = `pieces_series.SETTLING`, which is
+    yield the solid slips at y' = (f - fc sgn f) / (k tau), k = k1 + k2, tau = `pieces.SETTLING`, which is
     taken off both rates, and gives fc; the flow's terms are weighted by Y = min(1, |f| / fc)^2, the inertance
     driven by its share Y v. R v' is an inertance behind a dashpot R / tau', tau' =
-    `pieces_series.INERTANCE_TIME`; it scales with the viscous factor of the temperature (ours). The seal's
+    2 ms; it scales with the viscous factor of the temperature (ours). The seal's
     friction fs is set-valued. k1 = k_a + k_b I; fc and cv are cubic laws, held beyond `law_end`. The defaults are
     derived by us (see `pieces.UTFSM`), with R chosen; rms error 29, 51, 92, 133, 174 N at 0, 0.25, 0.5,
     0.75, 1 A. Valid to 0.13 m/s and 1 A. Temperature scales cv, c2, R (viscous), k1, k2 (elastic), fc and fs
@@ -148,7 +148,7 @@ class StiffnessViscosityElastoSlide(NamedTuple):
         e' = v - (ke e - F_e) / (ke tau)
 
     The form is recalled: F_e' = ke v while |F_e| < N_s, clipped there. The slide is ours: what ke e exceeds F_e by
-    relaxes within tau = `pieces_series.SETTLING`, also where N_s falls with the current, so that F_e never exceeds
+    relaxes within tau = `pieces.SETTLING`, also where N_s falls with the current, so that F_e never exceeds
     N_s and leaves it at a reversal. ke = ke_a + ke_b I; c0 and N_s are cubic laws, held beyond `law_end`. The
     defaults are derived by us (see `pieces.UTFSM`); rms error 27, 60, 105, 141, 186 N at 0, 0.25, 0.5, 0.75,
     1 A. Valid to 0.13 m/s and 1 A. Temperature scales c0 (viscous), k0 and ke (elastic), and N_s (yield).
