@@ -1,8 +1,7 @@
 """Control laws for semi-active seats, their design, and bounds on what any law could reach.
 
     laws/            what is asked at every sample, one file per family; nothing else stands there
-    analysis/        margins, poles and delay margin of a designed loop
-    optimal/         Riccati regulator, Kalman filter, predictive planning: theory that several laws share
+    optimal          Riccati regulator, Kalman filter, predictive planning: theory that several laws share
     synthesis/       H-infinity static output feedback of any linear plant, with a certificate
     clairvoyant/     what the best semi-active damper could have done on a known floor
     seat_plant       the seat as a plant for synthesis

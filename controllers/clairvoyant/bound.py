@@ -75,8 +75,9 @@ def find_lower_bound(problem: HeldForceProblem, band: ForceBand, size: float, st
         share = size / (problem.intervals * problem.transcription.step)
         levels = np.geomspace(1e-4, 1e-1, 10)
         tried = (np.log(np.repeat([0.5 * x * share, 0.5 * x * share, _NU * share], hats.shape[1])) for x in levels)
+        bounds = [bound for bound in map(evaluate, tried) if bound]
         # Of equal ones the last, at the highest level.
-        y = max(reversed(list(filter(None, map(evaluate, tried)))), key=lambda bound: bound.value).logarithms
+        y = max(reversed(bounds), key=lambda bound: bound.value).logarithms
     while (best := evaluate(y)) is None:
         y = y - _RETREAT
     for share in SHARES:

@@ -39,7 +39,7 @@ class LinearSystem(NamedTuple):
 
     @property
     def abscissa(self) -> float:
-        """Largest real part of the poles in 1/s; negative where the loop is stable."""
+        """Largest real part of the poles in 1/s; negative where it is stable."""
         return float(np.linalg.eigvals(self.A).real.max())
 
 
@@ -54,13 +54,25 @@ def close_loop(matrices: Sequence[NDArray[Any]], K: NDArray[Any]) -> LinearSyste
 class StateSpaceLike(Protocol):
     """What is used of a `control.StateSpace` (or a continuous `scipy.signal.StateSpace`); both are untyped."""
 
-    # Shapes: A (n, n), B (n, inputs), C (outputs, n), D (outputs, inputs).
-    A: ArrayLike
-    B: ArrayLike
-    C: ArrayLike
-    D: ArrayLike
-    # Sample time in s; 0 or None for continuous time.
-    dt: float | bool | None
+    @property
+    def A(self) -> ArrayLike:  # noqa: N802 - as in control and scipy
+        """State matrix (n, n)."""
+
+    @property
+    def B(self) -> ArrayLike:  # noqa: N802
+        """Input matrix (n, inputs)."""
+
+    @property
+    def C(self) -> ArrayLike:  # noqa: N802
+        """Output matrix (outputs, n)."""
+
+    @property
+    def D(self) -> ArrayLike:  # noqa: N802
+        """Direct path (outputs, inputs)."""
+
+    @property
+    def dt(self) -> float | bool | None:
+        """Sample time in s; 0 or None for continuous time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +145,8 @@ class GeneralisedPlant:
         Source: El Ghaoui, Oustry & AitRami 1997, IEEE Trans. Autom. Control 42:1171.
         """
         A, B, C, D = (np.pad(part, (0, order)) for part in self.system)
-        B[self.order :, -order:] = C[-order:, self.order :] = np.eye(order)
+        controls, measured = B.shape[1] - order, len(C) - order
+        B[self.order :, controls:] = C[measured:, self.order :] = np.eye(order)
         free = np.pad(self.free, (0, order), constant_values=True)
         return GeneralisedPlant.from_system(LinearSystem(A, B, C, D), self.B1.shape[1], len(self.C1), free)
 
@@ -162,7 +175,7 @@ class GeneralisedPlant:
 
     @classmethod
     def from_system(
-        cls, system: LinearSystem, disturbances: int = 1, performance: int = 2, structure: ArrayLike | None = None
+        cls, system: LinearSystem, disturbances: int, performance: int, structure: ArrayLike | None = None
     ) -> GeneralisedPlant:
         """Split a system whose first inputs are w and whose first outputs are z; the path from u to y is left out."""
         A, B, C, D = system

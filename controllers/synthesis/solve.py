@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import cast
+from typing import cast, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,6 +24,51 @@ _TIME_BUDGET = 60.0
 """Seconds of a search where none are stated."""
 SEAT_TIME_BUDGET = 900.0
 """Seconds in which the search for a seat's gain converges on a slow computer too, so that all find the same gain."""
+
+
+@overload
+def synthesise(
+    A: GeneralisedPlant | Sequence[GeneralisedPlant],
+    /,
+    *,
+    max_gain: float = ...,
+    bounds: tuple[ArrayLike, ArrayLike] | None = ...,
+    order: int = ...,
+    time_budget: float = ...,
+    seed: int = ...,
+    progress: Progress = ...,
+) -> Design: ...
+@overload
+def synthesise(
+    A: StateSpaceLike,
+    /,
+    *,
+    split: tuple[int, int],
+    max_gain: float = ...,
+    bounds: tuple[ArrayLike, ArrayLike] | None = ...,
+    order: int = ...,
+    time_budget: float = ...,
+    seed: int = ...,
+    progress: Progress = ...,
+) -> Design: ...
+@overload
+def synthesise(
+    A: ArrayLike,
+    B1: ArrayLike,
+    B2: ArrayLike,
+    C1: ArrayLike,
+    C2: ArrayLike,
+    D11: ArrayLike,
+    D12: ArrayLike,
+    D21: ArrayLike,
+    *,
+    max_gain: float = ...,
+    bounds: tuple[ArrayLike, ArrayLike] | None = ...,
+    order: int = ...,
+    time_budget: float = ...,
+    seed: int = ...,
+    progress: Progress = ...,
+) -> Design: ...
 
 
 def synthesise(

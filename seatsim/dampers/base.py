@@ -48,11 +48,10 @@ class DamperSpecification(NamedTuple):
     motion and state, 0 where it is none; it decides whether the inverse has a closed form. centred: the
     model branches on sgn(x) or sgn(dv/dt), so that it is wrong where the motion is not centred about x = 0.
     The ranges of speed [m/s], current [A] and temperature [degC] are those of the data behind it, without limit where
-    they are not stated. complete: the
-    model is a form without a parameter set of its own; a scenario states all of its parameters.
-    confidence: a word of `CONFIDENCE`. fixed: fields that an identification does not fit, beside `law_end`: they
-    state the model's range, or no data tell them from the others. smooth: the rates are smooth functions of
-    motion and state, without switch or corner, so that an integrator keeps its order.
+    they are not stated. complete: the model is a form without a parameter set of its own; a scenario states all of its
+    parameters. confidence: a word of `CONFIDENCE`. fixed: fields that an identification does not fit, beside `law_end`:
+    they state the model's range, or no data tell them from the others. smooth: the rates are smooth functions of motion
+    and state, without switch or corner, so that an integrator keeps its order.
     """
 
     source: str

@@ -15,7 +15,6 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
 from typing import NamedTuple, cast
 
 import numpy as np
@@ -139,10 +138,12 @@ def _compare_about(
 
     def shrink(fit: _FormFit | None) -> float:
         """Return what a fit takes off the gap, minus infinity where there is none or its rig leaves all bounds."""
-        with suppress(RunError):
-            if fit is not None:
-                return 1.0 - measure_gap(fit.scenario, problem.recording, [run]).overall / before
-        return -math.inf
+        if fit is None:
+            return -math.inf
+        try:
+            return 1.0 - measure_gap(fit.scenario, problem.recording, [run]).overall / before
+        except RunError:
+            return -math.inf
 
     as_free = _fit_form(problem, rig, own, records)
     refitted = max(0.0, shrink(as_free))

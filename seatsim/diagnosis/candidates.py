@@ -176,13 +176,16 @@ def _fits(cls: type[Record], problem: DiagnosisProblem) -> bool:
     """Whether the effect has something to act on in this recording."""
     specification, recorded = EFFECTS.specification_of(cls), problem.recording.channels
     commanded = "current_command" in recorded or "command_voltage" in recorded
-    return not (
-        (problem.bench and acts_on(cls, (*ON_SEAT, "plant", "frame_force")))
-        or (acts_on(cls, ("inner_mass",)) and problem.scenario.driver.model != SINGLE_MASS)
-        # Where only the current is recorded, it drives the damper in the simulation: no fault of the coil shows.
-        or (acts_on(cls, ("coil",)) and not commanded)
-        or (specification.shown_by_fall and not problem.current_falls)
-    ) and specification.suits(problem.scenario.damper.record)
+    if problem.bench and acts_on(cls, (*ON_SEAT, "plant", "frame_force")):
+        return False
+    if acts_on(cls, ("inner_mass",)) and problem.scenario.driver.model != SINGLE_MASS:
+        return False
+    # Where only the current is recorded, it drives the damper in the simulation, so that no fault of the coil shows.
+    if acts_on(cls, ("coil",)) and not commanded:
+        return False
+    if specification.shown_by_fall and not problem.current_falls:
+        return False
+    return specification.suits(problem.scenario.damper.record)
 
 
 def _places(cls: type[Record], problem: DiagnosisProblem) -> list[_Fixed]:

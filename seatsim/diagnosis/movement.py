@@ -10,6 +10,9 @@ from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
 from seatsim.schema.arrays import Array
 
+_LEAST_REMOVABLE = 0.01
+"""Removable gap, in standard deviations, below which its share is not asked for, since it is that of a small number."""
+
 
 def measure_movements(problem: DiagnosisProblem, evaluation: Evaluation) -> list[Array]:
     """Return by how much each effect of a set moves each channel, in the channel's standard deviations.
@@ -81,7 +84,7 @@ def share_removable(objective: Objective, before: float, after: float) -> float:
     problem = objective.problem
     left = np.sqrt(np.mean([expect_power(objective, run)[0] / problem.spread**2 for run in problem.runs]))
     removable = float(before - left)
-    return (before - after) / removable if removable > 0.0 else 1.0
+    return (before - after) / removable if removable > _LEAST_REMOVABLE else 1.0
 
 
 def expect_power(objective: Objective, run: str) -> tuple[Array, Array]:

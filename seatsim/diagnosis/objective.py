@@ -3,7 +3,7 @@
 The rig is driven by the measured floor and command alone, so no measured motion enters a regressor: measured signals
 fed into a closed loop would produce spurious causes (endogeneity). The cost is
 
-    sum |whitened residual|^2 + sum (deviation / prior_std)^2,   -1 <= deviation <= 1,
+    sum |whitened residual|^2 + sum (deviation / PRIOR_STD)^2,   -1 <= deviation <= 1,
 
 over the deviations of the nuisance parameters and the free parameters of the effects.
 """

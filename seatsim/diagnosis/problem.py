@@ -174,9 +174,9 @@ class DiagnosisProblem:
     def augmented(self, deviations: Array, effects: Sequence[Record], nominal: Scenario | None = None) -> Scenario:
         """Return the nominal scenario with other parameters, and effects, which replace its own of the same kind.
 
-        It is that of the problem, with its solver, unless another one is given.
+        The nominal scenario is that of the problem, with its solver, unless another one is given.
         """
-        nominal = nominal or self.scenario
+        nominal = self.scenario if nominal is None else nominal
         varied = vary(nominal, self.parameters, deviations)
         return dataclasses.replace(varied, effects=replace_effects(nominal.effects, effects))
 

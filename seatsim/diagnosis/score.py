@@ -50,7 +50,9 @@ class _Fit(NamedTuple):
 
 
 FILE = Path(__file__).with_name("score.yaml")
+"""What `benchmarks/fit_score.py` wrote."""
 CASES, WEIGHTS = read_packaged(FILE, _Fit)
+"""To how many cases the weights were fitted, and each by the name of its feature."""
 
 
 class Search(NamedTuple):

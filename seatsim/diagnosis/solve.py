@@ -181,7 +181,7 @@ def _localise(task: SearchTask, solution: Solution) -> Solution:
 
 
 def _decide_beside_disturbance(task: SearchTask, first: Solution, without: Sequence[str]) -> Solution:
-    """Return the solution of the searches without a disturbance and beside each that one of the best sets leaves.
+    """Return the solution of the searches without a disturbance and beside each that a rig leaves.
 
     Of a set that explains the gap only a drift of a sensor may be left; of others, whatever such a signal may be.
     """

@@ -116,7 +116,12 @@ def show_pictures(figures: Figures, *starts: str) -> list[Block]:
 
 
 def tabulate(
-    caption: str, head: Sequence[str], rows: Rows, words: int = 1, strong: Sequence[int] = (), folded: bool = False
+    caption: str,
+    head: str | Sequence[str],
+    rows: Rows,
+    words: int = 1,
+    strong: Sequence[int] = (),
+    folded: bool = False,
 ) -> list[Table]:
     """Return a table; nothing where there is no row.
 

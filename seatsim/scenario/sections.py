@@ -139,17 +139,18 @@ def _read_excitation(values: object, source: Source, keys: KeyPath = ("excitatio
 
 
 def _read_named(
-    registry: Registry[_P, Any], values: object, others: tuple[str, ...], path: str, source: Source, keys: KeyPath
+    registry: Registry[_P, Any], values: object, others: tuple[str, ...], file: str, source: Source, keys: KeyPath
 ) -> _P:
-    """Return the record of a class whose keys stand beside its name, which is the first of `others`, and these.
+    """Return the record of a section that names a class and holds its parameters.
 
-    A file under the key `path` lies beside the source.
+    The first of `others` is the key of the name, the rest are keys of the section that are no parameters; `file` is the
+    key of a file that lies beside the source.
     """
     stated = mapping(values, source, keys)
     cls = chosen_class(registry, stated, others[0], source, keys)
     own = {key: value for key, value in stated.items() if key not in others}
-    if isinstance(name := own.get(path), str):
-        own[path] = str(source.path.parent / name)
+    if isinstance(name := own.get(file), str):
+        own[file] = str(source.path.parent / name)
     return build(cls, own, source, keys)
 
 

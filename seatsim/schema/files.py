@@ -114,7 +114,8 @@ def _put_in_place(part: Path, folder: Path, names: Iterable[Path]) -> None:
             (part / name).replace(place)
     except BaseException:
         for place, kept in reversed(moved):
-            if kept.exists():
+            # A second name of a link that leads nowhere from here is there, too.
+            if kept.exists() or kept.is_symlink():
                 kept.replace(place)
             else:
                 place.unlink(missing_ok=True)

@@ -265,12 +265,15 @@ def _group_values(rows: SweepRows, metrics: Iterable[str]) -> Iterator[tuple[dic
     All runs are one where no texts were varied, or too many.
     """
     texts = rows.texts
-    groups: list[tuple[dict[str, object], pd.DataFrame]] = [(dict.fromkeys(texts, "all"), rows.usable)]
+    groups: Iterable[tuple[dict[str, object], pd.DataFrame]] = [(dict.fromkeys(texts, "all"), rows.usable)]
     if texts and len(rows.usable.groupby(texts)) <= _MOST_GROUPS:
         named = rows.usable.groupby(texts, sort=False)
-        groups = [(dict(zip(texts, values, strict=True)), runs) for values, runs in named]
+        groups = ((dict(zip(texts, values, strict=True)), runs) for values, runs in named)
     for group, runs in groups:
-        yield from ((group, metric, values) for metric in metrics if not (values := runs[metric].dropna()).empty)
+        for metric in metrics:
+            values = runs[metric].dropna()
+            if not values.empty:
+                yield group, metric, values
 
 
 def tabulate_quantiles(rows: SweepRows) -> pd.DataFrame:

@@ -130,3 +130,10 @@ def test_coloured_noise_has_unit_variance_and_its_slope():
     assert np.std(noise) == pytest.approx(1.0)
     assert np.sqrt(power[f.searchsorted(4.0)] / power[f.searchsorted(16.0)]) == pytest.approx(4.0, rel=0.2)
     assert power[f > 61.0].max() < 1e-6 * power.max()
+    half = coloured_noise(np.random.default_rng(0), 200_000, 0.5, 10.0, 0.0, 500.0)
+    f, power = welch(half, 500.0, nperseg=4096)
+    at = {
+        hertz: np.mean(power[f.searchsorted(hertz - 0.3) : f.searchsorted(hertz + 0.3)]) for hertz in (3.0, 10.0, 20.0)
+    }
+    assert at[10.0] / at[3.0] == pytest.approx(0.5, rel=0.3)
+    assert at[20.0] / at[3.0] == pytest.approx(1.0 / 257.0, rel=0.4)

@@ -70,9 +70,7 @@ def draw_seat_changes(carrier: Carrier, rng: Generator) -> list[Change]:
         return {}, partial(_random, a * force, np.random.default_rng(seed), step)
 
     return [
-        change(
-            "suspension.friction", "F sgn v", 1.0, lambda a: ({"force": a * force}, partial(_rub, a * force, width))
-        ),
+        change("suspension.friction", "F sgn v", 1.0, rub),
         change("suspension.progressive_spring", "cubic", 3.0, stiffen),
         change("suspension.end_stop", "linear buffer", 5.0, lambda a: ({}, partial(_buffer, a * stiffness, stop))),
         change("driver.mass", "heavier", 0.6, lambda a: ({"change": a * mass}, partial(_mass, a * mass))),

@@ -25,7 +25,7 @@ SCATTER = 0.015
 STEPPED = 0.4
 """Share of the rigs whose current is stepped in every run, not controlled in some."""
 _SCHEDULED = np.array([coil.SCHEDULE, 0.0, 0.0, 0.0, 0.0, 0.0])
-"""The law of those runs."""
+"""The law of runs whose current is stepped."""
 _STARTS, _HOT = (20.0, 30.0, 45.0, 60.0), (55.0, 75.0)
 """Temperatures of the damper at which runs start, to within 2 K, and the range of the one that is hot, degC."""
 PLANT = {"ms": 20.0, "m": 80.0, "kf": 4600.0, "cf": 150.0, "kc": 60000.0, "cc": 1500.0}
@@ -215,7 +215,8 @@ def _draw_damper(rng: Generator, plant: dict[str, float], ratio: float, bingham:
     slope, share = _log_uniform(rng, 500.0, 2500.0), rng.uniform(0.3, 0.7)
     offset = rng.random() < _OFFSET_SHARE
     hysteresis = {"A": slope, "beta": share * slope, "gamma": (1.0 - share) * slope, "n": float(rng.integers(1, 3))}
-    k0, f0 = (size * rng.uniform(*ends) if offset else 0.0 for ends in ((100.0, 800.0), (-40.0, 40.0)))
+    k0 = size * rng.uniform(100.0, 800.0) if offset else 0.0
+    f0 = size * rng.uniform(-40.0, 40.0) if offset else 0.0
     return damper | {"is_bingham": 0.0, **hysteresis, "x0": 0.0, "k0": k0, "f0": f0}
 
 

@@ -14,8 +14,19 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.blind.score import verdicts as figures
-from seatsim.blind.score.verdicts import NAMING, Bin, Rate, Verdict, count_true, is_right, is_wrong_name, read_verdict
+from seatsim.blind.score.verdicts import (
+    NAMING,
+    Bin,
+    Rate,
+    Verdict,
+    brier_score,
+    calibration_error,
+    count_true,
+    is_right,
+    is_wrong_name,
+    read_verdict,
+    reliability,
+)
 from seatsim.blind.sealed import EFFECTS, KINDS, Label, Sealed, unseal
 from seatsim.schema.errors import InputError, SeatsimError
 from seatsim.schema.guarded import temporary_folder
@@ -245,7 +256,7 @@ def score_verdicts(
     known = kinds["one"] + kinds["carried"]
     faulty = [case for case in cases if case.label["kind"] != "none"]
     stated, true = _marginals(cases)
-    table = figures.reliability(stated, true)
+    table = reliability(stated, true)
     recall, precision = _recall_and_precision(kinds["two"])
     single = known + kinds["outside"]
     return Score(
@@ -261,8 +272,8 @@ def score_verdicts(
         detected=count_true([c.verdict.verdict not in ("none", "missing") for c in faulty]),
         two_recall=recall,
         two_precision=precision,
-        calibration_error=figures.calibration_error(table),
-        brier=figures.brier_score(stated, true),
+        calibration_error=calibration_error(table),
+        brier=brier_score(stated, true),
         reliability=table,
         shrink=shrink,
         group_size=_mean_group_size(cases),

@@ -42,12 +42,12 @@ class Verdict:
     def group(self) -> tuple[str, ...]:
         """The indistinguishable group that holds the first cause, or that cause alone."""
         first = self.causes[:1]
-        return next((group for group in self.groups if set(first) & set(group)), first)
+        return next((group for group in self.groups if first and first[0] in group), first)
 
     @property
     def named(self) -> str:
         """The first cause, or `none`, `unknown`, `missing` where none is named."""
-        return (*self.causes, "unknown")[0] if self.verdict in NAMING else self.verdict
+        return next(iter(self.causes), "unknown") if self.verdict in NAMING else self.verdict
 
 
 class _Estimate(BaseModel):

@@ -97,7 +97,7 @@ _ANSWERS = {
 def list_answers() -> Mapping[str, object]:
     """Return the type of what each command prints, by its name."""
     return {
-        command: reduce(or_, (resolve_name(f"seatsim.{name}") for name in names.split()))
+        command: reduce(or_, (resolve_name(":".join(f"seatsim.{name}".rsplit(".", 1))) for name in names.split()))
         for command, names in _ANSWERS.items()
     }
 

@@ -36,7 +36,7 @@ class Equation(NamedTuple):
 
 
 class _Structure(NamedTuple):
-    """Equations of a rig without coil and sensors, its blocks in order, and what to do about a channel that lacks."""
+    """Equations of a rig without coil and sensors, its blocks in order, and what to do about an absent channel."""
 
     equations: list[Equation]
     blocks: list[str]
@@ -44,6 +44,7 @@ class _Structure(NamedTuple):
 
 
 _RIGS = read_packaged(Path(__file__).with_name("structure.yaml"), dict[str, _Structure])
+"""By kind of rig."""
 _SENSED = {
     "floor_acceleration": "a0",
     "frame_acceleration": "as",

@@ -45,7 +45,10 @@ class Disturbance(NamedTuple):
 
 
 def list_disturbances(objective: Objective, selection: Selection) -> list[Disturbance]:
-    """Return what may hide the effects: the random signal beside the best sets, and a drift of the calibrated rig."""
+    """Return what may hide the effects: the random signal beside the best sets, and a drift of the calibrated rig.
+
+    Where both are drifts it is the one beside the best sets.
+    """
     found = find_bias_drift(objective, selection.calibrated), find_disturbance(objective, selection)
     return list({each.effect: each for each in found if each}.values())
 

@@ -4,15 +4,16 @@ In the header of a segment of LVM a line has a cell for every channel: `Delta_X`
 `X_Columns` says whether there is a column of x for all channels (`One`), one for each (`Multi`), or none (`No`).
 """
 
+from __future__ import annotations
+
 import io
 import logging
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import takewhile
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import pandas as pd
 
 from seatsim.importing.readers.reading import TextLayout, need
 from seatsim.importing.readers.text import as_utf8
@@ -20,6 +21,9 @@ from seatsim.importing.signals import Channels, DataFile, Group, Signal, scalar,
 from seatsim.schema.arrays import Array
 from seatsim.schema.bounds import BYTES_OF_PART, check_made
 from seatsim.schema.errors import InputError
+
+if TYPE_CHECKING:
+    from nptdms import TdmsChannel
 
 _START = "wf_start_time"
 _NEVER_SET = np.datetime64("1904-01-02")
@@ -39,39 +43,47 @@ def read_tdms(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     nptdms = need("nptdms", "TDMS")
     nptdms.log.log_manager.set_level(logging.ERROR)  # what it warns of is an error here
     described = nptdms.TdmsFile.read_metadata(io.BytesIO(content))
-    stated = sum(BYTES_OF_PART + 8 * len(channel) for group in described.groups() for channel in group.channels())
-    check_made(stated, len(content), "what its channels state")
+    stated = [channel for group in described.groups() for channel in group.channels()]
+    check_made(sum(BYTES_OF_PART + 8 * len(channel) for channel in stated), len(content), "what its channels state")
     file = nptdms.TdmsFile.read(io.BytesIO(content))
     status = file.file_status
     if status.incomplete_final_segment or any(
         each.read_length < each.expected_length for each in (status.channel_statuses or {}).values()
     ):
         raise InputError(f"{path}: its last segment lacks data; the file is truncated: export it again")
-    channels = [(group.name, channel) for group in file.groups() for channel in group.channels()]
-    starts: dict[str, np.datetime64] = {}
-    for _, channel in channels:
-        start = channel.properties.get(_START)
-        if isinstance(start, np.datetime64) and start > _NEVER_SET:
-            starts[channel.path] = start
-    gathered, notes, lacking = Channels(), list[str](), list[str]()
-    for group, channel in channels:
-        step, begin = (scalar(channel.properties.get(key)) for key in ("wf_increment", "wf_start_offset"))
-        if channel.path in starts:
-            begin = _seconds(starts[channel.path] - min(starts.values())) + (begin or 0.0)
-        elif len(channel) and step:
-            lacking.append(channel.name)
-        signals = signals_of(channel.name, channel[:], stated_unit(channel.properties)) if len(channel) else []
-        if not signals:
-            notes.append(f"'{channel.name}' is left out: it holds no column of numbers")
-        for signal in signals:
-            gathered.add(group, signal, 1.0 / step if step else None, begin)
+    channels = [channel for group in file.groups() for channel in group.channels()]
+    starts = [start for channel in channels if (start := _start_time(channel)) is not None]
+    notes: list[str] = []
+    gathered, first = Channels(), min(starts, default=None)
+    for group in file.groups():
+        for channel in group.channels():
+            step, begin = _step(channel), _start(channel, first)
+            signals = signals_of(channel.name, channel[:], stated_unit(channel.properties)) if len(channel) else []
+            if not signals:
+                notes.append(f"'{channel.name}' is left out: it holds no column of numbers")
+            for signal in signals:
+                gathered.add(group.name, signal, 1.0 / step if step else None, begin)
+    lacking = [each.name for each in channels if len(each) and _step(each) and _start_time(each) is None]
     if starts and lacking:
         notes.append(f"no {_START} is stated of {', '.join(lacking)}: laid beside the channel that begins first")
     return DataFile(path, "", gathered.groups(), tuple(notes))
 
 
-def _seconds(duration: np.timedelta64) -> float:
-    return float(duration / np.timedelta64(1, "s"))
+def _step(channel: TdmsChannel) -> float | None:
+    return scalar(channel.properties.get("wf_increment"))
+
+
+def _start(channel: TdmsChannel, first: np.datetime64 | None) -> float | None:
+    """Return when a channel begins, in s after the one that begins first; None where it does not say."""
+    offset, start = scalar(channel.properties.get("wf_start_offset")), _start_time(channel)
+    if start is None or first is None:
+        return offset
+    return float((start - first) / np.timedelta64(1, "s")) + (offset or 0.0)
+
+
+def _start_time(channel: TdmsChannel) -> np.datetime64 | None:
+    stated = channel.properties.get(_START)
+    return stated if isinstance(stated, np.datetime64) and stated > _NEVER_SET else None
 
 
 class _Segment(NamedTuple):
@@ -140,13 +152,17 @@ def _segments(lines: Sequence[str], separator: str) -> Iterator[_Segment]:
 
 def _table(segment: _Segment, separator: str, decimal: str) -> Array:
     """Return the numbers of a segment, shape (rows, columns), NaN where a cell is empty."""
-    columns = [column for column, name in enumerate(segment.names) if name != _REMARK]
-    table = np.full((len(segment.rows), len(segment.names)), np.nan)
-    if segment.rows:
-        numbers, text = dict.fromkeys(columns, np.float64), io.StringIO("\n".join(segment.rows))
-        names = range(len(segment.names))
-        frame = pd.read_csv(text, sep=separator, decimal=decimal, index_col=False, names=names, dtype=numbers)
-        table[:, columns] = frame[columns]
+    import pandas as pd
+
+    remarks = [column for column, name in enumerate(segment.names) if name == _REMARK]
+    columns = [column for column in range(len(segment.names)) if column not in remarks]
+    if not segment.rows:
+        return np.empty((0, len(segment.names)))
+    numbers, text = dict.fromkeys(columns, np.float64), io.StringIO("\n".join(segment.rows))
+    names = range(len(segment.names))
+    frame = pd.read_csv(text, sep=separator, decimal=decimal, index_col=False, names=names, dtype=numbers)
+    table = np.full(frame.shape, np.nan)
+    table[:, columns] = frame[columns]
     return table
 
 
@@ -160,8 +176,8 @@ def _pieces(segment: _Segment, table: Array, x_columns: str, path: Path) -> Iter
     samples = [int(cell or "0") for cell in segment.cells("Samples")]
     if len(table) < max(samples, default=0):
         raise InputError(f"{path}: has {len(table)} of {max(samples)} rows; the file is truncated: export it again")
-    stated = (segment.cells(key) for key in ("Y_Unit_Label", "Date", "Time"))
-    for column, unit, date, time, step, zero in zip(segment.channels(), *stated, steps, zeros, strict=True):
+    described = zip(segment.channels(), segment.cells("Y_Unit_Label"), _begins(segment), steps, zeros, strict=True)
+    for column, unit, begins, step, zero in described:
         values = table[:, column]
         values = values[: int(np.max(np.flatnonzero(np.isfinite(values)), initial=-1)) + 1]
         # One column of x is that of the channel with the most samples.
@@ -170,11 +186,18 @@ def _pieces(segment: _Segment, table: Array, x_columns: str, path: Path) -> Iter
         times = table[: len(values), own_x] if own_x is not None else zero + step * np.arange(len(values))
         if np.isnan(times).any():
             raise InputError(f"{path}, {segment.names[column]}: states neither {_X} nor Delta_X in every row")
-        # The moment from which x counts.
-        moment = f"{date.replace('/', '-')}T{time.replace(',', '.')[:18]}" if date and time else ""
-        begins = np.datetime64(moment, "ns") if moment and not (len(times) and times[0] > _ABSOLUTE) else None
+        is_absolute = len(times) > 0 and times[0] > _ABSOLUTE
         signal = Signal(segment.names[column], unit, values)
-        yield column, _Piece(signal, np.asarray(times, dtype=np.float64), begins)
+        yield column, _Piece(signal, np.asarray(times, dtype=np.float64), None if is_absolute else begins)
+
+
+def _begins(segment: _Segment) -> list[np.datetime64 | None]:
+    """Return the moment from which the x of each channel counts."""
+    moments: list[np.datetime64 | None] = []
+    for date, time in zip(segment.cells("Date"), segment.cells("Time"), strict=True):
+        stated = f"{date.replace('/', '-')}T{time.replace(',', '.')[:18]}"
+        moments.append(np.datetime64(stated, "ns") if date and time else None)
+    return moments
 
 
 def _join(channels: Sequence[Sequence[_Piece]]) -> tuple[Group, ...]:
@@ -182,8 +205,13 @@ def _join(channels: Sequence[Sequence[_Piece]]) -> tuple[Group, ...]:
     first = min((each.begins for pieces in channels for each in pieces if each.begins is not None), default=None)
     gathered = Channels()
     for pieces in channels:
-        since = [0.0 if first is None or each.begins is None else _seconds(each.begins - first) for each in pieces]
-        times = np.concatenate([each.times + seconds for each, seconds in zip(pieces, since, strict=True)])
+        times = [_since(first, each) for each in pieces]
         signal = pieces[0].signal._replace(values=np.concatenate([each.signal.values for each in pieces]))
-        gathered.add_timed("", times, [signal])
+        gathered.add_timed("", np.concatenate(times), [signal])
     return gathered.groups()
+
+
+def _since(first: np.datetime64 | None, piece: _Piece) -> Array:
+    if first is None or piece.begins is None:
+        return piece.times
+    return piece.times + float((piece.begins - first) / np.timedelta64(1, "s"))

@@ -9,18 +9,19 @@ from __future__ import annotations
 
 import struct
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import pandas as pd
-import pyarrow as pa
-from pyarrow import feather
 
 from seatsim.importing.readers.header import CLOCK, DATE, LISTED_UNITS, PLAIN, SIGN, THOUSANDS, WITH_UNIT
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.signals import TIME, DataFile, Group, Signal, note_left_out, stated_unit
 from seatsim.schema.arrays import Array, open_parquet
 from seatsim.schema.bounds import BYTES_OF_NUMBER, check_made
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import pyarrow as pa
 
 _MOST_TEXTS = 0.5
 """Share of the rows that are no numbers from which a column is one of texts."""
@@ -41,11 +42,7 @@ _BEFORE = 8
 
 def read_arrow(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     """Return the columns of a table as one group."""
-    if content.startswith(b"PAR1"):
-        table = open_parquet(content).read()
-    else:
-        check_made(_bytes_of_messages(content), len(content), "what its columns state")
-        table = feather.read_table(pa.BufferReader(content))
+    table = _table(content)
     signals, left_out = [], []
     has_time = False
     for field, column in zip(table.schema, table.columns, strict=True):
@@ -63,12 +60,25 @@ def read_arrow(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     return DataFile(path, "", groups, note_left_out("columns that hold no numbers", left_out))
 
 
+def _table(content: bytes) -> pa.Table:
+    import pyarrow as pa
+
+    if content.startswith(b"PAR1"):
+        return open_parquet(content).read()
+    from pyarrow import feather
+
+    check_made(_bytes_of_messages(content), len(content), "what its columns state")
+    return feather.read_table(pa.BufferReader(content))
+
+
 def _bytes_of_messages(content: bytes) -> int:
     """Return how many bytes the batches of a file make: what they unpack to, or a number for each row and column.
 
     Raises:
         ValueError: a message is damaged.
     """
+    import pyarrow as pa
+
     made = 0
     if content.startswith(b"ARROW1"):
         for message in pa.ipc.MessageReader.open_stream(pa.BufferReader(content[_BEFORE:])):
@@ -135,6 +145,8 @@ class Cells(NamedTuple):
 
 def read_column(column: pa.ChunkedArray, decimal: str) -> Cells | None:
     """Return a column as numbers, None where most of it is text; cells are texts with this decimal sign."""
+    import pyarrow as pa
+
     kind = column.type
     if any(
         is_kind(kind) for is_kind in (pa.types.is_timestamp, pa.types.is_time, pa.types.is_date, pa.types.is_duration)
@@ -156,6 +168,8 @@ def read_column(column: pa.ChunkedArray, decimal: str) -> Cells | None:
 
 def _seconds(column: pa.ChunkedArray) -> Array:
     """Return dates, times of day and durations in s since the first, exact to a nanosecond."""
+    import pyarrow as pa
+
     kind = column.type
     if pa.types.is_time(kind):
         fine = pa.time64("ns")
@@ -186,6 +200,8 @@ def _read_texts(texts: pd.Series[str], decimal: str) -> Cells | None:
 
 def _numbers(texts: pd.Series[str], decimal: str) -> Array:
     """Return texts as numbers, NaN for those that are none with this decimal sign."""
+    import pandas as pd
+
     parted = texts.str.fullmatch(THOUSANDS[decimal].pattern, na=False)
     is_number = parted | texts.str.fullmatch(PLAIN[decimal].pattern, na=False)
     marks = ".'\u2019 \u00a0\u202f" if decimal == "," else ",'\u2019 \u00a0\u202f"
@@ -197,6 +213,8 @@ def _numbers(texts: pd.Series[str], decimal: str) -> Array:
 
 def _read_stamps(texts: pd.Series[str]) -> Array:
     """Return dates with a time of day, or either of them, in s since the first; NaN for what is none."""
+    import pandas as pd
+
     parts = texts.str.extract(rf"^(?P<date>{DATE})?[ T_,-]*(?P<clock>{CLOCK})?\s*(?:Z|UTC|[+-]\d\d:?\d\d)?$")
     if parts.isna().all(axis=None):
         dates = pd.to_datetime(texts.iloc[:5], errors="coerce", format="mixed")
@@ -213,6 +231,8 @@ def _read_stamps(texts: pd.Series[str]) -> Array:
 
 def _days(dates: pd.Series[str]) -> Array:
     """Return dates as days since the first; of day and month that one comes first with which they span less."""
+    import pandas as pd
+
     each = dates.dropna().unique()
     if not len(each):
         return np.full(len(dates), np.nan)

@@ -7,7 +7,6 @@ import pytest
 
 from seatsim.diagnosis.decide import Decision
 from seatsim.diagnosis.fit import refit
-from seatsim.diagnosis.result import Share
 from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.solution import Solution
 from seatsim.diagnosis.validate import validate_on_held_out
@@ -43,11 +42,6 @@ def objective(folder):
     return make_objective(folder)
 
 
-@pytest.fixture(scope="module")
-def known(objective):
-    return make_solution(objective, "known", ONE, TWO, where=[Share("damper", 0.7), Share("suspension", 0.3)])
-
-
 def harmful(objective, verdict):
     """Return a solution whose effect, as fitted, was of help in two runs, and is the wrong way round in the third."""
     problem, measured = objective.problem, {}
@@ -74,3 +68,11 @@ def test_a_known_effect_that_takes_too_little_off_the_held_out_run_stays_beside_
     assert decision.verdict == "unknown" and decision.unknown == 0.55
     assert decision.chosen is solution.decision.chosen
     assert decision.probabilities == solution.decision.probabilities
+
+
+def test_an_effect_beside_an_unknown_cause_that_raises_the_gap_is_given_up_with_a_note(objective):
+    found = validate_on_held_out(harmful(objective, "unknown"))
+    decision, (note,) = found.solution.decision, found.solution.selection.notes
+    assert note.startswith(f"{ONE.effect} was given up, since it raises the gap of")
+    assert decision.verdict == "unknown" and not decision.chosen.parameters.terms
+    assert decision.probabilities[ONE.effect] == 0.0 and not found.augmented.parameters.terms
