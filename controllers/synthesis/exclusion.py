@@ -295,14 +295,14 @@ def _respond(plant: GeneralisedPlant, points: Complex) -> _Points:
 
 def _numerators(K: Array, points: _Points) -> tuple[Complex, Complex, Array]:
     """Return N, shape (points, gains, nz, nw), d and the size of the terms of N, both of shape (points, gains)."""
-    adjugate, d = adjugate_and_determinant(np.eye(K.shape[1]) - K[None] @ points.P22[:, None])
+    adjugate, d = _adjugate_and_determinant(np.eye(K.shape[1]) - K[None] @ points.P22[:, None])
     direct = d[..., None, None] * points.P11[:, None]
     fed_back = points.P12[:, None] @ (adjugate @ K) @ points.P21[:, None]
     terms = np.linalg.norm(direct, axis=(2, 3)) + np.linalg.norm(fed_back, axis=(2, 3))
     return direct + fed_back, d, terms
 
 
-def adjugate_and_determinant(L: Complex) -> tuple[Complex, Complex]:
+def _adjugate_and_determinant(L: Complex) -> tuple[Complex, Complex]:
     """Return adj(L) and det(L) of square matrices (..., n, n) by the recursion of Faddeev and LeVerrier."""
     n, identity = L.shape[-1], np.eye(L.shape[-1])
     M = np.broadcast_to(identity, L.shape).astype(complex)

@@ -40,7 +40,7 @@ def make_sheet(rows: Sequence[Row], responses: Iterable[Response], window: float
         group_rows(steady, _is_repeat),
         key=lambda group: (group[0].temperature, round(group[0].peak_speed, 3), group[0].current),
     )
-    peaks = [measure_peak(group, window) for group in groups]
+    peaks = [_measure_peak(group, window) for group in groups]
     slow = [min(alike, key=lambda pair: pair[1].speed) for alike in group_rows(zip(groups, peaks, strict=True), _slow)]
     families = group_rows(peaks, lambda a, b: is_alike(a.speed, b.speed) and _as_warm(a.temperature, b.temperature))
     ladders = [family for family in families if len(family) > 1]
@@ -55,11 +55,11 @@ def make_sheet(rows: Sequence[Row], responses: Iterable[Response], window: float
         energy=[_measure_energy(group) for group in groups],
         fade=[*_measure_fade(peaks), *(_measure_warm_up(row, cycles) for row, cycles in warming)],
         warm_up=[cycle for _, cycles in warming for cycle in cycles],
-        current_hysteresis=measure_current_hysteresis(rows),
+        current_hysteresis=_measure_current_hysteresis(rows),
     )
 
 
-def measure_peak(rows: Sequence[Row], window: float) -> sheet.PeakForce:
+def _measure_peak(rows: Sequence[Row], window: float) -> sheet.PeakForce:
     """Return the force at the peak speed of rows that are repeats, each with a loop."""
     forces = np.array([measure_forces(row.loop, window) for row in rows if row.loop is not None])
     rebound, compression = map(float, np.mean(forces, axis=0))
@@ -213,7 +213,7 @@ _EDGE = 0.25
 """Part of a level by which its edges are moved: no ladder of fewer than 32 equal steps then has a step at an edge."""
 
 
-def measure_current_hysteresis(rows: Sequence[Row]) -> list[sheet.CurrentHysteresis]:
+def _measure_current_hysteresis(rows: Sequence[Row]) -> list[sheet.CurrentHysteresis]:
     """Return the widths of records whose current rises and falls slowly, in a ramp or in steps, under one motion.
 
         width(i) = F_falling(i) - F_rising(i)

@@ -90,7 +90,7 @@ def solve_step(matrix: Array, right: Array, count: int, vector: Array, low: Arra
     scaled = matrix / np.outer(size, size) + 1e-8 * np.eye(len(size))
     # A component beyond its bound by rounding keeps an empty interval about its place.
     room = np.minimum(low - vector, 0.0) * size, np.maximum(high - vector, 0.0) * size
-    return minimise_bounded(scaled, right / size, *room) / size
+    return _minimise_bounded(scaled, right / size, *room) / size
 
 
 PATTERN_STEPS = (0.3, 0.15, 0.08, 0.04, 0.02)
@@ -147,7 +147,7 @@ _ALLOWANCE = 1e-12
 """Violations of a bound and gradients below this, in units of the largest right-hand side, are rounding errors."""
 
 
-def minimise_bounded(matrix: Array, right: Array, low: Array, high: Array) -> Array:
+def _minimise_bounded(matrix: Array, right: Array, low: Array, high: Array) -> Array:
     """Return the x that minimises `x' matrix x - 2 right' x` with `low <= x <= high`, by block principal pivoting.
 
     A bounded least-squares routine for tall matrices spends most of its time on factorising what is a matrix of some

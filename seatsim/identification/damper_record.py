@@ -49,7 +49,7 @@ def find_model(name: str) -> type[DamperRecord]:
     return cast("type[DamperRecord]", DAMPERS.find(name))
 
 
-def law_range(fields: Mapping[str, FieldValue], default: float) -> float:
+def _law_range(fields: Mapping[str, FieldValue], default: float) -> float:
     """Return the current in A up to which a model's laws hold: its field `law_end`, or the default without one."""
     end = fields.get("law_end", default)
     assert isinstance(end, int | float)
@@ -67,7 +67,7 @@ def evaluate_law(coefficients: Sequence[float], currents: Array) -> Array:
     return np.asarray(np.polynomial.polynomial.polyval(currents, np.array(coefficients)), dtype=float)
 
 
-def interpolate_law(values: Array, end: float) -> list[float]:
+def _interpolate_law(values: Array, end: float) -> list[float]:
     """Return the coefficients of the law with these values, shape (K,), at K currents spread evenly over 0 to `end`."""
     # The system is solved in the current over `end`, where it is better conditioned.
     powers = np.vander(np.linspace(0.0, 1.0, len(values)), increasing=True)
@@ -88,13 +88,13 @@ class Scales(NamedTuple):
 
     def size(self, unit: str) -> float:
         """Return the size that a quantity of this unit has in these data; time counts by stroke over speed."""
-        powers = parse_unit(unit)
+        powers = _parse_unit(unit)
         time = self.stroke / self.speed
         sizes = {"N": self.force, "m": self.stroke, "s": time, "A": self.current}
         return float(math.prod(sizes[name] ** power for name, power in powers.items()))
 
 
-def parse_unit(unit: str) -> dict[str, float]:
+def _parse_unit(unit: str) -> dict[str, float]:
     """Return the powers of N, m, s and A in a unit such as `N s/(m A)`."""
     top, _, bottom = unit.partition("/")
     powers: dict[str, float] = {}
@@ -106,20 +106,20 @@ def parse_unit(unit: str) -> dict[str, float]:
 
 R = TypeVar("R", bound=DamperRecord)
 
-RANGE_FIELDS = ("law_end",)
+_RANGE_FIELDS = ("law_end",)
 """Fields that state where a model holds; they are set from the data, not fitted."""
 
 
 def rescale_damper(record: R, force: float, end: float) -> R:
     """Return a record for another damper: its forces times `force`, its laws stretched to the current `end` in A."""
     fields = record._asdict()
-    stretch = end / (law_range(fields, end) or end)
+    stretch = end / (_law_range(fields, end) or end)
     changed: dict[str, FieldValue] = {"law_end": end} if "law_end" in fields else {}
     for specification in describe(type(record)):
         value = fields[specification.name]
-        powers = parse_unit(specification.unit)
+        powers = _parse_unit(specification.unit)
         factor = force ** powers.get("N", 0.0)
-        if specification.name in RANGE_FIELDS or isinstance(value, int | str):
+        if specification.name in _RANGE_FIELDS or isinstance(value, int | str):
             continue
         if isinstance(value, tuple):
             law = is_current_law(type(record), specification.name)
@@ -224,14 +224,14 @@ class Coordinates:
         self.start, self.levels = start, levels
         self.cls = type(start)
         self.fields: Mapping[str, FieldValue] = start._asdict()
-        self.end = law_range(self.fields, scales.current) or 1.0
+        self.end = _law_range(self.fields, scales.current) or 1.0
         self.bounds = {name: bounds(self.cls, name) for name in self.fields}
         self.components: list[Component] = []
         for specification in describe(self.cls):
             value = self.fields[specification.name]
             # Without any current in the data, what multiplies it has no influence at all.
-            moot = scales.current == 0.0 and parse_unit(specification.unit).get("A", 0.0) != 0.0
-            kept = specification.name in (*RANGE_FIELDS, *fixed) or moot
+            moot = scales.current == 0.0 and _parse_unit(specification.unit).get("A", 0.0) != 0.0
+            kept = specification.name in (*_RANGE_FIELDS, *fixed) or moot
             if not kept and not isinstance(value, int | str):
                 natural = _DATA_SHARE * scales.size(specification.unit)
                 self.components += self._of_field(specification.name, specification.unit, value, natural)
@@ -287,4 +287,4 @@ class Coordinates:
             return tuple(values)
         before = self.fields[name]
         assert isinstance(before, tuple)
-        return (*interpolate_law(np.array(values), self.end), *[0.0] * (len(before) - len(values)))
+        return (*_interpolate_law(np.array(values), self.end), *[0.0] * (len(before) - len(values)))

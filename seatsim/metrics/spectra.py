@@ -93,7 +93,7 @@ def _segments(values: Array, length: int) -> Array:
     return centred
 
 
-AVERAGES = 8
+_AVERAGES = 8
 """Least number of half-overlapping segments: from few of them the coherence is near 1 for any signals."""
 
 LONGEST = 10.0
@@ -174,11 +174,11 @@ def trusted_gain(floor: Array, driver: Array, sample_rate: float, highest: float
 
 
 def _segment(samples: int, sample_rate: float) -> int:
-    """Return the even length of a segment such that `AVERAGES` of them, half overlapping, fit into the record."""
+    """Return the even length of a segment such that `_AVERAGES` of them, half overlapping, fit into the record."""
     # n segments that overlap by half span (n + 1) half segments.
-    longest = 2 * (samples // (AVERAGES + 1))
+    longest = 2 * (samples // (_AVERAGES + 1))
     if longest < _SHORTEST * sample_rate:
-        needed = _SHORTEST * (AVERAGES + 1) / 2
+        needed = _SHORTEST * (_AVERAGES + 1) / 2
         raise InputError(f"the record lasts {samples / sample_rate:g} s; a transmissibility needs {needed:g} s or more")
     return min(longest, 2 * round(LONGEST * sample_rate / 2))
 

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from seatsim.page.recording_view import RecordingView
     from seatsim.page.scenario_view import ScenarioView, View
 
-POLICY = (
+_POLICY = (
     "default-src 'none'; img-src data:; script-src {script}; style-src {style}; connect-src 'self'; form-action 'none';"
     " frame-ancestors 'none'; base-uri 'none'"
 )
@@ -120,7 +120,7 @@ class _Page:
         self._target, self._folder, self._lock = target, folder, Lock()
         self._thread: int | None = None
         script, style = read_asset(SCRIPTS), read_asset(STYLES)
-        policy = POLICY.format(script=digest_of(script), style=digest_of(style))
+        policy = _POLICY.format(script=digest_of(script), style=digest_of(style))
         self._headers = HEADERS | {"Content-Security-Policy": policy}
         loaders = [jinja2.PackageLoader("seatsim.report"), jinja2.PackageLoader("seatsim.page")]
         environment = make_environment().overlay(loader=jinja2.ChoiceLoader(loaders))
@@ -175,7 +175,7 @@ class _Page:
         # Loading these takes longer than everything that the first page needs.
         from seatsim.scenario.loading import single
 
-        path = name_new(self._folder, str(values.get("name", "")))
+        path = _name_new(self._folder, str(values.get("name", "")))
         content = {**self._target.result().encode(values), "name": path.stem}
         with temporary_folder() as drafts:
             # What could not be read again is never saved.
@@ -183,7 +183,7 @@ class _Page:
         return {"saved": write_text(path, dump(content)).name}
 
 
-def name_new(folder: Path, name: str) -> Path:
+def _name_new(folder: Path, name: str) -> Path:
     """Return the path of a new scenario in a folder.
 
     Raises:

@@ -160,7 +160,7 @@ class ScenarioView:
         ]
         table = Table("First run of the file, and the run as set", ["figure", "as in the file", "as set"], rows)
         blocks = [table, *show_pictures(figures, "transmissibility", "psd")]
-        return View(describe_run(run), blocks, show_signals([shown], QUICK), list_gains(base))
+        return View(describe_run(run), blocks, show_signals([shown], QUICK), _list_gains(base))
 
     def choose(self, request: Mapping[str, object]) -> Scenario:
         """Return the scenario that a request describes."""
@@ -179,7 +179,7 @@ class ScenarioView:
             return found
         if not isinstance(gains, dict):
             raise InputError("gains: a mapping of numbers of the law to their values")
-        moved = {f"controller.{slider.name}": read_number(gains, slider) for slider in list_gains(found)}
+        moved = {f"controller.{slider.name}": read_number(gains, slider) for slider in _list_gains(found)}
         return _reload(base, settings | moved, label)
 
     def encode(self, request: Mapping[str, object]) -> dict[str, object]:
@@ -214,7 +214,7 @@ def _reload(base: Scenario, settings: Mapping[str, object], label: Mapping[str, 
     return read_scenario(source, label)
 
 
-def list_gains(scenario: Scenario) -> list[Slider]:
+def _list_gains(scenario: Scenario) -> list[Slider]:
     """Return the numbers of the law of a scenario, each to be moved from its least to three times its value."""
     if scenario.control is None:
         return []

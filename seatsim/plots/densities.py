@@ -15,7 +15,7 @@ from seatsim.schema.arrays import Array
 
 DECADES = 5.0
 """Decades below the highest density, of the motion of a seat."""
-Densities: TypeAlias = Sequence[tuple[Array, Array]]
+_Densities: TypeAlias = Sequence[tuple[Array, Array]]
 """Frequencies in Hz and power spectral densities of some lines, shape (F,) each."""
 METHOD = (
     f"Welch's method, {SEGMENTS} half-overlapping segments or more of {LONGEST:g} s at most, averaged over"
@@ -23,7 +23,7 @@ METHOD = (
 )
 
 
-def find_first(densities: Densities) -> float:
+def find_first(densities: _Densities) -> float:
     """Return the highest frequency in Hz at which one of some densities begins, infinite where none has lines."""
     return max((float(frequency[0]) for frequency, _ in densities if len(frequency)), default=np.inf)
 
@@ -34,7 +34,7 @@ def state_method(first: float) -> str:
     return f"Welch's method, {lines}averaged over 1/{PER_OCTAVE} octave, without the mean."
 
 
-def find_problem(densities: Densities, highest: float) -> str:
+def find_problem(densities: _Densities, highest: float) -> str:
     """Return why nothing is drawn of densities up to a highest frequency in Hz, empty where something is."""
     if not any(len(frequency) for frequency, _ in densities):
         return f"too short for a spectrum, which takes {LEAST_SAMPLES} samples"
@@ -42,7 +42,7 @@ def find_problem(densities: Densities, highest: float) -> str:
 
 
 def draw_densities(
-    axes: Axes, densities: Densities, looks: Sequence[Entry], highest: float = np.inf, decades: float = DECADES
+    axes: Axes, densities: _Densities, looks: Sequence[Entry], highest: float = np.inf, decades: float = DECADES
 ) -> None:
     """Draw densities, as frequency and power, up to a highest frequency in Hz; say so where nothing has power.
 

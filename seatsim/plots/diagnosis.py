@@ -55,15 +55,15 @@ MOTIONS = {name: describe_channel(name, unit) for name, unit in UNITS.items()}
 """How measured motion, of a suspension or a damper, is shown."""
 SECONDS, RASTER = 2.0, 0.05
 """Length in s of the window that is shown, and the raster on which it begins."""
-BAND = 2.0
+_SHADED = 2.0
 """Standard deviations of the noise that are shaded."""
 DECADES = 9.0
 """Decades below the highest density that a spectrum shows: down to the noise of a good sensor."""
 NOMINAL = Entry("nominal", COLOURS[1], DASHES[1], width=1.3)
 NOISE = Entry("sensor noise", "black", ":", width=1.3)
-_BAND = Entry(f"±{BAND:g} RMS of the noise", style.AREA, width=8)
+_BAND = Entry(f"±{_SHADED:g} RMS of the noise", style.AREA, width=8)
 GRID = Grid((1.5, 1.0, 1.3), left=1.04, gap=(0.0, 0.5))
-Looks: TypeAlias = dict[str, Entry]
+_Looks: TypeAlias = dict[str, Entry]
 """Looks of simulations that are compared with a measurement, by their names in a trace."""
 LETTERS = 19
 """Letters of a label beside a panel that is this low."""
@@ -74,10 +74,10 @@ def plot_diagnosis(diagnosis: Diagnosis) -> dict[str, Figure]:
 
     After the others a picture of each held-out channel, the channel with the largest nominal gap first.
     """
-    plots = {"gaps": plot_gaps}
+    plots = {"gaps": _plot_gaps}
     if diagnosis.verdict != "none":
-        plots |= {"location": plot_location, "ranking": plot_ranking}
-        plots |= {"discrepancy": plot_discrepancy, "maps": plot_maps}
+        plots |= {"location": _plot_location, "ranking": _plot_ranking}
+        plots |= {"discrepancy": _plot_discrepancy, "maps": _plot_maps}
     last = find_last(diagnosis)
     looks = {"nominal": NOMINAL, "after": Entry(last.label, last.colour, width=1.1)}
     found = {name: figure for name, plot in plots.items() if (figure := plot(diagnosis)) is not None}
@@ -87,7 +87,7 @@ def plot_diagnosis(diagnosis: Diagnosis) -> dict[str, Figure]:
 def plot_all_of_gap(found: Gap) -> dict[str, Figure]:
     """Return the figures of a gap by name: of all channels, then of each, the one with the largest gap first."""
     looks = {"nominal": NOMINAL._replace(label="simulated")}
-    return {"gap": plot_gap(found), **_plot_channels(residuals.list_traces(found), looks)}
+    return {"gap": _plot_gap(found), **_plot_channels(residuals.list_traces(found), looks)}
 
 
 def select_stages(diagnosis: Diagnosis) -> list[Key]:
@@ -107,7 +107,7 @@ def read_gap(gaps: Gaps | RunGaps, key: Key, channel: str) -> float | None:
     return (figures.channels | {"overall": figures.overall}).get(channel)
 
 
-def plot_gaps(diagnosis: Diagnosis) -> Figure | None:
+def _plot_gaps(diagnosis: Diagnosis) -> Figure | None:
     """Return the gap of each channel on its way from the nominal simulation to the noise floor."""
     names, keys = ["overall", *diagnosis.gap.before.channels], select_stages(diagnosis)
     rows = [[read_gap(diagnosis.gap, key, name) or 0.0 for key in keys] for name in names]
@@ -115,7 +115,7 @@ def plot_gaps(diagnosis: Diagnosis) -> Figure | None:
     return _draw_gaps(title, names, stages, rows, " of held-out runs") if names[1:] else None
 
 
-def plot_gap(found: Gap) -> Figure:
+def _plot_gap(found: Gap) -> Figure:
     """Return the gap of each channel beside its noise floor."""
     floor = [found.floor.overall, *(found.floor.channels[name] for name in found.channels)]
     rows = list(zip([found.overall, *found.channels.values()], floor, strict=True))
@@ -148,7 +148,7 @@ def _draw_gaps(
     return figure
 
 
-def plot_location(diagnosis: Diagnosis) -> Figure | None:
+def _plot_location(diagnosis: Diagnosis) -> Figure | None:
     """Return the shares of the gap that lie in the blocks."""
     shares = diagnosis.where
     if not shares:
@@ -170,7 +170,7 @@ def plot_location(diagnosis: Diagnosis) -> Figure | None:
     return figure
 
 
-def plot_ranking(diagnosis: Diagnosis) -> Figure | None:
+def _plot_ranking(diagnosis: Diagnosis) -> Figure | None:
     """Return how probable the first causes are, and what each alone takes off the gap; equal rows are one."""
     if not diagnosis.causes:
         return None
@@ -221,7 +221,7 @@ def _format_percent(value: float) -> str:
     return "< 1 %" if 0 < value < 0.95 else f"{value:.0f} %"
 
 
-def plot_maps(diagnosis: Diagnosis) -> Figure | None:
+def _plot_maps(diagnosis: Diagnosis) -> Figure | None:
     """Return maps of what is left of the worst channel over velocity and current (or travel), before and after."""
     found = residuals.find_worst(diagnosis)
     if found is None:
@@ -254,7 +254,7 @@ def plot_maps(diagnosis: Diagnosis) -> Figure | None:
     return figure
 
 
-def plot_discrepancy(diagnosis: Diagnosis) -> Figure | None:
+def _plot_discrepancy(diagnosis: Diagnosis) -> Figure | None:
     """Return the signal that would close the gap, over time and over what may drive it."""
     found = diagnosis.evidence.discrepancy
     if found is None or len(found.values) < 2:
@@ -277,7 +277,7 @@ def plot_discrepancy(diagnosis: Diagnosis) -> Figure | None:
     return page.figure
 
 
-def _plot_channels(traces: Sequence[Trace], looks: Looks) -> dict[str, Figure]:
+def _plot_channels(traces: Sequence[Trace], looks: _Looks) -> dict[str, Figure]:
     """Return a picture of each channel by name, the channel with the largest nominal gap first."""
     groups = residuals.group_by_channel(traces).values()
     worst = [(max(group, key=lambda each: rms(_subtract(each, "nominal"))), group) for group in groups]
@@ -285,7 +285,7 @@ def _plot_channels(traces: Sequence[Trace], looks: Looks) -> dict[str, Figure]:
     return {f"signal_{trace.channel}": _plot_channel(trace, group, looks) for trace, group in ordered}
 
 
-def _plot_channel(trace: Trace, group: Sequence[Trace], looks: Looks) -> Figure:
+def _plot_channel(trace: Trace, group: Sequence[Trace], looks: _Looks) -> Figure:
     """Return a picture of a channel: of its worst run over time, and of all of its runs over frequency."""
     shown = describe_channel(trace.channel, trace.unit)
     step, noise = (trace.time[-1] - trace.time[0]) / (len(trace.time) - 1), shown.factor * trace.noise_rms
@@ -322,9 +322,9 @@ def _plot_channel(trace: Trace, group: Sequence[Trace], looks: Looks) -> Figure:
         axes.set_xlabel("time [s]", labelpad=1)
     densities = [(places, shown.factor**2 * power) for places, power in density]
     if noise:
-        lower.axhspan(-BAND * noise, BAND * noise, color=style.AREA, linewidth=0, zorder=0)
+        lower.axhspan(-_SHADED * noise, _SHADED * noise, color=style.AREA, linewidth=0, zorder=0)
         # Its edges stand before the lines, which hide a band that they fill.
-        lower.axhspan(-BAND * noise, BAND * noise, facecolor="none", edgecolor="black", linestyle=":", zorder=3)
+        lower.axhspan(-_SHADED * noise, _SHADED * noise, facecolor="none", edgecolor="black", linestyle=":", zorder=3)
         # The one-sided density of white noise of RMS s is 2 s^2 dt.
         densities.append((density[0][0], np.full(len(density[0][0]), 2 * noise**2 * step)))
     for [axes] in spectra:

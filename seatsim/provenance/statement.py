@@ -234,10 +234,10 @@ def state_command(otherwise: str) -> str:
 def _shorten(value: object) -> str:
     """Return an argument as text, an absolute path relative to the current folder: the tree may be moved."""
     text = str(value)
-    return relate(Path(text), Path.cwd()) if os.path.isabs(text) and os.path.exists(text) else text
+    return _relate(Path(text), Path.cwd()) if os.path.isabs(text) and os.path.exists(text) else text
 
 
-def relate(path: Path, folder: Path) -> str:
+def _relate(path: Path, folder: Path) -> str:
     """Return a path relative to a folder, with slashes; an absolute one where it lies on another drive."""
     try:
         return Path(os.path.relpath(path, folder)).as_posix()
@@ -282,11 +282,11 @@ def describe(
     return Manifest(
         command=invocation.command,
         arguments=invocation.arguments,
-        directory=relate(invocation.directory, place),
+        directory=_relate(invocation.directory, place),
         folder=place.name,
         versions=versions,
         platform=list_platform(),
-        own_code=[state_file(relate(path, place), path.read_bytes()) for path in used_files()],
+        own_code=[state_file(_relate(path, place), path.read_bytes()) for path in used_files()],
         inputs=[
             stated._replace(path=_name_input(path, place))
             for path, stated in sorted(invocation.reads.items())
@@ -306,4 +306,4 @@ def _name_input(path: Path, folder: Path) -> str:
 
     for examples in filter(path.is_relative_to, EXAMPLES):
         return f"{EXAMPLE}{path.relative_to(examples).as_posix()}"
-    return relate(path, folder)
+    return _relate(path, folder)

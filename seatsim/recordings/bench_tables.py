@@ -47,7 +47,7 @@ _QUANTITIES: dict[str, tuple[tuple[str, ...], str]] = {
     "valid": (("valid",), ""),
 }
 """Names of every quantity, and its SI unit, in which a bare name is; usual units and spellings may follow a name."""
-DRIVES = ("current", "command", "voltage")
+_DRIVES = ("current", "command", "voltage")
 """Quantities that state the damper's input, in the order of preference."""
 _NEEDED = ("time", "displacement", "force")
 _FORCE_AT = re.compile(r"(?:damper_)?force_(\d+(?:[p.]\d+)?)a(?:_(k?n))?")
@@ -88,7 +88,7 @@ def _with_unit(name: str, unit: str) -> str:
     return f"{name}_{re.sub('[/ ]', '_', unit)}"
 
 
-KNOWN = _known()
+_KNOWN = _known()
 """Every name that a column may have, in lower case."""
 
 
@@ -106,10 +106,10 @@ def meaning(column: str) -> Meaning | None:
     at = _FORCE_AT.fullmatch(plain)
     if at:
         return Meaning("force", "kN" if at[2] == "kn" else "", float(at[1].replace("p", ".")))
-    return KNOWN.get(plain)
+    return _KNOWN.get(plain)
 
 
-def columns_of(names: Iterable[str], file: Path) -> Columns:
+def _columns_of(names: Iterable[str], file: Path) -> Columns:
     """Return what the columns of a table hold.
 
     Raises:
@@ -129,8 +129,8 @@ def columns_of(names: Iterable[str], file: Path) -> Columns:
         else:
             found[known.quantity] = name
     for name in unused:
-        close = difflib.get_close_matches(name.lower(), KNOWN, n=1, cutoff=_MISSPELT)
-        quantity = KNOWN[close[0]].quantity if close else "nothing"
+        close = difflib.get_close_matches(name.lower(), _KNOWN, n=1, cutoff=_MISSPELT)
+        quantity = _KNOWN[close[0]].quantity if close else "nothing"
         if close and quantity not in {*found, *(["force"] if forces else [])}:
             raise InputError(f"{file}: column '{name}' is not known; name it {_spelt(quantity)}, or remove it")
     return Columns(found, forces, tuple(unused))
@@ -152,7 +152,7 @@ def numbers(frame: pd.DataFrame, column: str, file: Path) -> Array:
     return known.in_si(values) if known else values
 
 
-def check_needed(there: Iterable[str], columns: Sequence[str], file: Path) -> None:
+def _check_needed(there: Iterable[str], columns: Sequence[str], file: Path) -> None:
     """Raise InputError, with the nearest column, at the first quantity that a bench table needs and this one lacks."""
     lacking = [quantity for quantity in _NEEDED if quantity not in set(there)]
     if lacking:
@@ -186,7 +186,7 @@ def constants(sidecar: Source) -> dict[str, float]:
             raise sidecar.error((key,), f"{value} is not permitted; write a finite number, above 0 for a sample rate")
         if key in _RATES:
             found.setdefault("rate", float(value))
-        elif known and known.quantity in (*DRIVES, "temperature"):
+        elif known and known.quantity in (*_DRIVES, "temperature"):
             found[known.quantity] = float(known.in_si(np.asarray(value, dtype=float)))
     return found
 
@@ -328,19 +328,19 @@ def note_unused(names: Iterable[str]) -> list[str]:
 
 def _records(file: Path, pattern: re.Pattern[str] | None) -> Iterator[BenchRecord]:
     frame = read_table(file)
-    columns = columns_of(map(str, frame), file)
+    columns = _columns_of(map(str, frame), file)
     sidecar = file.with_name(stem(file.name) + ".yaml")
     stated = _read_name(stem(file.name), pattern) | (constants(Source(sidecar)) if sidecar.exists() else {})
     if "time" not in columns.by_quantity and "rate" in stated:
         frame = frame.assign(time=np.arange(len(frame)) / stated["rate"])
         columns.by_quantity["time"] = "time"
-    check_needed([*columns.by_quantity, *(["force"] if columns.forces else [])], list(map(str, frame)), file)
+    _check_needed([*columns.by_quantity, *(["force"] if columns.forces else [])], list(map(str, frame)), file)
     if "valid" in columns.by_quantity:
         frame = frame[numbers(frame, columns.by_quantity.pop("valid"), file) != 0.0]
     table = {quantity: numbers(frame, column, file) for quantity, column in columns.by_quantity.items()}
-    driven = any(drive in table for drive in DRIVES)
+    driven = any(drive in table for drive in _DRIVES)
     for quantity, value in stated.items():
-        if quantity == "temperature" or (quantity in DRIVES and not driven):
+        if quantity == "temperature" or (quantity in _DRIVES and not driven):
             table.setdefault(quantity, np.full(len(frame), value))
     lines = frame.index.to_numpy() + 2
     for at, column in columns.forces.items():
@@ -378,7 +378,7 @@ def _split(table: _Table, file: Path, lines: NDArray[np.int64]) -> Iterator[Benc
 def _record(table: Mapping[str, Array], file: Path) -> BenchRecord:
     time, x = table["time"], table["displacement"]
     rate = (len(time) - 1) / float(time[-1] - time[0])
-    drive = next((name for name in DRIVES if name in table), None)
+    drive = next((name for name in _DRIVES if name in table), None)
     current = np.maximum(table[drive], 0.0) if drive else np.zeros(len(time))
     velocity = table["velocity"] if "velocity" in table else _slope(x, rate)
     commanded = drive in ("command", "voltage") and bool(np.ptp(current) > 0.0)
@@ -407,7 +407,7 @@ def _recorded(folder: Path) -> list[BenchRecord]:
         if entry.set:
             problem = f"run {name} sets {', '.join(entry.set)}; one damper, as it is, is identified from all runs"
             raise InputError(f"{folder / HEADER}: {problem}: leave this one out")
-        table = {KNOWN[channel].quantity: values for channel, values in recording.table(name).items()}
+        table = {_KNOWN[channel].quantity: values for channel, values in recording.table(name).items()}
         if recording.voltage_gain is not None and "voltage" in table:
             table.setdefault("command", table.pop("voltage") * recording.voltage_gain)
         table["time"] = np.arange(len(table["force"])) / recording.header.sample_rate

@@ -40,21 +40,21 @@ def report_diagnosis(diagnosis: Diagnosis) -> Report:
     # What the error of the stated scenario is made of on the held-out run, by channel.
     errors = [formatting.scale_row(channel, unit, parts) for channel, unit, *parts in diagnosis.error_budget]
     sections: dict[str, Sequence[Block]] = {
-        "causes": show_causes(diagnosis, figures),
-        "gaps": show_gaps(diagnosis, figures),
+        "causes": _show_causes(diagnosis, figures),
+        "gaps": _show_gaps(diagnosis, figures),
         "signals": show_signals(diagnosis, figures),
         "missing": show_discrepancy(diagnosis, figures),
-        "forms": show_forms(diagnosis),
-        "confusions": show_confusions(diagnosis),
+        "forms": _show_forms(diagnosis),
+        "confusions": _show_confusions(diagnosis),
         "maps": show_pictures(figures, "maps"),
         "budget": [*formatting.explain("budget"), *show_table("budget", errors, 2)] if errors else [],
-        "comfort": show_comfort(diagnosis),
+        "comfort": _show_comfort(diagnosis),
     }
     if diagnosis.verdict == "none":
         sections |= {anchor: [] for anchor in ("causes", "missing", "confusions", "maps")}
     about, command = f"Diagnosis: {diagnosis.name}", f"seatsim diagnose {diagnosis.name}"
     answer = [say_diagnosis(diagnosis), format_sentence(diagnosis.sentence)]
-    notes, factors = list_notes(diagnosis), judge_diagnosis(diagnosis)
+    notes, factors = _list_notes(diagnosis), judge_diagnosis(diagnosis)
     report = compose("diagnosis", about, answer, advise(diagnosis), sections, notes, factors, command)
     badge = (diagnosis.verdict, *read_words().verdicts[diagnosis.verdict])
     return report._replace(badge=badge, doubt=f"{_say_probabilities(diagnosis)} {report.doubt}".strip())
@@ -188,7 +188,7 @@ def say_action(effect: str) -> str:
     return words.action if words else format_sentence(f"look at what {effect} describes on the rig")
 
 
-def show_causes(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
+def _show_causes(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
     """Return where the gap lies, which effects may cause it, and their parameters."""
     shown = [each for each in diagnosis.causes if each.probability >= LIKELY or each.effect in diagnosis.selected]
     rows = []
@@ -201,7 +201,7 @@ def show_causes(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
     return [*show_pictures(figures, "location", "ranking"), *show_table("causes", rows, 3, strong)]
 
 
-def show_confusions(diagnosis: Diagnosis) -> list[Block]:
+def _show_confusions(diagnosis: Diagnosis) -> list[Block]:
     """Return which effects this recording cannot tell apart, and what would decide."""
     groups = [join_names(group) for group in diagnosis.indistinguishable if len(group) > 1]
     said = "This recording cannot distinguish {}: each explains the gap equally well."
@@ -216,7 +216,7 @@ def show_confusions(diagnosis: Diagnosis) -> list[Block]:
     return [*blocks, *show_table("alike", rows, 2)]
 
 
-def show_forms(diagnosis: Diagnosis) -> list[Table]:
+def _show_forms(diagnosis: Diagnosis) -> list[Table]:
     """Return the table of other forms of the damper, where they were tried."""
     rows = [
         (form.model, join_names(form.beside or ["no effect"]), *map(format_percent, (form.shrink, form.refitted)))
@@ -225,7 +225,7 @@ def show_forms(diagnosis: Diagnosis) -> list[Table]:
     return show_table("forms", rows, 2, [0], own=diagnosis.alternatives[0].replaces) if rows else []
 
 
-def show_gaps(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
+def _show_gaps(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
     """Return picture and tables of the gaps by channel and by run, and of the refitted parameters."""
     gap, keys = diagnosis.gap, select_stages(diagnosis)
     held = ", ".join(diagnosis.held_out) or "all runs"
@@ -291,7 +291,7 @@ def show_discrepancy(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
     return [*lead, Items(list(map(format_sentence, found.description))), *show_pictures(figures, "discrepancy")]
 
 
-def show_comfort(diagnosis: Diagnosis) -> list[Table]:
+def _show_comfort(diagnosis: Diagnosis) -> list[Table]:
     """Return comfort and travel on the held-out run, the figures by which seats are assessed."""
     rows = []
     for each in diagnosis.evidence.comfort:
@@ -301,7 +301,7 @@ def show_comfort(diagnosis: Diagnosis) -> list[Table]:
     return show_table("comfort", rows, last=find_last(diagnosis).label)
 
 
-def list_notes(diagnosis: Diagnosis) -> list[str]:
+def _list_notes(diagnosis: Diagnosis) -> list[str]:
     """Return notes on the data, and the groups of blocks that the recorded channels can tell apart."""
     sentences = list(diagnosis.notes)
     if diagnosis.held_out:

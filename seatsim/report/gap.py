@@ -39,7 +39,7 @@ def report_gap(name: str, found: Gap, factors: Sequence[Factor], command: str) -
     sections = {
         "gaps": [*show_pictures(figures, "gap"), *_tabulate_gaps(found)],
         "signals": [*show_pictures(figures, "signal_"), pack_traces(list_traces(found), lines)],
-        "agreement": show_agreement(found),
+        "agreement": _show_agreement(found),
     }
     advice = formatting.choose_advice(use_scenario=_is_explained(found), diagnose=not _is_explained(found))
     return compose("gap", f"Gap: {name}", [say_gap(found)], advice, sections, found.notes, factors, command)
@@ -90,7 +90,7 @@ def _tabulate_gaps(found: Gap) -> list[Table]:
     return tables
 
 
-def show_agreement(found: Gap) -> list[Block]:
+def _show_agreement(found: Gap) -> list[Block]:
     """Return the ratings and the errors of the channels with what each figure means, nothing where there are none."""
     if not found.iso18571:
         return []

@@ -19,7 +19,7 @@ from seatsim.simulation.result import Run
 
 SAME = 0.01
 """Difference, as a share, up to which figures count as equal: other phases of the same floor change them by more."""
-EQUAL = "as much"
+_EQUAL = "as much"
 LISTED = 3
 """Conditions beside the worst of which a sentence names the best choice."""
 
@@ -34,11 +34,11 @@ class Alternatives(NamedTuple):
     @property
     def leaders(self) -> int:
         """How many of them are the most comfortable: the first, and those that are equal to it."""
-        least = measure_comfort(self.runs[0])
-        return sum(measure_comfort(run) <= (1 + SAME) * least for run in self.runs)
+        least = _measure_comfort(self.runs[0])
+        return sum(_measure_comfort(run) <= (1 + SAME) * least for run in self.runs)
 
 
-def list_alternatives(runs: Sequence[Run]) -> list[Alternatives]:
+def _list_alternatives(runs: Sequence[Run]) -> list[Alternatives]:
     """Return the runs that can be relied on in groups of one condition each, the worst condition first.
 
     Where some have weighted figures, those without are left out: the two cannot be compared.
@@ -47,12 +47,12 @@ def list_alternatives(runs: Sequence[Run]) -> list[Alternatives]:
     for group in group_by_condition((run.scenario, run) for run in runs):
         condition, names = distinguish_runs(group, runs)
         pairs = zip(group, names, strict=True)
-        named = [pair for pair in pairs if np.isfinite(measure_comfort(pair[0])) and not pair[0].unverified]
+        named = [pair for pair in pairs if np.isfinite(_measure_comfort(pair[0])) and not pair[0].unverified]
         known = [pair for pair in named if COMFORT in pair[0].metrics or not is_weighted]
-        known.sort(key=lambda pair: measure_comfort(pair[0]))
+        known.sort(key=lambda pair: _measure_comfort(pair[0]))
         if known:
             found.append(Alternatives(condition, *zip(*known, strict=True)))
-    return sorted(found, key=lambda group: -measure_comfort(group.runs[0]))
+    return sorted(found, key=lambda group: -_measure_comfort(group.runs[0]))
 
 
 def find_best(runs: Sequence[Run]) -> list[int]:
@@ -60,34 +60,34 @@ def find_best(runs: Sequence[Run]) -> list[int]:
 
     Those that are equal to the first are among them, unless all are.
     """
-    groups = [group for group in list_alternatives(runs) if len(group.runs) > group.leaders]
+    groups = [group for group in _list_alternatives(runs) if len(group.runs) > group.leaders]
     best = [run for group in groups for run in group.runs[: group.leaders]]
     return [k for k, run in enumerate(runs) if any(run is each for each in best)]
 
 
-def measure_comfort(run: Run) -> float:
+def _measure_comfort(run: Run) -> float:
     """Return the weighted RMS acceleration of the driver in m/s^2; unweighted where the step is too long to weight."""
     return run.read_metric(COMFORT if COMFORT in run.metrics else UNWEIGHTED)
 
 
-def state_comfort(run: Run) -> str:
+def _state_comfort(run: Run) -> str:
     """Return the comfort of a run with its unit."""
     words = "weighted RMS" if COMFORT in run.metrics else "RMS, not weighted"
-    return f"{format_quantity(measure_comfort(run), 'm/s^2')} ({words})"
+    return f"{format_quantity(_measure_comfort(run), 'm/s^2')} ({words})"
 
 
-def compare_figures(ratio: float) -> str:
+def _compare_figures(ratio: float) -> str:
     """Return how much less or more a figure is than another, from their ratio."""
-    return EQUAL if abs(ratio - 1) <= SAME else f"{format_percent(abs(1 - ratio))} {'less' if ratio < 1 else 'more'}"
+    return _EQUAL if abs(ratio - 1) <= SAME else f"{format_percent(abs(1 - ratio))} {'less' if ratio < 1 else 'more'}"
 
 
-def state_best(group: Alternatives) -> str:
+def _state_best(group: Alternatives) -> str:
     """Return the comfort of the best run of a condition, and its distance from the best passive one in words.
 
     Where the best run is passive, the best controlled one stands beside it, and where all or none are passive the next
     run. Every difference in comfort stands with that in travel, for which it could be bought.
     """
-    leaders, said = group.leaders, state_comfort(group.runs[0])
+    leaders, said = group.leaders, _state_comfort(group.runs[0])
     passive = [is_passive(run.scenario) for run in group.runs]
     first, is_mixed = passive[:leaders], len(set(passive)) > 1
     if is_mixed and all(first):
@@ -102,26 +102,26 @@ def state_best(group: Alternatives) -> str:
     comfort, travel = _compare_runs(group.runs[0], group.runs[k])
     base = f"the {'best passive' if is_mixed else 'next'} run, “{group.names[k]}”"
     note = "" if any(passive) else "; no passive run is there to compare with"
-    return f"{said}, {comfort} {'as' if comfort == EQUAL else 'than'} with {base}, at {travel}{note}"
+    return f"{said}, {comfort} {'as' if comfort == _EQUAL else 'than'} with {base}, at {travel}{note}"
 
 
 def _compare_runs(run: Run, base: Run) -> tuple[str, str]:
     """Return how the comfort of a run, and how the travel that it takes, compares with those of another."""
-    comfort = compare_figures(measure_comfort(run) / measure_comfort(base))
+    comfort = _compare_figures(_measure_comfort(run) / _measure_comfort(base))
     change = ratio(run.read_metric(TRAVEL), base.read_metric(TRAVEL))
     if math.isnan(change):
         return comfort, "more travel than none"
-    travel = compare_figures(change)
-    return comfort, "equal travel" if travel == EQUAL else f"{travel} travel (RMS)"
+    travel = _compare_figures(change)
+    return comfort, "equal travel" if travel == _EQUAL else f"{travel} travel (RMS)"
 
 
 def describe_run(run: Run) -> str:
     """Return in a sentence what a run comes to: comfort, and the travel that it takes."""
     seat, travel = run.read_metric(SEAT), run.read_metric("suspension_displacement_peak")
-    said = f"{run.scenario.title}: the driver feels {state_comfort(run)}"
+    said = f"{run.scenario.title}: the driver feels {_state_comfort(run)}"
     if np.isfinite(seat):
-        change = compare_figures(seat)
-        said += f", {change} {'as' if change == EQUAL else 'than'} the floor moves"
+        change = _compare_figures(seat)
+        said += f", {change} {'as' if change == _EQUAL else 'than'} the floor moves"
     said += f"; the suspension travels up to {format_quantity(travel, 'm')} from its rest"
     if np.isfinite(hits := run.read_metric("end_stop_hits")):
         said += f" and meets its end stops {count_times(hits)}" if hits else " and never meets its end stops"
@@ -130,7 +130,7 @@ def describe_run(run: Run) -> str:
 
 def compare_runs(runs: Sequence[Run]) -> list[str]:
     """Return in sentences the best choice under each condition of some runs, the worst condition first."""
-    groups = list_alternatives(runs)
+    groups = _list_alternatives(runs)
     compared = [group for group in groups if len(group.runs) > 1]
     if sum(len(group.runs) for group in groups) < 2:
         return [f"{len(runs)} runs were simulated; too few of them have figures that can be relied on to be compared."]
@@ -149,11 +149,11 @@ def count_times(hits: float) -> str:
 def _state_range(groups: Sequence[Alternatives]) -> list[str]:
     """Return what runs come to of which no two share a condition, the worst first, so that none is called better."""
     worst, mildest = groups[0], groups[-1]
-    low, high = measure_comfort(mildest.runs[0]), measure_comfort(worst.runs[0])
-    ends = f"{format_quantity(low, 'm/s^2')} to {state_comfort(worst.runs[0])}"
+    low, high = _measure_comfort(mildest.runs[0]), _measure_comfort(worst.runs[0])
+    ends = f"{format_quantity(low, 'm/s^2')} to {_state_comfort(worst.runs[0])}"
     said = f"{ends}; the worst is “{_name_alone(worst)}”, the mildest “{_name_alone(mildest)}”."
     if high <= (1 + SAME) * low:
-        said = f"the same, {state_comfort(worst.runs[0])}."
+        said = f"the same, {_state_comfort(worst.runs[0])}."
     said = f"Under {len(groups)} conditions the driver feels {said}"
     if len({choice_of(group.runs[0].scenario) for group in groups}) == 1:
         return [said]
@@ -173,7 +173,7 @@ def _state_one(group: Alternatives) -> str:
     said = f"Of {count} runs {which} the most comfortable"
     if leaders == count:
         said = f"{f'All {count}' if count > 2 else 'Both'} runs are alike in comfort, within {100 * SAME:g} %"
-    return f"{under}{said}: the driver feels {state_best(group)}."
+    return f"{under}{said}: the driver feels {_state_best(group)}."
 
 
 def _state_several(groups: Sequence[Alternatives]) -> list[str]:
@@ -184,8 +184,8 @@ def _state_several(groups: Sequence[Alternatives]) -> list[str]:
     for name, run in zip(worst.names, worst.runs, strict=True):
         if choice_of(run.scenario) in always:
             lead = f"“{name}” is the most comfortable under {f'all {count}' if count > 2 else 'both'} conditions."
-            return [f"{lead} The worst of them is {worst.condition}: the driver feels {state_best(worst)}."]
-    first, *others = [f"“{group.names[0]}”: the driver feels {state_best(group)}." for group in groups]
+            return [f"{lead} The worst of them is {worst.condition}: the driver feels {_state_best(worst)}."]
+    first, *others = [f"“{group.names[0]}”: the driver feels {_state_best(group)}." for group in groups]
     named = [f"At {group.condition} it is {said}" for group, said in zip(groups[1:], others, strict=True)]
     more = [f"And {len(named) - LISTED} other conditions, which are milder."] if len(named) > LISTED else []
     lead = f"Which run is the most comfortable depends on the condition. At the worst, {worst.condition}, it is"

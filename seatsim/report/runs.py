@@ -66,7 +66,7 @@ def report_runs(
     scenario, numbers = runs[0].scenario, list_numbers(runs[0].scenario).items()
     rows = [(key, format_unit(find_unit(scenario, key)) or "-", format_setting(value)) for key, value in numbers]
     settings = show_table("settings", rows, 2, folded=True, title=str(scenario.title))
-    answer, advice, same = [*said, *map(format_sentence, gaps)], advise_on_runs(runs), f"{100 * SAME:g} %"
+    answer, advice, same = [*said, *map(format_sentence, gaps)], _advise_on_runs(runs), f"{100 * SAME:g} %"
     return compose("runs", about, answer, advice, sections, notes, judge_runs(runs), command, settings, same=same)
 
 
@@ -81,7 +81,7 @@ def judge_runs(runs: Sequence[Run]) -> list[Factor]:
     ]
 
 
-def advise_on_runs(runs: Sequence[Run]) -> list[str]:
+def _advise_on_runs(runs: Sequence[Run]) -> list[str]:
     """Return what to do next, each in a sentence or two; the worst run comes first, and others are counted."""
     named = [(f"“{name}”", run) for name, run in zip(label_runs(runs), runs, strict=True) if not run.unverified]
     hitting, amplifying = _rank_above(named, HITS, 0.0), _rank_above(named, SEAT, 1.0 + SAME)

@@ -122,7 +122,7 @@ def tabulate_seat(found: Comfort) -> list[Table]:
     return show_table("seat", rows, 3)
 
 
-PASSED = ("no", "yes")
+_PASSED = ("no", "yes")
 _INTERVALS = ["the SEAT factors, by the spread of their runs"]
 NAMED = 3
 """Failures that the answer names."""
@@ -176,7 +176,7 @@ def tabulate_classes(rows: Sequence[SeatRow]) -> list[Table]:
     """Return the table of the SEAT factors, a row for each class and driver."""
     lines = []
     for row in rows:
-        tested = (row.run, row.spectral_class, LIMITS[row.spectral_class].machines, PASSED[row.passed])
+        tested = (row.run, row.spectral_class, LIMITS[row.spectral_class].machines, _PASSED[row.passed])
         figures = (f"{row.mass:g}", row.seat, row.limit, row.corrected, format_percent(row.spread), row.end_stop_hits)
         lines.append((*tested, *figures))
     return show_table("classes", lines, 4, [k for k, row in enumerate(rows) if not row.passed], clause=ACCEPTANCE)
@@ -185,5 +185,5 @@ def tabulate_classes(rows: Sequence[SeatRow]) -> list[Table]:
 def tabulate_damping(rows: Sequence[DampingRow]) -> list[Table]:
     """Return the table of the damping test, a row for each seat and class."""
     tested = ((row, (row.resonance, row.transmissibility, row.limit)) for row in rows)
-    lines = [(row.run, row.spectral_class, PASSED[row.passed], *figures) for row, figures in tested]
+    lines = [(row.run, row.spectral_class, _PASSED[row.passed], *figures) for row, figures in tested]
     return show_table("damping", lines, 3, [k for k, row in enumerate(rows) if not row.passed], clause=DAMPING)

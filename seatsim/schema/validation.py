@@ -48,14 +48,14 @@ def build(
         said = {*infinite, *((*keys, name) for name in (*missing, *meant))}
         for each in error.errors(include_url=False):
             where = (*keys, *(part for part in each["loc"] if not str(part).startswith("function-")))
-            added = hint if each["type"] == "missing" else sweep_hint(each["input"], where)
+            added = hint if each["type"] == "missing" else _sweep_hint(each["input"], where)
             if where not in said:
                 errors.append(source.error(where, _problem(record, each) + added))
     raise_all(errors)
     return found
 
 
-def sweep_hint(value: object, keys: KeyPath) -> str:
+def _sweep_hint(value: object, keys: KeyPath) -> str:
     """Return how several values of a key are stated, where a list stands for a single one."""
     if not isinstance(value, list | tuple) or not keys or isinstance(keys[-1], int):
         return ""
@@ -120,7 +120,7 @@ def read_whole(value: object, source: Source, keys: KeyPath, low: int, high: int
     """Return a value if it is a whole number between two others, else raise InputError."""
     if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
         problem = f"{value!r} is not permitted; it must be a whole number of at least {low} and at most {high}"
-        raise source.error(keys, f"{problem}{sweep_hint(value, keys)}")
+        raise source.error(keys, f"{problem}{_sweep_hint(value, keys)}")
     return value
 
 

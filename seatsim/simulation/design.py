@@ -13,7 +13,7 @@ from seatsim.rig.plant import Plant
 from seatsim.scenario.scenario import Control, Scenario
 from seatsim.schema.errors import InputError, SynthesisError
 
-PeakTravel = Callable[[Scenario], float]
+_PeakTravel = Callable[[Scenario], float]
 """Function that simulates a scenario and returns the largest displacement of its suspension in m."""
 
 _MARGIN = 0.1
@@ -25,7 +25,7 @@ _HALVINGS = 5
 
 
 def design_law(
-    scenario: Scenario, plant: Plant, control: Control, period: float, peak_travel: PeakTravel
+    scenario: Scenario, plant: Plant, control: Control, period: float, peak_travel: _PeakTravel
 ) -> CompiledLaw:
     """Return the compiled form of a scenario's law, sampled every `period` seconds.
 
@@ -42,7 +42,7 @@ def record_floors(scenario: Scenario, control: Control) -> list[FloorRecord]:
     return [FloorRecord(step, floor.acceleration) for floor in floors]
 
 
-def settle_travel(scenario: Scenario, control: Control, peak_travel: PeakTravel) -> Law:
+def settle_travel(scenario: Scenario, control: Control, peak_travel: _PeakTravel) -> Law:
     """Return the law with its travel weight, which is found by simulation where it is stated as `limit`.
 
     It is the least weight whose seat, with the forces that the damper can give, keeps nine tenths of its travel on
@@ -65,7 +65,7 @@ def _list_design_runs(scenario: Scenario, control: Control) -> Sequence[Scenario
 
 
 @lru_cache(maxsize=64)
-def _find_weight(runs: tuple[Scenario, ...], peak_travel: PeakTravel) -> float:
+def _find_weight(runs: tuple[Scenario, ...], peak_travel: _PeakTravel) -> float:
     stops = runs[0].plant.end_stops if runs[0].plant else None
     if stops is None:
         raise InputError("weights.travel: limit needs the travel between the end stops; state plant.travel")

@@ -66,7 +66,7 @@ class Axis(NamedTuple):
     model: str = ""
 
 
-def read_axis(key: str, source: Source) -> Axis:
+def _read_axis(key: str, source: Source) -> Axis:
     """Return the values of a key, as they stand under `vary` in a sweep file.
 
     Raises:
@@ -185,7 +185,7 @@ def _log(value: float) -> float:
     return math.log(value) if value > 0 else -math.inf
 
 
-def axis_schema() -> Schema:
+def _axis_schema() -> Schema:
     """Return the JSON Schema of the values of a key."""
     number: Schema = {"type": "number"}
     pair: Schema = {"type": "array", "items": number, "minItems": 2, "maxItems": 2}
@@ -274,7 +274,7 @@ def _read_axes(source: Source) -> tuple[Axis, ...]:
     stated = mapping(source.data.get("vary", {}), source, ("vary",))
     if not stated:
         raise source.error((), "key 'vary' is missing; it names the keys of the scenario that are varied")
-    return tuple(read_each({key: partial(read_axis, key, source) for key in stated}).values())
+    return tuple(read_each({key: partial(_read_axis, key, source) for key in stated}).values())
 
 
 def is_sweep(data: Mapping[str, object]) -> bool:
@@ -353,7 +353,7 @@ def sweep_schema() -> Schema:
         "design": {"enum": list(_DESIGNS)},
         "runs": {**whole, "description": "points of lhs and sobol; draws of cross and zip"},
         "replicates": {**whole, "description": "runs of each point with other seeds of the scenario"},
-        "vary": {"type": "object", "properties": {SPECIMENS: TEXT}, "additionalProperties": axis_schema()},
+        "vary": {"type": "object", "properties": {SPECIMENS: TEXT}, "additionalProperties": _axis_schema()},
         "table": {**TEXT, "description": "CSV file whose columns are keys, for design table"},
         "limits": mapping_schema({name: {"type": "number", "unit": m.unit} for name, m in METRICS.items()}),
     }

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 RUNS_OF_PART = 200
 """A part of runs of 10 s takes about a second, which is what a task of a cluster should take at least."""
-LEADING = ("run", "state", "reason", "seed")
+_LEADING = ("run", "state", "reason", "seed")
 
 
 def part_of(run: int) -> int:
@@ -63,9 +63,9 @@ def read_outcomes(folder: Path, part: int) -> list[Outcome]:
     Raises:
         InputError: the file is no part of a sweep.
     """
-    columns = _read_columns(folder, part, [*LEADING, *METRICS])
+    columns = _read_columns(folder, part, [*_LEADING, *METRICS])
     figures = zip(*(columns[name] for name in METRICS), strict=True)
-    leading = zip(*(columns[name] for name in LEADING), strict=True)
+    leading = zip(*(columns[name] for name in _LEADING), strict=True)
     return [Outcome._make((*first, metrics)) for first, metrics in zip(leading, figures, strict=True)]
 
 
@@ -99,7 +99,7 @@ def _read_part(path: Path, names: Sequence[str] | None = None) -> pa.Table:
 
     try:
         table = open_parquet(path.read_bytes()).read(columns=names if names is None else list(names))
-        table.select(names or [*LEADING, *METRICS])
+        table.select(names or [*_LEADING, *METRICS])
         table.validate(full=True)
     except (pa.ArrowException, OSError, KeyError, ValueError) as error:
         raise InputError(f"{path}: is no part of a sweep: {error}; remove it, and its runs run again") from error
@@ -113,7 +113,7 @@ def write_outcomes(folder: Path, part: int, plan: Plan, schema: pa.Schema, outco
 
     outcomes = sorted(outcomes, key=lambda outcome: outcome.run)
     values = [plan.values(outcome.run) for outcome in outcomes]
-    columns: list[Sequence[object]] = [[getattr(outcome, name) for outcome in outcomes] for name in LEADING]
+    columns: list[Sequence[object]] = [[getattr(outcome, name) for outcome in outcomes] for name in _LEADING]
     columns += [[each[key] for each in values] for key in varied_keys(plan)]
     columns += map(list, zip(*(outcome.metrics for outcome in outcomes), strict=True))
     arrays = [_store(column, field.type) for column, field in zip(columns, schema, strict=True)]
@@ -130,7 +130,7 @@ def make_schema(plan: Plan, units: Mapping[str, str]) -> pa.Schema:
     import pyarrow as pa
 
     kinds = {"run": pa.int64(), "state": pa.string(), "reason": pa.string(), "seed": pa.int64()}
-    fields = [pa.field(name, kinds[name]) for name in LEADING]
+    fields = [pa.field(name, kinds[name]) for name in _LEADING]
     fields += [pa.field(key, _type_of(plan, key), metadata={"unit": units[key]}) for key in varied_keys(plan)]
     fields += [pa.field(name, pa.float64(), metadata={"unit": metric.unit}) for name, metric in METRICS.items()]
     return pa.schema(fields)
@@ -219,7 +219,7 @@ def read_rows(folder: Path) -> SweepRows:
     """
     manifest, frame = read_manifest(folder), read_sweep(folder)
     usable = frame[frame.state == DONE]
-    named = [name for name in frame.columns if name not in (*LEADING, *METRICS)]
+    named = [name for name in frame.columns if name not in (*_LEADING, *METRICS)]
     vary = manifest["configuration"].get("vary", {})
     return SweepRows(
         folder=folder,

@@ -35,7 +35,7 @@ _Columns = Mapping[str, list[object]]
 """The values of every varied key, a list over the points each."""
 
 
-def count_points(definition: SweepDefinition) -> int:
+def _count_points(definition: SweepDefinition) -> int:
     """Return how many points a design has, without making any of them."""
     if definition.table is not None:
         return len(next(iter(definition.table.columns.values())))
@@ -45,7 +45,7 @@ def count_points(definition: SweepDefinition) -> int:
     return definition.runs or max(lengths, default=1)
 
 
-def resolve_design(definition: SweepDefinition) -> _Columns:
+def _resolve_design(definition: SweepDefinition) -> _Columns:
     """Return the points of a sweep, without its replicates and the variants of its scenario.
 
     Raises:
@@ -229,7 +229,7 @@ def make_plan(definition: SweepDefinition, foresee: Callable[[int], None] = lamb
     own = definition.scenario.data.get("sweep")
     others = {"sweep": {key: own[key] for key in own if key not in varied}} if isinstance(own, dict) else {}
     bases = tuple(_Base(source, label) for source, label in expand(definition.scenario, others))
-    factors = {"points": count_points(definition), "variants": len(bases), "replicates": definition.replicates}
+    factors = {"points": _count_points(definition), "variants": len(bases), "replicates": definition.replicates}
     runs = math.prod(factors.values())
     if runs > MOST_RUNS:
         shown = " x ".join(f"{number} {name}" for name, number in factors.items() if number > 1)
@@ -242,7 +242,7 @@ def make_plan(definition: SweepDefinition, foresee: Callable[[int], None] = lamb
         if axis.model:
             _check_specimens(axis, definition, bases)
     foresee(runs)
-    columns = resolve_design(definition)
+    columns = _resolve_design(definition)
     for key in columns:
         if key in bases[0].label:
             raise definition.source.error(("vary", key), "the scenario itself varies this key; leave it out of one")

@@ -159,7 +159,7 @@ def draw_changes(carrier: Carrier, rng: Generator) -> list[Change]:
     return [change for draw in _DRAWERS for change in draw(carrier, rng)]
 
 
-def choose_runs(carrier: Carrier, rng: Generator) -> Carrier:
+def _choose_runs(carrier: Carrier, rng: Generator) -> Carrier:
     """Return the carrier with at most `_MOST_RUNS` of its runs, drawn and in their own order."""
     names = list(carrier.tables)
     kept = sorted(rng.choice(len(names), min(_MOST_RUNS, len(names)), replace=False))
@@ -216,7 +216,7 @@ def _draw_files(source: Path, wanted: str, rng: Generator) -> CaseFiles:
     Raises:
         InputError: no effect of a material size can be put into the carrier.
     """
-    carrier = choose_runs(recorded.read_carrier(source), rng)
+    carrier = _choose_runs(recorded.read_carrier(source), rng)
     drawn = None if wanted == UNTOUCHED else _draw_case(carrier, wanted, rng)
     told = carrier if drawn is None else drawn.altered.carrier
     runs = tuple(told.tables)

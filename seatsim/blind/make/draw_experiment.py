@@ -22,7 +22,7 @@ SECONDS = 24.0
 UNSEEN_SECONDS = 14.0
 SCATTER = 0.015
 """Largest relative error of a nominal parameter; inside the stated tolerance of 2 %, so a faultless rig is one."""
-STEPPED = 0.4
+_STEPPED = 0.4
 """Share of the rigs whose current is stepped in every run, not controlled in some."""
 _SCHEDULED = np.array([coil.SCHEDULE, 0.0, 0.0, 0.0, 0.0, 0.0])
 """The law of runs whose current is stepped."""
@@ -54,7 +54,7 @@ def draw_experiment(
 ) -> Experiment:
     """Draw a rig and its protocol; `background` is the rms of a force on the frame, N, which a repeated run shows."""
     nominal = PLANT | (BINGHAM if bingham else BOUC_WEN) | COIL
-    true = scatter_parameters(nominal, rng, scatter) | draw_heat(rng)
+    true = scatter_parameters(nominal, rng, scatter) | _draw_heat(rng)
     level = rng.uniform(0.85, 1.2)
     # noise is stated to three digits, and drawn as stated
     noise = {name: float(f"{value * level:.3g}") for name, value in noise_of(channels).items()}
@@ -67,7 +67,7 @@ def noise_of(channels: Collection[str]) -> dict[str, float]:
     return {name: channel.noise for name, channel in CHANNELS.items() if name in channels and channel.noise}
 
 
-def draw_heat(rng: Generator) -> dict[str, float]:
+def _draw_heat(rng: Generator) -> dict[str, float]:
     """Draw how the damper warms up, which its thermometer shows whether or not it fades; names of `RigParameters`."""
     own = rng.spawn(1)[0]  # so that all else that is drawn is as it would be without
     ranges = {
@@ -80,7 +80,7 @@ def draw_heat(rng: Generator) -> dict[str, float]:
     return {name: own.uniform(low, high) for name, (low, high) in ranges.items()}
 
 
-def draw_temperatures(rng: Generator, count: int) -> list[float]:
+def _draw_temperatures(rng: Generator, count: int) -> list[float]:
     """Draw the temperature of the damper at the start of each run, degC; the last run is the unseen one.
 
     A fade needs a hot run among the recorded ones, so every rig has one, whatever is wrong with it.
@@ -91,7 +91,7 @@ def draw_temperatures(rng: Generator, count: int) -> list[float]:
     return [float(level) for level in levels]
 
 
-def draw_laws(rng: Generator) -> tuple[Array, Array]:
+def _draw_laws(rng: Generator) -> tuple[Array, Array]:
     """Draw a skyhook and an output feedback: level A, dead band m/s; gains N/m and N s/m."""
     skyhook = [coil.SKYHOOK, round(rng.uniform(0.7, 1.0), 2), rng.uniform(0.002, 0.02), 0.0, 0.0, 0.0]
     stiffness, relative = -rng.uniform(0.0, 1500.0), rng.uniform(0.0, 200.0)
@@ -106,14 +106,14 @@ def _draw_runs(rng: Generator, repeat: bool) -> tuple[RunPlan, ...]:
     """
     rows, unseen = round(SECONDS * SAMPLE_RATE), round(UNSEEN_SECONDS * SAMPLE_RATE)
     rms = rng.uniform(1.15, 1.7)
-    starts = draw_temperatures(rng, 4)
+    starts = _draw_temperatures(rng, 4)
     no_current = np.zeros(rows)
-    skyhook, feedback = draw_laws(rng)
+    skyhook, feedback = _draw_laws(rng)
     top = rng.uniform(0.8, 1.0)
     road = excitation.draw_road(rng, SECONDS, rms)
     first = RunPlan("run-a", road, _SCHEDULED, excitation.draw_current_steps(rng, rows, top), starts[0])
     laws = [(skyhook, no_current), (feedback, no_current)]
-    if rng.random() < STEPPED:
+    if rng.random() < _STEPPED:
         laws = [(_SCHEDULED, excitation.draw_current_steps(rng, rows, top)) for _ in laws]
     second = RunPlan("run-b", excitation.draw_road(rng, SECONDS, rms), *laws[0], starts[1])
     third = RunPlan("run-c", excitation.draw_bumps(rng, SECONDS, rng.uniform(6.0, 8.5)), *laws[1], starts[2])
@@ -168,7 +168,7 @@ def draw_varied_experiment(rng: Generator, bingham: bool, channels: tuple[str, .
     nominal = draw_nominal(rng, bingham)
     factors = {name: _log_uniform(rng, 1.0 / _NOISE_FACTOR, _NOISE_FACTOR) for name in noise_of(channels)}
     noise = {name: float(f"{value * factors[name]:.3g}") for name, value in noise_of(channels).items()}
-    true = scatter_parameters(nominal, rng, tolerance) | draw_heat(rng)
+    true = scatter_parameters(nominal, rng, tolerance) | _draw_heat(rng)
     colours = {name: _draw_colour(rng) for name in noise}
     experiment = Experiment(nominal, true, channels, noise, (), (), rate, tolerance, colours)
     repeat = rng.random() < _BACKGROUND_SHARE
@@ -230,12 +230,12 @@ def _draw_colour(rng: Generator) -> excitation.NoiseColour:
 def _draw_varied_runs(rng: Generator, experiment: Experiment, repeat: bool) -> tuple[RunPlan, ...]:
     """Draw three runs of one vehicle on different roads, the first again where `repeat`, and the unseen one."""
     rate, vehicle, top = experiment.sample_rate, excitation.draw_vehicle(rng), rng.uniform(0.8, 1.0)
-    starts = draw_temperatures(rng, 4)
-    nominal, (skyhook, feedback) = experiment.nominal, draw_laws(rng)
+    starts = _draw_temperatures(rng, 4)
+    nominal, (skyhook, feedback) = experiment.nominal, _draw_laws(rng)
     # the feedback assumes the standard damper, so its forces are scaled to this one; a real floor asks for more of them
     scale = _FEEDBACK_GAIN * _STANDARD_MASS / (nominal["ms"] + nominal["m"]) * nominal["damper_ratio"]
     laws = [_SCHEDULED, skyhook, np.concatenate([feedback[:2], scale * feedback[2:]]), _SCHEDULED]
-    if rng.random() < STEPPED:
+    if rng.random() < _STEPPED:
         laws = [_SCHEDULED] * 4
     runs = []
     for k, (name, law) in enumerate(zip(("run-a", "run-b", "run-c", "run-u"), laws, strict=True)):

@@ -38,7 +38,7 @@ from seatsim.simulation.respond import respond
 
 _Kind = Literal["excitation", "intervention", "none"]
 
-USUAL_NOISE = dict(zip(COMPARED["seat"], (0.03, 0.015, 5e-5, 2.5, 0.003), strict=True))
+_USUAL_NOISE = dict(zip(COMPARED["seat"], (0.03, 0.015, 5e-5, 2.5, 0.003), strict=True))
 """Noise of usual sensors, for those that state none, in the unit of their channel."""
 _BEYOND = 10.0
 """Score of an excitation for each time that it takes the permitted travel beyond the first."""
@@ -206,9 +206,9 @@ def _measure_reach(problem: DiagnosisProblem, candidate: CandidateExperiment, ri
 
 def _weigh(problem: DiagnosisProblem, candidate: CandidateExperiment, outputs: Array) -> Array:
     """Return 1 / sigma of the channels of an experiment, shape (channels, 1)."""
-    stated = [*problem.noise, *(USUAL_NOISE[name] for name in candidate.added_sensors)]
+    stated = [*problem.noise, *(_USUAL_NOISE[name] for name in candidate.added_sensors)]
     names = (*problem.channels, *candidate.added_sensors)
-    noise = [value or USUAL_NOISE[name] for name, value in zip(names, stated, strict=True)]
+    noise = [value or _USUAL_NOISE[name] for name, value in zip(names, stated, strict=True)]
     return np.asarray(1.0 / np.hypot(noise, problem.settings.noise.model_error * np.std(outputs, axis=1)))[:, None]
 
 

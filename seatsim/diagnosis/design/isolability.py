@@ -66,7 +66,7 @@ def find_isolable_groups(rig: str, channels: Collection[str]) -> list[list[str]]
     distinguished from.
     """
     equations = _equations(rig, channels)
-    faults = {k: equations[k].fault for k in sorted(find_overdetermined(equations))}
+    faults = {k: equations[k].fault for k in sorted(_find_overdetermined(equations))}
     blocks, classes = {k: fault.split()[0] for k, fault in faults.items() if fault}, list[set[int]]()
     for k in blocks:
         home = next((c for c in classes if not _is_isolable(equations, min(c), k)), None)
@@ -82,7 +82,7 @@ def find_isolable_groups(rig: str, channels: Collection[str]) -> list[list[str]]
     return [group for group in groups if group]
 
 
-def find_overdetermined(equations: Collection[Equation]) -> set[int]:
+def _find_overdetermined(equations: Collection[Equation]) -> set[int]:
     """Return the indices of the equations in M+, which hold more equations than unknowns."""
     rows = list(equations)
     if not rows:
@@ -130,7 +130,7 @@ def _is_recorded(name: str, channels: Collection[str]) -> bool:
 def _is_isolable(equations: list[Equation], first: int, second: int) -> bool:
     """Say whether equation `first` can still be tested after equation `second` is removed."""
     others = equations[:second] + equations[second + 1 :]
-    return first - (first > second) in find_overdetermined(others)
+    return first - (first > second) in _find_overdetermined(others)
 
 
 def _loss(rig: str, channels: Collection[str], groups: list[list[str]], absent: str) -> str:

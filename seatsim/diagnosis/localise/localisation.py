@@ -182,11 +182,11 @@ def localise_remainder(
     leaves more than one beside them. Where the form of the rig is wrong everywhere no such input explains it, and where
     the gap is less than noise and disturbance nothing shows that there is one.
     """
-    settings, beside = objective.settings, weigh_blocks(objective, found)
+    settings, beside = objective.settings, _weigh_blocks(objective, found)
     chosen, before = found.evaluation, calibrated.evaluation.excess
     if not chosen.parameters.terms or before < settings.localisation.above_noise:
         return beside, chosen
-    alone = weigh_blocks(objective, calibrated)
+    alone = _weigh_blocks(objective, calibrated)
     # An error of the very sensor that an effect names is that effect in a more general form.
     if alone.likeliest.channel in [term.fixed.get("channel") for term in chosen.parameters.terms]:
         return beside, chosen
@@ -196,7 +196,7 @@ def localise_remainder(
     return beside, chosen
 
 
-def weigh_blocks(objective: Objective, nuisances: Linearisation) -> Remainder:
+def _weigh_blocks(objective: Objective, nuisances: Linearisation) -> Remainder:
     """Return the blocks that could hold what a rig leaves, with its sensitivities to the nuisance parameters.
 
     A slow force on the driver acts like one on the frame, since both move together. Where both explain nearly the same,

@@ -15,7 +15,7 @@ from seatsim.importing.names import Meaning, read_name
 from seatsim.schema.errors import InputError
 from seatsim.schema.units import USUAL, is_unit
 
-DELIMITERS = (";", "\t", ",", "|", " ")
+_DELIMITERS = (";", "\t", ",", "|", " ")
 """Delimiters in the order in which they are taken where several fit alike: a blank stands inside names, too."""
 MISSING = ("", "nan", "NaN", "NAN", "NA", "n/a", "N/A", "null", "NULL", "None", "-", "#N/A", "inf", "-inf", "---", "*")
 """What a cell without a value holds."""
@@ -74,7 +74,7 @@ class Dialect(NamedTuple):
         """
         first, last = lines[:_SCORED], lines[-_SCORED:]
         best, most = None, 0.0
-        for each in (delimiter,) if delimiter else DELIMITERS:
+        for each in (delimiter,) if delimiter else _DELIMITERS:
             for sign in (decimal,) if decimal else (".", ","):
                 if each == sign and not any('"' in line for line in last):
                     continue
@@ -112,7 +112,7 @@ def _without_unit(cell: str) -> str:
     return found[1] if found and found[2].lower() in LISTED_UNITS else cell
 
 
-def find_body(kinds: Sequence[Sequence[Kind]]) -> tuple[int, int]:
+def _find_body(kinds: Sequence[Sequence[Kind]]) -> tuple[int, int]:
     """Return where the longest stretch of rows begins and ends that are equally wide and hold numbers or nothing."""
     best, begin, holds_numbers = (0, 0), 0, False
     for index, row in enumerate(kinds):
@@ -136,7 +136,7 @@ def find_first_row(rows: Sequence[Sequence[Kind]], place: str) -> int:
     Raises:
         InputError: there is no such row.
     """
-    begin, end = find_body(rows)
+    begin, end = _find_body(rows)
     if begin == end:
         raise InputError(f"{place}: holds no row of numbers; it is no table")
     body = rows[begin:end]
@@ -156,14 +156,14 @@ def _belongs(row: Sequence[Kind], numeric: Sequence[int]) -> bool:
 def _agrees_with_names(lines: Sequence[str], dialect: Dialect) -> bool:
     """Say whether the line above the first rows has as many cells as they have, or there is none."""
     rows = [dialect.split(line) for line in lines]
-    begin, _ = find_body(dialect.kinds(rows))
+    begin, _ = _find_body(dialect.kinds(rows))
     return begin == 0 or len(rows[begin - 1]) == len(rows[begin])
 
 
 def _score(lines: Sequence[str], dialect: Dialect) -> float:
     """Return how well lines are read: which share of them is the table, and how much of it is numbers."""
     rows = [dialect.split(line) for line in lines]
-    begin, end = find_body(dialect.kinds(rows))
+    begin, end = _find_body(dialect.kinds(rows))
     filled = [cell.strip() for row in rows[begin:end] for cell in row if cell.strip() not in MISSING]
     numbers = sum(_count(cell, dialect.decimal) for cell in filled)
     if not numbers:
@@ -354,7 +354,7 @@ def _ways(text: str, dialect: Dialect, is_remark: bool) -> Iterator[Callable[[st
         if delimiter in text:
             return
     yield from (
-        dialect._replace(delimiter=each).split for each in DELIMITERS if each not in (" ", delimiter) and each in text
+        dialect._replace(delimiter=each).split for each in _DELIMITERS if each not in (" ", delimiter) and each in text
     )
     if is_remark or delimiter == " " or all(read_name(word) != Meaning(None) for word in text.split()):
         yield lambda text: [cell.strip('"') for cell in BLANKS.findall(text)]

@@ -28,7 +28,7 @@ from seatsim.importing.signals import TIME, in_seconds
 from seatsim.schema.bounds import BYTES_OF_PART, LEAST, check_made, permitted_of
 
 AnyArray: TypeAlias = NDArray[np.generic]
-Resolve: TypeAlias = Callable[[AnyArray, str, str], object]
+_Resolve: TypeAlias = Callable[[AnyArray, str, str], object]
 """Returns an object, of which a file holds an array that tells which it is, its system, and its class."""
 
 _HEADER, _INNER_HEADER = 128, 8
@@ -59,7 +59,7 @@ class _Elements:
 
     def __init__(self, order: str, size: int) -> None:
         self.order, self.size, self.made = order, size, 0
-        self.resolve: Resolve | None = None
+        self.resolve: _Resolve | None = None
 
     def count(self, made: int) -> None:
         """Add bytes that are about to be made; TooMuchError where they are too many."""
@@ -200,7 +200,7 @@ def _read_variables(content: bytes) -> dict[str, object]:
     return dict(reversed(found.items()))
 
 
-def _open_inner(content: bytes, size: int) -> Resolve | None:
+def _open_inner(content: bytes, size: int) -> _Resolve | None:
     """Return what resolves objects, of which the inner file holds all that they hold."""
     order = _ORDERS.get(content[2:4])
     if order is None:
@@ -210,7 +210,7 @@ def _open_inner(content: bytes, size: int) -> Resolve | None:
         variable = elements.unpack(element)
         _, value = elements.read_array(variable.content) if variable.kind == _ARRAY else ("", None)
         if isinstance(value, np.ndarray) and value.dtype.names:
-            resolve: Resolve = _subsystem(value, order).load_opaque_object
+            resolve: _Resolve = _subsystem(value, order).load_opaque_object
             return resolve
     return None
 

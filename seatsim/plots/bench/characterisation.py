@@ -24,11 +24,11 @@ from seatsim.plots.style import GREY, Entry, Grid
 from seatsim.plots.thinning import spread_evenly
 from seatsim.schema.arrays import Array
 
-MOST_STEPS = 6
+_MOST_STEPS = 6
 """Most responses in a panel."""
 SHOWN = 3.6
 """Length of a panel over the longest time to 90 %."""
-SYMMETRIC = 1e-3
+_SYMMETRIC = 1e-3
 """Asymmetric part over the RMS force up to which it is no more than rounding and noise."""
 _TIMES = (("t10", 0.1), ("t63", 1.0 - math.exp(-1.0)), ("t90", 0.9))
 """Times that are marked, with the shares of the change that they are of."""
@@ -43,16 +43,16 @@ def plot_characterisation(found: Characterisation) -> dict[str, Figure]:
     response was determined, `warm_up` where a record has many cycles.
     """
     plots = {
-        plot_loops: True,
-        plot_energy: any(row.loop is not None for row in found.rows),
-        plot_asymmetry: any(row.asymmetry > SYMMETRIC for row in found.rows),
-        plot_steps: any(answer.share is not None for answer in found.responses),
-        plot_warm_up: bool(found.sheet.warm_up),
+        "loops": (plot_loops, True),
+        "energy": (_plot_energy, any(row.loop is not None for row in found.rows)),
+        "asymmetry": (_plot_asymmetry, any(row.asymmetry > _SYMMETRIC for row in found.rows)),
+        "steps": (_plot_steps, any(answer.share is not None for answer in found.responses)),
+        "warm_up": (plot_warm_up, bool(found.sheet.warm_up)),
     }
-    return {plot.__name__.removeprefix("plot_"): plot(found) for plot, is_known in plots.items() if is_known}
+    return {name: plot(found) for name, (plot, is_known) in plots.items() if is_known}
 
 
-def plot_steps(found: Characterisation) -> Figure:
+def _plot_steps(found: Characterisation) -> Figure:
     """Return the share of the change that the force has covered over time, rise and fall of the current apart."""
     answers = [answer for answer in found.responses if answer.share is not None]
     known = list(zip(answers, found.sheet.response, strict=True))
@@ -61,7 +61,7 @@ def plot_steps(found: Characterisation) -> Figure:
     starts = ("the commanded step", "the current's own 10 %")
     start = " or ".join(starts[own] for own in sorted({math.isfinite(each.current_t10) for each in answers}))
     note = f"Share of the force's change that is covered{at}. Time counts from {start}."
-    shown = [spread_evenly([pair for pair in known if pair[0].rises == rises], MOST_STEPS) for rises in (True, False)]
+    shown = [spread_evenly([pair for pair in known if pair[0].rises == rises], _MOST_STEPS) for rises in (True, False)]
     if (count := sum(map(len, shown))) < len(known):
         note += f" {count} of {len(known)} steps are shown."
     # The legends stand below the panels, where they cover nothing.
@@ -138,12 +138,12 @@ BY_TEMPERATURE = Abscissa("temperature [°C]", lambda r: r.temperature, lambda r
 BY_FREQUENCY = Abscissa("frequency [Hz]", lambda r: r.frequency, lambda r: "")
 
 
-def plot_energy(found: Characterisation) -> Figure:
+def _plot_energy(found: Characterisation) -> Figure:
     """Return peaks, energy and damping over the current, and over the temperature where it varies, line by setting."""
     return _plot_trends(f"Peak force, energy and damping: {found.name}", "", found, _ENERGY)
 
 
-def plot_asymmetry(found: Characterisation) -> Figure:
+def _plot_asymmetry(found: Characterisation) -> Figure:
     """Return the asymmetric part of the loops over the same."""
     formula = "½ (F(t) + F(t + T/2))".replace(" ", "\u00a0")
     note = f"Asymmetric part: difference from the centrosymmetric loop, {formula}; RMS over a cycle. "

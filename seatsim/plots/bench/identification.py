@@ -25,7 +25,7 @@ START = 0.3
 """s at the start of a record that are left out: there the state of the damper is not known."""
 _PREDICTED = Entry("predicted", style.COLOURS[1], style.DASHES[1], 1.2)
 _DIFFERENCE = Entry("measured less predicted", style.COLOURS[0], width=1.0)
-FIT = "Fit (normalised RMS): 100 % less the RMS error as a share of the measured force's standard deviation."
+_FIT = "Fit (normalised RMS): 100 % less the RMS error as a share of the measured force's standard deviation."
 PARTS = {"train": "fitted", "test": "held out", "predicted": "predicted only"}
 
 
@@ -51,7 +51,7 @@ def plot_predictions(found: Identification) -> Figure:
     grid = Grid(heights=(1.9,) * len(chosen), columns=3, right=0.7, top=0.3, gap=(0.2, 0.8))
     note, mean = f"{len(chosen)} of {len(found.assessments)} records", found.assessed
     note += f"; mean fit {mean.fit_percent:.1f} %{' of held-out records' * bool(found.mean('test'))}" if mean else ""
-    note += f", without the first {START:g} s. {FIT} {SIGNS}"
+    note += f", without the first {START:g} s. {_FIT} {SIGNS}"
     title, legend = f"{found.model}: measured and predicted force", (MEASURED, _PREDICTED, _DIFFERENCE)
     page = style.make_page(title, note, grid, legend)
     for panels, judged, name in zip(page.rows, chosen, name_records(chosen), strict=True):

@@ -25,9 +25,9 @@ from seatsim.simulation.result import Run
 BOUND = Entry("lower bound without hysteresis", "black", width=1.6)
 BEST = Entry("best run found, floor known ahead", DARK, (0.0, (5.0, 1.5)), 1.6)
 FLOOR = Entry("as much as the floor (SEAT = 1)", DARK, ":", 1.6)
-SAME_PLACE = 10.0
+_SAME_PLACE = 10.0
 """Distance in points of print, below which a mark would cover another's number."""
-ENOUGH = 15.0
+_ENOUGH = 15.0
 """Distance in points of print, at which a mark disturbs no letters."""
 NEAR = 1.6
 """How far above the greatest acceleration the floor's is still drawn, as a ratio."""
@@ -141,7 +141,7 @@ def _write_letters(axes: Axes, points: Array, letters: Sequence[str]) -> None:
     places = axes.transData.transform(points) * 72 / axes.figure.dpi
     left = sorted(range(len(letters)), key=lambda k: letters[k])
     while left:
-        near = [k for k in left if np.linalg.norm(places[k] - places[left[0]]) < SAME_PLACE]
+        near = [k for k in left if np.linalg.norm(places[k] - places[left[0]]) < _SAME_PLACE]
         left = [k for k in left if k not in near]
         text, others = " ".join(letters[k] for k in near), np.delete(places, near, axis=0)
         across, up = np.ptp(places[near], axis=0) / 2 + (8.0 + 4.0 * len(text), 15.0)
@@ -149,7 +149,7 @@ def _write_letters(axes: Axes, points: Array, letters: Sequence[str]) -> None:
         # From the middle of the outer ones, so that no mark of the group lies below its letters.
         spots = spots + (np.min(places[near], axis=0) + np.max(places[near], axis=0)) / 2
         gaps = np.linalg.norm(spots[:, None] - others, axis=2)
-        spot = spots[np.argmax(np.min(gaps, axis=1, initial=ENOUGH))] - places[near[0]]
+        spot = spots[np.argmax(np.min(gaps, axis=1, initial=_ENOUGH))] - places[near[0]]
         axes.annotate(
             text, points[near[0]], tuple(spot), textcoords="offset points", fontsize=9, zorder=5, fontweight="bold",
             ha="center", va="center_baseline", color="0.0" if len(near) > 1 else "1.0",

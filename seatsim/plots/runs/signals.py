@@ -33,10 +33,10 @@ NEAR = 0.2
 """Share of an end stop's distance that the motion must reach for the stop to be drawn; else it would look flat."""
 CHANNELS = ("driver_acceleration", "suspension_displacement", "damper_force", "coil_current")
 TEMPERATURE = "damper_temperature"
-TARGETS = {"damper_force": "wanted_force", "coil_current": "current_command"}
+_TARGETS = {"damper_force": "wanted_force", "coil_current": "current_command"}
 """Channels that others should follow."""
 RUN = Entry("the run", COLOURS[0], width=1.1)
-TARGET = Entry("wanted force, commanded current", COLOURS[5], "-", 2.0, 0.6)
+_TARGET = Entry("wanted force, commanded current", COLOURS[5], "-", 2.0, 0.6)
 LIMIT = Entry("end stop begins", DARK, ":")
 HIGHEST = 50.0
 """Hz; what the seat can change, and more than the driver feels."""
@@ -68,15 +68,15 @@ def plot_time_histories(shown: Shown) -> Figure:
     limits, warms = _find_limits(shown.runs), any(np.ptp(run.history[TEMPERATURE]) > 0 for run in shown.runs)
     channels = (*CHANNELS, TEMPERATURE) if warms else CHANNELS
     # A law that states a current wants no force.
-    target = TARGET if np.isfinite(first["wanted_force"]).any() else TARGET._replace(label="commanded current")
+    target = _TARGET if np.isfinite(first["wanted_force"]).any() else _TARGET._replace(label="commanded current")
     looks = [RUN] if single else shown.looks
     legend = [*looks, *[target] * single, *[LIMIT] * bool(limits)]
     grid = Grid((1.2,) * len(channels), len(views), left=1.12, gap=(0.4, 0.3))
     page = style.make_page(f"Time histories: {shown.title}", note + shown.omission, grid, legend)
     for row, channel in zip(page.rows, channels, strict=True):
         lines = [(run, channel, look) for run, look in zip(shown.runs, looks, strict=True)]
-        if single and channel in TARGETS and np.isfinite(first[TARGETS[channel]]).any():
-            lines.insert(0, (shown.runs[0], TARGETS[channel], target))
+        if single and channel in _TARGETS and np.isfinite(first[_TARGETS[channel]]).any():
+            lines.insert(0, (shown.runs[0], _TARGETS[channel], target))
         for axes, view in zip(row, views, strict=True):
             for line in lines:
                 _draw_line(axes, *line, view)

@@ -46,7 +46,7 @@ _AS_GOOD = 0.1
 """Difference to the largest fall of the residual within which another fault explains the run equally well."""
 
 
-def simulate_nominal(run: RunUnderTest, table: Table) -> Table | None:
+def _simulate_nominal(run: RunUnderTest, table: Table) -> Table | None:
     """Return the nominal outputs that are compared, driven by a table's inputs; None where there is no solution."""
     try:
         return replay_table(run.nominal, run.recording, table)
@@ -162,18 +162,20 @@ def check_exchanged_currents(run: RunUnderTest) -> Iterator[Issue]:
 
 def _coil_residual(run: RunUnderTest, table: Table) -> float:
     driving = {**run.table, "current_command": table["current_command"]}
-    return consistency_residuals(run, table, simulate_nominal(run, driving))["coil_current"]
+    return consistency_residuals(run, table, _simulate_nominal(run, driving))["coil_current"]
 
 
 def check_consistency(run: RunUnderTest) -> Iterator[Issue]:
     """Name the fault whose correction lowers the residual of a run most, and those that lower it equally."""
-    outputs = simulate_nominal(run, run.table)
+    outputs = _simulate_nominal(run, run.table)
     before = consistency_residuals(run, run.table, outputs)
     fall = {}
     for fault in _possible(run, before, outputs):
         table = fault.correct(run.table)
         inputs = {c: table[c] for c in _INPUTS if c in table and table[c] is not run.table[c]}
-        after = consistency_residuals(run, table, simulate_nominal(run, {**run.table, **inputs}) if inputs else outputs)
+        after = consistency_residuals(
+            run, table, _simulate_nominal(run, {**run.table, **inputs}) if inputs else outputs
+        )
         if _explains(fault, before, after):
             fall[fault] = sum(before.values()) - sum(after.values())
     named = sorted((d for d in fall if fall[d] > max(fall.values()) - _AS_GOOD), key=lambda fault: -fall[fault])
