@@ -29,12 +29,14 @@ INLINED: dict[str, object] = ARITHMETIC | {"forceinline": True, "no_cfunc_wrappe
 
 def jit(function: _F) -> _F:
     """Return `function` such that compiled code may call it, inlined; called from Python it stays what it is."""
-    return cast("_F", register_jitable(**INLINED)(function))
+    compiled: _F = register_jitable(**INLINED)(function)
+    return compiled
 
 
 def jit_apart(function: _F) -> _F:
     """Return `function` compiled apart from its callers, so that these keep to the registers: it is seldom called."""
-    return cast("_F", numba.njit(no_cfunc_wrapper=True, **ARITHMETIC)(function))
+    compiled: _F = numba.njit(no_cfunc_wrapper=True, **ARITHMETIC)(function)
+    return compiled
 
 
 GENERIC: dict[object, _Resolve] = {}

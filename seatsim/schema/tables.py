@@ -15,7 +15,7 @@ import zipfile
 import zlib
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, cast
+from typing import IO, TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,7 +67,8 @@ def read_table(path: Path) -> pd.DataFrame:
         more = f" (and {len(bad) - 1} more lines)" if len(bad) > 1 else ""
         raise InputError(f"{place}: {seen}{more}; the file is truncated or damaged: export it again")
     _check_quotes(content, table.num_rows, path)
-    return cast("pd.DataFrame", table.to_pandas())
+    frame: pd.DataFrame = table.to_pandas()
+    return frame
 
 
 def parse_rows(
