@@ -140,7 +140,7 @@ def run_unit(damper: FmuDamper) -> Iterator[RunningUnit]:
     told: list[str] = []
     with description.unpack(path, unit.version, unit.identifier) as (folder, library):
         _try_to_load(path, folder, library)
-        instance = _load_unit(path, unit, folder, library, told)
+        instance = load_unit(path, unit, folder, library, told)
         try:
             running = RunningUnit(damper, unit, instance, told)
             yield running
@@ -150,7 +150,7 @@ def run_unit(damper: FmuDamper) -> Iterator[RunningUnit]:
             instance.freeLibrary()
 
 
-def _load_unit(path: Path, unit: description.UnitDescription, folder: Path, library: Path, told: list[str]) -> _FMU:
+def load_unit(path: Path, unit: description.UnitDescription, folder: Path, library: Path, told: list[str]) -> _FMU:
     """Return the instance of a unit that is unpacked in a folder; what it tells is added to `told`.
 
     Raises:
