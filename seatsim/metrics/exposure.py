@@ -33,7 +33,7 @@ _ZONE_A8 = tuple(level * math.sqrt(600.0 / EIGHT_HOURS) for level in (3.0, 6.0))
 _ZONE_VDV = (8.5, 17.0)
 """Bounds of the zone of equation B.2 as estimated VDV in m/s^1.75 (ISO 2631-1:1997, B.3.1; recalled)."""
 
-_ZONES = {
+ZONES = {
     "below": "below the health guidance caution zone: health effects have not been clearly documented",
     "within": "within the zone: caution with respect to potential health risks is indicated",
     "above": "above the zone: health risks are likely",
@@ -68,7 +68,7 @@ class Exposure(NamedTuple):
     action_value: ValueReached
     limit_value: ValueReached
     zone_a8: str
-    """Zone of ISO 2631-1, Annex B, by equation B.1: a name of `_ZONES`."""
+    """Zone of ISO 2631-1, Annex B, by equation B.1: a name of `ZONES`."""
     zone_vdv: str
     """The same by equation B.2, from the estimated VDV of the day."""
 
@@ -76,13 +76,13 @@ class Exposure(NamedTuple):
     @written()
     def zone_a8_text(self) -> str:
         """What ISO 2631-1 says of the zone by equation B.1."""
-        return _ZONES[self.zone_a8]
+        return ZONES[self.zone_a8]
 
     @property
     @written()
     def zone_vdv_text(self) -> str:
         """What ISO 2631-1 says of the zone by equation B.2."""
-        return _ZONES[self.zone_vdv]
+        return ZONES[self.zone_vdv]
 
 
 def assess_exposure(doses: dict[str, Dose], hours: float) -> Exposure | None:
