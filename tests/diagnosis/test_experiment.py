@@ -70,7 +70,7 @@ def test_without_a_load_cell_one_friction_is_like_the_other_and_unlike_the_rest(
         sensitivities=sensitivities,
     )
     named = [*FRICTIONS, "driver.mass", "damper.free_play", "sensor.gain", "no.such"]
-    names, matrix = measure_collinearity(objective, selection, named)
+    names, matrix = measure_collinearity(selection, named)
     assert names == named[:-1]
     assert matrix.shape == (5, 5) and np.allclose(matrix, matrix.T) and np.all(np.diag(matrix) == 1.0)
     assert matrix[0, 1] > 0.95 and matrix[0, 2:].max() < 0.8
