@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
-from scipy.signal import decimate
+from scipy.signal import decimate, lfilter
 
 from seatsim.diagnosis.localise.localisation import FaultHypothesis
 from seatsim.diagnosis.objective import Parameters
@@ -23,6 +23,8 @@ _RATE = 100.0
 """Rate at which signals are regressed [Hz]."""
 _LAGS = 10
 """Past samples of the motion that a linear filter may use; more overfit."""
+_MEMORIES = (0.05, 0.2, 0.5, 1.0, 2.0, 5.0)
+"""Time constants over which motion is remembered, as by a creeping spring [s]."""
 _RIDGE, _LEAST_RIDGE = 1e-3, 1e-9
 """Ridge, relative to the regressors' power, and the least one: they may all rest, as a current that never flows."""
 _SLOW_SLIP, _FAST_SLIP = 0.03, 0.005
@@ -101,6 +103,7 @@ def _list_regressors(problem: DiagnosisProblem, parameters: Parameters, run: str
         "velocity": np.array([v, v * np.abs(v), v**3, slow, fast]),
         "velocity and current": np.array([i, i * v, i * slow, i * fast, i**2 * slow, i * x, np.gradient(i)]),
         "past motion": np.concatenate([_lag(x), _lag(v)]),
+        "remembered motion": np.array([x, v, *(_remember(each, time) for each in (x, v) for time in _MEMORIES)]),
         "floor motion": _lag(a),
     }
 
@@ -108,6 +111,12 @@ def _list_regressors(problem: DiagnosisProblem, parameters: Parameters, run: str
 def _lag(values: Array) -> Array:
     """Return values and their past ones, shape (lags, samples); before the start the first value is repeated."""
     return np.array([np.concatenate([np.full(k, values[0]), values[: len(values) - k]]) for k in range(_LAGS)])
+
+
+def _remember(values: Array, time: float) -> Array:
+    """Return the exponentially weighted mean of past values over a time in s, at rest before the start."""
+    kept = np.exp(-1.0 / (time * _RATE))
+    return np.asarray(lfilter([1.0 - kept], [1.0, -kept], values))
 
 
 class Discrepancy(NamedTuple):
