@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from itertools import chain, permutations
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -118,8 +118,8 @@ def select_effects(
                 break
             sets.append(larger)
             if larger[0].excess > settings.nothing_left:
-                restarted = [(base, term) for base in larger[: settings.beam // size] for term in base.parameters.terms]
-                again = [_restart_effect(objective, *each, candidates, nuisances) for each in restarted]
+                joined = [(base, base.parameters.terms[-1]) for base in larger[: settings.beam // size]]
+                again = [_restart_effect(objective, *each, candidates, nuisances) for each in joined]
                 larger[:] = _best_of_each_set([*larger, *chain.from_iterable(again)])
             larger[:] = _best_of_each_set([*larger, *_fit_twins(objective, larger[0], candidates, nuisances)])
             if not _gains(objective, sets):
@@ -191,8 +191,8 @@ def _restart_effect(
 ) -> list[Evaluation]:
     """Return fits of a set with one of its effects in each of its forms, begun again from all their starts.
 
-    A start that falls steeply only after some steps was left behind before. Forms with the same free parameters also
-    start where the others ended: where the cost of one jumps, that of another may lead there.
+    A start that falls steeply only after some steps was left behind before. Forms with the same free parameters as the
+    one that ends lowest also start there, where that is lower than their own end: their cost may jump on the way.
     """
     rig, settings = best.parameters.remove(term.effect), objective.settings.selection
     starts = [rig.add(each, np.array(each.start)) for each in candidates if each.replaces(term)]
@@ -201,12 +201,12 @@ def _restart_effect(
         forms.setdefault(start.parameters.terms[-1].structure, []).append(start)
     begun = [_begin_best(objective, several, nuisances) for several in forms.values()]
     ranked = sorted(begun, key=lambda each: each.cost)[: settings.finalists]
-    fitted = [fit(objective, each, nuisances) for each in ranked]
-    pairs = permutations((each.parameters for each in fitted), 2)
-    moved = [
-        b.remove(term.effect).add(a.terms[-1], b.values[-1]) for a, b in pairs if a.terms[-1].free == b.terms[-1].free
-    ]
-    return fitted + [fit(objective, search_pattern(objective, each), nuisances) for each in objective.evaluate(moved)]
+    first, *others = sorted((fit(objective, each, nuisances) for each in ranked), key=lambda each: each.cost)
+    rig, free, values = first.parameters, first.parameters.terms[-1].free, first.parameters.values[-1]
+    alike = [each for each in others if each.parameters.terms[-1].free == free]
+    moved = objective.evaluate([rig.remove(term.effect).add(each.parameters.terms[-1], values) for each in alike])
+    better = [there for there, own in zip(moved, alike, strict=True) if there.cost < own.cost]
+    return [first, *others, *(fit(objective, search_pattern(objective, each), nuisances) for each in better)]
 
 
 def _fit_twins(
@@ -224,8 +224,7 @@ def _fit_twins(
 def _begin_best(objective: Objective, starts: Sequence[Evaluation], nuisances: Linearisation) -> Evaluation:
     """Return the fit that fell lowest in its first steps from some starts, the best first."""
     settings = objective.settings.selection
-    most = settings.further_shortlist // len(starts[0].parameters.terms)
-    begun = [fit(objective, each, nuisances, settings.begun_steps) for each in starts[:most]]
+    begun = [fit(objective, each, nuisances, settings.begun_steps) for each in starts[: settings.finalists]]
     return min(begun, key=lambda each: each.cost)
 
 
