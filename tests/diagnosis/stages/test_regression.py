@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from seatsim.diagnosis.localise import discrepancy
 from seatsim.diagnosis.localise.discrepancy import explain_signal, predict_share
@@ -56,7 +57,7 @@ def test_what_the_regressors_make_is_predicted_and_what_they_do_not_is_not():
     assert predict_share(regressors, turned) == 0.0
 
 
-FAMILIES = ["displacement", "velocity", "velocity and current", "past motion", "floor motion"]
+FAMILIES = ["displacement", "velocity", "velocity and current", "past motion", "remembered motion", "floor motion"]
 
 
 @pytest.fixture(scope="module")
@@ -86,6 +87,7 @@ def of_motion(problem, make):
         (lambda x, v, i, a: 1e5 * x**3, "displacement"),
         (lambda x, v, i, a: 30.0 * np.tanh(v / 0.005), "velocity"),
         (lambda x, v, i, a: 30.0 * i * v, "velocity and current"),
+        (lambda x, v, i, a: 500.0 * lfilter([1.0 / RATE], [1.0, 1.0 / RATE - 1.0], x), "remembered motion"),
     ],
 )
 def test_a_force_that_the_rig_makes_is_predicted_by_its_family(problem, make, family):
