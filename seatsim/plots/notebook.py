@@ -17,8 +17,8 @@ from seatsim.recordings.gap import Gap
 from seatsim.schema.errors import InputError, nearest
 from seatsim.simulation.result import Result
 
-DPI = 72
-"""Dots per inch of a picture in a notebook."""
+DPI = 100
+"""Dots per inch of a picture in a notebook: fewer make the letters wider than their lines have room for."""
 
 
 class Pictures(dict[str, Figure]):

@@ -7,7 +7,7 @@ as wide as a telephone shows it legibly; a screen shows two side by side.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import cycle
+from itertools import chain, cycle
 from textwrap import wrap
 from typing import Literal, NamedTuple
 
@@ -24,7 +24,7 @@ from numpy.typing import ArrayLike
 
 from seatsim.metrics.table import METRICS, SHORT
 from seatsim.schema.printing import LONGEST, RAISED, Quantity, describe_channel, shorten
-from seatsim.schema.text import join_names, name_some
+from seatsim.schema.text import name_some
 
 WIDTH = 5.8
 """Width of a page in inches."""
@@ -35,8 +35,6 @@ SAMPLE = 0.62
 """Width of a legend's sample of a line, with the gaps around it, in inches."""
 LINE = 0.21
 """Height of a line of text in inches."""
-ROW = 0.27
-"""Height of a row of bars in inches."""
 NOTE = int(WIDTH / 0.0715)
 """Letters of a line of a note, in which few are wide."""
 FONT = 9.5
@@ -49,9 +47,7 @@ DASHES: tuple[LineStyleType, ...] = ("-", (0.0, (5.0, 1.5)), (0.0, (7.0, 1.5, 1.
 AREA = "0.91"
 """Grey of areas, such as a band of noise; a wide line of a legend names one."""
 _TICK = (0.4, 0.2)
-"""Least distance of the numbers of an axis in inches, along and up."""
-_BETWEEN = 0.12
-"""Least space between two numbers along an axis in inches."""
+"""Least distance of the numbers of a logarithmic axis in inches, along and up."""
 _FREQUENCIES = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000)
 """Hz at which an axis begins."""
 
@@ -105,29 +101,6 @@ class Grid(NamedTuple):
     def width(self) -> float:
         """Width of a panel in inches."""
         return (WIDTH - self.left - self.right - self.gap[0] * (self.columns - 1)) / self.columns
-
-
-ROWS = Grid((), right=0.5)
-"""One panel of rows, with room for a figure behind the longest bar."""
-
-
-class _RoomyLocator(MaxNLocator):
-    """Multiples of 1, 2 or 5, as many as an axis of so many inches has room to name beside each other."""
-
-    def __init__(self, most: int, inches: float) -> None:
-        super().__init__(steps=(1, 2, 5, 10))
-        self._most, self._inches = most, inches
-
-    def tick_values(self, vmin: float, vmax: float) -> Sequence[float]:
-        """Return where numbers stand between two ends of the axis."""
-        ticks: Sequence[float] = ()
-        for most in range(self._most, 1, -1):
-            self.set_params(nbins=most)
-            ticks = super().tick_values(vmin, vmax)
-            widest = max(len(f"{tick:.6g}") for tick in ticks) * LETTER
-            if (widest + _BETWEEN) * (len(ticks) - 1) <= self._inches:
-                break
-        return ticks
 
 
 def describe_metric(name: str) -> Quantity:
@@ -218,27 +191,21 @@ def add_colour_bar(axes: Axes, drawn: ScalarMappable, label: str, extend: str = 
 
 
 def name_coincident(figure: Figure) -> Figure:
-    """Return a finished figure; its note says which lines lie on each other, and where, if not in all their panels."""
+    """Return a finished figure; its note says which lines lie on each other in all panels that have them."""
     # matplotlib gives lines of its own a label that begins with an underscore.
-    labelled = [{str(line.get_label()): line for line in axes.lines} for axes in figure.axes]
-    panels = [{name: line for name, line in lines.items() if name.strip() and name[0] != "_"} for lines in labelled]
-    places: dict[tuple[str, ...], list[Axes]] = {}
-    for axes, panel in zip(figure.axes, panels, strict=True):
-        groups: dict[str, list[str]] = {}
-        for name in panel:
-            first = next((first for first in groups if _lie_on_each_other(panel[first], panel[name])), name)
-            groups.setdefault(first, []).append(name)
-        for names in groups.values():
-            if len(names) > 1:
-                places.setdefault(tuple(names), []).append(axes)
-    said = []
-    for group, where in places.items():
-        is_everywhere = len(where) == sum(set(group) <= set(panel) for panel in panels)
-        panel_names = (" ".join((axes.get_title(loc="left") or axes.get_ylabel()).split()) for axes in where)
-        place = "" if is_everywhere else " in " + join_names(dict.fromkeys(name.split(" [")[0] for name in panel_names))
-        said.append(f"{name_some([f'“{name.strip()}”' for name in group])} coincide{place}.")
-    if said:
-        _lengthen_note(figure, " ".join(said))
+    panels = [{str(line.get_label()): line for line in axes.lines} for axes in figure.axes]
+    names = [name for name in dict.fromkeys(chain(*panels)) if name.strip() and name[0] != "_"]
+    groups: dict[str, list[str]] = {}
+    for name in names:
+        shared = {first: [each for each in panels if {first, name} <= set(each)] for first in groups}
+        alike = (
+            first for first, found in shared.items()
+            if found and all(_lie_on_each_other(each[first], each[name]) for each in found)
+        )  # fmt: skip
+        groups.setdefault(next(alike, name), []).append(name)
+    several = [[f"“{name.strip()}”" for name in group] for group in groups.values() if len(group) > 1]
+    if several:
+        _lengthen_note(figure, " ".join(f"{name_some(group)} coincide." for group in several))
     return figure
 
 
@@ -278,7 +245,8 @@ def set_title(axes: Axes, text: str) -> None:
 def scale_log(axes: Axes, which: Literal["x", "y"], low: float, high: float) -> None:
     """Make an axis logarithmic from `low` to `high`: with numbers within a decade where there is room."""
     axes.set(**{f"{which}scale": "log", f"{which}lim": (low, high)})
-    axis, most = (axes.xaxis, _count_ticks(axes)[0]) if which == "x" else (axes.yaxis, _count_ticks(axes)[1])
+    axis, k = (axes.xaxis, 0) if which == "x" else (axes.yaxis, 1)
+    most = max(2, int(axes.bbox.size[k] / axes.figure.dpi / _TICK[k]))
     is_plain = low > 2e-4 and high < 5e4
     # Powers of ten with a factor read badly: they stand where decades alone would be too few.
     room = np.log10(high / low) / (most if is_plain else 0.5 * most)
@@ -296,40 +264,9 @@ def scale_frequency_axis(axes: Axes, low: float, high: float) -> None:
     axes.set_xlabel("frequency [Hz]")
 
 
-def name_rows(axes: Axes, names: Sequence[str], strong: Sequence[int] = ()) -> None:
-    """Make a panel of rows, the first one on top: names instead of a scale, grid lines upright only."""
-    axes.set_ylim(len(names) - 0.4, -0.6)
-    axes.set_yticks(np.arange(len(names)), [clean_text(name, 32) for name in names], fontsize=FONT)
-    for row in strong:
-        axes.get_yticklabels()[row].set_fontweight("bold")
-    axes.grid(False, axis="y")
-    axes.tick_params(axis="y", length=0)
-    axes.spines["left"].set_visible(False)
-
-
-def make_rows(
-    title: str, note: str, names: Sequence[str], legend: Sequence[Entry], strong: Sequence[int], grid: Grid = ROWS
-) -> tuple[Figure, list[Axes]]:
-    """Return a figure of panels beside each other, of rows that are named once; those in `strong` stand out.
-
-    The grid says all but the height and the left margin, which follow from the names.
-    """
-    grid = grid._replace(heights=(ROW * len(names) + 0.1,), left=measure_names(names))
-    figure, [panels] = make_page(title, note, grid, legend)
-    for axes in panels:
-        name_rows(axes, names if axes is panels[0] else [""] * len(names), strong)
-    return figure, panels
-
-
 def measure_names(names: Sequence[str]) -> float:
     """Return the width in inches that the names of rows need."""
     return 0.3 + LETTER * min(32, max(map(len, names), default=0))
-
-
-def draw_bars(axes: Axes, values: Sequence[float], colours: Sequence[str], texts: Sequence[str]) -> None:
-    """Draw a horizontal bar in each row, with a text at its end; a value that is not known has no bar."""
-    bars = axes.barh(range(len(values)), np.nan_to_num(values), height=0.66, color=colours, zorder=2)
-    axes.bar_label(bars, texts, padding=4, fontsize=FONT, zorder=3)
 
 
 def explain_empty(axes: Axes, text: str) -> None:
@@ -384,13 +321,6 @@ def _add_panel(figure: Figure, place: tuple[float, float, float, float]) -> Axes
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
     axes.tick_params(labelsize=FONT)
-    along, up = _count_ticks(axes)
-    axes.xaxis.set_major_locator(_RoomyLocator(along, axes.bbox.width / axes.figure.dpi))
-    axes.yaxis.set_major_locator(MaxNLocator(up, steps=(1, 2, 5, 10)))
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MaxNLocator("auto", steps=(1, 2, 5, 10)))
     return axes
-
-
-def _count_ticks(axes: Axes) -> tuple[int, int]:
-    """Return how many numbers the axes of a panel have room for, along and up."""
-    along, up = (size / axes.figure.dpi for size in axes.bbox.size)
-    return max(2, int(along / _TICK[0])), max(2, int(up / _TICK[1]))

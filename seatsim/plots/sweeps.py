@@ -1,38 +1,32 @@
-"""Figures of a sweep: what matters most, how far keys move a metric, comfort against travel, means over two keys."""
+"""Figures of a sweep: what matters most, and comfort against travel."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from textwrap import fill
 
 import numpy as np
-import pandas as pd
-from matplotlib import colormaps
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from seatsim.metrics.table import COMFORT, METRICS, TRAVEL
 from seatsim.plots import style
-from seatsim.plots.style import COLOURS, DARK, ROW, Entry, Grid, clean_text, describe_metric
+from seatsim.plots.style import COLOURS, Entry, Grid, describe_metric
 from seatsim.scenario.scenario import is_condition
 from seatsim.schema.arrays import Array
-from seatsim.schema.printing import Quantity, describe_channel, format_number, format_percent, format_unit
-from seatsim.sweeps.parts import SweepRows, is_number
+from seatsim.schema.printing import Quantity, describe_channel, format_number, format_percent
+from seatsim.sweeps.parts import SweepRows
 from seatsim.sweeps.sensitivity import Sensitivity
 
 ROAD = "excitation."
 """How the keys of the excitation begin; the first of them with few values gives each value a panel of its own."""
 _MOST_KEYS = 14
+_ROW = 0.27
+"""Height of a row of bars in inches."""
 MOST_PANELS = 6
 _MOST_POINTS = 4000
 """Runs that are drawn in all panels; more of them hide each other."""
 _MOST_GROUPS = 7
-_MOST_LEVELS = 8
-"""Values of a key that have rows or columns of their own; numbers with more are taken in `BINS` of as many runs."""
-BINS = 5
 _FRONT = Entry("Pareto front", "black", width=1.2)
-_BESIDE = "alone / with"
-"""Head of the two figures beside each bar."""
 
 
 def describe_column(name: str, units: Mapping[str, str]) -> Quantity:
@@ -49,45 +43,19 @@ def plot_shares(found: Sequence[Sensitivity], words: str) -> Figure:
     """Return the shares of the variance of a metric that its keys explain, alone and with others."""
     rows = found[:_MOST_KEYS]
     cut = f" The {_MOST_KEYS} strongest of {len(found)} parameters." if len(found) > _MOST_KEYS else ""
-    note = (
-        f"Figures: the parameter alone / with its interactions.{cut} What is fitted to the runs explains"
-        f" {format_percent(found[0].explained)} of the variance; the rest is in no bar."
-    )
+    note = f"What is fitted to the runs explains {format_percent(found[0].explained)} of the variance.{cut}"
     alone = Entry("the parameter alone", COLOURS[0], width=8)
     legend = (alone, Entry("with its interactions, 95 % interval", "black", width=1.6))
-    texts = [f"{format_percent(row.first)} / {format_percent(row.total)}" for row in rows]
-    grid = Grid((), right=0.25 + style.LETTER * max(map(len, (*texts, _BESIDE))))
-    title, names = f"What determines the {words}", [row.key for row in rows]
-    figure, [axes] = style.make_rows(title, note, names, legend, [0], grid)
-    style.draw_bars(axes, [_clip(row.first) for row in rows], [COLOURS[0]] * len(rows), [""] * len(rows))
-    for k, (row, text) in enumerate(zip(rows, texts, strict=True)):
-        ends = [_clip(row.total_low), _clip(row.total_high)]
-        axes.plot(ends, [k, k], color="black", linewidth=1.6, zorder=3)
-        axes.annotate(text, (1.02, k), xycoords=("axes fraction", "data"), va="center", fontsize=style.FONT)
-    axes.annotate(_BESIDE, (1.02, 1.0), xycoords="axes fraction", va="bottom", fontsize=style.FONT, color=DARK)
+    names = [row.key for row in rows]
+    grid = Grid((_ROW * len(rows) + 0.1,), left=style.measure_names(names))
+    figure, [[axes]] = style.make_page(f"What determines the {words}", note, grid, legend)
+    axes.set_ylim(len(names) - 0.4, -0.6)
+    axes.set_yticks(np.arange(len(names)), [style.clean_text(name, 32) for name in names], fontsize=style.FONT)
+    axes.grid(False, axis="y")
+    axes.barh(range(len(rows)), [_clip(row.first) for row in rows], height=0.66, color=COLOURS[0], zorder=2)
+    for k, row in enumerate(rows):
+        axes.plot([_clip(row.total_low), _clip(row.total_high)], [k, k], color="black", linewidth=1.6, zorder=3)
     axes.set(xlim=(0, 100), xlabel="share of the variance [%]")
-    return figure
-
-
-def plot_tornado(found: Sequence[Sensitivity], rows: SweepRows) -> Figure:
-    """Return from where to where the mean of a metric goes between a low and a high value of each key."""
-    shown, strongest = describe_column(found[0].metric, rows.units), found[:_MOST_KEYS]
-    note = "Where a parameter is a text: at the values with the smallest and with the largest mean."
-    high = Entry("mean at its 95 % quantile", COLOURS[0], "none", mark="o")
-    legend = [high._replace(label="mean at its 5 % quantile", hollow=True), high]
-    grid = Grid((2 * ROW * len(strongest) + 0.1,), left=0.3, right=0.3)
-    figure, [[axes]] = style.make_page(f"How far each parameter moves the mean {shown.words}", note, grid, legend)
-    style.name_rows(axes, [""] * len(strongest))
-    for k, row in enumerate(strongest):
-        unit = format_unit(rows.units.get(row.key, "")).removesuffix("-")
-        name = f"{row.key}: {format_level(row.low)} to {format_level(row.high)} {unit}".strip()
-        ends = [shown.factor * row.at_low, shown.factor * row.at_high]
-        axes.plot(ends, [k, k], color=COLOURS[0], linewidth=4, solid_capstyle="butt", zorder=2)
-        for end, face in zip(ends, ("1.0", COLOURS[0]), strict=True):
-            axes.plot([end], [k], "o", markersize=7, markeredgecolor=COLOURS[0], markerfacecolor=face, zorder=3)
-        axes.annotate(clean_text(name, 64), (0.0, k - 0.33), xycoords=("axes fraction", "data"), fontsize=style.FONT)
-    axes.margins(x=0.08)
-    axes.set_xlabel(f"mean {shown.axis}")
     return figure
 
 
@@ -141,52 +109,6 @@ def find_front(travel: Array, comfort: Array) -> NDArray[np.intp]:
     order = np.lexsort((comfort, travel))
     best = np.minimum.accumulate(comfort[order])
     return np.asarray(order[np.concatenate([[True], comfort[order][1:] < best[:-1]])], np.intp)
-
-
-def plot_means(rows: SweepRows, order: Sequence[str], metric: str) -> Figure | None:
-    """Return the means of a metric over the two keys that matter most, none where fewer are varied.
-
-    None too where one of them is a text with too many values.
-    """
-    keys = [key for key in order if key != "variant"][:2]
-    cells = [_group(rows.usable[key]) for key in keys]
-    if len(keys) < 2 or metric not in rows.metrics or any(each is None for each in cells):
-        return None
-    shown = describe_column(metric, rows.units)
-    means = pd.DataFrame({"x": cells[0], "y": cells[1], "z": shown.factor * rows.usable[metric]})
-    table = means.groupby(["y", "x"], observed=True)["z"].mean().unstack()
-    values = table.to_numpy()
-    low, high = float(np.nanmin(values)), float(np.nanmax(values))
-    names = [str(name) for name in table.index]
-    label = clean_text(describe_column(keys[1], rows.units).axis)
-    height = max(1.6, 0.32 * len(names), style.LETTER * (max(map(len, label.split())) + 1))
-    grid = Grid((height,), left=style.measure_names(names) + 2 * style.LINE, right=0.15, bottom=0.55)
-    every = " of all variants" * ("variant" in order)
-    note = f"Mean over the runs{every} of each cell, in {shown.unit}; the darker, the larger."
-    figure, [[axes]] = style.make_page(f"Mean {shown.words} over {keys[0]} and {keys[1]}", note, grid)
-    axes.grid(False)
-    axes.pcolormesh(values, cmap=colormaps["Blues"], rasterized=True)
-    for (row, column), value in np.ndenumerate(values):
-        if np.isfinite(value):
-            # Black and white stay so on dark paper, since the cells do.
-            ink = "#fffffe" if value > low + 0.62 * (high - low) else "#000001"
-            axes.text(column + 0.5, row + 0.5, format_number(value), ha="center", va="center", fontsize=9, color=ink)
-    axes.set_xticks(np.arange(values.shape[1]) + 0.5, [clean_text(str(name), 12) for name in table.columns], fontsize=9)
-    axes.set_yticks(np.arange(len(names)) + 0.5, [clean_text(name, 32) for name in names], fontsize=9)
-    axes.set_xlabel(clean_text(describe_column(keys[0], rows.units).axis))
-    axes.set_ylabel(fill(label, int(height / style.LETTER)))
-    return figure
-
-
-def _group(values: pd.Series) -> pd.Series | None:
-    """Return the values as ordered names of cells."""
-    if values.nunique() <= _MOST_LEVELS:
-        names = pd.Categorical(values.map(format_level), [format_level(x) for x in sorted(values.unique())], True)
-        return pd.Series(names, index=values.index)
-    if not is_number(values):
-        return None
-    cells = pd.qcut(values, BINS, duplicates="drop")
-    return cells.cat.rename_categories([f"{c.left:.3g} to {c.right:.3g}" for c in cells.cat.categories])
 
 
 def _clip(share: float) -> float:

@@ -61,13 +61,13 @@ class Line(NamedTuple):
 
 
 class Signals(NamedTuple):
-    """Linked pictures over time, packed for the script that draws them; `panels`: title, sentence."""
+    """Linked pictures over time, packed for the script that draws them; `panels`: their titles."""
 
     identity: str
     caption: str
     runs: Sequence[str]
     lines: Sequence[Line]
-    panels: Sequence[tuple[str, str]]
+    panels: Sequence[str]
     data: Mapping[str, object]
     kind: str = "signals"
 

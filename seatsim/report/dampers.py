@@ -88,7 +88,7 @@ def _show_time(chosen: Sequence[Assessment]) -> Block:
         times[name] = each.record.time[part]
         force[name] = [each.record.force[part], each.predicted[part]]
         current[name] = [each.record.current[part], None]
-    panels = [Panel("damper force", "N", "", force), Panel("current", "A", "", current)]
+    panels = [Panel("damper force", "N", force), Panel("current", "A", current)]
     lines = [("measured", MEASURED), ("predicted", 1)]
     return pack_signals("The part of each record with the highest speed.", lines, times, panels)
 
@@ -112,7 +112,7 @@ def report_characterisation(found: Characterisation, figures: Figures, remarks: 
     """Return the report of a characterisation; `remarks` are sentences on it, `command` makes it again."""
     tested: list[Block] = [Text("What was tested:"), Code(found.source, "What was tested")]
     sections: dict[str, Sequence[Block]] = {
-        "loops": show_pictures(figures, "loops", "energy", "asymmetry", "warm_up"),
+        "loops": show_pictures(figures, "loops", "energy", "warm_up"),
         "figures": tabulate_rows(found),
         "limits": _tabulate_sheet(found.sheet, {"limits": "Worst figure against each limit"}),
         "steps": [*show_pictures(figures, "steps"), *tabulate_steps(found.responses)],

@@ -6,7 +6,7 @@ Here stand also the words in which a cause and its parameters are told.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +14,8 @@ import numpy as np
 from seatsim.dampers.base import DAMPERS
 from seatsim.diagnosis.residuals import drop_start
 from seatsim.diagnosis.result import Cause, Diagnosis, Estimate, Gaps, RunGaps
-from seatsim.plots.diagnosis import STAGES, Key, find_last, plot_diagnosis, read_gap, select_stages
+from seatsim.plots.diagnosis import find_last, plot_diagnosis
+from seatsim.recordings.gap import GapFigures
 from seatsim.recordings.header import NOT_STATED
 from seatsim.report import formatting
 from seatsim.report.blocks import Block, Figures, Items, Report, Table, Text, show_pictures, tabulate
@@ -26,6 +27,8 @@ from seatsim.schema.fields import UNUSUAL
 from seatsim.schema.printing import MINUS, UNKNOWN, describe_channel, format_number, format_percent, format_unit
 from seatsim.schema.text import join_names
 
+STAGES = {"before": "nominal", "calibrated": "refitted", "after": "with effects", "floor": "noise floor"}
+"""How each gap of a diagnosis is called."""
 _NEARLY_ALL = 0.98
 LIKELY = 0.05
 """Probability from which on the parameters of a cause are printed."""
@@ -40,8 +43,8 @@ def report_diagnosis(diagnosis: Diagnosis) -> Report:
     # What the error of the stated scenario is made of on the held-out run, by channel.
     errors = [formatting.scale_row(channel, unit, parts) for channel, unit, *parts in diagnosis.error_budget]
     sections: dict[str, Sequence[Block]] = {
-        "causes": _show_causes(diagnosis, figures),
-        "gaps": _show_gaps(diagnosis, figures),
+        "causes": _show_causes(diagnosis),
+        "gaps": _show_gaps(diagnosis),
         "signals": show_signals(diagnosis, figures),
         "missing": show_discrepancy(diagnosis, figures),
         "forms": _show_forms(diagnosis),
@@ -188,7 +191,7 @@ def say_action(effect: str) -> str:
     return words.action if words else format_sentence(f"look at what {effect} describes on the rig")
 
 
-def _show_causes(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
+def _show_causes(diagnosis: Diagnosis) -> list[Table]:
     """Return where the gap lies, which effects may cause it, and their parameters."""
     shown = [each for each in diagnosis.causes if each.probability >= LIKELY or each.effect in diagnosis.selected]
     rows = []
@@ -197,8 +200,25 @@ def _show_causes(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
         shares = (format_percent(cause.probability), format_percent(cause.shrink))
         sizes = "; ".join(f"{name} {format_estimate(value)}" for name, value in cause.parameters.items()) or UNKNOWN
         rows.append((cause.effect, meaning, sizes, *shares))
+    if rest := [each.probability for each in diagnosis.causes if each not in shown]:
+        others, most = f"{len(rest)} other effect{'s' * (len(rest) > 1)}", f"{format_percent(max(rest))} or less"
+        rows.append((others, UNKNOWN, UNKNOWN, most, UNKNOWN))
+    ends = {"no effect at all": diagnosis.probability_none, "another cause": diagnosis.probability_unknown}
+    rows += [(name, UNKNOWN, UNKNOWN, format_percent(value), UNKNOWN) for name, value in ends.items()]
     strong = [row for row, cause in enumerate(shown) if cause.effect in diagnosis.selected]
-    return [*show_pictures(figures, "location", "ranking"), *show_table("causes", rows, 3, strong)]
+    return [*_tabulate_blocks(diagnosis), *show_table("causes", rows, 3, strong)]
+
+
+def _tabulate_blocks(diagnosis: Diagnosis) -> list[Table]:
+    """Return the table of the shares of the gap that lie in the blocks; its caption names those that are alike."""
+    if not (shares := [(share.block, format_percent(share.share)) for share in diagnosis.where]):
+        return []
+    groups = [group for group in diagnosis.indistinguishable if set(group) & set(diagnosis.selected)]
+    alike = {name.partition(".")[0] for group in groups for name in group}
+    first = [name for name, _ in shares[:1]]
+    lies = join_names([name for name, _ in shares if name in alike] if alike.intersection(first) else first, "or")
+    what = "What stays unexplained" if diagnosis.verdict == "unknown" else "The gap"
+    return show_table("blocks", shares, 1, [0], what=what, where=lies)
 
 
 def _show_confusions(diagnosis: Diagnosis) -> list[Block]:
@@ -225,16 +245,17 @@ def _show_forms(diagnosis: Diagnosis) -> list[Table]:
     return show_table("forms", rows, 2, [0], own=diagnosis.alternatives[0].replaces) if rows else []
 
 
-def _show_gaps(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
-    """Return picture and tables of the gaps by channel and by run, and of the refitted parameters."""
-    gap, keys = diagnosis.gap, select_stages(diagnosis)
-    held = ", ".join(diagnosis.held_out) or "all runs"
-    rows = [_make_row(gap, name, name.replace("_", " "), keys) for name in ("overall", *gap.before.channels)]
-    head = ["channel", *(STAGES[key].label for key in keys), "shrinks by"]
-    blocks = [Text(f"{_describe_shrink(diagnosis)} {EXPLAINED}"), *show_pictures(figures, "gaps")]
+def _show_gaps(diagnosis: Diagnosis) -> list[Block]:
+    """Return tables of the gaps by channel and by run, and of the refitted parameters."""
+    gap, held = diagnosis.gap, ", ".join(diagnosis.held_out) or "all runs"
+    # Without effects the gap after them is that of the refit.
+    stages = {key: name for key, name in STAGES.items() if key != "after" or diagnosis.selected}
+    rows = [_make_row(gap, name, name.replace("_", " "), stages) for name in ("overall", *gap.before.channels)]
+    head = ["channel", *stages.values(), "shrinks by"]
+    blocks: list[Block] = [Text(f"{_describe_shrink(diagnosis)} {EXPLAINED}")]
     blocks += tabulate(f"Gaps on {held}", head, rows, 1, [0])
     if len(gap.by_run) > 1:
-        rows = [_make_row(each, "overall", each.run, keys) for each in gap.by_run]
+        rows = [_make_row(each, "overall", each.run, stages) for each in gap.by_run]
         strong = [k for k, each in enumerate(gap.by_run) if each.run in diagnosis.held_out]
         blocks += tabulate("Gaps of every run, overall; held out in bold", ["run", *head[1:]], rows, 1, strong)
     rows = []
@@ -246,8 +267,10 @@ def _show_gaps(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
     return [*blocks, *show_table("refit", rows, 2, [k for k, each in enumerate(ranked) if each.at_bound])]
 
 
-def _make_row(gaps: Gaps | RunGaps, channel: str, name: str, keys: Sequence[Key]) -> list[str]:
-    sizes = {key: read_gap(gaps, key, channel) for key in (*keys, "before", "after")}
+def _make_row(gaps: Gaps | RunGaps, channel: str, name: str, keys: Iterable[str]) -> list[str]:
+    """Return the gaps of a channel, or of all ("overall"), over the signal's standard deviation."""
+    figures: dict[str, GapFigures] = {key: getattr(gaps, key) for key in STAGES}
+    sizes = {key: {**each.channels, "overall": each.overall}.get(channel) for key, each in figures.items()}
     before, after = sizes["before"], sizes["after"]
     change = 1 - after / before if after is not None and before else None
     if channel == "overall" and math.isfinite(gaps.shrink):

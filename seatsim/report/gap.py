@@ -13,7 +13,7 @@ import numpy as np
 from seatsim.diagnosis.residuals import group_by_channel, list_traces, nominal_gap
 from seatsim.metrics.motion import rms
 from seatsim.metrics.objective_rating import GRADES
-from seatsim.plots.diagnosis import SMALLEST, plot_all_of_gap
+from seatsim.plots.diagnosis import plot_all_of_gap
 from seatsim.recordings.gap import Gap
 from seatsim.recordings.recording import load_recording
 from seatsim.report import formatting
@@ -24,6 +24,9 @@ from seatsim.report.formatting import format_noise, format_quantity, say_noise, 
 from seatsim.report.packing import MEASURED, pack_traces
 from seatsim.scenario.loading import single
 from seatsim.schema.printing import UNKNOWN, format_percent
+
+SMALLEST = 1e-4
+"""Gap below which nothing is left to explain."""
 
 
 def report_gap(name: str, found: Gap, factors: Sequence[Factor], command: str) -> Report:
@@ -36,8 +39,8 @@ def report_gap(name: str, found: Gap, factors: Sequence[Factor], command: str) -
         command: what makes the report again.
     """
     figures, lines = plot_all_of_gap(found), {"measured": ("measured", MEASURED), "nominal": ("simulated", 1)}
-    sections = {
-        "gaps": [*show_pictures(figures, "gap"), *_tabulate_gaps(found)],
+    sections: dict[str, Sequence[Block]] = {
+        "gaps": _tabulate_gaps(found),
         "signals": [*show_pictures(figures, "signal_"), pack_traces(list_traces(found), lines)],
         "agreement": _show_agreement(found),
     }
@@ -68,7 +71,7 @@ def say_gap(found: Gap) -> str:
 
 
 def _is_explained(found: Gap) -> bool:
-    """Return whether a gap is of the size of the sensors' noise, or too small to be drawn."""
+    """Return whether a gap is of the size of the sensors' noise, or smaller than any that matters."""
     return found.overall <= max(NEAR_NOISE * found.floor.overall, SMALLEST)
 
 

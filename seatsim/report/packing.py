@@ -32,11 +32,10 @@ _Line: TypeAlias = dict[str, float | str]
 
 
 class Panel(NamedTuple):
-    """A picture: its quantity and unit, a sentence on it, and for each run the values of every line (None: absent)."""
+    """A picture: its quantity and unit, and for each run the values of every line (None: absent)."""
 
     quantity: str
     unit: str
-    sentence: str
     values: Mapping[str, Sequence[Array | None]]
 
 
@@ -75,8 +74,7 @@ def pack_signals(
         "runs": [_pack_time(values, bins) for values in time.values()],
         "panels": [{"unit": each.unit, "runs": runs} for each, runs in zip(shown, packed, strict=True)],
     }
-    named = zip(shown, panels, strict=True)
-    titles = [(f"{each.axis[:1].upper()}{each.axis[1:]}", panel.sentence) for each, panel in named]
+    titles = [f"{each.axis[:1].upper()}{each.axis[1:]}" for each in shown]
     return Signals("signals-time", caption, list(time), drawn, titles, data)
 
 
@@ -91,7 +89,7 @@ def pack_traces(traces: Iterable[Trace], lines: Mapping[str, tuple[str, int]], f
         runs.setdefault(trace.run, {})[trace.channel] = trace
     units = {channel: trace.unit for found in runs.values() for channel, trace in found.items()}
     panels = [
-        Panel(channel, unit, "", {
+        Panel(channel, unit, {
             run: [getattr(found[channel], name) if channel in found else None for name in lines]
             for run, found in runs.items()
         })

@@ -49,7 +49,7 @@ def report_runs(
         "figures": [*show_pictures(figures, "pareto", "comparison"), *_tabulate_figures(runs)],
         "signals": [*show_pictures(figures, "time_histories"), show_signals(show_runs(runs))],
         "spectra": show_pictures(figures, "transmissibility", "psd"),
-        "loops": show_pictures(figures, "damper_loops", "force_velocity"),
+        "loops": show_pictures(figures, "force_velocity"),
     }
     about, said = f"Comparison of {len(runs)} simulated runs: {title}", compare_runs(runs)
     if len(runs) == 1:
@@ -134,11 +134,7 @@ def show_signals(groups: Sequence[Shown], finest: int = FINEST) -> Signals:
         known = [[each for each in part if each is not None] for part in values.values()]
         # One that never changes, such as the temperature of most dampers, is a setting and no signal.
         if any(float(np.nanmax(line)) > float(np.nanmin(line)) for part in known for line in part):
-            # Of lines that lie on each other a picture shows one.
-            several = [part for part in known if len(part) > 1]
-            same = all(np.array_equal(part[0], line, equal_nan=True) for part in several for line in part[1:])
-            sentence = "The same in all runs." if several and same else ""
-            panels.append(Panel(channel, UNITS[channel], sentence, values))
+            panels.append(Panel(channel, UNITS[channel], values))
     caption = "The list above the pictures has every scenario." if len(groups) > 1 else "All runs over time."
     omitted = next((shown.omission for shown in groups if shown.omission), "")
     return pack_signals(f"{caption}{omitted}", lines, time, panels, finest)

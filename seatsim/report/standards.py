@@ -27,7 +27,7 @@ def report_comfort(found: Comfort, figures: Figures, command: str) -> Report:
     """
     answer = [_say_comfort(found), *map(format_sentence, list_comfort_sentences(found))]
     sections: dict[str, Sequence[Block]] = {
-        "day": [*tabulate_operations(found), *show_pictures(figures, "operations")],
+        "day": tabulate_operations(found),
         "axes": [*tabulate_axes(found), *show_pictures(figures, "running_rms", "spectra")],
         "seat": tabulate_seat(found),
     }

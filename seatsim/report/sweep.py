@@ -9,16 +9,16 @@ import pandas as pd
 
 from seatsim.dampers.base import DAMPERS
 from seatsim.metrics.table import COMFORT, TRAVEL
-from seatsim.plots.sweeps import describe_column, format_level, plot_comfort, plot_means, plot_shares, plot_tornado
+from seatsim.plots.sweeps import describe_column, format_level, plot_comfort, plot_shares
 from seatsim.report import credibility
 from seatsim.report.blocks import Block, Figures, Report, Table, Text, show_pictures, tabulate
 from seatsim.report.composing import compose
 from seatsim.report.credibility import EXPLAINED, count_variations, state_intervals, trace_inputs, verify
 from seatsim.report.formatting import choose_advice, explain, format_quantity, show_table
 from seatsim.scenario.scenario import is_condition
-from seatsim.schema.printing import format_number, format_percent
+from seatsim.schema.printing import format_number, format_percent, format_unit
 from seatsim.sweeps.outcome import FAILED, UNVERIFIED
-from seatsim.sweeps.parts import NAMES, Exceedance, SweepRows, find_best_choices
+from seatsim.sweeps.parts import NAMES, Exceedance, SweepRows, find_best_choices, is_number
 from seatsim.sweeps.sensitivity import Sensitivities, Sensitivity, choose_choice, choose_key
 
 _MATTERS = 0.1
@@ -28,6 +28,8 @@ SHOWN = (COMFORT, "driver_vdv", "seat_factor", TRAVEL, "suspension_displacement_
 MOST_LINES = 60
 """Lines of a table on the page."""
 _MOST_REASONS = 8
+_MOST_LEVELS, _BINS = 8, 5
+"""Values of a key that have rows or columns of their own; numbers with more are taken in bins of as many runs."""
 
 
 def report_sweep(
@@ -42,7 +44,7 @@ def report_sweep(
         "choices": tabulate_best(rows),
         "sensitivity": _show_sensitivity(found, rows, figures),
         "pareto": show_pictures(figures, "comfort"),
-        "maps": show_pictures(figures, "means"),
+        "maps": _tabulate_means(found, rows),
         "quantiles": _show_quantiles(quantiles, rows),
         "states": _show_states(rows),
     }
@@ -151,25 +153,68 @@ def _list_metrics(found: Sensitivities, rows: SweepRows) -> list[str]:
 
 def draw_figures(found: Sensitivities, rows: SweepRows) -> Figures:
     """Return the figures of a sweep by name."""
-    ranked = [row.key for row in found.leading]
-    order = [*ranked, *(key for key in rows.keys if key not in ranked)]
     figures: dict[str, Any] = {}
     for metric in _list_metrics(found, rows):
         shares, words = found.of(metric), describe_column(metric, rows.units).words
-        figures |= {f"shares_{metric}": plot_shares(shares, words), f"tornado_{metric}": plot_tornado(shares, rows)}
-    means = {f"means_{metric}": plot_means(rows, order, metric) for metric in (COMFORT, TRAVEL)}
-    figures |= {"comfort": plot_comfort(rows, order), **means}
+        figures[f"shares_{metric}"] = plot_shares(shares, words)
+    figures["comfort"] = plot_comfort(rows, _order_keys(found, rows))
     return {name: figure for name, figure in figures.items() if figure is not None}
 
 
+def _order_keys(found: Sensitivities, rows: SweepRows) -> list[str]:
+    """Return the varied keys, what matters most first."""
+    return list(dict.fromkeys([*(row.key for row in found.leading), *rows.keys]))
+
+
+def _tabulate_means(found: Sensitivities, rows: SweepRows) -> list[Table]:
+    """Return the mean comfort and travel over the two keys that matter most; nothing where fewer are varied.
+
+    Nothing too where one of them is a text with too many values.
+    """
+    keys = [key for key in _order_keys(found, rows) if key != "variant"][:2]
+    cells = [_group(rows.usable[key]) for key in keys]
+    tables = list[Table]()
+    for metric in (COMFORT, TRAVEL):
+        if len(keys) == 2 and metric in rows.metrics and all(each is not None for each in cells):
+            shown = describe_column(metric, rows.units)
+            means = rows.usable[metric].groupby([cells[1], cells[0]], observed=True).mean().unstack() * shown.factor
+            below, across = (describe_column(key, rows.units).axis for key in reversed(keys))
+            caption = f"Mean {shown.axis} over {below} (down) and {across} (across)"
+            head = [below, *map(str, means.columns)]
+            tables += tabulate(caption, head, means.itertuples(name=None))
+    return tables
+
+
+def _group(values: pd.Series) -> pd.Series | None:
+    """Return the values as ordered names of cells."""
+    if values.nunique() <= _MOST_LEVELS:
+        names = pd.Categorical(values.map(format_level), [format_level(x) for x in sorted(values.unique())], True)
+        return pd.Series(names, index=values.index)
+    if not is_number(values):
+        return None
+    cells = pd.qcut(values, _BINS, duplicates="drop")
+    return cells.cat.rename_categories([f"{c.left:.3g} to {c.right:.3g}" for c in cells.cat.categories])
+
+
 def _show_sensitivity(found: Sensitivities, rows: SweepRows, figures: Figures) -> list[Block]:
-    """Return the shares of variance and the swings of comfort, travel and each limited metric."""
+    """Return of comfort, travel and each limited metric the shares of variance, and how far each key moves the mean."""
     if not found.rows:
         return [Text(f"{found.problem[0].upper()}{found.problem[1:]}.")]
     blocks: list[Block] = []
     for metric in _list_metrics(found, rows):
-        blocks += show_pictures(figures, f"shares_{metric}", f"tornado_{metric}")
-        explained, words = found.of(metric)[0].explained, describe_column(metric, rows.units).words
+        shown, shares = describe_column(metric, rows.units), found.of(metric)
+        swings = [
+            (
+                *(row.key, format_percent(row.first), format_percent(row.total)),
+                f"{format_percent(row.total_low)} to {format_percent(row.total_high)}",
+                *(format_level(row.low), format_level(row.high), format_unit(rows.units.get(row.key) or "-")),
+                *(shown.factor * row.at_low, shown.factor * row.at_high),
+            )
+            for row in shares[:MOST_LINES]
+        ]
+        blocks += show_pictures(figures, f"shares_{metric}")
+        blocks += show_table("swings", swings, metric=shown.axis)
+        explained, words = shares[0].explained, shown.words
         if explained < EXPLAINED:
             blocks += explain("polynomial", known=format_percent(max(0.0, explained)), words=words)
     return blocks

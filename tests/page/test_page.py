@@ -31,7 +31,7 @@ class Plain:
 
     def show(self, request):
         mass, time = read_number(request, self.sliders[0]), np.arange(10.0)
-        panel = Panel("damper_force", "N", "", {"": [mass * time]})
+        panel = Panel("damper_force", "N", {"": [mass * time]})
         signals = pack_signals("", [("as set", 0)], {"": time}, [panel])
         return View(f"{mass:g} kg <b>", [Table("t", ["a", "b"], [["<i>", f"{mass:g}"]])], signals)
 

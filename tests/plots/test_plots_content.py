@@ -6,18 +6,13 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 
-from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.effects.base import EFFECTS
-from seatsim.plots.loops import SIGNS
 from seatsim.plots.runs import looks, signals
 from seatsim.plots.runs.comparison import plot_comparison, plot_pareto
-from seatsim.plots.runs.dampers import choose_amplitude, group_by_damper, plot_damper_loops, plot_force_velocity
+from seatsim.plots.runs.dampers import plot_force_velocity
 from seatsim.plots.runs.signals import CLOSE_UP
 from seatsim.plots.style import GREY
 from seatsim.plots.thinning import BINS, find_loudest, thin_line
-from seatsim.rig.coil import Coil
-from seatsim.rig.temperature import TemperatureFactors
-from seatsim.simulation.damper_bench import sine_test
 from seatsim.simulation.naming import find_swept_number
 from seatsim.simulation.result import History
 
@@ -72,15 +67,23 @@ def test_the_close_up_is_stated_and_shared(made_up):
 def test_displacement_is_in_millimetres_within_the_limits_of_plant_and_buffers(made_up):
     buffers = EFFECTS.find("suspension.end_stop")(low=-0.03, high=0.045)
     for effects, limits in (((), [-50.0, 50.0]), ((buffers,), [-30.0, 45.0])):
-        axes = plot_time_histories([with_scenario(made_up(), effects=effects)]).axes[2]
+        axes = plot_time_histories([with_scenario(made_up(), effects=effects)]).axes[1]
         assert np.max(axes.lines[0].get_ydata()) == pytest.approx(20.0, rel=1e-3)
         assert [line.get_ydata()[0] for line in axes.lines[1:3]] == limits
 
 
 def test_a_force_is_wanted_only_where_a_law_wants_one(made_up):
-    with_force, without = (plot_time_histories([made_up(wanted=wanted)]).axes[4] for wanted in (True, False))
+    with_force, without = (plot_time_histories([made_up(wanted=wanted)]).axes[2] for wanted in (True, False))
     assert [line.get_label() for line in with_force.lines] == ["wanted force, commanded current", "the run"]
     assert len(without.lines) == 1
+
+
+def test_a_channel_that_chatters_lies_pale_behind_the_others(made_up):
+    calm, other = made_up({"variant": "a"}), made_up({"variant": "b"})
+    force = calm.history["damper_force"] + 200.0 * (-1.0) ** np.arange(len(calm.history["time"]))
+    axes = plot_time_histories([with_channels(calm, damper_force=force), other, other]).axes[2]
+    assert [line.get_alpha() for line in axes.lines] == [signals.PALE, 1.0, 1.0]
+    assert axes.lines[0].get_zorder() < axes.lines[1].get_zorder()
 
 
 def test_the_density_of_white_noise_is_flat(made_up):
@@ -129,32 +132,6 @@ def test_an_empty_spectrum_says_which_cause_empties_it(picture, change, reason, 
     assert reason in axes.texts[0].get_text().replace("\n", " ") and len(axes.get_yticks()) == 0
 
 
-def test_the_test_has_the_rms_of_the_run_to_one_digit(made_up):
-    run = made_up()
-    twice = with_scenario(run, plant=run.scenario.plant._replace(damper_ratio=2.0))
-    for runs, amplitude in (([run], 0.02), ([run, twice], 0.04), ([made_up(motion=0.0)], 0.01),
-                            ([made_up(motion=1e-4)], 0.001)):  # fmt: skip
-        assert choose_amplitude(runs) == pytest.approx(amplitude)
-
-
-def test_loops_by_current_and_by_temperature(made_up):
-    figure = plot_damper_loops([made_up()])
-    assert " ".join(texts(figure)[1].split()) == f"Sine test, amplitude 20 mm, frequency 1.5 Hz. {SIGNS}"
-    names = [[text.get_text() for text in axes.get_legend().get_texts()] for axes in figure.axes[1::2]]
-    assert names == [["0 A", "0.25 A", "0.5 A", "0.75 A", "1 A"], ["20 °C", "50 °C", "80 °C"]]
-    force = sine_test(BoucWen(), 0.02, 1.5, 1.0, 20.0).force
-    np.testing.assert_allclose(figure.axes[0].lines[4].get_ydata(), force)
-    assert figure.axes[1].lines[0].get_xdata().max() == pytest.approx(20.0)
-
-
-def test_distinct_dampers(made_up):
-    run, other = made_up({"variant": "a"}), made_up({"variant": "b"}, factors=TemperatureFactors())
-    strong = with_scenario(run, coil=Coil(max_current=2.0))
-    assert list(map(len, group_by_damper([run, other, run, strong]))) == [2, 1, 1]
-    titles = [axes.get_title(loc="left") for axes in plot_damper_loops([run, other]).axes[::2]]
-    assert titles == ["bouc_wen (a) at 20 °C", "bouc_wen (a) at 1 A", "bouc_wen (b) at 20 °C"]
-
-
 def test_force_velocity_shows_the_run_within_the_dampers_curves(made_up):
     run = made_up()
     axes, bar = (figure := plot_force_velocity([run])).axes
@@ -168,6 +145,11 @@ def test_force_velocity_shows_the_run_within_the_dampers_curves(made_up):
     assert axes.collections[0].get_clim() == ends and bar.get_ylim() == ends
 
 
+def test_of_several_runs_the_damper_whose_current_varies_is_shown(made_up):
+    still = with_channels(run := made_up({"variant": "a"}), coil_current=np.zeros(len(run.history["time"])))
+    assert "seat, b" in texts(plot_force_velocity([still, made_up({"variant": "b"})]))[0]
+
+
 def test_a_sweep_is_compared_over_its_number(made_up):
     runs = [made_up({"variant": v, "temperature": t}) for v in "ab" for t in (80, 20, 50)]
     figure = plot_comparison(runs)
@@ -176,14 +158,6 @@ def test_a_sweep_is_compared_over_its_number(made_up):
     np.testing.assert_array_equal(figure.axes[0].lines[0].get_xdata(), [20.0, 50.0, 80.0])
     travel = 1e3 * runs[0].metrics["suspension_displacement_rms"].value
     assert figure.axes[2].lines[0].get_ydata()[2] == pytest.approx(travel)
-
-
-def test_variants_are_compared_by_bars_with_their_values(made_up):
-    runs = [made_up({"variant": v}) for v in "ab"] + [made_up({"variant": "at rest"}, motion=0.0)]
-    figure = plot_comparison(runs)
-    assert [tick.get_text() for tick in figure.axes[0].get_yticklabels()] == ["a", "b", "at rest"]
-    assert [text.get_text() for text in figure.axes[2].texts] == ["14.2", "14.2", "0"]
-    assert figure.axes[3].texts[2].get_text() == "–"
 
 
 def test_only_numbers_that_change_in_every_run_are_swept(made_up):
@@ -210,7 +184,9 @@ def test_a_variant_has_one_colour_in_all_pictures(made_up):
     lines = plot_comparison(runs).axes[0].lines
     points = plot_pareto(runs, {}).axes[0].collections
     assert [len(each) for each in colours] == [1, 1] and colours[0] != colours[1]
-    assert {line.get_color() for line in lines} == {to_hex(dot.get_facecolor()[0]).upper() for dot in points}
+    assert {line.get_color() for line in lines} == {
+        to_hex(colour).upper() for dots in points for colour in dots.get_facecolor()
+    }
     assert {line.get_color() for line in lines} == colours[0] | colours[1]
     assert len({(look.label, look.alpha) for look in drawn}) == 4
 

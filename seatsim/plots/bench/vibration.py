@@ -1,19 +1,20 @@
-"""Measured vibration of a person: its course, its spectrum, what each operation adds to a day; a seat's damping."""
+"""Measured vibration of a person: its course and its spectrum; a seat's damping."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import cycle
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from seatsim.metrics.comfort import running_rms
-from seatsim.metrics.exposure import Exposure, Operation
 from seatsim.metrics.spectra import estimate_density
 from seatsim.plots import style
 from seatsim.plots.densities import draw_densities, find_first, state_method
 from seatsim.plots.style import GREY, Entry, Grid
 from seatsim.plots.thinning import spread_evenly, thin_line
+from seatsim.schema.text import join_names
 from seatsim.standards.comfort import Comfort
 from seatsim.standards.seat_rows import SeatTest
 
@@ -28,12 +29,9 @@ HIGHEST = 100.0
 
 
 def plot_vibration(found: Comfort) -> dict[str, Figure]:
-    """Return the running RMS, the spectra, and the operations of a day where there are some."""
+    """Return the running RMS and the spectra of the axes along which something was measured."""
     axes = [axis for axis, each in found.axes.items() if each.direction.unit == "m/s^2"]
-    figures = {"running_rms": _plot_running_rms(found, axes), "spectra": _plot_spectra(found, axes)} if axes else {}
-    if found.exposure and found.operations:
-        figures["operations"] = _plot_operations(found.exposure, found.operations)
-    return figures
+    return {"running_rms": _plot_running_rms(found, axes), "spectra": _plot_spectra(found, axes)} if axes else {}
 
 
 def _plot_running_rms(found: Comfort, axes: Sequence[str]) -> Figure:
@@ -70,35 +68,22 @@ def _plot_spectra(found: Comfort, axes: Sequence[str]) -> Figure:
     return style.name_coincident(page.figure)
 
 
-def _plot_operations(day: Exposure, operations: Sequence[Operation]) -> Figure:
-    """Return the partial exposure of each operation, and that of the day, along the axis that decides."""
-    axis = day.a8_axis
-    parts = [*((each.name, each.hours, each.a8[axis]) for each in operations), ("the whole day", day.hours, day.a8)]
-    # A text at the end of a bar would stand in the way of the two values.
-    names = [f"{name}, {lasts:g} h: {value:.2f}" for name, lasts, value in parts]
-    levels = {"action value": day.action_value.a8, "limit value": day.limit_value.a8}
-    styled = zip(levels.items(), style.DASHES, strict=False)
-    looks = [Entry(f"{name}, {level:g} m/s²", style.DARK, dashes) for (name, level), dashes in styled]
-    note = f"A(8) along {axis}, where the day's is largest; the squares of the parts add up to that of the day."
-    figure, [panel] = style.make_rows("What each operation adds to the day", note, names, looks, [len(names) - 1])
-    colours = [style.COLOURS[0]] * len(operations) + [style.COLOURS[1]]
-    style.draw_bars(panel, [value for _, _, value in parts], colours, [""] * len(parts))
-    for level, look in zip(levels.values(), looks, strict=True):
-        panel.axvline(level, color=look.colour, linestyle=look.dashes, linewidth=1.2, zorder=3)
-    panel.set_xlabel("A(8) [m/s²]")
-    return figure
-
-
 def plot_damping(found: SeatTest) -> dict[str, Figure]:
-    """Return the transmissibility of the mass on the seat over the floor, where it was tested."""
+    """Return the transmissibility of the mass on the seat over the floor, with its limits, where it was tested."""
     if not found.damping:
         return {}
     looks = [each._replace(mark=".", width=1.6) for each in style.make_entries(list(found.damping))]
-    note = "Sines from half to twice the resonance that is expected of the seat."
+    classes = dict[float, list[str]]()
+    for row in found.damping_rows:
+        classes.setdefault(row.limit, []).append(row.spectral_class)
+    named = [f"limit of {join_names(dict.fromkeys(names))}" for names in classes.values()]
+    limits = [Entry(name, style.DARK, dashes) for name, dashes in zip(named, cycle(style.DASHES), strict=False)]
+    note = "Sines from half to twice the resonance that is expected of the seat. The largest value keeps to the limit."
     title = "Damping test: motion of the mass over that of the floor"
-    figure, [[axes]] = style.make_page(title, note, Grid((2.6,)), looks)
+    figure, [[axes]] = style.make_page(title, note, Grid((2.6,)), [*looks, *limits])
     for look, test in zip(looks, found.damping.values(), strict=True):
         style.draw_line(axes, test.frequencies, test.transmissibilities, look)
-    axes.set_ylim(bottom=0.0)
-    axes.set(xlabel="frequency [Hz]", ylabel="transmissibility [-]")
+    for limit, look in zip(classes, limits, strict=True):
+        axes.axhline(limit, color=look.colour, linestyle=look.dashes, linewidth=look.width)
+    axes.set(xlabel="frequency [Hz]", ylabel="transmissibility [-]", ylim=(0.0, 1.05 * axes.get_ylim()[1]))
     return {"damping": style.name_coincident(figure)}

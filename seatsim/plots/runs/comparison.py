@@ -1,4 +1,4 @@
-"""Runs side by side: comfort against travel, and bars or lines over a swept number."""
+"""Runs side by side: comfort against travel, and lines over a swept number."""
 
 from __future__ import annotations
 
@@ -14,10 +14,9 @@ from seatsim.metrics.table import COMFORT, SEAT, TRAVEL, UNWEIGHTED
 from seatsim.plots import style
 from seatsim.plots.runs.looks import MOST as MOST_LINES
 from seatsim.plots.runs.looks import choose_looks, explain_grey
-from seatsim.plots.style import DARK, ROW, Entry, Grid, describe_metric
+from seatsim.plots.style import DARK, GREY, Entry, Grid, clean_text, describe_metric
 from seatsim.scenario.scenario import condition_of
 from seatsim.schema.arrays import Array
-from seatsim.schema.printing import format_number
 from seatsim.simulation import naming
 from seatsim.simulation.performance_bounds import PerformanceBounds
 from seatsim.simulation.result import Run
@@ -25,10 +24,8 @@ from seatsim.simulation.result import Run
 BOUND = Entry("lower bound without hysteresis", "black", width=1.6)
 BEST = Entry("best run found, floor known ahead", DARK, (0.0, (5.0, 1.5)), 1.6)
 FLOOR = Entry("as much as the floor (SEAT = 1)", DARK, ":", 1.6)
-_SAME_PLACE = 10.0
-"""Distance in points of print, below which a mark would cover another's number."""
-_ENOUGH = 15.0
-"""Distance in points of print, at which a mark disturbs no letters."""
+_APART = 0.17
+"""Least distance in inches of the names beside a panel."""
 NEAR = 1.6
 """How far above the greatest acceleration the floor's is still drawn, as a ratio."""
 MOST_PANELS = 12
@@ -61,22 +58,25 @@ class Panel(NamedTuple):
 def plot_pareto(runs: Sequence[Run], brackets: Mapping[str, PerformanceBounds]) -> Figure:
     """Return weighted acceleration over travel, a panel for each condition (with performance bounds: for each rig).
 
-    Conditions of one run share a panel. Points have letters; the legend names them, in the order of the runs. A line
-    says where the driver feels as much as the floor moves.
+    Conditions of one run share a panel. Beside a panel that is alone stand the names of its points, beside others their
+    letters, which the legend names in the order of the runs. A line says where the driver feels as much as the floor
+    moves.
     """
     found, looks = _make_panels(runs, brackets) or [Panel("", [], [])], choose_looks(runs)
     shown, columns = found[:MOST_PANELS], min(2, len(found))
     named = {name: run for panel in shown for name, run in zip(panel.names, panel.runs, strict=True)}
     points = {
-        name: Entry(f"{_letter(k)}  {name}", looks[id(run)].colour, "none", mark="o")
+        name: Entry(name if columns == 1 else f"{_letter(k)}  {name}", looks[id(run)].colour, "none", mark="o")
         for k, (name, run) in enumerate(named.items())
     }
-    legend = [*points.values(), *[BOUND, BEST] * any(panel.bracket for panel in shown)]
+    legend = [*list(points.values()) * (columns > 1), *[BOUND, BEST] * any(panel.bracket for panel in shown)]
     legend += [FLOOR] * any(panel.runs and np.isfinite(panel.floor) for panel in shown)
     note = "Over the whole run; on the same floor, lower left is better."
     note += style.OWN_SCALES * (len(shown) > 1) + explain_grey(looks)
     note += f" {len(shown)} of {len(found)} rigs are shown." if len(shown) < len(found) else ""
-    grid = Grid((_SIDES[columns - 1],) * -(-len(shown) // columns), columns, top=0.3, gap=(0.75, 0.85))
+    height = max(_SIDES[columns - 1], _APART * max(len(panel.runs) for panel in shown))
+    right = 0.45 if columns > 1 else style.measure_names(list(points)) + 0.1
+    grid = Grid((height,) * -(-len(shown) // columns), columns, right=right, top=0.3, gap=(1.0, 0.85))
     page = style.make_page(f"Comfort and travel: {naming.make_title(runs)}", note, grid, legend)
     for axes, panel in zip(page.list_panels(len(shown)), shown, strict=True):
         _draw_panel(axes, panel, points)
@@ -121,11 +121,26 @@ def _draw_panel(axes: Axes, panel: Panel, looks: Mapping[str, Entry]) -> None:
         draw_bounds(axes, np.linspace(*_pad(travel), 200), panel.bracket)
     axes.set(xlim=_pad(travel), xlabel=describe_metric(TRAVEL).axis)
     axes.set(ylim=_pad(comfort), ylabel=describe_metric(COMFORT).axis)
-    # The most comfortable one on top of those that it meets.
-    for point, name in sorted(zip(panel.points.tolist(), panel.names, strict=True), key=lambda pair: -pair[0][1]):
-        axes.scatter(point[0], point[1], s=150, color=looks[name].colour, edgecolors="1.0", zorder=4)
-    _write_letters(axes, panel.points, [looks[name].label.split()[0] for name in panel.names])
+    # Of a letter and a name the letter.
+    texts = [looks[name].label.partition("  ")[0] for name in panel.names]
+    x, y = panel.points.T
+    axes.scatter(x, y, s=60, color=[looks[name].colour for name in panel.names], edgecolors="1.0", zorder=4)
+    _name_points(axes, panel.points, texts)
     style.set_title(axes, panel.title)
+
+
+def _name_points(axes: Axes, points: Array, texts: Sequence[str]) -> None:
+    """Write names in a column beside a panel, in the order of their points, each at a line that ends in its point."""
+    order = np.argsort(points[:, 1], kind="stable")
+    apart, steps = _APART * axes.figure.dpi / axes.bbox.height, np.arange(len(texts))
+    level = axes.transAxes.inverted().transform(axes.transData.transform(points))[order, 1]
+    level = np.maximum.accumulate(level - apart * steps) + apart * steps
+    level = np.minimum(level, 1.0 - apart * steps[::-1])
+    for k, height in zip(order, level, strict=True):
+        axes.annotate(
+            clean_text(texts[k], 32), points[k], (1.04, height), textcoords="axes fraction", va="center",
+            fontsize=style.FONT, arrowprops={"arrowstyle": "-", "color": GREY, "linewidth": 0.7, "relpos": (0.0, 0.5)},
+        )  # fmt: skip
 
 
 def draw_bounds(axes: Axes, travel: Array, bracket: PerformanceBounds) -> None:
@@ -136,60 +151,21 @@ def draw_bounds(axes: Axes, travel: Array, bracket: PerformanceBounds) -> None:
     style.draw_line(axes, travel, best, BEST)
 
 
-def _write_letters(axes: Axes, points: Array, letters: Sequence[str]) -> None:
-    """Write the letter of each point into it; those of points at one place stand where other points are far."""
-    places = axes.transData.transform(points) * 72 / axes.figure.dpi
-    left = sorted(range(len(letters)), key=lambda k: letters[k])
-    while left:
-        near = [k for k in left if np.linalg.norm(places[k] - places[left[0]]) < _SAME_PLACE]
-        left = [k for k in left if k not in near]
-        text, others = " ".join(letters[k] for k in near), np.delete(places, near, axis=0)
-        across, up = np.ptp(places[near], axis=0) / 2 + (8.0 + 4.0 * len(text), 15.0)
-        spots = np.array([(across, 0.0), (0.0, up), (0.0, -up), (-across, 0.0)]) if len(near) > 1 else np.zeros((1, 2))
-        # From the middle of the outer ones, so that no mark of the group lies below its letters.
-        spots = spots + (np.min(places[near], axis=0) + np.max(places[near], axis=0)) / 2
-        gaps = np.linalg.norm(spots[:, None] - others, axis=2)
-        spot = spots[np.argmax(np.min(gaps, axis=1, initial=_ENOUGH))] - places[near[0]]
-        axes.annotate(
-            text, points[near[0]], tuple(spot), textcoords="offset points", fontsize=9, zorder=5, fontweight="bold",
-            ha="center", va="center_baseline", color="0.0" if len(near) > 1 else "1.0",
-        )  # fmt: skip
-
-
 COMPARED = (UNWEIGHTED, COMFORT, TRAVEL, SEAT)
-NOTE = "Over the whole run; on the same floor, the smaller the better."
 
 
-def plot_comparison(runs: Sequence[Run]) -> Figure:
-    """Return bars run by run, or lines over the number that is swept, one line for each variant."""
+def plot_comparison(runs: Sequence[Run]) -> Figure | None:
+    """Return lines over the number that is swept, one line for each variant; none where no number is."""
     key, series = naming.find_swept_number(runs), dict[str, list[Run]]()
     for name, run in zip(naming.label_runs(runs, without=[key]), runs, strict=True):
         series.setdefault(name, []).append(run)
-    title = f"Comparison: {naming.make_title(runs)}"
-    return _plot_lines(title, key, series) if key and len(series) <= MOST_LINES else _plot_bars(title, runs)
-
-
-def _plot_bars(title: str, runs: Sequence[Run]) -> Figure:
-    names = naming.label_runs(runs, 32)
-    looks, left = choose_looks(runs), style.measure_names(names)
-    grid = Grid((ROW * len(runs) + 0.1,) * 2, columns=2, left=left, gap=(0.3, 0.6))
-    page = style.make_page(title, NOTE + explain_grey(looks), grid)
-    for k, (axes, metric) in enumerate(zip(page.list_panels(), COMPARED, strict=True)):
-        shown = describe_metric(metric)
-        values = [shown.factor * run.read_metric(metric) for run in runs]
-        style.name_rows(axes, [""] * len(names) if k % 2 else names)
-        style.draw_bars(axes, values, [looks[id(run)].colour for run in runs], list(map(format_number, values)))
-        # Room for the figures at the ends of the bars.
-        end = (1.0 + 0.45 / grid.width) * float(np.max(np.nan_to_num(values)))
-        axes.set(xlim=(0.0, end or 1.0), xlabel=f"{shown.words} [{shown.unit}]")
-    return page.figure
-
-
-def _plot_lines(title: str, key: str, series: dict[str, list[Run]]) -> Figure:
-    of_runs = choose_looks([run for group in series.values() for run in group])
-    looks = [of_runs[id(group[0])]._replace(label=name) for name, group in series.items()]
+    if not key or len(series) > MOST_LINES:
+        return None
+    looks_of, title = choose_looks(runs), f"Comparison: {naming.make_title(runs)}"
+    looks = [looks_of[id(group[0])]._replace(label=name) for name, group in series.items()]
     axis = naming.label_axis(next(iter(series.values()))[0].scenario, key)
-    page = style.make_page(title, NOTE, Grid((1.8, 1.8), 2, left=0.85, gap=(0.9, 0.65)), looks[1:] and looks)
+    note, grid = "Over the whole run; on the same floor, the smaller the better.", Grid((1.8, 1.8), 2, left=0.85)
+    page = style.make_page(title, note, grid._replace(gap=(0.9, 0.65)), looks[1:] and looks)
     for axes, metric in zip(page.list_panels(), COMPARED, strict=True):
         shown = describe_metric(metric)
         for look, group in zip(looks, series.values(), strict=True):

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from seatsim.cosimulation.damper import FmuDamper
 from seatsim.plots.runs.comparison import plot_comparison, plot_pareto
-from seatsim.plots.runs.dampers import plot_damper_loops, plot_force_velocity
+from seatsim.plots.runs.dampers import plot_force_velocity
 from seatsim.plots.runs.looks import show_runs
 from seatsim.plots.runs.signals import plot_psd, plot_time_histories, plot_transmissibility
 from seatsim.simulation.result import Result
@@ -15,9 +15,10 @@ from seatsim.simulation.result import Result
 def plot_result(result: Result) -> dict[str, Figure]:
     """Return the figures of a result by name.
 
-    `comparison` and `pareto` are there for two runs or more, `pareto` also where there are performance bounds. Where
-    several scenarios have several runs, each has figures over time and frequency of its own, under its name. Where
-    there is nothing to show (a floor at rest, a record too short for a spectrum), a figure says so.
+    `pareto` is there for two runs or more and where there are performance bounds, `comparison` where a number is swept,
+    `force_velocity` where a run has a damper of this program: of that whose current varies the most. Where several
+    scenarios have several runs, each has figures over time and frequency of its own, under its name. Where there is
+    nothing to show (a floor at rest, a record too short for a spectrum), a figure says so.
 
     Raises:
         RunError: a sine test of a damper cannot be carried to its end.
@@ -25,16 +26,13 @@ def plot_result(result: Result) -> dict[str, Figure]:
     figures = {}
     if len(result.runs) > 1 or result.brackets:
         figures["pareto"] = plot_pareto(result.runs, result.brackets)
-    if len(result.runs) > 1:
-        figures["comparison"] = plot_comparison(result.runs)
+    if (comparison := plot_comparison(result.runs)) is not None:
+        figures["comparison"] = comparison
     plots = {"time_histories": plot_time_histories, "psd": plot_psd, "transmissibility": plot_transmissibility}
     for shown in show_runs(result.runs):
         end = f"_{shown.scenario}" * bool(shown.scenario)
         figures |= {f"{name}{end}": plot(shown) for name, plot in plots.items()}
     # A damper that is a unit of another program is not put to a sine test.
-    models = [run for run in result.runs if not isinstance(run.scenario.damper.record, FmuDamper)]
-    if models:
-        figures["damper_loops"] = plot_damper_loops(models)
-    if models and models[0] is result.runs[0]:
-        figures["force_velocity"] = plot_force_velocity(result.runs)
+    if models := [run for run in result.runs if not isinstance(run.scenario.damper.record, FmuDamper)]:
+        figures["force_velocity"] = plot_force_velocity(models)
     return figures

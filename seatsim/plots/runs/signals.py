@@ -1,4 +1,4 @@
-"""Channels of runs over time, as a whole and close up, and over frequency: densities, transmissibility."""
+"""Channels of runs over time, close up, and over frequency: densities, transmissibility."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from seatsim.metrics.spectra import POWER, TRUSTED, estimate_density, trusted_ga
 from seatsim.plots import style
 from seatsim.plots.densities import draw_densities, find_first, find_problem, state_method
 from seatsim.plots.runs.looks import Shown
-from seatsim.plots.style import COLOURS, DARK, DASHES, GREY, WIDTH, Entry, Grid
-from seatsim.plots.thinning import BINS, Window, find_loudest, thin_line
+from seatsim.plots.style import COLOURS, DARK, DASHES, GREY, Entry, Grid
+from seatsim.plots.thinning import Window, find_loudest, thin_line
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.printing import describe_channel
@@ -24,15 +24,16 @@ from seatsim.simulation.naming import distinguish_runs
 from seatsim.simulation.result import UNITS, Run
 
 CLOSE_UP = 6.0
-"""Length in s of the close-up: about nine swings of a seat suspension."""
+"""Length in s of the window: about nine swings of a seat suspension."""
 RASTER = 0.1
-"""Raster in s on which a close-up begins, the digits that its title has."""
+"""Raster in s on which the window begins, the digits that the note has."""
 LETTERS = 13
 """Letters of a line of a label beside a panel that is this low."""
 NEAR = 0.2
 """Share of an end stop's distance that the motion must reach for the stop to be drawn; else it would look flat."""
+RESTLESS, PALE = 2.5, 0.3
+"""Length of a line over the median of a panel's lines from which on it is drawn pale behind them, and its opacity."""
 CHANNELS = ("driver_acceleration", "suspension_displacement", "damper_force", "coil_current")
-TEMPERATURE = "damper_temperature"
 _TARGETS = {"damper_force": "wanted_force", "coil_current": "current_command"}
 """Channels that others should follow."""
 RUN = Entry("the run", COLOURS[0], width=1.1)
@@ -49,61 +50,51 @@ NOTE = (
 
 
 def plot_time_histories(shown: Shown) -> Figure:
-    """Return driver acceleration, suspension displacement, damper force, current, and a changing temperature.
+    """Return driver acceleration, suspension displacement, damper force and current in one window.
 
-    Close up is the window with the largest RMS of the first run's driver acceleration, within all runs. What
-    was wanted and commanded is drawn for a single run only, which is shown as a whole, too.
+    It is that with the largest RMS of the first run's driver acceleration, within all runs. What was wanted and
+    commanded is drawn for a single run only.
     """
-    single = len(shown.runs) == 1
-    first, common = shown.runs[0].history, float(min(run.history["time"][-1] for run in shown.runs))
+    single, first = len(shown.runs) == 1, shown.runs[0].history
+    common = float(min(run.history["time"][-1] for run in shown.runs))
     window = find_loudest(first["driver_acceleration"][first["time"] <= common], first.step, CLOSE_UP, RASTER)
     note = f"{window}, where the driver's RMS acceleration is largest{' in the first run' * (not single)}."
-    views = [window]
-    if not np.any(first["driver_acceleration"]):
-        views, note = [Window(0.0, common)], "The whole run, at rest."
-    elif window.end >= common:
+    if window.end >= common:
         note = "The whole run."
-    elif single:
-        views, note = [Window(0.0, common), window], f"Left: whole run. Right (grey on the left): {note}"
-    limits, warms = _find_limits(shown.runs), any(np.ptp(run.history[TEMPERATURE]) > 0 for run in shown.runs)
-    channels = (*CHANNELS, TEMPERATURE) if warms else CHANNELS
+    if not np.any(first["driver_acceleration"]):
+        window, note = Window(0.0, min(common, CLOSE_UP)), "At rest."
+    limits = _find_limits(shown.runs)
     # A law that states a current wants no force.
     target = _TARGET if np.isfinite(first["wanted_force"]).any() else _TARGET._replace(label="commanded current")
     looks = [RUN] if single else shown.looks
     legend = [*looks, *[target] * single, *[LIMIT] * bool(limits)]
-    grid = Grid((1.2,) * len(channels), len(views), left=1.12, gap=(0.4, 0.3))
+    grid = Grid((1.3,) * len(CHANNELS), left=1.12, gap=(0.0, 0.3))
     page = style.make_page(f"Time histories: {shown.title}", note + shown.omission, grid, legend)
-    for row, channel in zip(page.rows, channels, strict=True):
+    for [axes], channel in zip(page.rows, CHANNELS, strict=True):
         lines = [(run, channel, look) for run, look in zip(shown.runs, looks, strict=True)]
         if single and channel in _TARGETS and np.isfinite(first[_TARGETS[channel]]).any():
             lines.insert(0, (shown.runs[0], _TARGETS[channel], target))
-        for axes, view in zip(row, views, strict=True):
-            for line in lines:
-                _draw_line(axes, *line, view)
-            axes.set_xlim(*view)
-            for limit in limits if channel == "suspension_displacement" else ():
-                axes.axhline(1e3 * limit, color=LIMIT.colour, linestyle=":", linewidth=LIMIT.width)
-            axes.tick_params(labelbottom=row is page.rows[-1])
-        row[0].set_ylabel(fill(describe_channel(channel, UNITS[channel]).axis, LETTERS))
-        row[0].yaxis.set_label_coords(-0.5 / (row[0].get_position().width * WIDTH), 0.5)
-        # The close-up has the scale of the whole run, on which it is marked.
-        for close in row[1:]:
-            row[0].axvspan(*window, color=style.AREA, zorder=0)
-            close.set_ylim(row[0].get_ylim())
-            close.tick_params(labelleft=False)
-    for axes in page.rows[-1]:
-        axes.set_xlabel("time [s]")
+        _draw_lines(axes, lines, window)
+        for limit in limits if channel == "suspension_displacement" else ():
+            axes.axhline(1e3 * limit, color=LIMIT.colour, linestyle=":", linewidth=LIMIT.width)
+        axes.set(xlim=window, ylabel=fill(describe_channel(channel, UNITS[channel]).axis, LETTERS))
+        axes.yaxis.set_label_coords(-0.5 / grid.width, 0.5)
+        axes.tick_params(labelbottom=axes is page.rows[-1][0])
+    axes.set_xlabel("time [s]")
     return style.name_coincident(page.figure)
 
 
-def _draw_line(axes: Axes, run: Run, channel: str, look: Entry, view: Window) -> None:
-    """Draw a channel of a run within a window."""
-    part = view.part(run.history.step)
-    values = describe_channel(channel, UNITS[channel]).factor * run.history[channel][part]
-    # The whole of a run has swings beside each other, with gaps between them where bins are wider than dots.
-    bins = BINS * (2 if view.end - view.start > CLOSE_UP else 1)
-    thinned = thin_line(run.history["time"][part], values, round(bins * axes.get_position().width))
-    style.draw_line(axes, *thinned, look)
+def _draw_lines(axes: Axes, lines: Sequence[tuple[Run, str, Entry]], window: Window) -> None:
+    """Draw channels of runs within a window; one that chatters lies pale behind the others."""
+    drawn = []
+    for run, channel, look in lines:
+        part = window.part(run.history.step)
+        values = describe_channel(channel, UNITS[channel]).factor * run.history[channel][part]
+        drawn.append(style.draw_line(axes, *thin_line(run.history["time"][part], values), look))
+    lengths = [float(np.nansum(np.abs(np.diff(line.get_ydata())))) for line in drawn]
+    for line, length in zip(drawn, lengths, strict=True):
+        if length > RESTLESS * float(np.median(lengths)) > 0.0:
+            line.set(alpha=PALE, zorder=1.9)
 
 
 def _find_limits(runs: Sequence[Run]) -> list[float]:
