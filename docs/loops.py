@@ -6,7 +6,7 @@ import math
 from urllib.parse import unquote
 
 from seatsim.characterisation.model_tests import load_specimen
-from seatsim.plots.loops import Family, make_loop_page
+from seatsim.plots.loops import Family, plot_families
 from seatsim.plots.saving import render_inline
 from seatsim.simulation.damper_bench import sine_test
 
@@ -30,7 +30,7 @@ def draw_loops(name: str) -> str:
         for i in currents
     ]
     title = f"sine of {1e3 * AMPLITUDE:g} mm at {frequency:g} Hz, 20 °C"
-    page = make_loop_page(name, "", [Family(title, "current", loops)])
-    drawing = unquote(render_inline(page.figure).source.removeprefix("data:image/svg+xml,"))
+    figure = plot_families(name, "", [Family(title, "current", loops)])
+    drawing = unquote(render_inline(figure).source.removeprefix("data:image/svg+xml,"))
     # The first thing that is drawn is the paper, which a page of either colour would show through.
     return drawing.replace("fill:none", "fill:white", 1) + "\n"

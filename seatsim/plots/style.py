@@ -46,6 +46,8 @@ DASHES: tuple[LineStyleType, ...] = ("-", (0.0, (5.0, 1.5)), (0.0, (7.0, 1.5, 1.
 """Neighbours differ in their dashes, and so do the two blues and the two reds: colour is not the only difference."""
 AREA = "0.91"
 """Grey of areas, such as a band of noise; a wide line of a legend names one."""
+_NUMBER, _FEW = 0.6, 3
+"""Width in inches of a number along an axis, such as -0.025, with the space to the next; how many are few."""
 _TICK = (0.4, 0.2)
 """Least distance of the numbers of a logarithmic axis in inches, along and up."""
 _FREQUENCIES = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000)
@@ -315,12 +317,15 @@ def _add_panels(figure: Figure, grid: Grid, top: float) -> list[list[Axes]]:
 
 
 def _add_panel(figure: Figure, place: tuple[float, float, float, float]) -> Axes:
-    """Return new axes with numbers at multiples of 1, 2 or 5, as many as there is room for."""
+    """Return new axes with round numbers, as many as there is room for."""
     axes = figure.add_axes(place)
     axes.grid(True, color="0.9", linewidth=0.7)
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
     axes.tick_params(labelsize=FONT)
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(MaxNLocator("auto", steps=(1, 2, 5, 10)))
+    along = max(2, int(axes.bbox.width / axes.figure.dpi / _NUMBER))
+    # Of few numbers, multiples of 3 and 4 are often the only ones on both sides of 0.
+    steps = (1, 2, 5, 10) if along > _FEW else (1, 2, 3, 4, 5, 10)
+    axes.xaxis.set_major_locator(MaxNLocator(along, steps=steps))
+    axes.yaxis.set_major_locator(MaxNLocator("auto", steps=(1, 2, 5, 10)))
     return axes

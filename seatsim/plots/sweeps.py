@@ -23,8 +23,6 @@ _MOST_KEYS = 14
 _ROW = 0.27
 """Height of a row of bars in inches."""
 MOST_PANELS = 6
-_MOST_POINTS = 4000
-"""Runs that are drawn in all panels; more of them hide each other."""
 _MOST_GROUPS = 7
 _FRONT = Entry("Pareto front", "black", width=1.2)
 
@@ -78,19 +76,15 @@ def plot_comfort(rows: SweepRows, order: Sequence[str]) -> Figure | None:
     values = [] if colour is None else sorted(shown[colour].unique())
     names = [*map(format_level, values)] or ["a run"]
     looks = [Entry(name, COLOURS[k], "none", mark="o") for k, name in enumerate(names)]
-    most = _MOST_POINTS // len(parts)
-    drawn = sum(min(most, len(part)) for _, part in parts)
-    some = f" {drawn} of {len(shown)} runs are drawn." if drawn < len(shown) else ""
     said = "" if colour in (None, "variant") else f" The colours are values of {colour}."
     columns = min(2, len(parts))
     grid = Grid((3.2 if columns == 1 else 2.0,) * -(-len(parts) // columns), columns, top=0.3, gap=(0.7, 0.85))
-    note = f"Lower left is better.{style.OWN_SCALES * (len(parts) > 1)}{said}{some}"
+    note = f"Lower left is better.{style.OWN_SCALES * (len(parts) > 1)}{said}"
     # Runs under different conditions, as with drivers of another mass, are no rivals.
     has_front = not any(is_condition(key) for key in order if key != road)
     page = style.make_page("Comfort against travel", note, grid, [*looks, *[_FRONT] * has_front])
     for axes, (title, part) in zip(page.list_panels(len(parts)), parts, strict=True):
-        dots = part.sample(most, random_state=0) if len(part) > most else part
-        groups = [dots] if colour is None else [dots[dots[colour] == value] for value in values]
+        groups = [part] if colour is None else [part[part[colour] == value] for value in values]
         for group, look in zip(groups, looks, strict=False):
             x, y = 1e3 * group[TRAVEL], group[COMFORT]
             axes.scatter(x, y, s=14, linewidths=0, alpha=0.7, color=look.colour, rasterized=True)

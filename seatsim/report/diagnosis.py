@@ -60,7 +60,7 @@ def report_diagnosis(diagnosis: Diagnosis) -> Report:
     notes, factors = _list_notes(diagnosis), judge_diagnosis(diagnosis)
     report = compose("diagnosis", about, answer, advise(diagnosis), sections, notes, factors, command)
     badge = (diagnosis.verdict, *read_words().verdicts[diagnosis.verdict])
-    return report._replace(badge=badge, doubt=f"{_say_probabilities(diagnosis)} {report.doubt}".strip())
+    return report._replace(badge=badge)
 
 
 def judge_diagnosis(diagnosis: Diagnosis) -> list[Factor]:
@@ -125,15 +125,6 @@ def advise(diagnosis: Diagnosis) -> list[str]:
         confirm=[cause.effect for cause in _select(diagnosis) if cause.at_bound],
         check=f"the refitted parameters{' and the effects found' * bool(diagnosis.selected)}",
     )
-
-
-def _say_probabilities(diagnosis: Diagnosis) -> str:
-    """Return how sure the diagnosis is of its causes."""
-    rest = [cause for cause in diagnosis.causes if cause.effect not in diagnosis.selected]
-    named = [f"{cause.effect} {format_percent(cause.probability)}" for cause in _select(diagnosis) if cause.probability]
-    named += [f"{'next ' * bool(named)}{cause.effect} {format_percent(cause.probability)}" for cause in rest[:1]]
-    another = f"another cause {format_percent(diagnosis.probability_unknown)}"
-    return f"Probability of being at work: {', '.join([*named, another])}."
 
 
 def _select(diagnosis: Diagnosis) -> list[Cause]:
@@ -201,8 +192,8 @@ def _show_causes(diagnosis: Diagnosis) -> list[Table]:
         sizes = "; ".join(f"{name} {format_estimate(value)}" for name, value in cause.parameters.items()) or UNKNOWN
         rows.append((cause.effect, meaning, sizes, *shares))
     if rest := [each.probability for each in diagnosis.causes if each not in shown]:
-        others, most = f"{len(rest)} other effect{'s' * (len(rest) > 1)}", f"{format_percent(max(rest))} or less"
-        rows.append((others, UNKNOWN, UNKNOWN, most, UNKNOWN))
+        most = f"≤ {format_percent(max(rest))}".replace("≤ <", "<")
+        rows.append((f"{len(rest)} other effect{'s' * (len(rest) > 1)}", UNKNOWN, UNKNOWN, most, UNKNOWN))
     ends = {"no effect at all": diagnosis.probability_none, "another cause": diagnosis.probability_unknown}
     rows += [(name, UNKNOWN, UNKNOWN, format_percent(value), UNKNOWN) for name, value in ends.items()]
     strong = [row for row, cause in enumerate(shown) if cause.effect in diagnosis.selected]

@@ -1,11 +1,9 @@
-"""The report of a sweep: what matters most, how often limits are exceeded, the best choices, quantiles."""
+"""The report of a sweep: what matters most, how often limits are exceeded, the best choices."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Any
-
-import pandas as pd
 
 from seatsim.dampers.base import DAMPERS
 from seatsim.metrics.table import COMFORT, TRAVEL
@@ -18,23 +16,17 @@ from seatsim.report.formatting import choose_advice, explain, format_quantity, s
 from seatsim.scenario.scenario import is_condition
 from seatsim.schema.printing import format_number, format_percent, format_unit
 from seatsim.sweeps.outcome import FAILED, UNVERIFIED
-from seatsim.sweeps.parts import NAMES, Exceedance, SweepRows, find_best_choices, is_number
+from seatsim.sweeps.parts import Exceedance, SweepRows, find_best_choices
 from seatsim.sweeps.sensitivity import Sensitivities, Sensitivity, choose_choice, choose_key
 
 _MATTERS = 0.1
 """Share of the variance from which on a key is worth a step."""
-SHOWN = (COMFORT, "driver_vdv", "seat_factor", TRAVEL, "suspension_displacement_peak", "end_stop_hits", "current_rms")
-"""Metrics of the tables of the page; `table.csv` has all of them."""
 MOST_LINES = 60
 """Lines of a table on the page."""
 _MOST_REASONS = 8
-_MOST_LEVELS, _BINS = 8, 5
-"""Values of a key that have rows or columns of their own; numbers with more are taken in bins of as many runs."""
 
 
-def report_sweep(
-    rows: SweepRows, quantiles: pd.DataFrame, found: Sensitivities, exceeded: Sequence[Exceedance]
-) -> Report:
+def report_sweep(rows: SweepRows, found: Sensitivities, exceeded: Sequence[Exceedance]) -> Report:
     """Return the report of a sweep from its rows and the statistics on them."""
     figures, count = draw_figures(found, rows), rows.usable.seed.nunique()
     seeds = explain("seeds" if count > 1 else "one_seed", count=str(count))
@@ -44,8 +36,6 @@ def report_sweep(
         "choices": tabulate_best(rows),
         "sensitivity": _show_sensitivity(found, rows, figures),
         "pareto": show_pictures(figures, "comfort"),
-        "maps": _tabulate_means(found, rows),
-        "quantiles": _show_quantiles(quantiles, rows),
         "states": _show_states(rows),
     }
     states = {state: int((rows.every.state == state).sum()) for state in (FAILED, UNVERIFIED)}
@@ -157,43 +147,9 @@ def draw_figures(found: Sensitivities, rows: SweepRows) -> Figures:
     for metric in _list_metrics(found, rows):
         shares, words = found.of(metric), describe_column(metric, rows.units).words
         figures[f"shares_{metric}"] = plot_shares(shares, words)
-    figures["comfort"] = plot_comfort(rows, _order_keys(found, rows))
+    order = dict.fromkeys([*(row.key for row in found.leading), *rows.keys])
+    figures["comfort"] = plot_comfort(rows, list(order))
     return {name: figure for name, figure in figures.items() if figure is not None}
-
-
-def _order_keys(found: Sensitivities, rows: SweepRows) -> list[str]:
-    """Return the varied keys, what matters most first."""
-    return list(dict.fromkeys([*(row.key for row in found.leading), *rows.keys]))
-
-
-def _tabulate_means(found: Sensitivities, rows: SweepRows) -> list[Table]:
-    """Return the mean comfort and travel over the two keys that matter most; nothing where fewer are varied.
-
-    Nothing too where one of them is a text with too many values.
-    """
-    keys = [key for key in _order_keys(found, rows) if key != "variant"][:2]
-    cells = [_group(rows.usable[key]) for key in keys]
-    tables = list[Table]()
-    for metric in (COMFORT, TRAVEL):
-        if len(keys) == 2 and metric in rows.metrics and all(each is not None for each in cells):
-            shown = describe_column(metric, rows.units)
-            means = rows.usable[metric].groupby([cells[1], cells[0]], observed=True).mean().unstack() * shown.factor
-            below, across = (describe_column(key, rows.units).axis for key in reversed(keys))
-            caption = f"Mean {shown.axis} over {below} (down) and {across} (across)"
-            head = [below, *map(str, means.columns)]
-            tables += tabulate(caption, head, means.itertuples(name=None))
-    return tables
-
-
-def _group(values: pd.Series) -> pd.Series | None:
-    """Return the values as ordered names of cells."""
-    if values.nunique() <= _MOST_LEVELS:
-        names = pd.Categorical(values.map(format_level), [format_level(x) for x in sorted(values.unique())], True)
-        return pd.Series(names, index=values.index)
-    if not is_number(values):
-        return None
-    cells = pd.qcut(values, _BINS, duplicates="drop")
-    return cells.cat.rename_categories([f"{c.left:.3g} to {c.right:.3g}" for c in cells.cat.categories])
 
 
 def _show_sensitivity(found: Sensitivities, rows: SweepRows, figures: Figures) -> list[Block]:
@@ -234,18 +190,6 @@ def _show_limits(exceeded: Sequence[Exceedance], rows: SweepRows) -> list[Block]
     groups = list(exceeded[0].group)
     head = [*groups, "metric", "limit", "runs above", what, "95 % interval"]
     return [*explain(lead), *tabulate("Runs above each limit", head, lines, len(groups) + 1)]
-
-
-def _show_quantiles(quantiles: pd.DataFrame, rows: SweepRows) -> list[Table]:
-    lines = []
-    for record in quantiles[quantiles.metric.isin(SHOWN)].head(MOST_LINES).to_dict("records"):
-        shown = describe_column(str(record["metric"]), rows.units)
-        groups = (format_level(record[key]) for key in rows.texts)
-        values = (shown.factor * float(record[name]) for name in ("mean", "min", *NAMES, "max"))
-        lines.append([*groups, shown.words, shown.unit, str(record["runs"]), *values])
-    head = [*rows.texts, "metric", "unit", "runs", "mean", "least", "5 %", "25 %", "median", "75 %", "95 %", "greatest"]
-    caption = f"Quantiles of the runs of each group: {len(lines)} lines; table.csv has every group and metric"
-    return tabulate(caption, head, lines, len(rows.texts) + 2, folded=True)
 
 
 def _show_states(rows: SweepRows) -> list[Table]:

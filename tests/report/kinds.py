@@ -33,7 +33,7 @@ from seatsim.simulation.result import Result
 from seatsim.simulation.runs import run_one
 from seatsim.standards.comfort import comfort
 from seatsim.standards.seat_rows import DampingRow, DampingTest, SeatRow, SeatTest
-from seatsim.sweeps.parts import SweepRows, count_exceedances, tabulate_quantiles
+from seatsim.sweeps.parts import SweepRows, count_exceedances
 from seatsim.sweeps.sensitivity import analyse_sensitivity
 
 from ..text import parse
@@ -154,7 +154,7 @@ def working_day():
 
 def _report_sweep():
     rows = sweep()
-    return report_sweep(rows, tabulate_quantiles(rows), analyse_sensitivity(rows), count_exceedances(rows))
+    return report_sweep(rows, analyse_sensitivity(rows), count_exceedances(rows))
 
 
 def _report_identification():

@@ -109,7 +109,7 @@ def write_sweep_report(folder: str | Path, out: str | Path | None = None) -> Swe
     contents = {
         "table.csv": quantiles,
         "sensitivity.csv": tabulate_sensitivities(found),
-        "report.html": report_sweep(rows, quantiles, found, exceeded),
+        "report.html": report_sweep(rows, found, exceeded),
     }
     # In the folder of the sweep the manifest is that of the sweep.
     is_own = out.resolve() == folder.resolve()

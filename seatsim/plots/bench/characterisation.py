@@ -84,13 +84,8 @@ def _draw_responses(axes: Axes, shown: list[tuple[Response, StepResponse]]) -> N
         for time, share in _TIMES:
             axes.plot(1e3 * getattr(row, time), share, "o", color=colour, markersize=4)
         top = max(top, float(np.max(answer.share)) + 0.05)
-    for time, share in _TIMES:
+    for _, share in _TIMES:
         axes.axhline(share, color=GREY, linewidth=0.7, linestyle=(0.0, (1.0, 2.0)))
-        # The time in words, of all responses of the panel together.
-        known = sorted(round(1e3 * value, 1) + 0.0 for _, row in shown if math.isfinite(value := getattr(row, time)))
-        ends = " to ".join(f"{each:g}" for each in sorted({*known[:1], *known[-1:]}))
-        words = f"{time} = {ends} ms" if known else f"{time} is not reached"
-        axes.text(0.99e3 * end, share - 0.02, words, fontsize=9, horizontalalignment="right", verticalalignment="top")
     axes.set(xlabel="time [ms]", xlim=(-0.08e3 * end, 1e3 * end), ylim=(-0.15, top))
     axes.set_yticks([0, *(share for _, share in _TIMES)], ["0", *(f"{share:.2g}" for _, share in _TIMES)])
     axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.17), fontsize=style.FONT, frameon=False, borderaxespad=0)

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from seatsim.characterisation.rows import WARMER, Row, group_rows
 from seatsim.characterisation.summary import Characterisation, group_by_setting
-from seatsim.plots import style
-from seatsim.plots.loops import Family, draw_samples, label_panels, make_loop_page
+from seatsim.plots.loops import Family, plot_families
 from seatsim.plots.style import clean_text
 from seatsim.plots.thinning import spread_evenly
 from seatsim.simulation.damper_bench import SineTest
@@ -26,19 +24,15 @@ _SAME_CURRENT = 0.02
 """A; difference of currents that are the same but for their noise."""
 _SAME_MOTION = 0.1
 """Relative difference of strokes and speeds of records whose clouds share their panels."""
-DOTS = 2000
 
 
 def plot_loops(found: Characterisation) -> Figure:
     """Return the loops by current for each amplitude and frequency, by temperature where it varies, and clouds."""
-    (families, left_out), clouds = find_families(found.rows), group_clouds(found.rows)
+    (families, left_out), clouds = find_families(found.rows), list(map(show_cloud, group_clouds(found.rows)))
     note = "Mean of the steady cycles." if found.measured else "Last cycle of a sine test."
     note = f"{note} Displacement from mid-stroke." if families else "Records without steady cycles."
     note += f" {left_out} further settings are not shown." if left_out else ""
-    page = make_loop_page(f"Loops: {found.name}", note, families, len(clouds))
-    for panels, group in zip(page.rows[len(families) :], clouds, strict=True):
-        _draw_clouds(panels, group)
-    return page.figure
+    return plot_families(f"Loops: {found.name}", note, [*families, *clouds])
 
 
 def find_families(rows: Sequence[Row]) -> tuple[list[Family], int]:
@@ -101,6 +95,15 @@ def group_clouds(rows: Sequence[Row]) -> list[list[Row]]:
     return group_rows([row for row in rows if row.cloud is not None], _moves_alike)[:_MOST_CLOUDS]
 
 
+def show_cloud(group: Sequence[Row]) -> Family:
+    """Return the samples of records without cycles in the order of their currents."""
+    ordered = sorted(group, key=lambda row: row.current)
+    clouds = [(f"{row.current:.3g} A", row.cloud) for row in ordered if row.cloud is not None]
+    names = list(dict.fromkeys(row.record.split(",")[0] for row in group))
+    title = f"{names[0]}{f' and {len(names) - 1} more' * (len(names) > 1)}, not cyclic"
+    return Family(title, "mean current", clouds, dots=True)
+
+
 def _centre_loop(row: Row) -> SineTest:
     """Return the loop of a row with its displacement from mid-stroke."""
     assert row.loop is not None
@@ -116,18 +119,3 @@ def _varies(values: Sequence[float], by: float) -> bool:
 def _moves_alike(a: Row, b: Row) -> bool:
     pairs = ((a.amplitude, b.amplitude), (a.peak_speed, b.peak_speed))
     return all(abs(p - q) <= _SAME_MOTION * p for p, q in pairs) and a.current != b.current
-
-
-def _draw_clouds(panels: Sequence[Axes], group: Sequence[Row]) -> None:
-    """Draw samples of records without cycles, coloured by current, with a bar of colours."""
-    most = max(float(np.max(row.cloud.current)) for row in group if row.cloud is not None)
-    # The largest current first: its cloud is the widest and would cover the others.
-    for row in sorted(group, key=lambda row: -row.current):
-        assert row.cloud is not None
-        x, v, force, current = (values[:: max(1, len(row.cloud.force) // DOTS)] for values in row.cloud)
-        for axes, across in ((panels[0], v), (panels[1], 1e3 * x)):
-            dots = draw_samples(axes, across, force, current, most)
-    names = list(dict.fromkeys(row.record.split(",")[0] for row in group))
-    label_panels(panels, f"{names[0]}{f' and {len(names) - 1} more' * (len(names) > 1)}, not cyclic")
-    if most > 0:
-        style.add_colour_bar(panels[1], dots, "current [A]")

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from seatsim.plots import style
-from seatsim.plots.loops import SIGNS, draw_samples
+from seatsim.plots.loops import SIGNS
 from seatsim.plots.style import COLOURS, Entry, Grid
 from seatsim.rig.temperature import Thermal
 from seatsim.simulation import naming
@@ -48,20 +48,21 @@ def plot_force_velocity(runs: Sequence[Run]) -> Figure:
     looks = [Entry(f"sine test at {i:g} A", c, width=1.8) for i, c in zip(currents, ("0.5", "black"), strict=True)]
     changes = float(np.ptp(current)) > 0
     colour = style.sample_colours("viridis", 3)[1] if changes else COLOURS[0]
-    dots = Entry("the run" + " (colour: current)" * changes, colour, "none", mark="o")
+    sample = Entry("the run" + " (colour: current)" * changes, colour, "none", mark="o")
     areas = Entry("the damper gives energy back", style.AREA, width=8)
     note = f"Sine tests at {temperature:g} °C, amplitude {1e3 * amplitude:.3g} mm, {FREQUENCY:g} Hz. {SIGNS}"
     note += f" One of {len(runs)} runs: the one whose current varies the most." * (len(runs) > 1 and changes)
     title = f"Damper at work: {naming.make_title([run])}"
-    figure, [[axes]] = style.make_page(title, note, Grid((3.3,), right=1.0), [dots, *looks, areas])
+    figure, [[axes]] = style.make_page(title, note, Grid((3.3,), right=1.0), [sample, *looks, areas])
     for look, test in zip(looks, tests, strict=True):
         style.draw_line(axes, test.velocity, test.force, look).set_zorder(0.9)
-    part = slice(None, None, -(-len(velocity) // _MOST_SAMPLES))
+    part = np.arange(0, len(velocity), -(-len(velocity) // _MOST_SAMPLES))
+    # Large currents on top.
+    part = part[np.argsort(current[part], kind="stable")]
+    drawn = axes.scatter(velocity[part], force[part], 6, color=COLOURS[0], linewidths=0, rasterized=True)
     if changes:
-        drawn = draw_samples(axes, velocity[part], force[part], current[part], float(np.quantile(current, _USUAL)))
+        drawn.set(array=current[part], cmap=style.shade("viridis"), clim=(0.0, np.quantile(current, _USUAL) or 1.0))
         style.add_colour_bar(axes, drawn, "coil current [A]", extend="max")
-    else:
-        axes.scatter(velocity[part], force[part], s=6, color=COLOURS[0], linewidths=0, rasterized=True)
     # Where force and velocity differ in sign a damper can only return what it stored.
     right, top = (max(abs(end) for end in ends) for ends in (axes.get_xlim(), axes.get_ylim()))
     for corner in ((-right, 0.0), (0.0, -top)):

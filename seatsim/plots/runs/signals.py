@@ -110,11 +110,10 @@ def plot_psd(shown: Shown) -> Figure:
     groups: dict[bytes, list[Run]] = {}
     for run in shown.runs:
         groups.setdefault(run.history["floor_acceleration"].tobytes(), []).append(run)
-    names = [distinguish_runs(group, shown.runs)[0] for group in groups.values()] if len(groups) > 1 else [""]
-    floors = [
-        Entry(f"floor: {name}".removesuffix(": "), f"{0.7 - 0.5 * k / len(names):.2f}", dashes, 2.2)
-        for k, (name, dashes) in enumerate(zip(names, cycle(DASHES), strict=False))
-    ]
+    names = [f"floor: {distinguish_runs(group, shown.runs)[0]}" for group in groups.values()]
+    floors = [Entry("floor", "0.7", width=2.2)]
+    if len(names) > 1:
+        floors = [Entry(name, GREY, dashes, 2.2) for name, dashes in zip(names, cycle(DASHES), strict=False)]
     drivers = shown.looks if len(shown.runs) > 1 else [shown.looks[0]._replace(label="driver")]
     signals = [(group[0].history, "floor_acceleration") for group in groups.values()]
     signals += [(run.history, "driver_acceleration") for run in shown.runs]
