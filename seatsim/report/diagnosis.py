@@ -243,7 +243,7 @@ def _show_gaps(diagnosis: Diagnosis) -> list[Block]:
     stages = {key: name for key, name in STAGES.items() if key != "after" or diagnosis.selected}
     rows = [_make_row(gap, name, name.replace("_", " "), stages) for name in ("overall", *gap.before.channels)]
     head = ["channel", *stages.values(), "shrinks by"]
-    blocks: list[Block] = [Text(f"{_describe_shrink(diagnosis)} {EXPLAINED}")]
+    blocks: list[Block] = [Text(f"{_describe_shrink(diagnosis)} {EXPLAINED}".strip())]
     blocks += tabulate(f"Gaps on {held}", head, rows, 1, [0])
     if len(gap.by_run) > 1:
         rows = [_make_row(each, "overall", each.run, stages) for each in gap.by_run]
@@ -271,15 +271,12 @@ def _make_row(gaps: Gaps | RunGaps, channel: str, name: str, keys: Iterable[str]
 
 
 def _describe_shrink(diagnosis: Diagnosis) -> str:
-    gap = diagnosis.gap
-    if not diagnosis.selected or not math.isfinite(gap.shrink):
-        before, after = format_percent(gap.before.overall), format_percent(gap.calibrated.overall)
-        return f"Refitting alone takes the gap from {before} to {after}; {formatting.say_noise(gap.floor.overall)}."
-    low, high = gap.shrink_interval
-    known = math.isfinite(low + high)
-    between = f" (90 % interval on other runs of the kind: {format_percent(low)} to {format_percent(high)})" * known
-    effects = "effect" if len(diagnosis.selected) == 1 else "effects"
-    return f"The gap shrinks by {format_percent(gap.shrink)}{between} with the {effects} found."
+    """Return by how much the gap shrinks on other runs of the kind, where that is known."""
+    low, high = diagnosis.gap.shrink_interval
+    if not diagnosis.selected or not math.isfinite(low + high):
+        return ""
+    shrink = format_percent(diagnosis.gap.shrink)
+    return f"The gap shrinks by {shrink} (90 % interval: {format_percent(low)} to {format_percent(high)})."
 
 
 def show_signals(diagnosis: Diagnosis, figures: Figures) -> list[Block]:

@@ -183,7 +183,13 @@ def tabulate_classes(rows: Sequence[SeatRow]) -> list[Table]:
 
 
 def tabulate_damping(rows: Sequence[DampingRow]) -> list[Table]:
-    """Return the table of the damping test, a row for each seat and class."""
-    tested = ((row, (row.resonance, row.transmissibility, row.limit)) for row in rows)
-    lines = [(row.run, row.spectral_class, _PASSED[row.passed], *figures) for row, figures in tested]
-    return show_table("damping", lines, 3, [k for k, row in enumerate(rows) if not row.passed], clause=DAMPING)
+    """Return the table of the damping test, a row for each seat and limit."""
+    groups = dict[tuple[str, float, float], list[DampingRow]]()
+    for row in rows:
+        groups.setdefault((row.run, row.transmissibility, row.limit), []).append(row)
+    lines = []
+    for alike in groups.values():
+        classes, one = join_names([row.spectral_class for row in alike]), alike[0]
+        lines.append((one.run, classes, _PASSED[one.passed], one.resonance, one.transmissibility, one.limit))
+    strong = [k for k, alike in enumerate(groups.values()) if not alike[0].passed]
+    return show_table("damping", lines, 3, strong, clause=DAMPING)

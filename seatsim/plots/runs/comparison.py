@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from scipy.optimize import isotonic_regression
 
 from seatsim.metrics.table import COMFORT, SEAT, TRAVEL, UNWEIGHTED
 from seatsim.plots import style
@@ -132,11 +133,11 @@ def _draw_panel(axes: Axes, panel: Panel, looks: Mapping[str, Entry]) -> None:
 def _name_points(axes: Axes, points: Array, texts: Sequence[str]) -> None:
     """Write names in a column beside a panel, in the order of their points, each at a line that ends in its point."""
     order = np.argsort(points[:, 1], kind="stable")
-    apart, steps = _APART * axes.figure.dpi / axes.bbox.height, np.arange(len(texts))
+    lines = _APART * axes.figure.dpi / axes.bbox.height * np.arange(len(texts))
     level = axes.transAxes.inverted().transform(axes.transData.transform(points))[order, 1]
-    level = np.maximum.accumulate(level - apart * steps) + apart * steps
-    level = np.minimum(level, 1.0 - apart * steps[::-1])
-    for k, height in zip(order, level, strict=True):
+    # The nearest places, in the sense of least squares, that are a line apart.
+    places = np.clip(isotonic_regression(level - lines).x, 0.0, 1.0 - lines[-1]) + lines
+    for k, height in zip(order, places, strict=True):
         axes.annotate(
             clean_text(texts[k], 32), points[k], (1.04, height), textcoords="axes fraction", va="center",
             fontsize=style.FONT, arrowprops={"arrowstyle": "-", "color": GREY, "linewidth": 0.7, "relpos": (0.0, 0.5)},
