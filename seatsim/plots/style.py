@@ -57,7 +57,7 @@ _FREQUENCIES = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000)
 class Entry(NamedTuple):
     """An entry of a legend: what it calls a line, and how that line looks; width in points, `alpha` its opacity.
 
-    `mark` is a marker of matplotlib, which is `hollow` where one behind it is to be seen.
+    `mark` is a marker of matplotlib.
     """
 
     label: str
@@ -66,7 +66,6 @@ class Entry(NamedTuple):
     width: float = 1.4
     alpha: float = 1.0
     mark: str = ""
-    hollow: bool = False
 
 
 OWN_SCALES = " Each panel has its own scales."
@@ -282,7 +281,6 @@ def _dress(line: Line2D, look: Entry, longest: int) -> Line2D:
     """Return a line with the look of an entry, and its label in at most `longest` letters."""
     line.set(color=look.colour, linestyle=look.dashes, linewidth=look.width, alpha=look.alpha, marker=look.mark)
     line.set(label=clean_text(look.label, longest), solid_capstyle="butt")
-    line.set(fillstyle="none" if look.hollow else "full", markeredgewidth=1.8 if look.hollow else 1.0)
     return line
 
 

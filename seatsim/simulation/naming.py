@@ -11,13 +11,13 @@ from seatsim.schema.printing import LONGEST, format_unit, shorten
 from seatsim.simulation.result import Run
 
 
-def label_runs(runs: Sequence[Run], longest: int = LONGEST, without: Collection[str] = ()) -> list[str]:
+def label_runs(runs: Sequence[Run], without: Collection[str] = ()) -> list[str]:
     """Return what sets each run apart from the others: variant and swept values, less those of some keys.
 
     Of runs of one scenario its name is left out; names that are alike are numbered.
     """
     several = len({run.scenario.name for run in runs}) > 1
-    names = [shorten(_describe(run.scenario, several, without), longest) for run in runs]
+    names = [shorten(_describe(run.scenario, several, without), LONGEST) for run in runs]
     return [
         f"{name} ({names[: k + 1].count(name)})" if not without and names.count(name) > 1 else name
         for k, name in enumerate(names)
