@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 from matplotlib.axes import Axes
 
-from seatsim.metrics.spectra import FIRST_LINE, LEAST_SAMPLES, LONGEST, PER_OCTAVE, SEGMENTS
+from seatsim.metrics.spectra import FIRST_LINE, LEAST_SAMPLES, PER_OCTAVE
 from seatsim.plots import style
 from seatsim.plots.style import Entry
 from seatsim.schema.arrays import Array
@@ -17,10 +17,6 @@ DECADES = 5.0
 """Decades below the highest density, of the motion of a seat."""
 _Densities: TypeAlias = Sequence[tuple[Array, Array]]
 """Frequencies in Hz and power spectral densities of some lines, shape (F,) each."""
-METHOD = (
-    f"Welch's method, {SEGMENTS} half-overlapping segments or more of {LONGEST:g} s at most, averaged over"
-    f" 1/{PER_OCTAVE} octave."
-)
 
 
 def find_first(densities: _Densities) -> float:

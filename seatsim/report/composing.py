@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 
-from seatsim.plots.densities import METHOD
 from seatsim.provenance.statement import state_command
 from seatsim.report.blocks import Block, Code, Items, Report, Section, Text
 from seatsim.report.credibility import Factor, say_doubt, show_card
@@ -41,7 +40,7 @@ def compose(
         facts: what the sentences on the method leave open.
     """
     words = read_words()
-    method = [text.format(density=METHOD, **facts) for text in words.methods[kind]]
+    method = [text.format(**facts) for text in words.methods[kind]]
     versions = show_table("versions", [(name, version(name)) for name in _PACKAGES], 2)
     again: list[Block] = [Text("This command makes the report again:"), Code(state_command(command))]
     own = [Section(anchor, words.headings[kind][anchor], blocks) for anchor, blocks in sections.items()]
