@@ -10,6 +10,8 @@ from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
 from seatsim.schema.arrays import Array
 
+_COLOUR = 0.5
+"""Excess of a channel that the colour of its sensor's noise may leave, whose stated RMS is taken for that of white."""
 _LEAST_REMOVABLE = 0.01
 """Removable gap, in standard deviations, below which its share is not asked for, since it is that of a small number."""
 
@@ -58,9 +60,9 @@ def _measure_channel_excess(evaluation: Evaluation) -> Array:
 
 
 def measure_shares_left(problem: DiagnosisProblem, before: Evaluation, after: Evaluation) -> list[float]:
-    """Return the share of the excess that is left of every channel with a material gap before."""
+    """Return the share of the excess that is left, beyond noise, of every channel with a material gap before."""
     gaps = measure_remainders(problem, before)
-    excess, left = _measure_channel_excess(before), _measure_channel_excess(after)
+    excess, left = _measure_channel_excess(before), np.maximum(_measure_channel_excess(after) - _COLOUR, 0.0)
     settings = problem.settings
     channels = np.flatnonzero((gaps > settings.decision.material) & (excess > settings.selection.nothing_left))
     return [float(left[k] / excess[k]) for k in channels]

@@ -74,16 +74,19 @@ def stated(by_run, remainder=(0.0, 0.0)):
 
 def test_the_share_left_is_that_of_channels_with_a_material_gap():
     problem = pose((0.0, 0.0)).problem
-    after = stated([(3.0, 1.5), (3.0, 1.5)])
+    # Of an excess, 0.5 may be the colour of the noise: what is left of 2.0 and 0.75 are 1.5 and 0.25.
+    after = stated([(3.0, 1.75), (3.0, 1.75)])
     before = [(9.0, 5.0), (9.0, 5.0)]
-    np.testing.assert_allclose(measure_shares_left(problem, stated(before, (0.1, 0.1)), after), [2.0 / 8.0, 0.5 / 4.0])
+    shares = [1.5 / 8.0, 0.25 / 4.0]
+    np.testing.assert_allclose(measure_shares_left(problem, stated(before, (0.1, 0.1)), after), shares)
+    assert measure_shares_left(problem, stated(before, (0.1, 0.1)), stated([(1.4, 1.0)] * 2)) == [0.0, 0.0]
     # A gap of 0.03 standard deviations is not material, an excess of 0.1 is nothing to explain.
-    np.testing.assert_allclose(measure_shares_left(problem, stated(before, (0.03, 0.1)), after), [0.125])
+    np.testing.assert_allclose(measure_shares_left(problem, stated(before, (0.03, 0.1)), after), shares[1:])
     faint = [(9.0, 1.1), (9.0, 1.1)]
-    np.testing.assert_allclose(measure_shares_left(problem, stated(faint, (0.1, 0.1)), after), [0.25])
+    np.testing.assert_allclose(measure_shares_left(problem, stated(faint, (0.1, 0.1)), after), shares[:1])
     assert measure_shares_left(problem, stated(faint, (0.03, 0.1)), after) == []
     found = measure_shares_left(problem, stated([(9.0, 1.16)] * 2, (0.051, 0.051)), after)
-    assert len(found) == 2 and found[0] == pytest.approx(0.25)
+    assert len(found) == 2 and found[0] == pytest.approx(shares[0])
 
 
 def having(names):
