@@ -49,14 +49,6 @@ class History:
 
         return pd.DataFrame(dict(self.channels))
 
-    def to_sep005(self) -> list[dict[str, object]]:
-        """Return the channels as SEP 005 of the SDyPy project lists them, each with its name, unit and rate in Hz."""
-        return [
-            {"name": name, "unit_str": UNITS[name], "fs": 1.0 / self.step, "data": values}
-            for name, values in self.channels.items()
-            if name != "time"
-        ]
-
 
 class Channel(np.ndarray[tuple[int, ...], np.dtype[np.float64]]):
     """A channel of a run: an array of shape (N,) with its `name` and `unit`, not to be written into.

@@ -47,10 +47,6 @@ def test_what_is_returned_fits_a_screen_and_goes_to_pandas(seat_file):
     frame = run.history.to_pandas()
     assert list(frame) == list(run.history.channels) and len(frame) == 501
     np.testing.assert_array_equal(frame.driver_acceleration, run["driver_acceleration"])
-    channels = run.history.to_sep005()
-    pytest.importorskip("sdypy_sep005.sep005").assert_sep005(channels)
-    by_name = {each["name"]: each for each in channels}
-    assert by_name["damper_force"]["unit_str"] == "N" and by_name["damper_force"]["fs"] == 1000.0
 
 
 def test_a_scenario_made_of_a_mapping_is_that_of_the_file(seat_file):

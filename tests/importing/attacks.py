@@ -184,13 +184,6 @@ def _mdf_packed(stated, folder):
     return bytes(content)
 
 
-def _mdf3_in_a_circle(kind, folder):
-    content = _written(exports.mdf, "a.mdf", folder)
-    block = content.index(kind, 64)
-    struct.pack_into("<I", content, block + 4, block)
-    return bytes(content)
-
-
 def sheet(rows, dimension="A1:H201"):
     """Return a workbook with these rows in the place of those of its only sheet."""
     written, content = io.BytesIO(), io.BytesIO()
@@ -281,7 +274,5 @@ ATTACKS = {
     "mdf_history_in_a_circle": partial(_mdf_in_a_circle, b"##FH", 0),
     "mdf_packed_zeros": partial(_mdf_packed, 2**26),
     "mdf_packed_zeros_that_state_less": partial(_mdf_packed, 64 * len(ROWS)),
-    "mdf3_channels_in_a_circle": partial(_mdf3_in_a_circle, b"CN"),
-    "mdf3_groups_in_a_circle": partial(_mdf3_in_a_circle, b"DG"),
 }
 """Name of an attack, of which the first word is the format, and what makes the file."""

@@ -1,7 +1,6 @@
 """One seat recording written in every format, as other programs export it."""
 
 import gzip
-import json
 import warnings
 
 import asammdf
@@ -94,32 +93,17 @@ def mat_timetable(path, table):
         matio.save_to_mat(str(path), {"run": frame}, version=version, do_compression=False)
 
 
-LVM_HEAD = "LabVIEW Measurement\nSeparator\tTab\nDecimal_Separator\t{decimal}\nX_Columns\t{x}\n***End_of_Header***\n"
-
-
-def print_lvm(x_columns, segments, units, decimal=".", step=0.01, starts=("09:51:40.5",)):
-    """Return what LabVIEW writes of channels with their units: a segment for each table of rows of cells.
-
-    There is no column of x, one (`One`) or one for each channel (`Multi`).
-    """
-    names, is_multi = list(units), x_columns == "Multi"
-    between = "\t\t" if is_multi else "\t"
-    lines = []
-    for start, rows in zip(starts, segments, strict=True):
-        cells = {"Samples": len(rows), "Date": "2026/03/01", "Time": start, "X_Dimension": "Time", "X0": 0}
-        cells["Delta_X"] = str(step).replace(".", decimal)
-        of_channels = {key: [str(value)] * len(names) for key, value in cells.items()}
-        of_channels |= {"Channels": [str(len(names))], "Y_Unit_Label": units.values()}
-        lines += ["\t", *(f"{key}\t{between.join(row)}\t" for key, row in of_channels.items())]
-        named = "\tX_Value\t".join(names) if is_multi else "\t".join(names)
-        lines += ["***End_of_Header***\t\t", f"X_Value\t{named}\tComment"]
-        lines += ["\t".join("" if np.isnan(c) else f"{c:.15g}".replace(".", decimal) for c in row) for row in rows]
-    return LVM_HEAD.format(decimal=decimal, x=x_columns) + "\n".join([*lines, ""])
-
-
 def lvm(path, table):
+    """What LabVIEW writes: keys with a cell for each channel, and remarks in a last column without cells."""
+    names = [name for name in table if name != "time"]
+    cells = {"Samples": len(table["time"]), "Date": "2026/03/01", "Time": "09:51:40.5", "X_Dimension": "Time"}
+    lines = ["LabVIEW Measurement", "Separator\tTab", "Decimal_Separator\t,", "X_Columns\tOne", "***End_of_Header***"]
+    lines += ["\t", *("\t".join([key, *[str(cell)] * len(names), ""]) for key, cell in cells.items())]
+    lines += ["\t".join(["Y_Unit_Label", *(UNITS[name] for name in names), ""]), "***End_of_Header***\t\t"]
+    lines += ["\t".join(["X_Value", *names, "Comment"])]
     rows = np.column_stack(list(table.values()))
-    path.write_text(print_lvm("One", [rows], {name: UNITS[name] for name in table if name != "time"}, ",", 0.002))
+    lines += ["\t".join(f"{cell:.15g}".replace(".", ",") for cell in row) for row in rows]
+    path.write_text("\n".join([*lines, ""]))
 
 
 def mdf(path, table):
@@ -128,7 +112,7 @@ def mdf(path, table):
         for name, values in table.items()
         if name != "time"
     ]
-    with asammdf.MDF(version="3.30" if path.suffix == ".mdf" else "4.10") as file:
+    with asammdf.MDF(version="4.10") as file:
         file.append(signals, common_timebase=True)
         file.save(path, overwrite=True)
 
@@ -187,16 +171,10 @@ def rpc(path, table):
     path.write_bytes(records.ljust(blocks * 512, b"\0") + body)
 
 
-def sep005(path, table):
-    channels = [(name, values.tolist()) for name, values in table.items() if name != "time"]
-    listed = [{"data": values, "name": name, "unit_str": UNITS[name], "fs": 500.0} for name, values in channels]
-    path.write_text(json.dumps(listed))
-
-
 FORMATS = {
     "a.csv": csv, "a.csv.gz": csv_gz, "german.csv": german_csv, "a.parquet": parquet, "a.feather": feather,
     "a.xlsx": xlsx, "a.h5": hdf5, "a.mat": mat5, "v73.mat": mat73, "table.mat": mat_timetable,
-    "table73.mat": mat_timetable, "a.lvm": lvm, "a.mdf": mdf, "a.mf4": mdf, "a.tdms": tdms,
-    "a.uff": uff, "a.rsp": rpc, "a.json": sep005,
+    "table73.mat": mat_timetable, "a.lvm": lvm, "a.mf4": mdf, "a.tdms": tdms,
+    "a.uff": uff, "a.rsp": rpc,
 }  # fmt: skip
 """Name of a file, and what writes it."""

@@ -2,14 +2,9 @@
 
 import shutil
 import sys
-from contextlib import nullcontext
-from functools import partial
-from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from scipy.io import wavfile
 
 from seatsim.importing.importing import import_files
 from seatsim.importing.inspection import inspect_file
@@ -50,8 +45,9 @@ def test_a_truncated_file_is_one_clear_error(exported, tmp_path):
     cut = tmp_path / exported.name
     # A reader has all of the header and lacks some of the numbers; a text is cut in the middle of a line.
     end = int(0.9 * len(content))
-    if exported.suffix == ".csv":
-        end = content.rindex(b"," if exported.name == "a.csv" else b";", 0, end)
+    separator = {"a.csv": b",", "german.csv": b";", "a.lvm": b"\t"}.get(exported.name)
+    if separator:
+        end = content.rindex(separator, 0, end)
     cut.write_bytes(content[:end])
     with pytest.raises(InputError, match="truncated") as raised:
         read_file(cut)
@@ -69,7 +65,7 @@ def test_a_truncated_file_is_one_clear_error(exported, tmp_path):
         ("a.csv", b"a letter to nobody\nwith two lines\n", "no row of numbers"),
         ("a.csv", b"a,b\n", "no row of numbers"),
         ("a.h5", b"", "is empty"),
-        ("a.json", b'[{"name": "force", "unit_str": "N", "data": [1, 2]}]', "SEP 005 .channel 1: .*'time' or 'fs'"),
+        ("a.mdf", b"MDF     3.30    TGT 15.0" + bytes(64), "is MDF of version 3.30; save it as version 4"),
     ],
 )
 def test_a_file_of_another_kind_is_one_clear_error(tmp_path, name, content, expected):
@@ -95,56 +91,6 @@ def test_acquisitions_below_each_other_are_one_table(tmp_path):
     )
     assert [signal.unit for signal in group.signals[1:]] == ["mm", "kN"]
     assert any("names again" in note for note in file.notes)
-
-
-@pytest.mark.parametrize(
-    ("kind", "full_scale", "zero"),
-    [(np.uint8, 128, 128), (np.int16, 2**15, 0), (np.int32, 2**31, 0), (np.float32, 1, 0), (np.float64, 1, 0)],
-)
-def test_samples_of_a_wav_are_shares_of_the_full_scale(tmp_path, kind, full_scale, zero):
-    shares = np.array([[0.0, -1.0], [0.5, 0.25], [-0.5, 0.0]])
-    wavfile.write(tmp_path / "a.wav", 1000, (zero + full_scale * shares).astype(kind))
-    file = read_file(tmp_path / "a.wav")
-    [group] = file.groups
-    assert group.rate == 1000.0 and [signal.name for signal in group.signals] == ["channel_1", "channel_2"]
-    np.testing.assert_array_equal(np.column_stack([signal.values for signal in group.signals]), shares)
-    assert "state unit and scale" in file.notes[0]
-    cut = tmp_path / "cut.wav"
-    cut.write_bytes((tmp_path / "a.wav").read_bytes()[:-1])
-    with pytest.raises(InputError, match="truncated"):
-        read_file(cut)
-
-
-def test_channels_of_dewesoft_share_a_rate_or_have_times_of_their_own(tmp_path, monkeypatch):
-    """No program but the maker's writes such files: here its library is one that knows four channels."""
-    even = {"channel_type": 0, "sample_rate": 100.0, "unit": "kN"}
-    channels = {
-        "force": ([0.5, 0.51, 0.52], [1.0, 2.0, 3.0], even),
-        "travel": ([0.5, 0.51, 0.52], [4.0, 5.0, 6.0], even | {"unit": "mm"}),
-        "temperature": ([0.1, 0.9], [20.0, 21.0], {"channel_type": 1, "sample_rate": 0.0, "unit": "°C"}),
-        "spectrum": ([0.1, 0.9], [1.0, 2.0, 3.0, 4.0], even),
-    }
-
-    def open_file(source):
-        assert Path(source).read_bytes() == content
-        found = {}
-        for name, (times, values, stated) in channels.items():
-            scaled = partial(tuple, [np.array(times), np.array(values)])
-            found[name] = SimpleNamespace(long_name=name, scaled=scaled, **stated)
-        return nullcontext(found)
-
-    monkeypatch.setitem(sys.modules, "dwdatareader", SimpleNamespace(DWFile=open_file, DWError=RuntimeError))
-    content = b"MULTI_STREAM_FILE_VER0210-" + bytes(40)
-    (tmp_path / "ride.dxd").write_bytes(content)
-    file = read_file(tmp_path / "ride.dxd")
-    even, timed = file.groups
-    assert (even.rate, even.start) == (100.0, 0.5)
-    assert [(each.name, each.unit, *each.values) for each in even.signals] == [
-        ("force", "kN", 1.0, 2.0, 3.0),
-        ("travel", "mm", 4.0, 5.0, 6.0),
-    ]
-    assert [(each.name, *each.values) for each in timed.signals] == [("time", 0.1, 0.9), ("temperature", 20.0, 21.0)]
-    assert file.notes == ("channels that hold no single numbers, or are not read by dwdatareader: spectrum",)
 
 
 def test_a_file_that_is_not_there_names_its_neighbour(tmp_path):

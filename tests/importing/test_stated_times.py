@@ -10,7 +10,6 @@ from seatsim.importing.readers.reading import read_file
 from seatsim.schema.errors import InputError
 
 from ..text import words
-from .exports import print_lvm
 from .helpers import LET_LIBRARIES_WARN, read_run
 from .test_alignment import band_limited
 
@@ -61,54 +60,6 @@ def test_a_rate_that_no_logger_has_is_refused(tmp_path, step):
             read_file(tmp_path / "a.tdms")
     else:
         assert read_file(tmp_path / "a.tdms").groups[0].rate is None
-
-
-T = 0.01 * np.arange(50)
-F, A = np.sin(20.0 * T), np.cos(20.0 * T)
-NOTHING = np.full(50, np.nan)
-ROWS = np.column_stack([T, F, A])
-
-
-def lvm(x_columns, tables, *options):
-    """Return a file of two channels: a segment for each of `tables`, which hold rows of cells."""
-    return print_lvm(x_columns, tables, {"force": "Newtons", "acc": "m/s^2"}, *options)
-
-
-@pytest.mark.parametrize(
-    ("content", "times"),
-    [
-        (lvm("One", [ROWS]), T),
-        (lvm("One", [ROWS], ","), T),
-        (lvm("No", [np.column_stack([NOTHING, F, A])]), T),
-        (lvm("Multi", [np.column_stack([T, F, T, A])]), T),
-        (lvm("One", [ROWS[:25], ROWS[25:]], ".", 0.01, ("09:51:40.5",) * 2), T),
-        (
-            lvm("One", [ROWS[:25], np.column_stack([T[:25], F[25:], A[25:]])], ".", 0.01, ("09:51:40.5", "09:51:42,5")),
-            np.concatenate([T[:25], 2.0 + T[:25]]),
-        ),
-        (lvm("One", [ROWS]).replace(f"{A[1]:.15g}", f"{A[1]:.15g}\ta remark"), T),
-    ],
-    ids=["one x", "decimal commas", "no x", "an x for each", "two segments", "two segments, 2 s apart", "a remark"],
-)
-def test_lvm_states_times_units_and_segments(tmp_path, content, times):
-    (tmp_path / "a.lvm").write_text(content)
-    file = read_file(tmp_path / "a.lvm")
-    (group,) = file.groups
-    assert file.format == "LVM" and [signal.name for signal in group.signals] == ["time", "force", "acc"]
-    assert [signal.unit for signal in group.signals] == ["s", "Newtons", "m/s^2"]
-    assert group.signals[0].values == pytest.approx(times, abs=1e-6)
-    assert group.signals[1].values == pytest.approx(F, abs=1e-6)
-    assert group.signals[2].values == pytest.approx(A, abs=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "said"),
-    [("X_Dimension\tTime", "X_Dimension\tFrequency", "X_Dimension is Frequency"), ("\n0.02\t", "\noops\t", "oops")],
-)
-def test_an_lvm_file_of_another_kind_is_refused_with_its_reason(tmp_path, old, new, said):
-    (tmp_path / "a.lvm").write_text(lvm("One", [ROWS]).replace(old, new, 1))
-    with pytest.raises(InputError, match=said):
-        read_file(tmp_path / "a.lvm")
 
 
 @pytest.mark.parametrize(

@@ -71,7 +71,7 @@ def import_data(
     map_file: Annotated[Path | None, typer.Option("--map", metavar="MAP.yaml")] = None,
     nominal: Annotated[str | None, typer.Option("--nominal", metavar="SCENARIO")] = None,
 ) -> None:
-    """Make a recording of CSV, Parquet, Feather, XLSX, HDF5, MAT, MDF, TDMS, UFF58, RPC III or WAV files.
+    """Make a recording of CSV, Parquet, Feather, XLSX, HDF5, MAT, MDF, TDMS, UFF58 or RPC III files.
 
     Options:
         files: Data files of one rig, or a folder of them.

@@ -215,7 +215,7 @@ def split_header(rows: Sequence[Sequence[str]], columns: int) -> list[tuple[str,
     names = max(reversed(others), key=_count_meanings, default=[""] * columns)
     named = [_name_and_unit(name, index) for index, name in enumerate(names)]
     stated = [_unmarked(unit).strip("[]() ") for unit in below or [""] * columns]
-    stated = ["" if unit == _NOTHING else unit for unit in stated]
+    stated = ["" if unit == _NOTHING or "unit" in unit.lower() else unit for unit in stated]
     return [(name, unit or of_name) for unit, (name, of_name) in zip(stated, named, strict=True)]
 
 

@@ -55,19 +55,15 @@ class _Format(NamedTuple):
 
 FORMATS = (
     _Format("Parquet", "tables.read_arrow", (b"PAR1",), (".parquet", ".pq")),
-    _Format("Feather", "tables.read_arrow", (b"ARROW1", b"FEA1"), (".feather", ".arrow")),
+    _Format("Feather", "tables.read_arrow", (b"ARROW1",), (".feather", ".arrow")),
     _Format("XLSX", "text.read_xlsx", (), (".xlsx", ".xlsm")),
     _Format("MAT v7.3", "matlab.read", (b"MATLAB 7.3 MAT-file",), ()),
     _Format("MAT v5", "matlab.read", (b"MATLAB 5.0 MAT-file",), (".mat",)),
     _Format("HDF5", "hdf5.read", (HDF5,), (".h5", ".hdf5", ".hdf")),
-    _Format("MDF", "loggers.read_mdf", (b"MDF     ", b"UnFinMF "), (".mf4", ".mdf", ".dat4")),
-    _Format("LVM", "labview.read_lvm", (b"LabVIEW Measurement",), ()),
+    _Format("MDF", "loggers.read_mdf", (b"MDF     ", b"UnFinMF "), (".mf4", ".mdf")),
     _Format("TDMS", "labview.read_tdms", (b"TDSm",), (".tdms",)),
     _Format("UFF", "time_histories.read_uff", (b"    -1",), (".uff", ".unv")),
     _Format("RPC III", "time_histories.read_rpc", (b"FORMAT\0", b"FORMAT "), (".rpc", ".rsp", ".tim")),
-    _Format("WAV", "loggers.read_wav", (b"RIFF", b"RF64", b"RIFX"), (".wav",)),
-    _Format("Dewesoft", "loggers.read_dewesoft", (b"MULTI_STREAM_FILE_VER",), (".dxd", ".d7d")),
-    _Format("SEP 005", "time_histories.read_sep005", (), ()),
     _Format("CSV", "text.read", (), (".csv", ".tsv", ".txt", ".asc", ".dat")),
 )
 """Formats in the order in which they are tried."""
@@ -85,8 +81,6 @@ _MARKUP = {
 }
 """How texts begin that are no tables."""
 _ZIP = b"PK\x03\x04"
-_RECORDS, _UNIT_OF_RECORD = re.compile(rb"\s*\[\s*\{"), b'"unit_str"'
-"""How a JSON list of channels begins, and what each must state by SEP 005."""
 
 
 def read_file(path: Path, layout: TextLayout | None = None) -> DataFile:
@@ -143,8 +137,6 @@ def _content(path: Path) -> bytes:
 
 def _recognise(path: Path, content: bytes) -> _Format:
     head, names = content[:_SNIFFED], {each.name: each for each in FORMATS}
-    if _RECORDS.match(head) and _UNIT_OF_RECORD in content:
-        return names["SEP 005"]
     for magic, what in _NOT_TABLES.items():
         if head.startswith(magic):
             raise InputError(f"{path}: is {what}; permitted: {_KNOWN}")

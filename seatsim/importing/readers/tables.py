@@ -1,13 +1,7 @@
-"""Parquet and Feather files, and the columns of tables as numbers: times and dates in s since the first, texts too.
-
-How much the messages of a Feather file make once they are unpacked is taken from their heads alone. A message is a flat
-buffer: a table begins with the distance back to a list of 2-byte offsets, one for each field, and a field that is a
-table or a list holds the distance forward to it.
-"""
+"""Parquet and Feather files, and the columns of tables as numbers: times and dates in s since the first, texts too."""
 
 from __future__ import annotations
 
-import struct
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -30,14 +24,6 @@ _AMBIGUOUS = rf"(?:{SIGN}\s*)?[1-9]\d{{0,2}}[.,]\d{{3}}"
 """A number that may have a decimal sign, or one between thousands."""
 _WORDS_FOR_TIME = ("time", "zeit", "temps")
 """A column of dates without such a word in its name, as an index has it, is called time."""
-_KIND, _HEADER = 1, 2
-"""Fields of a message: what kind of header it has, and the header."""
-_DICTIONARY, _BATCH = 2, 3
-"""Kinds of headers: a batch of rows, and one within a dictionary."""
-_ROWS, _NODES, _BUFFERS, _PACKING = 0, 1, 2, 3
-"""Fields of a batch: the number of its rows, its columns, where their bytes lie, and how those are packed."""
-_BEFORE = 8
-"""Bytes before the first message."""
 
 
 def read_arrow(path: Path, content: bytes, layout: TextLayout) -> DataFile:
@@ -65,66 +51,15 @@ def _table(content: bytes) -> pa.Table:
 
     if content.startswith(b"PAR1"):
         return open_parquet(content).read()
-    from pyarrow import feather
-
-    check_made(_bytes_of_messages(content), len(content), "what its columns state")
-    return feather.read_table(pa.BufferReader(content))
-
-
-def _bytes_of_messages(content: bytes) -> int:
-    """Return how many bytes the batches of a file make: what they unpack to, or a number for each row and column.
-
-    Raises:
-        ValueError: a message is damaged.
-    """
-    import pyarrow as pa
-
-    made = 0
-    if content.startswith(b"ARROW1"):
-        for message in pa.ipc.MessageReader.open_stream(pa.BufferReader(content[_BEFORE:])):
-            head = message.metadata.to_pybytes()
-            try:
-                made += _bytes_of_batch(head, message.body.to_pybytes() if message.body else b"")
-            except struct.error as error:
-                raise ValueError(f"a message ends too soon: {error}") from error
-    return made
-
-
-def _bytes_of_batch(head: bytes, body: bytes) -> int:
-    message = struct.unpack_from("<I", head)[0]
-    kind = _place(head, message, _KIND)
-    if kind is None or head[kind] not in (_DICTIONARY, _BATCH):
-        return 0
-    batch = _follow(head, message, _HEADER)
-    if head[kind] == _DICTIONARY:
-        batch = _follow(head, batch, 1)
-    rows, nodes = _place(head, batch, _ROWS), _follow(head, batch, _NODES)
-    columns = struct.unpack_from("<I", head, nodes)[0]
-    stated = struct.unpack_from("<q", head, rows)[0] if rows is not None else 0
-    buffers = _follow(head, batch, _BUFFERS)
-    unpacked = 0
-    for number in range(struct.unpack_from("<I", head, buffers)[0]):
-        offset, length = struct.unpack_from("<qq", head, buffers + 4 + 16 * number)
-        packed = _place(head, batch, _PACKING) is not None and length >= BYTES_OF_NUMBER
-        unpacked += max(length, struct.unpack_from("<q", body, offset)[0] if packed else 0)
-    return int(max(unpacked, BYTES_OF_NUMBER * stated * columns))
-
-
-def _place(head: bytes, table: int, number: int) -> int | None:
-    """Return where a field of a table lies, None where it is left out."""
-    offsets = table - struct.unpack_from("<i", head, table)[0]
-    if 4 + 2 * number >= struct.unpack_from("<H", head, offsets)[0]:
-        return None
-    offset = struct.unpack_from("<H", head, offsets + 4 + 2 * number)[0]
-    return table + offset if offset else None
-
-
-def _follow(head: bytes, table: int, number: int) -> int:
-    """Return where the table or list lies to which a field leads."""
-    field = _place(head, table, number)
-    if field is None:
-        raise ValueError("a message lacks a part of its head")
-    return field + int(struct.unpack_from("<I", head, field)[0])
+    made, batches = 0, []
+    with pa.ipc.open_file(pa.BufferReader(content)) as file:
+        for number in range(file.num_record_batches):
+            batch = file.get_batch(number)
+            made += max(batch.nbytes, BYTES_OF_NUMBER * batch.num_rows * batch.num_columns)
+            check_made(made, len(content), "what its columns state")
+            batch.validate()
+            batches.append(batch)
+        return pa.Table.from_batches(batches, file.schema)
 
 
 class Cells(NamedTuple):

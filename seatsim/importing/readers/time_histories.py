@@ -1,20 +1,17 @@
-"""Time histories of test stands: universal files (UFF58), read by pyuff, RPC III (MTS), and SEP 005 of SDyPy.
+"""Time histories of test stands: universal files (UFF58), read by pyuff, and RPC III (MTS).
 
 In RPC III a header of keywords comes before groups of points, channel after channel in each. The format is recalled,
 and compared with open readers of it: records of 128 bytes, a keyword of 32 and a value of 96, the first three FORMAT,
 NUM_HEADER_BLOCKS (of 512 bytes) and NUM_PARAMS. A group holds PTS_PER_GROUP points of every channel. Integers are
-`SCALE.CHAN_n` each, times INT_FULL_SCALE / 32768. SEP 005 is a JSON list of channels, checked by sdypy-sep005.
+`SCALE.CHAN_n` each, times INT_FULL_SCALE / 32768.
 """
 
-import json
 import tempfile
 from collections.abc import Mapping
-from datetime import datetime
 from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
-from pydantic import ValidationError
 
 from seatsim.importing.readers.reading import TextLayout, need
 from seatsim.importing.signals import Channels, DataFile, Group, Signal, note_left_out
@@ -151,27 +148,3 @@ def _demultiplex(path: Path, raw: np.ndarray, kind: str, shape: tuple[int, int, 
         raise InputError(f"{path}: {stated} and {len(raw)} are there; the file is truncated: export it again")
     values = raw[: wanted * size].view(kind).astype(np.float64).reshape(groups, count, per_group)
     return values.transpose(1, 0, 2).reshape(count, -1)[:, :points]
-
-
-def read_sep005(path: Path, content: bytes, layout: TextLayout) -> DataFile:
-    """Return the channels; a start without times is counted in s from the earliest that a channel states."""
-    check = need("sdypy_sep005", "SEP 005").Sep005Data.model_validate
-    channels = []
-    for number, stated in enumerate(json.loads(content), 1):
-        try:
-            channels.append(check(stated))
-        except ValidationError as error:
-            first = error.errors(include_url=False)[0]
-            raise ValueError(": ".join([f"channel {number}", *map(str, first["loc"][:1]), first["msg"]])) from error
-    stamps = [channel.start_timestamp for channel in channels]
-    starts = [datetime.fromisoformat(stamp).timestamp() if stamp else None for stamp in stamps]
-    earliest = min((start for start in starts if start is not None), default=0.0)
-    gathered = Channels()
-    for channel, start in zip(channels, starts, strict=True):
-        group = channel.group or path.stem
-        signal = Signal(channel.name, channel.unit_str, np.asarray(channel.data, dtype=np.float64))
-        if channel.time is not None:
-            gathered.add_timed(group, np.asarray(channel.time), [signal])
-        else:
-            gathered.add(group, signal, channel.fs, None if start is None else start - earliest)
-    return DataFile(path, "", gathered.groups())
