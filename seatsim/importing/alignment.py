@@ -1,7 +1,6 @@
 """How much later the clock of one file started than that of another, by cross-correlation of what both measured.
 
-The offset is where the correlation of two channels is greatest, between rows by a parabola. Its uncertainty is the
-standard error of the offsets that parts of the record show by themselves, and at least a tenth of a row.
+The offset is where the correlation of two channels is greatest, between rows by a parabola.
 """
 
 from collections.abc import Mapping
@@ -14,18 +13,14 @@ from seatsim.recordings.quality.relations import band_passed
 from seatsim.recordings.recording import ACCELEROMETERS
 from seatsim.schema.arrays import Array
 
-_PARTS, _SHORTEST = 6, 2.0
-"""Parts of a record in which the offset is estimated again, and their least length in s."""
+_SHORTEST = 2.0
+"""s; least length of a record that tells an offset."""
 _LEAST = 0.5
 """Correlation below which two channels do not tell an offset."""
-_AHEAD = 0.2
-"""s by which the offset of a part may differ from that of the whole."""
-_DRIFT = 4.0
-"""Standard errors by which the last part may differ from the first, before the clocks run apart."""
 _RELATED = (("current_command", "coil_current"), *combinations(ACCELEROMETERS, 2))
-"""Channels that follow each other, though not at once: their own lag is taken into the offset."""
-_OWN_LAG, _UNCLEAR = 0.01, 0.05
-"""s of uncertainty that a lag between related channels adds, and up to which it may be all that there is."""
+"""Channels that follow each other, though not at once."""
+_UNCLEAR = 0.05
+"""s up to which an offset between related channels may be their own lag."""
 _HALF, _BETA, _ROLL = 32, 9.0, 0.92
 """Zero crossings of the sinc on each side, shape of the Kaiser window (stop band -90 dB), share of the band kept."""
 _CHUNK = 20_000
@@ -44,14 +39,12 @@ class Channel(NamedTuple):
 
 
 class _Offset(NamedTuple):
-    """Seconds to add to the times of the second file, with a standard error; by which channels, and how alike."""
+    """Seconds to add to the times of the second file; by which channels, and how alike these are."""
 
     seconds: float
-    error: float
     first: str
     second: str
     correlation: float
-    drift: float | None = None
 
     @property
     def is_clear(self) -> bool:
@@ -61,13 +54,13 @@ class _Offset(NamedTuple):
 
 def estimate_offset(first: Mapping[str, Channel], second: Mapping[str, Channel]) -> _Offset | None:
     """Return the offset of the second group's clock, by the pair of channels that are most alike; None without any."""
-    pairs = [(name, name, 0.0) for name in first if name in second]
+    pairs = [(name, name) for name in first if name in second]
     if not pairs:
         both = (pair for one, other in _RELATED for pair in ((one, other), (other, one)))
-        pairs = [(a, b, _OWN_LAG) for a, b in both if a in first and b in second]
-    found = [offset for pair in pairs if (offset := _of_pair(first[pair[0]], second[pair[1]], pair)) is not None]
-    best = max(found, key=lambda offset: abs(offset.correlation), default=None)
-    return best if best is not None and abs(best.correlation) >= _LEAST else None
+        pairs = [(a, b) for a, b in both if a in first and b in second]
+    found = [offset for a, b in pairs if (offset := _of_pair(first[a], second[b], (a, b))) is not None]
+    best = max(found, key=lambda offset: offset.correlation, default=None)
+    return best if best is not None and best.correlation >= _LEAST else None
 
 
 def describe_offset(label: str, reference: str, found: _Offset | None) -> str:
@@ -75,27 +68,26 @@ def describe_offset(label: str, reference: str, found: _Offset | None) -> str:
     if found is None:
         return f"{label}: shares no channel with {reference} that shows an offset; its times are taken as they are"
     by = found.first if found.first == found.second else f"{found.second} and {found.first}"
-    seen = f"{found.seconds:+.5g} s (+- {found.error:.2g} s), by cross-correlation of {by} ({found.correlation:.3f})"
+    seen = f"{found.seconds:+.5g} s, by cross-correlation of {by} ({found.correlation:.3f})"
     if not found.is_clear:
         return f"{label}: {seen} may be the lag between the two; its times are taken as they are, or state align"
-    drift = "" if found.drift is None else f"; the clocks run apart by {found.drift:.2g} s over the record"
-    return f"{label}: moved against {reference} by {seen}{drift}"
+    return f"{label}: moved against {reference} by {seen}"
 
 
-def _of_pair(one: Channel, other: Channel, pair: tuple[str, str, float]) -> _Offset | None:
+def _of_pair(one: Channel, other: Channel, pair: tuple[str, str]) -> _Offset | None:
     """Return the offset between two channels, on a time base of the slower one that is fine enough."""
+    from scipy.signal import correlate, correlation_lags
+
     rate = min(one.rate, other.rate)
     a, b = (_even(channel, rate) for channel in (one, other))
     if min(len(a), len(b)) < _SHORTEST * rate or not a.std() or not b.std():
         return None
-    lag, correlation = _lag(a, b, rate, None)
-    # Values that are `lag` later in the second are at the same instant as those of the first.
-    seconds = one.start - other.start - lag
-    parts = _parts(a, b, rate, lag)
-    error = max(float(np.std(parts)) / np.sqrt(len(parts)) if len(parts) > 1 else 0.5 / rate, 0.1 / rate, pair[2])
-    drift = float(np.polyfit(np.arange(len(parts)), parts, 1)[0]) * (len(parts) - 1) if len(parts) > 3 else 0.0
-    apart = drift if abs(drift) > _DRIFT * max(error, 0.2 / rate) else None
-    return _Offset(seconds, error, pair[0], pair[1], correlation, apart)
+    values = correlate(b, a, method="fft")
+    at = int(np.argmax(values))
+    # Values that are `late` in the second are at the same instant as those of the first.
+    late = (correlation_lags(len(b), len(a))[at] + _vertex(values, at)) / rate
+    alike = float(values[at] / (np.linalg.norm(a) * np.linalg.norm(b)))
+    return _Offset(float(one.start - other.start - late), *pair, alike)
 
 
 def _even(channel: Channel, rate: float) -> Array:
@@ -105,18 +97,6 @@ def _even(channel: Channel, rate: float) -> Array:
     return band_passed(values - float(np.mean(values)), rate, 0.2, 0.4 * rate)
 
 
-def _lag(a: Array, b: Array, rate: float, about: float | None) -> tuple[float, float]:
-    """Return by how many s the second is later, near a given lag where there is one, and their correlation there."""
-    from scipy.signal import correlate, correlation_lags
-
-    rows, values = correlation_lags(len(b), len(a)), correlate(b, a, method="fft")
-    if about is not None:
-        near = np.abs(rows / rate - about) <= _AHEAD
-        rows, values = rows[near], values[near]
-    at = int(np.argmax(values))
-    return (rows[at] + _vertex(values, at)) / rate, float(values[at] / (np.linalg.norm(a) * np.linalg.norm(b)))
-
-
 def _vertex(values: Array, at: int) -> float:
     """Return the vertex of the parabola through a peak and its neighbours, in rows from the peak."""
     if not 0 < at < len(values) - 1:
@@ -124,19 +104,6 @@ def _vertex(values: Array, at: int) -> float:
     before, peak, after = values[at - 1 : at + 2]
     bend = before - 2.0 * peak + after
     return float(0.5 * (before - after) / bend) if bend else 0.0
-
-
-def _parts(a: Array, b: Array, rate: float, lag: float) -> Array:
-    """Return the lags of parts of the overlap, each by itself."""
-    shift = round(lag * rate)
-    begin, end = max(0, -shift), min(len(a), len(b) - shift)
-    count = min(_PARTS, int((end - begin) / (_SHORTEST * rate)))
-    found = []
-    for edges in np.array_split(np.arange(begin, max(begin, end)), max(count, 1)):
-        one, other = a[edges], b[edges + shift] if len(edges) else a[:0]
-        if len(edges) > _SHORTEST * rate * 0.9 and one.std() > 0.1 * a.std() and other.std() > 0.1 * b.std():
-            found.append(_lag(one, other, rate, 0.0)[0] + shift / rate)
-    return np.array(found)
 
 
 def resample(values: Array, start: float, rate: float, times: Array, new_rate: float) -> Array:

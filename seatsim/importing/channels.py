@@ -16,15 +16,12 @@ from seatsim.importing.import_map import PRIMITIVE, AxisMap, ChannelMap, ImportM
 from seatsim.importing.names import quantity_of
 from seatsim.importing.signals import LISTED, DataFile, Group, Signal
 from seatsim.importing.time_axis import Axis, check_is_history, find_clock, measured_axis
-from seatsim.recordings.quality.damage import find_spikes
 from seatsim.recordings.quality.issue import Issue
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest, placed
 from seatsim.schema.text import name_some
 from seatsim.schema.units import DIMENSIONS, conversion
 
-_LONGEST_FILL = 0.1
-"""s; longest gap that `gaps: fill` interpolates."""
 SHORTEST_RUN = 1.0
 """s; parts between gaps that are shorter make no run."""
 _SLOWER = 0.9
@@ -106,12 +103,10 @@ def split_at_gaps(
     broken = next((each for each in clocked if len(each.axis.breaks)), None)
     if broken is None:
         return [(name, clocked)]
-    if stated.gaps == "fill":
-        return [(name, [_without_repeats(each) for each in clocked])]
     if stated.gaps is None or len(clocked) > 1:
         said = next(doubt_time(broken.axis, broken.label)).sentence
-        allowed = "gaps: fill" if len(clocked) > 1 else "gaps: split (runs of the parts) or gaps: fill (interpolate)"
-        raise InputError(f"{said}; say in the map what to do: {allowed}")
+        of_one = "write gaps: split in the map, which makes runs of the parts"
+        raise InputError(f"{said}; {of_one if len(clocked) == 1 else 'cut the files of the run there'}")
     return _parts(name, broken, notes)
 
 
@@ -134,25 +129,6 @@ def _parts(name: str, broken: Clocked, notes: list[str]) -> list[tuple[str, list
     return parts
 
 
-def _without_repeats(clocked: Clocked) -> Clocked:
-    """Return a group without rows that repeat a time, its gaps to be interpolated.
-
-    Raises:
-        InputError: time runs back, or a gap is too long to be filled.
-    """
-    times = clocked.axis.times
-    steps = np.diff(times)
-    if (steps < 0.0).any():
-        raise InputError(f"{clocked.label}: time runs back, which cannot be filled; write gaps: split")
-    longest = float(np.max(steps))
-    if longest > _LONGEST_FILL + 1.0 / clocked.axis.rate:
-        seen = f"a gap of {longest:.3g} s is not filled, {_LONGEST_FILL} s at most are"
-        raise InputError(f"{clocked.label}: {seen}; write gaps: split")
-    kept = np.concatenate([[True], steps > 0.0])
-    axis = Axis(times[kept], clocked.axis.rate, is_even=False)
-    return clocked._replace(group=clocked.group.take(kept), axis=axis)
-
-
 def make_channel(
     name: str, entry: ChannelMap, clocked: Clocked, wanted: str, notes: list[str]
 ) -> tuple[Channel, list[Issue]]:
@@ -168,7 +144,7 @@ def make_channel(
     rate = clocked.axis.rate
     # What is still to be differentiated is a position or a velocity.
     quantity = {0: quantity_of(name), 1: None, 2: "displacement"}[entry.differentiate]
-    mended = {"gravity": entry.remove_mean, "offset": entry.remove_mean, "missing": entry.fill, "spikes": entry.despike}
+    mended = {"gravity": entry.remove_mean, "offset": entry.remove_mean, "missing": entry.fill}
     doubts = [issue for issue in doubt_channel(name, values, rate, quantity) if not mended.get(issue.kind)]
     channel = _evened(name, *_filled(name, entry, values, clocked, notes), clocked.axis)
     return channel._replace(values=_corrected(name, channel.values, entry, channel.rate, notes)), doubts
@@ -241,11 +217,7 @@ def _evened(name: str, values: Array, times: Array, axis: Axis) -> Channel:
 
 
 def _corrected(name: str, values: Array, entry: ChannelMap, rate: float, notes: list[str]) -> Array:
-    """Return values without spikes and without their mean, differentiated, as the map says."""
-    if entry.despike and len(rows := find_spikes(values)):
-        values = values.copy()
-        values[rows] = 0.5 * (values[rows - 1] + values[rows + 1])
-        notes.append(f"{name}: {len(rows)} spikes are interpolated")
+    """Return values differentiated and without their mean, as the map says."""
     for _ in range(entry.differentiate):
         values = np.gradient(values, 1.0 / rate)
     if not entry.remove_mean:

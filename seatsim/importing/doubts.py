@@ -130,13 +130,13 @@ def doubt_time(axis: Axis, channel: str) -> Iterator[Issue]:
     found = {}
     if axis.backwards:
         text = f"runs back {axis.backwards} times, the first at row {axis.breaks[0]}"
-        found["restart"] = f"{text}; gaps: split makes runs of the parts"
+        found["restart"] = f"{text}"
     if axis.repeated:
-        found["repeated"] = f"{axis.repeated} rows repeat the time before; gaps: fill leaves the repeats out"
+        found["repeated"] = f"{axis.repeated} rows repeat the time before"
     if axis.lost:
         first = next(row for row in axis.breaks if axis.times[row] - axis.times[row - 1] > 0.0)
         text = f"{axis.lost} rows are missing, the first at {axis.times[first - 1]:.6g} s"
-        found["gap"] = f"{text}; gaps: split or gaps: fill"
+        found["gap"] = text
     if axis.resolution:
         text = f"; the rate is estimated as {axis.rate:.6g} Hz: state it"
         text = text if axis.is_even else ", and the rows are not even by them; state the rate"

@@ -18,7 +18,7 @@ from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import dump
 
 Rig = Literal["seat", "damper_bench"]
-Gaps = Literal["split", "fill"]
+Gaps = Literal["split"]
 FILE = "map.yaml"
 PRIMITIVE = {("m/s^2", 1): "m/s", ("m/s^2", 2): "m", ("m/s", 1): "m"}
 """Unit of what is differentiated so many times, by the unit of the derivative."""
@@ -29,7 +29,7 @@ class ChannelMap(NamedTuple):
 
     `group` names the file or the group where several have the column. `minus` is a second column that is subtracted,
     `differentiate` how often the result is differentiated by time, `value` a constant in place of a column. `delay` is
-    how much too late the channel is, in s; `remove_mean`, `fill` (rows that hold no number) and `despike` correct.
+    how much too late the channel is, in s; `remove_mean` and `fill` (rows that hold no number) correct.
     """
 
     column: str | None = None
@@ -44,7 +44,6 @@ class ChannelMap(NamedTuple):
     differentiate: Literal[0, 1, 2] = 0
     value: Annotated[float | None, param("", "constant in place of a column")] = None
     fill: bool = False
-    despike: bool = False
     noise_rms: Annotated[float | None, param("", "noise of the sensor in SI units", low=0)] = None
 
 
@@ -59,7 +58,7 @@ class ImportMap(NamedTuple):
     """The content of `map.yaml`.
 
     `runs` lists the files of each run, none where every file is one. `align` holds by file what is added to its times
-    in s. `repeats` names by run the one that it repeats. `comments` stand behind the channels of a proposal.
+    in s. `repeats` names by run the one that it repeats.
     """
 
     channels: Mapping[str, ChannelMap]
@@ -75,7 +74,6 @@ class ImportMap(NamedTuple):
     align: Mapping[str, float] = {}
     repeats: Mapping[str, str] = {}
     runs: Mapping[str, Annotated[tuple[str, ...], Field(min_length=1)]] = {}
-    comments: Mapping[str, str] = {}
 
     @property
     def columns(self) -> set[str | None]:
@@ -139,7 +137,7 @@ def check_files(runs: Mapping[str, Sequence[str]], files: Sequence[str], path: P
 
 
 def write_map(path: Path, stated: ImportMap) -> Path:
-    """Write a map as it is read, with a line for each channel and the comments behind them."""
+    """Write a map as it is read, with a line for each channel."""
     return write_text(path, render_map(stated))
 
 
@@ -151,9 +149,7 @@ def render_map(stated: ImportMap) -> str:
     content["channels"] = {name: _shown(channel) for name, channel in stated.channels.items()}
     content["align"] = {label: float(f"{value:.7g}") for label, value in stated.align.items()}
     content["runs"] = {name: list(files) for name, files in stated.runs.items()}
-    lines = dump({key: content[key] for key in _KEYS if content[key] not in (None, {})}).splitlines()
-    behind = {f"  {name}": f"   # {comment}" for name, comment in stated.comments.items()}
-    return "".join(f"{line}{behind.get(line.partition(':')[0], '')}\n" for line in lines)
+    return dump({key: content[key] for key in _KEYS if content[key] not in (None, {})})
 
 
 def _shown(channel: ChannelMap) -> dict[str, object]:

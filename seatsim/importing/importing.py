@@ -13,10 +13,9 @@ from seatsim.importing.readers.reading import read_file
 from seatsim.importing.signals import LISTED, DataFile
 from seatsim.importing.time_axis import find_clock
 from seatsim.provenance.statement import write_documented
-from seatsim.recordings.quality.damage import QUIET, noise_of
 from seatsim.recordings.quality.examination import examine, merge_issues
 from seatsim.recordings.quality.issue import Issue
-from seatsim.recordings.recording import CHANNELS, COMMANDS, CURRENTS, load_recording
+from seatsim.recordings.recording import CHANNELS, CURRENTS, load_recording
 from seatsim.recordings.writer import state_header, state_nominal, write_files
 from seatsim.scenario.loading import load
 from seatsim.schema.content import Form, Unwritten, written
@@ -90,7 +89,6 @@ def import_files(
             assembled = assemble(files, used)
         except InputError as error:
             raise _to_be_completed(str(error), used, folder) from error
-        assembled = assembled._replace(map=_commented(assembled))
     else:
         used = stated
         check_files(used.runs, [file.path.name for file in files], map_file or Path(FILE))
@@ -136,21 +134,6 @@ def _to_be_completed(problem: str, proposed: ImportMap, folder: Path) -> InputEr
     """Write a proposed map that cannot be used as it is, and return the error that asks to complete it."""
     path = write_map(folder / FILE, proposed)
     return InputError(f"{problem}; the map so far is in {path}: complete it and give it by --map {path}")
-
-
-def _commented(assembled: Assembled) -> ImportMap:
-    """Return the proposed map with the noise floor and the doubts of each channel behind it."""
-    comments: dict[str, str] = {}
-    for name, values in next(iter(assembled.runs.values())).items():
-        kinds = {issue.kind: issue.severity for issue in assembled.doubts if issue.channel == name}
-        noise = noise_of(values, assembled.rate)
-        unit = CHANNELS[assembled.map.rig][name]
-        said = [kind for kind, severity in kinds.items() if severity == "warning"]
-        if noise and name not in COMMANDS and not any(kind in kinds for kind in QUIET):
-            said.append(f"floor at high frequencies {noise:.2g} {unit}: noise_rms, if it is the sensor's")
-        if said:
-            comments[name] = "; ".join(said)
-    return assembled.map._replace(comments=comments)
 
 
 def _write_recording(folder: Path, assembled: Assembled, nominal: Mapping[str, object] | None) -> list[Path]:

@@ -4,15 +4,13 @@ Of a recording that is also what `gap` and `diagnose` say of it, and the noise t
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.importing.assembly import assemble, doubt_runs
 from seatsim.importing.doubts import doubt_channel, doubt_pairs, doubt_time
-from seatsim.importing.import_map import Rig, read_map
+from seatsim.importing.import_map import Rig
 from seatsim.importing.matching import Column, channel_of, read_columns
 from seatsim.importing.names import SI_UNITS, is_of, quantity_of, read_name, without_unit
 from seatsim.importing.readers.reading import read_file
@@ -28,9 +26,6 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.content import Joined, Unwritten, written
 from seatsim.schema.units import conversion
 
-BLOCKS = "▁▂▃▄▅▆▇█"
-_SPARKS = 24
-"""Letters of a sparkline."""
 _RARE = 0.01
 """Share of rows in which a channel repeats itself, above which it is too coarse to show rows written twice."""
 
@@ -51,7 +46,6 @@ class ChannelSummary(NamedTuple):
     mean: float
     rms: float
     noise: float | None
-    spark: str
 
 
 class GroupedChannel(NamedTuple):
@@ -91,7 +85,7 @@ def inspect_file(path: Path) -> Inspection:
         summaries, found = _group(group, rig)
         channels[group.name] = summaries
         doubts += found
-    return Inspection(str(path), file.format, channels, [*doubts, *_repeated_rows(file)])
+    return Inspection(str(path), file.format, channels, [*doubts, *_doubt_repeats(file)])
 
 
 def _group(group: Group, rig: Rig) -> tuple[list[ChannelSummary], list[Issue]]:
@@ -158,34 +152,19 @@ def _summarise(signal: Signal, unit: str, channel: str | None, rate: float | Non
     """Return the figures of one channel."""
     values = signal.values[np.isfinite(signal.values)] if np.isnan(signal.values).any() else signal.values
     if not len(values):
-        return ChannelSummary(signal.name, unit, channel, rate, 0, np.nan, np.nan, np.nan, np.nan, None, "")
+        return ChannelSummary(signal.name, unit, channel, rate, 0, np.nan, np.nan, np.nan, np.nan, None)
     noise = noise_of(values, rate) if np.ptp(values) > 0.0 else None
     low, high, mean = float(np.min(values)), float(np.max(values)), float(np.mean(values))
     rms = float(np.sqrt(values @ values / len(values)))
-    return ChannelSummary(
-        signal.name, unit, channel, rate, len(signal.values), low, high, mean, rms, noise, _spark_of(values)
-    )
+    return ChannelSummary(signal.name, unit, channel, rate, len(signal.values), low, high, mean, rms, noise)
 
 
-def _spark_of(values: Array) -> str:
-    """Return the range of a channel over its length, as a line of blocks: each is as high as the swing there."""
-    edges = np.unique(np.linspace(0, len(values), _SPARKS + 1).astype(int))
-    pieces = [values[a:b] for a, b in pairwise(edges)]
-    swing = np.array([float(np.ptp(piece)) if len(piece) > 1 else 0.0 for piece in pieces])
-    if swing.max() == 0.0:
-        return BLOCKS[0] * len(pieces)
-    return "".join(BLOCKS[round(float(each) / float(swing.max()) * (len(BLOCKS) - 1))] for each in swing)
-
-
-def _repeated_rows(file: DataFile) -> Iterator[Issue]:
+def _doubt_repeats(file: DataFile) -> Iterator[Issue]:
     """Yield rows that repeat the row before in every channel, where at least three vary from row to row."""
     for group in file.groups:
         steps = [np.diff(s.values) == 0.0 for s in group.signals if read_name(s.name).quantity != "time"]
-        varying = [same for same in steps if np.mean(same) < _RARE]
-        if len(varying) < 3:
-            continue
         rows = np.flatnonzero(np.all(steps, axis=0)) + 1
-        if len(rows):
+        if sum(np.mean(same) < _RARE for same in steps) >= 3 and len(rows):
             repeat = f"repeat the row before in all channels, first row {rows[0]}; they were written twice"
             yield Issue("warning", "repeated_rows", f"{len(rows)} rows {repeat}")
 
@@ -216,22 +195,6 @@ def inspect_recording(folder: Path) -> Inspection:
         text = f"{recording.header.nominal} is missing; signs, units and delays are not compared with a simulation"
         doubts.append(Issue("warning", "nominal", text))
     return Inspection(str(folder), "recording", channels, doubts)
-
-
-def inspect_mapped(path: Path, map_file: Path) -> Inspection:
-    """Return what import would make of a file by a map: channels in SI units, with what is left to doubt.
-
-    Raises:
-        InputError: the file or the map is wrong.
-    """
-    stated = read_map(map_file)
-    file = read_file(path, stated.csv)
-    assembled = assemble([file], stated._replace(runs={}))
-    units = CHANNELS[stated.rig]
-    channels = {run: _summarise_table(table, units, assembled.rate) for run, table in assembled.runs.items()}
-    notes = [Issue("note", "mapped", note) for note in (*file.notes, *assembled.notes)]
-    doubts = merge_issues([*assembled.doubts, *doubt_runs(assembled)], len(assembled.runs))
-    return Inspection(str(path), f"{file.format} by {map_file.name}", channels, [*notes, *doubts])
 
 
 def _summarise_table(table: Mapping[str, Array], units: Mapping[str, str], rate: float) -> list[ChannelSummary]:

@@ -1,14 +1,12 @@
 """One seat recording written in every format, as other programs export it."""
 
 import gzip
-import warnings
 
 import asammdf
 import h5py
 import nptdms
 import numpy as np
 import pandas as pd
-import pytest
 import pyuff
 
 from ..text import parse
@@ -80,17 +78,6 @@ def mat73(path, table):
     content = bytearray(path.read_bytes())
     content[:116] = b"MATLAB 7.3 MAT-file, Platform: PCWIN64".ljust(116)
     path.write_bytes(content)
-
-
-def mat_timetable(path, table):
-    """What MATLAB writes of a timetable, as mat-io does."""
-    matio = pytest.importorskip("matio")  # on import it changes how pandas keeps texts
-    frame = pd.DataFrame({name: values for name, values in table.items() if name != "time"})
-    frame.index = pd.to_timedelta(table["time"], unit="s")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # it says that MATLAB writes times in s
-        version = "v7.3" if "73" in path.name else "v7"
-        matio.save_to_mat(str(path), {"run": frame}, version=version, do_compression=False)
 
 
 def lvm(path, table):
@@ -173,8 +160,8 @@ def rpc(path, table):
 
 FORMATS = {
     "a.csv": csv, "a.csv.gz": csv_gz, "german.csv": german_csv, "a.parquet": parquet, "a.feather": feather,
-    "a.xlsx": xlsx, "a.h5": hdf5, "a.mat": mat5, "v73.mat": mat73, "table.mat": mat_timetable,
-    "table73.mat": mat_timetable, "a.lvm": lvm, "a.mf4": mdf, "a.tdms": tdms,
+    "a.xlsx": xlsx, "a.h5": hdf5, "a.mat": mat5, "v73.mat": mat73,
+    "a.lvm": lvm, "a.mf4": mdf, "a.tdms": tdms,
     "a.uff": uff, "a.rsp": rpc,
 }  # fmt: skip
 """Name of a file, and what writes it."""

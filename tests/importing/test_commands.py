@@ -52,17 +52,6 @@ def test_inspect_shows_channels_and_doubts(noisy_table, tmp_path, seatsim_comman
     assert "gravity" in {each["kind"] for each in told["doubts"]}
 
 
-def test_inspect_by_a_map_shows_what_import_would_make(noisy_table, tmp_path, seatsim_command):
-    renamed = {"t": 1e3 * noisy_table["time"], "Kanal 1": -noisy_table["floor_acceleration"] / 9.80665}
-    path, stated = write_csv(tmp_path / "a.csv", renamed), tmp_path / "map.yaml"
-    stated.write_text(
-        "time: {column: t, unit: ms}\nchannels: {floor_acceleration: {column: Kanal 1, unit: g, sign: -1}}\n"
-    )
-    (found,) = json.loads(seatsim_command("inspect", path, "--map", stated, "--json")[1])["channels"]
-    assert (found["name"], found["unit"], found["rate"]) == ("floor_acceleration", "m/s^2", 500.0)
-    assert found["rms"] == pytest.approx(np.sqrt(np.mean(noisy_table["floor_acceleration"] ** 2)), rel=1e-6)
-
-
 @pytest.mark.parametrize(
     ("entry", "said"),
     [

@@ -58,7 +58,7 @@ def test_a_truncated_file_is_one_clear_error(exported, tmp_path):
 @pytest.mark.parametrize(
     ("name", "content", "expected"),
     [
-        ("a.pdf", b"%PDF-1.7 and more", "is a PDF; permitted: Parquet"),
+        ("a.pdf", b"%PDF-1.7 and more" + bytes(9), "no table in a known format; permitted: Parquet"),
         ("a.xls", b"\xd0\xcf\x11\xe0" + b"\1" * 600, "save it as .xlsx"),
         ("a.mat", b"time,force\n1,2\n", "does not begin as MAT v5 does"),
         ("a.csv", b"\x00\x01\x02\x03" * 50, "no table in a known format"),

@@ -24,7 +24,6 @@ def test_figures_of_a_channel(noisy_table, tmp_path):
     assert force.rms == pytest.approx(np.sqrt(np.mean(noisy_table["damper_force"] ** 2)))
     assert force.noise == pytest.approx(2.5, rel=0.15)
     assert channels["floor_acceleration"].noise == pytest.approx(0.01, rel=0.15)
-    assert len(force.spark) == 24
     json.dumps(to_content(found))
 
 

@@ -1,16 +1,11 @@
 """MAT files as many programs lay them out: channels, units, rates and times are those that stand there."""
 
-import subprocess
-import sys
-
+import h5py
 import numpy as np
-import pandas as pd
 import pytest
 from scipy.io import savemat
 
 from seatsim.importing.readers.reading import read_file
-
-from . import exports
 
 TIME = 0.002 * np.arange(500)
 FORCE, FLOOR = 100.0 * np.sin(9.0 * TIME), np.cos(7.0 * TIME)
@@ -24,12 +19,6 @@ def structures(**fields):
     return held
 
 
-def series(name, values, **others):
-    """What an object of the class timeseries holds."""
-    return {"Name": name, "Data_": values, "DataInfo": {"Units": "N"}, "Events": np.zeros((0, 0)), **others}
-
-
-EVEN = {"TimeInfo": {"Units": "milliseconds", "Start_": 250.0, "Increment_": 2.0}, "Time_": np.zeros((0, 0))}
 HEADERS = ({"SignalName": "force", "Unit": "N", "SampleFrequency": 500.0}, {"SignalName": "floor", "Unit": "m/s²"})
 LAYOUTS = {
     "Simulink, structure with time": {
@@ -37,11 +26,6 @@ LAYOUTS = {
                       "signals": structures(values=[FORCE, FLOOR], label=["force", "floor"], dimensions=[1.0, 1.0])}},
     "Simulink, three dimensions": {
         "logged": {"time": TIME, "signals": {"values": np.stack([FORCE, FLOOR])[:, None, :], "label": "force"}}},
-    "Simulink, Dataset": {
-        "logsout": {"Elements_": np.array([{"Name": "force", "Values": series("", FORCE, Time_=TIME)},
-                                           {"Name": "floor", "Values": series("", FLOOR, Time_=TIME)}], dtype=object)}},
-    "timeseries": {"force": series("force", FORCE, Time_=TIME), "floor": series("floor", FLOOR, Time_=TIME)},
-    "timeseries, even": {"force": series("force", FORCE, **EVEN)},
     "dSPACE": {
         "exp_001": {"X": {"Name": "", "Data": TIME[None, :]}, "Description": {"General": "a run"},
                     "Y": structures(Name=["force", "floor"], Data=[FORCE[None, :], FLOOR[None, :]], Unit=["N", "m/s^2"],
@@ -62,14 +46,13 @@ LAYOUTS = {
 }  # fmt: skip
 EXPECTED = {
     "Simulink, three dimensions": {"force#1", "force#2"},
-    "timeseries, even": {"force"},
     "Dewesoft": {"Data1_force", "Data1_floor"},
     "imc": {"force"},
     "cells": {"force"},
     "matrix": {"data#1", "data#2"},
     "x, y, z": {"x", "y", "z"},
 }
-IN_NEWTON = ("timeseries, even", "dSPACE", "catman", "imc", "flat", "cells", "timeseries")
+IN_NEWTON = ("dSPACE", "catman", "imc", "flat", "cells")
 
 
 def clocked(file):
@@ -92,58 +75,41 @@ def test_channels_have_the_times_and_units_that_stand_beside_them(layout, tmp_pa
     assert set(found) == EXPECTED.get(layout, {"force", "floor"})
     first = next(name for name in ("force", "force#1", "Data1_force", "data#1", "x") if name in found)
     values, times, unit = found[first]
-    start = 0.25 if layout in ("imc", "timeseries, even") else 0.0
+    start = 0.25 if layout == "imc" else 0.0
     assert np.array_equal(values, FORCE) and times == pytest.approx(start + TIME, abs=1e-9)
-    assert unit == ("N" if layout in IN_NEWTON else "") or layout == "Simulink, Dataset"
+    assert unit == ("N" if layout in IN_NEWTON else "")
     if layout in ("Dewesoft", "dSPACE, two rates"):
         assert np.diff(found["Data1_floor" if layout == "Dewesoft" else "floor"][1])[0] == pytest.approx(0.004)
     assert not file.notes
 
 
-@pytest.mark.parametrize("version", ["v7", "v7.3"])
-def test_tables_and_timetables_of_matlab_are_groups(version, tmp_path):
-    matio = pytest.importorskip("matio")
-    timed = pd.DataFrame({"force": FORCE, "floor": FLOOR}, index=pd.to_timedelta(TIME, unit="s"))
-    held = {"timed": timed, "table": pd.DataFrame({"t": TIME[::2], "force": FORCE[::2]}), "none": timed.head(0)}
-    with pytest.warns(matio.utils.matclass.MatConvertWarning):
-        matio.save_to_mat(str(tmp_path / "a.mat"), held, version=version)
-    file = read_file(tmp_path / "a.mat")
-    groups = {group.name: group for group in file.groups}
-    assert set(groups) == {"timed", "table"}
-    assert groups["timed"].find("time").values == pytest.approx(TIME)
-    assert np.array_equal(groups["timed"].find("floor").values, FLOOR)
-    assert np.array_equal(groups["table"].find("force").values, FORCE[::2])
-    assert "none.force" in file.notes[0]
+def test_structures_cells_and_texts_of_version_7_3_are_those_of_version_5(tmp_path):
+    path = tmp_path / "a.mat"
+    with h5py.File(path, "w", userblock_size=512) as file:
 
+        def put(place, values, kind):
+            file.create_dataset(place, data=values).attrs["MATLAB_class"] = np.bytes_(kind)
+            return file[place].ref
 
-def test_pandas_keeps_texts_as_before_a_table_of_matlab_was_read(tmp_path):
-    exports.mat_timetable(tmp_path / "table.mat", {"time": TIME, "force": FORCE})
-    program = (
-        "import sys, warnings; from pathlib import Path; import pandas as pd; warnings.simplefilter('ignore');"
-        "from seatsim.importing.readers.reading import read_file; pd.set_option('future.infer_string', False);"
-        "assert read_file(Path(sys.argv[1])).groups and 'matio' in sys.modules;"
-        "assert not pd.get_option('future.infer_string')"
-    )
-    subprocess.run([sys.executable, "-c", program, str(tmp_path / "table.mat")], check=True)
+        def put_text(place, text):
+            return put(place, np.array([[ord(letter)] for letter in text], np.uint16), "char")
 
-
-@pytest.mark.parametrize("version", ["v7", "v7.3"])
-def test_objects_of_classes_such_as_timeseries_are_channels(version, tmp_path):
-    matio = pytest.importorskip("matio")
-
-    def made(class_name, **properties):
-        return matio.utils.matclass.MatlabOpaque(properties, class_name)
-
-    info = made("tsdata.datametadata", Units="N")
-    force, inner = (
-        made("timeseries", Name=name, Data_=FORCE[:, None], Time_=TIME[:, None], DataInfo=info)
-        for name in ("force", "")
-    )
-    logged = made("Simulink.SimulationData.Signal", Name="logged", Values=inner)
-    matio.save_to_mat(str(tmp_path / "a.mat"), {"force": force, "signal": logged}, version=version)
-    (group,) = read_file(tmp_path / "a.mat").groups
-    assert [(signal.name, signal.unit) for signal in group.signals] == [("time", "s"), ("force", "N"), ("logged", "N")]
-    assert group.signals[0].values == pytest.approx(TIME) and np.array_equal(group.signals[2].values, FORCE)
+        put("one/data", FORCE[None, :], "double")
+        put_text("one/unit", "N")
+        file["one"].attrs["MATLAB_class"] = np.bytes_("struct")
+        put("one/time", TIME[None, :], "double")
+        names = [put_text(f"#refs#/{name}", name) for name in ("first", "second")]
+        values = [put(f"#refs#/{k}", k * FLOOR[None, :], "double") for k in (1, 2)]
+        file["several/name"], file["several/data"] = (np.array([[a], [b]], h5py.ref_dtype) for a, b in (names, values))
+        file["several"].attrs["MATLAB_class"] = np.bytes_("struct")
+        put("table", np.zeros((6, 1), np.uint32), "table")
+        file["table"].attrs["MATLAB_object_decode"] = 3
+    path.write_bytes(b"MATLAB 7.3 MAT-file".ljust(124) + b"\0\2IM" + path.read_bytes()[128:])
+    file = read_file(path)
+    found = {signal.name: signal for group in file.groups for signal in group.signals}
+    assert found["one"].unit == "N" and np.array_equal(found["one"].values, FORCE)
+    assert np.array_equal(found["second"].values, 2.0 * FLOOR) and set(found) == {"time", "one", "first", "second"}
+    assert "parquetwrite): table" in file.notes[0]
 
 
 def test_what_is_no_column_of_real_numbers_is_named(tmp_path):

@@ -127,8 +127,7 @@ def test_an_uneven_abscissa_of_a_data_set_is_its_time(tmp_path):
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"kind": 2}, "data set 1 is an auto spectrum"),
-        ({"kind": 4}, "data set 1 is a frequency response"),
+        ({"kind": 2}, "data set 1 is a function of type 2, such as a spectrum"),
         ({"kind": 0, "axis": 18, "label": "Frequency", "unit": "Hz"}, "data set 1 is a function over Frequency"),
         ({"points": 490}, "has 498 values where it states 490"),
         ({"points": 600}, "has 498 of 600 values; the file is truncated"),

@@ -65,7 +65,6 @@ def test_a_part_that_is_too_short_for_a_run_is_named(tmp_path):
     ("times", "map_text", "sentence"),
     [
         (even(250.0, 200), "", "run-a: lasts 0.796 s by its times, 200 rows at 250 Hz; a run needs 1 s"),
-        (even(250.0, 1000) + 0.27 * (np.arange(1000) > 500), "gaps: fill\n", "a gap of 0.274 s is not filled"),
         (
             np.floor(np.delete(even(250.0, 5000), slice(1500, 2600))),
             "",

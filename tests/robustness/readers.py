@@ -59,7 +59,7 @@ MAP = (
     b"rig: seat\nsample_rate: 500.0\ncsv: {decimal: '.'}\nruns: {first: [a.csv]}\nalign: {a.csv: 0.25}\nchannels:\n"
     b"  floor_acceleration: {column: floor_acceleration, unit: m/s^2, scale: 1.0, remove_mean: true}\n"
     b"  driver_acceleration: {column: driver_acceleration, unit: m/s^2, sign: -1, delay: 0.002, noise_rms: 0.05}\n"
-    b"  suspension_displacement: {column: suspension_displacement, unit: m, offset: 0.001, despike: true}\n"
+    b"  suspension_displacement: {column: suspension_displacement, unit: m, offset: 0.001, fill: true}\n"
 )
 """A map for the import of a table."""
 

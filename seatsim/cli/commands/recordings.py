@@ -97,20 +97,15 @@ def import_data(
 
 def inspect_data(
     data: Annotated[Path, typer.Argument(show_default=False)],
-    map_file: Annotated[Path | None, typer.Option("--map", metavar="MAP.yaml")] = None,
 ) -> None:
     """Show the channels of a file or a recording, with unit, rate, range, RMS, noise and every doubt.
 
     Options:
         data: A data file, or the folder of a recording.
-        map_file: Show the channels that this map makes of a file.
     """
-    from seatsim.importing.inspection import inspect_file, inspect_mapped, inspect_recording
+    from seatsim.importing.inspection import inspect_file, inspect_recording
 
-    if map_file is not None:
-        found = inspect_mapped(data, map_file)
-    else:
-        found = inspect_recording(data) if data.is_dir() else inspect_file(data)
+    found = inspect_recording(data) if data.is_dir() else inspect_file(data)
     _show(found)
     _doubt(found.doubts)
     answer(found)
@@ -122,7 +117,7 @@ def _show(found: Inspection) -> None:
 
     from seatsim.cli.show_table import make_table, show_table
 
-    headings = ("channel", "unit", "Hz", "least", "greatest", "RMS", "noise", "swing", "mean", "is", "rows")
+    headings = ("channel", "unit", "Hz", "least", "greatest", "RMS", "noise", "mean", "is", "rows")
     for group, channels in found.channels.items():
         title = f"{Path(found.source).name} ({found.format})" + (f", {group}" if group else "")
         rows = []
@@ -131,8 +126,8 @@ def _show(found: Inspection) -> None:
             noise = "" if each.noise is None else f"{each.noise:.2g}"
             low, high, rms, mean = (f"{value:.4g}" for value in (each.low, each.high, each.rms, each.mean))
             names = (escape(each.name), escape(each.unit) or "?")
-            rows.append((*names, rate, low, high, rms, noise, each.spark, mean, each.channel or "", str(each.rows)))
-        show_table(make_table(make_printable(title), headings, rows, left=(0, 1, 7, 9)))
+            rows.append((*names, rate, low, high, rms, noise, mean, each.channel or "", str(each.rows)))
+        show_table(make_table(make_printable(title), headings, rows, left=(0, 1, 8)))
 
 
 def _doubt(doubts: list[Issue]) -> None:

@@ -38,12 +38,8 @@ _STAMP = re.compile(rf"(?:{DATE})(?:[ T_,-]+{CLOCK})?(?:Z| ?UTC|[+-]\d\d:?\d\d)?
 BLANKS = re.compile(rf'"[^"]*"|(?:(?<![^\s]){SIGN} +(?=[.,\d]))?[^\s"]+')
 """A cell of a table that is parted by blanks; one may stand between a sign and its number."""
 _OTHER_UNITS = """m/s2 m/s² mm/s2 °c c k f hz - sec in lb kg bar pa deg rad ° 1/s rpm w %"""
-LISTED_UNITS = {unit.lower() for units in USUAL.values() for unit in units} | set(_OTHER_UNITS.split())
-WITH_UNIT = re.compile(r"(\S.*?[\d.,])\s+([^\W\d_][^\s\d]*[²2]?|%|°C?)")
-"""A number with its unit in the same cell."""
+_LISTED_UNITS = {unit.lower() for units in USUAL.values() for unit in units} | set(_OTHER_UNITS.split())
 _LEADING_ZERO = re.compile(r"0\d+")
-_LONGEST_NUMBER = 40
-"""Letters of a cell that may hold a number and its unit."""
 COMMENT = re.compile(r"^\s*(?:#+|%+|//+|!+)\s*")
 """What begins a remark; names may stand in one."""
 _MOSTLY = 0.75
@@ -99,17 +95,11 @@ class Dialect(NamedTuple):
         if plain in MISSING:
             return None
         patterns = (PLAIN[self.decimal], THOUSANDS[self.decimal], _STAMP)
-        return any(pattern.fullmatch(_without_unit(plain)) for pattern in patterns)
+        return any(pattern.fullmatch(plain) for pattern in patterns)
 
     def kinds(self, rows: Sequence[Sequence[str]]) -> list[list[Kind]]:
         """Say what the cells of rows hold."""
         return [[self.kind(cell) for cell in row] for row in rows]
-
-
-def _without_unit(cell: str) -> str:
-    """Return a cell without a well-known unit at its end."""
-    found = WITH_UNIT.fullmatch(cell) if len(cell) <= _LONGEST_NUMBER else None
-    return found[1] if found and found[2].lower() in LISTED_UNITS else cell
 
 
 def _find_body(kinds: Sequence[Sequence[Kind]]) -> tuple[int, int]:
@@ -175,7 +165,6 @@ def _score(lines: Sequence[str], dialect: Dialect) -> float:
 
 def _count(cell: str, decimal: str) -> float:
     """Return how certainly a cell is a number: 1,234 may be 1.234, and 0500 may stand behind a decimal sign."""
-    cell = _without_unit(cell)
     if PLAIN[decimal].fullmatch(cell) or _STAMP.fullmatch(cell):
         return 0.5 if _LEADING_ZERO.fullmatch(cell) else 1.0
     return (1.0 if decimal in cell else 0.5) if THOUSANDS[decimal].fullmatch(cell) else 0.0
@@ -199,8 +188,6 @@ _LABEL = re.compile(r"^(?:headers?|columns?|fields?|names?|channels?|spalten|col
 """A word before the names that says that they follow."""
 _LEFT_OUT = ("", "comment", "comments", "remark", "remarks", "kommentar", "bemerkung", "commentaire")
 """Last names of a line, in lower case, that may have no cells in the rows: LabVIEW writes `Comment`."""
-_ROW = "row"
-"""Name of a first column of row numbers or labels, which has none in the file."""
 
 
 def split_header(rows: Sequence[Sequence[str]], columns: int) -> list[tuple[str, str]]:
@@ -240,8 +227,8 @@ def _count_meanings(row: Sequence[str]) -> int:
 
 def _is_units(row: Sequence[str]) -> bool:
     """Say whether a row of cells holds units: all look like one, and at least half are well known."""
-    cells = [text for cell in row if (text := _unmarked(cell))]
-    known = sum(cell.strip("[]() ").lower() in LISTED_UNITS for cell in cells)
+    cells = [text for cell in row if (text := _unmarked(cell)) and "unit" not in text.lower()]
+    known = sum(cell.strip("[]() ").lower() in _LISTED_UNITS for cell in cells)
     return bool(cells) and all(_UNIT_CELL.match(cell) for cell in cells) and known >= 0.5 * len(cells)
 
 
@@ -283,14 +270,6 @@ class Rows(NamedTuple):
         """Columns up to the last one that holds anything: a delimiter may end each row."""
         return max((index + 1 for row in self.kinds for index, kind in enumerate(row) if kind is not None), default=0)
 
-    @property
-    def has_labels(self) -> bool:
-        """Whether the first column holds texts, or counts the rows."""
-        first = [row[0].strip() for row in self.cells if len(row) == self.columns]
-        if all(text.isdecimal() for text in first):
-            return [int(text) for text in first] == list(range(int(first[0]), int(first[0]) + len(first)))
-        return not any(row[0] for row in self.kinds if row)
-
 
 def fit_names(path: Path, above: Sequence[str], rows: Rows, dialect: Dialect, is_stated: bool) -> list[list[str]]:
     """Return the cells of each line above the numbers; `is_stated` says that the map counts these lines.
@@ -306,9 +285,7 @@ def fit_names(path: Path, above: Sequence[str], rows: Rows, dialect: Dialect, is
     fits = [len(cells) == rows.columns and _may_be_names(cells) for cells in fitted]
     last = next((index for index in reversed(range(len(above))) if _names(above[index], fitted[index], dialect)), None)
     if last is None or fits[last] or (any(fits) and not _is_units(fitted[last])):
-        return [[_ROW, *cells[1:]] if cells and not cells[0] and rows.has_labels else cells for cells in fitted]
-    if len(fitted[last]) == rows.columns - 1 and rows.has_labels:
-        return [*fitted[:last], [_ROW, *fitted[last]]]
+        return fitted
     if is_stated:
         return [[] for _ in above]
     seen = f"has {len(fitted[last])} names, {quote(above[last])}, but the rows have {rows.columns} columns"

@@ -1,7 +1,7 @@
-"""MAT files of versions 5 and 7.3: vectors, matrices, tables and structures of them, as many programs lay them out.
+"""MAT files of versions 5 and 7.3: vectors, matrices and structures of them, as many programs lay them out.
 
 Programs differ in names and nesting, not in what they state. A structure with values is a channel; its name, unit,
-times or interval stand in it, or in a structure above (Simulink, dSPACE, time series). Where all variables lie flat,
+times or interval stand in it, or in a structure above (Simulink, dSPACE). Where all variables lie flat,
 those of a channel share the beginning of their names (`Channel_1_Data`, `Channel_1_Header`; `Data1_x`, `Data1_time_x`).
 """
 
@@ -18,7 +18,6 @@ from seatsim.importing.readers.mat_elements import AnyArray, Value, read_values
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.signals import (
     TIME,
-    UNITS,
     Channels,
     DataFile,
     Signal,
@@ -44,16 +43,16 @@ _STARTS = ("x0", "xoffset", "xorg", "start")
 Names stand here without underscores and capitals."""
 _INDEX = "xindex"
 """Field that says which of several vectors of times a channel has, counted from 1 (dSPACE)."""
-_TIME_INFO = "timeinfo"
 _UNITS_OF_TIME = ("xunit", "xunits", "unitx", "timeunit", "timeunits")
-"""A structure that states the unit of times, and fields that do."""
-_BESIDE = (_TIME_INFO, "header", "info", "datainfo", "capture", "meta", "metadata", "fileheader", "attributes")
+"""Fields that state the unit of times."""
+_BESIDE = ("header", "info", "datainfo", "capture", "meta", "metadata", "fileheader", "attributes")
 """Structures that state something of what stands beside them."""
 _ENDING = re.compile(
     r"^(.+?)_(data|values|header|unit|units|time|name|label|fs|dt|dx|x0|samplerate|xdelta)$", re.IGNORECASE
 )
 """A flat variable that is part of a channel: the name of the channel, and which part it is."""
 _TIME_WITHIN = re.compile(r"^(.*?)_?time_(.*)$", re.IGNORECASE)
+_LEFT_OUT = "left out, as they hold no columns of real numbers (MATLAB exports its tables and objects by parquetwrite)"
 _LATEST = 1e7
 """s; a start that is larger is a date."""
 
@@ -70,7 +69,7 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     """Return the channels of a file; a note names the variables that give none, and what is no column of numbers."""
     reader = _Reader()
     reader.read_structure("", "", _join_flat(read_values(path, content)), _Clock())
-    notes = note_left_out("left out, as they hold no columns of real numbers", reader.left_out)
+    notes = note_left_out(_LEFT_OUT, reader.left_out)
     return DataFile(path, "", reader.gathered.groups(), notes)
 
 
@@ -170,8 +169,7 @@ def _times(held: _Structure, names: Sequence[str]) -> tuple[Array, ...]:
 
 def _clock(held: _Structure, stated: _Structure, names: Sequence[str]) -> _Clock:
     """Return what a structure states of time, in s and Hz."""
-    info = next((value for key, value in held.items() if bare(key) == _TIME_INFO and isinstance(value, dict)), {})
-    unit = stated_text(stated, _UNITS_OF_TIME) or stated_unit(info)
+    unit = stated_text(stated, _UNITS_OF_TIME)
     found = find_conversion(unit, DIMENSIONS["time"]) if unit else None
     factor = found.factor if found else 1.0
     starts = (scalar(value) for key, value in stated.items() if bare(key) in _STARTS)
@@ -216,6 +214,5 @@ def _statements(structure: Mapping[str, Value]) -> dict[str, Value]:
     stated: dict[str, Value] = {}
     for name, value in structure.items():
         if bare(name) in _BESIDE and isinstance(value, dict):
-            is_of_time = bare(name) == _TIME_INFO
-            stated |= {each: held for each, held in value.items() if not (is_of_time and bare(each) in UNITS)}
+            stated |= value
     return stated | dict(structure)

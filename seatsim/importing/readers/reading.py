@@ -68,13 +68,7 @@ FORMATS = (
 )
 """Formats in the order in which they are tried."""
 _KNOWN = ", ".join(each.name for each in FORMATS)
-_NOT_TABLES = {
-    b"%PDF": "a PDF",
-    b"\x89PNG": "a picture",
-    b"\xff\xd8\xff": "a picture",
-    b"\x7fELF": "a program",
-    b"\xd0\xcf\x11\xe0": "an Excel file of the old kind (.xls): save it as .xlsx",
-}
+_OLD_EXCEL = b"\xd0\xcf\x11\xe0"
 _MARKUP = {
     re.compile(rb"\s*[{\[]\s*(?:[\[{\"}\]]|-?\d)"): "a JSON file",
     re.compile(rb"\s*<(?:\?xml|!doctype|html|[a-z]+[ >])", re.IGNORECASE): "an XML or HTML file",
@@ -137,9 +131,8 @@ def _content(path: Path) -> bytes:
 
 def _recognise(path: Path, content: bytes) -> _Format:
     head, names = content[:_SNIFFED], {each.name: each for each in FORMATS}
-    for magic, what in _NOT_TABLES.items():
-        if head.startswith(magic):
-            raise InputError(f"{path}: is {what}; permitted: {_KNOWN}")
+    if head.startswith(_OLD_EXCEL):
+        raise InputError(f"{path}: is an Excel file of the old kind (.xls): save it as .xlsx; permitted: {_KNOWN}")
     for pattern, what in _MARKUP.items():
         if pattern.match(head.removeprefix(b"\xef\xbb\xbf")):
             raise InputError(f"{path}: is {what}; export its channels as a table; permitted: {_KNOWN}")

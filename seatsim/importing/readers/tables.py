@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from seatsim.importing.readers.header import CLOCK, DATE, LISTED_UNITS, PLAIN, SIGN, THOUSANDS, WITH_UNIT
+from seatsim.importing.readers.header import CLOCK, DATE, PLAIN, SIGN, THOUSANDS
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.signals import TIME, DataFile, Group, Signal, note_left_out, stated_unit
 from seatsim.schema.arrays import Array, open_parquet
@@ -125,10 +125,6 @@ def _read_texts(texts: pd.Series[str], decimal: str) -> Cells | None:
     if np.isnan(found).sum() <= _MOST_TEXTS * len(found):
         parted = plain[plain.str.fullmatch(_AMBIGUOUS, na=False) & (np.abs(found) >= 1e3)]
         return Cells(found, parted=f"'{parted.iloc[0]}'" if len(parted) else "")
-    parts = plain.str.extract(rf"^{WITH_UNIT.pattern}$")
-    if parts[1].nunique() == 1 and parts[1].dropna().iloc[0].lower() in LISTED_UNITS:
-        found = _numbers(parts[0], decimal)
-        return Cells(found, parts[1].dropna().iloc[0]) if np.isfinite(found).any() else None
     times = _read_stamps(plain)
     return None if np.isnan(times).sum() > _MOST_TEXTS * len(times) else Cells(times, "s")
 

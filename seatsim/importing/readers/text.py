@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterable, Sequence
 from itertools import pairwise, takewhile
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
 import numpy as np
 
@@ -43,9 +43,6 @@ if TYPE_CHECKING:
 _SAMPLE = 65536
 """Bytes from which delimiter, decimal sign and header are found."""
 _SIGN_APART = re.compile(rb"[+-] +[.,\d]")
-_FEW = 20
-_WHOLE_LINE = re.compile(rb'"[^"]*[,;\t|][^"]*"')
-"""A line that stands in quotation marks as a whole; a table that begins with some lines of this kind has no others."""
 _LONGEST_NAME = 8
 """Lines over which a name in quotation marks may go."""
 _MOST_ROWS = 2**20
@@ -68,7 +65,7 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
         InputError: it holds no rows of numbers, its names are not as many as its columns, or a row has fewer or more
             columns than the others.
     """
-    content = as_utf8(content, layout.encoding)
+    content = _as_utf8(content, layout.encoding)
     lines = _sample(content)
     dialect = Dialect.find([lines[index] for index in _list_used(lines)], layout.delimiter, layout.decimal)
     if dialect is None:
@@ -83,22 +80,19 @@ def _read_table(path: Path, content: bytes, head: _Head) -> DataFile:
     columns, (delimiter, decimal) = [str(index) for index in range(len(head.columns))], head.dialect
     table, bad = parse_rows(body, path, columns, delimiter=delimiter, decimal=decimal, missing=MISSING)
     if bad:
-        _check_rows(path, content, [(row.text, row.actual_columns) for row in bad], head, notes)
+        _refuse_rows(path, content, [(row.text, row.actual_columns) for row in bad], len(head.columns))
     signals = _signals(table, head, notes)
-    _check_texts(path, table, signals)
     if not content.endswith((b"\n", b"\r")):
         notes.append("the last line has no end; if the file was cut there, its last number is wrong")
     return DataFile(path, "CSV", _part_by_time(signals, find_rate(head.above)), tuple(notes))
 
 
-def as_utf8(content: bytes, stated: str | None) -> bytes:
+def _as_utf8(content: bytes, stated: str | None) -> bytes:
     """Return a text in UTF-8, of the encoding that is stated, else found, without a mark of the order of its bytes."""
     encoding = stated or _encoding(content)
     if encoding != "utf-8":
         content = content.decode(encoding, errors="replace").encode()
-    content = content.removeprefix(b"\xef\xbb\xbf")
-    lines = content[:_SAMPLE].splitlines()[:_FEW]
-    return content.replace(b'"', b"") if lines and all(_WHOLE_LINE.fullmatch(line) for line in lines) else content
+    return content.removeprefix(b"\xef\xbb\xbf")
 
 
 def _encoding(content: bytes) -> str:
@@ -158,23 +152,22 @@ def _without_lines(content: bytes, count: int) -> bytes:
 
 
 def _clean(body: bytes, head: _Head) -> tuple[bytes, list[str]]:
-    """Return rows as pyarrow reads them, without remarks and names among them, and sentences on those."""
+    """Return rows as pyarrow reads them, without names among them, and a sentence on those."""
     for sign in ("\u2212", "\u2013"):
         body = body.replace(sign.encode(), b"-")
     above = [line.strip().encode() for line in head.above if line.strip()]
     names = {*above} if above and above[-1] in body else set[bytes]()
-    marks = tuple(mark for mark in (b"#", b"%", b"//") if body.startswith(mark) or b"\n" + mark in body)
     is_parted_by_blanks = head.dialect.delimiter == " "
-    if not (names or marks or is_parted_by_blanks):
+    if not (names or is_parted_by_blanks):
         return body, []
     lines = body.splitlines()
     headings = _find_headings(lines, names, head.dialect)
-    kept = [line for k, line in enumerate(lines) if not (k in headings or (marks and line.startswith(marks)))]
+    kept = [line for k, line in enumerate(lines) if k not in headings]
     left_out = len(lines) - len(kept)
     if is_parted_by_blanks:
         part = _cells_of_blanks if b'"' in body or _SIGN_APART.search(body) else bytes.split
         kept = [b" ".join(part(line)) for line in kept]
-    notes = [f"lines among the rows that hold remarks or the names again are left out: {left_out}"] if left_out else []
+    notes = [f"lines among the rows that hold the names again are left out: {left_out}"] if left_out else []
     return b"\n".join(kept) + b"\n", notes
 
 
@@ -200,33 +193,16 @@ def _cells_of_blanks(line: bytes) -> list[bytes]:
     return [(cell if cell.startswith('"') else "".join(cell.split())).encode() for cell in cells]
 
 
-def _check_rows(path: Path, content: bytes, bad: Sequence[tuple[str, int]], head: _Head, notes: list[str]) -> None:
-    """Raise InputError at the first row of another length than the names; lines of text below the table are noted."""
+def _refuse_rows(path: Path, content: bytes, bad: Sequence[tuple[str, int]], wanted: int) -> NoReturn:
+    """Raise InputError at the first row of another length than the names."""
     lines = [line.strip() for line in content.decode(errors="replace").splitlines()]
-    last = [line for line in lines if line][-len(bad) :]
-    texts = {text.strip() for text, _ in bad}
-    is_footer = {*last} == texts and not any(head.dialect.kind(head.dialect.split(text)[0]) for text in texts)
-    if is_footer:
-        notes.append(f"lines below the table are left out: {'; '.join(quote(line) for line in last[:3])}")
-        return
     text, columns = min(bad, key=lambda row: _find(lines, row[0]))
-    line = _find(lines, text)
-    reason = f": {quote(text)}; correct or remove that line"
-    if text.strip() == last[-1]:
-        reason = "; the file is truncated or damaged: export it again"
+    is_last = text.strip() == next(line for line in reversed(lines) if line)
+    remedy = "if it is no remark, the file is truncated or damaged: export it again" if is_last else ""
+    reason = "; ".join(filter(None, (f"{quote(text)}; correct or remove that line", remedy)))
     more = f" (and {len(bad) - 1} more lines)" if len(bad) > 1 else ""
-    wanted = len(head.columns)
-    raise InputError(f"{path}, line {line}: has {columns} columns where the others have {wanted}{more}{reason}")
-
-
-def _check_texts(path: Path, table: pa.Table, signals: Sequence[Signal]) -> None:
-    """Raise InputError at a row of texts in columns of numbers: another table may begin there."""
-    empty = np.all([np.isnan(signal.values) for signal in signals], axis=0) if signals else np.empty(0)
-    for row in np.flatnonzero(empty):
-        texts = [text for column in table.columns if isinstance(text := column[int(row)].as_py(), str)]
-        if len(texts) >= len(signals):
-            seen = f"among the numbers stands a row of texts, {quote(', '.join(texts))}"
-            raise InputError(f"{path}: {seen}; if another table begins there, split the file, else remove that line")
+    place = f"{path}, line {_find(lines, text)}"
+    raise InputError(f"{place}: has {columns} columns where the others have {wanted}{more}: {reason}")
 
 
 def _find(lines: Sequence[str], text: str) -> int:

@@ -22,10 +22,6 @@ from seatsim.schema.units import DIMENSIONS, conversion
 _DataSet: TypeAlias = Mapping[str, "float | str | Array"]
 _FUNCTION = 58
 """Type of a data set that is a function."""
-_FUNCTIONS = """a general function, a time response, an auto spectrum, a cross spectrum, a frequency response,
-a transmissibility, a coherence, an auto correlation, a cross correlation, a power spectral density,
-an energy spectral density, a probability density, a spectrum""".replace("\n", " ").split(", ")
-"""What functions are by the number of their type; those over time are the first two."""
 _OVER_TIME, _TIME_AXIS = (0, 1), (0, 17)
 """Types of functions, and of the quantity along the abscissa (0 is not stated)."""
 _OF_LINE = 6
@@ -72,7 +68,7 @@ def _why_not(kind: int, held: _DataSet) -> str:
         return f"no function, but of type {kind}"
     function, axis = (int(held[key] or 0) for key in ("func_type", "abscissa_spec_data_type"))
     if function not in _OVER_TIME:
-        return _FUNCTIONS[function] if 0 < function < len(_FUNCTIONS) else f"a function of type {function}"
+        return f"a function of type {function}, such as a spectrum"
     return "" if axis in _TIME_AXIS else f"a function over {str(held['abscissa_axis_lab']).strip() or axis}"
 
 

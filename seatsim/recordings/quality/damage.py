@@ -179,7 +179,7 @@ def doubt_spikes(doubter: Doubter, values: Array, least: float = NOTABLE) -> Ite
     if len(rows):
         size = float(np.max(np.abs(values[rows] - 0.5 * (values[rows - 1] + values[rows + 1]))))
         text = f"{len(rows)} spikes of up to {size:.3g}, the first at {doubter.at(int(rows[0]))}"
-        yield doubter.say("warning", "spikes", f"{text}; despike: true interpolates them")
+        yield doubter.say("warning", "spikes", text)
 
 
 def find_spikes(values: Array, factor: float = _SPIKE) -> NDArray[np.int_]:
