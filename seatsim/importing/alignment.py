@@ -4,23 +4,17 @@ The offset is where the correlation of two channels is greatest, between rows by
 """
 
 from collections.abc import Mapping
-from itertools import combinations
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from seatsim.recordings.quality.relations import band_passed
-from seatsim.recordings.recording import ACCELEROMETERS
 from seatsim.schema.arrays import Array
 
 _SHORTEST = 2.0
 """s; least length of a record that tells an offset."""
 _LEAST = 0.5
 """Correlation below which two channels do not tell an offset."""
-_RELATED = (("current_command", "coil_current"), *combinations(ACCELEROMETERS, 2))
-"""Channels that follow each other, though not at once."""
-_UNCLEAR = 0.05
-"""s up to which an offset between related channels may be their own lag."""
 _HALF, _BETA, _ROLL = 32, 9.0, 0.92
 """Zero crossings of the sinc on each side, shape of the Kaiser window (stop band -90 dB), share of the band kept."""
 _CHUNK = 20_000
@@ -39,43 +33,31 @@ class Channel(NamedTuple):
 
 
 class _Offset(NamedTuple):
-    """Seconds to add to the times of the second file; by which channels, and how alike these are."""
+    """Seconds to add to the times of the second file; by which channel, and how alike it is in both."""
 
     seconds: float
-    first: str
-    second: str
+    channel: str
     correlation: float
-
-    @property
-    def is_clear(self) -> bool:
-        """Say whether this is an offset of clocks, and not the lag of a channel behind another one."""
-        return self.first == self.second or abs(self.seconds) > _UNCLEAR
 
 
 def estimate_offset(first: Mapping[str, Channel], second: Mapping[str, Channel]) -> _Offset | None:
-    """Return the offset of the second group's clock, by the pair of channels that are most alike; None without any."""
-    pairs = [(name, name) for name in first if name in second]
-    if not pairs:
-        both = (pair for one, other in _RELATED for pair in ((one, other), (other, one)))
-        pairs = [(a, b) for a, b in both if a in first and b in second]
-    found = [offset for a, b in pairs if (offset := _of_pair(first[a], second[b], (a, b))) is not None]
-    best = max(found, key=lambda offset: offset.correlation, default=None)
-    return best if best is not None and best.correlation >= _LEAST else None
+    """Return the offset of the second group's clock, by the shared channel that is most alike; None without any."""
+    shared = (_compare(first[name], second[name], name) for name in first if name in second)
+    alike = [offset for offset in shared if offset is not None and offset.correlation >= _LEAST]
+    return max(alike, key=lambda offset: offset.correlation, default=None)
 
 
 def describe_offset(label: str, reference: str, found: _Offset | None) -> str:
     """Return a sentence on the offset of a group against another one."""
     if found is None:
-        return f"{label}: shares no channel with {reference} that shows an offset; its times are taken as they are"
-    by = found.first if found.first == found.second else f"{found.second} and {found.first}"
-    seen = f"{found.seconds:+.5g} s, by cross-correlation of {by} ({found.correlation:.3f})"
-    if not found.is_clear:
-        return f"{label}: {seen} may be the lag between the two; its times are taken as they are, or state align"
-    return f"{label}: moved against {reference} by {seen}"
+        seen = f"shares no channel with {reference} that shows an offset"
+        return f"{label}: {seen}; its times are taken as they are, or state align"
+    by = f"by cross-correlation of {found.channel} ({found.correlation:.3f})"
+    return f"{label}: moved against {reference} by {found.seconds:+.5g} s, {by}"
 
 
-def _of_pair(one: Channel, other: Channel, pair: tuple[str, str]) -> _Offset | None:
-    """Return the offset between two channels, on a time base of the slower one that is fine enough."""
+def _compare(one: Channel, other: Channel, name: str) -> _Offset | None:
+    """Return the offset between two records of a channel, on the time base of the slower one."""
     from scipy.signal import correlate, correlation_lags
 
     rate = min(one.rate, other.rate)
@@ -87,7 +69,7 @@ def _of_pair(one: Channel, other: Channel, pair: tuple[str, str]) -> _Offset | N
     # Values that are `late` in the second are at the same instant as those of the first.
     late = (correlation_lags(len(b), len(a))[at] + _vertex(values, at)) / rate
     alike = float(values[at] / (np.linalg.norm(a) * np.linalg.norm(b)))
-    return _Offset(float(one.start - other.start - late), *pair, alike)
+    return _Offset(float(one.start - other.start - late), name, alike)
 
 
 def _even(channel: Channel, rate: float) -> Array:

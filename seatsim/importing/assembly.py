@@ -103,7 +103,7 @@ def _use_channels(
         if label not in align and file != reference.file:
             offset = estimate_offset(by_group[reference.label], by_group[label])
             notes.append(describe_offset(label, reference.label, offset))
-            if offset is not None and offset.is_clear:
+            if offset is not None:
                 align[label] = offset.seconds
     taken = {name: (by_group[each.label][name], align.get(each.label, 0.0)) for name, each in taken_from.items()}
     return {name: channel._replace(start=channel.start + seconds) for name, (channel, seconds) in taken.items()}
@@ -115,14 +115,10 @@ def _tabulate(
     """Return the table of a run on one time base, over the time that all its channels have in common."""
     begin = max(each.start for each in held.values())
     end = min(each.start + (len(each.values) - 1) / each.rate for each in held.values())
-    shortest = min(held.values(), key=lambda each: len(each.values) / each.rate)
-    lasts = (len(shortest.values) - 1) / shortest.rate
-    if lasts < SHORTEST_RUN:
-        seen = f"lasts {lasts:.3g} s by its times, {len(shortest.values)} rows at {shortest.rate:.6g} Hz"
-        raise InputError(f"{run}: {seen}; a run needs {SHORTEST_RUN:g} s: check the rate, or the unit under time")
     if end - begin < SHORTEST_RUN:
-        common = f"less than {SHORTEST_RUN:g} s in common ({max(0.0, end - begin):.3g} s at {rate:.6g} Hz)"
-        raise InputError(f"{run}: its files have {common}; check their times and the unit under time, or state align")
+        seen = f"its channels have {max(0.0, end - begin):.3g} s in common by their times, at {rate:.6g} Hz"
+        remedy = "check the rate and the unit under time, or state align of its files"
+        raise InputError(f"{run}: {seen}; a run needs {SHORTEST_RUN:g} s: {remedy}")
     times = begin + np.arange(int((end - begin) * rate + 1e-6) + 1) / rate
     table = {}
     for name, entry in stated.channels.items():

@@ -1,9 +1,9 @@
 """What a file or a recording holds: every channel with unit, rate, range, RMS and noise, and every doubt about it.
 
-Of a recording that is also what `gap` and `diagnose` say of it, and the noise that is not stated.
+Of a recording that is also what `gap` and `diagnose` say of it.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -16,12 +16,11 @@ from seatsim.importing.names import SI_UNITS, is_of, quantity_of, read_name, wit
 from seatsim.importing.readers.reading import read_file
 from seatsim.importing.signals import DataFile, Group, Signal
 from seatsim.importing.time_axis import Axis, Clock, find_clock, is_spectrum
-from seatsim.recordings.quality.damage import QUIET, noise_of
+from seatsim.recordings.quality.damage import noise_of
 from seatsim.recordings.quality.examination import examine, merge_issues
 from seatsim.recordings.quality.issue import Issue, place_in_run
 from seatsim.recordings.quality.relations import doubt_relations
-from seatsim.recordings.quality.sensors import list_unrepeated, measure_unrepeated
-from seatsim.recordings.recording import BENCH_CHANNELS, CHANNELS, COMMANDS, SEAT_CHANNELS, Recording, load_recording
+from seatsim.recordings.recording import BENCH_CHANNELS, CHANNELS, SEAT_CHANNELS, load_recording
 from seatsim.schema.arrays import Array
 from seatsim.schema.content import Joined, Unwritten, written
 from seatsim.schema.units import conversion
@@ -188,7 +187,6 @@ def inspect_recording(folder: Path) -> Inspection:
         found += [] if recording.nominal_file.exists() else doubt_relations(table, rate)
         doubts += place_in_run(run, found)
     doubts = merge_issues(doubts, len(recording.runs))
-    doubts += _offered(recording, channels, doubts)
     if recording.nominal_file.exists():
         doubts += examine(recording).issues
     else:
@@ -199,23 +197,3 @@ def inspect_recording(folder: Path) -> Inspection:
 
 def _summarise_table(table: Mapping[str, Array], units: Mapping[str, str], rate: float) -> list[ChannelSummary]:
     return [_summarise(Signal(name, units[name], values), units[name], name, rate) for name, values in table.items()]
-
-
-def _offered(
-    recording: Recording, channels: dict[str, list[ChannelSummary]], doubts: Sequence[Issue]
-) -> Iterator[Issue]:
-    """Yield the noise of each measured channel that states none: of its floor, or of repeats, which show all of it."""
-    tables = {run: recording.table(run) for run in recording.runs}
-    for name, entry in recording.channels.items():
-        if entry.noise_rms > 0.0 or name in COMMANDS:
-            continue
-        repeated = measure_unrepeated(list_unrepeated(recording.runs, tables, name))
-        noises = (each.noise for held in channels.values() for each in held if each.name == name)
-        floor = min(filter(None, noises), default=0.0)
-        is_quiet = any(issue.channel == name and issue.kind in QUIET for issue in doubts)
-        if repeated > 0.0:
-            differ = f"differ by noise_rms: {repeated:.2g}, with {floor:.2g} at high frequencies"
-            yield Issue("note", "noise", f"{name}: states no noise; repeats of one excitation {differ}", name)
-        elif floor and not is_quiet:
-            text = f"states no noise; its floor at high frequencies shows noise_rms: {floor:.2g}"
-            yield Issue("note", "noise", f"{name}: {text}", name)

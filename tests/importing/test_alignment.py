@@ -87,21 +87,6 @@ def test_files_without_anything_in_common_are_said(tmp_path):
     assert any("shares no channel" in note for note in import_files(files, tmp_path / "out").notes)
 
 
-def test_the_lag_of_a_coil_behind_its_command_is_no_offset_of_clocks(tmp_path):
-    times = np.arange(0.0, 12.0, 0.002)
-    command, coil = band_limited(2, times), band_limited(2, times - 0.008)
-    first = write_csv(
-        tmp_path / "a.csv", {"time": times, "floor_acceleration": band_limited(1, times), "current_command": command}
-    )
-    second = write_csv(tmp_path / "b.csv", {"time": times, "coil_current": coil})
-    found = import_files([first, second], tmp_path / "out")
-    assert found.map.align == {}
-    assert any("may be the lag between the two" in note for note in found.notes)
-    np.testing.assert_allclose(read_run(tmp_path / "out")["coil_current"], coil, rtol=1e-6, atol=1e-6)
-    late = write_csv(tmp_path / "b.csv", {"time": times, "coil_current": band_limited(2, times + 0.5)})
-    assert import_files([first, late], tmp_path / "late").map.align["b.csv"] == pytest.approx(0.5, abs=0.002)
-
-
 def test_runs_that_are_complete_stay_runs(noisy_table, tmp_path):
     files = [write_csv(tmp_path / f"{name}.csv", noisy_table) for name in ("first", "second")]
     assert import_files(files, tmp_path / "out").runs == ("first", "second")

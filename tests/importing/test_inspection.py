@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from ruamel.yaml import YAML
 
-from seatsim.importing.importing import import_files
 from seatsim.importing.inspection import inspect_file, inspect_recording
 from seatsim.schema.content import to_content
 
@@ -67,34 +66,8 @@ def test_rows_written_twice_copies_and_derived_velocities(noisy_table, tmp_path)
     assert {"repeated_rows", "duplicate", "derived"} <= found
 
 
-def test_a_recording_is_examined_and_its_noise_is_offered(tmp_path, sound):
+def test_a_recording_is_examined(sound):
     found = inspect_recording(sound)
     header = YAML(typ="safe").load(sound / "recording.yaml")
     assert list(found.channels) == [run["name"] for run in header["runs"]]
-    offered = {issue.channel for issue in found.doubts if "noise_rms:" in issue.sentence}
-    assert not offered & {name for name, entry in header["channels"].items() if entry.get("noise_rms")}
     assert all(each.channel == each.name for held in found.channels.values() for each in held)
-
-
-def say_noise(folder):
-    return {each.channel: each.sentence for each in inspect_recording(folder).doubts if each.kind == "noise"}
-
-
-def test_the_noise_of_a_recording_that_states_none_is_offered_from_its_floor_and_from_repeats(noisy_table, tmp_path):
-    generator = np.random.default_rng(11)
-    again = {**noisy_table, "damper_force": noisy_table["damper_force"] + 2.0 * generator.standard_normal(5001)}
-    files = [write_csv(tmp_path / "a.csv", noisy_table), write_csv(tmp_path / "b.csv", again)]
-    stated = tmp_path / "map.yaml"
-    text = "time: {column: time, unit: s}\nchannels:\n" + "".join(
-        f"  {name}: {{column: {name}}}\n" for name in ("floor_acceleration", "driver_acceleration", "damper_force")
-    )
-    stated.write_text(text)
-    import_files(files, tmp_path / "once", stated)
-    said = say_noise(tmp_path / "once")
-    offered = {name: float(sentence.rpartition(" ")[2]) for name, sentence in said.items()}
-    assert offered["floor_acceleration"] == pytest.approx(0.01, rel=0.2)
-    assert offered["damper_force"] == pytest.approx(2.5, rel=0.2)
-    stated.write_text(text + "repeats: {b: a}\n")
-    import_files(files, tmp_path / "repeated", stated)
-    said = say_noise(tmp_path / "repeated")
-    assert "repeats of one excitation differ by noise_rms: 1.4" in said["damper_force"]

@@ -30,13 +30,8 @@ LAYOUTS = {
         "exp_001": {"X": {"Name": "", "Data": TIME[None, :]}, "Description": {"General": "a run"},
                     "Y": structures(Name=["force", "floor"], Data=[FORCE[None, :], FLOOR[None, :]], Unit=["N", "m/s^2"],
                                     XIndex=[1, 1])}},
-    "dSPACE, two rates": {
-        "exp_001": {"X": structures(Name=["a", "b"], Data=[TIME, 2.0 * TIME]),
-                    "Y": structures(Name=["force", "floor"], Data=[FORCE, FLOOR], XIndex=[1, 2])}},
     "catman": {"Channel_1_Data": FORCE, "Channel_1_Header": HEADERS[0], "Channel_2_Data": FLOOR,
                "Channel_2_Header": HEADERS[1], "File_Header": {"SampleFrequency": 500.0}},
-    "Dewesoft": {"Data1_force": FORCE, "Data1_time_force": TIME, "Data1_floor": FLOOR[::2],
-                 "Data1_time_floor": TIME[::2], "Sample_rate": 500.0, "Start_time": "2026"},
     "imc": {"force": {"y": FORCE, "xdelta": 2.0, "x0": 250.0, "xunit": "ms", "yunit": "N"}},
     "Simulink, outputs": {"tout": TIME, "force": FORCE, "floor": FLOOR},
     "flat": {"force": FORCE, "force_unit": "N", "floor": FLOOR, "fs": 500.0},
@@ -46,7 +41,6 @@ LAYOUTS = {
 }  # fmt: skip
 EXPECTED = {
     "Simulink, three dimensions": {"force#1", "force#2"},
-    "Dewesoft": {"Data1_force", "Data1_floor"},
     "imc": {"force"},
     "cells": {"force"},
     "matrix": {"data#1", "data#2"},
@@ -73,13 +67,11 @@ def test_channels_have_the_times_and_units_that_stand_beside_them(layout, tmp_pa
     file = read_file(tmp_path / "a.mat")
     found = clocked(file)
     assert set(found) == EXPECTED.get(layout, {"force", "floor"})
-    first = next(name for name in ("force", "force#1", "Data1_force", "data#1", "x") if name in found)
+    first = next(name for name in ("force", "force#1", "data#1", "x") if name in found)
     values, times, unit = found[first]
     start = 0.25 if layout == "imc" else 0.0
     assert np.array_equal(values, FORCE) and times == pytest.approx(start + TIME, abs=1e-9)
     assert unit == ("N" if layout in IN_NEWTON else "")
-    if layout in ("Dewesoft", "dSPACE, two rates"):
-        assert np.diff(found["Data1_floor" if layout == "Dewesoft" else "floor"][1])[0] == pytest.approx(0.004)
     assert not file.notes
 
 

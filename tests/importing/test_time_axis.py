@@ -64,7 +64,7 @@ def test_a_part_that_is_too_short_for_a_run_is_named(tmp_path):
 @pytest.mark.parametrize(
     ("times", "map_text", "sentence"),
     [
-        (even(250.0, 200), "", "run-a: lasts 0.796 s by its times, 200 rows at 250 Hz; a run needs 1 s"),
+        (even(250.0, 200), "", "run-a: its channels have 0.796 s in common by their times, at 250 Hz; a run needs 1 s"),
         (
             np.floor(np.delete(even(250.0, 5000), slice(1500, 2600))),
             "",

@@ -36,10 +36,6 @@ def german(values):
     return [f"{value:,.0f}".replace(",", ".") for value in values]
 
 
-def marked(values, sign=" "):
-    return [f"{'-' if value < 0 else '+'}{sign}{abs(value):.4f}" for value in values]
-
-
 COUNT = texts(range(1, ROWS + 1), "{:d}")
 PLAIN = table(T, X, Z, head=["t,acc_x,acc_z"])
 MIDDLE = f"{T[300]:.4f},"
@@ -124,8 +120,6 @@ READ = {
                           {"acc_z": ("", Z)}, RATE),
     "a minus of typesetting": (PLAIN.replace("-", "\u2212"), ACC, RATE),
     "a dash for a minus": (PLAIN.replace("-", "\u2013").encode("cp1252"), ACC, RATE),
-    "a blank behind the sign": (table(T, marked(X), marked(Z), head=["t;acc_x;acc_z"], sep=";"), ACC, RATE),
-    "a blank behind the sign and between": (table(T, marked(X), marked(Z), head=["t acc_x acc_z"], sep=" "), ACC, RATE),
     "German thousands": (table(T, german(FORCE), head=["t;F [N]"], sep=";", dec=","), {"F": ("N", FORCE)}, RATE),
     "German thousands and decimals": (
         table(T[:30], [f"1.2{k:02d},5" for k in range(30)], head=["t;F"], sep=";", dec=","),

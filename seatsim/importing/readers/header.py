@@ -22,32 +22,28 @@ MISSING = ("", "nan", "NaN", "NAN", "NA", "n/a", "N/A", "null", "NULL", "None", 
 SIGN = "[+\\-\u2212\u2013]"
 """Signs of numbers: a minus and a dash of typesetting are a minus, too."""
 THOUSANDS = {
-    ".": re.compile(rf"(?:{SIGN}\s*)?[1-9]\d{{0,2}}(?:[,'\u2019 \u00a0\u202f]\d{{3}})+(?:\.\d+)?"),
-    ",": re.compile(rf"(?:{SIGN}\s*)?[1-9]\d{{0,2}}(?:[.'\u2019 \u00a0\u202f]\d{{3}})+(?:,\d+)?"),
+    ".": re.compile(rf"{SIGN}?[1-9]\d{{0,2}}(?:[,'\u2019 \u00a0\u202f]\d{{3}})+(?:\.\d+)?"),
+    ",": re.compile(rf"{SIGN}?[1-9]\d{{0,2}}(?:[.'\u2019 \u00a0\u202f]\d{{3}})+(?:,\d+)?"),
 }
 """A number whose thousands are parted, such as 1,234.5, by decimal sign."""
 PLAIN = {
-    ".": re.compile(rf"(?:{SIGN}\s*)?(?:\d+(?:\.\d*)?|\.\d+)(?:[eEdD][+-]?\d+)?"),
-    ",": re.compile(rf"(?:{SIGN}\s*)?(?:\d+(?:,\d*)?|,\d+)(?:[eEdD][+-]?\d+)?"),
+    ".": re.compile(rf"{SIGN}?(?:\d+(?:\.\d*)?|\.\d+)(?:[eEdD][+-]?\d+)?"),
+    ",": re.compile(rf"{SIGN}?(?:\d+(?:,\d*)?|,\d+)(?:[eEdD][+-]?\d+)?"),
 }
 """What a number looks like with each decimal sign."""
 DATE = r"\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}[-/.]\d{2,4}|\d{8}"
 CLOCK = r"\d{1,2}:\d{2}(?::\d{2})?(?:[.,:]\d+)?(?:\s*[AaPp]\.?[Mm]\.?)?"
 _STAMP = re.compile(rf"(?:{DATE})(?:[ T_,-]+{CLOCK})?(?:Z| ?UTC|[+-]\d\d:?\d\d)?|{CLOCK}")
 """A date, a time of day, or both."""
-BLANKS = re.compile(rf'"[^"]*"|(?:(?<![^\s]){SIGN} +(?=[.,\d]))?[^\s"]+')
-"""A cell of a table that is parted by blanks; one may stand between a sign and its number."""
+BLANKS = re.compile(r'"[^"]*"|[^\s"]+')
+"""A cell of a table that is parted by blanks."""
 _OTHER_UNITS = """m/s2 m/s² mm/s2 °c c k f hz - sec in lb kg bar pa deg rad ° 1/s rpm w %"""
 _LISTED_UNITS = {unit.lower() for units in USUAL.values() for unit in units} | set(_OTHER_UNITS.split())
 _LEADING_ZERO = re.compile(r"0\d+")
 COMMENT = re.compile(r"^\s*(?:#+|%+|//+|!+)\s*")
 """What begins a remark; names may stand in one."""
-_MOSTLY = 0.75
-"""Share of the rows from the first one on, as far as the table was looked at, that belong to it."""
 _SCORED = 50
-"""Lines at either end by which delimiter and decimal sign are chosen."""
-_DISAGREEING = 0.9
-"""Weight of a way to read a table in which the line above its rows has another number of cells."""
+"""Last lines by which delimiter and decimal sign are chosen."""
 
 _QUOTED = 120
 """Letters of a line that an error quotes."""
@@ -66,17 +62,16 @@ class Dialect(NamedTuple):
     def find(cls, lines: Sequence[str], delimiter: str | None, decimal: str | None) -> "Dialect | None":
         """Return how lines are written that are not blank, as far as it is not stated; None where they hold no numbers.
 
-        The last lines tell it, as the first may be titles; these tell which way has as many names as columns.
+        The last lines tell it, as the first may be titles.
         """
-        first, last = lines[:_SCORED], lines[-_SCORED:]
+        last = lines[-_SCORED:]
         best, most = None, 0.0
         for each in (delimiter,) if delimiter else _DELIMITERS:
             for sign in (decimal,) if decimal else (".", ","):
                 if each == sign and not any('"' in line for line in last):
                     continue
                 dialect = cls(each, sign)
-                score = _score(last, dialect) * (1.0 if _agrees_with_names(first, dialect) else _DISAGREEING)
-                score += 1e-3 * _score(first, dialect)
+                score = _score(last, dialect)
                 if score > most + 1e-9:
                     best, most = dialect, score
         return best
@@ -133,21 +128,12 @@ def find_first_row(rows: Sequence[Sequence[Kind]], place: str) -> int:
     columns = range(len(body[0]))
     numeric = [column for column in columns if 2 * sum(row[column] is True for row in body) > len(body)]
     numeric = numeric or [column for column in columns if any(row[column] for row in body)]
-    belongs = [len(row) == len(columns) and _belongs(row, numeric) for row in rows[:end]]
-    # Rows above a remark belong to the table, a line of numbers among titles does not.
-    return next(row for row in range(end) if belongs[row] and sum(belongs[row:end]) >= _MOSTLY * (end - row))
+    return next(row for row in range(begin, end) if _belongs(rows[row], numeric))
 
 
 def _belongs(row: Sequence[Kind], numeric: Sequence[int]) -> bool:
     texts = sum(row[column] is False for column in numeric)
     return any(row) and row[numeric[0]] is not False and 2 * texts <= len(numeric)
-
-
-def _agrees_with_names(lines: Sequence[str], dialect: Dialect) -> bool:
-    """Say whether the line above the first rows has as many cells as they have, or there is none."""
-    rows = [dialect.split(line) for line in lines]
-    begin, _ = _find_body(dialect.kinds(rows))
-    return begin == 0 or len(rows[begin - 1]) == len(rows[begin])
 
 
 def _score(lines: Sequence[str], dialect: Dialect) -> float:
@@ -335,5 +321,4 @@ def _ways(text: str, dialect: Dialect, is_remark: bool) -> Iterator[Callable[[st
     )
     if is_remark or delimiter == " " or all(read_name(word) != Meaning(None) for word in text.split()):
         yield lambda text: [cell.strip('"') for cell in BLANKS.findall(text)]
-        yield lambda text: re.split(r"\s+(?![\[({</])", text.strip())
         yield lambda text: re.split(r"\s{2,}|\t", text.strip())

@@ -2,7 +2,7 @@
 
 Programs differ in names and nesting, not in what they state. A structure with values is a channel; its name, unit,
 times or interval stand in it, or in a structure above (Simulink, dSPACE). Where all variables lie flat,
-those of a channel share the beginning of their names (`Channel_1_Data`, `Channel_1_Header`; `Data1_x`, `Data1_time_x`).
+those of a channel share the beginning of their names (`Channel_1_Data`, `Channel_1_Header`).
 """
 
 from __future__ import annotations
@@ -21,7 +21,6 @@ from seatsim.importing.signals import (
     Channels,
     DataFile,
     Signal,
-    as_text,
     bare,
     note_left_out,
     scalar,
@@ -41,8 +40,6 @@ _ABSCISSAS = (*_TIMES, "x", "xdata")
 _STARTS = ("x0", "xoffset", "xorg", "start")
 """Fields of a structure that is a channel: its values, its name, its times in s, and the time in s of its first value.
 Names stand here without underscores and capitals."""
-_INDEX = "xindex"
-"""Field that says which of several vectors of times a channel has, counted from 1 (dSPACE)."""
 _UNITS_OF_TIME = ("xunit", "xunits", "unitx", "timeunit", "timeunits")
 """Fields that state the unit of times."""
 _BESIDE = ("header", "info", "datainfo", "capture", "meta", "metadata", "fileheader", "attributes")
@@ -51,7 +48,6 @@ _ENDING = re.compile(
     r"^(.+?)_(data|values|header|unit|units|time|name|label|fs|dt|dx|x0|samplerate|xdelta)$", re.IGNORECASE
 )
 """A flat variable that is part of a channel: the name of the channel, and which part it is."""
-_TIME_WITHIN = re.compile(r"^(.*?)_?time_(.*)$", re.IGNORECASE)
 _LEFT_OUT = "left out, as they hold no columns of real numbers (MATLAB exports its tables and objects by parquetwrite)"
 _LATEST = 1e7
 """s; a start that is larger is a date."""
@@ -89,10 +85,6 @@ class _Reader:
         clock = own if own.times or own.rate else above
         if channel:
             signals = signals_of(label or channel, np.asarray(held[channel]), stated_unit(stated))
-            # Of several times above it a channel may name one.
-            index = next((scalar(value) for key, value in stated.items() if bare(key) == _INDEX), None)
-            if clock is above and index is not None and 1 <= index <= len(above.times):
-                clock = above._replace(times=(above.times[int(index) - 1],))
             self._add(name, signals, clock, name or channel)
             return
         before = len(self.gathered)
@@ -100,7 +92,7 @@ class _Reader:
         vectors = {key: value for key, value in held.items() if isinstance(value, np.ndarray) and value.size > 1}
         # Nothing but times is there for the channels in the structures below.
         if not inner or any(bare(key) not in _TIMES for key in vectors):
-            self._read_vectors(name, vectors, held.get("units", held.get("unit")), clock)
+            self._read_vectors(name, vectors, clock)
         for key, below in inner.items():
             if bare(key) not in _ABSCISSAS or not own.times:
                 self._read_inner(name, key, label if bare(key) in _VALUES else key, below, clock)
@@ -109,13 +101,12 @@ class _Reader:
             if value is None or (is_empty and isinstance(value, np.ndarray) and value.size == 0):
                 self.left_out.append(f"{name}.{key}".strip("."))
 
-    def _read_vectors(self, name: str, vectors: Mapping[str, AnyArray], units: Value, clock: _Clock) -> None:
+    def _read_vectors(self, name: str, vectors: Mapping[str, AnyArray], clock: _Clock) -> None:
         """Take vectors that stand beside each other, with their times if these are among them."""
         timed = {max(vector.shape) for key, vector in vectors.items() if bare(key) in _TIMES}
         for key, vector in vectors.items():
-            unit = as_text(units.get(key, "")) if isinstance(units, dict) else ""
             # Simulink calls the times of its outputs tout.
-            signals = signals_of(TIME if bare(key) == "tout" else key, vector, unit)
+            signals = signals_of(TIME if bare(key) == "tout" else key, vector)
             beside_times = max(vector.shape) in timed
             self._add(name, signals, _Clock((), clock.rate) if beside_times else clock, f"{name}.{key}".strip("."))
 
@@ -199,9 +190,7 @@ def _owner(name: str, variables: Mapping[str, Value]) -> tuple[str, str] | None:
         siblings = (variables.get(f"{beginning}_{each}") for each in ("data", "Data", "DATA", "values", "Values"))
         if beginning not in variables and any(_is_vector(each) for each in siblings):
             return beginning, part
-    within = _TIME_WITHIN.match(name)
-    partner = f"{within[1]}_{within[2]}".strip("_") if within else ""
-    return (partner, "time") if _is_vector(variables.get(partner)) else None
+    return None
 
 
 def _is_vector(value: Value | None) -> bool:

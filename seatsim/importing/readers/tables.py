@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 _MOST_TEXTS = 0.5
 """Share of the rows that are no numbers from which a column is one of texts."""
 _DAY = 86400.0
-_AMBIGUOUS = rf"(?:{SIGN}\s*)?[1-9]\d{{0,2}}[.,]\d{{3}}"
+_AMBIGUOUS = rf"{SIGN}?[1-9]\d{{0,2}}[.,]\d{{3}}"
 """A number that may have a decimal sign, or one between thousands."""
 _WORDS_FOR_TIME = ("time", "zeit", "temps")
 """A column of dates without such a word in its name, as an index has it, is called time."""
@@ -137,7 +137,7 @@ def _numbers(texts: pd.Series[str], decimal: str) -> Array:
     is_number = parted | texts.str.fullmatch(PLAIN[decimal].pattern, na=False)
     marks = ".'\u2019 \u00a0\u202f" if decimal == "," else ",'\u2019 \u00a0\u202f"
     plain = texts.where(~parted, texts.str.replace(f"[{marks}]", "", regex=True)).str.replace(decimal, ".", regex=False)
-    plain = plain.str.replace("[\u2212\u2013]", "-", regex=True).str.replace(rf"^({SIGN})\s+", r"\1", regex=True)
+    plain = plain.str.replace("[\u2212\u2013]", "-", regex=True)
     plain = plain.str.replace("[dD]", "e", regex=True)
     return np.asarray(pd.to_numeric(plain.where(is_number), errors="coerce"), dtype=np.float64)
 

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 _SAMPLE = 65536
 """Bytes from which delimiter, decimal sign and header are found."""
-_SIGN_APART = re.compile(rb"[+-] +[.,\d]")
+_CELLS = re.compile(BLANKS.pattern.encode())
 _LONGEST_NAME = 8
 """Lines over which a name in quotation marks may go."""
 _MOST_ROWS = 2**20
@@ -165,8 +165,7 @@ def _clean(body: bytes, head: _Head) -> tuple[bytes, list[str]]:
     kept = [line for k, line in enumerate(lines) if k not in headings]
     left_out = len(lines) - len(kept)
     if is_parted_by_blanks:
-        part = _cells_of_blanks if b'"' in body or _SIGN_APART.search(body) else bytes.split
-        kept = [b" ".join(part(line)) for line in kept]
+        kept = [b" ".join(_CELLS.findall(line)) for line in kept]
     notes = [f"lines among the rows that hold the names again are left out: {left_out}"] if left_out else []
     return b"\n".join(kept) + b"\n", notes
 
@@ -186,11 +185,6 @@ def _is_row(line: bytes, dialect: Dialect) -> bool:
     """Say whether the first cell of a line that is not empty holds a number, or what stands for a missing one."""
     cells = [cell for cell in dialect.split(line.decode(errors="replace")) if cell.strip()]
     return bool(cells) and dialect.kind(cells[0]) is not False
-
-
-def _cells_of_blanks(line: bytes) -> list[bytes]:
-    cells = BLANKS.findall(line.decode(errors="replace"))
-    return [(cell if cell.startswith('"') else "".join(cell.split())).encode() for cell in cells]
 
 
 def _refuse_rows(path: Path, content: bytes, bad: Sequence[tuple[str, int]], wanted: int) -> NoReturn:

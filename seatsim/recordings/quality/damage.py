@@ -33,8 +33,6 @@ _SMOOTH = 0.7
 """Ratio of the noise in fourth to that in third differences below which it is not white: a filter took it."""
 SILENT = 3e-5
 """Noise as a share of the swing below which no sensor is."""
-QUIET = ("smooth", "resolution")
-"""Kinds of doubts because of which the floor at high frequencies is not the noise of a sensor."""
 _COARSE, _LEVELLED = 1.2, 0.3
 """Share of its step below which noise is hidden by the resolution; ratio of small to usual gaps of what has steps."""
 MOST_ROWS = 200_000
