@@ -1,12 +1,10 @@
-"""What a fit is worth: how well its predictions agree with records, which ranges these visit, how sure parameters are.
+"""What a fit is worth: how well its predictions agree with records, and how sure its parameters are.
 
 What the data say of each parameter is its Fisher information, which respects that residuals are not independent.
 """
 
-import math
 from collections.abc import Sequence
 from concurrent.futures import Executor
-from pathlib import Path
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -20,14 +18,11 @@ from seatsim.identification.problem import (
     predict_force,
     prepare_inputs,
     read_bench,
-    sharpen,
-    smooth,
 )
 from seatsim.identification.settings import Split
-from seatsim.recordings.bench_tables import BenchRecord, load_bench
+from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.schema.arrays import Array
 from seatsim.schema.content import Form, Joined, Unwritten, written
-from seatsim.schema.errors import InputError
 from seatsim.simulation.damper_bench import centring
 
 _GUARD = 0.05
@@ -69,7 +64,7 @@ def mean_agreement(each: Sequence[Agreement]) -> Agreement:
 
 
 class Assessment(NamedTuple):
-    """A record or a part of one, what it was for (train, test, predicted), its predicted force in N, the agreement.
+    """A record or a part of one, what it was for (train, test), its predicted force in N, the agreement.
 
     The force is NaN from where the state ran away; there it counts as zero in the agreement.
     """
@@ -91,38 +86,6 @@ class Assessment(NamedTuple):
         return bool(np.all(np.isfinite(self.predicted)))
 
 
-class PredictionData(NamedTuple):
-    """Records that are predicted only.
-
-    moving_average: seconds over which their owner averaged motion and force; centred: the mean of each force was
-    removed.
-    """
-
-    records: list[BenchRecord]
-    moving_average: float = 0.0
-    centred: bool = False
-
-
-def load_prediction_data(
-    paths: Sequence[str | Path], moving_average: float = 0.0, centred: bool = False
-) -> PredictionData:
-    """Return the records of some tables or folders, to be predicted.
-
-    Raises:
-        InputError: the data or the moving average are not as they must be.
-    """
-    records = [record for path in paths for record in load_bench(path)]
-    shortest = min((len(record.force) / record.rate for record in records), default=math.inf)
-    if not 0.0 <= moving_average < shortest:
-        raise InputError(
-            f"--moving-average {moving_average:g} s is not permitted; it must be at least 0 s"
-            + (f" and shorter than the shortest record, {shortest:g} s" if records else "")
-        )
-    if not records and (moving_average or centred):
-        raise InputError("--moving-average and --centred are of records to be predicted; name these by --predict")
-    return PredictionData(records, moving_average, centred)
-
-
 def assess_fit(bench: BenchModel, parts: Split, origin: float) -> list[Assessment]:
     """Return the agreement on what was fitted, then on what was held out; every record is simulated from its start.
 
@@ -139,60 +102,12 @@ def assess_fit(bench: BenchModel, parts: Split, origin: float) -> list[Assessmen
     return train + rest + [_assess(record, "test", force) for record, force in held_out]
 
 
-def assess_predictions(bench: BenchModel, origin: float, data: PredictionData) -> list[Assessment]:
-    """Return the agreement on records that are predicted only, treated as their owner treated them.
-
-    The motion is sharpened before it drives the model, and the predicted force averaged and centred as the measured
-    one was.
-    """
-    found = []
-    for record in data.records:
-        rows = round(data.moving_average * record.rate)
-        force = smooth(predict_force(bench, prepare_inputs(sharpen(record, rows), origin, True)), rows)
-        found.append(_assess(record, "predicted", force - np.mean(force) if data.centred else force))
-    return found
-
-
 def _assess(record: BenchRecord, part: str, force: Array) -> Assessment:
     return Assessment(record, part, force, assess_agreement(record.force, np.where(np.isfinite(force), force, 0.0)))
 
 
 _BEYOND = 1.05
 """Factor from which a held-out record counts as beyond what was fitted."""
-_POWER = (0.05, 0.95)
-"""Shares of the power of the velocity below the lowest and the highest frequency that count as covered."""
-_SPEED_CLASSES = 10
-"""Classes of speed whose shares of time are counted."""
-_SAME_CURRENT = 4
-"""Decimals of a current in A that tell two steady currents apart."""
-
-
-class VisitedRanges(NamedTuple):
-    """The ranges that records visit, each with its least and greatest value, in SI units, degC and Hz.
-
-    steady_currents: currents that were constant over a record. temperature: None where it was not recorded. frequency:
-    where nine tenths of the power of the velocity lie. speeds: share of time by the upper end of each tenth of the
-    largest speed.
-    """
-
-    displacement: list[float]
-    velocity: list[float]
-    current: list[float]
-    steady_currents: list[float]
-    temperature: list[float] | None
-    frequency: list[float]
-    speeds: dict[str, float]
-
-
-def measure_coverage(records: Sequence[BenchRecord]) -> VisitedRanges:
-    """Return the ranges that the records visit."""
-    steady = {round(record.mean_current, _SAME_CURRENT) for record in records if np.ptp(record.current) == 0.0}
-    temperatures = [record.temperature for record in records if record.temperature is not None]
-    names = ("displacement", "velocity", "current")
-    x, v, current = (_range([getattr(record, name) for record in records]) for name in names)
-    warmth = _range(temperatures) if temperatures else None
-    frequency = _range([np.array(_band(record)) for record in records])
-    return VisitedRanges(x, v, current, sorted(steady), warmth, frequency, _shares_of_time(records))
 
 
 def note_limits(
@@ -217,33 +132,12 @@ def _largest(record: BenchRecord, name: str) -> float:
     return float(np.max(np.abs(record._asdict()[name])))
 
 
-def _range(arrays: Sequence[Array]) -> list[float]:
-    return [min(float(np.min(a)) for a in arrays), max(float(np.max(a)) for a in arrays)]
-
-
-def _band(record: BenchRecord) -> tuple[float, float]:
-    """Return the frequencies in Hz between which nine tenths of the power of the velocity lie."""
-    power = np.abs(np.fft.rfft(record.velocity - np.mean(record.velocity))) ** 2
-    grown = np.cumsum(power) / max(float(np.sum(power)), 1e-300)
-    low, high = (float(np.searchsorted(grown, share)) * record.rate / len(record.velocity) for share in _POWER)
-    return low, high
-
-
-def _shares_of_time(records: Sequence[BenchRecord]) -> dict[str, float]:
-    """Return the share of time at each tenth of the largest speed."""
-    speed = np.concatenate([np.abs(record.velocity) for record in records])
-    counts, edges = np.histogram(speed, _SPEED_CLASSES, (0.0, float(np.max(speed))))
-    return {f"{edge:.3g}": float(count / len(speed)) for edge, count in zip(edges[1:], counts, strict=True)}
-
-
 _IDENTIFIED = 0.1
 """Standard deviation, over the parameter's size, above which the data are said not to identify it."""
 _CORRELATED = 0.95
 """Size of a correlation above which a pair is reported."""
 _LEAST = 1e-13
 """Sensitivity and eigenvalue of the information, over the largest, below which there is none."""
-_LEAST_COST = 1e-30
-"""Mean square of the scaled error that stands for a perfect fit."""
 _DIFFERENCE_STEP = 1e-6
 """Step of the differences by which parameters are taken from the vector, a smooth function without a simulation."""
 _FINE_TOLERANCE = 1e-6
@@ -272,10 +166,6 @@ class Information(NamedTuple):
     def not_identified(self) -> list[str]:
         """Names of the parameters that the data do not identify."""
         return [estimate.name for estimate in self.estimates if not estimate.identified]
-
-    def bic(self, cost: float) -> float:
-        """Return the Bayesian information criterion, `n ln(cost) + P ln(n)` with the effective samples n."""
-        return self.samples * math.log(max(cost, _LEAST_COST)) + len(self.estimates) * math.log(self.samples)
 
 
 def compute_information(problem: IdentificationProblem, vector: Array, executor: Executor) -> Information:

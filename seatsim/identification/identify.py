@@ -39,9 +39,8 @@ class Identification(NamedTuple):
 
     It is the content of `fit.json`.
 
-    origin: displacement in m that counts as x = 0. bic: Bayesian information criterion, with the effective number of
-    samples. seconds: duration of the identification; ns_per_step: of a step of the simulation. warm, commanded: whether
-    the influence of temperature, and the rates of the coil, were fitted. coverage: ranges of the fitted data.
+    origin: displacement in m that counts as x = 0. seconds: duration of the identification; ns_per_step: of a step of
+    the simulation. warm, commanded: whether the influence of temperature, and the rates of the coil, were fitted.
     """
 
     model: str
@@ -49,16 +48,14 @@ class Identification(NamedTuple):
     origin: Unwritten[float]
     assessments: Unwritten[list[assessment.Assessment]]
     information: Joined[assessment.Information]
-    bic: float
     seconds: float
     ns_per_step: float
     warm: Unwritten[bool]
     commanded: Unwritten[bool]
-    coverage: assessment.VisitedRanges
     notes: list[str]
 
     def mean(self, part: str) -> assessment.Agreement | None:
-        """Return the mean agreement over the records of a part (train, test, predicted), None where it has none."""
+        """Return the mean agreement over the records of a part (train, test), None where it has none."""
         each = [one.agreement for one in self.assessments if one.part == part]
         return assessment.mean_agreement(each) if each else None
 
@@ -86,12 +83,6 @@ class Identification(NamedTuple):
         return self.test or self.train
 
     @property
-    @written(if_any=True)
-    def predicted(self) -> assessment.Agreement | None:
-        """Mean agreement over the records that were predicted only."""
-        return self.mean("predicted")
-
-    @property
     @written()
     def records(self) -> dict[str, assessment.Assessment]:
         """The agreement on each record by its name, with its part, or a number, where names alone are ambiguous."""
@@ -112,7 +103,7 @@ class Identification(NamedTuple):
         damper: dict[str, object] = {"model": self.model, "parameters": plain(bench.damper)}
         if self.warm:
             damper["temperature_factors"] = plain(bench.factors)
-        end = max(float(each.record.current.max()) for each in self.assessments if each.part != "predicted")
+        end = max(float(each.record.current.max()) for each in self.assessments)
         return {
             "damper": damper,
             "actuator": {"rate": float(bench.rise), "rate_fall": float(bench.fall), "max_current": end or 1.0},
@@ -171,10 +162,9 @@ def identify_records(
         *assessment.note_limits(DAMPERS.specification_of(cls), parts.fitted, tests, origin),
     ]
     return Identification(
-        model=model, bench=bench, origin=origin, assessments=assessments, information=known, bic=known.bic(cost),
+        model=model, bench=bench, origin=origin, assessments=assessments, information=known,
         seconds=time.perf_counter() - began, ns_per_step=_time_step(bench, problem.inputs),
         warm=problem.reference is not None, commanded=any(record.commanded for record in parts.fitted),
-        coverage=assessment.measure_coverage(parts.fitted),
         notes=[*notes, *_note_divergence(assessments), *note_unused(n for each in records for n in each.unused)],
     )  # fmt: skip
 
@@ -195,26 +185,6 @@ def _solve(
             return vector, assessment.compute_information(problem, vector, executor)
     except (ArithmeticError, np.linalg.LinAlgError) as error:
         raise RunError(f"{model}: the fit failed: {error}; hold a parameter by --fix") from error
-
-
-def predict(
-    found: Identification, data: str | Path, moving_average: float = 0.0, centred: bool = False
-) -> Identification:
-    """Return an identification with its predictions of the records of a file or folder, which took no part in the fit.
-
-    moving_average: seconds over which their owner averaged motion and force; centred: the mean of each force was
-    removed.
-
-    Raises:
-        InputError: the data or the moving average are not as they must be.
-    """
-    return predict_records(found, assessment.load_prediction_data([data], moving_average, centred))
-
-
-def predict_records(found: Identification, data: assessment.PredictionData) -> Identification:
-    """Return an identification with its predictions of more records; see `predict`."""
-    more = assessment.assess_predictions(found.bench, found.origin, data)
-    return found._replace(assessments=[*found.assessments, *more], notes=[*found.notes, *_note_divergence(more)])
 
 
 def _note_parameters(problem: IdentificationProblem, vector: Array, known: assessment.Information) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""Prediction of a record, figures of agreement, and records that were smoothed."""
+"""Prediction of a record, figures of agreement, and what is held out."""
 
 import math
 
@@ -6,23 +6,15 @@ import numpy as np
 import pytest
 
 from seatsim.dampers.bouc_wen import BoucWen
-from seatsim.identification.assessment import (
-    PredictionData,
-    assess_agreement,
-    assess_fit,
-    assess_predictions,
-    load_prediction_data,
-    mean_agreement,
-)
-from seatsim.identification.problem import BenchModel, predict_force, prepare_inputs, sharpen, smooth
+from seatsim.identification.assessment import assess_agreement, assess_fit, mean_agreement
+from seatsim.identification.problem import BenchModel, predict_force, prepare_inputs
 from seatsim.identification.settings import IdentificationSettings as Settings
 from seatsim.identification.settings import split_records
-from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.errors import InputError
 from seatsim.simulation.damper_bench import bench_force
 
-from .benches import BINGHAM, BOUC_WEN, made, write
+from .benches import BOUC_WEN, made
 
 PLAIN = TemperatureFactors()
 
@@ -50,58 +42,6 @@ def test_a_prediction_is_the_force_of_the_bench_on_the_same_motion():
     every = predict_force(BenchModel(BOUC_WEN, PLAIN), prepare_inputs(record, 0.0, True))
     assert len(every) == len(record.force)
     np.testing.assert_allclose(every, record.force, atol=1e-3 * np.max(record.force))
-
-
-def seconds(frequency, rate=500.0, long=8.0):
-    """Return a record of so many seconds of a sine that begins and ends at rest."""
-    t = np.arange(round(long * rate)) / rate
-    size = np.interp(t, [0.0, 0.5, 2.5, long - 2.5, long - 0.5], [0.0, 0.0, 1.0, 1.0, 0.0])
-    x = 0.01 * size * np.sin(2.0 * math.pi * frequency * t)
-    v = np.gradient(x, 1.0 / rate)
-    return BenchRecord("sine", "sine.csv", rate, x, v, 100.0 * v, 0.0 * x, False, None)
-
-
-def test_sharpening_restores_what_an_average_took_away():
-    record, rows = seconds(1.0), 151
-    averaged_motion = smooth(record.displacement, rows)
-    assert np.max(averaged_motion[1000:3000]) < 0.9 * 0.01
-    found = sharpen(record._replace(displacement=averaged_motion), rows)
-    middle = slice(1000, 3000)
-    np.testing.assert_allclose(found.displacement[middle], record.displacement[middle], atol=2e-4)
-    np.testing.assert_allclose(found.velocity[middle], record.velocity[middle], atol=2e-3)
-    assert np.array_equal(found.force, record.force)
-    assert sharpen(record, 1) is record and smooth(record.force, 1) is record.force
-
-
-def test_further_records_are_judged_as_their_owner_treated_them(tmp_path):
-    record = seconds(1.0)
-    bench = BenchModel(BINGHAM, PLAIN)
-    force = predict_force(bench, prepare_inputs(record, 0.0, True))
-    kept = smooth(force, 101) - np.mean(smooth(force, 101))
-    theirs = record._replace(displacement=smooth(record.displacement, 101), force=kept)
-    (found,) = assess_predictions(bench, 0.0, PredictionData([theirs], 101 / record.rate, True))
-    assert found.part == "predicted" and found.agreement.fit_percent > 97.0
-    (plain,) = assess_predictions(bench, 0.0, PredictionData([theirs]))
-    assert plain.agreement.fit_percent < 90.0
-    write([record], tmp_path / "more")
-    assert load_prediction_data([tmp_path / "more"], 0.3, True).moving_average == 0.3
-
-
-@pytest.mark.parametrize(
-    "average, centred, named, problem",
-    [
-        (-0.3, False, True, "--moving-average -0.3 s is not permitted; it must be at least 0 s and shorter than"),
-        (math.nan, False, True, "--moving-average nan s is not permitted"),
-        (9.0, False, True, "shorter than the shortest record, 8 s"),
-        (0.3, False, False, "name these by --predict"),
-        (0.0, True, False, "name these by --predict"),
-    ],
-)
-def test_what_cannot_be_predicted_is_refused(average, centred, named, problem, tmp_path):
-    folder = write([seconds(1.0)], tmp_path / "more")
-    with pytest.raises(InputError) as error:
-        load_prediction_data([folder] if named else [], average, centred)
-    assert problem in str(error.value)
 
 
 def test_the_last_part_of_a_record_is_simulated_from_the_beginning():

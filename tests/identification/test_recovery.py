@@ -75,12 +75,6 @@ def test_one_current_leaves_its_influence_unknown_and_the_rest_known():
     assert estimates(found)["f0"].identified
 
 
-def test_the_criterion_of_bayes_prefers_the_model_without_a_parameter_that_is_not_needed():
-    records = sines(BINGHAM._replace(f0=0.0))
-    free, fixed = (identify_records(records, "bingham", Settings(fix=fix)).bic for fix in ({}, {"f0": 0.0}))
-    assert fixed < free
-
-
 def test_the_example_was_made_with_the_damper_that_it_states():
     folder = Path(__file__).resolve().parents[2] / "scenarios" / "data" / "bench"
     truth = YAML(typ="safe").load((folder / "sine_10mm_2Hz.yaml").read_text())["made_with"]

@@ -70,54 +70,40 @@ def characterise(
 
 
 def identify(
-    data: Annotated[list[Path], typer.Argument(show_default=False)],
+    data: Annotated[Path, typer.Argument(show_default=False)],
     models: Annotated[list[str], typer.Option("--model", show_default=False, autocompletion=complete_kind("damper"))],
     test: Annotated[list[str] | None, typer.Option("--test", metavar="GLOB")] = None,
     test_fraction: Annotated[float, typer.Option("--test-fraction")] = 0.0,
     fix: Annotated[list[str] | None, typer.Option("--fix", metavar="NAME=VALUE")] = None,
     ignore_temperature: Annotated[bool, typer.Option("--ignore-temperature")] = False,
-    more: Annotated[list[Path] | None, typer.Option("--predict", metavar="DATA")] = None,
-    moving_average: Annotated[float, typer.Option("--moving-average", metavar="S")] = 0.0,
-    centred: Annotated[bool, typer.Option("--centred")] = False,
     seed: Annotated[int, typer.Option("--seed", min=0)] = 0,
     out_folder: Out = None,
 ) -> None:
     """Fit a damper model, or every model, to bench records and assess it on records held out.
 
     Options:
-        data: A bench table, or a folder of them; several are specimens.
+        data: A bench table, or a folder of them.
         models: A damper model, several, or all, to compare them.
         test: Hold out the files whose names match.
         test_fraction: Hold out this share of each record, its last part.
         fix: Keep a parameter at a value.
         ignore_temperature: Do not fit its influence.
-        more: Predict further records, not fitted.
-        moving_average: Average that the predicted records went through.
-        centred: The predicted records' mean force was removed.
         seed: Seed of the global search.
     """
-    from seatsim.cli.outputs.damper_results import compare_models, identify_damper, identify_specimens
-    from seatsim.identification.assessment import load_prediction_data
+    from seatsim.cli.outputs.damper_results import compare_models, identify_damper
     from seatsim.identification.settings import IdentificationSettings
     from seatsim.recordings.bench_tables import load_bench
 
     # That each value is a number is checked with the bounds of its field, once the model is known.
     fixed = cast("Mapping[str, float]", pairs(fix, "--fix", "v_ref=0.005"))
     request = IdentificationSettings(tuple(test or ()), test_fraction, fixed, ignore_temperature, seed)
-    several = len(models) > 1 or models == ["all"]
     name = "league" if len(models) > 1 else models[0].rpartition(":")[2]
-    folder = out_folder or Path("out") / f"identify-{_title(data[0])}-{name}"
-    beside = load_prediction_data(more or [], moving_average, centred)
-    if len(data) > 1:
-        if several or len({_title(each) for each in data}) < len(data):
-            raise InputError("several DATA are specimens: give them names of their own, and a single --model")
-        identify_specimens({_title(each): load_bench(each) for each in data}, models[0], request, beside, folder)
-        return
-    records = load_bench(data[0])
-    if several:
-        compare_models(records, models, request, beside, folder)
+    folder = out_folder or Path("out") / f"identify-{_title(data)}-{name}"
+    records = load_bench(data)
+    if len(models) > 1 or models == ["all"]:
+        compare_models(records, models, request, folder)
     else:
-        identify_damper(records, models[0], request, beside, folder)
+        identify_damper(records, models[0], request, folder)
 
 
 def _title(data: Path) -> str:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
 import typer
-from rich.markup import escape
 
 from seatsim.characterisation.rows import row_columns
 from seatsim.characterisation.sheet import list_tables
@@ -16,15 +15,13 @@ from seatsim.cli.outputs.writing import name_pictures, write_each, write_outputs
 from seatsim.cli.show_table import format_number, make_table, show_report_tables, show_table
 from seatsim.cli.terminal import complain, conclude, say, show_progress, warn
 from seatsim.dampers.base import OWN
-from seatsim.identification.assessment import PredictionData
-from seatsim.identification.identify import Identification, identify_records, predict_records
-from seatsim.identification.model_benchmark import League, benchmark_models, gather_specimens
+from seatsim.identification.identify import Identification, identify_records
+from seatsim.identification.model_benchmark import League, benchmark_models
 from seatsim.identification.settings import IdentificationSettings
 from seatsim.plots.bench.characterisation import plot_characterisation
 from seatsim.plots.bench.identification import plot_predictions
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.report import dampers as report
-from seatsim.schema.content import to_content
 from seatsim.schema.files import write_together
 from seatsim.schema.yaml_text import dump
 
@@ -33,9 +30,6 @@ _TIMES = ("seconds", "ns_per_step")
 _HEAD = """\
 # Found by `seatsim identify`. `damper` and `actuator` are as a scenario has them; under `bench`: the displacement [m]
 # that counts as zero, and the growth of the offset with temperature [N/K].
-"""
-_MEAN = """\
-# Mean of the specimens that `seatsim identify` found, as a scenario has it; those of `specimens.yaml` vary about it.
 """
 _NO_COIL = "# No command that changes was recorded: the rates of the actuator are defaults.\n"
 
@@ -58,12 +52,10 @@ def present_characterisation(found: Characterisation, folder: Path) -> None:
     conclude(found, folder, write_outputs(folder, contents))
 
 
-def identify_damper(
-    records: Sequence[BenchRecord], model: str, settings: IdentificationSettings, beside: PredictionData, folder: Path
-) -> None:
+def identify_damper(records: Sequence[BenchRecord], model: str, settings: IdentificationSettings, folder: Path) -> None:
     """Fit a model to a damper; print and write how well it agrees, and its parameters."""
     with show_progress() as progress:
-        found = predict_records(identify_records(records, model, settings, progress), beside)
+        found = identify_records(records, model, settings, progress)
         paths = write_identification(found, folder, settings.seed)
     show_report_tables([*report.tabulate_fit(found), *report.tabulate_parameters(found)])
     warn(found.notes)
@@ -85,37 +77,10 @@ def _contents_of_fit(found: Identification) -> dict[str, object]:
     }
 
 
-def identify_specimens(
-    specimens: Mapping[str, Sequence[BenchRecord]],
-    model: str,
-    settings: IdentificationSettings,
-    beside: PredictionData,
-    folder: Path,
-) -> None:
-    """Fit a model to each specimen; write each fit in a folder of its name, their mean and their values."""
-    found = {}
-    with show_progress() as progress:
-        for name, records in specimens.items():
-            progress(name)
-            found[name] = predict_records(identify_records(records, model, settings, progress), beside)
-            # At once, so that an interrupt keeps it; the folder of one among several has no manifest of its own.
-            write_together(folder / name, partial(write_each, _contents_of_fit(found[name])))
-        gathered = gather_specimens(found)
-        mean, values = dump(gathered.damper, line_each=True), dump(to_content(gathered))
-        paths = write_outputs(folder, {"damper.yaml": _MEAN + mean, "specimens.yaml": values}, settings.seed)
-    columns = (gathered.mean, gathered.standard_deviation, *gathered.specimens.values())
-    rows = [(escape(key), *(f"{values[key]:.4g}" for values in columns)) for key in gathered.mean]
-    headings = ("", "mean", "sd", *map(escape, gathered.specimens))
-    show_table(make_table(f"{gathered.model}: specimens", headings, rows))
-    warn(f"{name}: {note}" for name, each in found.items() for note in each.notes)
-    conclude(gathered, folder, paths)
-
-
 def compare_models(
     records: Sequence[BenchRecord],
     models: Sequence[str],
     settings: IdentificationSettings,
-    beside: PredictionData,
     folder: Path,
 ) -> None:
     """Fit several models, each in a folder of its name, print and write the league; exit 1 where one failed."""
@@ -124,14 +89,14 @@ def compare_models(
         write_together(folder / found.model.rpartition(":")[2], partial(write_each, _contents_of_fit(found)))
 
     with show_progress() as progress:
-        places = benchmark_models(records, models, settings, beside, folder, progress, keep)
+        places = benchmark_models(records, models, settings, progress, keep)
     rows = []
     for place in places:
         fits = [format_number(fit, ".1f") for fit in (place.train_fit_percent, place.test_fit_percent)]
-        rest = [format_number(value, ".0f") for value in (place.ns_per_step, place.bic, place.seconds)]
+        rest = [format_number(value, ".0f") for value in (place.ns_per_step, place.seconds)]
         count = "-" if place.failed else str(place.parameters)
         rows.append((f"{place.model} ({OWN})" if place.confidence == OWN else place.model, *fits, count, *rest))
-    headings = ("model", "train [%]", "test [%]", "parameters", "ns a step", "BIC", "s")
+    headings = ("model", "train [%]", "test [%]", "parameters", "ns a step", "s")
     show_table(make_table("league", headings, rows))
     failed = [place for place in places if place.failed]
     for place in failed:

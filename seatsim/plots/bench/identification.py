@@ -26,7 +26,7 @@ START = 0.3
 _PREDICTED = Entry("predicted", style.COLOURS[1], style.DASHES[1], 1.2)
 _DIFFERENCE = Entry("measured less predicted", style.COLOURS[0], width=1.0)
 _FIT = "Fit (normalised RMS): 100 % less the RMS error as a share of the measured force's standard deviation."
-PARTS = {"train": "fitted", "test": "held out", "predicted": "predicted only"}
+PARTS = {"train": "fitted", "test": "held out"}
 
 
 def select_records(judged: Sequence[Assessment]) -> list[Assessment]:
