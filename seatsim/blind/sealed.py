@@ -28,8 +28,6 @@ KINDS: tuple[Kind, ...] = get_args(Kind)
 """No effect, one or two effects of the library, something outside the library."""
 _CarriedKind = Literal["carried", "untouched"]
 """One effect on a measured recording, and such a recording as it was measured, of which nobody knows what is true."""
-Block = Literal["damper", "coil", "suspension", "cushion", "driver", "floor", "sensor"]
-BLOCKS: tuple[Block, ...] = get_args(Block)
 _LIBRARY = {
     "damper": (
         "thermal_fade gas_spring asymmetry preyield_hysteresis magnetic_saturation remanence free_play seal_friction"

@@ -120,9 +120,12 @@ class Identification(NamedTuple):
 
 
 def identify(
-    data: str | Path, model: str, settings: IdentificationSettings = _DEFAULTS, progress: Progress = ignore_progress
+    data: str | Path | Sequence[BenchRecord],
+    model: str,
+    settings: IdentificationSettings = _DEFAULTS,
+    progress: Progress = ignore_progress,
 ) -> Identification:
-    """Fit a damper model to the bench records of a file or folder.
+    """Fit a damper model to bench records, or to those of a file or folder.
 
     Minimised is the mean over records of mean (y - s)^2 / std(y)^2, with the measured force y and the simulated one s:
     a global search on short stretches, then least squares on all training records. progress: called with what is being
@@ -132,17 +135,8 @@ def identify(
         InputError: the data, the model or the settings are not as they must be.
         RunError: no parameters were found with which the model's state stays finite.
     """
-    return identify_records(load_bench(data), model, settings, progress)
-
-
-def identify_records(
-    records: Sequence[BenchRecord],
-    model: str,
-    settings: IdentificationSettings = _DEFAULTS,
-    progress: Progress = ignore_progress,
-) -> Identification:
-    """Fit a damper model to bench records; see `identify`."""
     began = time.perf_counter()
+    records = load_bench(data) if isinstance(data, str | Path) else data
     parts, cls = split_records(records, settings), find_model(model)
     origin = find_origin(parts.fitted)
     problem, short = state_problem(parts.fitted, cls, origin, settings)

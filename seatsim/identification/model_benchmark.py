@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from seatsim.dampers.base import find_confidence
 from seatsim.identification.damper_record import find_model, numeric_fields
-from seatsim.identification.identify import Identification, identify_records
+from seatsim.identification.identify import Identification, identify
 from seatsim.identification.search import Progress
 from seatsim.identification.settings import IdentificationSettings, split_records
 from seatsim.recordings.bench_tables import BenchRecord
@@ -73,7 +73,7 @@ def _benchmark_model(
     known = numeric_fields(cls)
     own = settings._replace(fix={name: value for name, value in settings.fix.items() if name in known})
     try:
-        found = identify_records(records, model, own, lambda text: progress(f"{model}: {text}"))
+        found = identify(records, model, own, lambda text: progress(f"{model}: {text}"))
     except SeatsimError as error:
         return BenchmarkEntry(model, math.nan, math.nan, 0, math.nan, math.nan, str(error), find_confidence(cls))
     keep(found)

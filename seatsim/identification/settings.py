@@ -1,6 +1,6 @@
 """What is asked of an identification, and which records, and parts of them, it may see."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from fnmatch import fnmatch
 from typing import NamedTuple
 
@@ -41,7 +41,7 @@ def split_records(records: Sequence[BenchRecord], settings: IdentificationSettin
     if not 0.0 <= share < 1.0:
         raise InputError(f"--test-fraction {share:g} is not permitted; it must be at least 0 and below 1, such as 0.3")
     held_out = _match_records(records, settings.test)
-    train = [record for record in records if not _is_among(record, held_out)]
+    train = [record for k, record in enumerate(records) if k not in held_out]
     if not train:
         raise InputError(f"--test {' '.join(settings.test)} holds out every record; leave some to fit to")
     fitted = [record.part(0, round((1.0 - share) * len(record.force))) for record in train]
@@ -51,27 +51,23 @@ def split_records(records: Sequence[BenchRecord], settings: IdentificationSettin
         if least < LEAST_ROWS:
             cut = f"--test-fraction {share:g} cuts off {least} rows of '{record.name}'"
             raise InputError(f"{cut}; a part has at least {LEAST_ROWS}")
-    return Split(train, fitted, held_out)
+    return Split(train, fitted, [*held_out.values()])
 
 
-def _match_records(records: Sequence[BenchRecord], patterns: Sequence[str]) -> list[BenchRecord]:
-    """Return the records whose file, or whose own name, matches one of the globs.
+def _match_records(records: Sequence[BenchRecord], patterns: Sequence[str]) -> dict[int, BenchRecord]:
+    """Return the records whose file, or whose own name, matches one of the globs, by their place.
 
     Raises:
         InputError: a pattern matches nothing.
     """
-    chosen: list[BenchRecord] = []
+    chosen: dict[int, BenchRecord] = {}
     for pattern in patterns:
-        found = [r for r in records if any(fnmatch(name, pattern) for name in (r.file, stem(r.file), r.name))]
+        names = {k: (r.file, stem(r.file), r.name) for k, r in enumerate(records)}
+        found = {k: records[k] for k in names if any(fnmatch(name, pattern) for name in names[k])}
         if not found:
             known = list(dict.fromkeys(stem(record.file) for record in records))
             raise InputError(
                 f"--test {pattern} matches no record{nearest(pattern, known)}; there are {', '.join(known)}"
             )
-        chosen += [record for record in found if not _is_among(record, chosen)]
+        chosen |= found
     return chosen
-
-
-def _is_among(record: BenchRecord, records: Iterable[BenchRecord]) -> bool:
-    # By identity: records hold arrays, which have no single truth value when they are compared.
-    return any(record is other for other in records)

@@ -8,7 +8,7 @@ from ruamel.yaml import YAML
 
 import seatsim
 from seatsim.identification.assessment import assess_fit
-from seatsim.identification.identify import identify_records
+from seatsim.identification.identify import identify
 from seatsim.identification.problem import BenchModel
 from seatsim.identification.settings import IdentificationSettings as Settings
 from seatsim.identification.settings import split_records
@@ -26,7 +26,7 @@ def estimates(found):
 
 @pytest.mark.parametrize("model, truth", [("bingham", BINGHAM), ("bouc_wen", BOUC_WEN)])
 def test_a_damper_comes_back_within_5_percent(model, truth, conform):
-    found = identify_records(sines(truth), model)
+    found = identify(sines(truth), model)
     known = estimates(found)
     assert set(known) == set(truth._fields) - {"v_ref", "A", "x0"} and found.notes == []
     for name, estimate in known.items():
@@ -40,7 +40,7 @@ def test_a_damper_comes_back_within_5_percent(model, truth, conform):
 
 def test_the_rates_of_a_coil_come_back_from_a_square_wave(conform):
     record = made(current=lambda t: np.where(t % 0.5 < 0.25, 0.0, 1.0), coil=(200.0, 60.0), noise=0.02, seconds=4.0)
-    found = identify_records([record], "bingham", Settings(test_fraction=0.25))
+    found = identify([record], "bingham", Settings(test_fraction=0.25))
     known = estimates(found)
     assert found.commanded
     for name, value in (("actuator.rate", 200.0), ("actuator.rate_fall", 60.0)):
@@ -55,19 +55,19 @@ def test_temperature_factors_come_back_and_may_be_ignored():
         made(current=i, temperature=warm, factors=truth, warming=0.5, noise=0.02, name=f"{warm:g}C_{i:g}A", seed=k)
         for k, (warm, i) in enumerate(((20.0, 0.0), (20.0, 1.0), (50.0, 1.0), (80.0, 0.0), (80.0, 1.0)))
     ]
-    found = identify_records(records, "bingham")
+    found = identify(records, "bingham")
     assert found.warm and found.bench.factors.reference == pytest.approx(50.0)
     assert found.bench.factors.viscous == pytest.approx(-0.004, rel=0.1)
     assert found.bench.factors.yield_force == pytest.approx(-0.008, rel=0.05)
     assert found.bench.offset_per_kelvin == pytest.approx(0.5, rel=0.05)
     assert found.bench.factors.stiffness == 0.0, "this damper has none: what has no influence keeps its default"
     assert found.notes == ["the data do not identify temperature_factors.stiffness"]
-    cold = identify_records(records, "bingham", Settings(ignore_temperature=True))
+    cold = identify(records, "bingham", Settings(ignore_temperature=True))
     assert not cold.warm and cold.mean("train").fit_percent < 90.0
 
 
 def test_one_current_leaves_its_influence_unknown_and_the_rest_known():
-    found = identify_records([made(current=0.5, noise=0.02)], "bingham")
+    found = identify([made(current=0.5, noise=0.02)], "bingham")
     unknown = {name for name, estimate in estimates(found).items() if not estimate.identified}
     assert unknown == {"c_a", "c_b", "fc_a", "fc_b"}
     pairs = {frozenset(pair[:2]) for pair in found.information.correlated}
@@ -88,13 +88,13 @@ def test_a_gas_force_of_many_standard_deviations_is_found():
     slow = BINGHAM._replace(f0=4000.0, c_a=200.0, fc_a=20.0)
     records = [made(slow, 0.01, 0.2, noise=0.02, seconds=8.0), made(slow, 0.005, 0.5, noise=0.02, seconds=8.0, seed=2)]
     assert all(np.mean(record.force) > 100.0 * np.std(record.force) for record in records)
-    found = identify_records(records, "bingham")
+    found = identify(records, "bingham")
     assert found.mean("train").fit_percent > 97.0
     assert found.bench.damper.f0 == pytest.approx(4000.0, rel=1e-3)
 
 
 def test_a_parameter_that_ends_at_a_bound_is_flagged():
-    found = identify_records([record._replace(force=300.0 * record.force) for record in sines(BINGHAM)], "sigmoid")
+    found = identify([record._replace(force=300.0 * record.force) for record in sines(BINGHAM)], "sigmoid")
     assert any(note.startswith("at the end of its range: ") for note in found.notes)
 
 
@@ -106,4 +106,4 @@ def test_bad_requests_are_refused(bench):
         seatsim.identify(bench, "bingham", Settings(fix=everything))
     still = [record._replace(velocity=0.0 * record.velocity) for record in sines(BINGHAM)]
     with pytest.raises(InputError, match="no motion or no force"):
-        identify_records(still, "bingham")
+        identify(still, "bingham")

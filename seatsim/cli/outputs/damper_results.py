@@ -15,7 +15,7 @@ from seatsim.cli.outputs.writing import name_pictures, write_each, write_outputs
 from seatsim.cli.show_table import format_number, make_table, show_report_tables, show_table
 from seatsim.cli.terminal import complain, conclude, say, show_progress, warn
 from seatsim.dampers.base import OWN
-from seatsim.identification.identify import Identification, identify_records
+from seatsim.identification.identify import Identification, identify
 from seatsim.identification.model_benchmark import League, benchmark_models
 from seatsim.identification.settings import IdentificationSettings
 from seatsim.plots.bench.characterisation import plot_characterisation
@@ -55,7 +55,7 @@ def present_characterisation(found: Characterisation, folder: Path) -> None:
 def identify_damper(records: Sequence[BenchRecord], model: str, settings: IdentificationSettings, folder: Path) -> None:
     """Fit a model to a damper; print and write how well it agrees, and its parameters."""
     with show_progress() as progress:
-        found = identify_records(records, model, settings, progress)
+        found = identify(records, model, settings, progress)
         paths = write_identification(found, folder, settings.seed)
     show_report_tables([*report.tabulate_fit(found), *report.tabulate_parameters(found)])
     warn(found.notes)
