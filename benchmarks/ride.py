@@ -1,10 +1,9 @@
-"""One setting for all floors, temperatures and drivers: `python benchmarks/ride.py --data DIR --bounds --out OUT`.
+"""One setting for all floors, temperatures and drivers: `python benchmarks/ride.py --data DIR --out OUT`.
 
 Cells are roads of class C and D at two speeds, the floors EM1, EM2 and EM5 of ISO 7096 and measured ones where DIR
 holds them, each with the damper at 20, 50 and 80 degC and with 45, 80 and 110 kg on the seat. The variants of
 `quickstart.yaml` and `ride.yaml` run in every cell. Their figure is the driver's Wk RMS over that of the best viscous
-damper of that floor and driver, which is found anew in every cell. With `--bounds` the clairvoyant bound follows for
-the cold cells: what no damper of the seat comes below at the variant's own travel. With `--tuned` a gain on five
+damper of that floor and driver, which is found anew in every cell. With `--tuned` a gain on five
 measures is tuned on the very draw of every cell, which no law with one gain can do better than. Written is
 `OUT/ride.csv`, a row for each run.
 """
@@ -23,18 +22,14 @@ from ruamel.yaml import YAML
 from scipy.stats import gmean
 
 import seatsim
-from controllers.clairvoyant import clairvoyant
 from seatsim.schema.arrays import Array
-from seatsim.simulation.performance_bounds import measure_distance
 
 HERE = Path(__file__).parent
 TEMPERATURES, MASSES = (20.0, 50.0, 80.0), (45.0, 80.0, 110.0)
 """degC; kg."""
 DAMPINGS = np.geomspace(150.0, 2500.0, 15)
 """N s/m of the viscous dampers of which a cell takes the best."""
-SECONDS, BOUNDED = 60.0, 15.0
-WEIGHTS = np.array([3.0, 8.0, 20.0]) ** 2
-"""1/s^4; weights of the squared travel at which the bound is found."""
+SECONDS = 60.0
 RIDE = "driver_acceleration_weighted"
 Settings = dict[str, Any]
 QUICKSTART, RIDE_FILE = (
@@ -79,8 +74,8 @@ def tune_gain(settings: Settings) -> Settings:
     return state(search.result.xbest)
 
 
-def run_cells(floors: dict[str, Settings], seed: int, bounded: bool, tuned: bool) -> pd.DataFrame:
-    """Return a row for each run, with its bound where that is asked for and the damper cold."""
+def run_cells(floors: dict[str, Settings], seed: int, tuned: bool) -> pd.DataFrame:
+    """Return a row for each run."""
     rows = []
     for (floor, excitation), mass in itertools.product(floors.items(), MASSES):
         cell: Settings = {"seed": seed, "excitation": excitation, "plant.driver_mass": mass}
@@ -89,23 +84,12 @@ def run_cells(floors: dict[str, Settings], seed: int, bounded: bool, tuned: bool
         for temperature in TEMPERATURES:
             alone = ALONE | cell | {"temperature": temperature}
             settings = alone | {"variants": VARIANTS | ({"gain of the cell": tune_gain(alone)} if tuned else {})}
-            excess = measure_excess(settings) if bounded and temperature == min(TEMPERATURES) else {}
             for run in seatsim.run("quickstart", settings).runs:
                 ride, peak = (run.metrics[name].value for name in (RIDE, "suspension_displacement_peak"))
                 variant = run.scenario.label["variant"]
-                figures = ride, best, ride / best, 1e3 * peak, ride / best / excess.get(variant, np.nan)
-                rows.append([variant, floor, mass, temperature, *figures])
-    columns = ["variant", "floor", "mass", "temperature", "ride", "viscous", "ratio", "peak_mm", "bound"]
+                rows.append([variant, floor, mass, temperature, ride, best, ride / best, 1e3 * peak])
+    columns = ["variant", "floor", "mass", "temperature", "ride", "viscous", "ratio", "peak_mm"]
     return pd.DataFrame(rows, columns=columns)
-
-
-def measure_excess(settings: Settings) -> dict[str, float]:
-    """Return the Wk RMS over the bound of the variants of the seat's damper, in `BOUNDED` s without end stops."""
-    floor = settings["excitation"] | {"duration": BOUNDED}
-    runs = seatsim.run("quickstart", settings | {"excitation": floor, "effects": []}).runs
-    bounds = clairvoyant(runs[0].scenario, WEIGHTS)
-    ours = [run for run in runs if run.scenario.rig == runs[0].scenario.rig]
-    return {run.scenario.label["variant"]: 1.0 + measure_distance(run, bounds).above_bound for run in ours}
 
 
 def main() -> None:
@@ -114,19 +98,16 @@ def main() -> None:
     parser.add_argument("--data", type=Path, help="folder with `bus_floor` and `roads`")
     parser.add_argument("--only", nargs="*", help="names of floors, such as EM1")
     parser.add_argument("--seed", type=int, default=11, help="of the random floors")
-    parser.add_argument("--bounds", action="store_true", help="bound the cold cells, a minute each")
     parser.add_argument("--tuned", action="store_true", help="tune a gain in every cell, a quarter of a minute each")
     parser.add_argument("--out", type=Path, default=Path("out/ride"))
     asked = parser.parse_args()
     floors = {name: floor for name, floor in list_floors(asked.data).items() if not asked.only or name in asked.only}
-    table = run_cells(floors, asked.seed, asked.bounds, asked.tuned)
+    table = run_cells(floors, asked.seed, asked.tuned)
     asked.out.mkdir(parents=True, exist_ok=True)
     table.to_csv(asked.out / "ride.csv", index=False)
     for name, part in table.groupby("variant", sort=False):
         text = f"{name:18} mean {gmean(part.ratio):.3f}, worst {part.ratio.max():.3f}"
         text += f", peak travel {part.peak_mm.max():.1f} mm"
-        if part.bound.count():
-            text += f"; no damper below: mean {gmean(part.bound.dropna()):.3f}, worst {part.bound.max():.3f}"
         print(text, flush=True)
 
 

@@ -73,7 +73,7 @@ class StaticOutputFeedback(NamedTuple):
 
     The published gain [2, 2147.6] is the optimum for white noise and unweighted acceleration: a firm viscous damper.
     With `weights: {comfort: Wk}` the synthesis asks for a softer seat; `docs/synthesis.md`, "For the ride", compares
-    both with viscous dampers, skyhook and the clairvoyant bound.
+    both with viscous dampers and skyhook.
     """
 
     gain: Annotated[tuple[Gain, ...] | None, Field(description="gain on what is measured, one entry each")] = None

@@ -156,7 +156,7 @@ REPEATABLE: Mapping[str, frozenset[str]] = {
     name: frozenset(options.split())
     for name, options in {
         "run": "--set",
-        "compare": "--set --bracket",
+        "compare": "--set",
         "synthesise": "--set --global",
         "gap": "--predict",
         "diagnose": "--without --budget --damper-forms --after",

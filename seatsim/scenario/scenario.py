@@ -103,12 +103,6 @@ class Scenario:
         parts = [str(v) if k == "variant" else f"{k.split('.')[-1]} {v}" for k, v in self.label.items()]
         return f"{self.name} ({', '.join(parts)})" if parts else self.name
 
-    @property
-    def rig(self) -> str:
-        """Rig and excitation without the control: runs of one rig are alternatives to each other."""
-        damper, drive = (self.damper, self.coil.max_current, self.temperature), (self.excitation, self.seed, self.start)
-        return repr((self.plant, self.driver, damper, drive, self.effects, self.solver))
-
     def place(self, *keys: str) -> str:
         """Return the place of a key in the scenario's file."""
         return self.source.place(keys) if self.source else f"{self.name}, {'.'.join(keys)}"

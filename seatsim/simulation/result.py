@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -128,13 +128,12 @@ class Run:
 
 @dataclass(frozen=True)
 class Result:
-    """The runs of one or several scenarios, performance bounds by rig (`Scenario.rig`) where asked for, and failures.
+    """The runs of one or several scenarios.
 
     `failures` says why other runs of the scenarios were not carried to their end. It is the content of `summary.json`.
     """
 
     runs: Sequence[Run]
-    brackets: Unwritten[Mapping[str, Any]] = field(default_factory=dict)
     failures: Unwritten[Sequence[str]] = ()
 
     def __repr__(self) -> str:

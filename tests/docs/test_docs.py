@@ -28,7 +28,7 @@ from run_examples import read_blocks  # noqa: E402
 
 SHARED = {"--json", "--pdf", "--set", "--with"}
 """Options of many commands, of which one example is enough."""
-NOT_RUN = {"compare": {"--bracket"}, "sweep": {"--engine", "--address"}}
+NOT_RUN = {"sweep": {"--engine", "--address"}}
 """Options whose examples would take minutes or a cluster."""
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
 BUILT = """

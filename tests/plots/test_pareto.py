@@ -1,4 +1,4 @@
-"""Comfort against travel: its panels, its names, its bracket."""
+"""Comfort against travel: its panels, its names, its floor."""
 
 import dataclasses
 from itertools import product
@@ -7,18 +7,8 @@ import numpy as np
 import pytest
 
 from seatsim.metrics.table import Metric
-from seatsim.plots.runs.comparison import BEST, BOUND, plot_pareto
+from seatsim.plots.runs.comparison import plot_pareto
 from seatsim.simulation.result import Run
-
-
-class Fake:
-    travel, acceleration = np.array([0.006, 0.014]), np.array([0.9, 0.5])
-
-    def bound(self, travel):
-        return 0.4 + 0.0 * np.asarray(travel)
-
-    def best(self, travel):
-        return np.interp(travel, self.travel, self.acceleration, left=np.nan)
 
 
 @pytest.fixture
@@ -37,7 +27,7 @@ def runs(made_up):
 
 
 def test_panels_are_titled_and_points_named_by_what_sets_them_apart(runs):
-    figure = plot_pareto(runs(["soft", "hard"], (20.0, 80.0)), {})
+    figure = plot_pareto(runs(["soft", "hard"], (20.0, 80.0)))
     assert [axes.get_title(loc="left") for axes in figure.axes] == ["20 °C", "80 °C"]
     named = [text.get_text() for text in figure.legends[0].get_texts()]
     assert sorted(name.partition("  ")[2] for name in named if name[1] == " ") == ["hard", "soft"]
@@ -46,24 +36,15 @@ def test_panels_are_titled_and_points_named_by_what_sets_them_apart(runs):
 
 def test_points_of_a_panel_that_is_alone_have_their_names_beside_it_each_in_a_line_of_its_own(runs):
     same = [dataclasses.replace(run, metrics=runs(["a"])[0].metrics) for run in runs(["soft", "hard", "tuned", "off"])]
-    [axes] = plot_pareto(same, {}).axes
+    [axes] = plot_pareto(same).axes
     assert {text.get_text() for text in axes.texts} == {"soft", "hard", "tuned", "off"}
     heights = np.sort([text.xyann[1] for text in axes.texts]) * axes.bbox.height / axes.figure.dpi
     assert np.all(np.diff(heights) > 0.16) and len(axes.collections[0].get_offsets()) == 4
 
 
-def test_bracket_is_drawn_where_there_is_one(runs):
-    both = runs(["soft", "hard"], (20.0, 80.0))
-    figure = plot_pareto(both, {both[0].scenario.rig: Fake()})
-    with_bracket, without = figure.axes
-    assert [line.get_label() for line in with_bracket.lines] == [BOUND.label, BEST.label]
-    assert not without.lines and with_bracket.get_ylim()[0] < 0.4
-    assert {BOUND.label, BEST.label} <= {text.get_text() for text in figure.legends[0].get_texts()}
-
-
 def test_without_weighted_accelerations_it_says_so(runs):
     bare = [dataclasses.replace(run, metrics={}) for run in runs(["soft", "hard"])]
-    [axes] = plot_pareto(bare, {}).axes
+    [axes] = plot_pareto(bare).axes
     assert "200 samples" in axes.texts[0].get_text()
 
 
@@ -72,5 +53,5 @@ def test_the_floor_is_a_line_where_the_seat_factor_is_one_unless_it_is_far_above
     found = runs(["soft", "hard"])
     for run in found:
         run.metrics["seat_factor"] = Metric(factor * run.metrics["driver_acceleration_weighted"].value, "-", "")
-    axes = plot_pareto(found, {}).axes[0]
+    axes = plot_pareto(found).axes[0]
     assert [line.get_ydata()[0] for line in axes.lines] == pytest.approx([1 / factor] * lines)

@@ -182,7 +182,7 @@ def test_a_variant_has_one_colour_in_all_pictures(made_up):
     drawn = [look for shown in looks.show_runs(runs) for look in shown.looks]
     colours = [{look.colour for look in drawn if look.label.startswith(v)} for v in ("on", "off")]
     lines = plot_comparison(runs).axes[0].lines
-    points = plot_pareto(runs, {}).axes[0].collections
+    points = plot_pareto(runs).axes[0].collections
     assert [len(each) for each in colours] == [1, 1] and colours[0] != colours[1]
     assert {line.get_color() for line in lines} == {
         to_hex(colour).upper() for dots in points for colour in dots.get_facecolor()

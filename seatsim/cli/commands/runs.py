@@ -12,17 +12,14 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from seatsim.cli.interrupts import go_on
 from seatsim.cli.options import Out, OwnCode, Scenarios, Settings, check_out, scenario_settings
 from seatsim.cli.terminal import answer, complain, conclude, count_progress, say, show_progress, warn, wrote, wrote_one
 from seatsim.schema.errors import InputError, SeatsimError
 from seatsim.schema.guarded import uncut
 
 if TYPE_CHECKING:
-    from seatsim.cli.outputs.simulated import RunTable
     from seatsim.scenario.scenario import Scenario
-    from seatsim.simulation.performance_bounds import PerformanceBounds
-    from seatsim.simulation.result import Run
+    from seatsim.simulation.result import Result, Run
 
 
 def run(scenarios: Scenarios, out_folder: Out = None, settings: Settings = None) -> None:
@@ -32,29 +29,19 @@ def run(scenarios: Scenarios, out_folder: Out = None, settings: Settings = None)
     _execute([[path] for path in scenarios], folders, scenario_settings(settings))
 
 
-def compare(
-    scenarios: Scenarios,
-    out_folder: Out = None,
-    settings: Settings = None,
-    bracket: Annotated[bool, typer.Option("--bracket")] = False,
-) -> None:
-    """Simulate scenarios and print one table over all of them.
-
-    Options:
-        bracket: Add what the best damper could have done; takes minutes for each floor.
-    """
-    _execute([scenarios], [out_folder], scenario_settings(settings), bracket)
+def compare(scenarios: Scenarios, out_folder: Out = None, settings: Settings = None) -> None:
+    """Simulate scenarios and print one table over all of them."""
+    _execute([scenarios], [out_folder], scenario_settings(settings))
 
 
-def _execute(
-    files: Sequence[Sequence[str]], folders: Sequence[Path | None], settings: dict[str, object], bracket: bool = False
-) -> None:
+def _execute(files: Sequence[Sequence[str]], folders: Sequence[Path | None], settings: dict[str, object]) -> None:
     """Run every group of files as one result, then print its table and write its files; exit 1 where a run failed."""
-    from seatsim.cli.outputs.simulated import RunAnswer, RunTable
+    from seatsim.cli.outputs.simulated import RunAnswer
+    from seatsim.simulation.result import Result
 
     groups = _load_groups(files, folders, settings)
     found, interrupted = _simulate([scenario for scenarios, _ in groups for scenario in scenarios])
-    in_order, tables, paths, failures = iter(found), list[RunTable](), list[Path](), list[str]()
+    in_order, tables, paths, failures = iter(found), list[Result](), list[Path](), list[str]()
     for scenarios, folder in groups:
         of_group = list(itertools.islice(in_order, len(scenarios)))
         failed = [str(each) for each in of_group if isinstance(each, SeatsimError)]
@@ -62,7 +49,7 @@ def _execute(
         if runs := [each for each in of_group if not isinstance(each, SeatsimError)]:
             # What an interrupt left done is kept before the process ends.
             with uncut() if interrupted else nullcontext():
-                table, written = _present(runs, failed, folder, bracket, interrupted)
+                table, written = _present(runs, failed, folder, interrupted)
             tables.append(table)
             paths += written
     if interrupted:
@@ -121,15 +108,12 @@ def _title(scenarios: Sequence[Scenario]) -> str:
     return names[0] if len(names) == 1 else "comparison"
 
 
-def _present(
-    runs: list[Run], failures: list[str], folder: Path, bracket: bool, interrupted: bool
-) -> tuple[RunTable, list[Path]]:
-    """Print the table of some runs, their bounds where wanted and the warnings; return them and their files."""
+def _present(runs: list[Run], failures: list[str], folder: Path, interrupted: bool) -> tuple[Result, list[Path]]:
+    """Print the table of some runs and the warnings; return their result and its files."""
     from seatsim.cli.outputs.run_tables import make_comparison_table, make_overall_table, make_published_tables
-    from seatsim.cli.outputs.simulated import Brackets, RunTable, write_interrupted, write_result
+    from seatsim.cli.outputs.simulated import write_interrupted, write_result
     from seatsim.cli.show_table import show_table
     from seatsim.simulation.checks import describe_designs
-    from seatsim.simulation.performance_bounds import place_runs
     from seatsim.simulation.result import Result
 
     scenarios = [run.scenario for run in runs]
@@ -138,33 +122,10 @@ def _present(
         say(sentence)
     warn(dict.fromkeys(sentence for run in runs for sentence in run.warnings), "warning")
     warn(f"{run.scenario.title}: {sentence}" for run in runs for sentence in run.history.notes)
-    result = Result(runs, _performance_bounds(runs) if bracket and not interrupted else {}, failures)
+    result = Result(runs, failures)
     paths = write_interrupted(result, folder) if interrupted else write_result(result, folder)
     wrote(folder, paths)
-    return RunTable(result, Brackets(place_runs(result))), paths
-
-
-def _performance_bounds(runs: list[Run]) -> dict[str, PerformanceBounds]:
-    """Work out the bounds and print how far from them each run is; an interrupt keeps what there is."""
-    from seatsim.cli.outputs.run_tables import make_bracket_table
-    from seatsim.cli.show_table import show_table
-    from seatsim.simulation.performance_bounds import compute_performance_bounds, explain_runs_below_bound
-
-    found: dict[str, PerformanceBounds] = {}
-    with show_progress() as progress:
-        try:
-            for rig, answer in compute_performance_bounds(runs, progress):
-                if isinstance(answer, InputError):
-                    complain(f"no bracket: {answer}")
-                else:
-                    found[rig] = answer
-        except KeyboardInterrupt:
-            go_on()
-            warn(["interrupted: the brackets that were not finished are left out"])
-    if found:
-        show_table(make_bracket_table(runs, found))
-    warn(explain_runs_below_bound(runs, found))
-    return found
+    return result, paths
 
 
 _FAILURES_SHOWN = 5

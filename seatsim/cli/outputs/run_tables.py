@@ -1,4 +1,4 @@
-"""Runs as tables on the terminal: compared, beside their performance bounds, beside published figures; and a design."""
+"""Runs as tables on the terminal: compared, beside published figures; and a design."""
 
 from __future__ import annotations
 
@@ -12,13 +12,11 @@ from rich.markup import escape
 from rich.table import Table
 
 from seatsim.cli.show_table import format_number, make_table
-from seatsim.metrics.motion import ratio
 from seatsim.metrics.table import SHORT
 from seatsim.rig.designs import BoxProof, CheckedLaw, Clipping, SynthesisedDesign, unit_of_gain
 from seatsim.scenario.checks import published_figures
 from seatsim.scenario.scenario import Scenario, condition_of, group_by_condition, is_condition
 from seatsim.simulation.checks import describe_sampled_loop
-from seatsim.simulation.performance_bounds import PerformanceBounds, measure_distance
 from seatsim.simulation.result import Run
 
 
@@ -146,21 +144,6 @@ def _labels(run: Run, keys: Sequence[str]) -> list[str]:
     label = {"scenario": run.scenario.name, **run.scenario.label}
     values = (label.get(key, "") for key in keys)
     return [escape(f"{value:g}" if isinstance(value, int | float) else str(value)) for value in values]
-
-
-def make_bracket_table(runs: Sequence[Run], brackets: Mapping[str, PerformanceBounds]) -> Table:
-    """Return the table of how far each run with performance bounds is from both of them, at the run's travel."""
-    chosen = [run for run in runs if run.scenario.rig in brackets]
-    keys, rows = _label_keys(chosen), []
-    for run in chosen:
-        d = measure_distance(run, brackets[run.scenario.rig])
-        shares = (d.above_bound, d.above_best, ratio(d.best, d.bound) - 1)
-        cells = [format_number(value, ".3f") for value in (d.acceleration, d.bound, d.best)]
-        rows.append([*_labels(run, keys), *cells, *(format_number(1e2 * value, ".1f") for value in shares)])
-    headings = [f"{heading}\n[m/s²]" for heading in ("Wk RMS", "bound", "best")]
-    headings += [f"{heading}\n[%]" for heading in ("above\nbound", "above\nbest", "bracket's\nwidth")]
-    title = "Distance from the clairvoyant bracket, at each run's travel"
-    return make_table(title, [*map(_head_label, keys), *headings], rows, range(len(keys)))
 
 
 def make_published_tables(runs: Sequence[Run]) -> list[Table]:

@@ -12,10 +12,9 @@ from seatsim.cli.outputs.printing import print_reports
 from seatsim.cli.outputs.writing import name_pictures, write_each, write_outputs
 from seatsim.provenance.statement import write_documented
 from seatsim.report.runs import report_runs
-from seatsim.schema.content import IfAny, Joined, Unwritten
+from seatsim.schema.content import Unwritten
 from seatsim.schema.files import write_together
 from seatsim.simulation.naming import make_title
-from seatsim.simulation.performance_bounds import RigBounds, place_runs
 from seatsim.simulation.result import Result
 from seatsim.simulation.runs import write_histories
 from seatsim.sweeps.parts import Exceedance
@@ -25,23 +24,10 @@ _MOST_KEPT = 400_000
 """Rows of the histories that are written after an interrupt, which takes about half a second."""
 
 
-class Brackets(NamedTuple):
-    """The performance bounds of some rigs: the content of `brackets.json`."""
-
-    rigs: IfAny[Sequence[RigBounds]]
-
-
-class RunTable(NamedTuple):
-    """The runs of a table, and where they stand if performance bounds were asked for."""
-
-    result: Joined[Result]
-    brackets: Joined[Brackets]
-
-
 class RunAnswer(NamedTuple):
     """Results, one for each file (`run`) or one of all files (`compare`); `failed` says which runs failed, and why."""
 
-    results: Sequence[RunTable]
+    results: Sequence[Result]
     failed: Sequence[str]
 
 
@@ -54,8 +40,6 @@ def write_result(result: Result, folder: Path) -> list[Path]:
     seeds = {run.scenario.seed for run in result.runs}
     seed = seeds.pop() if len(seeds) == 1 else None
     contents = {**_summarise(result), "report.html": report, **name_pictures(figures)}
-    if result.brackets:
-        contents["brackets.json"] = Brackets(place_runs(result))
     return print_reports(write_documented(folder, partial(_write_run_files, result, contents), seed))
 
 

@@ -19,11 +19,8 @@ from seatsim.plots.style import DARK, GREY, Entry, Grid, clean_text, describe_me
 from seatsim.scenario.scenario import condition_of
 from seatsim.schema.arrays import Array
 from seatsim.simulation import naming
-from seatsim.simulation.performance_bounds import PerformanceBounds
 from seatsim.simulation.result import Run
 
-BOUND = Entry("lower bound without hysteresis", "black", width=1.6)
-BEST = Entry("best run found, floor known ahead", DARK, (0.0, (5.0, 1.5)), 1.6)
 FLOOR = Entry("as much as the floor (SEAT = 1)", DARK, ":", 1.6)
 _APART = 0.17
 """Least distance in inches of the names beside a panel."""
@@ -35,12 +32,11 @@ _SIDES = (3.3, 2.1)
 
 
 class Panel(NamedTuple):
-    """Runs that share a condition: what sets it apart from the others, the runs, their names, their bounds or None."""
+    """Runs that share a condition: what sets it apart from the others, the runs, their names."""
 
     title: str
     runs: Sequence[Run]
     names: Sequence[str]
-    bracket: PerformanceBounds | None = None
 
     @property
     def points(self) -> Array:
@@ -56,25 +52,25 @@ class Panel(NamedTuple):
         return float(floors[0]) if is_shared else float("nan")
 
 
-def plot_pareto(runs: Sequence[Run], brackets: Mapping[str, PerformanceBounds]) -> Figure:
-    """Return weighted acceleration over travel, a panel for each condition (with performance bounds: for each rig).
+def plot_pareto(runs: Sequence[Run]) -> Figure:
+    """Return weighted acceleration over travel, a panel for each condition.
 
     Conditions of one run share a panel. Beside a panel that is alone stand the names of its points, beside others their
     letters, which the legend names in the order of the runs. A line says where the driver feels as much as the floor
     moves.
     """
-    found, looks = _make_panels(runs, brackets) or [Panel("", [], [])], choose_looks(runs)
+    found, looks = _make_panels(runs) or [Panel("", [], [])], choose_looks(runs)
     shown, columns = found[:MOST_PANELS], min(2, len(found))
     named = {name: run for panel in shown for name, run in zip(panel.names, panel.runs, strict=True)}
     points = {
         name: Entry(name if columns == 1 else f"{_letter(k)}  {name}", looks[id(run)].colour, "none", mark="o")
         for k, (name, run) in enumerate(named.items())
     }
-    legend = [*list(points.values()) * (columns > 1), *[BOUND, BEST] * any(panel.bracket for panel in shown)]
+    legend = list(points.values()) * (columns > 1)
     legend += [FLOOR] * any(panel.runs and np.isfinite(panel.floor) for panel in shown)
     note = "Over the whole run; on the same floor, lower left is better."
     note += style.OWN_SCALES * (len(shown) > 1) + explain_grey(looks)
-    note += f" {len(shown)} of {len(found)} rigs are shown." if len(shown) < len(found) else ""
+    note += f" {len(shown)} of {len(found)} conditions are shown." if len(shown) < len(found) else ""
     height = max(_SIDES[columns - 1], _APART * max(len(panel.runs) for panel in shown))
     right = 0.45 if columns > 1 else style.measure_names(list(points)) + 0.1
     grid = Grid((height,) * -(-len(shown) // columns), columns, right=right, top=0.3, gap=(1.0, 0.85))
@@ -90,16 +86,16 @@ def _letter(number: int) -> str:
     return ascii_uppercase[place] + str(again or "")
 
 
-def _make_panels(runs: Sequence[Run], brackets: Mapping[str, PerformanceBounds]) -> list[Panel]:
+def _make_panels(runs: Sequence[Run]) -> list[Panel]:
     groups = dict[str, list[Run]]()
     for run in runs:
         if np.isfinite(run.read_metric(COMFORT) + run.read_metric(TRAVEL)):
-            groups.setdefault(run.scenario.rig if brackets else condition_of(run.scenario), []).append(run)
-    if not brackets and len(groups) > 1 and any(len(group) < 2 for group in groups.values()):
+            groups.setdefault(condition_of(run.scenario), []).append(run)
+    if len(groups) > 1 and any(len(group) < 2 for group in groups.values()):
         alone = [run for group in groups.values() for run in group]
         return [Panel("", alone, naming.label_runs(alone))]
-    named = [(rig, group, *naming.distinguish_runs(group, runs)) for rig, group in groups.items()]
-    return [Panel(title, group, names, brackets.get(rig)) for rig, group, title, names in named]
+    named = [(group, *naming.distinguish_runs(group, runs)) for group in groups.values()]
+    return [Panel(title, group, names) for group, title, names in named]
 
 
 def _pad(values: Array) -> tuple[float, float]:
@@ -116,10 +112,6 @@ def _draw_panel(axes: Axes, panel: Panel, looks: Mapping[str, Entry]) -> None:
     if np.isfinite(panel.floor):
         comfort = np.append(comfort, panel.floor)
         axes.axhline(panel.floor, color=FLOOR.colour, linestyle=FLOOR.dashes, linewidth=FLOOR.width, zorder=2)
-    if panel.bracket:
-        travel = np.append(travel, 1e3 * panel.bracket.travel)
-        comfort = np.append(comfort, [*panel.bracket.acceleration, panel.bracket.bound(1e-3 * np.max(travel))])
-        draw_bounds(axes, np.linspace(*_pad(travel), 200), panel.bracket)
     axes.set(xlim=_pad(travel), xlabel=describe_metric(TRAVEL).axis)
     axes.set(ylim=_pad(comfort), ylabel=describe_metric(COMFORT).axis)
     # Of a letter and a name the letter.
@@ -142,14 +134,6 @@ def _name_points(axes: Axes, points: Array, texts: Sequence[str]) -> None:
             clean_text(texts[k], 32), points[k], (1.04, height), textcoords="axes fraction", va="center",
             fontsize=style.FONT, arrowprops={"arrowstyle": "-", "color": GREY, "linewidth": 0.7, "relpos": (0.0, 0.5)},
         )  # fmt: skip
-
-
-def draw_bounds(axes: Axes, travel: Array, bracket: PerformanceBounds) -> None:
-    """Draw the bounds of a rig over an RMS travel in mm, with the area between them."""
-    bound, best = bracket.bound(1e-3 * travel), bracket.best(1e-3 * travel)
-    axes.fill_between(travel, bound, best, where=np.isfinite(best), color=style.AREA, linewidth=0, zorder=1)
-    style.draw_line(axes, travel, bound, BOUND)
-    style.draw_line(axes, travel, best, BEST)
 
 
 COMPARED = (UNWEIGHTED, COMFORT, TRAVEL, SEAT)

@@ -15,17 +15,17 @@ from seatsim.simulation.result import Result
 def plot_result(result: Result) -> dict[str, Figure]:
     """Return the figures of a result by name.
 
-    `pareto` is there for two runs or more and where there are performance bounds, `comparison` where a number is swept,
-    `force_velocity` where a run has a damper of this program: of that whose current varies the most. Where several
-    scenarios have several runs, each has figures over time and frequency of its own, under its name. Where there is
-    nothing to show (a floor at rest, a record too short for a spectrum), a figure says so.
+    `pareto` is there for two runs or more, `comparison` where a number is swept, `force_velocity` where a run has a
+    damper of this program: of that whose current varies the most. Where several scenarios have several runs, each has
+    figures over time and frequency of its own, under its name. Where there is nothing to show (a floor at rest, a
+    record too short for a spectrum), a figure says so.
 
     Raises:
         RunError: a sine test of a damper cannot be carried to its end.
     """
     figures = {}
-    if len(result.runs) > 1 or result.brackets:
-        figures["pareto"] = plot_pareto(result.runs, result.brackets)
+    if len(result.runs) > 1:
+        figures["pareto"] = plot_pareto(result.runs)
     if (comparison := plot_comparison(result.runs)) is not None:
         figures["comparison"] = comparison
     plots = {"time_histories": plot_time_histories, "psd": plot_psd, "transmissibility": plot_transmissibility}
