@@ -1,7 +1,7 @@
 """Figures of a diagnosis and of a gap.
 
-Maps of the error over motion and current, the signal that the simulation lacks, each compared channel over time and
-frequency, which shows a gap, with one simulation, and a diagnosis, with two.
+The gaps from nominal to noise floor, maps of the error over motion and current, the signal that the simulation lacks,
+each compared channel over time and frequency, which shows a gap, with one simulation, and a diagnosis, with two.
 """
 
 from __future__ import annotations
@@ -30,6 +30,8 @@ from seatsim.schema.printing import Quantity, describe_channel, format_number
 BINS = (22, 13)
 """Bins of a map over velocity and over the other quantity."""
 DOTS = 2500
+SMALLEST = 1e-4
+"""Gap below which none is drawn: a logarithmic scale has no zero."""
 UNITS = {"velocity": "m/s", "displacement": "m", "coil_current": "A", "damper_temperature": "degC"}
 """Units of what moves or changes."""
 SECONDS, RASTER = 2.0, 0.05
@@ -55,10 +57,10 @@ def plot_diagnosis(diagnosis: Diagnosis) -> dict[str, Figure]:
 
     After the others a picture of each held-out channel, the channel with the largest nominal gap first.
     """
-    found = {}
+    plots = {"gaps": _plot_gaps(diagnosis)}
     if diagnosis.verdict != "none":
-        plots = {"discrepancy": _plot_discrepancy(diagnosis), "maps": _plot_maps(diagnosis)}
-        found = {name: figure for name, figure in plots.items() if figure is not None}
+        plots |= {"discrepancy": _plot_discrepancy(diagnosis), "maps": _plot_maps(diagnosis)}
+    found = {name: figure for name, figure in plots.items() if figure is not None}
     looks = {"nominal": NOMINAL, "after": find_last(diagnosis)}
     return found | _plot_channels(diagnosis.evidence.traces, looks)
 
@@ -71,6 +73,33 @@ def plot_all_of_gap(found: Gap) -> dict[str, Figure]:
 def find_last(diagnosis: Diagnosis) -> Entry:
     """Return the look of the simulation of `augmented.yaml`; without effects it is the refitted one."""
     return AUGMENTED if diagnosis.selected else REFITTED
+
+
+def _plot_gaps(diagnosis: Diagnosis) -> Figure | None:
+    """Return the gap of each channel on its way from the nominal simulation to the noise floor."""
+    gap, last = diagnosis.gap, find_last(diagnosis)
+    names = ["overall", *gap.before.channels]
+    stages = [(gap.floor, NOISE._replace(label="noise floor", mark="|")), (gap.before, NOMINAL._replace(mark="o"))]
+    stages += [(gap.calibrated, REFITTED._replace(mark="D"))] if last is AUGMENTED else []
+    stages += [(gap.after, last._replace(mark="s"))]
+    looks = [look._replace(dashes="none") for _, look in stages]
+    rows = [[({**gaps.channels, "overall": gaps.overall}).get(name) or 0.0 for gaps, _ in stages] for name in names]
+    seen = [100 * value for row in rows for value in row if np.isfinite(value) and value > SMALLEST]
+    if len(names) == 1 or not seen:
+        return None
+    shown = [name.replace("_", " ") for name in names]
+    note = "RMS of measured less simulated over the spread of the signal, of held-out runs; further left is better."
+    grid = Grid((0.27 * len(names) + 0.1,), left=style.measure_names(shown), right=0.5)
+    figure, [[axes]] = style.make_page("Gap of each channel, before and after", note, grid, looks)
+    axes.set(ylim=(len(names) - 0.4, -0.6), yticks=range(len(names)), yticklabels=shown, xlabel="gap [%]")
+    style.scale_log(axes, "x", min(seen) / 1.4, max(seen) * 1.4)
+    for row, values in enumerate(rows):
+        marked = [(100 * value, look) for value, look in zip(values, looks, strict=True) if value > SMALLEST]
+        places = [place for place, _ in marked]
+        axes.plot(places, [row] * len(places), color="0.8", linewidth=1.5, zorder=1)
+        for place, look in marked:
+            style.draw_line(axes, [place], [row], look).set(markersize=8, zorder=3)
+    return figure
 
 
 def _describe_motion(diagnosis: Diagnosis, name: str) -> Quantity:

@@ -44,7 +44,7 @@ def report_diagnosis(diagnosis: Diagnosis) -> Report:
     errors = [formatting.scale_row(channel, unit, parts) for channel, unit, *parts in diagnosis.error_budget]
     sections: dict[str, Sequence[Block]] = {
         "causes": _show_causes(diagnosis),
-        "gaps": _show_gaps(diagnosis),
+        "gaps": _show_gaps(diagnosis, figures),
         "signals": show_signals(diagnosis, figures),
         "missing": show_discrepancy(diagnosis, figures),
         "forms": _show_forms(diagnosis),
@@ -236,14 +236,14 @@ def _show_forms(diagnosis: Diagnosis) -> list[Table]:
     return show_table("forms", rows, 2, [0], own=diagnosis.alternatives[0].replaces) if rows else []
 
 
-def _show_gaps(diagnosis: Diagnosis) -> list[Block]:
-    """Return tables of the gaps by channel and by run, and of the refitted parameters."""
+def _show_gaps(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
+    """Return the gaps by channel, drawn and as a table, those of every run, and the refitted parameters."""
     gap, held = diagnosis.gap, ", ".join(diagnosis.held_out) or "all runs"
     # Without effects the gap after them is that of the refit.
     stages = {key: name for key, name in STAGES.items() if key != "after" or diagnosis.selected}
     rows = [_make_row(gap, name, name.replace("_", " "), stages) for name in ("overall", *gap.before.channels)]
     head = ["channel", *stages.values(), "shrinks by"]
-    blocks: list[Block] = [Text(f"{_describe_shrink(diagnosis)} {EXPLAINED}".strip())]
+    blocks: list[Block] = [Text(f"{_describe_shrink(diagnosis)} {EXPLAINED}".strip()), *show_pictures(figures, "gaps")]
     blocks += tabulate(f"Gaps on {held}", head, rows, 1, [0])
     if len(gap.by_run) > 1:
         rows = [_make_row(each, "overall", each.run, stages) for each in gap.by_run]
