@@ -5,9 +5,9 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Annotated, NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from seatsim.characterisation import response
+from seatsim.characterisation import cycles
+from seatsim.characterisation.steps import LEAST_RANGE
 from seatsim.metrics.motion import ratio, rms
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.recordings.quality.damage import Doubter, doubt_dropouts, flat_tops, plateaus
@@ -62,11 +62,11 @@ class Row(NamedTuple):
 
     amplitude: half the stroke. peak_rebound, peak_compression: largest and smallest force, positive opposes extension.
     energy: dissipated in a cycle, the area of the loop. damping: viscous damping that dissipates the same, `E / (pi w
-    X^2)`. offset: mean force of a cycle. centre: middle between the peaks. asymmetry: RMS of the asymmetric part
-    (difference from the centrosymmetric loop, `(F(t) + F(t + T/2)) / 2`) over that of the force; `asymmetry_peak` is
-    its largest magnitude, `asymmetry_of_shape` the same ratio with the offset taken from both. `loop` is the mean of
+    X^2)`. offset: mean force of a cycle. asymmetry: RMS of the asymmetric part (difference from the
+    centrosymmetric loop, `(F(t) + F(t + T/2)) / 2`) over that of the force; `asymmetry_of_shape` is the same ratio
+    with the offset taken from both. `loop` is the mean of
     the steady cycles; `cycle_values` holds current, temperature, peaks, energy and offset of each, and its force at the
-    peak speed (half the difference of both directions). `test` is the name of the record that the row is a part of.
+    peak speed (half the difference of both directions).
     """
 
     record: str
@@ -88,23 +88,19 @@ class Row(NamedTuple):
     damping: _Damping = math.nan
     damping_sd: _Damping = math.nan
     offset: _Newtons = math.nan
-    offset_sd: _Newtons = math.nan
-    centre: _Newtons = math.nan
     force_rms: _Newtons = math.nan
     asymmetry: float = math.nan
-    asymmetry_peak: _Newtons = math.nan
     asymmetry_of_shape: float = math.nan
     notes: tuple[str, ...] = ()
     loop: Unwritten[SineTest | None] = None
     cloud: Unwritten[Cloud | None] = None
     cycle_values: IfAny[dict[str, list[float]] | None] = None
-    test: Unwritten[str] = ""
 
     @property
     def ramps(self) -> bool:
         """Whether the current differs from cycle to cycle."""
         current = (self.cycle_values or {}).get("current", [0.0])
-        return max(current) - min(current) > max(_VARIES * max(current), response.LEAST_RANGE)
+        return max(current) - min(current) > max(_VARIES * max(current), LEAST_RANGE)
 
 
 _FIGURES: dict[str, Callable[[SineTest], float]] = {
@@ -122,41 +118,37 @@ def row_columns(row: Row) -> dict[str, object]:
     return to_content(row._replace(cycle_values=None)) | {"notes": "; ".join(row.notes)}
 
 
-def summarise_loops(
+def _summarise_loops(
     loops: Sequence[SineTest],
-    record: str,
-    file: str,
-    current: ArrayLike,
-    temperature: ArrayLike,
-    left_out: int = 0,
-    notes: Sequence[str] = (),
-    window: float = WINDOW,
+    record: BenchRecord,
+    current: Array,
+    temperature: Array | float,
+    left_out: int,
+    notes: Sequence[str],
+    window: float,
 ) -> Row:
-    """Return the row of a test: loops of equally many samples, current in A and temperature in degC of each (or one).
-
-    `window` is the part of the stroke over which the force at the peak speed is averaged.
-    """
-    loop = response.average_loops(loops)
-    flowing, warmth = (np.broadcast_to(np.asarray(y, dtype=float), len(loops)) for y in (current, temperature))
+    """Return the row of a record: loops of equally many samples, current in A and temperature in degC of each."""
+    loop = cycles.average_loops(loops)
+    warmth = np.broadcast_to(np.asarray(temperature, dtype=float), len(loops))
     each = {name: np.array([figure(one) for one in loops]) for name, figure in _FIGURES.items()}
     mean = {name: float(np.mean(values)) for name, values in each.items()}
     sd = {name: float(np.std(v, ddof=1)) if len(v) > 1 else math.nan for name, v in each.items()}
     force, part = loop.force[:-1], loop.asymmetric_part[:-1]
     offset = float(np.mean(force))
     ways = np.array([measure_forces(one, window) for one in loops])
-    values = {"current": flowing, "temperature": warmth, **each, "force": 0.5 * (ways[:, 0] - ways[:, 1])}
+    values = {"current": current, "temperature": warmth, **each, "force": 0.5 * (ways[:, 0] - ways[:, 1])}
     return Row(
-        record=record, file=file, cycles=len(loops), left_out=left_out, current=round(float(np.mean(flowing)), 6),
+        record=record.name, file=record.file, cycles=len(loops), left_out=left_out,
+        current=round(float(np.mean(current)), 6),
         temperature=float(np.mean(warmth)), temperature_range=float(np.ptp(warmth)),
         amplitude=0.5 * float(np.ptp(loop.displacement)), frequency=1.0 / float(loop.time[-1]),
-        peak_speed=float(np.max(np.abs(loop.velocity))), centre=0.5 * (mean["peak_rebound"] + mean["peak_compression"]),
-        force_rms=rms(force), asymmetry=ratio(rms(part), rms(force)), asymmetry_peak=float(np.max(np.abs(part))),
+        peak_speed=float(np.max(np.abs(loop.velocity))), force_rms=rms(force), asymmetry=ratio(rms(part), rms(force)),
         asymmetry_of_shape=ratio(rms(part - offset), rms(force - offset)), notes=tuple(notes), loop=loop,
         cycle_values={name: list(map(float, v)) for name, v in values.items()},
         peak_rebound=mean["peak_rebound"], peak_rebound_sd=sd["peak_rebound"],
         peak_compression=mean["peak_compression"], peak_compression_sd=sd["peak_compression"],
         energy=mean["energy"], energy_sd=sd["energy"], damping=mean["damping"], damping_sd=sd["damping"],
-        offset=mean["offset"], offset_sd=sd["offset"],
+        offset=mean["offset"],
     )  # fmt: skip
 
 
@@ -168,18 +160,17 @@ def measure_forces(loop: SineTest, window: float) -> tuple[float, float]:
     return rebound, compression
 
 
-def summarise_record(record: BenchRecord, window: float = WINDOW, last: int = 0) -> Row:
+def summarise_record(record: BenchRecord, window: float = WINDOW) -> Row:
     """Return the row of a measured record at one current: of its steady cycles, or as a record without cycles.
 
-    `window` is the part of the stroke over which the force at the peak speed is averaged; only so many of the `last`
-    steady cycles count, all where 0. Drift and damage are sought in all of them.
+    `window` is the part of the stroke over which the force at the peak speed is averaged.
     """
-    found = response.find_cycles(record.displacement)
-    steady = response.select_steady_cycles(found)
+    found = cycles.find_cycles(record.displacement)
+    steady = cycles.select_steady_cycles(found)
     if not steady:
         return summarise_aperiodic_record(record, found)
-    drift = response.find_drift(record, steady)
-    loops = response.resample_loops(record, steady, drift)
+    drift = cycles.find_drift(record, steady)
+    loops = cycles.resample_loops(record, steady, drift)
     moved = drift * (steady[-1].first - steady[0].first) / record.rate
     notes = [*_of_damage(record), *_of_current(record), *_of_loops(loops)]
     if abs(moved) > _WANDERS * 0.5 * float(np.ptp(record.force)):
@@ -187,15 +178,13 @@ def summarise_record(record: BenchRecord, window: float = WINDOW, last: int = 0)
     notes += _of_sign(record)
     if min(cycle.length for cycle in steady) < _COARSE:
         notes.append(f"fewer than {_COARSE} rows a cycle: peaks and areas are coarse")
-    steady, loops = steady[-last:], loops[-last:]
     current = _average_cycles(record.current, steady)
     warmth = math.nan if record.temperature is None else _average_cycles(record.temperature, steady)
     left_out = len(found) - len(steady)
-    row = summarise_loops(loops, record.name, record.file, current, warmth, left_out, notes, window)
-    return row._replace(test=record.name)
+    return _summarise_loops(loops, record, current, warmth, left_out, notes, window)
 
 
-def summarise_aperiodic_record(record: BenchRecord, found: Sequence[response.Cycle]) -> Row:
+def summarise_aperiodic_record(record: BenchRecord, found: Sequence[cycles.Cycle]) -> Row:
     """Return the row of a record that is no steady cycle: peaks, RMS and mean of the force, and what the motion is."""
     warmth = record.temperature if record.temperature is not None else np.array([math.nan])
     every = slice(None, None, max(1, len(record.force) // _MOST_POINTS))
@@ -210,7 +199,7 @@ def summarise_aperiodic_record(record: BenchRecord, found: Sequence[response.Cyc
     )  # fmt: skip
 
 
-def _motion(record: BenchRecord, found: Sequence[response.Cycle]) -> str:
+def _motion(record: BenchRecord, found: Sequence[cycles.Cycle]) -> str:
     if len(found) < 2:
         return f"not cyclic: {len(found)} whole cycle{'' if len(found) == 1 else 's'} in {record.time[-1]:.3g} s"
     low, high = np.percentile([record.rate / cycle.length for cycle in found], (5, 95))
@@ -246,7 +235,7 @@ def _of_sign(record: BenchRecord) -> list[str]:
 
 def _of_loops(loops: Sequence[SineTest]) -> list[str]:
     notes = []
-    loop = response.average_loops(loops)
+    loop = cycles.average_loops(loops)
     energy = loop.dissipated_energy
     over_stroke = float(np.trapezoid(loop.force, loop.displacement))
     if abs(over_stroke - energy) > _DISAGREE * abs(energy):
@@ -263,7 +252,7 @@ def _of_loops(loops: Sequence[SineTest]) -> list[str]:
     return notes
 
 
-def _average_cycles(values: Array, cycles: Sequence[response.Cycle]) -> Array:
+def _average_cycles(values: Array, cycles: Sequence[cycles.Cycle]) -> Array:
     return np.array([float(np.mean(values[cycle.rows])) for cycle in cycles])
 
 

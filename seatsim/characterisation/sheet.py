@@ -23,7 +23,6 @@ _Frequency = Annotated[float, param("Hz", "frequency")]
 _Energy = Annotated[float, param("J", "energy")]
 _Damping = Annotated[float, param("N s/m", "equivalent damping")]
 _PerKelvin = Annotated[float, param("1/K", "relative change")]
-_PerKilojoule = Annotated[float, param("1/kJ", "relative change")]
 _Time = Annotated[float, param("s", "time")]
 
 
@@ -118,8 +117,7 @@ class CycleEnergy(NamedTuple):
 class Fade(NamedTuple):
     """Change of the force at the peak speed in 1/K, over that at the lowest temperature, between two temperatures.
 
-    A row that names a record is of its cycles, others of several records. per_kilojoule: change over the energy that
-    the record absorbs, over the force at its start. absorbed: that energy in J, before the last cycle.
+    A row that names a record is of its cycles, others of several records.
     """
 
     current: _Current
@@ -128,31 +126,6 @@ class Fade(NamedTuple):
     warmest: _Warmth
     per_kelvin: _PerKelvin
     record: str = ""
-    absorbed: _Energy = math.nan
-    per_kilojoule: _PerKilojoule = math.nan
-
-
-class WarmUp(NamedTuple):
-    """A cycle of a record of many: energy absorbed before it, its force at the peak speed, and that over the first."""
-
-    record: str
-    current: _Current
-    speed: _Speed
-    absorbed: _Energy
-    temperature: _Warmth
-    force: _Force
-    relative_force: float
-
-
-class CurrentHysteresis(NamedTuple):
-    """Force at the peak speed at one current where it rises and where it falls, and the difference, the width."""
-
-    record: str
-    current: _Current
-    speed: _Speed
-    rising: _Force
-    falling: _Force
-    width: _Force
 
 
 class LimitCheck(NamedTuple):
@@ -184,8 +157,6 @@ class BenchSheet(NamedTuple):
     hysteresis: list[Hysteresis]
     energy: list[CycleEnergy]
     fade: list[Fade]
-    warm_up: list[WarmUp]
-    current_hysteresis: list[CurrentHysteresis]
     limits: Sequence[LimitCheck] = ()
     beside: Sequence[PeakForce] = ()
 
@@ -206,9 +177,7 @@ _FIGURES = {
     "dynamic_range": ("dynamic_range", "both"),
     "hysteresis": ("hysteresis", "width"),
     "energy": ("energy", "energy"),
-    "current_hysteresis": ("current_hysteresis", "width"),
     "fade": ("fade", "per_kelvin"),
-    "fade_by_energy": ("fade", "per_kilojoule"),
 }
 """Table and column of each figure that may have a limit, beside the times of responses."""
 

@@ -1,4 +1,4 @@
-"""What a characterisation found, of measured records or of a model."""
+"""What a characterisation found."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
-from seatsim.characterisation.response import Response, find_cycles
+from seatsim.characterisation.cycles import find_cycles
 from seatsim.characterisation.rows import (
     WINDOW,
     Row,
@@ -16,28 +16,26 @@ from seatsim.characterisation.rows import (
     summarise_aperiodic_record,
     summarise_record,
 )
-from seatsim.characterisation.sheet import BenchSheet, LimitCheck, PeakForce
-from seatsim.characterisation.steps import find_plateaus, measure_responses
+from seatsim.characterisation.sheet import BenchSheet
+from seatsim.characterisation.steps import Response, find_plateaus, measure_responses
 from seatsim.characterisation.tabulate import make_sheet
 from seatsim.recordings.bench_tables import BenchRecord, map_bench, note_unused
-from seatsim.schema.content import Form, Joined, show_record
+from seatsim.schema.content import Form, Joined, Unwritten, show_record
 
 _SETTLED = 0.2
 """Seconds after a step of current from which on cycles are counted."""
 
 
 class Characterisation(NamedTuple):
-    """The rows of a damper's records (or of a model's tests), its responses to steps, and what is to be known of them.
+    """The rows of a damper's records, its responses to steps, and what is to be known of them.
 
-    It is the content of `characterisation.json`. measured: whether the rows are of records. source: the data, or the
-    model with its parameters, as text. sheet: the tables of the bench day.
+    It is the content of `characterisation.json`. source: the data, as text. sheet: the tables of the bench day.
     """
 
     name: str
     source: str
-    measured: bool
     rows: Annotated[list[Row], Form(key="records")]
-    responses: Annotated[list[Response], Form(key="steps")]
+    responses: Unwritten[list[Response]]
     notes: list[str]
     sheet: Joined[BenchSheet]
 
@@ -50,17 +48,9 @@ class Characterisation(NamedTuple):
                 affected.setdefault(note, []).append(row.record)
         for answer in self.responses:
             if answer.note:
-                who = f"step {answer.before:.2f} to {answer.after:.2f} A"
-                affected.setdefault(answer.note, []).append(f"{answer.record}, {who}" if answer.record else who)
+                who = f"{answer.record}, step {answer.before:.2f} to {answer.after:.2f} A"
+                affected.setdefault(answer.note, []).append(who)
         return [*self.notes, *(f"{_list_names(names)}: {note}" for note, names in affected.items())]
-
-    def set_beside(self, peaks: list[PeakForce]) -> Characterisation:
-        """Return the same with the peak forces of a model beside."""
-        return self._replace(sheet=self.sheet._replace(beside=peaks))
-
-    def set_limits(self, checks: list[LimitCheck]) -> Characterisation:
-        """Return the same with limits that were checked."""
-        return self._replace(sheet=self.sheet._replace(limits=checks))
 
     def _repr_html_(self) -> str:
         return show_record(self)
@@ -77,18 +67,16 @@ def characterise(
     window: float = WINDOW,
     pattern: str = "",
     progress: Callable[[str], object] = lambda _: None,
-    last: int = 0,
 ) -> Characterisation:
     """Return what bench records, or the tables of a folder, show before anything is modelled.
 
     `window` is the part of the stroke over which the force at the peak speed is averaged; `pattern` is that of
-    `seatsim.recordings.bench_tables.map_bench`; `progress` is called with what is done; only so many of the `last`
-    steady cycles of each record count, all where 0.
+    `seatsim.recordings.bench_tables.map_bench`; `progress` is called with what is done.
 
     A record whose current rests at several levels, with steady cycles at one of them, has a row for each such stretch;
     any other record has one row.
     """
-    examine = partial(_examine, window, last)
+    examine = partial(_examine, window)
     parts: Iterable[tuple[list[Row], list[Response], list[str]]]
     if isinstance(data, str | Path):
         name, parts = name or Path(data).stem, map_bench(data, examine, pattern)
@@ -101,27 +89,27 @@ def characterise(
         unused += more_unused
         progress(f"tables characterised: {number}")
     sheet = make_sheet(rows, responses, window)
-    return Characterisation(name, source or name, True, rows, responses, note_unused(unused), sheet)
+    return Characterisation(name, source or name, rows, responses, note_unused(unused), sheet)
 
 
-def _examine(window: float, last: int, records: Iterable[BenchRecord]) -> tuple[list[Row], list[Response], list[str]]:
+def _examine(window: float, records: Iterable[BenchRecord]) -> tuple[list[Row], list[Response], list[str]]:
     """Return what some records show, without their samples: rows, responses, columns that are not used."""
     rows, responses, unused = list[Row](), list[Response](), list[str]()
     for record in records:
-        rows += _rows(record, window, last)
+        rows += _rows(record, window)
         responses += measure_responses(record)
         unused += record.unused
     return rows, responses, unused
 
 
-def _rows(record: BenchRecord, window: float, last: int) -> list[Row]:
+def _rows(record: BenchRecord, window: float) -> list[Row]:
     rests = find_plateaus(record.current, record.rate)
     if len(rests) < 2:
-        return [summarise_record(record, window, last)]
+        return [summarise_record(record, window)]
     skipped = round(_SETTLED * record.rate)
     parts = [(rest, record.part(rest.first + skipped, rest.last)) for rest in rests if rest.last > rest.first + skipped]
     rows = [
-        summarise_record(part, window, last)._replace(record=f"{record.name}, {rest.first / record.rate:.1f} s")
+        summarise_record(part, window)._replace(record=f"{record.name}, {rest.first / record.rate:.1f} s")
         for rest, part in parts
     ]
     cyclic = [row for row in rows if row.loop is not None]

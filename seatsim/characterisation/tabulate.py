@@ -1,4 +1,4 @@
-"""From the rows and responses of a damper to the tables of its bench day, hysteresis in the current among them."""
+"""From the rows and responses of a damper to the tables of its bench day."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.characterisation import sheet
-from seatsim.characterisation.response import LEAST_RANGE, Response, find_crossing
 from seatsim.characterisation.rows import WARMER, WINDOW, Row, group_rows, has_same_motion, is_alike, measure_forces
+from seatsim.characterisation.steps import Response, find_crossing
 from seatsim.metrics.motion import ratio
 from seatsim.schema.arrays import Array
 from seatsim.simulation.damper_bench import SineTest
@@ -18,7 +18,7 @@ _SAME_CURRENT, _SMALLEST_CURRENT = 0.02, 0.005
 _FAR = 0.4
 """Largest distance from mid-stroke, over the stroke, at which reversals are far."""
 _MANY = 20
-"""Least cycles of a record that shows a fade over the energy."""
+"""Least cycles of a record that shows a fade by itself."""
 _SETTLED = 0.05
 """Half width of the band, over the change of force, within which a response has settled."""
 
@@ -31,11 +31,9 @@ def make_sheet(rows: Sequence[Row], responses: Iterable[Response], window: float
         gas force = (F+ + F-) / 2,         friction = (F+ - F-) / 2                         of the slowest test,
         dynamic range = F_hard / F_soft,   linearity = (F - F_soft) / (F_hard - F_soft)     at one speed
 
-    Rows of one current, temperature, amplitude and frequency are repeats. A fade is a straight line over temperatures,
-    or over the energy that a record of many cycles has absorbed.
+    Rows of one current, temperature, amplitude and frequency are repeats. A fade is a straight line over temperatures.
     """
     steady = [row for row in rows if row.loop is not None and not row.ramps]
-    warming = [(row, _list_warm_up(row)) for row in steady if len((row.cycle_values or {}).get("force", [])) >= _MANY]
     groups = sorted(
         group_rows(steady, _is_repeat),
         key=lambda group: (group[0].temperature, round(group[0].peak_speed, 3), group[0].current),
@@ -53,9 +51,7 @@ def make_sheet(rows: Sequence[Row], responses: Iterable[Response], window: float
         linearity=[_place(peak, ladder[0], ladder[-1]) for ladder in ladders for peak in ladder],
         hysteresis=[_measure_hysteresis(group, peak) for group, peak in zip(groups, peaks, strict=True)],
         energy=[_measure_energy(group) for group in groups],
-        fade=[*_measure_fade(peaks), *(_measure_warm_up(row, cycles) for row, cycles in warming)],
-        warm_up=[cycle for _, cycles in warming for cycle in cycles],
-        current_hysteresis=_measure_current_hysteresis(rows),
+        fade=[*_measure_fade(peaks), *(fade for row in steady for fade in _measure_warming(row))],
     )
 
 
@@ -132,25 +128,14 @@ def _measure_fade(peaks: Sequence[sheet.PeakForce]) -> list[sheet.Fade]:
     return found
 
 
-def _list_warm_up(row: Row) -> list[sheet.WarmUp]:
-    """Return the cycles of a record with the energy that was absorbed before each."""
+def _measure_warming(row: Row) -> list[sheet.Fade]:
+    """Return the fade of a record of many cycles, where it warms in them."""
     values = row.cycle_values or {}
-    absorbed = np.cumsum([0.0, *values["energy"][:-1]])
-    cycles = zip(map(float, absorbed), values["temperature"], values["force"], strict=True)
-    return [
-        sheet.WarmUp(row.record, row.current, row.peak_speed, energy, warmth, force, force / values["force"][0])
-        for energy, warmth, force in cycles
-    ]
-
-
-def _measure_warm_up(row: Row, cycles: Sequence[sheet.WarmUp]) -> sheet.Fade:
-    absorbed, warmth, force = (
-        np.array([getattr(cycle, name) for cycle in cycles]) for name in ("absorbed", "temperature", "force")
-    )
+    if len(values.get("force", [])) < _MANY or not row.temperature_range >= WARMER:
+        return []
+    warmth, force = np.array(values["temperature"]), np.array(values["force"])
     low, high = float(np.min(warmth)), float(np.max(warmth))
-    per_kelvin = _find_slope(warmth, force) if high - low >= WARMER else math.nan
-    slope = 1e3 * _find_slope(absorbed, force)
-    return sheet.Fade(row.current, row.peak_speed, low, high, per_kelvin, row.record, float(absorbed[-1]), slope)
+    return [sheet.Fade(row.current, row.peak_speed, low, high, _find_slope(warmth, force), row.record)]
 
 
 def _find_slope(cause: Array, force: Array) -> float:
@@ -205,68 +190,3 @@ def _as_warm(a: float, b: float) -> bool:
 
 def _average_of(rows: Sequence[Row], name: str) -> float:
     return float(np.mean([getattr(row, name) for row in rows]))
-
-
-_LEVELS = 24
-"""Parts of the range of a current in each of which the cycles are averaged."""
-_EDGE = 0.25
-"""Part of a level by which its edges are moved: no ladder of fewer than 32 equal steps then has a step at an edge."""
-
-
-def _measure_current_hysteresis(rows: Sequence[Row]) -> list[sheet.CurrentHysteresis]:
-    """Return the widths of records whose current rises and falls slowly, in a ramp or in steps, under one motion.
-
-        width(i) = F_falling(i) - F_rising(i)
-
-    of the force at the peak speed, each the mean over the cycles of a twenty-fourth of the range of the current, the
-    falling one interpolated to the current of the rising one. Where the current turns both are one: no width is stated.
-    """
-    known = [row for row in rows if row.cycle_values and row.test]
-    tests = group_rows(known, lambda a, b: (a.file, a.test) == (b.file, b.test) and has_same_motion(a, b))
-    return [width for test in tests for width in _measure_test(test)]
-
-
-def _measure_test(rows: Sequence[Row]) -> list[sheet.CurrentHysteresis]:
-    current, force = (np.concatenate([(row.cycle_values or {})[name] for row in rows]) for name in ("current", "force"))
-    span = float(np.ptp(current))
-    if span < LEAST_RANGE:
-        return []
-    level = (current - np.min(current)) * _LEVELS / span
-    ways, turns = _follow(level)
-    branches = [_average(current[ways == way], force[ways == way], level[ways == way]) for way in (1.0, -1.0)]
-    if not all(len(branch[0]) for branch in branches):
-        return []
-    (rising, pushed), (falling, pulled) = branches
-    near = 0.5 * span / _LEVELS
-    compared = (rising >= falling[0] - near) & (rising <= falling[-1] + near)
-    compared &= np.min(np.abs(rising[:, None] - current[turns]), axis=1) > near
-    pairs = zip(rising[compared], pushed[compared], np.interp(rising, falling, pulled)[compared], strict=True)
-    speed = float(np.mean([row.peak_speed for row in rows]))
-    found = (tuple(map(float, pair)) for pair in pairs)
-    return [sheet.CurrentHysteresis(rows[0].test, i, speed, up, down, down - up) for i, up, down in found]
-
-
-def _follow(level: Array) -> tuple[Array, list[int]]:
-    """Return 1 for each cycle at which a current rises and -1 where it falls, and the cycles at which it turns.
-
-    A change of less than one level is none.
-    """
-    ways, turns, farthest, way = np.zeros(len(level)), list[int](), 0, 0.0
-    for k in range(len(level)):
-        moved = level[k] - level[farthest]
-        if way * moved > 0.0:
-            farthest = k
-        elif abs(moved) > 1.0:
-            turns += [farthest] if way else []
-            way = float(np.sign(moved))
-            ways[farthest:k] = way
-            farthest = k
-        ways[k] = way
-    return ways, turns
-
-
-def _average(current: Array, force: Array, level: Array) -> tuple[Array, Array]:
-    """Return the mean current and force of each level, in rising order."""
-    _, place = np.unique(np.floor(level + _EDGE), return_inverse=True)
-    count = np.bincount(place)
-    return np.bincount(place, current) / count, np.bincount(place, force) / count

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.characterisation.model_tests import load_specimen
+from seatsim.characterisation.model_tests import load_damper
 from seatsim.compilation.messages import explain
 from seatsim.cosimulation.description import describe_unit
 from seatsim.dampers.base import DAMPERS
@@ -28,7 +28,7 @@ from seatsim.schema.content import IfAny, Joined
 from seatsim.schema.errors import InputError, SeatsimError
 from seatsim.schema.fields import bounds, default_values, field_names
 from seatsim.schema.modules import UNIT, use
-from seatsim.schema.registry import find, names
+from seatsim.schema.registry import find, name_of, names
 from seatsim.schema.yaml_source import Source
 from seatsim.simulation.checks import CheckedRun, applicable_checks, check_run
 from seatsim.simulation.result import Run
@@ -148,7 +148,7 @@ def check_file(path: Path) -> Checked:
         return _check_code(path) if path.suffix == ".py" else _check_unit(path)
     stated = Source(path).data if path.exists() else {}
     if {"model", "bench"} & set(stated):
-        return Checked("parameters", [load_specimen(None, path).name], [])
+        return Checked("parameters", [name_of("damper", type(load_damper(path).record))], [])
     if is_sweep(stated):
         prepared = prepare(path)
         return Checked("sweep", [f"{prepared.plan.runs} runs over {', '.join(prepared.plan.keys)}"], prepared.doubts)

@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
 from matplotlib.figure import Figure
 
 from seatsim.characterisation.rows import Cloud
+from seatsim.dampers.base import DAMPERS
 from seatsim.plots import style
 from seatsim.plots.style import Entry, Grid, clean_text
-from seatsim.simulation.damper_bench import SineTest
+from seatsim.simulation.damper_bench import SineTest, sine_test
 
 SIGNS = "Positive: extension, and the force that opposes it."
 """What the axes of force, velocity and displacement count from rest."""
+_AMPLITUDE, _FASTEST = 0.01, 2.0
+"""m and Hz of a model's sine; the frequency is lower where the model does not hold up to the speed."""
+_SHARES = (0.0, 0.5, 1.0)
+"""Currents of a model's sines, as shares of the greatest for which it holds."""
+_SETTLING = 3.0
+"""Seconds that a model's sine runs at least before the cycle shown; models forget their start in that time."""
 
 
 class Family(NamedTuple):
@@ -54,3 +62,15 @@ def plot_families(title: str, note: str, families: Sequence[Family]) -> Figure:
                 markerscale=3,
             )  # fmt: skip
     return page.figure
+
+
+def plot_model(name: str) -> Figure:
+    """Return the loops of a damper model with the values of its record, at a few currents."""
+    cls = DAMPERS.find(name)
+    known = DAMPERS.specification_of(cls)
+    frequency = min(_FASTEST, math.floor(100.0 * known.max_speed / (2.0 * math.pi * _AMPLITUDE)) / 100.0)
+    currents = [share * known.max_current for share in _SHARES] if known.max_current else [0.0]
+    cycles = max(3, math.ceil(_SETTLING * frequency) + 1)
+    loops = [(f"{i:g} A", sine_test(cls(), _AMPLITUDE, frequency, i, 20.0, known.factors, cycles)) for i in currents]
+    title = f"sine of {1e3 * _AMPLITUDE:g} mm at {frequency:g} Hz, 20 °C"
+    return plot_families(name, "", [Family(title, "current", loops)])

@@ -160,10 +160,8 @@ REPEATABLE: Mapping[str, frozenset[str]] = {
         "synthesise": "--set --global",
         "gap": "--predict",
         "diagnose": "--without --budget --damper-forms --after",
-        "characterise": "--model --parameters --currents --temperatures --amplitudes --frequencies --limits --beside"
-        " --pattern --window",
-        "identify": "--model --test --test-fraction --fix --ignore-temperature --predict --moving-average --centred"
-        " --seed",
+        "characterise": "--limits --beside --pattern --window",
+        "identify": "--model --test --test-fraction --fix --ignore-temperature --seed",
         "import": "--map --nominal",
         "comfort": "--channel --hours --run --block --rate --unit",
         "seat-test": "--class --set",

@@ -7,11 +7,9 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from seatsim.characterisation.response import Response
 from seatsim.characterisation.rows import Row
 from seatsim.characterisation.sheet import BenchSheet, list_tables
 from seatsim.characterisation.summary import Characterisation, group_by_setting
-from seatsim.dampers.base import DAMPERS
 from seatsim.identification.assessment import Assessment
 from seatsim.identification.identify import Identification
 from seatsim.metrics.motion import ratio
@@ -108,31 +106,25 @@ ROUNDING = 1e-9
 """Share of the peak force below which an offset is no finding."""
 
 
-def report_characterisation(found: Characterisation, figures: Figures, remarks: Sequence[str], command: str) -> Report:
-    """Return the report of a characterisation; `remarks` are sentences on it, `command` makes it again."""
+def report_characterisation(found: Characterisation, figures: Figures, command: str) -> Report:
+    """Return the report of a characterisation; `command` makes it again."""
     tested: list[Block] = [Text("What was tested:"), Code(found.source, "What was tested")]
     sections: dict[str, Sequence[Block]] = {
-        "loops": show_pictures(figures, "loops", "energy", "warm_up"),
+        "loops": show_pictures(figures, "loops", "energy"),
         "figures": tabulate_rows(found),
         "limits": _tabulate_sheet(found.sheet, {"limits": "Worst figure against each limit"}),
-        "steps": [*show_pictures(figures, "steps"), *tabulate_steps(found.responses)],
+        "steps": [*show_pictures(figures, "steps"), *tabulate_responses(found.sheet)],
         "sheet": _tabulate_sheet(found.sheet, read_words().captions),
     }
-    models = [] if found.measured or found.name not in DAMPERS.names() else [DAMPERS.find(found.name)]
     doubts = dict.fromkeys([*found.notes, *(note for row in found.rows for note in row.notes)])
-    factors = [
-        trace_inputs(list(doubts), models, is_measured=found.measured),
-        state_intervals(["the response times"] * any(math.isfinite(each.t95_sd) for each in found.responses)),
-        count_variations(len(found.rows)),
-    ]
+    factors = [trace_inputs(list(doubts), is_measured=True), count_variations(len(found.rows))]
     advice = choose_advice(
-        characterise=not found.measured,
-        identify=found.measured,
-        record_steps=found.measured and not any(math.isfinite(answer.t95) for answer in found.responses),
-        record_currents=found.measured and len({round(row.current, 2) for row in found.rows}) < 3,
+        identify=True,
+        record_steps=not found.sheet.response,
+        record_currents=len({round(row.current, 2) for row in found.rows}) < 3,
     )
     kind, about = "characterisation", f"Characterisation: {found.name}"
-    return compose(kind, about, [_say_character(found)], advice, sections, remarks, factors, command, tested)
+    return compose(kind, about, [_say_character(found)], advice, sections, found.remarks, factors, command, tested)
 
 
 def _say_character(found: Characterisation) -> str:
@@ -146,8 +138,8 @@ def _say_character(found: Characterisation) -> str:
         if high.current > low.current and low.peak_rebound > 0:
             growth = format_number(high.peak_rebound / low.peak_rebound, 2)
             said += f", {growth} times its force at {low.current:.3g} A"
-    if times := [answer.t95 for answer in found.responses if math.isfinite(answer.t95)]:
-        said += f"; it follows a step of the current within {format_number(1e3 * float(np.median(times)))} ms"
+    if times := [row.t90 for row in found.sheet.response if math.isfinite(row.t90)]:
+        said += f"; it follows a step of the current to 90 % within {format_number(1e3 * float(np.median(times)))} ms"
     return f"{said}."
 
 
@@ -177,18 +169,24 @@ _COLUMNS: Mapping[str, Callable[[Row], float]] = {
 
 
 def tabulate_rows(found: Characterisation) -> list[Table]:
-    """Return the table of the records, or of the tests of a model."""
-    left, named, rows = len(found.rows) - MOST_ROWS, int(found.measured), found.rows[:MOST_ROWS]
+    """Return the table of the records."""
+    left, rows = len(found.rows) - MOST_ROWS, found.rows[:MOST_ROWS]
     more = f"; {left} more in cycles.csv" if left > 0 else ""
     shown = {head: read for head, read in _COLUMNS.items() if any(math.isfinite(read(row)) for row in rows)}
-    lines = [(*[row.record] * named, _name_motion(row), *(read(row) for read in shown.values())) for row in rows]
+    lines = [(row.record, _name_motion(row), *(read(row) for read in shown.values())) for row in rows]
     caption = f"Largest forces of rebound and compression, energy and damping of the mean cycle{more}"
-    return tabulate(caption, [*["record"] * named, "motion", *shown], lines, named + 1)
+    return tabulate(caption, ["record", "motion", *shown], lines, 2)
 
 
-def _tabulate_sheet(sheet: BenchSheet, captions: Mapping[str, str]) -> list[Block]:
+def tabulate_responses(sheet: BenchSheet) -> list[Table]:
+    """Return the table of the responses to steps of the current."""
+    caption = "Response from the current's own 10 % on; recovery after a dip below 90 %; shares of the change"
+    return _tabulate_sheet(sheet, {"response": caption})
+
+
+def _tabulate_sheet(sheet: BenchSheet, captions: Mapping[str, str]) -> list[Table]:
     """Return the tables with these names that have rows."""
-    tables, blocks = list_tables(sheet), list[Block]()
+    tables, blocks = list_tables(sheet), list[Table]()
     for name, caption in captions.items():
         record, rows = tables[name]
         head = [text.replace("_", " ") for text in head_columns(record, format_unit)]
@@ -197,13 +195,3 @@ def _tabulate_sheet(sheet: BenchSheet, captions: Mapping[str, str]) -> list[Bloc
         more = f"; {len(rows) - MOST_ROWS} more in characterisation.xlsx" if len(rows) > MOST_ROWS else ""
         blocks += tabulate(f"{caption}{more}", head, lines)
     return blocks
-
-
-def tabulate_steps(answers: Sequence[Response]) -> list[Table]:
-    """Return the table of the responses to steps of the current."""
-    rows = []
-    for each in answers:
-        times = (1e3 * time for time in (each.t5, each.t90, each.t95, each.t95_sd, each.delay, each.current_t95))
-        how = each.method or each.note or "not determined"
-        rows.append((each.record or "model", each.before, each.after, each.steps, *times, each.rate_95, each.rate, how))
-    return show_table("steps", rows)

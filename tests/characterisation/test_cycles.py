@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.characterisation.response import find_cycles, select_steady_cycles
+from seatsim.characterisation.cycles import find_cycles, select_steady_cycles
 from seatsim.characterisation.rows import summarise_record
 from seatsim.characterisation.summary import characterise
 from seatsim.dampers.bingham import Bingham
@@ -25,9 +25,8 @@ def test_energy_damping_and_offset_of_a_bingham_damper(record, sine):
     assert row.peak_speed == pytest.approx(0.01 * w, rel=5e-3)
     assert row.energy == pytest.approx(energy, rel=3e-3) and row.energy_sd < 0.01 * energy
     assert row.damping == pytest.approx(energy / (math.pi * w * 0.01**2), rel=5e-3)
-    assert row.offset == pytest.approx(30.0, abs=1.0) and row.centre == pytest.approx(30.0, abs=2.0)
+    assert row.offset == pytest.approx(30.0, abs=1.0)
     assert row.peak_rebound == pytest.approx(280.0 + 400.0 * 0.01 * w, abs=8.0)
-    assert row.asymmetry_peak == pytest.approx(30.0, abs=6.0)
     assert row.asymmetry_of_shape < 0.01 < row.asymmetry
     assert row.current == 0.5 and math.isnan(row.temperature) and row.notes == ()
 
@@ -44,17 +43,6 @@ def test_the_figures_of_a_record_are_those_of_a_sine_test(record, sine, damper):
     ends = test.force[[np.argmax(test.displacement), np.argmin(test.displacement)]]
     [hysteresis] = characterise([made]).sheet.hysteresis
     assert hysteresis.width == pytest.approx(np.ptp(ends), abs=0.01 * test.peak_force)
-
-
-def test_the_last_cycles_are_counted_alone_where_asked(record, sine):
-    motion, seconds = sine(0.008, 1.5)
-    made = record(motion, seconds, lambda t: 1.0 + 0.0 * t)
-    fading = made._replace(force=made.force * (1.0 - 0.05 * np.arange(len(made.force)) / len(made.force)))
-    whole, two, one = (characterise([fading], last=last).rows[0] for last in (0, 2, 1))
-    assert (whole.cycles, two.cycles, one.cycles) == (8, 2, 1)
-    each = whole.cycle_values["energy"]
-    assert (two.energy, one.energy) == pytest.approx((np.mean(each[-2:]), each[-1]))
-    assert one.energy < two.energy < whole.energy and math.isnan(one.energy_sd)
 
 
 def test_an_offset_stroke_noise_and_rests_are_no_matter(record, sine):

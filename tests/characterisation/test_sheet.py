@@ -200,43 +200,12 @@ def cycle_at(rate, seconds, force, current):
     return BenchRecord("test", "test.csv", rate, x, v, force(v, time) + GAS, current(time), False, None)
 
 
-def test_a_force_that_fades_has_its_slope_over_the_absorbed_energy():
-    # A dashpot c (1 - t / T) at a peak speed v absorbs (c v^2 / 2) t (1 - t / 2T).
-    c, lasts = 1000.0, 1000.0
-    made = cycle_at(500.0, 40.0, lambda v, t: c * (1.0 - t / lasts) * v, lambda t: 0.5 + 0.0 * t)
-    sheet = characterise([made]).sheet
-    power = 0.5 * c * (0.04 * np.pi) ** 2
-    (fade,) = sheet.fade
-    assert fade.record == "test" and len(sheet.warm_up) >= 78
-    for k, cycle in enumerate(sheet.warm_up):
-        share = 1.0 - 0.5 * k / lasts
-        assert cycle.relative_force == pytest.approx(share, abs=1e-3)
-        assert cycle.absorbed == pytest.approx(power * 0.5 * k * (1.0 - 0.25 * k / lasts), rel=2e-3, abs=0.01)
-    assert fade.absorbed == pytest.approx(sheet.warm_up[-1].absorbed)
-    assert fade.per_kilojoule == pytest.approx(-1e3 / (lasts * power), rel=0.03)
-    assert math.isnan(fade.per_kelvin) and not math.isfinite(fade.coldest)
-
-
-@pytest.mark.parametrize("kind", ["ramp", "steps"])
-def test_rising_and_falling_current_stand_apart(kind):
-    width, slope = 30.0, 400.0
-
-    def current(t):
-        up = np.minimum(t, 80.0 - t) / 40.0
-        return up if kind == "ramp" else np.round(4.0 * up) / 4.0
-
-    def force(v, t):
-        # The remanent field of a falling current adds `width` where the current is neither least nor largest.
-        level = current(t)
-        falling = (t > 40.0) & (level < 1.0)
-        return (100.0 + slope * level + width * falling) * np.tanh(v / 0.005)
-
-    sheet = characterise([cycle_at(500.0, 80.0, force, current)]).sheet
-    rows = sheet.current_hysteresis
-    assert len(rows) >= (18 if kind == "ramp" else 4) and bool(sheet.peak_forces) == (kind == "steps")
-    for row in rows:
-        assert row.rising == pytest.approx(100.0 + slope * row.current, abs=3.0)
-        assert row.width == pytest.approx(width, abs=3.0) and row.speed == pytest.approx(0.04 * np.pi, rel=0.01)
+def test_a_record_that_warms_up_has_a_fade_of_its_own():
+    made = cycle_at(500.0, 40.0, lambda v, t: 1000.0 * (1.0 + FADE * 0.5 * t) * v, lambda t: 0.5 + 0.0 * t)
+    (fade,) = characterise([made._replace(temperature=20.0 + 0.5 * made.time)]).sheet.fade
+    assert fade.record == "test" and (fade.coldest, fade.warmest) == pytest.approx((20.1, 39.9), abs=0.3)
+    assert fade.per_kelvin == pytest.approx(FADE, rel=0.01)
+    assert characterise([made]).sheet.fade == []
 
 
 def test_overshoots_of_current_and_force_and_a_dip_stand_apart():

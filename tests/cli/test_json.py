@@ -22,12 +22,11 @@ ROOT = Path(__file__).resolve().parents[2]
 RECORDING = ROOT / "scenarios" / "data" / "recording"
 BENCH = ROOT / "scenarios" / "data" / "bench"
 SHORT = ("--set", "excitation.duration=2")
-ONE_TEST = ("--currents", "0", "--amplitudes", "0.005", "--frequencies", "1")
 COMMANDS = {
     "run": ("run", *SHORT),
     "compare": ("compare", "--set", "variants={a: {}, b: {seed: 2}}", *SHORT),
     "gap": ("gap", RECORDING / "nominal.yaml", RECORDING),
-    "characterise": ("characterise", "--model", "bouc_wen", *ONE_TEST),
+    "characterise": ("characterise", BENCH),
     "describe": ("describe", "road"),
     "check": ("check", RECORDING),
     "synthesise": ("synthesise", "h-infinity"),

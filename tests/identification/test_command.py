@@ -8,6 +8,7 @@ import pytest
 from ruamel.yaml import YAML
 from typer.testing import CliRunner
 
+from seatsim.characterisation.model_tests import load_damper
 from seatsim.cli.app import app
 from seatsim.cli.outputs.damper_results import write_identification
 from seatsim.identification import model_benchmark as module
@@ -66,7 +67,7 @@ def test_fit_json_holds_the_figures_of_every_record_and_their_means(fitted):
     assert fit["ns_per_step"] > 0.0 and fit["effective_samples"] > 100.0 and "commands" not in fit
 
 
-def test_the_parameters_are_pasted_into_a_scenario_and_characterised(fitted, tmp_path):
+def test_the_parameters_are_pasted_into_a_scenario_and_characterised(fitted, bench, tmp_path):
     path = fitted[0] / "parameters.yaml"
     values = YAML(typ="safe").load(path.read_text())
     assert list(values) == ["damper", "actuator", "bench"]
@@ -77,11 +78,11 @@ def test_the_parameters_are_pasted_into_a_scenario_and_characterised(fitted, tmp
     (tmp_path / "seat.yaml").write_text(SCENARIO + pasted)
     pasted_damper = single(tmp_path / "seat.yaml").damper.record._asdict()
     assert pasted_damper.items() >= values["damper"]["parameters"].items()
-    done = command("characterise", "--parameters", path, "--currents", "0,1", "--amplitudes", "0.005",
-                   "--frequencies", "1", "--out", tmp_path / "shown")  # fmt: skip
+    done = command("characterise", bench, "--beside", path, "--out", tmp_path / "shown")
     assert done.exit_code == 0, done.output
-    shown = pd.read_csv(tmp_path / "shown" / "cycles.csv")
-    assert list(shown.offset_N.round()) == [30.0, 30.0]
+    shown = json.loads((tmp_path / "shown" / "characterisation.json").read_text())
+    pairs = zip(shown["peak_forces"], shown["beside"], strict=True)
+    assert all(model["rebound"] == pytest.approx(measured["rebound"], rel=0.1) for measured, model in pairs)
 
 
 def test_factors_of_temperature_and_laws_are_written_and_read_again(tmp_path):
@@ -98,10 +99,7 @@ def test_factors_of_temperature_and_laws_are_written_and_read_again(tmp_path):
     values = YAML(typ="safe").load((tmp_path / "out" / "parameters.yaml").read_text())
     assert values["damper"]["temperature_factors"]["reference"] == pytest.approx(40.0)
     assert len(values["damper"]["parameters"]["c0"]) == 4
-    done = command("characterise", "--parameters", tmp_path / "out" / "parameters.yaml", "--currents", "0,1",
-                   "--temperatures", "20,60", "--amplitudes", "0.005", "--frequencies", "1",
-                   "--out", tmp_path / "shown")  # fmt: skip
-    assert done.exit_code == 0, done.output
+    assert load_damper(tmp_path / "out" / "parameters.yaml").factors == found.bench.factors
 
 
 # --------------------------------------------------------------------------------------------------- the league

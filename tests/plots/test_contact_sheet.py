@@ -15,10 +15,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 from PIL import Image
 
-from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
-from seatsim.characterisation.sheet import WarmUp
+from seatsim.characterisation.summary import characterise
 from seatsim.diagnosis.residuals import drop_start, find_worst
-from seatsim.plots.bench.characterisation import plot_characterisation, plot_warm_up
+from seatsim.plots.bench.characterisation import plot_characterisation
 from seatsim.plots.bench.identification import plot_predictions
 from seatsim.plots.bench.vibration import plot_damping, plot_vibration
 from seatsim.plots.diagnosis import plot_all_of_gap, plot_diagnosis
@@ -55,14 +54,7 @@ def draw_gap():
 
 
 def draw_bench():
-    tested = load_specimen("bouc_wen", None)
-    heated = [
-        WarmUp(f"a {current} A", current, 0.1, 800.0 * k, 20.0 + k, 900.0, 1.0 - k / (200 + 90 * current))
-        for current in (0.5, 1.0)
-        for k in range(40)
-    ]
-    warm_up = plot_warm_up(SimpleNamespace(name="rig", sheet=SimpleNamespace(warm_up=heated)))
-    return plot_characterisation(characterise_model(tested, choose_settings(tested))) | {"warm_up": warm_up}
+    return plot_characterisation(characterise("scenarios/data/bench"))
 
 
 def draw_seat_test():

@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 
-from seatsim.characterisation.response import Response
 from seatsim.characterisation.rows import Row
+from seatsim.characterisation.steps import Response
 from seatsim.characterisation.summary import Characterisation
 from seatsim.characterisation.tabulate import make_sheet
 from seatsim.identification.assessment import Agreement, Assessment, Information, ParameterEstimate
@@ -110,11 +110,8 @@ def characterisation():
     loop = SineTest(angle, 0.01 * np.sin(angle), 0.06 * np.cos(angle), 300 * np.cos(angle))
     row = Row("a", "a.csv", 3, 0, 0.0, amplitude=0.01, frequency=1.0, peak_rebound=100.0, offset=1e-12, loop=loop)
     rows = [row, row._replace(record="b", current=1.0, peak_rebound=450.0)]
-    step = Response(
-        "a", 0.0, 1.0, 5, "constant speed", t5=0.001, t90=0.018, t95=0.0231, rate_95=130.0,
-        time=np.linspace(0, 0.1, 50), share=np.linspace(0, 1, 50),
-    )  # fmt: skip
-    return Characterisation("rig", "data", True, rows, [step], [], make_sheet(rows, [step]))
+    step = Response("a", 0.0, 1.0, time=np.linspace(0, 0.02, 50), share=np.linspace(0, 1, 50))
+    return Characterisation("rig", "data", rows, [step], [], make_sheet(rows, [step]))
 
 
 @cache
@@ -164,7 +161,7 @@ def _report_identification():
 
 def _report_characterisation():
     found = characterisation()
-    return report_characterisation(found, plot_characterisation(found), ["a remark"], "seatsim characterise data")
+    return report_characterisation(found, plot_characterisation(found), "seatsim characterise data")
 
 
 @cache

@@ -10,63 +10,41 @@ import typer
 
 from seatsim.cli.options import Out, complete_kind, pairs
 from seatsim.cli.terminal import show_progress
-from seatsim.schema.errors import InputError
 
 
 def characterise(
-    data: Annotated[Path | None, typer.Argument(show_default=False)] = None,
+    data: Annotated[Path, typer.Argument(show_default=False)],
     out_folder: Out = None,
-    model: Annotated[str | None, typer.Option("--model", autocompletion=complete_kind("damper"))] = None,
-    parameters: Annotated[Path | None, typer.Option("--parameters")] = None,
-    currents: Annotated[str, typer.Option("--currents", metavar="A,A")] = "",
-    temperatures: Annotated[str, typer.Option("--temperatures", metavar="C,C")] = "",
-    amplitudes: Annotated[str, typer.Option("--amplitudes", metavar="M,M")] = "",
-    frequencies: Annotated[str, typer.Option("--frequencies", metavar="HZ,HZ")] = "",
     limits: Annotated[Path | None, typer.Option("--limits", metavar="LIMITS.yaml")] = None,
     beside: Annotated[Path | None, typer.Option("--beside", metavar="DAMPER.yaml")] = None,
     pattern: Annotated[str, typer.Option("--pattern", metavar="REGEX")] = "",
     window: Annotated[float, typer.Option("--window", min=0.001, max=1.0)] = 0.1,
-    last: Annotated[int, typer.Option("--last", min=0, metavar="N")] = 0,
 ) -> None:
     """Show what a bench shows of a damper: loops, energy, asymmetry, offset and response times.
 
     Options:
         data: A bench table, or a folder of them.
-        model: A damper model, in place of data.
-        parameters: A file with a damper, in place of data.
-        currents: Currents of a model's tests.
-        temperatures: Temperatures in degC.
-        amplitudes: Amplitudes in m.
-        frequencies: Frequencies.
         limits: Limits of figures, which pass or fail.
         beside: A damper whose forces stand beside.
         pattern: Groups current and temperature of file names.
         window: Part of the stroke over which forces are averaged.
-        last: Last steady cycles that count; 0 for all.
     """
-    from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen, model_peaks
+    from seatsim.characterisation.model_tests import load_damper, model_peaks
     from seatsim.characterisation.sheet import check_limits
     from seatsim.characterisation.summary import characterise as characterise_records
     from seatsim.cli.outputs.damper_results import present_characterisation
     from seatsim.recordings.bench_tables import NAMED
 
-    grid = (currents, temperatures, amplitudes, frequencies)
-    if (data is None) == (model is None and parameters is None) or (data is not None and any(grid)):
-        raise InputError("characterise either DATA, or a model by --model or --parameters with its tests; see --help")
-    if data is not None:
-        specimen = load_specimen(None, beside) if beside else None
-        with show_progress() as progress:
-            names = (_title(data), data.resolve().name)
-            found = characterise_records(data, *names, window, pattern or NAMED, progress, last)
-        found = found.set_beside(model_peaks(specimen, found.rows, window)) if specimen else found
-    elif beside or pattern or last:
-        raise InputError("--beside, --pattern and --last are of DATA; leave them out for a model")
-    else:
-        tested = load_specimen(model, parameters)
-        found = characterise_model(tested, choose_settings(tested, *grid), window)
+    damper = load_damper(beside) if beside else None
+    with show_progress() as progress:
+        names = (_title(data), data.resolve().name)
+        found = characterise_records(data, *names, window, pattern or NAMED, progress)
+    sheet = found.sheet
+    if damper is not None:
+        sheet = sheet._replace(beside=model_peaks(damper, found.rows, window))
     if limits:
-        found = found.set_limits(check_limits(found.sheet, limits))
-    present_characterisation(found, out_folder or Path("out") / f"characterise-{found.name}")
+        sheet = sheet._replace(limits=check_limits(sheet, limits))
+    present_characterisation(found._replace(sheet=sheet), out_folder or Path("out") / f"characterise-{found.name}")
 
 
 def identify(

@@ -119,15 +119,11 @@ def describe(
         )
     say(describe_name(name))
     if picture is not None:
-        from seatsim.characterisation.model_tests import characterise_model, choose_settings, load_specimen
-        from seatsim.plots.bench.loops import plot_loops
+        from seatsim.plots.loops import plot_model
         from seatsim.plots.saving import save_figure
         from seatsim.schema.files import write_whole
 
-        # As `seatsim characterise --model` does.
-        tested = load_specimen(name, None)
-        loops = plot_loops(characterise_model(tested, choose_settings(tested)))
-        wrote_one(write_whole(picture, partial(save_figure, loops)))
+        wrote_one(write_whole(picture, partial(save_figure, plot_model(name))))
     answer(Pages(pages), [picture] if picture else [])
 
 

@@ -36,17 +36,16 @@ _NO_COIL = "# No command that changes was recorded: the rates of the actuator ar
 
 def present_characterisation(found: Characterisation, folder: Path) -> None:
     """Print cycles, steps and limits; write `cycles.csv`, `characterisation.json`, `.xlsx`, the report and pictures."""
-    show_report_tables([*report.tabulate_rows(found), *report.tabulate_steps(found.responses)])
+    show_report_tables([*report.tabulate_rows(found), *report.tabulate_responses(found.sheet)])
     for check in found.sheet.limits:
         (say if check.passes else complain)(str(check))
     warn(found.remarks)
-    command = f"seatsim characterise {found.source}" if found.measured else f"seatsim characterise --model {found.name}"
     figures = plot_characterisation(found)
     contents = {
         "cycles.csv": [row_columns(row) for row in found.rows],
         "characterisation.json": found,
         "characterisation.xlsx": list_tables(found.sheet),
-        "report.html": report.report_characterisation(found, figures, found.remarks, command),
+        "report.html": report.report_characterisation(found, figures, f"seatsim characterise {found.source}"),
         **name_pictures(figures),
     }
     conclude(found, folder, write_outputs(folder, contents))

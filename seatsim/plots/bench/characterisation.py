@@ -1,6 +1,6 @@
 """All figures of a characterisation but its loops: force, energy and damping over current and temperature.
 
-And the response of the force to steps of the current, and the warm-up.
+And the response of the force to steps of the current.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from seatsim.characterisation.response import Response
 from seatsim.characterisation.rows import WARMER, Row
-from seatsim.characterisation.sheet import StepResponse, WarmUp
+from seatsim.characterisation.sheet import StepResponse
+from seatsim.characterisation.steps import Response
 from seatsim.characterisation.summary import Characterisation, group_by_setting
 from seatsim.plots import style
 from seatsim.plots.bench.loops import describe_setting, plot_loops, select_largest_current, select_lowest_temperature
@@ -36,14 +36,12 @@ MOST = 8
 def plot_characterisation(found: Characterisation) -> dict[str, Figure]:
     """Return the figures of a characterisation by name.
 
-    `loops` is always there, `energy` where there are cycles, `steps` where a response was determined, `warm_up` where a
-    record has many cycles.
+    `loops` is always there, `energy` where there are cycles, `steps` where a response was determined.
     """
     plots = {
         "loops": (plot_loops, True),
         "energy": (_plot_energy, any(row.loop is not None for row in found.rows)),
         "steps": (_plot_steps, any(answer.share is not None for answer in found.responses)),
-        "warm_up": (plot_warm_up, bool(found.sheet.warm_up)),
     }
     return {name: plot(found) for name, (plot, is_known) in plots.items() if is_known}
 
@@ -134,26 +132,6 @@ def _plot_energy(found: Characterisation) -> Figure:
     for axes, (block, figure) in zip(page.list_panels(), product(blocks, _ENERGY), strict=True):
         _draw_trend(axes, *block, figure, looks)
     return style.name_coincident(page.figure)
-
-
-def plot_warm_up(found: Characterisation) -> Figure:
-    """Return the force of each cycle, over that of the first, against the energy that the damper absorbed before it."""
-    records = dict[str, list[WarmUp]]()
-    for cycle in found.sheet.warm_up:
-        records.setdefault(cycle.record, []).append(cycle)
-    shown = spread_evenly([*records.values()], MOST)
-    names = [f"{one.record}, {one.current:.3g} A, from {one.temperature:.0f} °C" for one, *_ in shown]
-    looks = style.make_entries([name.removesuffix(", from nan °C") for name in names])
-    note = "Force at the peak speed of each cycle. The number at the end of a line is the damper's last temperature."
-    title = f"Fade as the damper warms up: {found.name}"
-    figure, [[panel]] = style.make_page(title, note, Grid((2.8,), right=0.6), looks)
-    for cycles, look in zip(shown, looks, strict=True):
-        energy, share = [1e-3 * each.absorbed for each in cycles], [each.relative_force for each in cycles]
-        style.draw_line(panel, energy, share, look)
-        if np.isfinite(cycles[-1].temperature):
-            panel.text(energy[-1], share[-1], f" {cycles[-1].temperature:.0f} °C", fontsize=style.FONT, va="center")
-    panel.set(xlabel="absorbed energy [kJ]", ylabel="force / that of the first cycle [-]")
-    return style.name_coincident(figure)
 
 
 def choose_abscissas(rows: Sequence[Row]) -> list[tuple[Abscissa, list[list[Row]]]]:

@@ -29,8 +29,7 @@ _SAME_MOTION = 0.1
 def plot_loops(found: Characterisation) -> Figure:
     """Return the loops by current for each amplitude and frequency, by temperature where it varies, and clouds."""
     (families, left_out), clouds = find_families(found.rows), list(map(show_cloud, group_clouds(found.rows)))
-    note = "Mean of the steady cycles." if found.measured else "Last cycle of a sine test."
-    note = f"{note} Displacement from mid-stroke." if families else "Records without steady cycles."
+    note = "Mean of the steady cycles. Displacement from mid-stroke." if families else "Records without steady cycles."
     note += f" {left_out} further settings are not shown." if left_out else ""
     return plot_families(f"Loops: {found.name}", note, [*families, *clouds])
 
