@@ -7,7 +7,7 @@ runs: 1000
 vary: {plant.driver_mass: {normal: [80, 12], low: 50, high: 120}}
 limits: {driver_acceleration_weighted: 0.5}
 
-The values that one key takes are a list, a range, or a distribution that is drawn from; or specimens of a damper.
+The values that one key takes are a list, a range, or a distribution that is drawn from.
 """
 
 from __future__ import annotations
@@ -48,22 +48,16 @@ _EDGE = 2.0**-53
 """Probability in either tail that no draw reaches: a quantile at 0 or 1 may be infinite."""
 
 
-SPECIMENS = "from"
-"""Key under `vary` of a file with specimens of a damper."""
-
-
 class Axis(NamedTuple):
     """A varied key: its values where these are listed, and in any case its quantile function.
 
     `values` are the stated ones in order, None of a distribution. `quantile` maps probabilities, shape (N,), to values;
-    those of a list are equally likely. The key of specimens is `SPECIMENS`; each value is a mapping of keys to values,
-    and `model` that of their damper.
+    those of a list are equally likely.
     """
 
     key: str
     values: tuple[object, ...] | None
     quantile: Callable[[Array], list[object]]
-    model: str = ""
 
 
 def _read_axis(key: str, source: Source) -> Axis:
@@ -74,8 +68,6 @@ def _read_axis(key: str, source: Source) -> Axis:
     """
     where: KeyPath = ("vary", key)
     stated = mapping(source.data["vary"], source, ("vary",))[key]
-    if key == SPECIMENS:
-        return _read_specimens(stated, source, where)
     if isinstance(stated, list):
         if not stated:
             raise source.error(where, "the list is empty; state at least one value")
@@ -85,19 +77,6 @@ def _read_axis(key: str, source: Source) -> Axis:
     if {"from", "to", "steps"} & set(stated):
         return _listed(key, _read_range(stated, source, where))
     return Axis(key, None, _read_distribution(stated, source, where))
-
-
-def _read_specimens(stated: object, source: Source, where: KeyPath) -> Axis:
-    if not isinstance(stated, str):
-        raise source.error(where, "state the file that 'seatsim identify' writes of several specimens")
-    file = Source(source.path.parent / stated)
-    each = mapping(file.data.get("specimens"), file, ("specimens",))
-    values = [mapping(of, file, ("specimens", name)) for name, of in each.items()]
-    if "model" not in file.data or not values or any(set(of) != set(values[0]) for of in values):
-        raise file.error(
-            ("specimens",), "states no 'model', or not the same keys of every specimen; identify them anew"
-        )
-    return _listed(SPECIMENS, values)._replace(model=str(file.data["model"]))
 
 
 def _listed(key: str, values: Sequence[object]) -> Axis:
@@ -353,7 +332,7 @@ def sweep_schema() -> Schema:
         "design": {"enum": list(_DESIGNS)},
         "runs": {**whole, "description": "points of lhs and sobol; draws of cross and zip"},
         "replicates": {**whole, "description": "runs of each point with other seeds of the scenario"},
-        "vary": {"type": "object", "properties": {SPECIMENS: TEXT}, "additionalProperties": _axis_schema()},
+        "vary": {"type": "object", "additionalProperties": _axis_schema()},
         "table": {**TEXT, "description": "CSV file whose columns are keys, for design table"},
         "limits": mapping_schema({name: {"type": "number", "unit": m.unit} for name, m in METRICS.items()}),
     }

@@ -17,7 +17,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,7 +29,7 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, list_sentences, raise_all
 from seatsim.schema.yaml_source import Source
 from seatsim.simulation.naming import is_number
-from seatsim.sweeps.definition import MOST_RUNS, SPECIMENS, Axis, SweepDefinition
+from seatsim.sweeps.definition import MOST_RUNS, Axis, SweepDefinition
 
 _Columns = Mapping[str, list[object]]
 """The values of every varied key, a list over the points each."""
@@ -54,11 +54,7 @@ def _resolve_design(definition: SweepDefinition) -> _Columns:
     if definition.table is not None:
         return definition.table.columns
     resolve = {"cross": _cross, "zip": _pair, "lhs": _fill_hypercube, "sobol": _follow_sobol}[definition.design]
-    columns = {**resolve(definition)}
-    for specimen in cast("list[Mapping[str, object]]", columns.pop(SPECIMENS, [])):
-        for key, value in specimen.items():
-            columns.setdefault(key, []).append(value)
-    return columns
+    return {**resolve(definition)}
 
 
 def _cross(definition: SweepDefinition) -> _Columns:
@@ -238,9 +234,6 @@ def make_plan(definition: SweepDefinition, foresee: Callable[[int], None] = lamb
             f"makes {runs} runs ({shown}); permitted: at most {MOST_RUNS}. Vary fewer"
             " keys, or draw 'runs' points with design: sobol",
         )
-    for axis in definition.axes:
-        if axis.model:
-            _check_specimens(axis, definition, bases)
     foresee(runs)
     columns = _resolve_design(definition)
     for key in columns:
@@ -248,19 +241,6 @@ def make_plan(definition: SweepDefinition, foresee: Callable[[int], None] = lamb
             raise definition.source.error(("vary", key), "the scenario itself varies this key; leave it out of one")
     places = {key: definition.place(key) for key in columns}
     return Plan(bases, columns, places, len(next(iter(columns.values()))), definition.replicates)
-
-
-def _check_specimens(axis: Axis, definition: SweepDefinition, bases: Sequence[_Base]) -> None:
-    """Raise InputError where specimens are of another damper than the scenario's, or a key of theirs varies anyway."""
-    for base in bases:
-        damper = base.source.data.get("damper")
-        named = damper.get("model") if isinstance(damper, Mapping) else damper
-        if named != axis.model:
-            problem = f"holds specimens of '{axis.model}', and the scenario's damper is '{named}'"
-            raise definition.source.error(("vary", axis.key), f"{problem}; take the damper of 'damper.yaml' beside it")
-    specimens = cast("Sequence[Mapping[str, object]]", axis.values)
-    if twice := {other.key for other in definition.axes}.intersection(specimens[0]):
-        raise definition.source.error(("vary", min(twice)), "is a key of the specimens, too; leave it out")
 
 
 _MOST_FLOORS = 40

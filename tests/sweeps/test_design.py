@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 
 import seatsim
-from seatsim.schema.errors import InputError, list_sentences
+from seatsim.schema.errors import list_sentences
 from seatsim.sweeps.definition import read_definition
 from seatsim.sweeps.execute import prepare
 from seatsim.sweeps.plan import make_plan
@@ -74,41 +74,6 @@ def test_a_table_states_every_point(write_sweep, tmp_path):
     (tmp_path / "points.csv").write_text("plant.driver_mass,excitation.spectral_class\n55,EM1\n98.5,EM5\n")
     plan = prepare(write_sweep(design="table", table="points.csv", vary=None, runs=None)).plan
     assert [plan.values(run) for run in range(2)] == [{MASS: 55, CLASS: "EM1"}, {MASS: 98.5, CLASS: "EM5"}]
-
-
-SPECIMENS = """\
-model: MODEL
-specimens:
-  a: {damper.parameters.c_a: 300.0, actuator.rate: 120.0}
-  b: {damper.parameters.c_a: 350.0, actuator.rate: 140.0}
-  c: {damper.parameters.c_a: 410.0, actuator.rate: 110.0}
-"""
-
-
-@pytest.mark.parametrize(("design", "runs"), [("cross", None), ("zip", None), ("lhs", 3)])
-def test_the_values_of_a_specimen_come_together(design, runs, write_sweep, tmp_path):
-    masses = {"cross": [60.0, 80.0], "zip": [60.0, 70.0, 80.0], "lhs": [60.0]}[design]
-    path = write_sweep(design=design, runs=runs, vary={"from": "specimens.yaml", MASS: masses})
-    (tmp_path / "specimens.yaml").write_text(SPECIMENS.replace("MODEL", "bouc_wen"))
-    plan = plan_of(path)
-    rows = [plan.values(run) for run in range(plan.runs)]
-    pairs = [(row["damper.parameters.c_a"], row["actuator.rate"]) for row in rows]
-    assert sorted(set(pairs)) == [(300.0, 120.0), (350.0, 140.0), (410.0, 110.0)]
-    assert len(rows) == {"cross": 6, "zip": 3, "lhs": 3}[design]
-    assert plan.scenario(0).damper.record.c_a == pairs[0][0]
-
-
-def test_specimens_of_another_damper_or_a_key_twice_are_refused(write_sweep, tmp_path):
-    path = write_sweep(vary={"from": "specimens.yaml"}, runs=None)
-    (tmp_path / "specimens.yaml").write_text(SPECIMENS.replace("MODEL", "bingham"))
-    with pytest.raises(InputError, match="specimens of 'bingham', and the scenario's damper is 'bouc_wen'"):
-        plan_of(path)
-    (tmp_path / "specimens.yaml").write_text(SPECIMENS.replace("MODEL", "bouc_wen"))
-    with pytest.raises(InputError, match="is a key of the specimens, too"):
-        plan_of(write_sweep(vary={"from": "specimens.yaml", "actuator.rate": [100.0]}, runs=None))
-    (tmp_path / "specimens.yaml").write_text(SPECIMENS.replace("c_a: 410.0, ", "k: 410.0, "))
-    with pytest.raises(InputError, match=r"yaml, line 2, specimens: states no 'model', or not the same keys"):
-        plan_of(path)
 
 
 def test_a_run_is_the_scenario_with_its_values_and_a_replicate_the_next_seed(write_sweep, seat_file):
