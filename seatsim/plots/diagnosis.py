@@ -79,9 +79,9 @@ def _plot_gaps(diagnosis: Diagnosis) -> Figure | None:
     """Return the gap of each channel on its way from the nominal simulation to the noise floor."""
     gap, last = diagnosis.gap, find_last(diagnosis)
     names = ["overall", *gap.before.channels]
-    stages = [(gap.floor, NOISE._replace(label="noise floor", mark="|")), (gap.before, NOMINAL._replace(mark="o"))]
+    stages = [(gap.before, NOMINAL._replace(mark="o"))]
     stages += [(gap.calibrated, REFITTED._replace(mark="D"))] if last is AUGMENTED else []
-    stages += [(gap.after, last._replace(mark="s"))]
+    stages += [(gap.after, last._replace(mark="s")), (gap.floor, NOISE._replace(label="noise floor", mark="|"))]
     looks = [look._replace(dashes="none") for _, look in stages]
     rows = [[({**gaps.channels, "overall": gaps.overall}).get(name) or 0.0 for gaps, _ in stages] for name in names]
     seen = [100 * value for row in rows for value in row if np.isfinite(value) and value > SMALLEST]
@@ -98,7 +98,8 @@ def _plot_gaps(diagnosis: Diagnosis) -> Figure | None:
         places = [place for place, _ in marked]
         axes.plot(places, [row] * len(places), color="0.8", linewidth=1.5, zorder=1)
         for place, look in marked:
-            style.draw_line(axes, [place], [row], look).set(markersize=8, zorder=3)
+            size = 15 if look.mark == "|" else 8
+            style.draw_line(axes, [place], [row], look).set(markersize=size, zorder=3)
     return figure
 
 

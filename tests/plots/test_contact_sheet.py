@@ -5,7 +5,6 @@
 
 import re
 from itertools import combinations
-from types import SimpleNamespace
 from urllib.parse import unquote
 from xml.etree import ElementTree
 
