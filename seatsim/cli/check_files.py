@@ -13,7 +13,6 @@ import numpy as np
 
 from seatsim.characterisation.model_tests import load_damper
 from seatsim.compilation.messages import explain
-from seatsim.cosimulation.description import describe_unit
 from seatsim.dampers.base import DAMPERS
 from seatsim.effects.base import EFFECTS, off
 from seatsim.excitations.recording import RecordedRun
@@ -27,7 +26,7 @@ from seatsim.scenario.numbers import list_doubts
 from seatsim.schema.content import IfAny, Joined
 from seatsim.schema.errors import InputError, SeatsimError
 from seatsim.schema.fields import bounds, default_values, field_names
-from seatsim.schema.modules import UNIT, use
+from seatsim.schema.modules import use
 from seatsim.schema.registry import find, name_of, names
 from seatsim.schema.yaml_source import Source
 from seatsim.simulation.checks import CheckedRun, applicable_checks, check_run
@@ -137,15 +136,15 @@ def run_checks(path: Path) -> tuple[CheckedRun, ...]:
 
 
 def check_file(path: Path) -> Checked:
-    """Read a scenario, recording (or folder), sweep, damper with its parameters, map of `import`, Python file or FMU.
+    """Read a scenario, recording (or folder), sweep, damper with its parameters, map of `import` or Python file.
 
     Raises:
         InputError: there is an error in it.
     """
     if path.is_dir() or path.name == HEADER:
         return _check_recording(path if path.is_dir() else path.parent)
-    if path.suffix in (".py", UNIT):
-        return _check_code(path) if path.suffix == ".py" else _check_unit(path)
+    if path.suffix == ".py":
+        return _check_code(path)
     stated = Source(path).data if path.exists() else {}
     if {"model", "bench"} & set(stated):
         return Checked("parameters", [name_of("damper", type(load_damper(path).record))], [])
@@ -184,9 +183,3 @@ def _check_code(path: Path) -> Checked:
     warnings = [] if own else ["no class is registered: put a decorator such as @damper(...) before it"]
     warnings += [sentence for kind, name in own for sentence in _try_class(kind, name, find(kind, name))]
     return Checked("own code", [f"{kind} {name}" for kind, name in own], warnings)
-
-
-def _check_unit(path: Path) -> Checked:
-    unit = describe_unit(path)
-    held = [f"{v.causality} {name}" for name, v in unit.variables.items() if v.causality in ("input", "output")]
-    return Checked(f"FMU of version {unit.version}", held, [])

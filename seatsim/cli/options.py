@@ -121,8 +121,8 @@ OwnCode = Annotated[
         "--with",
         metavar="FILE.py",
         callback=_use_files,
-        help="Run a file of your own, whose classes are then known by the names in their decorators, or a damper's"
-        " FMU; may be given several times.",
+        help="Run a file of your own, whose classes are then known by the names in their decorators; may be"
+        " given several times.",
     ),
 ]
 _Pdf = Annotated[

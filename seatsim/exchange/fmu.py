@@ -10,6 +10,7 @@ import re
 import shlex
 import shutil
 import subprocess
+import sys
 import uuid
 import zipfile
 from collections.abc import Sequence
@@ -17,7 +18,6 @@ from hashlib import sha256
 from pathlib import Path
 
 import seatsim
-from seatsim.cosimulation.description import name_library
 from seatsim.exchange.block import Block, Variable, list_variables
 from seatsim.exchange.c_source import fill, print_model, print_variables
 from seatsim.schema.errors import InputError, RunError
@@ -30,6 +30,13 @@ _LONGEST_NAME = 60
 """Letters of a block's name that its files are called by, from its end."""
 _TYPES = {float: ("Real", "Float64"), int: ("Integer", "Int32"), bool: ("Boolean", "Boolean")}
 """Names of types in versions 2.0 and 3.0."""
+_SYSTEMS = {
+    "Linux": ("linux", "linux", ".so"),
+    "Darwin": ("darwin", "darwin", ".dylib"),
+    "Windows": ("win", "windows", ".dll"),
+}
+"""Names of an operating system in versions 2 and 3, and the ending of its libraries."""
+_MACHINES = {"AMD64": "x86_64", "arm64": "aarch64"}
 FLAGS = ("-std=c99", "-O2", "-fPIC", "-shared", "-fvisibility=hidden", "-ffp-contract=off")
 """Without `-ffp-contract=off` a compiler may fuse products and sums, and results would differ between machines."""
 _QUICK = ("-fno-math-errno", "-fno-trapping-math", "-fschedule-insns", "-fsched-pressure")
@@ -49,7 +56,7 @@ def write_fmu(block: Block, version: int, path: Path) -> None:
             (folder / Path(name).name).write_bytes(content)
         library = folder / "library"
         compile_library(folder / f"fmi{version}.c", library)
-        files[name_library(version, identifier(block))] = library.read_bytes()
+        files[_name_library(version, identifier(block))] = library.read_bytes()
 
     def pack(part: Path) -> None:
         with zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -72,6 +79,14 @@ def make_files(block: Block, version: int) -> dict[str, bytes]:
         described = fill("fmi/buildDescription.xml", identifier=identifier(block), system=platform.system())
         files["sources/buildDescription.xml"] = described.encode()
     return files
+
+
+def _name_library(version: int, identifier: str) -> str:
+    """Return where the library for this machine stands in an archive, as a version of the standard names it."""
+    older, newer, ending = _SYSTEMS.get(platform.system(), _SYSTEMS["Linux"])
+    machine = _MACHINES.get(platform.machine(), platform.machine())
+    here = f"{older}{64 if sys.maxsize > 2**32 else 32}" if version == 2 else f"{machine}-{newer}"
+    return f"binaries/{here}/{identifier}{ending}"
 
 
 def identifier(block: Block) -> str:

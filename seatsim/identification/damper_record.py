@@ -14,7 +14,6 @@ from typing import NamedTuple, Protocol, Self, TypeAlias, TypeVar, cast
 
 import numpy as np
 
-from seatsim.cosimulation.damper import PREFIX
 from seatsim.dampers.base import DAMPERS
 from seatsim.kernel.generic import DamperModel
 from seatsim.schema.arrays import Array
@@ -38,13 +37,8 @@ def find_model(name: str) -> type[DamperRecord]:
     """Return the class of a damper model.
 
     Raises:
-        InputError: no damper has this name, or it is that of a unit.
+        InputError: no damper has this name.
     """
-    if name.startswith(PREFIX):
-        raise InputError(
-            f"{name} is a unit of another program, whose parameters its supplier knows; a model of the library can be"
-            " fitted to its bench tables, such as --model bouc_wen"
-        )
     # A damper's record has fields of any type; those that a fit reads and replaces are numbers, words and laws.
     return cast("type[DamperRecord]", DAMPERS.find(name))
 

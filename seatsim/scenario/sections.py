@@ -185,9 +185,7 @@ SECTIONS: Mapping[str, _Section] = {
     ),
     "plant": _of_record("plant", Plant),
     "driver": _of_record("driver", Driver),
-    "damper": _Section(
-        lambda value, source: read_damper(value, source, ("damper",)), lambda: damper_schema(of_a_unit=True)
-    ),
+    "damper": _Section(lambda value, source: read_damper(value, source, ("damper",)), damper_schema),
     "actuator": _of_record("actuator", Coil, ("rate", "max_current"), "coil"),
     "temperature": _Section(_read_temperature, _temperature_schema, Thermal),
     "controller": _Section(

@@ -9,7 +9,6 @@ run, wherever it lies. A scenario or a recording from a stranger may say ``model
 
 from __future__ import annotations
 
-import hashlib
 import importlib
 import importlib.util
 import os
@@ -26,7 +25,6 @@ from types import ModuleType
 from typing import TYPE_CHECKING, NoReturn, cast
 
 from seatsim.schema.errors import InputError
-from seatsim.schema.guarded import read_bytes
 
 if TYPE_CHECKING:
     from importlib.abc import Loader
@@ -41,10 +39,6 @@ class MissingModuleError(InputError):
         self.file = file
 
 
-UNIT = ".fmu"
-"""Ending of the name of a functional mock-up unit."""
-LARGEST_UNIT = 256 * 2**20
-"""Bytes that such a file may have."""
 _SAFE_PATH = "PYTHONSAFEPATH"
 _HOME = Path(__file__).resolve().parents[2]
 """The folder that seatsim lies in."""
@@ -74,25 +68,17 @@ def _plugins() -> EntryPoints:
     return entry_points(group="seatsim.plugins")
 
 
-def use(path: str | Path) -> ModuleType | Path:
+def use(path: str | Path) -> ModuleType:
     """Load a Python file as the module of its name, so that a scenario may say `powerlaw:PowerLaw` of `powerlaw.py`.
 
-    Of a functional mock-up unit (`supplier.fmu`), which holds native code, it is noted that a scenario may run it as
-    `fmu:supplier.fmu`; nothing of it runs here. A file that is in use already is loaded again only where its content
-    has changed. Files that import one another are named in that order, the imported one first: the folder they lie in
-    is not searched.
-
-    Returns:
-        The module, or the path of a unit.
+    A file that is in use already is loaded again only where its content has changed. Files that import one another are
+    named in that order, the imported one first: the folder they lie in is not searched.
 
     Raises:
         InputError: there is no such file, its name is no module name or that of another module, or its import fails.
     """
     shown = Path(path)
     where, name = shown.resolve(), shown.stem
-    if shown.suffix == UNIT:
-        _used[str(where)] = (where, _fingerprint(shown))
-        return where
     file = (where, _read(shown))
     if _used.get(name) == file:
         return sys.modules[name]
@@ -103,24 +89,6 @@ def use(path: str | Path) -> ModuleType | Path:
         _load(name, shown, where)
     _used[name] = file
     return sys.modules[name]
-
-
-def check_in_use(path: Path) -> None:
-    """Raise InputError where a functional mock-up unit was not named by the user, or has changed since.
-
-    Raises:
-        MissingModuleError: it was not named; the error shows how.
-    """
-    used = _used.get(str(path.resolve()))
-    how = f"--with {shlex.quote(str(path))}, in Python seatsim.use({str(path)!r})"
-    if used is None:
-        raise MissingModuleError(f"{path} holds native code, which runs only where the file is named: {how}", path)
-    if used[1] != _fingerprint(path):
-        raise InputError(f"{path}: has changed since it was named; name it again: {how}")
-
-
-def _fingerprint(path: Path) -> bytes:
-    return hashlib.sha256(read_bytes(path, LARGEST_UNIT, "a functional mock-up unit (.fmu)")).digest()
 
 
 def use_all(paths: Iterable[str | Path]) -> None:

@@ -8,7 +8,6 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from seatsim.cosimulation.damper import require_model
 from seatsim.effects.base import EFFECTS, ON_DAMPER, ON_SEAT, acts_on, off
 from seatsim.kernel.augmented import AugmentedDamper
 from seatsim.kernel.generic import DamperModel
@@ -152,12 +151,7 @@ def _acting(classes: tuple[type, ...], hooks: tuple[str, ...]) -> list[type]:
 
 
 def augment_damper(record: DamperModel, effects: Effects) -> tuple[DamperModel, tuple[float, ...]]:
-    """Return a damper's record with effects on it, and its state at rest.
-
-    Raises:
-        InputError: the damper is a unit, which no compiled code can call.
-    """
-    require_model(record)
+    """Return a damper's record with effects on it, and its state at rest."""
     initial: tuple[float, ...] = specification_of(type(record)).initial
     if not effects:
         return record, initial

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from seatsim.compilation.cached import compiled
-from seatsim.cosimulation.damper import require_model
 from seatsim.dampers.base import DamperSpecification
 from seatsim.kernel.augmented import classes_of
 from seatsim.kernel.bench import MOST_PARTS, TOLERANCE, run_bench
@@ -115,11 +114,10 @@ def bench_force(
     the model states.
 
     Raises:
-        InputError: the lengths do not fit, or the damper is a unit.
+        InputError: the lengths do not fit.
         RunError: the damper's state ran away.
 
     """
-    require_model(damper)
     x = np.array(displacement, dtype=float)
     if x.ndim != 1 or len(x) % 2 == 0:
         raise InputError(f"a bench needs two samples a step and one more, in one dimension, not {x.shape}")

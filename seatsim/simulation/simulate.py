@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from seatsim.compilation.cached import compiled
-from seatsim.cosimulation.damper import FmuDamper
 from seatsim.effects.base import ON_DAMPER, acts_on
 from seatsim.excitations.base import Floor
 from seatsim.kernel.augmented import classes_of
@@ -36,7 +35,6 @@ from seatsim.simulation.augment import (
     sum_frame_forces,
     undo_reading,
 )
-from seatsim.simulation.coupled import run_coupled, stand_in
 from seatsim.simulation.design import design_law
 from seatsim.simulation.inputs import NONE, Forces
 from seatsim.simulation.result import History
@@ -62,12 +60,9 @@ def simulate(
     """
     if scenario.plant is None or scenario.control is None:
         raise InputError(f"{scenario.name}: a damper bench has no seat to simulate; it is replayed with 'seatsim gap'")
-    step, unit = scenario.solver.step, scenario.damper.record
-    if isinstance(unit, FmuDamper) and not carry_all_effects:
-        scenario = stand_in(scenario)
     if floor is None:
         with scenario.placed("excitation"):
-            floor = scenario.excitation.floor(step, scenario.seed)
+            floor = scenario.excitation.floor(scenario.solver.step, scenario.seed)
     is_recorded = floor.temperature is not None
     setup, initial = set_up(scenario, scenario.plant, scenario.control, is_recorded, carry_all_effects)
     inputs = _prepare_inputs(scenario, scenario.control, floor, forces or Forces())
@@ -79,10 +74,7 @@ def simulate(
     variable = setup.law, setup.inverse_model.damper, setup.sensors
     parts = (*classes_of(setup.rig.damper), *map(type, setup.rig.effects), *map(type, variable))
     states = initial_states(scenario.control, setup, initial)
-    if isinstance(unit, FmuDamper):
-        reached = run_coupled(unit, setup, inputs, states, out)
-    else:
-        reached = compiled(run_loop, parts)(setup, inputs, *states, out, np.empty(CELLS + 1))
+    reached = compiled(run_loop, parts)(setup, inputs, *states, out, np.empty(CELLS + 1))
     if not is_whole(out, reached):
         raise explain_divergence(scenario, out[: reached + 1], setup.rig.plant.damper_ratio)
     return read_history(scenario, setup, out)

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from seatsim.cosimulation.damper import FmuDamper
 from seatsim.kernel.hooks import MOST_WORK
 from seatsim.kernel.loop_data import CHANNELS
 from seatsim.metrics.table import Metric
@@ -58,10 +57,8 @@ def list_ranges_left(scenario: Scenario, history: History) -> tuple[str, ...]:
     """Return a sentence for every range that a run leaves; those of the damper for more than 1 % of the time."""
     displacement, velocity = history["suspension_displacement"], history["suspension_velocity"]
     doubts = _doubt_travel(scenario, float(np.max(np.abs(displacement))))
-    record: object = scenario.damper.record
-    if isinstance(record, FmuDamper):  # which states no ranges
-        return doubts
-    specification, model = specification_of(type(record)), name_of("damper", type(record))
+    cls = type(scenario.damper.record)
+    specification, model = specification_of(cls), name_of("damper", cls)
     ratio = scenario.plant.damper_ratio if scenario.plant else 1.0
     temperature, (coldest, hottest) = history["damper_temperature"], specification.temperatures
     # A command at the end of the laws may exceed it by rounding.

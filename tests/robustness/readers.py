@@ -5,7 +5,6 @@ from __future__ import annotations
 import gzip
 import io
 import tempfile
-import zipfile
 from collections.abc import Callable, Generator, Mapping
 from pathlib import Path
 from typing import NamedTuple
@@ -17,7 +16,6 @@ from controllers.synthesis import synthesise
 from controllers.synthesis.design import Design
 from seatsim.blind.score.verdicts import read_verdict
 from seatsim.blind.sealed import SEAL, Sealed, seal, unseal
-from seatsim.cosimulation.description import DESCRIPTION, check_parameter, describe_unit, find_variable
 from seatsim.importing.importing import import_files
 from seatsim.importing.inspection import inspect_file
 from seatsim.metrics.table import METRICS
@@ -104,7 +102,6 @@ def make_readers() -> dict[str, Reader]:
         "floor": ({"a.yaml": measured, "floor.csv": floor}, "a.yaml floor.csv", _read_floor),
         "rows": (swept, f"manifest.json {ROWS}", _read_rows),
         "resumed": (swept, f"manifest.json {ROWS}", _resume),
-        "unit": ({"a.fmu": make_unit()}, "a.fmu", _read_unit),
         "map": ({"a.csv": table, "map.yaml": MAP}, "map.yaml", _import_by_map),
         "synthesis": ({"a.yaml": make_design()}, "a.yaml", lambda folder: Design.load(folder / "a.yaml").gamma),
         "diagnosis": ({"a.json": DIAGNOSIS}, "a.json", lambda folder: read_verdict(folder / "a.json")),
@@ -134,11 +131,6 @@ def _read_rows(folder: Path) -> object:
 
 def _resume(folder: Path) -> object:
     return execute(prepare(folder / "a.yaml"), folder, make_up, resume=True)
-
-
-def _read_unit(folder: Path) -> object:
-    unit = describe_unit(folder / "a.fmu")
-    return find_variable(unit, "v", "input"), find_variable(unit, "F", "output"), check_parameter(unit, "c", 2.0)
 
 
 def _import_by_map(folder: Path) -> object:
@@ -195,31 +187,6 @@ def make_sealed() -> dict[str, bytes]:
         folder.mkdir()
         seal(Path(place) / "sealed", folder, KEY, Sealed({}, {"case-0001": {"run.csv": b"a\n1\n"}}, {"seed": 1}))
         return {"sealed": (Path(place) / "sealed").read_bytes(), "folder-seal.txt": (folder / SEAL).read_bytes()}
-
-
-def make_unit() -> bytes:
-    """Return a functional mock-up unit with a library that is none."""
-
-    variable = (
-        '<ScalarVariable name="{}" valueReference="{}" causality="{}" variability="{}"><Real {}/></ScalarVariable>'
-    )
-    variables = [
-        ("v", 0, "input", "continuous", 'start="0" unit="m/s"'),
-        ("F", 1, "output", "continuous", 'unit="N"'),
-        ("c", 2, "parameter", "tunable", 'start="1" max="5"'),
-    ]
-    stated = "".join(variable.format(*each) for each in variables)
-    text = f"""<?xml version="1.0" encoding="UTF-8"?>
-<fmiModelDescription fmiVersion="2.0" modelName="d" guid="1"><CoSimulation modelIdentifier="d"/>
-<UnitDefinitions><Unit name="N"><BaseUnit kg="1" m="1" s="-2"/></Unit></UnitDefinitions>
-<ModelVariables>{stated}</ModelVariables><ModelStructure><Outputs><Unknown index="2"/></Outputs></ModelStructure>
-</fmiModelDescription>"""
-    packed = io.BytesIO()
-    with zipfile.ZipFile(packed, "w") as archive:
-        archive.writestr(DESCRIPTION, text)
-        for folder, ending in (("linux64", "so"), ("darwin64", "dylib"), ("win64", "dll")):
-            archive.writestr(f"binaries/{folder}/d.{ending}", "no library")
-    return packed.getvalue()
 
 
 def make_sweep(definition: bytes, beside: Mapping[str, bytes]) -> dict[str, bytes]:

@@ -14,7 +14,7 @@ from .readers import make_readers
 
 MUTANTS, LIMIT = 25, 120.0
 NAMES = (
-    *("scenario", "variants", "recording", "table", "bench", "sweep", "design", "floor", "rows", "resumed", "unit"),
+    *("scenario", "variants", "recording", "table", "bench", "sweep", "design", "floor", "rows", "resumed"),
     *("map", "synthesis", "diagnosis", "manifest", "sealed"),
     *(f"format {name}" for name in FORMATS),
 )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
-from seatsim.cosimulation.damper import FmuDamper
 from seatsim.plots.runs.comparison import plot_comparison, plot_pareto
 from seatsim.plots.runs.dampers import plot_force_velocity
 from seatsim.plots.runs.looks import show_runs
@@ -15,10 +14,10 @@ from seatsim.simulation.result import Result
 def plot_result(result: Result) -> dict[str, Figure]:
     """Return the figures of a result by name.
 
-    `pareto` is there for two runs or more, `comparison` where a number is swept, `force_velocity` where a run has a
-    damper of this program: of that whose current varies the most. Where several scenarios have several runs, each has
-    figures over time and frequency of its own, under its name. Where there is nothing to show (a floor at rest, a
-    record too short for a spectrum), a figure says so.
+    `pareto` is there for two runs or more, `comparison` where a number is swept; `force_velocity` is that of the run
+    whose current varies the most. Where several scenarios have several runs, each has figures over time and frequency
+    of its own, under its name. Where there is nothing to show (a floor at rest, a record too short for a spectrum), a
+    figure says so.
 
     Raises:
         RunError: a sine test of a damper cannot be carried to its end.
@@ -32,7 +31,4 @@ def plot_result(result: Result) -> dict[str, Figure]:
     for shown in show_runs(result.runs):
         end = f"_{shown.scenario}" * bool(shown.scenario)
         figures |= {f"{name}{end}": plot(shown) for name, plot in plots.items()}
-    # A damper that is a unit of another program is not put to a sine test.
-    if models := [run for run in result.runs if not isinstance(run.scenario.damper.record, FmuDamper)]:
-        figures["force_velocity"] = plot_force_velocity(models)
-    return figures
+    return figures | {"force_velocity": plot_force_velocity(result.runs)}
