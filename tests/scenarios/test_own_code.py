@@ -70,11 +70,10 @@ def commands(folder, out):
         "run": ("run", nominal, "--out", out),
         "compare": ("compare", nominal, nominal, "--out", out),
         "synthesise": ("synthesise", nominal, "--out", out),
-        "characterise": ("characterise", "--parameters", nominal, "--out", out),
     }
 
 
-NAMES = ("gap", "diagnose", "run", "compare", "synthesise", "characterise")
+NAMES = ("gap", "diagnose", "run", "compare", "synthesise")
 
 
 @pytest.mark.parametrize(("name", "inside"), [*((name, False) for name in NAMES), ("gap", True), ("run", True)])
