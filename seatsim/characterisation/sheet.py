@@ -43,7 +43,7 @@ class StepResponse(NamedTuple):
 
     start, t10, t63, t90: the force has covered 5, 10, 63.2 and 90 % of its change. settling: from then on it keeps
     within 5 % of its end. recovery: from first reaching 90 % until it no longer falls below; 0 without a dip. dip: how
-    far it falls below 90 % in that time. current_overshoot: of a measured or simulated current, over its own change.
+    far it falls below 90 % in that time. current_overshoot: of a measured current, over its own change.
     """
 
     before: Annotated[_Current, Form(key="from")]

@@ -130,7 +130,7 @@ def doubt_time(axis: Axis, channel: str) -> Iterator[Issue]:
     found = {}
     if axis.backwards:
         text = f"runs back {axis.backwards} times, the first at row {axis.breaks[0]}"
-        found["restart"] = f"{text}"
+        found["restart"] = text
     if axis.repeated:
         found["repeated"] = f"{axis.repeated} rows repeat the time before"
     if axis.lost:

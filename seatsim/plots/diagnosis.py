@@ -33,7 +33,7 @@ DOTS = 2500
 SMALLEST = 1e-4
 """Gap below which none is drawn: a logarithmic scale has no zero."""
 UNITS = {"velocity": "m/s", "displacement": "m", "coil_current": "A", "damper_temperature": "degC"}
-"""Units of what moves or changes."""
+"""Units of the motion, current and temperature over which an error is drawn."""
 SECONDS, RASTER = 2.0, 0.05
 """Length in s of the window that is shown, and the raster on which it begins."""
 _SHADED = 2.0

@@ -114,7 +114,7 @@ def _lag(values: Array) -> Array:
 
 
 def _remember(values: Array, time: float) -> Array:
-    """Return the exponentially weighted mean of past values over a time in s, at rest before the start."""
+    """Return the exponentially weighted mean of present and past values over a time in s, at rest before the start."""
     kept = np.exp(-1.0 / (time * _RATE))
     return np.asarray(lfilter([1.0 - kept], [1.0, -kept], values))
 

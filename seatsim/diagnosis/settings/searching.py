@@ -72,7 +72,7 @@ class SelectionSettings(NamedTuple):
     Trades off: as `first_shortlist`.
     Chosen: on simulated rigs."""
     finalists: int = 4
-    """Begun fits that are carried to their end.
+    """Begun fits that are carried to their end, and most starts of a form that are begun anew.
     Trades off: fewer: slow starters are lost; more: time.
     Chosen: on simulated rigs."""
     begun_steps: int = 2
