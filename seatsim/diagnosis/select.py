@@ -192,7 +192,7 @@ def _restart_effect(
     """Return fits of a set with one of its effects in its most promising forms, begun again from their best starts.
 
     A start that falls steeply only after some steps was left behind before. Forms with the same free parameters as the
-    one that ends lowest also start there, where that is lower than their own end: on the way there the cost of such a form may jump.
+    one that ends lowest also start there, where that is lower than their own end: their cost may jump between the two.
     """
     rig, settings = best.parameters.remove(term.effect), objective.settings.selection
     starts = [rig.add(each, np.array(each.start)) for each in candidates if each.replaces(term)]
