@@ -11,7 +11,7 @@ from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
 from seatsim.schema.arrays import Array
 
 _COLOUR = 0.5
-"""Excess that the colour of a sensor's noise may leave of a channel; its stated RMS is taken for that of white noise."""
+"""Excess that the colour of a sensor's noise may leave of a channel; its stated RMS is taken as that of white noise."""
 _LEAST_REMOVABLE = 0.01
 """Removable gap, in standard deviations, below which its share is not asked for, since it is that of a small number."""
 
@@ -60,7 +60,7 @@ def _measure_channel_excess(evaluation: Evaluation) -> Array:
 
 
 def measure_shares_left(problem: DiagnosisProblem, before: Evaluation, after: Evaluation) -> list[float]:
-    """Return the share of the excess that is left of every channel with a material gap before, but for coloured noise."""
+    """Return the share of the excess, but for coloured noise, that is left of each channel with a material gap."""
     gaps = measure_remainders(problem, before)
     excess, left = _measure_channel_excess(before), np.maximum(_measure_channel_excess(after) - _COLOUR, 0.0)
     settings = problem.settings
