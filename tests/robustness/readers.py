@@ -126,7 +126,7 @@ def _read_floor(folder: Path) -> object:
 
 def _read_rows(folder: Path) -> object:
     rows = read_rows(folder)
-    return report_sweep(rows, tabulate_quantiles(rows), analyse_sensitivity(rows), count_exceedances(rows))
+    return report_sweep(rows, analyse_sensitivity(rows), count_exceedances(rows)), tabulate_quantiles(rows)
 
 
 def _resume(folder: Path) -> object:
