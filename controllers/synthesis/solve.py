@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import cast, overload
+from typing import TypedDict, Unpack, cast, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,17 +26,22 @@ SEAT_TIME_BUDGET = 900.0
 """Seconds in which the search for a seat's gain converges on a slow computer too, so that all find the same gain."""
 
 
+class _Options(TypedDict, total=False):
+    """What may be stated of a synthesis, whichever way its plant is given."""
+
+    max_gain: float
+    bounds: tuple[ArrayLike, ArrayLike] | None
+    order: int
+    time_budget: float
+    seed: int
+    progress: Progress
+
+
 @overload
 def synthesise(
     A: GeneralisedPlant | Sequence[GeneralisedPlant],
     /,
-    *,
-    max_gain: float = ...,
-    bounds: tuple[ArrayLike, ArrayLike] | None = ...,
-    order: int = ...,
-    time_budget: float = ...,
-    seed: int = ...,
-    progress: Progress = ...,
+    **options: Unpack[_Options],
 ) -> Design: ...
 @overload
 def synthesise(
@@ -44,12 +49,7 @@ def synthesise(
     /,
     *,
     split: tuple[int, int],
-    max_gain: float = ...,
-    bounds: tuple[ArrayLike, ArrayLike] | None = ...,
-    order: int = ...,
-    time_budget: float = ...,
-    seed: int = ...,
-    progress: Progress = ...,
+    **options: Unpack[_Options],
 ) -> Design: ...
 @overload
 def synthesise(
@@ -61,13 +61,7 @@ def synthesise(
     D11: ArrayLike,
     D12: ArrayLike,
     D21: ArrayLike,
-    *,
-    max_gain: float = ...,
-    bounds: tuple[ArrayLike, ArrayLike] | None = ...,
-    order: int = ...,
-    time_budget: float = ...,
-    seed: int = ...,
-    progress: Progress = ...,
+    **options: Unpack[_Options],
 ) -> Design: ...
 
 
