@@ -11,7 +11,7 @@ import math
 from typing import NamedTuple
 
 from seatsim.compilation.jit import jit, jit_apart
-from seatsim.kernel.hooks import MOST_DEBT, axpy, combine, hook, owe
+from seatsim.kernel.hooks import MOST_DEBT, axpy, combine, owe
 from seatsim.kernel.rig import STICKING, Disturbance, Rig, RigForces, derivative
 from seatsim.rig.coil import Coil, relax
 from seatsim.rig.state import CUSHION_DISPLACEMENT, CUSHION_VELOCITY, VELOCITY, State
@@ -109,7 +109,7 @@ def disturbance_at(inputs: StepInputs, time: float) -> Disturbance:
     )
 
 
-@hook
+@jit
 def start(
     rig: Rig, state: State, disturbance: Disturbance, current: float, scaling: TemperatureScaling, substep: float
 ) -> IntegratorState:
@@ -158,7 +158,7 @@ def take_substep(
     return state, rates, forces, k4, i_end
 
 
-@hook
+@jit
 def advance(
     rig: Rig, coil: Coil, inputs: StepInputs, scaling: TemperatureScaling, now: IntegratorState, tolerance: float
 ) -> tuple[IntegratorState, float, bool]:
