@@ -95,7 +95,7 @@ class Section(NamedTuple):
 
 
 class Report(NamedTuple):
-    """A report: what it is on, the answer, what to do next, the sections; what makes the answer doubtful.
+    """A report: what it is on, the answer, what to do next, the sections.
 
     `badge`: look, words, explanation.
     """
@@ -105,7 +105,6 @@ class Report(NamedTuple):
     lead: Sequence[str]
     next_steps: Sequence[str]
     sections: Sequence[Section]
-    doubt: str = ""
     badge: tuple[str, str, str] | None = None
 
 

@@ -1,4 +1,4 @@
-"""How every report is put together: its answer and sections, notes, how far to trust it, how it was made."""
+"""How every report is put together: its answer and sections, notes, how it was made."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from importlib.metadata import version
 
 from seatsim.provenance.statement import state_command
 from seatsim.report.blocks import Block, Code, Items, Report, Section, Text
-from seatsim.report.credibility import Factor, say_doubt, show_card
 from seatsim.report.formatting import format_sentence, read_words, show_table
 
 _PACKAGES = ("seatsim", "numpy", "scipy", "numba")
@@ -20,7 +19,6 @@ def compose(
     next_steps: Sequence[str],
     sections: Mapping[str, Sequence[Block]],
     notes: Sequence[str],
-    factors: Sequence[Factor],
     command: str,
     settings: Sequence[Block] = (),
     **facts: str,
@@ -32,9 +30,8 @@ def compose(
         about: what it is on.
         answer: in a sentence, and further ones.
         next_steps: what to do next.
-        sections: its own by anchor; notes, credibility and method follow them.
+        sections: its own by anchor; notes and method follow them.
         notes: on the data.
-        factors: of its credibility.
         command: what makes it again; of a command at work, this one with its options is stated instead.
         settings: tables of them.
         facts: what the sentences on the method leave open.
@@ -47,7 +44,6 @@ def compose(
     sentences = list(dict.fromkeys(map(format_sentence, notes)))
     ends = [
         Section("notes", "Notes", [Items(sentences)] if sentences else []),
-        show_card(factors),
         Section("method", "How this was made", [Items(method), *settings, *versions, *again]),
     ]
-    return Report(about, answer[0], answer[1:], next_steps, [*own, *ends], say_doubt(factors))
+    return Report(about, answer[0], answer[1:], next_steps, [*own, *ends])

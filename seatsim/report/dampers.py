@@ -16,7 +16,6 @@ from seatsim.metrics.motion import ratio
 from seatsim.plots.bench.identification import PARTS, name_records, select_records
 from seatsim.report.blocks import Block, Code, Figures, Report, Table, Text, show_pictures, tabulate
 from seatsim.report.composing import compose
-from seatsim.report.credibility import count_variations, state_intervals, trace_inputs, validate
 from seatsim.report.formatting import choose_advice, format_quantity, read_words, show_table
 from seatsim.report.packing import MEASURED, Panel, pack_signals
 from seatsim.schema.content import list_written
@@ -43,16 +42,8 @@ def report_identification(found: Identification, figures: Figures, command: str)
         undetermined=loose,
         copy=True,
     )
-    parts = [each.part for each in found.assessments]
-    error = None if mean is None else 1.0 - mean.fit_percent / 100.0
-    factors = [
-        validate(len(parts), parts.count("test"), error),
-        trace_inputs([], [type(found.bench.damper)], True, loose),
-        state_intervals(["the parameters"], True),
-        count_variations(len(parts)),
-    ]
     about = f"Identification: {found.model}"
-    return compose("identification", about, [_say_fit(found)], advice, sections, found.notes, factors, command)
+    return compose("identification", about, [_say_fit(found)], advice, sections, found.notes, command)
 
 
 def _say_fit(found: Identification) -> str:
@@ -116,15 +107,13 @@ def report_characterisation(found: Characterisation, figures: Figures, command: 
         "steps": [*show_pictures(figures, "steps"), *tabulate_responses(found.sheet)],
         "sheet": _tabulate_sheet(found.sheet, read_words().captions),
     }
-    doubts = dict.fromkeys([*found.notes, *(note for row in found.rows for note in row.notes)])
-    factors = [trace_inputs(list(doubts), is_measured=True), count_variations(len(found.rows))]
     advice = choose_advice(
         identify=True,
         record_steps=not found.sheet.response,
         record_currents=len({round(row.current, 2) for row in found.rows}) < 3,
     )
     kind, about = "characterisation", f"Characterisation: {found.name}"
-    return compose(kind, about, [_say_character(found)], advice, sections, found.remarks, factors, command, tested)
+    return compose(kind, about, [_say_character(found)], advice, sections, found.remarks, command, tested)
 
 
 def _say_character(found: Characterisation) -> str:

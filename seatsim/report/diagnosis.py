@@ -9,21 +9,15 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
-import numpy as np
-
-from seatsim.dampers.base import DAMPERS
 from seatsim.diagnosis.residuals import drop_start
 from seatsim.diagnosis.result import Cause, Diagnosis, Estimate, Gaps, RunGaps
 from seatsim.plots.diagnosis import find_last, plot_diagnosis
 from seatsim.recordings.gap import GapFigures
-from seatsim.recordings.header import NOT_STATED
 from seatsim.report import formatting
 from seatsim.report.blocks import Block, Figures, Items, Report, Table, Text, show_pictures, tabulate
 from seatsim.report.composing import compose
-from seatsim.report.credibility import Factor, count_variations, state_intervals, trace_inputs, validate, verify
 from seatsim.report.formatting import choose_advice, format_quantity, format_sentence, read_words, show_table
 from seatsim.report.packing import MEASURED, pack_traces
-from seatsim.schema.fields import UNUSUAL
 from seatsim.schema.printing import MINUS, UNKNOWN, describe_channel, format_number, format_percent, format_unit
 from seatsim.schema.text import join_names
 
@@ -57,34 +51,9 @@ def report_diagnosis(diagnosis: Diagnosis) -> Report:
         sections |= {anchor: [] for anchor in ("causes", "missing", "confusions", "maps")}
     about, command = f"Diagnosis: {diagnosis.name}", f"seatsim diagnose {diagnosis.name}"
     answer = [say_diagnosis(diagnosis), format_sentence(diagnosis.sentence)]
-    notes, factors = _list_notes(diagnosis), judge_diagnosis(diagnosis)
-    report = compose("diagnosis", about, answer, advise(diagnosis), sections, notes, factors, command)
+    report = compose("diagnosis", about, answer, advise(diagnosis), sections, _list_notes(diagnosis), command)
     badge = (diagnosis.verdict, *read_words().verdicts[diagnosis.verdict])
     return report._replace(badge=badge)
-
-
-def judge_diagnosis(diagnosis: Diagnosis) -> list[Factor]:
-    """Return how far a diagnosis may be trusted, on the runs that it held out."""
-    gap, runs, held_out = diagnosis.gap, len(diagnosis.gap.by_run), len(diagnosis.held_out)
-    spreads = {trace.channel: float(np.std(trace.measured)) for trace in diagnosis.evidence.traces}
-    steps = [each.u_num / spreads[each.channel] for each in diagnosis.error_budget if spreads.get(each.channel, 0) > 0]
-    model = diagnosis.augmented.get("damper", {})
-    name = model.get("model") if isinstance(model, Mapping) else None
-    fitted = any(cause.effect in diagnosis.selected and cause.parameters for cause in diagnosis.causes)
-    has_interval = all(map(math.isfinite, gap.shrink_interval))
-    intervals = [*["the parameters of the effects"] * fitted, *["the shrink of the gap"] * has_interval]
-    return [
-        verify("half the step changes an output by up to {}", steps),
-        validate(max(runs, held_out), held_out, gap.after.overall, gap.floor.overall),
-        trace_inputs(
-            [note for note in diagnosis.notes if UNUSUAL in note],
-            [DAMPERS.find(name)] if name in DAMPERS.names() else [],
-            bool(diagnosis.parameters) and not any(NOT_STATED in note for note in diagnosis.notes),
-            [each.name for each in diagnosis.parameters if each.at_bound],
-        ),
-        state_intervals(intervals, fitted, has_interval, bool(diagnosis.error_budget)),
-        count_variations(runs, [each.name for each in diagnosis.parameters]),
-    ]
 
 
 def say_diagnosis(diagnosis: Diagnosis) -> str:

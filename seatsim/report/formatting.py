@@ -79,9 +79,8 @@ class Words(NamedTuple):
     """The content of `assets/words.yaml`.
 
     By kind of report the headings of its sections and sentences on its method; paragraphs that explain figures; caption
-    and headings of tables; captions of the tables of a bench sheet, in their order; conditions of each level of
-    credibility; name and explanation of each verdict; what to do next, by the fact that asks for it; words for each
-    effect.
+    and headings of tables; captions of the tables of a bench sheet, in their order; name and explanation of
+    each verdict; what to do next, by the fact that asks for it; words for each effect.
     """
 
     headings: Mapping[str, Mapping[str, str]]
@@ -89,7 +88,6 @@ class Words(NamedTuple):
     explanations: Mapping[str, Sequence[str]]
     tables: Mapping[str, tuple[str, str]]
     captions: Mapping[str, str]
-    conditions: Mapping[str, Sequence[str]]
     verdicts: Mapping[str, tuple[str, str]]
     advice: Mapping[str, str]
     effects: Mapping[str, _EffectWords]

@@ -5,8 +5,7 @@ The figures by which a simulation is signed off stand with it: objective ratings
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from pathlib import Path
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -15,27 +14,25 @@ from seatsim.metrics.motion import rms
 from seatsim.metrics.objective_rating import GRADES
 from seatsim.plots.diagnosis import plot_all_of_gap
 from seatsim.recordings.gap import Gap
-from seatsim.recordings.recording import load_recording
 from seatsim.report import formatting
 from seatsim.report.blocks import Block, Items, Report, Table, show_pictures
 from seatsim.report.composing import compose
-from seatsim.report.credibility import NEAR_NOISE, Factor, count_variations, state_intervals, trace_inputs, validate
 from seatsim.report.formatting import format_noise, format_quantity, say_noise, scale_row, show_table
 from seatsim.report.packing import MEASURED, pack_traces
-from seatsim.scenario.loading import single
 from seatsim.schema.printing import UNKNOWN, format_percent
 
+NEAR_NOISE = 1.2
+"""Gap over the noise of the sensors up to which nothing is left to explain."""
 SMALLEST = 1e-4
 """Gap below which nothing is left to explain."""
 
 
-def report_gap(name: str, found: Gap, factors: Sequence[Factor], command: str) -> Report:
+def report_gap(name: str, found: Gap, command: str) -> Report:
     """Return the report of a gap with the runs that were compared.
 
     Args:
         name: of scenario and recording, for the head.
         found: the gap.
-        factors: of the credibility of the figures.
         command: what makes the report again.
     """
     figures, lines = plot_all_of_gap(found), {"measured": ("measured", MEASURED), "nominal": ("simulated", 1)}
@@ -45,21 +42,7 @@ def report_gap(name: str, found: Gap, factors: Sequence[Factor], command: str) -
         "agreement": _show_agreement(found),
     }
     advice = formatting.choose_advice(use_scenario=_is_explained(found), diagnose=not _is_explained(found))
-    return compose("gap", f"Gap: {name}", [say_gap(found)], advice, sections, found.notes, factors, command)
-
-
-def judge_gap(scenario: str, folder: Path, found: Gap) -> list[Factor]:
-    """Return how far a gap may be trusted; runs count as held out where the scenario is the nominal one, not fitted."""
-    chosen, recording = single(scenario), load_recording(folder)
-    tolerance, runs = recording.header.parameter_tolerance, len(recording.runs)
-    is_fitted = "fitted" in (tolerance.values() if isinstance(tolerance, Mapping) else [tolerance])
-    is_nominal = Path(scenario).is_file() and Path(scenario).samefile(folder / recording.header.nominal)
-    return [
-        validate(runs, runs * (is_nominal and not is_fitted), found.overall, found.floor.overall),
-        trace_inputs(found.notes, [type(chosen.damper.record)], tolerance is not None and not is_fitted),
-        state_intervals(["the gap, as the noise of the sensors"] if found.floor.overall else []),
-        count_variations(runs),
-    ]
+    return compose("gap", f"Gap: {name}", [say_gap(found)], advice, sections, found.notes, command)
 
 
 def say_gap(found: Gap) -> str:

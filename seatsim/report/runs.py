@@ -11,7 +11,6 @@ from seatsim.plots.runs.looks import Shown, show_runs
 from seatsim.plots.style import COLOURS
 from seatsim.report.blocks import Figures, Report, Signals, Table, show_pictures, tabulate
 from seatsim.report.composing import compose
-from seatsim.report.credibility import Factor, count_variations, trace_inputs, verify
 from seatsim.report.formatting import choose_advice, format_quantity, format_sentence, format_setting, show_table
 from seatsim.report.headline import SAME, compare_runs, count_times, describe_run, find_best
 from seatsim.report.packing import FINEST, Panel, pack_signals
@@ -67,18 +66,7 @@ def report_runs(
     rows = [(key, format_unit(find_unit(scenario, key)) or "-", format_setting(value)) for key, value in numbers]
     settings = show_table("settings", rows, 2, folded=True, title=str(scenario.title))
     answer, advice, same = [*said, *map(format_sentence, gaps)], _advise_on_runs(runs), f"{100 * SAME:g} %"
-    return compose("runs", about, answer, advice, sections, notes, judge_runs(runs), command, settings, same=same)
-
-
-def judge_runs(runs: Sequence[Run]) -> list[Factor]:
-    """Return how far simulated runs may be trusted."""
-    energies = [run.read_metric("energy_residual") for run in runs if "energy_residual" in run.metrics]
-    doubts = dict.fromkeys(text for run in runs for text in run.warnings)
-    return [
-        verify("up to {} of the energy is unaccounted for", energies),
-        trace_inputs(list(doubts), {type(run.scenario.damper.record) for run in runs}),
-        count_variations(len(runs)),
-    ]
+    return compose("runs", about, answer, advice, sections, notes, command, settings, same=same)
 
 
 def _advise_on_runs(runs: Sequence[Run]) -> list[str]:

@@ -9,7 +9,6 @@ from seatsim.metrics.exposure import DAY
 from seatsim.plots.bench.vibration import plot_damping
 from seatsim.report.blocks import Block, Figures, Report, Table, show_pictures, tabulate
 from seatsim.report.composing import compose
-from seatsim.report.credibility import count_variations, state_intervals, trace_inputs
 from seatsim.report.formatting import choose_advice, format_sentence, show_table
 from seatsim.schema.printing import format_percent
 from seatsim.schema.text import join_names
@@ -31,13 +30,8 @@ def report_comfort(found: Comfort, figures: Figures, command: str) -> Report:
         "axes": [*tabulate_axes(found), *show_pictures(figures, "running_rms", "spectra")],
         "seat": tabulate_seat(found),
     }
-    factors = [
-        trace_inputs(found.notes, is_measured=True),
-        state_intervals(_INTERVALS * any(each.within_spread is not None for each in found.seat.values())),
-        count_variations(len(found.runs)),
-    ]
     about, advice = f"Vibration of {found.name}", _advise_on_comfort(found)
-    return compose("comfort", about, answer, advice, sections, found.notes, factors, command)
+    return compose("comfort", about, answer, advice, sections, found.notes, command)
 
 
 def list_comfort_sentences(found: Comfort) -> Iterator[str]:
@@ -123,18 +117,16 @@ def tabulate_seat(found: Comfort) -> list[Table]:
 
 
 _PASSED = ("no", "yes")
-_INTERVALS = ["the SEAT factors, by the spread of their runs"]
 NAMED = 3
 """Failures that the answer names."""
 
 
-def report_seat_test(found: SeatTest, name: str, is_measured: bool, command: str) -> Report:
+def report_seat_test(found: SeatTest, name: str, command: str) -> Report:
     """Return the report of a seat test.
 
     Args:
         found: its lines.
         name: of the scenario or recording, for the head.
-        is_measured: whether the lines are of a recording.
         command: what makes the report again.
     """
     notes = [*found.notes, *(f"{each.run} failed: {each.reason}" for each in found.failures)]
@@ -142,15 +134,9 @@ def report_seat_test(found: SeatTest, name: str, is_measured: bool, command: str
         "classes": tabulate_classes(found.rows),
         "damping": [*tabulate_damping(found.damping_rows), *show_pictures(plot_damping(found), "damping")],
     }
-    varied = ["spectral class", "mass of the test person"] * (len({row.person for row in found.rows}) > 1)
-    factors = [
-        trace_inputs([*found.notes, *(failure.reason for failure in found.failures)], is_measured=is_measured),
-        state_intervals(_INTERVALS * any(row.within_spread is not None for row in found.rows)),
-        count_variations(len(found.rows), varied),
-    ]
     about, answer, advice = f"Seat test: {name}", [say_seat_test(found)], _advise_on_seat_test(found)
     recalled = format_sentence(RECALLED)
-    return compose("seat_test", about, answer, advice, sections, notes, factors, command, recalled=recalled)
+    return compose("seat_test", about, answer, advice, sections, notes, command, recalled=recalled)
 
 
 def say_seat_test(found: SeatTest) -> str:

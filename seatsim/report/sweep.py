@@ -5,13 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from seatsim.dampers.base import DAMPERS
 from seatsim.metrics.table import COMFORT, TRAVEL
 from seatsim.plots.sweeps import describe_column, format_level, plot_comfort, plot_shares
-from seatsim.report import credibility
 from seatsim.report.blocks import Block, Figures, Report, Table, Text, show_pictures, tabulate
 from seatsim.report.composing import compose
-from seatsim.report.credibility import EXPLAINED, count_variations, state_intervals, trace_inputs, verify
 from seatsim.report.formatting import choose_advice, explain, format_quantity, show_table
 from seatsim.scenario.scenario import is_condition
 from seatsim.schema.printing import format_number, format_percent, format_unit
@@ -21,6 +18,8 @@ from seatsim.sweeps.sensitivity import Sensitivities, Sensitivity, choose_choice
 
 _MATTERS = 0.1
 """Share of the variance from which on a key is worth a step."""
+EXPLAINED = 0.8
+"""Share of the variance below which the page says how little the varied keys explain."""
 MOST_LINES = 60
 """Lines of a table on the page."""
 _MOST_REASONS = 8
@@ -42,9 +41,9 @@ def report_sweep(rows: SweepRows, found: Sensitivities, exceeded: Sequence[Excee
     out = " and ".join(f"{count} {state}" for state, count in states.items() if count)
     ended = f"{len(rows.every)} of {rows.manifest['counts']['runs']} runs have ended."
     left = f" {out}: these take no part in any figure." if out else ""
-    answer, factors = [*state_importance(found, rows), f"{ended}{left}"], _judge(rows, found, exceeded)
+    answer = [*state_importance(found, rows), f"{ended}{left}"]
     about, command = f"Sweep: {rows.folder.name}", f"seatsim sweep-report {rows.folder.name}"
-    return compose("sweep", about, answer, _advise(found, exceeded, rows), sections, [], factors, command, settings)
+    return compose("sweep", about, answer, _advise(found, exceeded, rows), sections, [], command, settings)
 
 
 def state_importance(found: Sensitivities, rows: SweepRows) -> list[str]:
@@ -99,27 +98,6 @@ def tabulate_best(rows: SweepRows) -> list[Table]:
     others = f"; and {left} other conditions" if left else ""
     caption = f"Most comfortable choice under each condition, the worst condition first{others}"
     return tabulate(caption, [*keys, describe_column(COMFORT, rows.units).axis], lines, len(keys))
-
-
-def _judge(rows: SweepRows, found: Sensitivities, exceeded: Sequence[Exceedance]) -> list[credibility.Factor]:
-    """Return how far a sweep may be trusted, whose identity keeps the hashes of its inputs."""
-    stated = rows.manifest["configuration"]
-    damper = stated["scenario"].get("damper", {}) if isinstance(stated.get("scenario"), dict) else {}
-    model = damper.get("model") if isinstance(damper, dict) else None
-    models = [DAMPERS.find(model)] if model in DAMPERS.names() else []
-    explained = next((row.explained for row in found.leading), None)
-    said = f", {len(rows.drawn)} of them drawn from distributions" if rows.drawn else ""
-    said += "" if explained is None else f"; they explain {format_percent(max(0.0, explained))} of comfort"
-    intervals = ["shares of the variance"] * bool(found.rows) + ["shares above limits"] * bool(exceeded)
-    energy = list(rows.usable["energy_residual"].dropna()) if "energy_residual" in rows.metrics else list[float]()
-    reasons = sorted({str(text) for text in rows.every.reason.dropna() if text})
-    explains, is_judged, count = (explained or 0.0) >= EXPLAINED, bool(rows.drawn and exceeded), len(rows.usable)
-    return [
-        verify("up to {} of the energy is unaccounted for", energy),
-        trace_inputs(reasons, models, inputs=1 + len(stated.get("files", {}))),
-        state_intervals(intervals, bool(rows.drawn), bool(found.rows)),
-        count_variations(count, rows.keys, said, explains, is_judged and count >= credibility.ENOUGH_RUNS),
-    ]
 
 
 def _advise(found: Sensitivities, exceeded: Sequence[Exceedance], rows: SweepRows) -> list[str]:

@@ -19,11 +19,11 @@ from .diagnoses import CASES, ambiguous, known, none, unknown, with_every_run
 from .kinds import render
 from .outline import Outline
 
-SHORT = ["gaps", "signals", "comfort", "notes", "credibility", "method"]
-FULL = ["causes", "gaps", "signals", "confusions", "maps", "comfort", "notes", "credibility", "method"]
+SHORT = ["gaps", "signals", "comfort", "notes", "method"]
+FULL = ["causes", "gaps", "signals", "confusions", "maps", "comfort", "notes", "method"]
 SHOWN = {
     "none": SHORT, "known": FULL, "ambiguous": FULL, "bench": [name for name in FULL if name != "comfort"],
-    "unknown": words("causes gaps signals missing confusions maps comfort notes credibility method"),
+    "unknown": words("causes gaps signals missing confusions maps comfort notes method"),
 }  # fmt: skip
 ANSWERS = {
     "none": "The simulation fits the recording",
@@ -116,7 +116,7 @@ def test_little_is_known():
     lists = dict.fromkeys(("notes", "held_out", "isolable", "where", "selected", "parameters"), ())
     found = replace(found, evidence=nothing, gap=gap, **lists)
     outline = Outline(render_report(report_diagnosis(found)))
-    assert outline.anchors == ["causes", "gaps", "credibility", "method"]
+    assert outline.anchors == ["causes", "gaps", "method"]
     assert "–" in outline.words and not any("nan" in words for words in outline.words)
 
 

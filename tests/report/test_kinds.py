@@ -14,7 +14,7 @@ from seatsim.report.gap import report_gap, say_gap
 from seatsim.report.rendering import render_report
 from seatsim.report.runs import report_runs
 
-from .kinds import JUDGED, gap, identification, pair, pictures, render, runs
+from .kinds import gap, identification, pair, pictures, render, runs
 from .outline import Outline
 
 
@@ -71,7 +71,7 @@ def test_a_gap_says_where_it_is_largest_and_what_to_do():
 
 def test_noise_that_is_not_stated_is_not_printed_as_none():
     found = gap(0.3, floor=0.0, run=pair(20.0))
-    outline = Outline(render_report(report_gap("x", found, JUDGED, "seatsim gap a b")))
+    outline = Outline(render_report(report_gap("x", found, "seatsim gap a b")))
     assert "no sensor noise is stated" in outline.headings[0]
     shown = make_plain(make_gap_table(found)), found._repr_html_()
     assert outline.rows("Gap over all runs")["damper force"][:2] == ["30 %", "not stated"]
@@ -82,7 +82,7 @@ def test_a_short_recording_has_no_spectrum():
     whole = pair(1.0)
     signals = [{"damper_force": each["damper_force"][:40]} for each in (whole.measured, whole.simulated)]
     short = whole._replace(time=whole.time[:40], measured=signals[0], simulated=signals[1])
-    outline = Outline(render_report(report_gap("x", gap(0.3, run=short), JUDGED, "seatsim gap a b")))
+    outline = Outline(render_report(report_gap("x", gap(0.3, run=short), "seatsim gap a b")))
     assert "frequency [Hz]" not in outline.words and "time [s]" in outline.words
 
 
@@ -114,7 +114,7 @@ def test_text_of_files_stays_text_in_every_kind(text):
     empty = Characterisation(text, text, [], [], [text], make_sheet([], []))
     pages = [
         render_report(report_identification(hostile, {"loops": plot_predictions(hostile)}, text)),
-        render_report(report_gap(text, gap(0.3, **{text: pair(3.0)}), JUDGED, text)),
+        render_report(report_gap(text, gap(0.3, **{text: pair(3.0)}), text)),
         render_report(report_characterisation(empty, {}, text)),
     ]
     for page in pages:

@@ -16,7 +16,7 @@ from seatsim.diagnosis.result import Diagnosis
 from seatsim.effects.base import EFFECTS
 from seatsim.recordings.gap import Forecast, Gap, GapFigures
 from seatsim.report.diagnosis import report_diagnosis
-from seatsim.report.gap import judge_gap, report_gap
+from seatsim.report.gap import report_gap
 from seatsim.scenario.loading import single
 from seatsim.schema.files import write_text
 from seatsim.schema.guarded import temporary_folder
@@ -39,8 +39,7 @@ def present_gap(found: Gap, scenario: str, recording: Path, folder: Path) -> Non
     if found.channels:
         name = f"{Path(scenario).stem} against {recording.resolve().name}"
         command = f"seatsim gap {Path(scenario).name} {recording.name}"
-        factors = judge_gap(scenario, recording, found)
-        contents["report.html"] = report_gap(name, found, factors, command)
+        contents["report.html"] = report_gap(name, found, command)
     conclude(found, folder, write_outputs(folder, contents))
 
 

@@ -9,7 +9,6 @@ from seatsim.cli.outputs.writing import name_pictures, write_outputs
 from seatsim.cli.show_table import show_report_tables
 from seatsim.cli.terminal import complain, conclude, say, warn
 from seatsim.plots.bench.vibration import plot_vibration
-from seatsim.recordings.recording import HEADER
 from seatsim.report import standards
 from seatsim.standards.comfort import Comfort
 from seatsim.standards.seat_rows import SeatTest
@@ -35,7 +34,6 @@ def present_seat_test(found: SeatTest, source: Path, folder: Path) -> None:
     for each in found.failures:
         complain(f"failed: {', '.join(filter(None, (each.run, each.spectral_class, each.person)))}: {each.reason}")
     warn(found.notes)
-    is_measured = (source / HEADER).exists()
     command = f"seatsim seat-test {source.name}"
-    report = standards.report_seat_test(found, source.resolve().stem, is_measured, command)
+    report = standards.report_seat_test(found, source.resolve().stem, command)
     conclude(found, folder, write_outputs(folder, {"seat_test.json": found, "report.html": report}))
