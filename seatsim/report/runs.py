@@ -17,14 +17,12 @@ from seatsim.report.packing import FINEST, Panel, pack_signals
 from seatsim.scenario.numbers import find_unit, list_numbers
 from seatsim.scenario.scenario import condition_of
 from seatsim.schema.arrays import Array
-from seatsim.schema.errors import RunError
 from seatsim.schema.printing import describe_channel, format_number, format_unit
-from seatsim.schema.text import join_names, name_some
+from seatsim.schema.text import name_some
 from seatsim.simulation.naming import label_runs
 from seatsim.simulation.result import UNITS, Run
-from seatsim.simulation.runs import STRETCH, share_a_loop, try_changes
 
-HITS, _PEAK = "end_stop_hits", "suspension_displacement_peak"
+HITS = "end_stop_hits"
 CHANNELS = (
     "driver_acceleration", "suspension_displacement", "damper_force", "coil_current", "frame_acceleration",
     "floor_acceleration", "damper_temperature",
@@ -75,10 +73,9 @@ def _advise_on_runs(runs: Sequence[Run]) -> list[str]:
     hitting, amplifying = _rank_above(named, HITS, 0.0), _rank_above(named, SEAT, 1.0 + SAME)
     counts = [f"{name} ({count_times(run.read_metric(HITS))})" for name, run in hitting]
     listed = [f"{name} (SEAT factor {format_number(run.read_metric(SEAT))})" for name, run in amplifying]
-    trials = _say_trials(*amplifying[0], share_a_loop(run.scenario for run in runs)) if amplifying else ""
     return choose_advice(
         travel=counts and name_some(counts),
-        amplifies=listed and f"{name_some(listed)}.{trials}",
+        amplifies=listed and name_some(listed),
         compare=len(runs) == 1,
         other_conditions=len(runs) > 1 and len({condition_of(run.scenario) for run in runs}) == 1,
     )
@@ -88,27 +85,6 @@ def _rank_above(named: Sequence[tuple[str, Run]], metric: str, limit: float) -> 
     """Return the runs with a metric above a limit, the largest first."""
     above = [(name, run) for name, run in named if run.read_metric(metric) > limit]
     return sorted(above, key=lambda pair: -pair[1].read_metric(metric))
-
-
-def _say_trials(name: str, run: Run, carry_all_effects: bool | None) -> str:
-    """Return what halving and doubling the numbers of the worst run did to its SEAT factor."""
-    try:
-        own, *trials = try_changes(run.scenario, carry_all_effects)
-    except RunError:
-        return ""
-    known = [each for each in trials if np.isfinite(each.metrics[SEAT].value)] if SEAT in own.metrics else []
-    if not known:
-        return ""
-    best = min(known, key=lambda each: each.metrics[SEAT].value)
-    keys = join_names(list(dict.fromkeys(each.key for each in known)))
-    part = f"the first {STRETCH:g} s of " if run.history["time"][-1] > STRETCH else ""
-    tried = f" Half and twice of {keys} were tried on {part}{name}"
-    (before, peak), (after, lower) = ((each.metrics[SEAT].value, each.metrics[_PEAK].value) for each in (own, best))
-    if after > (1 - SAME) * before:
-        return f"{tried}: none lowers its SEAT factor of {format_number(before)}."
-    change = f"to {format_number(after)} from {format_number(before)}"
-    travel = f"{format_quantity(lower, 'm')} in place of {format_quantity(peak, 'm')}"
-    return f"{tried}: {best.key} {best.value:g} lowers its SEAT factor the most, {change}, with travel up to {travel}."
 
 
 def show_signals(groups: Sequence[Shown], finest: int = FINEST) -> Signals:

@@ -14,7 +14,7 @@ from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Scenario
 from seatsim.scenario.sections import SECTIONS
 from seatsim.schema.errors import permit
-from seatsim.schema.fields import FieldSpecification, bounds, describe, doubt, field_names, replace_fields
+from seatsim.schema.fields import FieldSpecification, describe, doubt, field_names, replace_fields
 from seatsim.schema.registry import Record, is_own, specification_of
 from seatsim.schema.validation import check_value
 from seatsim.schema.yaml_source import Source
@@ -34,13 +34,6 @@ def list_numbers(scenario: Scenario) -> dict[str, float]:
         if isinstance(value := getattr(record, name), int | float) and not isinstance(value, bool)
     }
     return found if isinstance(scenario.temperature, Thermal) else found | {TEMPERATURE: scenario.temperature}
-
-
-def is_permitted(scenario: Scenario, key: str, value: float) -> bool:
-    """Return whether a number of a section that `list_numbers` names may have a value."""
-    section, _, name = key.rpartition(".")
-    low, high = bounds(type(_records(scenario)[section]), name)
-    return low <= value <= high
 
 
 def set_number(scenario: Scenario, key: str, value: float) -> Scenario:
