@@ -140,19 +140,14 @@ def transmissibility(floor: ArrayLike, driver: ArrayLike, sample_rate: float) ->
     """
     x, y = as_pair(floor, driver, ("floor", "driver"))
     length = _segment(x.size, require_positive(sample_rate, "sample_rate"))
-    frequency, floor_psd = power_spectral_density(x, sample_rate, length)
-    _, driver_psd = power_spectral_density(y, sample_rate, length)
-    _, cross = cross_spectral_density(x, y, sample_rate, length)
-    response = _quotient(cross, floor_psd)
-    coherence = _quotient(np.abs(cross) ** 2, floor_psd * driver_psd)
-    segments = 2 * x.size // length - 1
-    return Transmissibility(frequency, response, coherence, segments)
+    frequency, floor_psd, driver_psd, cross = _estimate_spectra(x, y, sample_rate, length)
+    return Transmissibility(frequency, *_divide_spectra(floor_psd, driver_psd, cross), 2 * x.size // length - 1)
 
 
 TRUSTED = 0.5
 """Least coherence of a transmissibility: below it most of the driver's motion is not the floor's."""
 STRETCH = 3
-"""Least neighbouring lines of a transmissibility that are trusted: by chance a single one is coherent anywhere."""
+"""Least neighbouring bands of a transmissibility that are trusted: by chance a single one is coherent anywhere."""
 POWER = 1e-3
 """Least density of the floor over its highest at which it has power enough for a transmissibility."""
 
@@ -160,17 +155,37 @@ POWER = 1e-3
 def trusted_gain(floor: Array, driver: Array, sample_rate: float, highest: float) -> tuple[Array, Array]:
     """Return frequency in Hz and transmissibility, shape (F,) each, NaN where the limits above forbid it.
 
-    Frequencies are those of a density, up to `highest` Hz; the other arguments, and errors, are of `transmissibility`.
+    Spectra are averaged over the bands of a density, up to `highest` Hz, and the transmissibility ends for good where a
+    stretch of bands is not trusted: above it, chance makes islands of coherence. The other arguments, and errors, are
+    of `transmissibility`.
     """
     from scipy.ndimage import binary_opening
 
-    found = transmissibility(floor, driver, sample_rate)
-    inside = _is_resolved(found.frequency) & (found.frequency <= highest)
-    centres, density = estimate_density(1 / sample_rate, [floor])
-    power = np.interp(found.frequency[inside], centres, density) if len(centres) else np.zeros(int(np.sum(inside)))
-    is_strong = power >= POWER * np.max(power, initial=1e-300)
-    known = binary_opening(is_strong & (found.coherence >= TRUSTED)[inside], np.ones(STRETCH, bool))
-    return found.frequency[inside], np.where(known, found.gain[inside], np.nan)
+    length = _segment(len(floor), sample_rate)
+    lines, first, second, cross = _estimate_spectra(floor, driver, sample_rate, length)
+    averaged = [_average_bands(lines, values) for values in (first, second, cross.real, cross.imag)]
+    frequency, (floor_psd, driver_psd, real, imaginary) = averaged[0][0], (power for _, power in averaged)
+    response, coherence = _divide_spectra(floor_psd, driver_psd, real + 1j * imaginary)
+    inside = frequency <= highest
+    is_strong = floor_psd >= POWER * np.max(floor_psd[inside], initial=1e-300)
+    whole = np.ones(STRETCH, bool)
+    known = binary_opening((is_strong & (coherence >= TRUSTED))[inside], whole)
+    ends = np.flatnonzero(binary_opening(~known, whole) & np.logical_or.accumulate(known))
+    if ends.size:
+        known[ends[0] :] = False
+    return frequency[inside], np.where(known, np.abs(response)[inside], np.nan)
+
+
+def _estimate_spectra(x: Array, y: Array, sample_rate: float, length: int) -> tuple[Array, Array, Array, ComplexArray]:
+    """Return frequencies, the power spectral densities of x and y, and the cross density, shape (F,) each."""
+    frequency, first = power_spectral_density(x, sample_rate, length)
+    second, cross = (cross_spectral_density(*pair, sample_rate, length)[1] for pair in ((y, y), (x, y)))
+    return frequency, first, second.real, cross
+
+
+def _divide_spectra(floor: Array, driver: Array, cross: ComplexArray) -> tuple[ComplexArray, Array]:
+    """Return response and coherence, NaN where there is no power."""
+    return _quotient(cross, floor), _quotient(np.abs(cross) ** 2, floor * driver)
 
 
 def _segment(samples: int, sample_rate: float) -> int:

@@ -21,7 +21,7 @@ from seatsim.metrics.motion import rms
 from seatsim.metrics.spectra import estimate_density
 from seatsim.plots import style
 from seatsim.plots.densities import draw_densities, find_first, state_method
-from seatsim.plots.style import COLOURS, DASHES, MEASURED, Entry, Grid
+from seatsim.plots.style import COLOURS, MEASURED, Entry, Grid
 from seatsim.plots.thinning import Window, find_loudest, thin_line
 from seatsim.recordings.gap import Gap
 from seatsim.schema.arrays import Array
@@ -40,14 +40,17 @@ _SHADED = 2.0
 """Standard deviations of the noise that are shaded."""
 DECADES = 9.0
 """Decades below the highest density that a spectrum shows: down to the noise of a good sensor."""
-NOMINAL = Entry("nominal", COLOURS[1], DASHES[1], width=1.3)
-REFITTED = Entry("refitted", COLOURS[2], width=1.1)
-AUGMENTED = Entry("with effects", COLOURS[0], width=1.1)
+NOMINAL = Entry("nominal", "#ECB78C", width=2.2)
+"""A pale `COLOURS[1]`, wide upon the measured signal, and the last simulation thin upon both, so that all are seen."""
+REFITTED, AUGMENTED = Entry("refitted", COLOURS[2], width=1.0), Entry("with effects", COLOURS[0], width=1.0)
+SIMULATED = Entry("simulated", COLOURS[1], width=1.0)
 NOISE = Entry("sensor noise", "black", ":", width=1.3)
 _BAND = Entry(f"±{_SHADED:g} RMS of the noise", style.AREA, width=8)
 GRID = Grid((1.5, 1.0, 1.3), left=1.04, gap=(0.0, 0.5))
 _Looks: TypeAlias = dict[str, Entry]
 """Looks of simulations that are compared with a measurement, by their names in a trace."""
+_SIZES = (12, 9, 6)
+"""Sizes of the marks of a gap, the nominal one first: those that coincide are seen around each other."""
 LETTERS = 19
 """Letters of a label beside a panel that is this low."""
 
@@ -67,7 +70,7 @@ def plot_diagnosis(diagnosis: Diagnosis) -> dict[str, Figure]:
 
 def plot_all_of_gap(found: Gap) -> dict[str, Figure]:
     """Return a figure of each channel of a gap by name, the one with the largest gap first."""
-    return _plot_channels(residuals.list_traces(found), {"nominal": NOMINAL._replace(label="simulated")})
+    return _plot_channels(residuals.list_traces(found), {"nominal": SIMULATED})
 
 
 def find_last(diagnosis: Diagnosis) -> Entry:
@@ -79,7 +82,7 @@ def _plot_gaps(diagnosis: Diagnosis) -> Figure | None:
     """Return the gap of each channel on its way from the nominal simulation to the noise floor."""
     gap, last = diagnosis.gap, find_last(diagnosis)
     names = ["overall", *gap.before.channels]
-    stages = [(gap.before, NOMINAL._replace(mark="o"))]
+    stages = [(gap.before, NOMINAL._replace(colour=COLOURS[1], mark="o"))]
     stages += [(gap.calibrated, REFITTED._replace(mark="D"))] if last is AUGMENTED else []
     stages += [(gap.after, last._replace(mark="s")), (gap.floor, NOISE._replace(label="noise floor", mark="|"))]
     looks = [look._replace(dashes="none") for _, look in stages]
@@ -93,19 +96,18 @@ def _plot_gaps(diagnosis: Diagnosis) -> Figure | None:
     figure, [[axes]] = style.make_page("Gap of each channel, before and after", note, grid, looks)
     axes.set(ylim=(len(names) - 0.4, -0.6), yticks=range(len(names)), yticklabels=shown, xlabel="gap [%]")
     style.scale_log(axes, "x", min(seen) / 1.4, max(seen) * 1.4)
+    sizes = (*_SIZES[: len(looks) - 1], 15)
     for row, values in enumerate(rows):
-        marked = [(100 * value, look) for value, look in zip(values, looks, strict=True) if value > SMALLEST]
-        places = [place for place, _ in marked]
-        axes.plot(places, [row] * len(places), color="0.8", linewidth=1.5, zorder=1)
-        for place, look in marked:
-            size = 15 if look.mark == "|" else 8
-            style.draw_line(axes, [place], [row], look).set(markersize=size, zorder=3)
+        seen = [100 * value for value in values if value > SMALLEST]
+        axes.plot(seen, [row] * len(seen), color="0.8", linewidth=1.5, zorder=1)
+        for value, look, size in zip(values, looks, sizes, strict=True):
+            style.draw_line(axes, [100 * value], [row], look).set(markersize=size, zorder=3, visible=value > SMALLEST)
     return figure
 
 
 def _describe_motion(diagnosis: Diagnosis, name: str) -> Quantity:
-    """Return how motion is shown: of the suspension, or on a bench of the damper."""
-    holder = "suspension" if any("suspension" in group for group in diagnosis.isolable) else "damper"
+    """Return how motion is shown: of the suspension, or on a bench, whose scenario has no plant, of the damper."""
+    holder = "suspension" if "plant" in diagnosis.augmented else "damper"
     return describe_channel(f"{holder}_{name}" if name in ("velocity", "displacement") else name, UNITS[name])
 
 
@@ -181,12 +183,12 @@ def _plot_channel(trace: Trace, group: Sequence[Trace], looks: _Looks) -> Figure
     step, noise = (trace.time[-1] - trace.time[0]) / (len(trace.time) - 1), shown.factor * trace.noise_rms
     loudest = find_loudest(_subtract(trace, "nominal"), step, SECONDS, RASTER)
     window = Window(*(end + trace.time[0] for end in loudest))
-    left_over = [[_subtract(each, name) for each in group] for name in reversed(looks)]
+    left_over = [[_subtract(each, name) for each in group] for name in looks]
     density = [estimate_density(step, signals) for signals in ([each.measured for each in group], *left_over)]
     first = find_first(density)
     note = f"{window} of {trace.run}, where the difference has most energy; RMS over the whole run."
-    below = [look._replace(label=f"{look.label} (below: difference)") for look in looks.values()]
-    legend, grid = [MEASURED, *below, *[NOISE, _BAND] * bool(noise)], GRID
+    note += " Middle panel: measured less simulated."
+    legend, grid = [MEASURED, *looks.values(), *[NOISE, _BAND] * bool(noise)], GRID
     if np.isfinite(first):
         note += f" Lowest panel: power densities of the measured signal and of what differs. {state_method(first)}"
     else:
@@ -197,9 +199,8 @@ def _plot_channel(trace: Trace, group: Sequence[Trace], looks: _Looks) -> Figure
     title = f"{shown.words[:1].upper()}{shown.words[1:]}, RMS difference: {', '.join(figures)}"
     figure, [[upper], [lower], *spectra] = style.make_page(title, note, grid, legend)
     inside = (trace.time >= window.start) & (trace.time <= window.end)
-    # The first one, which is dashed, last: where two agree, both are seen.
     drawn = [(upper, trace.measured, MEASURED)]
-    for name, look in reversed(looks.items()):
+    for name, look in looks.items():
         drawn += [(upper, getattr(trace, name), look), (lower, _subtract(trace, name), look)]
     for axes, values, look in drawn:
         style.draw_line(axes, *thin_line(trace.time[inside], shown.factor * values[inside]), look)
@@ -218,7 +219,7 @@ def _plot_channel(trace: Trace, group: Sequence[Trace], looks: _Looks) -> Figure
         # The one-sided density of white noise of RMS s is 2 s^2 dt.
         densities.append((density[0][0], np.full(len(density[0][0]), 2 * noise**2 * step)))
     for [axes] in spectra:
-        draw_densities(axes, densities, [MEASURED, *reversed(looks.values()), NOISE][: len(densities)], decades=DECADES)
+        draw_densities(axes, densities, [MEASURED, *looks.values(), NOISE][: len(densities)], decades=DECADES)
         style.scale_frequency_axis(axes, first, 0.5 / step)
         axes.set_ylabel(f"power density\n[{shown.square}/Hz]")
     for axes in figure.axes:

@@ -17,6 +17,7 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, to_hex
 from matplotlib.figure import Figure
+from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 from matplotlib.typing import LineStyleType
@@ -35,7 +36,7 @@ SAMPLE = 0.62
 """Width of a legend's sample of a line, with the gaps around it, in inches."""
 LINE = 0.21
 """Height of a line of text in inches."""
-NOTE = int(WIDTH / 0.0715)
+NOTE = int(WIDTH / 0.0725)
 """Letters of a line of a note, in which few are wide."""
 FONT = 9.5
 """Size of text in points."""
@@ -46,6 +47,8 @@ DASHES: tuple[LineStyleType, ...] = ("-", (0.0, (5.0, 1.5)), (0.0, (7.0, 1.5, 1.
 """Neighbours differ in their dashes, and so do the two blues and the two reds: colour is not the only difference."""
 AREA = "0.91"
 """Grey of areas, such as a band of noise; a wide line of a legend names one."""
+_WIDER, _WIDEST, _APART, _PALE = 2.0, 6.0, 0.8, 0.45
+"""Of lines on each other: points by which each is wider than the next, at most in all, at least; their opacity."""
 _NUMBER, _FEW = 0.6, 3
 """Width in inches of a number along an axis, such as -0.025, with the space to the next; how many are few."""
 _TICK = (0.4, 0.2)
@@ -159,8 +162,8 @@ def make_page(title: str, note: str, grid: Grid, legend: Sequence[Entry] = ()) -
 
 
 def _break(text: str, letters: int) -> list[str]:
-    """Return the lines of a cleaned text; a figure keeps its per cent sign."""
-    return wrap(text.replace(" %", "\u00a0%"), letters)
+    """Return the lines of a cleaned text; a figure keeps its per cent sign and its degree."""
+    return wrap(text.replace(" %", "\u00a0%").replace(" °", "\u00a0°"), letters)
 
 
 def measure_head(title: int, note: int) -> float:
@@ -192,7 +195,7 @@ def add_colour_bar(axes: Axes, drawn: ScalarMappable, label: str, extend: str = 
 
 
 def name_coincident(figure: Figure) -> Figure:
-    """Return a finished figure; its note says which lines lie on each other in all panels that have them."""
+    """Return a finished figure in which lines that lie on each other in all of their panels are named and all seen."""
     # matplotlib gives lines of its own a label that begins with an underscore.
     panels = [{str(line.get_label()): line for line in axes.lines} for axes in figure.axes]
     names = [name for name in dict.fromkeys(chain(*panels)) if name.strip() and name[0] != "_"]
@@ -204,10 +207,32 @@ def name_coincident(figure: Figure) -> Figure:
             if found and all(_lie_on_each_other(each[first], each[name]) for each in found)
         )  # fmt: skip
         groups.setdefault(next(alike, name), []).append(name)
-    several = [[f"“{name.strip()}”" for name in group] for group in groups.values() if len(group) > 1]
+    several = [group for group in groups.values() if len(group) > 1]
+    for group in several:
+        _nest_lines(figure, group)
     if several:
-        _lengthen_note(figure, " ".join(f"{name_some(group)} coincide." for group in several))
+        named = [name_some([f"“{name.strip()}”" for name in group]) for group in several]
+        _lengthen_note(figure, " ".join(f"{names} coincide." for names in named))
     return figure
+
+
+def _nest_lines(figure: Figure, group: Sequence[str]) -> None:
+    """Make lines that lie on each other solid, the last one thin and the others pale, the earlier the wider.
+
+    Those whose looks already are so stay as they are.
+    """
+    lines = {name: [line for axes in figure.axes for line in axes.lines if line.get_label() == name] for name in group}
+    if max(np.diff([lines[name][0].get_linewidth() for name in group])) < -_APART:
+        return
+    for legend in figure.findobj(Legend):
+        for text, sample in zip(legend.get_texts(), legend.legend_handles, strict=True):
+            if isinstance(sample, Line2D) and text.get_text() in lines:
+                lines[text.get_text()].append(sample)
+    step = min(_WIDER, _WIDEST / (len(group) - 1))
+    for rank, line in ((rank, line) for rank, name in enumerate(reversed(group)) for line in lines[name]):
+        line.set(linestyle="-" if line.is_dashed() else line.get_linestyle(), linewidth=1.0 + step * rank)
+        line.set(markersize=line.get_markersize() + step * rank, zorder=2.0 - 0.01 * rank)
+        line.set_alpha(_PALE if rank else 1.0)
 
 
 def _lie_on_each_other(one: Line2D, other: Line2D) -> bool:

@@ -38,3 +38,12 @@ def test_a_transmissibility_begins_with_its_density_and_has_no_stray_lines():
     stretches = np.split(known, np.flatnonzero(np.diff(known) > 1) + 1)
     assert min(map(len, stretches)) >= 3 and 9.0 < frequency[known[-1]] < 15.0
     np.testing.assert_allclose(gain[(frequency > 0.5) & (frequency < 5.0)], 1.0, atol=0.1)
+
+
+def test_a_transmissibility_ends_where_it_is_not_trusted_and_has_no_islands_above():
+    random = np.random.default_rng(7)
+    floor, other = random.standard_normal((2, 6000))
+    band = signal.butter(6, (8.0, 20.0), "bandstop", fs=100.0, output="sos")
+    driver = signal.sosfiltfilt(band, floor) + 0.3 * (other - signal.sosfiltfilt(band, other))
+    frequency, gain = trusted_gain(floor, driver, 100.0, 50.0)
+    assert np.all(np.isfinite(gain[(frequency > 0.5) & (frequency < 7.0)])) and np.all(np.isnan(gain[frequency > 10.0]))

@@ -13,6 +13,7 @@ from seatsim.plots.runs.dampers import plot_force_velocity
 from seatsim.plots.runs.signals import CLOSE_UP
 from seatsim.plots.style import GREY
 from seatsim.plots.thinning import BINS, find_loudest, thin_line
+from seatsim.scenario.loading import load
 from seatsim.simulation.naming import find_swept_number
 from seatsim.simulation.result import History
 
@@ -82,8 +83,20 @@ def test_a_channel_that_chatters_lies_pale_behind_the_others(made_up):
     calm, other = made_up({"variant": "a"}), made_up({"variant": "b"})
     force = calm.history["damper_force"] + 200.0 * (-1.0) ** np.arange(len(calm.history["time"]))
     axes = plot_time_histories([with_channels(calm, damper_force=force), other, other]).axes[2]
-    assert [line.get_alpha() for line in axes.lines] == [signals.PALE, 1.0, 1.0]
+    assert axes.lines[0].get_alpha() == signals.PALE < min(line.get_alpha() for line in axes.lines[1:])
     assert axes.lines[0].get_zorder() < axes.lines[1].get_zorder()
+
+
+def test_of_many_runs_the_close_up_has_those_at_the_ends_and_names_those_left_out(made_up):
+    runs = [made_up({"variant": f"law {k}"}, motion=1.0 + (k - 2.1) ** 2) for k in range(5)]
+    runs[1] = with_scenario(runs[1], control=load("em5")[1].control)
+    figure = plot_time_histories(runs)
+    assert legend(figure)[:3] == ["law 0", "law 1", "law 2"]
+    said = " ".join(texts(figure)[1].split())
+    assert "Shown: “law 0” (least comfortable), “law 1” (best passive) and “law 2” (most comfortable)." in said
+    assert "Left out: “law 3” and “law 4”." in said
+    widths = [line.get_linewidth() for line in figure.axes[0].lines[:3]]
+    assert widths == sorted(widths, reverse=True)
 
 
 def test_the_density_of_white_noise_is_flat(made_up):
@@ -174,7 +187,7 @@ def test_more_runs_than_lines_can_tell_apart(made_up):
     many = [made_up({"seed": n}, seconds=0.1) for n in range(20)]
     spread = [run.scenario.label["seed"] for run in looks.show_runs(many)[0].runs]
     assert len(spread) == 8 and spread[0] == 0 and spread[-1] == 19
-    assert "8 of 20 runs are shown, spread evenly over their order." in " ".join(texts(plot_psd(many))[1].split())
+    assert "8 of 20 runs are compared, spread evenly over their order." in " ".join(texts(plot_psd(many))[1].split())
 
 
 def test_a_variant_has_one_colour_in_all_pictures(made_up):

@@ -26,9 +26,9 @@ def test_ticks_of_a_logarithmic_axis_are_plain_numbers_or_over_many_decades_powe
     assert axes.yaxis.get_major_formatter()(2e-6, 0) == "2×10⁻⁶"
 
 
-def test_lines_that_coincide_are_named_in_the_note_and_nothing_else_changes():
+def test_lines_that_coincide_are_named_in_the_note_and_both_are_seen():
     looks = style.make_entries(["a", "$b$", "other"])
-    figure, [[left], [right]] = style.make_page("title", "A note that is a line long." * 3, Grid((1.0, 1.0)), looks)
+    figure, [[left], [right]] = style.make_page("title", "A note as long as a line." * 3, Grid((1.0, 1.0)), looks)
     x = np.linspace(0.0, 1.0, 50)
     for axes, shift in ((left, 0.0), (right, 1e-3)):
         for look, values in zip(looks, (x, x + shift, 1.0 - x), strict=True):
@@ -37,6 +37,11 @@ def test_lines_that_coincide_are_named_in_the_note_and_nothing_else_changes():
     before = [axes.get_position().height * height for axes in figure.axes]
     style.name_coincident(figure)
     assert " ".join(figure.texts[1].get_text().split()).endswith(r"“a” and “\$b\$” coincide.")
+    lower, upper, other = left.lines
+    assert lower.get_linewidth() > upper.get_linewidth() and lower.get_alpha() < 1.0 == upper.get_alpha()
+    assert lower.get_zorder() < upper.get_zorder() and other.get_linewidth() == looks[2].width
+    samples = figure.legends[0].legend_handles
+    assert samples[0].get_linewidth() == lower.get_linewidth() and samples[0].get_alpha() == lower.get_alpha()
     grown = figure.get_figheight()
     assert grown == height + style.LINE
     np.testing.assert_allclose([axes.get_position().height * grown for axes in figure.axes], before)

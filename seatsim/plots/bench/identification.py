@@ -23,7 +23,7 @@ SHOWN = 1200
 """Most rows of a record that are drawn, from the stretch with the highest speed."""
 START = 0.3
 """s at the start of a record that are left out: there the state of the damper is not known."""
-_PREDICTED = Entry("predicted", style.COLOURS[1], style.DASHES[1], 1.2)
+_PREDICTED = Entry("predicted", style.COLOURS[1], width=1.0)
 _DIFFERENCE = Entry("measured less predicted", style.COLOURS[0], width=1.0)
 _FIT = "Fit (normalised RMS): 100 % less the RMS error as a share of the measured force's standard deviation."
 PARTS = {"train": "fitted", "test": "held out"}

@@ -5,13 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+import numpy as np
+
+from seatsim.metrics.table import COMFORT, UNWEIGHTED
 from seatsim.plots.style import GREY, Entry, make_entries
 from seatsim.plots.thinning import spread_evenly
+from seatsim.scenario.scenario import is_passive
+from seatsim.schema.text import join_names, name_some
 from seatsim.simulation import naming
 from seatsim.simulation.result import Run
 
 MOST = 8
 """Most runs that lines of one panel can tell apart."""
+MOST_CLOSE = 3
+"""Most runs that can be told apart over time, where a law may switch at every sample."""
 
 _FADED = 0.65
 """How much paler the last of several lines in one colour is than the first."""
@@ -44,6 +51,23 @@ def show_runs(runs: Sequence[Run]) -> list[Shown]:
         own = [looks[id(run)]._replace(label=name) for run, name in zip(shown, names, strict=True)]
         found.append(Shown(scenario, naming.make_title(part), shown, own, omission))
     return found
+
+
+def choose_extremes(shown: Shown) -> Shown:
+    """Return the most and the least comfortable of some runs, and the best passive one; all, where they are few."""
+    if len(shown.runs) <= MOST_CLOSE:
+        return shown
+    is_weighted = all(np.isfinite(run.read_metric(COMFORT)) for run in shown.runs)
+    pairs = list(zip(shown.runs, shown.looks, strict=True))
+    ranked = sorted(pairs, key=lambda pair: pair[0].read_metric(COMFORT if is_weighted else UNWEIGHTED))
+    known = [("most comfortable", ranked[0]), ("least comfortable", ranked[-1])]
+    known += [("best passive", pair) for pair in ranked if is_passive(pair[0].scenario)][:1]
+    chosen = [pair for pair in pairs if any(pair is each for _, each in known)]
+    why = [join_names([words for words, each in known if each is pair]) for pair in chosen]
+    drawn = join_names([f"“{look.label}” ({words})" for (_, look), words in zip(chosen, why, strict=True)])
+    left = [f"“{look.label}”" for _, look in (pair for pair in pairs if not any(pair is each for each in chosen))]
+    omission = f"{shown.omission} Shown: {drawn}. Left out: {name_some(left)}."
+    return shown._replace(runs=[run for run, _ in chosen], looks=[look for _, look in chosen], omission=omission)
 
 
 def choose_looks(runs: Sequence[Run]) -> dict[int, Entry]:
@@ -98,9 +122,13 @@ def _select_shown(runs: Sequence[Run]) -> tuple[list[Run], list[str], str]:
     group = [run for run in runs if _swept_values(run) == first]
     if 1 < len(group) <= MOST:
         at = ", ".join(naming.describe_swept(runs[0].scenario, key, value) for key, value in first.items())
-        return group, naming.label_runs(group, without=first), f" {len(group)} of {len(runs)} runs are shown: {at}."
+        return group, naming.label_runs(group, without=first), f" {len(group)} of {len(runs)} runs are compared: {at}."
     chosen = spread_evenly(runs, MOST)
-    return chosen, naming.label_runs(chosen), f" {MOST} of {len(runs)} runs are shown, spread evenly over their order."
+    return (
+        chosen,
+        naming.label_runs(chosen),
+        f" {MOST} of {len(runs)} runs are compared, spread evenly over their order.",
+    )
 
 
 def _swept_values(run: Run) -> dict[str, object]:

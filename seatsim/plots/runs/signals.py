@@ -10,12 +10,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from seatsim.metrics.spectra import POWER, TRUSTED, estimate_density, trusted_gain
+from seatsim.metrics.spectra import PER_OCTAVE, POWER, TRUSTED, estimate_density, trusted_gain
 from seatsim.plots import style
 from seatsim.plots.densities import draw_densities, find_first, find_problem, state_method
-from seatsim.plots.runs.looks import Shown
+from seatsim.plots.runs.looks import Shown, choose_extremes
 from seatsim.plots.style import COLOURS, DARK, DASHES, GREY, Entry, Grid
-from seatsim.plots.thinning import Window, find_loudest, thin_line
+from seatsim.plots.thinning import Window, find_loudest, spread_evenly, thin_line
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.printing import describe_channel
@@ -36,6 +36,8 @@ RESTLESS, PALE = 2.5, 0.3
 CHANNELS = ("driver_acceleration", "suspension_displacement", "damper_force", "coil_current")
 _TARGETS = {"damper_force": "wanted_force", "coil_current": "current_command"}
 """Channels that others should follow."""
+_UPON_EACH_OTHER = ((3.0, 0.5), (1.8, 0.75), (0.9, 1.0))
+"""Widths and opacities of runs that agree for much of the time, the lowest first, so that all are seen."""
 RUN = Entry("the run", COLOURS[0], width=1.1)
 _TARGET = Entry("wanted force, commanded current", COLOURS[5], "-", 2.0, 0.6)
 LIMIT = Entry("end stop begins", DARK, ":")
@@ -45,7 +47,7 @@ GRID = Grid((2.9,))
 SAME = Entry("driver moves as much as the floor", GREY, width=1.0)
 NOTE = (
     f"Drawn where the floor has power ({POWER:g} of its highest density or more) and explains most of the driver's"
-    f" motion (coherence {TRUSTED:g} or more)."
+    f" motion (coherence {TRUSTED:g} or more); a line ends where this fails."
 )
 
 
@@ -53,9 +55,10 @@ def plot_time_histories(shown: Shown) -> Figure:
     """Return driver acceleration, suspension displacement, damper force and current in one window.
 
     It is that with the largest RMS of the first run's driver acceleration, within all runs. What was wanted and
-    commanded is drawn for a single run only.
+    commanded is drawn for a single run only; of many runs those at the ends are drawn.
     """
     single, first = len(shown.runs) == 1, shown.runs[0].history
+    shown = choose_extremes(shown)
     common = float(min(run.history["time"][-1] for run in shown.runs))
     window = find_loudest(first["driver_acceleration"][first["time"] <= common], first.step, CLOSE_UP, RASTER)
     note = f"{window}, where the driver's RMS acceleration is largest{' in the first run' * (not single)}."
@@ -66,7 +69,7 @@ def plot_time_histories(shown: Shown) -> Figure:
     limits = _find_limits(shown.runs)
     # A law that states a current wants no force.
     target = _TARGET if np.isfinite(first["wanted_force"]).any() else _TARGET._replace(label="commanded current")
-    looks = [RUN] if single else shown.looks
+    looks = [RUN] if single else _lay_upon_each_other(shown.looks)
     legend = [*looks, *[target] * single, *[LIMIT] * bool(limits)]
     grid = Grid((1.3,) * len(CHANNELS), left=1.12, gap=(0.0, 0.3))
     page = style.make_page(f"Time histories: {shown.title}", note + shown.omission, grid, legend)
@@ -82,6 +85,12 @@ def plot_time_histories(shown: Shown) -> Figure:
         axes.tick_params(labelbottom=axes is page.rows[-1][0])
     axes.set_xlabel("time [s]")
     return style.name_coincident(page.figure)
+
+
+def _lay_upon_each_other(looks: Sequence[Entry]) -> list[Entry]:
+    """Return looks of which the thin upper ones leave the wide lower ones to be seen."""
+    ways = spread_evenly(_UPON_EACH_OTHER, len(looks))
+    return [look._replace(dashes="-", width=way[0], alpha=way[1]) for look, way in zip(looks, ways, strict=True)]
 
 
 def _draw_lines(axes: Axes, lines: Sequence[tuple[Run, str, Entry]], window: Window) -> None:
@@ -134,7 +143,7 @@ def plot_transmissibility(shown: Shown) -> Figure:
     places, known = (each[np.isfinite(values) & (values > 0)] for each in (places, values))
     resolution = max((frequency[1] - frequency[0] for frequency, _, _ in gains if len(frequency)), default=np.inf)
     looks = shown.looks if len(shown.runs) > 1 else [shown.looks[0]._replace(label="the run")]
-    lines = f" Lines up to {resolution:.2g} Hz apart." * bool(known.size)
+    lines = f" Lines up to {resolution:.2g} Hz apart, averaged over 1/{PER_OCTAVE} octave." * bool(known.size)
     title, note = f"Transmissibility, floor to driver: {shown.title}", NOTE + lines + shown.omission
     figure, [[axes]] = style.make_page(title, note, GRID, [*looks, SAME] if known.size else [])
     axes.set_ylabel("|driver / floor| [-]")
