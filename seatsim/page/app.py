@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import ctypes
 import hmac
 import re
@@ -27,7 +26,6 @@ from starlette.requests import HTTPConnection, Request
 from starlette.responses import HTMLResponse, JSONResponse, PlainTextResponse, RedirectResponse, Response
 from starlette.routing import Route
 from starlette.types import ASGIApp, Receive, Scope, Send
-from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from seatsim.report.rendering import digest_of, make_environment, read_asset
 from seatsim.scenario.loading import find_file
@@ -211,43 +209,15 @@ async def _read_values(request: Request) -> dict[str, object]:
 
 
 _HOST = "127.0.0.1"
-_LARGEST = 50_000_000
-"""Bytes of the largest file that is read."""
-
-
-class Impatient(H11Protocol):
-    """A connection that is closed where no whole request comes, so that none who is silent can hold it open."""
-
-    idle = 30.0
-    """s; after twice this time at the latest it is closed."""
-
-    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as in uvicorn
-        """Begin to look after the connection."""
-        super().connection_made(transport)
-        self.loop.call_later(self.idle, self._look, None)
-
-    def _look(self, before: object) -> None:
-        """Close the connection if it waits for the rest of the same request as at the last look, or for a first one."""
-        cycle = self.cycle
-        waits = cycle is None or cycle.response_complete or cycle.more_body
-        if waits and cycle is before:
-            self.transport.close()
-        elif not self.transport.is_closing():
-            self.loop.call_later(self.idle, self._look, cycle)
 
 
 def find_target(path: Path) -> Path:
     """Return the path of what the page is to show: the folder of a recording, a scenario, or an example of that name.
 
     Raises:
-        InputError: it is neither, or larger than the page reads.
+        InputError: it is neither.
     """
-    if not path.is_dir():
-        return find_file(path)
-    for file in path.iterdir():
-        if file.is_file() and file.stat().st_size > _LARGEST:
-            raise InputError(f"{file}: larger than {_LARGEST / 1e6:.0f} MB, which is the most that the page reads")
-    return path
+    return path if path.is_dir() else find_file(path)
 
 
 def open_target(path: Path) -> ScenarioView | RecordingView:
@@ -289,7 +259,7 @@ def serve(path: Path, folder: Path, port: int, browser: bool, say: Callable[[str
     address = f"http://{_HOST}:{taken}/?token={token}"
     target = ThreadPoolExecutor(1).submit(open_target, path)
     app = make_app(target, folder.resolve(), token, taken)
-    settings = uvicorn.Config(app, http=Impatient, log_level="warning", access_log=False, server_header=False)
+    settings = uvicorn.Config(app, log_level="warning", access_log=False, server_header=False)
     server = uvicorn.Server(settings)
     target.add_done_callback(lambda loaded: setattr(server, "should_exit", loaded.exception() is not None))
     say(address)

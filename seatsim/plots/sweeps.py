@@ -1,4 +1,4 @@
-"""Figures of a sweep: what matters most, and comfort against travel."""
+"""The figure of a sweep: comfort against travel."""
 
 from __future__ import annotations
 
@@ -13,15 +13,11 @@ from seatsim.plots import style
 from seatsim.plots.style import COLOURS, Entry, Grid, describe_metric
 from seatsim.scenario.scenario import is_condition
 from seatsim.schema.arrays import Array
-from seatsim.schema.printing import Quantity, describe_channel, format_number, format_percent
+from seatsim.schema.printing import Quantity, describe_channel, format_number
 from seatsim.sweeps.parts import SweepRows
-from seatsim.sweeps.sensitivity import Sensitivity
 
 ROAD = "excitation."
 """How the keys of the excitation begin; the first of them with few values gives each value a panel of its own."""
-_MOST_KEYS = 14
-_ROW = 0.27
-"""Height of a row of bars in inches."""
 MOST_PANELS = 6
 _MOST_GROUPS = 7
 _FRONT = Entry("Pareto front", "black", width=1.2)
@@ -35,26 +31,6 @@ def describe_column(name: str, units: Mapping[str, str]) -> Quantity:
 def format_level(value: object) -> str:
     """Return the value of a key as text."""
     return format_number(value, 4) if isinstance(value, float) else str(value)
-
-
-def plot_shares(found: Sequence[Sensitivity], words: str) -> Figure:
-    """Return the shares of the variance of a metric that its keys explain, alone and with others."""
-    rows = found[:_MOST_KEYS]
-    cut = f" The {_MOST_KEYS} strongest of {len(found)} parameters." if len(found) > _MOST_KEYS else ""
-    note = f"What is fitted to the runs explains {format_percent(found[0].explained)} of the variance.{cut}"
-    alone = Entry("the parameter alone", COLOURS[0], width=8)
-    legend = (alone, Entry("with its interactions, 95 % interval", "black", width=1.6))
-    names = [row.key for row in rows]
-    grid = Grid((_ROW * len(rows) + 0.1,), left=style.measure_names(names))
-    figure, [[axes]] = style.make_page(f"What determines the {words}", note, grid, legend)
-    axes.set_ylim(len(names) - 0.4, -0.6)
-    axes.set_yticks(np.arange(len(names)), [style.clean_text(name, 32) for name in names], fontsize=style.FONT)
-    axes.grid(False, axis="y")
-    axes.barh(range(len(rows)), [_clip(row.first) for row in rows], height=0.66, color=COLOURS[0], zorder=2)
-    for k, row in enumerate(rows):
-        axes.plot([_clip(row.total_low), _clip(row.total_high)], [k, k], color="black", linewidth=1.6, zorder=3)
-    axes.set(xlim=(0, 100), xlabel="share of the variance [%]")
-    return figure
 
 
 def plot_comfort(rows: SweepRows, order: Sequence[str]) -> Figure | None:
@@ -103,8 +79,3 @@ def find_front(travel: Array, comfort: Array) -> NDArray[np.intp]:
     order = np.lexsort((comfort, travel))
     best = np.minimum.accumulate(comfort[order])
     return np.asarray(order[np.concatenate([[True], comfort[order][1:] < best[:-1]])], np.intp)
-
-
-def _clip(share: float) -> float:
-    """Return a share in per cent, within 0 and 100."""
-    return 100.0 * min(1.0, max(0.0, share)) if np.isfinite(share) else 0.0

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from seatsim.metrics.table import COMFORT, TRAVEL
-from seatsim.plots.sweeps import describe_column, format_level, plot_comfort, plot_shares
+from seatsim.plots.sweeps import describe_column, format_level, plot_comfort
 from seatsim.report.blocks import Block, Figures, Report, Table, Text, show_pictures, tabulate
 from seatsim.report.composing import compose
 from seatsim.report.formatting import choose_advice, explain, format_quantity, show_table
@@ -33,7 +32,7 @@ def report_sweep(rows: SweepRows, found: Sensitivities, exceeded: Sequence[Excee
     sections: dict[str, Sequence[Block]] = {
         "limits": _show_limits(exceeded, rows),
         "choices": tabulate_best(rows),
-        "sensitivity": _show_sensitivity(found, rows, figures),
+        "sensitivity": _show_sensitivity(found, rows),
         "pareto": show_pictures(figures, "comfort"),
         "states": _show_states(rows),
     }
@@ -121,16 +120,12 @@ def _list_metrics(found: Sensitivities, rows: SweepRows) -> list[str]:
 
 def draw_figures(found: Sensitivities, rows: SweepRows) -> Figures:
     """Return the figures of a sweep by name."""
-    figures: dict[str, Any] = {}
-    for metric in _list_metrics(found, rows):
-        shares, words = found.of(metric), describe_column(metric, rows.units).words
-        figures[f"shares_{metric}"] = plot_shares(shares, words)
     order = dict.fromkeys([*(row.key for row in found.leading), *rows.keys])
-    figures["comfort"] = plot_comfort(rows, list(order))
-    return {name: figure for name, figure in figures.items() if figure is not None}
+    figure = plot_comfort(rows, list(order))
+    return {} if figure is None else {"comfort": figure}
 
 
-def _show_sensitivity(found: Sensitivities, rows: SweepRows, figures: Figures) -> list[Block]:
+def _show_sensitivity(found: Sensitivities, rows: SweepRows) -> list[Block]:
     """Return of comfort, travel and each limited metric the shares of variance, and how far each key moves the mean."""
     if not found.rows:
         return [Text(f"{found.problem[0].upper()}{found.problem[1:]}.")]
@@ -146,7 +141,6 @@ def _show_sensitivity(found: Sensitivities, rows: SweepRows, figures: Figures) -
             )
             for row in shares[:MOST_LINES]
         ]
-        blocks += show_pictures(figures, f"shares_{metric}")
         blocks += show_table("swings", swings, metric=shown.axis)
         explained, words = shares[0].explained, shown.words
         if explained < EXPLAINED:

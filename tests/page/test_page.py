@@ -7,10 +7,8 @@ from pathlib import Path
 import httpx
 import numpy as np
 import pytest
-import uvicorn
-from uvicorn.server import ServerState
 
-from seatsim.page.app import Impatient, find_target, make_app, open_target
+from seatsim.page.app import find_target, make_app, open_target
 from seatsim.page.scenario_view import Choice, Slider, View, read_choice, read_number
 from seatsim.report.blocks import Table
 from seatsim.report.packing import Panel, pack_signals
@@ -72,35 +70,6 @@ def ask(app, method, path, token=TOKEN, base=HOME, **options):
     return asyncio.run(send())
 
 
-@pytest.mark.parametrize(
-    ("sent", "answered"),
-    [(b"", False), (b"GET / HTTP/1.1\r\nHost:", False), (b"GET / HTTP/1.1\r\nHost: a\r\n\r\n", True),
-     (b"POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 9\r\n\r\n12", False)],
-)  # fmt: skip
-def test_a_connection_without_a_whole_request_is_closed(sent, answered):
-    class Quick(Impatient):
-        idle = 0.1
-
-    async def slow(scope, receive, send):
-        while (await receive()).get("more_body"):
-            pass
-        await asyncio.sleep(0.5)
-        await send({"type": "http.response.start", "status": 200, "headers": []})
-        await send({"type": "http.response.body", "body": b"done"})
-
-    async def talk():
-        config = uvicorn.Config(slow, timeout_keep_alive=60)
-        make = lambda: Quick(config, ServerState(), {})  # noqa: E731
-        async with await asyncio.get_running_loop().create_server(make, "127.0.0.1", 0) as server:
-            reader, writer = await asyncio.open_connection(*server.sockets[0].getsockname())
-            writer.write(sent)
-            answer = await asyncio.wait_for(reader.read(), 120.0)
-            writer.close()
-            return answer
-
-    assert (b"done" in asyncio.run(talk())) == answered
-
-
 def test_a_page_keeps_its_cookie_when_another_port_is_opened(app, tmp_path):
     other = make_app(loaded(Plain()), tmp_path, "other-token", PORT + 1)
     pages = ((app, TOKEN, HOME), (other, "other-token", f"http://127.0.0.1:{PORT + 1}"))
@@ -148,11 +117,7 @@ def test_a_target_with_a_fault_is_said(tmp_path):
         find_target(tmp_path / "none.yaml")
 
 
-def test_large_files_and_requests_are_refused(tmp_path, monkeypatch, app):
-    (tmp_path / "large.yaml").write_text("x" * 2000)
-    monkeypatch.setattr("seatsim.page.app._LARGEST", 1000)
-    with pytest.raises(InputError, match="larger than"):
-        find_target(tmp_path)
+def test_large_requests_are_refused(app):
     assert ask(app, "POST", "/view", json={"x": "y" * 200_000}).status_code == 413
 
 
