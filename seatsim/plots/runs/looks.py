@@ -97,7 +97,7 @@ def choose_looks(runs: Sequence[Run]) -> dict[int, Entry]:
 def explain_grey(looks: Mapping[int, Entry]) -> str:
     """Return a sentence on the runs that no picture draws as a line, where there are some."""
     is_grey = any(look.colour == GREY for look in looks.values())
-    return " Grey: runs that the pictures over time and frequency leave out." * is_grey
+    return " Grey: runs that pictures over frequency leave out." * is_grey
 
 
 def name_variant(run: Run) -> str:

@@ -36,7 +36,7 @@ RESTLESS, PALE = 2.5, 0.3
 CHANNELS = ("driver_acceleration", "suspension_displacement", "damper_force", "coil_current")
 _TARGETS = {"damper_force": "wanted_force", "coil_current": "current_command"}
 """Channels that others should follow."""
-_UPON_EACH_OTHER = ((3.0, 0.5), (1.8, 0.75), (0.9, 1.0))
+_UPON_EACH_OTHER = ((3.2, 0.5), (2.1, 0.75), (1.1, 1.0))
 """Widths and opacities of runs that agree for much of the time, the lowest first, so that all are seen."""
 RUN = Entry("the run", COLOURS[0], width=1.1)
 _TARGET = Entry("wanted force, commanded current", COLOURS[5], "-", 2.0, 0.6)
