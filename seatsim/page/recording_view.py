@@ -13,7 +13,7 @@ from seatsim.diagnosis.trial import Trial, name_candidate
 from seatsim.metrics.motion import rms
 from seatsim.page.scenario_view import Choice, Slider, Switch, View, make_slider, read_number
 from seatsim.report.formatting import describe_effect, format_noise, format_sentence, say_noise, show_table
-from seatsim.report.packing import MEASURED, QUICK, pack_traces
+from seatsim.report.packing import MEASURED, NOMINAL, QUICK, pack_traces
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import describe
@@ -63,7 +63,7 @@ class RecordingView:
         for channel, old, new, noise in zip(self.problem.channels, self.before, gaps, self.floor, strict=True):
             first, second, shrink = map(format_percent, (old, new, 1 - new / old))
             rows.append([channel.replace("_", " "), first, second, format_noise(noise), shrink])
-        lines = {"measured": ("measured", MEASURED), "nominal": ("nominal", 1), "after": ("with effects", 0)}
+        lines = {"measured": ("measured", MEASURED), "nominal": ("nominal", NOMINAL), "after": ("with effects", 0)}
         signals = pack_traces(self.trial.list_traces(after), lines, QUICK)
         return View(self._say(len(parameters.terms), gaps), [*show_table("trial", rows)], signals, fitted=fitted)
 

@@ -17,7 +17,7 @@ from seatsim.report import formatting
 from seatsim.report.blocks import Block, Figures, Items, Report, Table, Text, show_pictures, tabulate
 from seatsim.report.composing import compose
 from seatsim.report.formatting import choose_advice, format_quantity, format_sentence, read_words, show_table
-from seatsim.report.packing import MEASURED, pack_traces
+from seatsim.report.packing import MEASURED, NOMINAL, pack_traces
 from seatsim.schema.printing import MINUS, UNKNOWN, describe_channel, format_number, format_percent, format_unit
 from seatsim.schema.text import join_names
 
@@ -255,7 +255,7 @@ def show_signals(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
     if not known:
         return []
     named = [replace(each, run=f"{each.run}{' (held out)' * (each.run in diagnosis.held_out)}") for each in known]
-    lines = {"measured": ("measured", MEASURED), "nominal": ("nominal", 1)}
+    lines = {"measured": ("measured", MEASURED), "nominal": ("nominal", NOMINAL)}
     lines["after"] = (find_last(diagnosis).label, 0 if diagnosis.selected else 2)
     runs = list(dict.fromkeys(trace.run for trace in named))
     ordered = sorted(named, key=lambda trace: (runs.index(trace.run), -gaps.get(trace.channel, 0.0)))

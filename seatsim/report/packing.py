@@ -25,8 +25,8 @@ _LEVEL = 6
 LEVELS = 32767
 GAP = -32768
 """Stands for a value that is not known."""
-MEASURED = 8
-"""Look of a measured signal; looks 0 to 7 are those of the figures' colours."""
+MEASURED, NOMINAL = 8, 9
+"""Looks of what lies wide and pale below another line; looks 0 to 7 are those of the figures' colours."""
 
 _Line: TypeAlias = dict[str, float | str]
 

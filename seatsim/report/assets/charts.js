@@ -1,7 +1,7 @@
 "use strict";
 // Draws the groups of linked pictures of a page with uPlot. Everything it draws stands on the page as packed numbers.
 (() => {
-  const MEASURED = 8, GAP = -32768, HEIGHT = 240, PAPER_WIDTH = 680;
+  const WIDE = { 8: 3.4, 9: 2.4 }, GAP = -32768, HEIGHT = 240, PAPER_WIDTH = 680;
   const INCREMENTS = Array.from({ length: 25 }, (_, k) => [1, 2, 5].map(digit => Number(`${digit}e${k - 12}`))).flat();
   const paper = matchMedia("print"), dark = matchMedia("(prefers-color-scheme: dark)");
   const probe = document.body.appendChild(document.createElement("i"));
@@ -76,7 +76,7 @@
         scales: { x: { time: false, range: (plot, low, high) => [low, high] }, y: { range: (plot, low, high) => roomAround(low, high) } },
         axes: [{ ...axis, size: 30, gap: 4, space: 40, label: "time [s]", labelSize: 18, labelGap: 0, labelFont: axis.font }, { ...axis, size: 58, space: 24 }],
         series: [{}, ...this.data.lines.map((line, k) => ({
-          label: line.name, stroke: colour(`--c${line.look}`), ...(line.look === MEASURED ? { width: 3.4, alpha: 0.55 } : { width: 1.4, alpha: line.opacity, dash: [[], [7, 3], [9, 3, 2, 3]][line.look % 3] }),
+          label: line.name, stroke: colour(`--c${line.look}`), ...(WIDE[line.look] ? { width: WIDE[line.look], alpha: 0.55 } : { width: 1.4, alpha: line.opacity, dash: [[], [7, 3], [9, 3, 2, 3]][line.look % 3] }),
           points: { show: false }, spanGaps: false, show: this.switches[k] ? this.switches[k].checked : true,
         }))],
         hooks: {
