@@ -23,7 +23,7 @@ def test_every_picture_is_drawn_and_nothing_is_cut_off(opened, width, scheme):
     assert page.evaluate(BLANK) == 0
     assert page.evaluate("document.documentElement.scrollWidth <= document.documentElement.clientWidth")
     ends = page.evaluate("[...document.querySelectorAll('h1, p, figure')].map(e => e.getBoundingClientRect().right)")
-    assert max(ends) <= width and page.locator(".pictures img").count() == 6
+    assert max(ends) <= width and page.locator(".pictures img").count() == 7
     assert page.evaluate("[...document.images].every(image => image.naturalWidth > 300)")
     assert complaints == [] and requests == [opened[1]]
     page.close()
