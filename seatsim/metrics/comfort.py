@@ -164,15 +164,6 @@ def join_doses(doses: Sequence[Dose]) -> Dose:
     return _dose(duration, a_w, value, max(dose.mtvv for dose in doses), highest)
 
 
-def prolong(dose: Dose, exposure: float) -> Dose:
-    """Return the dose where the vibration goes on for `exposure` s: doses grow, a_w and all ratios stay."""
-    return dose._replace(
-        duration=exposure,
-        vdv=daily_vdv(dose.vdv, dose.duration, exposure),
-        estimated_vdv=estimated_vdv(dose.rms, exposure),
-    )
-
-
 def find_shocks(dose: Dose) -> list[str]:
     """Return why the basic method, a_w alone, does not suffice for a record; empty where it does.
 

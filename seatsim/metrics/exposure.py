@@ -10,7 +10,6 @@ from collections.abc import Mapping
 from typing import Annotated, NamedTuple
 
 from seatsim.metrics.comfort import EIGHT_HOURS, Dose, daily_exposure, daily_vdv, estimated_vdv
-from seatsim.metrics.motion import ratio
 from seatsim.schema.content import Form, written
 from seatsim.schema.errors import InputError, permit
 
@@ -117,41 +116,6 @@ def assess_exposure(doses: dict[str, Dose], hours: float) -> Exposure | None:
         zone_a8=_zone(day[0], _ZONE_A8),
         zone_vdv=_zone(evdv, _ZONE_VDV),
     )
-
-
-class Operation(NamedTuple):
-    """A part of a working day: one kind of work, and the vibration of the run that stands for it."""
-
-    name: str
-    hours: float
-    rms: Mapping[str, float]
-    """a_w in m/s^2 by axis, without multiplying factor."""
-    a8: Mapping[str, float]
-    """Partial exposure A_i(8) = k a_w sqrt(T_i / 8 h) in m/s^2 by axis; squared, they add up to A(8)^2."""
-    vdv8: Mapping[str, float]
-    """k VDV (T_i / T_record)^(1/4) in m/s^1.75 by axis; their fourth powers add up to that of the day."""
-    share: float
-    """Share of the day's A(8)^2, along the axis where that is largest; NaN without vibration."""
-
-
-def split_exposure(day: Exposure, doses: Mapping[str, Mapping[str, Dose]]) -> tuple[Operation, ...]:
-    """Return the part of each operation in a day's exposure.
-
-    Args:
-        day: of all operations together.
-        doses: by operation and axis, each over the operation's hours of the day.
-
-    Source: directive 2002/44/EC refers to ISO 2631-1:1997; that partial exposures add by their squares follows from
-    equation B.3 there.
-    """
-    found = []
-    for name, by_axis in doses.items():
-        factors = {axis: k for axis in by_axis if (k := direction(axis).health) is not None}
-        a8 = {axis: daily_exposure(k * by_axis[axis].rms, by_axis[axis].duration) for axis, k in factors.items()}
-        vdv8 = {axis: k * by_axis[axis].vdv for axis, k in factors.items()}
-        rms, hours = {axis: by_axis[axis].rms for axis in factors}, by_axis[day.a8_axis].duration / HOUR
-        found.append(Operation(name, hours, rms, a8, vdv8, ratio(a8[day.a8_axis] ** 2, day.a8**2)))
-    return tuple(found)
 
 
 def _reach(value: _ExposureValue, a8: float, vdv8: float, hours: float) -> ValueReached:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from seatsim.metrics.exposure import DAY
 from seatsim.plots.bench.vibration import plot_damping
-from seatsim.report.blocks import Block, Figures, Report, Table, show_pictures, tabulate
+from seatsim.report.blocks import Block, Figures, Report, Table, show_pictures
 from seatsim.report.composing import compose
 from seatsim.report.formatting import choose_advice, format_sentence, show_table
 from seatsim.schema.printing import format_percent
@@ -26,7 +26,6 @@ def report_comfort(found: Comfort, figures: Figures, command: str) -> Report:
     """
     answer = [_say_comfort(found), *map(format_sentence, list_comfort_sentences(found))]
     sections: dict[str, Sequence[Block]] = {
-        "day": tabulate_operations(found),
         "axes": [*tabulate_axes(found), *show_pictures(figures, "running_rms", "spectra")],
         "seat": tabulate_seat(found),
     }
@@ -76,22 +75,9 @@ def _say_comfort(found: Comfort) -> str:
 
 
 def _advise_on_comfort(found: Comfort) -> list[str]:
-    day, texts = found.exposure, []
-    if day and len(found.operations) > 1:
-        most = max(found.operations, key=lambda each: each.share)
-        texts.append(f"Begin with {most.name}: it makes {format_percent(most.share)} of the day's A(8)².")
+    day = found.exposure
     shorter = f"{day.action_value.hours_to_a8:.2g}" if day and day.action_value.exceeded_by_a8 else ""
-    return texts + choose_advice(shorten=shorter, other_seats=bool(found.seat), measure_floor=not found.seat)
-
-
-def tabulate_operations(found: Comfort) -> list[Table]:
-    """Return the table of the parts of a working day, where its runs have hours of their own."""
-    axes = [*found.operations[0].a8] if found.operations else []
-    parts = ((each, [*each.a8.values(), *each.vdv8.values()]) for each in found.operations)
-    rows = [(each.name, each.hours, *exposures, format_percent(each.share)) for each, exposures in parts]
-    units = {"A(8)": "m/s²", "VDV": "m/s¹·⁷⁵"}
-    exposures = [f"{name} {axis} [{unit}]" for name, unit in units.items() for axis in axes]
-    return tabulate("Partial exposure of each operation", ["operation", "hours", *exposures, "share of A(8)²"], rows)
+    return choose_advice(shorten=shorter, other_seats=bool(found.seat), measure_floor=not found.seat)
 
 
 def tabulate_axes(found: Comfort) -> list[Table]:
@@ -101,8 +87,7 @@ def tabulate_axes(found: Comfort) -> list[Table]:
         k, dose = each.direction, each.dose
         figures = (dose.rms, dose.vdv, dose.estimated_vdv, dose.mtvv, dose.crest_factor)
         rows.append((axis, each.column, k.weighting, each.method, k.comfort, k.health, *figures))
-    over = "over the hours of the day" if found.operations else f"over {found.duration:.3g} s"
-    return show_table("axes", rows, 4, over=over)
+    return show_table("axes", rows, 4, over=f"over {found.duration:.3g} s")
 
 
 def tabulate_seat(found: Comfort) -> list[Table]:

@@ -15,12 +15,10 @@ from seatsim.importing.readers.reading import read_file
 from seatsim.importing.signals import DataFile, Group, Signal
 from seatsim.importing.time_axis import Clock, check_is_history, find_clock
 from seatsim.metrics.exposure import DIRECTIONS
-from seatsim.recordings.bench_tables import constants, stem
 from seatsim.recordings.recording import HEADER, load_recording
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest, placed
 from seatsim.schema.units import conversion, is_unit
-from seatsim.schema.yaml_source import Source
 
 _ALIASES = {
     **{axis: (*(f"{a}_{axis}" for a in ("acc", "acceleration", "seat")), axis) for axis in ("x", "y", "z")},
@@ -129,9 +127,9 @@ def load_accelerations(
 ) -> list[AccelerationRecord]:
     """Return the record of a file, or the runs of a recording.
 
-    The sample rate of a file is `rate` in Hz, else that of its column of time, else what its format or a sidecar of
-    the same name states (`sample_rate_Hz`). Of a file with several groups the one that holds the `wanted` columns
-    counts, else the one with most accelerations. `unit` is that of columns for which none is stated; None: SI.
+    The sample rate of a file is `rate` in Hz, else that of its column of time, else what its format states. Of a file
+    with several groups the one that holds the `wanted` columns counts, else the one with most accelerations. `unit` is
+    that of columns for which none is stated; None: SI.
 
     Raises:
         InputError: nothing is there, it cannot be read, the unit is none, or the rows are not evenly spaced.
@@ -198,38 +196,29 @@ def _rate(
 ) -> tuple[float, list[str]]:
     """Return the sample rate of a group in Hz, and what is to be said of it.
 
-    It is the stated one, else that of its time, of its format, or of the sidecar of its file. An error ends with what
-    the reader has `said` of the file.
+    It is the stated one, else that of its time, else that of its format. An error ends with what the reader has `said`
+    of the file.
     """
     axis = clock.axis if clock else None
     if stated is not None:
         found = axis.rate if axis and clock and clock.unit and axis.is_even else group.rate
         is_contrary = found is not None and abs(stated / found - 1.0) > _CONTRARY
         notes = [f"the file states {found:.6g} Hz; the stated {stated:g} Hz is taken"] if is_contrary else []
-        lost = list(doubt_time(axis, clock.column)) if axis and clock and len(axis.breaks) else []
+        lost = doubt_time(axis, clock.column) if axis and clock and len(axis.breaks) else ()
         return stated, [*notes, *(issue.sentence for issue in lost)]
-    if clock is not None:
-        return _rate_of(clock, path)
-    sidecar = path.with_name(stem(path.name) + ".yaml")
-    rate = group.rate or (constants(Source(sidecar)).get("rate") if sidecar.exists() else None)
-    if rate is None:
+    if clock is None and group.rate is not None:
+        return group.rate, []
+    if clock is None:
         lacking = "no column holds the time (time_s, time_ms, t), and no rate is stated; give --rate"
         raise InputError("; ".join([f"{path}: {lacking}", *said]))
-    return rate, []
-
-
-def _rate_of(clock: Clock, path: Path) -> tuple[float, list[str]]:
-    """Return the sample rate of a column of time in Hz, and what is to be said of it."""
-    if clock.axis is None or clock.open:
+    if axis is None or clock.open:
         problem = f"{path}: {clock.open}; give --rate, or state its unit under time in the map of seatsim import"
         raise InputError(problem)
-    said = [issue.sentence for issue in doubt_time(clock.axis, clock.column)]
-    if len(clock.axis.breaks) or not clock.axis.is_even:
-        raise InputError(
-            f"{path}: {clock.column} does not rise in even steps ({'; '.join(said)}); seatsim import resamples"
-            " such files"
-        )
-    return clock.axis.rate, [*clock.assumptions, *said]
+    doubts = [issue.sentence for issue in doubt_time(axis, clock.column)]
+    if len(axis.breaks) or not axis.is_even:
+        problem = f"{path}: {clock.column} does not rise in even steps ({'; '.join(doubts)})"
+        raise InputError(f"{problem}; seatsim import resamples such files")
+    return axis.rate, [*clock.assumptions, *doubts]
 
 
 def _recorded(folder: Path) -> list[AccelerationRecord]:

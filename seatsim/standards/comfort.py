@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import partial
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
@@ -16,7 +15,6 @@ from seatsim.metrics.comfort import (
     find_shocks,
     join_doses,
     motion_sickness_dose,
-    prolong,
     seat_transmission,
 )
 from seatsim.metrics.exposure import (
@@ -25,11 +23,9 @@ from seatsim.metrics.exposure import (
     POINTS,
     Direction,
     Exposure,
-    Operation,
     assess_exposure,
     direction,
     point_of,
-    split_exposure,
 )
 from seatsim.metrics.spine import SpinalLoad, assess_spine, join_spinal_doses, spinal_dose, spine_response
 from seatsim.metrics.weighting import weight
@@ -48,11 +44,9 @@ _OFFSET = 0.05
 _SHORTEST = 108.0
 """s; duration that ISO 2631-1:1997, 5.5, asks for random vibration from 1 Hz on (recalled)."""
 
-_Blocks = Sequence[tuple[float, float]]
-
 
 class Stretch(NamedTuple):
-    """A block of a run along one axis: acceleration less its mean, as recorded and weighted, shape (N,) each."""
+    """A run along one axis: acceleration less its mean, as recorded and weighted, shape (N,) each."""
 
     run: str
     sample_rate: float
@@ -62,7 +56,7 @@ class Stretch(NamedTuple):
 
 
 class AxisAssessment(NamedTuple):
-    """Figures of one axis, weighted but without multiplying factors; of operations, over their hours of the day."""
+    """Figures of one axis, weighted but without multiplying factors."""
 
     column: str
     direction: Joined[Direction]
@@ -87,7 +81,7 @@ class MotionSickness(NamedTuple):
 
 
 class Comfort(NamedTuple):
-    """What ISO 2631 says of a record, or of chosen blocks of its runs taken together: the content of `comfort.json`.
+    """What ISO 2631 says of a record, or of runs taken together: the content of `comfort.json`.
 
     `duration` in s is what was recorded, `sample_rate` is in Hz.
     """
@@ -101,8 +95,6 @@ class Comfort(NamedTuple):
     """Vibration total value a_v in m/s^2 by point of contact, and `overall` (ISO 2631-1:1997, 8.2.2 and 8.2.3)."""
     exposure: Joined[Exposure | None]
     """None where neither x, y nor z on the seat was recorded."""
-    operations: tuple[Operation, ...]
-    """Parts of the day, where its runs have hours of their own."""
     seat: Mapping[str, SeatTransmission]
     """SEAT factors by axis, where seat and floor were recorded."""
     motion_sickness: MotionSickness | None
@@ -126,59 +118,54 @@ def comfort(
     source: str | Path,
     channels: Mapping[str, str] | None = None,
     *,
-    hours: float | Mapping[str, float] = 8.0,
+    hours: float = 8.0,
     runs: Sequence[str] = (),
-    blocks: _Blocks = (),
     rate: float | None = None,
     unit: str | None = None,
 ) -> Comfort:
     """Assess the accelerations of a measured file, or of the runs of a recording, by ISO 2631-1:1997.
 
-    The mean of every channel is removed, the whole record weighted, and the blocks cut out of what results.
+    The mean of every channel is removed before it is weighted.
 
     Args:
         source: a file of any format that `seatsim import` reads, or the folder of a recording.
         channels: column by axis: `x`, `y`, `z`, `rx`, `ry`, `rz` on the seat, `back.x` .. `feet.z`, and `floor.x` ..
             `floor.z` at its base; None takes columns with usual names.
-        hours: duration of such vibration in a day; or by name of a run, each of which is then an operation of the day.
+        hours: duration of such vibration in a day.
         runs: names of the runs of a recording, all of them where empty; they count as one vibration.
-        blocks: stretches (from, to) in s of every run, the whole run where empty.
         rate: sample rate in Hz of a file without times.
         unit: of the columns for which none is stated, m/s^2 (rad/s^2) where it is None.
 
     Raises:
-        InputError: a file, column, axis, run or block is not there, the record cannot be weighted, or `hours` do not
-            fit into a day or name runs beside `runs`.
+        InputError: a file, column, axis or run is not there, the record cannot be weighted, or `hours` do not fit into
+            a day.
     """
     named = {axis.lower(): column for axis, column in (channels or {}).items()}
     for axis in named:
         if axis not in _AXES:
             raise InputError(f"no axis is called '{axis}'{permit(axis, _AXES)}")
-    day = _check_hours(hours, runs) if isinstance(hours, Mapping) else {}
-    records = _chosen(load_accelerations(source, rate, unit, [*named.values()]), [*day] or runs, source)
+    records = _chosen(load_accelerations(source, rate, unit, [*named.values()]), runs, source)
     named = named or choose_axes(records[0].name, records[0].columns, records[0].notes)
-    cut = {axis: _cut(records, name, direction(_FLOOR.get(axis, axis)), blocks) for axis, name in named.items()}
-    stretches = {axis: cut[axis] for axis in DIRECTIONS if axis in named}
+    every = {axis: _weigh(records, name, direction(_FLOOR.get(axis, axis))) for axis, name in named.items()}
+    stretches = {axis: every[axis] for axis in DIRECTIONS if axis in named}
     if not stretches:
         raise InputError(f"{source}: no axis of the person is named; give one of {', '.join(DIRECTIONS)}")
-    by_axis = {axis: _join_runs(parts, day) for axis, parts in stretches.items()}
-    axes = {axis: _assess(named[axis], direction(axis), doses, records) for axis, doses in by_axis.items()}
+    doses = {axis: [part.dose for part in parts] for axis, parts in every.items()}
+    axes = {axis: _assess(named[axis], direction(axis), doses[axis], records) for axis in stretches}
     joined = {axis: found.dose for axis, found in axes.items()}
-    exposure = assess_exposure(joined, sum(day.values()) if isinstance(hours, Mapping) else hours)
-    operations = {run: {axis: doses[run] for axis, doses in by_axis.items()} for run in day}
+    seats = {axis: (doses[axis], doses[base]) for base, axis in _FLOOR.items() if {base, axis} <= {*named}}
     return Comfort(
         source=str(source),
         runs=tuple(record.name for record in records),
-        duration=sum(part.dose.duration for part in next(iter(stretches.values()))),
+        duration=next(iter(joined.values())).duration,
         sample_rate=records[0].sample_rate,
         axes=axes,
         totals=total_values(joined),
-        exposure=exposure,
-        operations=split_exposure(exposure, operations) if exposure else (),
-        seat={axis: _compare(cut[axis], cut[base], day) for base, axis in _FLOOR.items() if {base, axis} <= {*named}},
-        motion_sickness=_motion_sickness(records, named["z"], blocks, day) if "z" in named else None,
-        spine=_load_spine(records, named["z"], blocks, hours) if "z" in named else None,
-        notes=tuple(_notes(records, named, axes, stretches, day)),
+        exposure=assess_exposure(joined, hours),
+        seat={axis: seat_transmission(*pair) for axis, pair in seats.items()},
+        motion_sickness=_motion_sickness(records, named["z"]) if "z" in named else None,
+        spine=_load_spine(records, named["z"], hours) if "z" in named else None,
+        notes=tuple(_notes(records, named, axes)),
         stretches=stretches,
     )
 
@@ -202,98 +189,49 @@ def _chosen(records: list[AccelerationRecord], runs: Sequence[str], source: str 
     return [record for record in records if not runs or record.name in runs]
 
 
-def _check_hours(hours: Mapping[str, float], runs: Sequence[str]) -> Mapping[str, float]:
-    if runs:
-        raise InputError("runs: each run that has hours of its own counts; leave the others, and --run, out")
-    for name, lasts in hours.items():
-        if not lasts > 0:
-            raise InputError(f"hours: {name} lasts {lasts:g} h; a part of a day is longer than 0")
-    return hours
-
-
-def _cut(records: Sequence[AccelerationRecord], column: str, along: Direction, blocks: _Blocks) -> list[Stretch]:
-    """Return each block of each record."""
-    through = partial(weight, weighting=along.weighting)
-    return [
-        Stretch(record.name, record.sample_rate, x, weighted, dose(weighted, record.sample_rate))
-        for record, x, weighted in _filter(records, column, along.unit, through, blocks)
-    ]
-
-
-def _filter(
-    records: Sequence[AccelerationRecord],
-    column: str,
-    unit: str,
-    through: Callable[[Array, float], Array],
-    blocks: _Blocks,
-) -> Iterator[tuple[AccelerationRecord, Array, Array]]:
-    """Yield each block of each record, less the record's mean, before and after a filter of the whole record."""
+def _weigh(records: Sequence[AccelerationRecord], column: str, along: Direction) -> list[Stretch]:
+    """Return each record of a column, weighted."""
+    stretches = []
     for record in records:
-        # The high-pass would take seconds to forget a constant, and gravity in a sensor would be the largest vibration.
-        recorded = record.values(column, unit)
-        x = recorded - recorded.mean()
+        x, rate = _centre(record, column, along.unit), record.sample_rate
         with placed(f"{record.name}, {column}"):
-            whole = through(x, record.sample_rate)
-        for part in _cuts(record, len(whole), blocks):
-            yield record, x[part], whole[part]
+            weighted = weight(x, rate, along.weighting)
+        stretches.append(Stretch(record.name, rate, x, weighted, dose(weighted, rate)))
+    return stretches
 
 
-def _join_runs(stretches: Sequence[Stretch], day: Mapping[str, float]) -> dict[str, Dose]:
-    """Return the dose of each run, over its hours of the day where it has some."""
-    found = dict[str, list[Dose]]()
-    for part in stretches:
-        found.setdefault(part.run, []).append(part.dose)
-    joined = {run: join_doses(doses) for run, doses in found.items()}
-    return {run: prolong(whole, HOUR * day[run]) if day else whole for run, whole in joined.items()}
+def _centre(record: AccelerationRecord, column: str, unit: str) -> Array:
+    """Return a column less its mean.
 
-
-def _compare(seat: Sequence[Stretch], base: Sequence[Stretch], day: Mapping[str, float]) -> SeatTransmission:
-    """Return the SEAT factors; operations are no repeats of each other, of which the rule of three runs speaks."""
-    found = seat_transmission([part.dose for part in seat], [part.dose for part in base])
-    return found._replace(within_spread=None) if day else found
-
-
-def _cuts(record: AccelerationRecord, samples: int, blocks: _Blocks) -> list[slice]:
-    for start, end in blocks:
-        if not 0 <= start < end or round(end * record.sample_rate) > samples:
-            lasts = samples / record.sample_rate
-            problem = f"block {start:g}:{end:g}: {record.name} lasts from 0 to {lasts:g} s; give FROM:TO within it"
-            raise InputError(problem)
-    ends = blocks or [(0.0, samples / record.sample_rate)]
-    return [slice(round(start * record.sample_rate), round(end * record.sample_rate)) for start, end in ends]
+    The high-pass would take seconds to forget a constant, and gravity in a sensor would be the largest vibration.
+    """
+    recorded = record.values(column, unit)
+    return np.asarray(recorded - np.mean(recorded))
 
 
 def _assess(
-    column: str, along: Direction, doses: Mapping[str, Dose], records: Sequence[AccelerationRecord]
+    column: str, along: Direction, doses: Sequence[Dose], records: Sequence[AccelerationRecord]
 ) -> AxisAssessment:
-    joined = join_doses([*doses.values()])
+    joined = join_doses(doses)
     means = [float(np.mean(record.values(column, along.unit))) for record in records]
     return AxisAssessment(column, along, joined, tuple(find_shocks(joined)), max(means, key=abs))
 
 
-def _motion_sickness(
-    records: Sequence[AccelerationRecord], column: str, blocks: _Blocks, day: Mapping[str, float]
-) -> MotionSickness:
-    stretches = _cut(records, column, direction("z")._replace(weighting="Wf"), blocks)
-    found = join_doses([*_join_runs(stretches, day).values()])
+def _motion_sickness(records: Sequence[AccelerationRecord], column: str) -> MotionSickness:
+    stretches = _weigh(records, column, direction("z")._replace(weighting="Wf"))
+    found = join_doses([part.dose for part in stretches])
     return MotionSickness(found.rms, motion_sickness_dose(found.rms, found.duration))
 
 
-def _load_spine(
-    records: Sequence[AccelerationRecord], column: str, blocks: _Blocks, hours: float | Mapping[str, float]
-) -> SpinalLoad:
-    """Return the load of the spine; runs without hours of their own have their shares of those of the day."""
-    parts = [
-        (record.name, spinal_dose(response), len(response) / record.sample_rate)
-        for record, _, response in _filter(records, column, direction("z").unit, spine_response, blocks)
-    ]
-    doses = [value for _, value, _ in parts]
-    if isinstance(hours, Mapping):
-        measured = {run: sum(lasts for name, _, lasts in parts if name == run) for run in hours}
-        times = [HOUR * hours[run] / measured[run] for run, _, _ in parts]
-    else:
-        times = [HOUR * hours / sum(lasts for _, _, lasts in parts)] * len(parts)
-    daily = join_spinal_doses(doses, times)
+def _load_spine(records: Sequence[AccelerationRecord], column: str, hours: float) -> SpinalLoad:
+    """Return the load of the spine by records that have their shares of the hours of a day."""
+    doses, lasts = [], 0.0
+    for record in records:
+        x = _centre(record, column, direction("z").unit)
+        with placed(f"{record.name}, {column}"):
+            doses.append(spinal_dose(spine_response(x, record.sample_rate)))
+        lasts += len(x) / record.sample_rate
+    daily = join_spinal_doses(doses, [HOUR * hours / lasts] * len(doses))
     return SpinalLoad(join_spinal_doses(doses), daily, assess_spine(daily))
 
 
@@ -301,11 +239,9 @@ def _notes(
     records: Sequence[AccelerationRecord],
     named: Mapping[str, str],
     axes: Mapping[str, AxisAssessment],
-    stretches: Mapping[str, Sequence[Stretch]],
-    day: Mapping[str, float],
 ) -> Iterator[str]:
     yield from (note for record in records for note in record.notes)
-    if len(records) > 1 and not day:
+    if len(records) > 1:
         yield f"{len(records)} runs count as one vibration: {', '.join(record.name for record in records)}"
     for axis, found in axes.items():
         size = abs(found.removed)
@@ -321,13 +257,9 @@ def _notes(
     for found in axes.values():
         if found.column in unitless and abs(abs(found.removed) - 1.0) < 0.05:
             yield f"{found.column} has a mean of {found.removed:.3g}, as gravity has in g: then give --unit g"
-    durations = dict[str, float]()
-    for part in next(iter(stretches.values())):
-        vibration = part.run if day else "the record"
-        durations[vibration] = durations.get(vibration, 0.0) + part.dose.duration
-    for vibration, duration in durations.items():
-        if duration < _SHORTEST:
-            yield (
-                f"{vibration} lasts {duration:.3g} s; ISO 2631-1:1997, 5.5, takes {_SHORTEST:g} s for random vibration"
-                " from 1 Hz on (recalled)"
-            )
+    duration = next(iter(axes.values())).dose.duration
+    if duration < _SHORTEST:
+        yield (
+            f"the record lasts {duration:.3g} s; ISO 2631-1:1997, 5.5, takes {_SHORTEST:g} s for random vibration"
+            " from 1 Hz on (recalled)"
+        )

@@ -52,7 +52,7 @@ def test_a_manifest_holds_command_inputs_and_outputs_by_relative_paths(made):
     text = (made / "out" / "c" / "manifest.json").read_text()
     found = json.loads(text)
     assert str(made) not in text
-    assert (found["command"], found["arguments"]) == ("comfort", ["--hours=6", "--", "rec"])
+    assert (found["command"], found["arguments"]) == ("comfort", ["--hours=6.0", "--", "rec"])
     assert [each["path"] for each in found["inputs"]] == [
         f"../../rec/{name}" for name in ("recording.yaml", "run-1.csv.gz", "run-2.csv.gz")
     ]

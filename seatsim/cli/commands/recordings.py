@@ -145,9 +145,8 @@ def _doubt(doubts: list[Issue]) -> None:
 def comfort(
     file: Annotated[Path, typer.Argument(show_default=False)],
     channel: Annotated[list[str] | None, typer.Option("--channel", metavar="AXIS=COLUMN")] = None,
-    hours: Annotated[list[str] | None, typer.Option("--hours", metavar="H or RUN=H")] = None,
+    hours: Annotated[float, typer.Option("--hours", metavar="H")] = 8.0,
     run: Annotated[list[str] | None, typer.Option("--run")] = None,
-    block: Annotated[list[str] | None, typer.Option("--block", metavar="FROM:TO")] = None,
     rate: Annotated[float | None, typer.Option("--rate")] = None,
     unit: Annotated[str | None, typer.Option("--unit")] = None,
     out_folder: Out = None,
@@ -157,56 +156,31 @@ def comfort(
     Options:
         file: A CSV table of accelerations, or a recording.
         channel: x, y, z, rx .. on the seat, back.x .. feet.z, floor.z.
-        hours: Hours of such vibration in a day (8), or of each run: RUN=H.
+        hours: Hours of such vibration in a day.
         run: A run of a recording; all together where none is named.
-        block: Only this stretch, in s; several count as one.
         rate: Sample rate in Hz of a table without times.
         unit: Of columns whose names state none, such as g.
     """
     from seatsim.cli.outputs.seat_results import present_comfort
     from seatsim.standards.comfort import comfort as assess
 
-    channels = _split_pairs(channel or [], "--channel", "z=acc_z")
-    blocks = [_stretch(text) for text in block or []]
-    day = _read_hours(hours or [])
-    found = assess(file, channels, hours=day, runs=run or (), blocks=blocks, rate=rate, unit=unit)
+    channels = _read_channels(channel or [])
+    found = assess(file, channels, hours=hours, runs=run or (), rate=rate, unit=unit)
     name = file.resolve().name.partition(".")[0]
     present_comfort(found, file, out_folder or Path("out") / f"comfort-{name}")
 
 
-def _read_hours(texts: list[str]) -> float | dict[str, float]:
-    """Return the hours of a day, or of each run by its name."""
-    named = len(texts) > 1 or "=" in "".join(texts)
-    by_run = _split_pairs(texts, "--hours", "loading=3") if named else {}
-    try:
-        return {run: float(text) for run, text in by_run.items()} or float(texts[0] if texts else 8.0)
-    except ValueError as error:
-        raise InputError(f"--hours {' '.join(texts)}: write hours, like --hours 6 or --hours loading=3") from error
-
-
-def _split_pairs(texts: list[str], option: str, example: str) -> dict[str, str]:
+def _read_channels(texts: list[str]) -> dict[str, str]:
+    """Return columns by axis."""
     found = dict[str, str]()
     for text in texts:
-        name, value = _split(text, "=", option, example)
-        if name in found:
-            raise InputError(f"{option} {text}: {name} has {found[name]} already; give it once")
-        found[name] = value
+        axis, _, column = (part.strip() for part in text.partition("="))
+        if not (axis and column):
+            raise InputError(f"--channel {text}: write it like --channel z=acc_z")
+        if axis in found:
+            raise InputError(f"--channel {text}: {axis} has {found[axis]} already; give it once")
+        found[axis] = column
     return found
-
-
-def _split(text: str, sign: str, option: str, example: str) -> tuple[str, str]:
-    left, found, right = text.partition(sign)
-    if not (left and found and right):
-        raise InputError(f"{option} {text}: write it like {option} {example}")
-    return left.strip(), right.strip()
-
-
-def _stretch(text: str) -> tuple[float, float]:
-    try:
-        start, end = (float(part) for part in _split(text, ":", "--block", "10:70"))
-    except ValueError as error:
-        raise InputError(f"--block {text}: write seconds from the record's start, like --block 10:70") from error
-    return start, end
 
 
 def seat_test(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import chain
 from pathlib import Path
 
 from seatsim.cli.outputs.writing import name_pictures, write_outputs
@@ -16,8 +15,7 @@ from seatsim.standards.seat_rows import SeatTest
 
 def present_comfort(found: Comfort, source: Path, folder: Path) -> None:
     """Print the figures of a vibration; write `comfort.json`, `report.html` and the pictures."""
-    tables = standards.tabulate_axes(found), standards.tabulate_operations(found), standards.tabulate_seat(found)
-    show_report_tables(chain(*tables))
+    show_report_tables([*standards.tabulate_axes(found), *standards.tabulate_seat(found)])
     for sentence in standards.list_comfort_sentences(found):
         say(sentence)
     warn(found.notes)
