@@ -13,6 +13,7 @@ is used.
 from __future__ import annotations
 
 from functools import partial
+from pathlib import Path
 from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
@@ -20,6 +21,7 @@ import numpy as np
 from seatsim.excitations.base import Duration, Floor, choice, excitation
 from seatsim.excitations.motion import check_step, integrated_twice, motion_of, random_phase, samples, soft_start
 from seatsim.schema.arrays import Array
+from seatsim.schema.fields import read_packaged
 
 SpectralClass = Literal["EM1", "EM2", "EM3", "EM4", "EM5", "EM6", "EM7", "EM8", "EM9"]
 LOWEST = 0.89
@@ -28,7 +30,11 @@ _LEAST_PERIOD = 10.0
 
 
 class _EarthMover(NamedTuple):
-    """Constants of one spectral class: level A, corners (Hz) and poles, upper end (Hz), rms (m/s^2)."""
+    """One spectral class: level A, corners (Hz) and poles, upper end (Hz), rms (m/s^2).
+
+    `seat` and `transmissibility` are what ISO 7096 accepts: the greatest SEAT factor, and the greatest transmissibility
+    at resonance in the damping test. `machines` are what the class stands for.
+    """
 
     level: float
     high_pass: float
@@ -37,19 +43,12 @@ class _EarthMover(NamedTuple):
     low_poles: int
     highest: float
     rms: float
+    seat: float
+    transmissibility: float
+    machines: str
 
 
-CLASSES: dict[SpectralClass, _EarthMover] = {
-    "EM1": _EarthMover(2.82, 1.5, 4, 2.5, 4, 11.22, 1.71),
-    "EM2": _EarthMover(2.72, 1.5, 4, 3.0, 4, 11.22, 2.05),
-    "EM3": _EarthMover(1.93, 1.5, 4, 3.0, 4, 11.22, 1.73),
-    "EM4": _EarthMover(0.60, 1.5, 4, 3.0, 4, 11.22, 0.96),
-    "EM5": _EarthMover(1.11, 1.5, 4, 3.5, 1, 17.78, 1.94),
-    "EM6": _EarthMover(0.79, 6.5, 2, 9.0, 2, 17.78, 1.65),
-    "EM7": _EarthMover(9.25, 3.0, 8, 3.5, 8, 11.22, 2.26),
-    "EM8": _EarthMover(1.45, 3.0, 4, 3.0, 2, 17.78, 1.05),
-    "EM9": _EarthMover(2.10, 3.5, 4, 4.0, 2, 17.78, 1.63),
-}
+CLASSES = read_packaged(Path(__file__).with_name("iso7096.yaml"), dict[SpectralClass, _EarthMover])
 
 
 @excitation("iso7096", source="ISO 7096:2000, spectral classes EM1 to EM9 (constants as in the HVLab HRV toolbox)")

@@ -6,12 +6,13 @@ Nothing here says more about health than the two texts do.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from pathlib import Path
 from typing import Annotated, NamedTuple
 
 from seatsim.metrics.comfort import EIGHT_HOURS, Dose, daily_exposure, daily_vdv, estimated_vdv
-from seatsim.schema.content import Form, written
+from seatsim.schema.content import Form
 from seatsim.schema.errors import InputError, permit
+from seatsim.schema.fields import read_packaged
 
 HOUR, DAY = 3600.0, 24.0
 """s; h"""
@@ -31,13 +32,6 @@ _ZONE_A8 = tuple(level * math.sqrt(600.0 / EIGHT_HOURS) for level in (3.0, 6.0))
 
 _ZONE_VDV = (8.5, 17.0)
 """Bounds of the zone of equation B.2 as estimated VDV in m/s^1.75 (ISO 2631-1:1997, B.3.1; recalled)."""
-
-ZONES = {
-    "below": "below the health guidance caution zone: health effects have not been clearly documented",
-    "within": "within the zone: caution with respect to potential health risks is indicated",
-    "above": "above the zone: health risks are likely",
-}
-"""What ISO 2631-1:1997, B.3.1, says of the zones (recalled), for people regularly exposed who sit."""
 
 
 class ValueReached(NamedTuple):
@@ -67,21 +61,9 @@ class Exposure(NamedTuple):
     action_value: ValueReached
     limit_value: ValueReached
     zone_a8: str
-    """Zone of ISO 2631-1, Annex B, by equation B.1: a name of `ZONES`."""
+    """`below`, `within` or `above` the health guidance caution zone of ISO 2631-1, Annex B, by equation B.1."""
     zone_vdv: str
     """The same by equation B.2, from the estimated VDV of the day."""
-
-    @property
-    @written()
-    def zone_a8_text(self) -> str:
-        """What ISO 2631-1 says of the zone by equation B.1."""
-        return ZONES[self.zone_a8]
-
-    @property
-    @written()
-    def zone_vdv_text(self) -> str:
-        """What ISO 2631-1 says of the zone by equation B.2."""
-        return ZONES[self.zone_vdv]
 
 
 def assess_exposure(doses: dict[str, Dose], hours: float) -> Exposure | None:
@@ -149,20 +131,7 @@ class Direction(NamedTuple):
 POINTS = ("seat", "back", "feet")
 """Surfaces through which vibration enters a seated person."""
 
-DIRECTIONS: Mapping[str, Direction] = {
-    "x": Direction("Wd", 1.0, 1.4),
-    "y": Direction("Wd", 1.0, 1.4),
-    "z": Direction("Wk", 1.0, 1.0),
-    "rx": Direction("We", 0.63, unit="rad/s^2"),
-    "ry": Direction("We", 0.4, unit="rad/s^2"),
-    "rz": Direction("We", 0.2, unit="rad/s^2"),
-    "back.x": Direction("Wc", 0.8),
-    "back.y": Direction("Wd", 0.5),
-    "back.z": Direction("Wd", 0.4),
-    "feet.x": Direction("Wk", 0.25),
-    "feet.y": Direction("Wk", 0.25),
-    "feet.z": Direction("Wk", 0.4),
-}
+DIRECTIONS = read_packaged(Path(__file__).with_name("directions.yaml"), dict[str, Direction])
 """By axis: fore-and-aft x, lateral y, vertical z; without a point in front, on the surface of the seat."""
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,7 @@ from seatsim.metrics.comfort import crest_factor, mtvv, vdv
 from seatsim.metrics.weighting import can_weight, weight
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
+from seatsim.schema.fields import read_packaged
 
 
 class Metric(NamedTuple):
@@ -209,15 +211,5 @@ METRICS: Mapping[str, _Figure] = {
     ),
 }
 """All metrics by name, in the order of the table."""
-SHORT: Mapping[str, str] = {
-    "driver_acceleration_rms": "driver RMS",
-    "driver_acceleration_weighted": "driver Wk RMS",
-    "driver_vdv": "driver VDV",
-    "seat_factor": "SEAT factor",
-    "suspension_displacement_rms": "travel RMS",
-    "suspension_displacement_peak": "travel peak",
-    "end_stop_hits": "end-stop hits",
-    "driver_jerk_rms": "driver jerk",
-    "current_rms": "current RMS",
-}
+SHORT = read_packaged(Path(__file__).with_name("short_names.yaml"), dict[str, str])
 """What metrics are called where there is little room: in tables, pictures and sentences, on paper and on a screen."""

@@ -25,6 +25,7 @@ from seatsim.recordings.recording import HEADER, load_recording
 from seatsim.schema import tables
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.fields import read_packaged
 from seatsim.schema.guarded import is_there, nearest_beside
 from seatsim.schema.tables import read_table
 from seatsim.schema.units import OWN_SPELLINGS, USUAL, conversion
@@ -34,18 +35,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-_QUANTITIES: dict[str, tuple[tuple[str, ...], str]] = {
-    "time": (("time", "t"), "s"),
-    "displacement": (("displacement", "stroke", "position", "x"), "m"),
-    "velocity": (("velocity", "speed", "v"), "m/s"),
-    "force": (("force", "damper_force", "f"), "N"),
-    "current": (("current", "coil_current", "i"), "A"),
-    "command": (("current_command", "current_cmd", "command"), "A"),
-    "voltage": (("voltage", "command_voltage"), "V"),
-    "temperature": (("temperature", "damper_temperature"), "degC"),
-    "segment": (("segment",), ""),
-    "valid": (("valid",), ""),
-}
+_QUANTITIES = read_packaged(Path(__file__).with_name("bench_columns.yaml"), dict[str, tuple[tuple[str, ...], str]])
 """Names of every quantity, and its SI unit, in which a bare name is; usual units and spellings may follow a name."""
 _DRIVES = ("current", "command", "voltage")
 """Quantities that state the damper's input, in the order of preference."""

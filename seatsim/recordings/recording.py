@@ -15,34 +15,16 @@ from seatsim.scenario.numbers import change_numbers, list_numbers
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest, placed
-from seatsim.schema.fields import param
+from seatsim.schema.fields import param, read_packaged
 from seatsim.schema.guarded import is_there
 from seatsim.schema.tables import numbers, read_table
 from seatsim.schema.units import Conversion, conversion
 from seatsim.schema.validation import build, check_keys, mapping
 from seatsim.schema.yaml_source import Source
 
-SEAT_CHANNELS = {
-    "floor_acceleration": "m/s^2",
-    "frame_acceleration": "m/s^2",
-    "driver_acceleration": "m/s^2",
-    "suspension_displacement": "m",
-    "damper_force": "N",
-    "current_command": "A",
-    "coil_current": "A",
-    "damper_temperature": "degC",
-}
-BENCH_CHANNELS = {
-    "displacement": "m",
-    "velocity": "m/s",
-    "damper_force": "N",
-    "current_command": "A",
-    "command_voltage": "V",
-    "coil_current": "A",
-    "damper_temperature": "degC",
-}
-CHANNELS = {"seat": SEAT_CHANNELS, "damper_bench": BENCH_CHANNELS}
+CHANNELS = read_packaged(Path(__file__).with_name("channels.yaml"), dict[str, dict[str, str]])
 """Channels by rig, each with its unit."""
+SEAT_CHANNELS, BENCH_CHANNELS = CHANNELS["seat"], CHANNELS["damper_bench"]
 DRIVERS = {"seat": "floor_acceleration", "damper_bench": "displacement"}
 """Channel of the excitation by rig, without which no recording of it can be replayed."""
 ACCELEROMETERS = ("floor_acceleration", "frame_acceleration", "driver_acceleration")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
+from seatsim.excitations.iso7096 import CLASSES
 from seatsim.metrics.exposure import DAY
 from seatsim.plots.bench.vibration import plot_damping
 from seatsim.report.blocks import Block, Figures, Report, Table, show_pictures
@@ -13,7 +14,7 @@ from seatsim.report.formatting import choose_advice, format_sentence, show_table
 from seatsim.schema.printing import format_percent
 from seatsim.schema.text import join_names
 from seatsim.standards.comfort import Comfort
-from seatsim.standards.seat_rows import ACCEPTANCE, DAMPING, LIMITS, RECALLED, DampingRow, SeatRow, SeatTest
+from seatsim.standards.seat_rows import ACCEPTANCE, DAMPING, RECALLED, DampingRow, SeatRow, SeatTest
 
 
 def report_comfort(found: Comfort, figures: Figures, command: str) -> Report:
@@ -53,7 +54,8 @@ def list_comfort_sentences(found: Comfort) -> Iterator[str]:
             by_a8 = _say_reach(f"A(8) {value.a8:g} m/s²", value.exceeded_by_a8, value.hours_to_a8)
             by_vdv = _say_reach(f"VDV {value.vdv:g} m/s¹·⁷⁵", value.exceeded_by_vdv, value.hours_to_vdv)
             yield f"{name} of 2002/44/EC: {by_a8}; {by_vdv}"
-        yield f"ISO 2631-1, annex B, by A(8): {day.zone_a8_text}; by estimated VDV: {day.zone_vdv}"
+        zones = f"{day.zone_a8} it by A(8), {day.zone_vdv} it by the estimated VDV"
+        yield f"health guidance caution zone of ISO 2631-1, annex B: {zones}"
 
 
 def _say_reach(value: str, exceeded: bool, hours: float) -> str:
@@ -147,7 +149,7 @@ def tabulate_classes(rows: Sequence[SeatRow]) -> list[Table]:
     """Return the table of the SEAT factors, a row for each class and driver."""
     lines = []
     for row in rows:
-        tested = (row.run, row.spectral_class, LIMITS[row.spectral_class].machines, _PASSED[row.passed])
+        tested = (row.run, row.spectral_class, CLASSES[row.spectral_class].machines, _PASSED[row.passed])
         figures = (f"{row.mass:g}", row.seat, row.limit, row.corrected, format_percent(row.spread), row.end_stop_hits)
         lines.append((*tested, *figures))
     return show_table("classes", lines, 4, [k for k, row in enumerate(rows) if not row.passed], clause=ACCEPTANCE)

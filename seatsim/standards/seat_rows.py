@@ -11,7 +11,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from seatsim.excitations.iso7096 import SpectralClass, acceleration_density
+from seatsim.excitations.iso7096 import CLASSES, SpectralClass, acceleration_density
 from seatsim.metrics.comfort import SPREAD, Dose, seat_transmission
 from seatsim.metrics.weighting import frequency_response
 from seatsim.schema.content import Form, show_record, written
@@ -28,28 +28,6 @@ RECALLED = (
     "limits, test persons and details of ISO 7096 are recalled, not read in the standard: no certificate rests on them"
 )
 
-
-class _ClassLimits(NamedTuple):
-    """Acceptance values of one spectral class, and the machines that it stands for."""
-
-    seat: float
-    """Greatest SEAT factor."""
-    transmissibility: float
-    """Greatest transmissibility at resonance in the damping test."""
-    machines: str
-
-
-LIMITS: dict[SpectralClass, _ClassLimits] = {
-    "EM1": _ClassLimits(1.1, 1.5, "articulated or rigid frame dumper"),
-    "EM2": _ClassLimits(0.9, 1.5, "scraper without axle or frame suspension"),
-    "EM3": _ClassLimits(1.0, 1.5, "wheel loader"),
-    "EM4": _ClassLimits(1.1, 1.5, "grader"),
-    "EM5": _ClassLimits(0.7, 2.0, "wheel dozer, soil compactor, backhoe loader"),
-    "EM6": _ClassLimits(0.7, 1.5, "crawler loader, crawler dozer"),
-    "EM7": _ClassLimits(0.6, 2.0, "compact dumper"),
-    "EM8": _ClassLimits(0.8, 2.0, "compact loader"),
-    "EM9": _ClassLimits(0.9, 2.0, "skid-steer loader"),
-}
 
 PERSONS = {"light": 55.0, "heavy": 98.0}
 """Mass of the two test persons in kg: 52 to 55 and 98 to 103 are permitted."""
@@ -171,7 +149,7 @@ def state_row(
 ) -> SeatRow:
     """Return the line of a class and driver from its runs, at least one; it is only passed where it `is_whole`."""
     found = seat_transmission([trial.driver for trial in trials], [trial.floor for trial in trials])
-    limit = LIMITS[spectral_class].seat
+    limit = CLASSES[spectral_class].seat
     hits = [trial.hits for trial in trials if trial.hits is not None]
     return SeatRow(
         run=run,
@@ -199,7 +177,7 @@ def weighted_input(spectral_class: SpectralClass) -> float:
 
 def state_damping_row(run: str, spectral_class: SpectralClass, found: DampingTest) -> DampingRow:
     """Return the line of the damping test of a seat against the limit of a class."""
-    limit = LIMITS[spectral_class].transmissibility
+    limit = CLASSES[spectral_class].transmissibility
     passed = bool(found.transmissibility <= limit)
     return DampingRow(run, spectral_class, found.transmissibility, found.resonance, limit, passed, DAMPING)
 

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from seatsim.effects.seat import Mass
-from seatsim.excitations.iso7096 import Iso7096, SpectralClass, acceleration_density
+from seatsim.excitations.iso7096 import CLASSES, Iso7096, SpectralClass, acceleration_density
 from seatsim.excitations.periodic import SteppedSine
 from seatsim.metrics.comfort import RUNS, dose
 from seatsim.metrics.motion import end_stop_hits, rms
@@ -33,7 +33,6 @@ from seatsim.schema.text import join_names
 from seatsim.simulation.augment import augment_plant
 from seatsim.simulation.simulate import simulate
 from seatsim.standards.seat_rows import (
-    LIMITS,
     PERSONS,
     RECALLED,
     SEATED_SHARE,
@@ -82,7 +81,7 @@ def seat_test(
     Raises:
         InputError: the scenario or recording is wrong, or has no seat to test. RunError: a simulation failed.
     """
-    chosen = _find_classes(classes) or tuple(LIMITS)
+    chosen = _find_classes(classes) or tuple(CLASSES)
     if (Path(source) / HEADER).exists():
         found = _assess_recorded_seat(load_recording(source), chosen)
     else:
@@ -96,10 +95,10 @@ def _find_classes(names: Sequence[str]) -> tuple[SpectralClass, ...]:
     Raises:
         InputError: there is no such class.
     """
-    known = {name.lower(): name for name in LIMITS}
+    known = {name.lower(): name for name in CLASSES}
     for name in names:
         if name.lower() not in known:
-            raise InputError(f"no class is called '{name}'{permit(name, LIMITS)}")
+            raise InputError(f"no class is called '{name}'{permit(name, CLASSES)}")
     return tuple(known[name.lower()] for name in names)
 
 

@@ -1,6 +1,7 @@
 """Faults of a channel of a run that its own values show: their range, their size and their shape."""
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 
@@ -8,17 +9,10 @@ from seatsim.recordings.quality import damage
 from seatsim.recordings.quality.issue import Issue, RunUnderTest, is_at_rest, place_in_run
 from seatsim.recordings.recording import ACCELEROMETERS, MOTION
 from seatsim.schema.arrays import Array
+from seatsim.schema.fields import read_packaged
 from seatsim.schema.units import conversion
 
-_PLAUSIBLE = {
-    "m/s^2": (0.0, 500.0, ("mm/s^2", "cm/s^2")),
-    "m": (0.0, 1.0, ("mm", "cm")),
-    "m/s": (0.0, 5.0, ("mm/s",)),
-    "N": (0.0, 30_000.0, ("mN",)),
-    "A": (0.0, 30.0, ("mA",)),
-    "V": (0.0, 60.0, ("mV",)),
-    "degC": (-50.0, 200.0, ("K", "degF")),
-}
+_PLAUSIBLE = read_packaged(Path(__file__).with_name("plausible.yaml"), dict[str, tuple[float, float, tuple[str, ...]]])
 """By SI unit the range of the size of values, of the values themselves for temperatures, and the units to which values
 outside it point, the likeliest first."""
 _STUCK = 0.5
