@@ -34,17 +34,6 @@ _ALIKE = 0.05
 """Relative difference of amplitudes, frequencies and speeds that are the same setting."""
 WINDOW = 0.1
 """Part of the stroke about its middle over which the force at the peak speed is averaged."""
-_MOST_POINTS = 3000
-"""Points of the cloud of a record without cycles."""
-
-
-class Cloud(NamedTuple):
-    """Samples of a record without cycles: displacement [m], velocity [m/s], force [N], current [A]."""
-
-    displacement: Array
-    velocity: Array
-    force: Array
-    current: Array
 
 
 _Amperes = Annotated[float, Form(unit="A")]
@@ -62,11 +51,10 @@ class Row(NamedTuple):
 
     amplitude: half the stroke. peak_rebound, peak_compression: largest and smallest force, positive opposes extension.
     energy: dissipated in a cycle, the area of the loop. damping: viscous damping that dissipates the same, `E / (pi w
-    X^2)`. offset: mean force of a cycle. asymmetry: RMS of the asymmetric part (difference from the
-    centrosymmetric loop, `(F(t) + F(t + T/2)) / 2`) over that of the force; `asymmetry_of_shape` is the same ratio
-    with the offset taken from both. `loop` is the mean of
-    the steady cycles; `cycle_values` holds current, temperature, peaks, energy and offset of each, and its force at the
-    peak speed (half the difference of both directions).
+    X^2)`. offset: mean force of a cycle. asymmetry: RMS of the asymmetric part (difference from the centrosymmetric
+    loop, `(F(t) + F(t + T/2)) / 2`) over that of the force. `loop` is the mean of the steady cycles; `cycle_values`
+    holds current, temperature, peaks, energy and offset of each, and its force at the peak speed (half the difference
+    of both directions).
     """
 
     record: str
@@ -80,20 +68,14 @@ class Row(NamedTuple):
     frequency: _Hertz = math.nan
     peak_speed: _Speed = math.nan
     peak_rebound: _Newtons = math.nan
-    peak_rebound_sd: _Newtons = math.nan
     peak_compression: _Newtons = math.nan
-    peak_compression_sd: _Newtons = math.nan
     energy: _Joules = math.nan
     energy_sd: _Joules = math.nan
     damping: _Damping = math.nan
-    damping_sd: _Damping = math.nan
     offset: _Newtons = math.nan
-    force_rms: _Newtons = math.nan
     asymmetry: float = math.nan
-    asymmetry_of_shape: float = math.nan
     notes: tuple[str, ...] = ()
     loop: Unwritten[SineTest | None] = None
-    cloud: Unwritten[Cloud | None] = None
     cycle_values: IfAny[dict[str, list[float]] | None] = None
 
     @property
@@ -132,9 +114,6 @@ def _summarise_loops(
     warmth = np.broadcast_to(np.asarray(temperature, dtype=float), len(loops))
     each = {name: np.array([figure(one) for one in loops]) for name, figure in _FIGURES.items()}
     mean = {name: float(np.mean(values)) for name, values in each.items()}
-    sd = {name: float(np.std(v, ddof=1)) if len(v) > 1 else math.nan for name, v in each.items()}
-    force, part = loop.force[:-1], loop.asymmetric_part[:-1]
-    offset = float(np.mean(force))
     ways = np.array([measure_forces(one, window) for one in loops])
     values = {"current": current, "temperature": warmth, **each, "force": 0.5 * (ways[:, 0] - ways[:, 1])}
     return Row(
@@ -142,13 +121,10 @@ def _summarise_loops(
         current=round(float(np.mean(current)), 6),
         temperature=float(np.mean(warmth)), temperature_range=float(np.ptp(warmth)),
         amplitude=0.5 * float(np.ptp(loop.displacement)), frequency=1.0 / float(loop.time[-1]),
-        peak_speed=float(np.max(np.abs(loop.velocity))), force_rms=rms(force), asymmetry=ratio(rms(part), rms(force)),
-        asymmetry_of_shape=ratio(rms(part - offset), rms(force - offset)), notes=tuple(notes), loop=loop,
+        peak_speed=float(np.max(np.abs(loop.velocity))),
+        asymmetry=ratio(rms(loop.asymmetric_part[:-1]), rms(loop.force[:-1])), notes=tuple(notes), loop=loop,
         cycle_values={name: list(map(float, v)) for name, v in values.items()},
-        peak_rebound=mean["peak_rebound"], peak_rebound_sd=sd["peak_rebound"],
-        peak_compression=mean["peak_compression"], peak_compression_sd=sd["peak_compression"],
-        energy=mean["energy"], energy_sd=sd["energy"], damping=mean["damping"], damping_sd=sd["damping"],
-        offset=mean["offset"],
+        energy_sd=float(np.std(each["energy"], ddof=1)) if len(loops) > 1 else math.nan, **mean,
     )  # fmt: skip
 
 
@@ -185,16 +161,14 @@ def summarise_record(record: BenchRecord, window: float = WINDOW) -> Row:
 
 
 def summarise_aperiodic_record(record: BenchRecord, found: Sequence[cycles.Cycle]) -> Row:
-    """Return the row of a record that is no steady cycle: peaks, RMS and mean of the force, and what the motion is."""
+    """Return the row of a record that is no steady cycle: peaks and mean of the force, and what the motion is."""
     warmth = record.temperature if record.temperature is not None else np.array([math.nan])
-    every = slice(None, None, max(1, len(record.force) // _MOST_POINTS))
-    cloud = Cloud(*(y[every] for y in (record.displacement, record.velocity, record.force, record.current)))
     return Row(
         record=record.name, file=record.file, cycles=0, left_out=len(found), current=round(record.mean_current, 6),
         temperature=float(np.mean(warmth)), temperature_range=float(np.ptp(warmth)),
         amplitude=0.5 * float(np.ptp(record.displacement)), peak_speed=float(np.max(np.abs(record.velocity))),
         peak_rebound=float(np.max(record.force)), peak_compression=float(np.min(record.force)),
-        offset=float(np.mean(record.force)), force_rms=rms(record.force), cloud=cloud,
+        offset=float(np.mean(record.force)),
         notes=(_motion(record, found), *_of_damage(record), *_of_current(record), *_of_sign(record)),
     )  # fmt: skip
 

@@ -39,11 +39,10 @@ class PeakForce(NamedTuple):
 
 
 class StepResponse(NamedTuple):
-    """Times in s from the current's own 10 % (a command's step) on, of the force; overshoot and dip over the change.
+    """Times in s from the current's own 10 % (a command's step) on, of the force; overshoot over the change.
 
     start, t10, t63, t90: the force has covered 5, 10, 63.2 and 90 % of its change. settling: from then on it keeps
-    within 5 % of its end. recovery: from first reaching 90 % until it no longer falls below; 0 without a dip. dip: how
-    far it falls below 90 % in that time. current_overshoot: of a measured current, over its own change.
+    within 5 % of its end. recovery: from first reaching 90 % until it no longer falls below; 0 where it does not.
     """
 
     before: Annotated[_Current, Form(key="from")]
@@ -57,8 +56,6 @@ class StepResponse(NamedTuple):
     settling: _Time
     recovery: _Time
     overshoot: float
-    dip: float
-    current_overshoot: float
 
 
 class SlowForce(NamedTuple):
@@ -167,7 +164,7 @@ def list_tables(sheet: BenchSheet) -> dict[str, tuple[type, Sequence[object]]]:
     return {name: (get_args(hints[name])[0], getattr(sheet, name)) for name in BenchSheet._fields}
 
 
-_TIMES = ("start", "t10", "t63", "t90", "settling", "recovery", "overshoot", "dip", "current_overshoot")
+_TIMES = ("start", "t10", "t63", "t90", "settling", "recovery", "overshoot")
 _FIGURES = {
     "rebound": ("peak_forces", "rebound"),
     "compression": ("peak_forces", "compression"),

@@ -113,8 +113,7 @@ class Response(NamedTuple):
 
     speed: of the motion, in m/s. direction: rebound, compression or both. time, share: the share of the change that is
     covered over the time in s from the step, shape (N,); None where the response cannot be determined, and then `note`
-    says why. current_t10: time in which the current itself covers 10 %, where it was measured. current_overshoot: over
-    its change.
+    says why. current_t10: time in which the current itself covers 10 %, where it was measured.
     """
 
     record: str
@@ -126,7 +125,6 @@ class Response(NamedTuple):
     time: Array | None = None
     share: Array | None = None
     current_t10: float = math.nan
-    current_overshoot: float = math.nan
 
     @property
     def rises(self) -> bool:
@@ -163,8 +161,7 @@ def _of_pair(record: BenchRecord, steps: Sequence[_CurrentStep]) -> Response:
     answer = _estimate_response(record, even, blank)
     if record.commanded:
         return answer
-    t10, overshoot = _of_current(record, steps)
-    return answer._replace(current_t10=t10, current_overshoot=overshoot)
+    return answer._replace(current_t10=_time_of_current(record, steps))
 
 
 def _find_constant_speed(record: BenchRecord, step: _CurrentStep) -> _Stretch | None:
@@ -237,8 +234,8 @@ def _slope_at_rest(force: Array, x: Array, before: int, last: int) -> float:
     return float(away @ moved / (moved @ moved)) if np.any(moved) else 0.0
 
 
-def _of_current(record: BenchRecord, steps: Sequence[_CurrentStep]) -> tuple[float, float]:
-    """Return the time in which the mean of the steps of a measured current covers 10 %, and its overshoot."""
+def _time_of_current(record: BenchRecord, steps: Sequence[_CurrentStep]) -> float:
+    """Return the time in which the mean of the steps of a measured current covers 10 %."""
     usual = np.median([step.after.last - round(step.row) for step in steps])
     chosen = [step for step in steps if step.after.last - round(step.row) >= usual]
     rows = min(int(usual), round(_LONGEST * record.rate))
@@ -246,7 +243,7 @@ def _of_current(record: BenchRecord, steps: Sequence[_CurrentStep]) -> tuple[flo
     share = np.mean((_about(record.current, chosen, 0, rows) - before) / (after - before), axis=0)
     late = float(np.mean([round(step.row) - step.row for step in chosen]))
     time = np.asarray((np.arange(rows) + late) / record.rate, dtype=float)
-    return find_crossing(time, share, 0.1), max(float(np.max(share)) - 1.0, 0.0)
+    return find_crossing(time, share, 0.1)
 
 
 def _about(values: Array, steps: Sequence[_CurrentStep], before: int, after: int) -> Array:

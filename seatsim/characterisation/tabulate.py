@@ -157,12 +157,10 @@ def _describe_step(found: Response) -> sheet.StepResponse:
         find_crossing(found.time, share, level) - start for level in (0.05, 0.1, 1.0 - math.exp(-1.0), 0.9)
     )
     again = _find_last(found.time, share < 0.9) - start
-    lowest = float(np.min(share[found.time - start >= t90], initial=1.0))
     return sheet.StepResponse(
         found.before, found.after, found.speed, found.direction, t5, t10, t63, t90,
         settling=_find_last(found.time, np.abs(share - 1.0) > _SETTLED) - start,
         recovery=max(again - t90, 0.0), overshoot=max(float(np.max(share)) - 1.0, 0.0),
-        dip=max(0.9 - lowest, 0.0), current_overshoot=found.current_overshoot,
     )  # fmt: skip
 
 

@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 from matplotlib.figure import Figure
 
-from seatsim.characterisation.rows import Cloud
 from seatsim.dampers.base import DAMPERS
 from seatsim.plots import style
 from seatsim.plots.style import Entry, Grid, clean_text
@@ -25,16 +24,12 @@ _SETTLING = 3.0
 
 
 class Family(NamedTuple):
-    """Loops that share their panels: title, that of the legend, named loops, and the colour map of their order.
-
-    Of records without cycles they are `dots`.
-    """
+    """Loops that share their panels: title, that of the legend, named loops, and the colour map of their order."""
 
     title: str
     legend: str
-    loops: Sequence[tuple[str, SineTest | Cloud]]
+    loops: Sequence[tuple[str, SineTest]]
     colours: str = "viridis"
-    dots: bool = False
 
 
 def plot_families(title: str, note: str, families: Sequence[Family]) -> Figure:
@@ -45,12 +40,9 @@ def plot_families(title: str, note: str, families: Sequence[Family]) -> Figure:
     page = style.make_page(title, f"{note} {SIGNS}", grid)
     for panels, family in zip(page.rows, families, strict=True):
         picked = style.sample_colours(family.colours, len(family.loops))
-        for k, ((name, loop), colour) in enumerate(zip(family.loops, picked, strict=True)):
-            look = Entry(name, colour, "none", mark=".") if family.dots else Entry(name, colour, width=1.5)
+        for (name, loop), colour in zip(family.loops, picked, strict=True):
             for axes, across in zip(panels, (loop.velocity, 1e3 * loop.displacement), strict=True):
-                line = style.draw_line(axes, across, loop.force, look)
-                # The first ones are the narrowest.
-                line.set(markersize=3, markeredgewidth=0, zorder=2.0 - 0.01 * k * family.dots)
+                style.draw_line(axes, across, loop.force, Entry(name, colour, width=1.5))
         panels[0].set_title(clean_text(family.title, 60), loc="left", fontsize=style.FONT)
         panels[0].set(xlabel="velocity [m/s]", ylabel="damper force [N]")
         panels[1].set(xlabel="displacement [mm]", ylim=panels[0].get_ylim())

@@ -148,11 +148,9 @@ _COLUMNS: Mapping[str, Callable[[Row], float]] = {
     "energy [J]": lambda row: row.energy,
     "± of energy [%]": lambda row: 100.0 * ratio(row.energy_sd, row.energy),
     "damping [N·s/m]": lambda row: row.damping,
-    "RMS [N]": lambda row: math.nan if row.cycles else row.force_rms,
     # What is rounding, beside the forces, is no offset.
     "offset [N]": lambda row: row.offset if abs(row.offset) >= ROUNDING * abs(row.peak_rebound) else 0.0,
     "asymmetry [%]": lambda row: 100.0 * round(row.asymmetry, 9),
-    "asymmetry of shape [%]": lambda row: 100.0 * round(row.asymmetry_of_shape, 9),
 }
 """Figures of the rows by the heading of their column, which a table without any of them leaves out."""
 
@@ -169,7 +167,7 @@ def tabulate_rows(found: Characterisation) -> list[Table]:
 
 def tabulate_responses(sheet: BenchSheet) -> list[Table]:
     """Return the table of the responses to steps of the current."""
-    caption = "Response from the current's own 10 % on; recovery after a dip below 90 %; shares of the change"
+    caption = "Response from the current's own 10 % on; recovery from below 90 %; shares of the change"
     return _tabulate_sheet(sheet, {"response": caption})
 
 

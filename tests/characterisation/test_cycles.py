@@ -27,7 +27,6 @@ def test_energy_damping_and_offset_of_a_bingham_damper(record, sine):
     assert row.damping == pytest.approx(energy / (math.pi * w * 0.01**2), rel=5e-3)
     assert row.offset == pytest.approx(30.0, abs=1.0)
     assert row.peak_rebound == pytest.approx(280.0 + 400.0 * 0.01 * w, abs=8.0)
-    assert row.asymmetry_of_shape < 0.01 < row.asymmetry
     assert row.current == 0.5 and math.isnan(row.temperature) and row.notes == ()
 
 
@@ -68,8 +67,8 @@ def test_what_is_not_cyclic_is_told(record, kind):
     }[kind]
     assert select_steady_cycles(find_cycles(motion(t))) == []
     row = summarise_record(record(motion, 8.0))
-    assert row.cycles == 0 and math.isnan(row.energy) and row.cloud is not None
-    assert row.notes[0].startswith("not cyclic") and math.isfinite(row.force_rms)
+    assert row.cycles == 0 and math.isnan(row.energy)
+    assert row.notes[0].startswith("not cyclic") and math.isfinite(row.peak_rebound)
 
 
 def test_a_force_of_the_wrong_sign_and_a_velocity_of_the_wrong_unit_are_told(record, sine):

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from seatsim.characterisation.rows import Cloud, Row
+from seatsim.characterisation.rows import Row
 from seatsim.plots.bench import loops as families
 from seatsim.plots.bench.characterisation import (
     BY_CURRENT,
@@ -24,11 +24,6 @@ def row(current=0.0, temperature=math.nan, amplitude=0.01, frequency=1.0, record
     loop = SineTest(PHASE / (2.0 * np.pi * frequency), amplitude * np.sin(PHASE), velocity, 500.0 * velocity)
     return Row(record=record, file="", cycles=3, left_out=0, current=current, temperature=temperature,
                temperature_range=0.0, amplitude=amplitude, frequency=frequency, loop=loop)  # fmt: skip
-
-
-def cloud(current, amplitude, peak_speed):
-    values = Cloud(*[np.linspace(-1.0, 1.0, 5)] * 4)
-    return Row("chirp", "", 0, 0, current, amplitude=amplitude, peak_speed=peak_speed, cloud=values)
 
 
 def names_of(family):
@@ -55,11 +50,6 @@ def test_settings_beyond_the_most_are_counted():
     found, left_out = families.find_families(rows)
     assert len(found) == families.MOST and left_out == 2
     assert found[0].title == "10 mm, 1 Hz" and found[-1].title == "10 mm, 8 Hz"
-
-
-def test_clouds_of_the_same_motion_share_a_panel():
-    rows = [cloud(0.0, 0.01, 0.2), cloud(1.0, 0.0105, 0.21), cloud(1.0, 0.02, 0.2), row()]
-    assert [[one.current for one in group] for group in families.group_clouds(rows)] == [[0.0, 1.0], [1.0]]
 
 
 def test_figures_are_drawn_over_what_varies():

@@ -36,11 +36,12 @@ MOST = 8
 def plot_characterisation(found: Characterisation) -> dict[str, Figure]:
     """Return the figures of a characterisation by name.
 
-    `loops` is always there, `energy` where there are cycles, `steps` where a response was determined.
+    `loops` and `energy` are there where there are cycles, `steps` where a response was determined.
     """
+    is_cyclic = any(row.loop is not None for row in found.rows)
     plots = {
-        "loops": (plot_loops, True),
-        "energy": (_plot_energy, any(row.loop is not None for row in found.rows)),
+        "loops": (plot_loops, is_cyclic),
+        "energy": (_plot_energy, is_cyclic),
         "steps": (_plot_steps, any(answer.share is not None for answer in found.responses)),
     }
     return {name: plot(found) for name, (plot, is_known) in plots.items() if is_known}

@@ -1,4 +1,4 @@
-"""Loops of a characterisation: which records share their panels, in which order; and clouds of those without cycles."""
+"""Loops of a characterisation: which records share their panels, in which order."""
 
 from __future__ import annotations
 
@@ -7,31 +7,29 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from seatsim.characterisation.rows import WARMER, Row, group_rows
+from seatsim.characterisation.rows import WARMER, Row
 from seatsim.characterisation.summary import Characterisation, group_by_setting
 from seatsim.plots.loops import Family, plot_families
 from seatsim.plots.style import clean_text
 from seatsim.plots.thinning import spread_evenly
 from seatsim.simulation.damper_bench import SineTest
 
-MOST, _MOST_WARM, _MOST_CLOUDS = 6, 2, 3
-"""Most settings whose loops are drawn by current, and by temperature; most groups of records without cycles."""
+MOST, _MOST_WARM = 6, 2
+"""Most settings whose loops are drawn by current, and by temperature."""
 MOST_LINES = 8
 """Most loops that the colours of one panel can tell apart."""
 _LONGEST = 24
 """Letters of a record's name in a legend."""
 _SAME_CURRENT = 0.02
 """A; difference of currents that are the same but for their noise."""
-_SAME_MOTION = 0.1
-"""Relative difference of strokes and speeds of records whose clouds share their panels."""
 
 
 def plot_loops(found: Characterisation) -> Figure:
-    """Return the loops by current for each amplitude and frequency, by temperature where it varies, and clouds."""
-    (families, left_out), clouds = find_families(found.rows), list(map(show_cloud, group_clouds(found.rows)))
-    note = "Mean of the steady cycles. Displacement from mid-stroke." if families else "Records without steady cycles."
+    """Return the loops by current for each amplitude and frequency, and by temperature where it varies."""
+    families, left_out = find_families(found.rows)
+    note = "Mean of the steady cycles. Displacement from mid-stroke."
     note += f" {left_out} further settings are not shown." if left_out else ""
-    return plot_families(f"Loops: {found.name}", note, [*families, *clouds])
+    return plot_families(f"Loops: {found.name}", note, families)
 
 
 def find_families(rows: Sequence[Row]) -> tuple[list[Family], int]:
@@ -89,20 +87,6 @@ def describe_setting(row: Row) -> str:
     return f"{1e3 * row.amplitude:.3g} mm, {row.frequency:.3g} Hz"
 
 
-def group_clouds(rows: Sequence[Row]) -> list[list[Row]]:
-    """Return the records without cycles in groups of the same motion."""
-    return group_rows([row for row in rows if row.cloud is not None], _moves_alike)[:_MOST_CLOUDS]
-
-
-def show_cloud(group: Sequence[Row]) -> Family:
-    """Return the samples of records without cycles in the order of their currents."""
-    ordered = sorted(group, key=lambda row: row.current)
-    clouds = [(f"{row.current:.3g} A", row.cloud) for row in ordered if row.cloud is not None]
-    names = list(dict.fromkeys(row.record.split(",")[0] for row in group))
-    title = f"{names[0]}{f' and {len(names) - 1} more' * (len(names) > 1)}, not cyclic"
-    return Family(title, "mean current", clouds, dots=True)
-
-
 def _centre_loop(row: Row) -> SineTest:
     """Return the loop of a row with its displacement from mid-stroke."""
     assert row.loop is not None
@@ -113,8 +97,3 @@ def _centre_loop(row: Row) -> SineTest:
 def _varies(values: Sequence[float], by: float) -> bool:
     known = [value for value in values if np.isfinite(value)]
     return len(known) > 1 and max(known) - min(known) > by
-
-
-def _moves_alike(a: Row, b: Row) -> bool:
-    pairs = ((a.amplitude, b.amplitude), (a.peak_speed, b.peak_speed))
-    return all(abs(p - q) <= _SAME_MOTION * p for p, q in pairs) and a.current != b.current
