@@ -23,7 +23,6 @@ from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.fields import param
 from seatsim.schema.guarded import is_there, nearest_beside
 from seatsim.schema.tables import numbers, read_table
-from seatsim.schema.units import conversion
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -94,16 +93,18 @@ def _leaky_integral(values: Array, step: float) -> Array:
     return np.asarray(lfilter([gain, gain], [1.0, -(1 - leak) / (1 + leak)], values))
 
 
-# Part of a table's Nyquist frequency up to which its content is used.
 _USABLE = 0.8
+"""Part of a table's Nyquist frequency up to which its content is used."""
+_BAND = (0.1, 80.0)
+"""Hz between which a measured acceleration is used."""
 
 
 @excitation("table")
 class Table(NamedTuple):
     """A floor or a road that somebody measured, from a CSV or CSV.gz table with one of two axes.
 
-    - `time_column`: `column` is the vertical floor acceleration. Its mean (gravity, bias) is removed, it is
-      limited to `high_pass..low_pass`, and integrated in the frequency domain.
+    - `time_column`: `column` is the vertical floor acceleration in m/s^2. Its mean (gravity, bias) is removed, it is
+      limited to 0.1 to 80 Hz (less where the table is coarser), and integrated in the frequency domain.
     - `distance_column`: `column` is the road's elevation in m, met at `speed`. Its steady slope is removed,
       it is limited to 0.011 to 2.83 cycles/m (the band of `kind: road`; less where the table is coarser), and
       passes `vehicle.floor_response` unless `through: direct`. Waves shorter than 0.35 m are left out, since
@@ -123,9 +124,6 @@ class Table(NamedTuple):
     duration: Annotated[float | None, DURATION] = None
     start: Annotated[float, param("s or m", "part of the record left out at its beginning", low=0)] = 0.0
     repeat: Annotated[Literal["none", "mirror"], choice("what follows the record's end")] = "none"
-    unit: Annotated[Literal["m/s^2", "g"], choice("unit of a measured acceleration")] = "m/s^2"
-    high_pass: Annotated[float, param("Hz", "lower corner of a measured acceleration", low=0.02)] = 0.1
-    low_pass: Annotated[float, param("Hz", "end of its band, at most 0.8 of Nyquist", above=0)] = 80.0
     through: Through = "vehicle"
     vehicle: Annotated[Vehicle, choice("the vehicle between a measured road and the floor")] = TRUCK
 
@@ -146,17 +144,10 @@ class Table(NamedTuple):
     def _measured(self, record: _EvenSeries, step: float) -> Floor:
         if self.speed is not None:
             raise InputError(f"table {self.path}: speed belongs to distance_column; drop it beside time_column")
-        highest = min(self.low_pass, _USABLE * 0.5 / record.interval)
-        if highest <= 2 * self.high_pass:
-            raise InputError(
-                f"table {self.path}: no band is left between {self.high_pass:g} and {highest:g} Hz; "
-                f"permitted: a high_pass below {highest / 2:g} Hz"
-            )
-        scale = conversion(self.unit, "m/s^2").factor
+        highest = min(_BAND[1], _USABLE * 0.5 / record.interval)
         period = 2 * record.length
-        acceleration = motion.mirrored(scale * (record.values - record.values.mean()))
-        acceleration = acceleration[: int(highest * period) + 1]
-        acceleration *= motion.band(motion.lines(acceleration, period), self.high_pass, highest)
+        acceleration = motion.mirrored(record.values - record.values.mean())[: int(highest * period) + 1]
+        acceleration *= motion.band(motion.lines(acceleration, period), _BAND[0], highest)
         return self._play(motion.integrated_twice(acceleration, period), record.length, highest, step)
 
     def _driven(self, record: _EvenSeries, step: float) -> Floor:

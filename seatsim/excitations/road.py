@@ -27,7 +27,7 @@ from math import ceil
 from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
-from scipy.fft import irfft, rfft
+from scipy.fft import rfft
 
 from seatsim.excitations import motion
 from seatsim.excitations.base import Duration, Floor, Speed, Through, choice, excitation
@@ -171,18 +171,6 @@ def displacement_density(wavenumber: Array, road_class: RoadClass) -> Array:
     """Return Gd(n) of a road class in m^3 at wavenumbers in cycles/m, shape of `wavenumber`."""
     roughness = 16e-6 * 4.0 ** "ABCDEFGH".index(road_class)
     return roughness * (np.asarray(wavenumber) / _REFERENCE_WAVENUMBER) ** -2
-
-
-def profile(road_class: RoadClass, length: float, spacing: float, seed: int) -> tuple[Array, Array]:
-    """Return distance and elevation in m, each of shape (N,), of a random road at even `spacing` in m.
-
-    Waves shorter than two and a half spacings are left out, since samples hardly tell them from longer ones.
-    """
-    count = round(length / spacing) + 1
-    size = max(count - 1, round(_LEAST_PERIOD / spacing))
-    spectrum = _road(road_class, size * spacing, min(SHORTEST, 0.4 / spacing), seed)
-    elevation = irfft(spectrum, n=size, norm="forward")
-    return motion.clock(count, spacing), np.resize(elevation, count)
 
 
 def _road(road_class: RoadClass, period: float, shortest: float, seed: int) -> motion.Spectrum:

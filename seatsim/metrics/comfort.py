@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from seatsim.metrics.motion import as_pair, as_signal, peak, ratio, require_positive, rms
+from seatsim.metrics.motion import as_signal, peak, ratio, require_positive, rms
 from seatsim.metrics.weighting import weight
 from seatsim.schema.arrays import Array
 
@@ -79,22 +79,6 @@ def estimated_vdv(rms_weighted: float, duration: float) -> float:
 def crest_factor(weighted: ArrayLike) -> float:
     """Return max |a_w(t)| / a_w of the weighted signal, dimensionless (ISO 2631-1:1997, 6.2); NaN at rest."""
     return ratio(peak(weighted), rms(weighted))
-
-
-def seat_factor(driver: ArrayLike, floor: ArrayLike, sample_rate: float) -> float:
-    """Return SEAT = a_w(driver) / a_w(floor), both weighted with Wk; a ratio, not percent (ISO 10326-1).
-
-    Below 1 the seat isolates. NaN where the floor is at rest. The standard measures on the cushion under the
-    driver; here the driver is the mass that rests on it, so its acceleration stands for the cushion's
-    surface.
-
-    Args:
-        driver: acceleration of the driver in m/s^2, shape (N,), not weighted.
-        floor: acceleration of the floor in m/s^2, same shape, not weighted.
-        sample_rate: in Hz, at least 200.
-    """
-    seat, base = as_pair(driver, floor, ("driver", "floor"))
-    return ratio(weighted_rms(seat, sample_rate), weighted_rms(base, sample_rate))
 
 
 _CREST_FACTOR, _MTVV_RATIO, _VDV_RATIO = 9.0, 1.5, 1.75

@@ -11,7 +11,7 @@ from typing import Annotated, NamedTuple
 
 from seatsim.metrics.comfort import EIGHT_HOURS, Dose, daily_exposure, daily_vdv, estimated_vdv
 from seatsim.schema.content import Form
-from seatsim.schema.errors import InputError, permit
+from seatsim.schema.errors import InputError
 from seatsim.schema.fields import read_packaged
 
 HOUR, DAY = 3600.0, 24.0
@@ -74,12 +74,12 @@ def assess_exposure(doses: dict[str, Dose], hours: float) -> Exposure | None:
         hours: duration of the vibration in a day, above 0, at most 24.
 
     Raises:
-        InputError: `hours` is out of its range, or an axis is not known.
+        InputError: `hours` is out of its range.
     """
     if not 0 < hours <= DAY:
         raise InputError(f"hours: is {hours:g}; a day of vibration must be above 0 and at most {DAY:g}")
     seconds = HOUR * hours
-    factors = {axis: k for axis in doses if (k := direction(axis).health) is not None}
+    factors = {axis: k for axis in doses if (k := DIRECTIONS[axis].health) is not None}
     if not factors:
         return None
     a8 = {axis: daily_exposure(k * doses[axis].rms, seconds) for axis, k in factors.items()}
@@ -133,17 +133,6 @@ POINTS = ("seat", "back", "feet")
 
 DIRECTIONS = read_packaged(Path(__file__).with_name("directions.yaml"), dict[str, Direction])
 """By axis: fore-and-aft x, lateral y, vertical z; without a point in front, on the surface of the seat."""
-
-
-def direction(axis: str) -> Direction:
-    """Return the direction of an axis.
-
-    Raises:
-        InputError: no axis has this name.
-    """
-    if axis not in DIRECTIONS:
-        raise InputError(f"no axis is called '{axis}'{permit(axis, DIRECTIONS)}")
-    return DIRECTIONS[axis]
 
 
 def point_of(axis: str) -> str:

@@ -24,7 +24,6 @@ from seatsim.metrics.exposure import (
     Direction,
     Exposure,
     assess_exposure,
-    direction,
     point_of,
 )
 from seatsim.metrics.spine import SpinalLoad, assess_spine, join_spinal_doses, spinal_dose, spine_response
@@ -146,12 +145,12 @@ def comfort(
             raise InputError(f"no axis is called '{axis}'{permit(axis, _AXES)}")
     records = _chosen(load_accelerations(source, rate, unit, [*named.values()]), runs, source)
     named = named or choose_axes(records[0].name, records[0].columns, records[0].notes)
-    every = {axis: _weigh(records, name, direction(_FLOOR.get(axis, axis))) for axis, name in named.items()}
+    every = {axis: _weigh(records, name, DIRECTIONS[_FLOOR.get(axis, axis)]) for axis, name in named.items()}
     stretches = {axis: every[axis] for axis in DIRECTIONS if axis in named}
     if not stretches:
         raise InputError(f"{source}: no axis of the person is named; give one of {', '.join(DIRECTIONS)}")
     doses = {axis: [part.dose for part in parts] for axis, parts in every.items()}
-    axes = {axis: _assess(named[axis], direction(axis), doses[axis], records) for axis in stretches}
+    axes = {axis: _assess(named[axis], DIRECTIONS[axis], doses[axis], records) for axis in stretches}
     joined = {axis: found.dose for axis, found in axes.items()}
     seats = {axis: (doses[axis], doses[base]) for base, axis in _FLOOR.items() if {base, axis} <= {*named}}
     return Comfort(
@@ -175,7 +174,7 @@ def total_values(doses: Mapping[str, Dose]) -> dict[str, float]:
 
     Source: ISO 2631-1:1997, equation 10 in 8.2.2, and 8.2.3 for several points; k as in `seatsim.metrics.exposure`.
     """
-    squares = {axis: (direction(axis).comfort * found.rms) ** 2 for axis, found in doses.items()}
+    squares = {axis: (DIRECTIONS[axis].comfort * found.rms) ** 2 for axis, found in doses.items()}
     by_point = {point: sum(square for axis, square in squares.items() if point_of(axis) == point) for point in POINTS}
     present = {point: float(np.sqrt(by_point[point])) for point in POINTS if any(point_of(a) == point for a in squares)}
     return present | {"overall": float(np.sqrt(sum(squares.values())))}
@@ -218,7 +217,7 @@ def _assess(
 
 
 def _motion_sickness(records: Sequence[AccelerationRecord], column: str) -> MotionSickness:
-    stretches = _weigh(records, column, direction("z")._replace(weighting="Wf"))
+    stretches = _weigh(records, column, DIRECTIONS["z"]._replace(weighting="Wf"))
     found = join_doses([part.dose for part in stretches])
     return MotionSickness(found.rms, motion_sickness_dose(found.rms, found.duration))
 
@@ -227,7 +226,7 @@ def _load_spine(records: Sequence[AccelerationRecord], column: str, hours: float
     """Return the load of the spine by records that have their shares of the hours of a day."""
     doses, lasts = [], 0.0
     for record in records:
-        x = _centre(record, column, direction("z").unit)
+        x = _centre(record, column, DIRECTIONS["z"].unit)
         with placed(f"{record.name}, {column}"):
             doses.append(spinal_dose(spine_response(x, record.sample_rate)))
         lasts += len(x) / record.sample_rate

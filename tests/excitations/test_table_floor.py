@@ -5,10 +5,11 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from scipy.fft import irfft
 from scipy.signal import welch
 
 from seatsim.excitations.recording import Table
-from seatsim.excitations.road import Road, profile
+from seatsim.excitations.road import LONGEST, SHORTEST, Road, _road
 from seatsim.schema.errors import InputError
 
 ROOT = Path(__file__).parents[2]
@@ -35,6 +36,14 @@ def write(tmp_path):
     return file
 
 
+def profile(road_class, length, spacing, seed):
+    """Distance and elevation in m of a random road; samples hardly tell waves shorter than 2.5 spacings from others."""
+    count = round(length / spacing) + 1
+    size = max(count - 1, round(5 / LONGEST / spacing))
+    spectrum = _road(road_class, size * spacing, min(SHORTEST, 0.4 / spacing), seed)
+    return spacing * np.arange(count), np.resize(irfft(spectrum, n=size, norm="forward"), count)
+
+
 def road_table(write, length, spacing, **keys):
     """A table of a road of class C, driven over at 10 m/s."""
     distance, elevation = profile("C", length, spacing, 4)
@@ -42,11 +51,10 @@ def road_table(write, length, spacing, **keys):
     return Table(path, "elevation_m", distance_column="distance_m", speed=10.0, **keys)
 
 
-@pytest.mark.parametrize(("unit", "size"), [("m/s^2", 1.0), ("g", 9.80665)])
-def test_measured_acceleration_is_resampled_and_integrated(write, unit, size):
+def test_measured_acceleration_is_resampled_and_integrated(write):
     t = np.arange(0, 60.0001, 0.004)
-    path = write("t.csv.gz", time_s=t, az=(9.81 + 0.3 + tones(t)[0]) / size)
-    floor = Table(path, "az", time_column="time_s", unit=unit).floor(0.001, 0)
+    path = write("t.csv.gz", time_s=t, az=9.81 + 0.3 + tones(t)[0])
+    floor = Table(path, "az", time_column="time_s").floor(0.001, 0)
     assert len(floor.time) == 60001
     inner = slice(20000, 40000)
     for got, expected in zip((floor.acceleration, floor.velocity, floor.displacement), tones(floor.time), strict=True):
@@ -137,7 +145,6 @@ def test_unusable_tables_are_refused_with_place_and_advice(write, tmp_path):
         ({"time_column": "t", "distance_column": "t"}, "either time_column or distance"),
         ({"distance_column": "t"}, "needs speed"),
         ({"time_column": "t", "speed": 3.0}, "speed belongs to distance_column"),
-        ({"time_column": "t", "high_pass": 30.0}, "no band is left"),
         ({"time_column": "t", "start": 2.9}, "leaves fewer than 16 rows"),
         ({"time_column": "t", "duration": 4.0}, "repeat: mirror"),
     ],

@@ -13,11 +13,9 @@ from seatsim.metrics.comfort import (
     estimated_vdv,
     mtvv,
     running_rms,
-    seat_factor,
     vdv,
     weighted_rms,
 )
-from seatsim.metrics.weighting import frequency_response
 from seatsim.schema.errors import InputError
 
 RATE = 1000.0
@@ -87,19 +85,7 @@ def test_crest_factor(signal, expected):
 def test_ratios_at_rest_are_not_numbers():
     still = np.zeros(2000)
     assert math.isnan(crest_factor(still))
-    assert math.isnan(seat_factor(np.ones(2000), still, RATE))
     assert math.isnan(dose(still, RATE).vdv_ratio)
-
-
-def test_seat_factor_weighs_what_the_seat_adds():
-    floor, added = sine(1.0, 1.0, 200), sine(1.0, 6.0, 200)
-    expected = math.hypot(abs(frequency_response(1.0)), abs(frequency_response(6.0))) / abs(frequency_response(1.0))
-    assert seat_factor(floor + added, floor, RATE) == pytest.approx(expected, rel=2e-3)
-
-
-def test_seat_factor_needs_equal_lengths():
-    with pytest.raises(InputError, match="driver has 3 samples, floor has 4"):
-        seat_factor(np.ones(3), np.ones(4), RATE)
 
 
 def test_dose_of_a_sine(conform):

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.metrics.comfort import seat_factor
+from seatsim.metrics.comfort import weighted_rms
 from seatsim.metrics.motion import rms
 from seatsim.metrics.table import METRICS, summarise
 from seatsim.metrics.weighting import weight
@@ -61,7 +61,7 @@ def test_values():
     expected = {
         "driver_acceleration_rms": rms(driver),
         "driver_acceleration_weighted": rms(weight(driver, 1 / STEP)),
-        "seat_factor": seat_factor(driver, floor, 1 / STEP),
+        "seat_factor": weighted_rms(driver, 1 / STEP) / weighted_rms(floor, 1 / STEP),
         "suspension_displacement_peak": 0.06,
         "end_stop_hits": 20,
         "force_tracking_error": 10.0,
