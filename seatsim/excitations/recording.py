@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 
@@ -22,11 +22,7 @@ from seatsim.schema.bounds import check_steps
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.fields import param
 from seatsim.schema.guarded import is_there, nearest_beside
-from seatsim.schema.tables import numbers, read_table
-
-if TYPE_CHECKING:
-    import pandas as pd
-
+from seatsim.schema.tables import read_finite, read_table
 
 _CORNER = 0.05
 """Hz; below it the floor velocity, an integral of a measured acceleration, is attenuated as unreliable."""
@@ -175,6 +171,7 @@ class Table(NamedTuple):
 
 
 _LEAST_ROWS = 16
+_REMEDY = "choose another column or mend the table"
 # Rounded times of a steady clock deviate by less than this part of an interval; a lost row deviates by more.
 _LARGEST_JITTER = 0.25
 
@@ -208,22 +205,12 @@ def _read_record(path: str, axis: str, column: str, start: float) -> _EvenSeries
             raise InputError(f"{path}: no column '{name}'{nearest(name, known)}; columns: {shown}")
     if len(table) < _LEAST_ROWS:
         raise InputError(f"{path}: {len(table)} rows are too few; permitted: at least {_LEAST_ROWS}")
-    position = _numbers(path, table, axis)
-    whole = _EvenSeries(_interval(path, axis, position), _numbers(path, table, column))
+    position = read_finite(table, axis, path, _REMEDY)
+    whole = _EvenSeries(_interval(path, axis, position), read_finite(table, column, path, _REMEDY))
     record = whole._replace(values=whole.values[round(start / whole.interval) :])
     if len(record.values) < _LEAST_ROWS:
         raise InputError(f"{path}: start {start:g} leaves fewer than {_LEAST_ROWS} rows of {whole.length:g} (s or m)")
     return record
-
-
-def _numbers(path: str, table: pd.DataFrame, name: str) -> Array:
-    values, bad = numbers(table, name)
-    if len(bad):
-        raise InputError(
-            f"{path}, line {bad[0] + 2}: column '{name}' holds '{table[name].iloc[bad[0]]}', not a number "
-            f"({len(bad)} of {len(values)} rows); choose another column or mend the table"
-        )
-    return values
 
 
 def _interval(path: str, axis: str, position: Array) -> float:

@@ -134,8 +134,6 @@ def _largest(record: BenchRecord, name: str) -> float:
 
 _IDENTIFIED = 0.1
 """Standard deviation, over the parameter's size, above which the data are said not to identify it."""
-_CORRELATED = 0.95
-"""Size of a correlation above which a pair is reported."""
 _LEAST = 1e-13
 """Sensitivity and eigenvalue of the information, over the largest, below which there is none."""
 _DIFFERENCE_STEP = 1e-6
@@ -155,10 +153,9 @@ class ParameterEstimate(NamedTuple):
 
 
 class Information(NamedTuple):
-    """Estimates, pairs of parameters whose correlation is above 0.95 in size, and the effective number of samples."""
+    """Estimates of the parameters, and the effective number of samples."""
 
     estimates: Annotated[list[ParameterEstimate], Form(key="parameters")]
-    correlated: list[tuple[str, str, float]]
     samples: Annotated[float, Form(key="effective_samples")]
 
     @property
@@ -186,7 +183,7 @@ def compute_information(problem: IdentificationProblem, vector: Array, executor:
     samples = len(residuals) / memory
     square = float(np.sum(residuals**2)) / max(1.0, samples - len(vector))
     covariance = square * _invert_normal_matrix(compute_jacobian(problem, vector, residuals, executor))
-    return Information(_estimates(problem, vector, covariance), _correlated(problem.labels, covariance), samples)
+    return Information(_estimates(problem, vector, covariance), samples)
 
 
 def _estimates(problem: IdentificationProblem, vector: Array, covariance: Array) -> list[ParameterEstimate]:
@@ -221,15 +218,6 @@ def _invert_normal_matrix(jacobian: Array) -> Array:
     value, basis = np.linalg.eigh((jacobian / scale).T @ (jacobian / scale))
     known = np.maximum(value, _LEAST * (float(value[-1]) or 1.0))
     return np.asarray(((basis / known) @ basis.T) / np.outer(scale, scale))
-
-
-def _correlated(labels: list[str], covariance: Array) -> list[tuple[str, str, float]]:
-    """Return the pairs with a high correlation, the highest first."""
-    spread = np.sqrt(np.diag(covariance))
-    correlation = covariance / np.outer(spread, spread)
-    above = zip(*np.triu_indices(len(labels), 1), strict=True)
-    pairs = [(labels[a], labels[b], float(correlation[a, b])) for a, b in above]
-    return sorted((pair for pair in pairs if abs(pair[2]) > _CORRELATED), key=lambda pair: -abs(pair[2]))
 
 
 def _per_current(c: Component) -> str:

@@ -16,7 +16,7 @@ from seatsim.importing.names import SI_UNITS, is_of, quantity_of, read_name, wit
 from seatsim.importing.readers.reading import read_file
 from seatsim.importing.signals import DataFile, Group, Signal
 from seatsim.importing.time_axis import Axis, Clock, find_clock, is_spectrum
-from seatsim.recordings.quality.damage import noise_of
+from seatsim.recordings.quality.damage import find_repeated_rows, noise_of
 from seatsim.recordings.quality.examination import examine, merge_issues
 from seatsim.recordings.quality.issue import Issue, place_in_run
 from seatsim.recordings.quality.relations import doubt_relations
@@ -24,9 +24,6 @@ from seatsim.recordings.recording import BENCH_CHANNELS, CHANNELS, SEAT_CHANNELS
 from seatsim.schema.arrays import Array
 from seatsim.schema.content import Joined, Unwritten, written
 from seatsim.schema.units import conversion
-
-_RARE = 0.01
-"""Share of rows in which a channel repeats itself, above which it is too coarse to show rows written twice."""
 
 
 class ChannelSummary(NamedTuple):
@@ -159,11 +156,10 @@ def _summarise(signal: Signal, unit: str, channel: str | None, rate: float | Non
 
 
 def _doubt_repeats(file: DataFile) -> Iterator[Issue]:
-    """Yield rows that repeat the row before in every channel, where at least three vary from row to row."""
+    """Yield rows that repeat the row before in every channel but the time."""
     for group in file.groups:
-        steps = [np.diff(s.values) == 0.0 for s in group.signals if read_name(s.name).quantity != "time"]
-        rows = np.flatnonzero(np.all(steps, axis=0)) + 1
-        if sum(np.mean(same) < _RARE for same in steps) >= 3 and len(rows):
+        rows = find_repeated_rows([s.values for s in group.signals if read_name(s.name).quantity != "time"])
+        if len(rows):
             repeat = f"repeat the row before in all channels, first row {rows[0]}; they were written twice"
             yield Issue("warning", "repeated_rows", f"{len(rows)} rows {repeat}")
 

@@ -32,9 +32,6 @@ _AVERAGED = 4e-4
 _MOST_ROWS = 6000
 """Samples that are warped at most: one minute at 100 Hz."""
 
-GRADES = {"excellent": 0.94, "good": 0.8, "fair": 0.58, "poor": -math.inf}
-"""Overall ratings above which an agreement has each grade."""
-
 
 class ObjectiveRating(NamedTuple):
     """Ratings of a curve against a reference, from 0 to 1, and the time in s by which the curve is late."""
@@ -50,11 +47,6 @@ class ObjectiveRating(NamedTuple):
     def overall(self) -> float:
         """`0.4 corridor + 0.2 phase + 0.2 magnitude + 0.2 slope`."""
         return 0.4 * self.corridor + 0.2 * (self.phase + self.magnitude + self.slope)
-
-    @property
-    def grade(self) -> str:
-        """The word for the overall rating: excellent, good, fair or poor."""
-        return next(grade for grade, above in GRADES.items() if self.overall > above)
 
 
 def rate_agreement(reference: ArrayLike, curve: ArrayLike, sample_rate: float) -> ObjectiveRating:

@@ -2,8 +2,7 @@
 
 A table is a CSV file. A column is called by its quantity, followed by its unit where that is not the SI unit:
 `displacement_mm`, `force_kN`, `velocity_m_s`, also written `Displacement [mm]` or `velocity (m/s)`. A force may name
-its current, `force_0p4A_N`. What is constant over a table may stand in a sidecar of the same name, `sine.yaml` beside
-`sine.csv`, under the same names. Tables are split into records where the time jumps and where the column `segment`
+its current, `force_0p4A_N`. Tables are split into records where the time jumps and where the column `segment`
 changes; rows whose `valid` is 0 are left out. A folder with `recording.yaml` is read as it says.
 """
 
@@ -22,14 +21,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.recordings.recording import HEADER, load_recording
-from seatsim.schema import tables
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.fields import read_packaged
 from seatsim.schema.guarded import is_there, nearest_beside
-from seatsim.schema.tables import read_table
+from seatsim.schema.tables import read_finite, read_table
 from seatsim.schema.units import OWN_SPELLINGS, USUAL, conversion
-from seatsim.schema.yaml_source import Source
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -45,7 +42,6 @@ _MISSPELT = 0.9
 """Similarity to a known name (by difflib) above which an unknown column is taken for a misspelling."""
 _LISTED = 12
 """Most columns that an error lists."""
-_RATES = ("sample_rate_Hz", "sample_rate")
 
 
 class Meaning(NamedTuple):
@@ -126,19 +122,10 @@ def _columns_of(names: Iterable[str], file: Path) -> Columns:
     return Columns(found, forces, tuple(unused))
 
 
-def numbers(frame: pd.DataFrame, column: str, file: Path) -> Array:
-    """Return a column of a table in SI units, shape (N,).
-
-    Raises:
-        InputError: a row of it is no finite number.
-    """
+def _numbers(frame: pd.DataFrame, column: str, file: Path) -> Array:
+    """Return a column of a table in SI units, shape (N,); InputError where a row of it is no finite number."""
     known = meaning(column)
-    values, bad = tables.numbers(frame, column)
-    if bad.size:
-        more = f" (and {bad.size - 1} more rows)" if bad.size > 1 else ""
-        place = f"{file}, line {frame.index[bad[0]] + 2}, {column}: '{frame[column].iloc[bad[0]]}'{more}"
-        remedy = "correct it, or mark such rows by 0 in a column 'valid'"
-        raise InputError(f"{place} is not a finite number; {remedy}")
+    values = read_finite(frame, column, file, "correct it, or mark such rows by 0 in a column 'valid'")
     return known.in_si(values) if known else values
 
 
@@ -148,8 +135,7 @@ def _check_needed(there: Iterable[str], columns: Sequence[str], file: Path) -> N
     if lacking:
         quantity = lacking[0]
         hint, others = nearest(quantity, columns), ", ".join(_QUANTITIES[quantity][0][1:])
-        rate = f", or give '{_RATES[0]}' in {file.name.partition('.csv')[0]}.yaml" if quantity == "time" else ""
-        name = f"name it {_spelt(quantity)} (also {others} with the unit){rate}"
+        name = f"name it {_spelt(quantity)} (also {others} with the unit)"
         there_are = f"there are {', '.join(columns[:_LISTED])}{', ...' * (len(columns) > _LISTED)}"
         raise InputError(f"{file}: no column holds the {quantity}{hint}; {name}; {there_are}")
 
@@ -157,28 +143,6 @@ def _check_needed(there: Iterable[str], columns: Sequence[str], file: Path) -> N
 def _spelt(quantity: str) -> str:
     units = USUAL.get(_QUANTITIES[quantity][1], ())
     return " or ".join(f"'{_with_unit(quantity, unit)}'" for unit in units) or f"'{quantity}'"
-
-
-def constants(sidecar: Source) -> dict[str, float]:
-    """Return what a sidecar states of a whole table, by quantity in SI units; `rate` is the sample rate in Hz.
-
-    Numbers count under the names that a column may have; everything else is a description.
-
-    Raises:
-        InputError: a number is not finite, or the sample rate is not positive.
-    """
-    found: dict[str, float] = {}
-    for key, value in sidecar.data.items():
-        known = meaning(str(key))
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            continue
-        if not np.isfinite(value) or (key in _RATES and value <= 0.0):
-            raise sidecar.error((key,), f"{value} is not permitted; write a finite number, above 0 for a sample rate")
-        if key in _RATES:
-            found.setdefault("rate", float(value))
-        elif known and known.quantity in (*_DRIVES, "temperature"):
-            found[known.quantity] = float(known.in_si(np.asarray(value, dtype=float)))
-    return found
 
 
 _Table = dict[str, Array]
@@ -257,7 +221,7 @@ def map_bench(path: str | Path, look: Callable[[Iterable[BenchRecord]], _T], pat
     `look` keeps their records.
 
     `pattern` is a regular expression for the names of the files, whose groups `current` in A and `temperature` in degC
-    count where neither a column nor a sidecar states these; `NAMED` reads `0.3A-2.csv` and `1.5A_80C.csv`.
+    count where no column states these; `NAMED` reads `0.3A-2.csv` and `1.5A_80C.csv`.
 
     Raises:
         InputError: nothing is there, or a table is short of a column, not numeric, too short or unevenly sampled.
@@ -319,15 +283,11 @@ def note_unused(names: Iterable[str]) -> list[str]:
 def _records(file: Path, pattern: re.Pattern[str] | None) -> Iterator[BenchRecord]:
     frame = read_table(file)
     columns = _columns_of(map(str, frame), file)
-    sidecar = file.with_name(stem(file.name) + ".yaml")
-    stated = _read_name(stem(file.name), pattern) | (constants(Source(sidecar)) if sidecar.exists() else {})
-    if "time" not in columns.by_quantity and "rate" in stated:
-        frame = frame.assign(time=np.arange(len(frame)) / stated["rate"])
-        columns.by_quantity["time"] = "time"
+    stated = _read_name(stem(file.name), pattern)
     _check_needed([*columns.by_quantity, *(["force"] if columns.forces else [])], list(map(str, frame)), file)
     if "valid" in columns.by_quantity:
-        frame = frame[numbers(frame, columns.by_quantity.pop("valid"), file) != 0.0]
-    table = {quantity: numbers(frame, column, file) for quantity, column in columns.by_quantity.items()}
+        frame = frame[_numbers(frame, columns.by_quantity.pop("valid"), file) != 0.0]
+    table = {quantity: _numbers(frame, column, file) for quantity, column in columns.by_quantity.items()}
     driven = any(drive in table for drive in _DRIVES)
     for quantity, value in stated.items():
         if quantity == "temperature" or (quantity in _DRIVES and not driven):
@@ -335,7 +295,7 @@ def _records(file: Path, pattern: re.Pattern[str] | None) -> Iterator[BenchRecor
     lines = frame.index.to_numpy() + 2
     for at, column in columns.forces.items():
         current = {} if at is None else {"current": np.full(len(frame), at)}
-        for record in _split({**table, "force": numbers(frame, column, file), **current}, file, lines):
+        for record in _split({**table, "force": _numbers(frame, column, file), **current}, file, lines):
             yield record._replace(unused=columns.unused)
 
 

@@ -17,7 +17,7 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest, placed
 from seatsim.schema.fields import param, read_packaged
 from seatsim.schema.guarded import is_there
-from seatsim.schema.tables import numbers, read_table
+from seatsim.schema.tables import read_finite, read_table
 from seatsim.schema.units import Conversion, conversion
 from seatsim.schema.validation import build, check_keys, mapping
 from seatsim.schema.yaml_source import Source
@@ -199,9 +199,7 @@ def _read_table(path: Path, channels: tuple[str, ...], stamp: _Stamp) -> dict[st
         raise InputError(f"{path}: column '{missing[0]}' is missing{hint}; recording.yaml lists it")
     table = {}
     for name in channels:
-        values, bad = numbers(frame, name)
-        if bad.size:
-            raise InputError(f"{path}, line {bad[0] + 2}, {name}: not a finite number; {bad.size} rows are not")
+        values = read_finite(frame, name, path, "correct it, or cut the run there")
         values.flags.writeable = False
         table[name] = values
     return table

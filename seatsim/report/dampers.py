@@ -83,13 +83,13 @@ def _show_time(chosen: Sequence[Assessment]) -> Block:
 
 
 def tabulate_parameters(found: Identification) -> list[Table]:
-    """Return the table of the parameters, and that of the pairs that can replace each other."""
+    """Return the table of the parameters."""
     estimates, rows = found.information.estimates, []
     for each in estimates:
         figures = (format_number(each.value, 5), format_number(1.96 * each.std, 2))
         rows.append((each.name + " (not determined)" * (not each.identified), format_unit(each.unit), *figures))
     strong = [k for k, each in enumerate(estimates) if not each.identified]
-    return [*show_table("parameters", rows, 2, strong), *show_table("pairs", found.information.correlated, 2)]
+    return show_table("parameters", rows, 2, strong)
 
 
 MOST_ROWS = 60

@@ -11,7 +11,6 @@ import numpy as np
 
 from seatsim.diagnosis.residuals import group_by_channel, list_traces, nominal_gap
 from seatsim.metrics.motion import rms
-from seatsim.metrics.objective_rating import GRADES
 from seatsim.plots.diagnosis import plot_all_of_gap
 from seatsim.recordings.gap import Gap
 from seatsim.report import formatting
@@ -81,11 +80,10 @@ def _show_agreement(found: Gap) -> list[Block]:
     if not found.iso18571:
         return []
     ratings = [
-        (name.replace("_", " "), each.grade, *map("{:.3f}".format, (each.overall, *each[:4])), 1e3 * each.shift)
+        (name.replace("_", " "), *map("{:.3f}".format, (each.overall, *each[:4])), 1e3 * each.shift)
         for name, each in found.iso18571.items()
     ]
-    grades = ", ".join(f"{grade} above {least:g}" for grade, least in GRADES.items() if least > 0)
-    meanings = Items([each.text for each in formatting.explain("ratings", grades=grades)])
+    meanings = Items([each.text for each in formatting.explain("ratings")])
     errors = [
         scale_row(name, each.unit, (each.error, each.u_val, each.u_num, each.u_input, each.u_d))
         for name, each in found.v_and_v.items()

@@ -143,6 +143,20 @@ def numbers(frame: pd.DataFrame, column: str) -> tuple[NDArray[np.float64], NDAr
     return values, np.flatnonzero(~np.isfinite(values))
 
 
+def read_finite(frame: pd.DataFrame, column: str, path: Path | str, remedy: str) -> NDArray[np.float64]:
+    """Return a column of a table as numbers, shape (N,).
+
+    Raises:
+        InputError: a row of it is no finite number; the sentence ends with a remedy.
+    """
+    values, bad = numbers(frame, column)
+    if bad.size:
+        more = f" (and {bad.size - 1} more rows)" if bad.size > 1 else ""
+        place = f"{path}, line {frame.index[bad[0]] + 2}, {column}: '{frame[column].iloc[bad[0]]}'{more}"
+        raise InputError(f"{place} is not a finite number; {remedy}")
+    return values
+
+
 def _check_text(content: bytes, path: Path) -> None:
     """Raise InputError where content is not UTF-8: pyarrow passes over rows that are not, and over their length."""
     try:

@@ -91,9 +91,8 @@ def test_factors_of_temperature_and_laws_are_written_and_read_again(tmp_path):
     folder.mkdir()
     for record in records:
         table = {"time_s": record.time, "x_m": record.displacement, "force_N": record.force}
+        table |= {"current_A": record.mean_current, "temperature_C": record.temperature[0]}
         pd.DataFrame(table).to_csv(folder / record.file, index=False)
-        text = f"current_A: {record.mean_current}\ntemperature_C: {record.temperature[0]}\n"
-        (folder / f"{record.name}.yaml").write_text(text)
     found = identify(folder, "original_bingham")
     write_identification(found, tmp_path / "out", 0)
     values = YAML(typ="safe").load((tmp_path / "out" / "parameters.yaml").read_text())

@@ -18,11 +18,9 @@ def plain(**other):
     return pd.DataFrame(table | other)
 
 
-def loaded(folder, table, name="one.csv", sidecar=None):
-    table.to_csv(folder / name, index=False)
-    if sidecar is not None:
-        (folder / "one.yaml").write_text(sidecar)
-    return load_bench(folder / name)
+def loaded(folder, table):
+    table.to_csv(folder / "one.csv", index=False)
+    return load_bench(folder / "one.csv")
 
 
 @pytest.mark.parametrize(
@@ -65,16 +63,6 @@ def test_a_velocity_is_derived_where_there_is_none(tmp_path):
     assert len(short.velocity) == 21
 
 
-def test_a_sidecar_states_what_is_constant(tmp_path):
-    text = "current_mA: 600\ntemperature_C: 45\nsample_rate_Hz: 250\nforce: a load cell\nvalid: true\n"
-    (found,) = loaded(tmp_path, plain().drop(columns="time_s"), sidecar=text)
-    assert found.rate == pytest.approx(250.0) and found.mean_current == pytest.approx(0.6)
-    assert np.all(found.temperature == 45.0)
-    (driven,) = loaded(tmp_path, plain(voltage_V=np.where(TIME > 0.1, 2.0, 0.0)), sidecar=text)
-    assert driven.commanded and np.ptp(driven.current) == 2.0, "a column counts before the sidecar"
-    assert driven.in_volts and not found.in_volts
-
-
 def test_forces_that_name_their_current_are_records_of_one_motion(tmp_path):
     table = plain().drop(columns="force_N").assign(force_0p2A_N=1.0, force_1p0A_N=2.0)
     first, second = loaded(tmp_path, table)
@@ -98,6 +86,11 @@ def test_invalid_rows_are_left_out_whatever_they_hold(tmp_path):
     table.loc[table.valid == 0, "force_N"] = np.nan
     found = loaded(tmp_path, table)
     assert len(found) == 2 and sum(len(r.force) for r in found) == int(table.valid.sum())
+
+
+def test_a_voltage_without_a_gain_counts_as_a_command(tmp_path):
+    (driven,) = loaded(tmp_path, plain(voltage_V=np.where(TIME > 0.1, 2.0, 0.0)))
+    assert driven.commanded and driven.in_volts and np.ptp(driven.current) == 2.0
 
 
 def test_commands_are_told_from_currents(tmp_path):
@@ -153,32 +146,30 @@ def jumping():
 
 
 @pytest.mark.parametrize(
-    "table, sidecar, problem",
+    "table, problem",
     [
-        (plain().drop(columns="displacement_m").assign(displacment_m=0.0), None,
+        (plain().drop(columns="displacement_m").assign(displacment_m=0.0),
          "column 'displacment_m' is not known; name it 'displacement_m' or 'displacement_cm'"),
-        (plain().drop(columns="displacement_m").assign(disp_mm=0.0), None,
+        (plain().drop(columns="displacement_m").assign(disp_mm=0.0),
          "no column holds the displacement (did you mean 'disp_mm'?); name it 'displacement_m' or 'displacement_cm'"),
-        (plain().drop(columns="force_N").assign(force_filtered=0.0), None,
+        (plain().drop(columns="force_N").assign(force_filtered=0.0),
          "no column holds the force (did you mean 'force_filtered'?); name it 'force_N' or 'force_kN'"),
-        (plain().drop(columns="time_s"), None, "or give 'sample_rate_Hz' in one.yaml"),
-        (plain(curent_A=1.0), None, "column 'curent_A' is not known; name it 'current_A' or 'current_mA'"),
-        (plain(temperature_degX=70.0), None, "column 'temperature_degX' is not known; name it 'temperature_degC' or"),
-        (plain(stroke_mm=1.0), None, "'displacement_m' and 'stroke_mm' both hold the displacement"),
-        (plain(damper_force_kN=1.0), None, "'force_N' and 'damper_force_kN' both hold the force"),
-        (plain(temperature_C=["warm"] * 100), None, "line 2, temperature_C: 'warm' (and 99 more rows) is not"),
-        (plain(current_A=np.where(TIME == 0.05, np.nan, 1.0)), None, "line 27, current_A: 'nan' is not a finite"),
-        (plain().iloc[:7], None, "holds 7 rows of rising time; a record has at least 20"),
-        (plain().assign(time_s=0.0), None, "100 rows of rising time"),
-        (uneven(), None, "are not evenly spaced in time; resample them"),
-        (jumping(), None, "line 4, 0.0055 s: rows are not evenly spaced in time"),
-        (plain(), "sample_rate: 0", "one.yaml, line 1, sample_rate: 0 is not permitted"),
-        (plain(), "current_A: .nan", "one.yaml, line 1, current_A: nan is not permitted"),
+        (plain().drop(columns="time_s"), "no column holds the time"),
+        (plain(curent_A=1.0), "column 'curent_A' is not known; name it 'current_A' or 'current_mA'"),
+        (plain(temperature_degX=70.0), "column 'temperature_degX' is not known; name it 'temperature_degC' or"),
+        (plain(stroke_mm=1.0), "'displacement_m' and 'stroke_mm' both hold the displacement"),
+        (plain(damper_force_kN=1.0), "'force_N' and 'damper_force_kN' both hold the force"),
+        (plain(temperature_C=["warm"] * 100), "line 2, temperature_C: 'warm' (and 99 more rows) is not"),
+        (plain(current_A=np.where(TIME == 0.05, np.nan, 1.0)), "line 27, current_A: 'nan' is not a finite"),
+        (plain().iloc[:7], "holds 7 rows of rising time; a record has at least 20"),
+        (plain().assign(time_s=0.0), "100 rows of rising time"),
+        (uneven(), "are not evenly spaced in time; resample them"),
+        (jumping(), "line 4, 0.0055 s: rows are not evenly spaced in time"),
     ],
 )  # fmt: skip
-def test_a_bad_table_is_refused_at_its_place(table, sidecar, problem, tmp_path):
+def test_a_bad_table_is_refused_at_its_place(table, problem, tmp_path):
     with pytest.raises(InputError) as error:
-        loaded(tmp_path, table, sidecar=sidecar)
+        loaded(tmp_path, table)
     assert problem in str(error.value) and "one." in str(error.value)
 
 

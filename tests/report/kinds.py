@@ -98,7 +98,7 @@ def identification(parts):
     known = [ParameterEstimate("c_a", 500.0, 2.0, "N s/m", True), ParameterEstimate("k0", 3.0, 30.0, "N/m", False)]
     return SimpleNamespace(
         model="bouc_wen", bench=SimpleNamespace(damper=None), assessments=judged,
-        information=Information(known, [("c_a", "k0", 0.99)], 100.0), notes=[], assessed=judged[0].agreement,
+        information=Information(known, 100.0), notes=[], assessed=judged[0].agreement,
         mean=lambda part: agreement if part in parts else None,
     )  # fmt: skip
 

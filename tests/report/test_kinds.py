@@ -92,7 +92,6 @@ def test_an_identification_says_how_well_it_predicts_and_what_the_data_leave_ope
     assert outline.headings[0].endswith("on records that took no part in the fit.")
     assert any("do not determine k0" in words for words in outline.words)
     assert outline.rows("Fitted values")["k0 (not determined)"] == ["N/m", "3.0000", "59"]
-    assert outline.rows("Pairs of parameters")["c_a"] == ["k0", "0.990"]
 
 
 def test_a_characterisation_says_force_and_response():

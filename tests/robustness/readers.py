@@ -80,7 +80,6 @@ def make_readers() -> dict[str, Reader]:
     bench = next(path for path in sorted(BENCH.glob("*.csv*")))
     rows = bench.read_bytes() if bench.suffix == ".csv" else gzip.decompress(bench.read_bytes())
     rows = b"".join(rows.splitlines(keepends=True)[:SHORT_ROWS])
-    sidecar = b"sample_rate_Hz: 500\ntemperature_degC: 20\nnote: a sine of 1 Hz\n"
     sweep = b"scenario: quickstart.yaml\nseed: 1\ndesign: lhs\nruns: 10\n"
     sweep += b"vary:\n  plant.driver_mass: {normal: [80, 12], low: 50}\n"
     points = b"plant.driver_mass,temperature\n55,20\n75,40\n98,60\n"
@@ -96,7 +95,7 @@ def make_readers() -> dict[str, Reader]:
         "variants": ({"a.yaml": seat}, "a.yaml", lambda folder: load(folder / "a.yaml")),
         "recording": (recorded, "recording.yaml nominal.yaml", _read_recording),
         "table": (recorded, "run-1.csv.gz", _read_recording),
-        "bench": ({"a.csv": rows, "a.yaml": sidecar}, "a.csv a.yaml", lambda folder: load_bench(folder / "a.csv")),
+        "bench": ({"a.csv": rows}, "a.csv", lambda folder: load_bench(folder / "a.csv")),
         "sweep": ({"a.yaml": sweep} | beside, "a.yaml", lambda folder: prepare(folder / "a.yaml")),
         "design": (of_table, "a.yaml points.csv", lambda folder: prepare(folder / "a.yaml")),
         "floor": ({"a.yaml": measured, "floor.csv": floor}, "a.yaml floor.csv", _read_floor),

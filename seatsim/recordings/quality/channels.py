@@ -19,8 +19,6 @@ _STUCK = 0.5
 """s; a noisy channel without any change for this long is stuck."""
 _STEADY = ("suspension_displacement", "displacement", "velocity")
 """Channels that inertia keeps from jumping: a force and an acceleration jump where a current is switched."""
-_HOTTEST = 130.0
-"""degC; upper end of the temperatures at which MR fluids are used."""
 _BEYOND_SWITCHES = 6.0
 """Size in standard deviations of a single row that no switched current makes."""
 _CLIPPED = 0.002
@@ -45,15 +43,13 @@ def _is_plausible(values: Array, unit: str) -> bool:
 
 
 def check_ranges(run: RunUnderTest) -> Iterator[Issue]:
-    """Report constant channels, and currents and temperatures out of range."""
+    """Report constant channels, and currents out of range."""
     for channel in run.table:
         yield from _constant(run, channel)
     gains = {"current_command": 1.0, "coil_current": 1.0, "command_voltage": run.recording.voltage_gain}
     for channel, gain in gains.items():
         if channel in run.table and gain is not None:
             yield from _current(run, channel, gain)
-    if "damper_temperature" in run.table:
-        yield from _temperature(run, "damper_temperature")
 
 
 def _constant(run: RunUnderTest, channel: str) -> Iterator[Issue]:
@@ -89,17 +85,6 @@ def _current(run: RunUnderTest, channel: str, gain: float) -> Iterator[Issue]:
         yield run.issue("warning", "range", text, channel)
 
 
-def _temperature(run: RunUnderTest, channel: str) -> Iterator[Issue]:
-    low, high = float(np.min(run.table[channel])), float(np.max(run.table[channel]))
-    if low < -40.0 or high > 200.0:
-        guess = "is it in kelvin? " if low > 230.0 and high < 480.0 else ""
-        seen = f"ranges from {low:.4g} to {high:.4g} degC, outside -40 to 200 degC"
-        yield run.issue("error", "unit", f"{seen}; {guess}convert it to degC", channel)
-    elif high > _HOTTEST:
-        text = f"reaches {high:.4g} degC, where the fluid of MR dampers stands {_HOTTEST:g} degC"
-        yield run.issue("warning", "range", f"{text}; check its unit and sensor", channel)
-
-
 def check_shapes(run: RunUnderTest) -> Iterator[Issue]:
     """Report clipped tops, values repeated over several rows, and stretches without change.
 
@@ -120,8 +105,8 @@ def check_shapes(run: RunUnderTest) -> Iterator[Issue]:
 
 
 def check_sizes(run: RunUnderTest) -> Iterator[Issue]:
-    """Report channels of motion with values that no seat reaches; only a comparison tells of which unit they are."""
-    for channel in MOTION:
+    """Report motions and temperatures that no seat reaches; only a comparison tells of which unit they are."""
+    for channel in (*MOTION, "damper_temperature"):
         if channel in run.table and (text := say_implausible(run.table[channel], run.recording.channels[channel].unit)):
             yield run.issue("error", "unit", f"{text}; correct its unit", channel)
 

@@ -1,17 +1,14 @@
-"""What of the operating range a recording did not visit: velocities, travels, currents, temperatures, frequencies.
+"""What of the operating range a recording did not visit: travels, currents, temperatures.
 
-An effect outside the recorded range cannot be assessed, however good the data are. The velocity is the slope of
-the displacement below the frequency at which its spectrum meets its noise (a density of 2 noise^2 / sample_rate), or,
-where no displacement is recorded, the integral of frame acceleration - floor acceleration above 0.5 Hz.
+An effect outside the recorded range cannot be assessed, however good the data are.
 """
 
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-import scipy  # loads `scipy.signal` where it is first used
 
-from seatsim.recordings.recording import DRIVERS, Recording
+from seatsim.recordings.recording import Recording
 from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
@@ -24,10 +21,8 @@ _DROP, _DROP_TIME = 0.1, 0.2
 """Least drop of the current, as a share of the largest, and the seconds within which it must happen."""
 _FULL_CURRENT = 0.8
 """Share of the largest current that must be visited."""
-_LARGE_TRAVEL, _FAST, _LIFT = 0.03, 0.3, 1.0
-"""m, m/s and m/s^2 that must be visited for stops, for the damper at speed and for the cushion in tension."""
-_TRUNK = (3.0, 8.0)
-"""Hz; a seated driver's inner resonance lies between."""
+_LARGE_TRAVEL, _LIFT = 0.03, 1.0
+"""m and m/s^2 that must be visited for stops and for the cushion in tension."""
 
 
 class _VisitedRange(NamedTuple):
@@ -49,20 +44,15 @@ def list_unvisited(recording: Recording) -> Iterator[str]:
     Raises:
         InputError: a table or the nominal scenario cannot be read.
     """
-    tables = [recording.table(run) for run in recording.runs]
     pools: dict[str, list[Array]] = {}
-    for table in tables:
-        for name, values in _quantities(recording, table).items():
+    for run in recording.runs:
+        for name, values in _quantities(recording, recording.table(run)).items():
             pools.setdefault(name, []).append(values)
     visited = {name: _measure_range(np.concatenate(parts)) for name, parts in pools.items()}
     yield from _missing_motion(recording, visited)
     drop = _largest_drop(pools.get("current", []), recording.header.sample_rate)
     yield from _missing_current(recording.nominal, visited.get("current"), drop)
     yield from _missing_temperature(recording.nominal, visited.get("temperature"))
-    band = _band(recording, tables)
-    if recording.header.rig == "seat" and band is not None and not (band[0] < _TRUNK[0] and band[1] > _TRUNK[1]):
-        place = f"the floor shakes between {band[0]:.2g} and {band[1]:.2g} Hz only"
-        yield f"{place}: a driver's inner resonance between {_TRUNK[0]:g} and {_TRUNK[1]:g} Hz is hard to assess"
 
 
 def shows_falling_current(recording: Recording) -> bool:
@@ -77,7 +67,6 @@ def _quantities(recording: Recording, table: dict[str, Array]) -> dict[str, Arra
     """Return the values of the quantities of one run by name."""
     found = {
         "travel": table.get("suspension_displacement", table.get("displacement")),
-        "velocity": _velocity(recording, table),
         "current": _current(recording, table),
         "temperature": table.get("damper_temperature"),
         "driver": table.get("driver_acceleration"),
@@ -95,34 +84,6 @@ def _current(recording: Recording, table: dict[str, Array]) -> Array | None:
     return None
 
 
-def _velocity(recording: Recording, table: dict[str, Array]) -> Array | None:
-    """Return the velocity across the damper in m/s, shape (N,); None where no channel determines it."""
-    rate = recording.header.sample_rate
-    if "velocity" in table:
-        return table["velocity"]
-    for channel in ("displacement", "suspension_displacement"):
-        if channel in table:
-            return _slope(table[channel], recording.channels[channel].noise_rms, rate)
-    if "frame_acceleration" not in table:
-        return None
-    relative = np.cumsum(table["frame_acceleration"] - table["floor_acceleration"]) / rate
-    sections = scipy.signal.butter(2, 0.5, "highpass", fs=rate, output="sos")
-    return np.asarray(scipy.signal.sosfiltfilt(sections, relative))
-
-
-def _slope(values: Array, noise: float, rate: float) -> Array:
-    """Return the derivative below the frequency at which the spectrum falls to four times that of the noise."""
-    rows = min(len(values), max(64, round(2.0 * rate)))
-    frequency, density = scipy.signal.welch(values, rate, nperseg=rows)
-    above = np.flatnonzero(density > 4.0 * 2.0 * noise**2 / rate)
-    corner = float(frequency[above[-1]]) if above.size else 0.0
-    smooth = values
-    if corner < 0.4 * rate:
-        sections = scipy.signal.butter(2, max(corner, 1.0 / rows * rate), fs=rate, output="sos")
-        smooth = scipy.signal.sosfiltfilt(sections, values)
-    return np.asarray(np.gradient(smooth, 1.0 / rate))
-
-
 def _measure_range(values: Array) -> _VisitedRange:
     return _VisitedRange(float(np.min(values)), float(np.max(values)), *np.percentile(values, _ENDS).tolist())
 
@@ -133,32 +94,13 @@ def _largest_drop(currents: Sequence[Array], rate: float) -> float:
     return max((float(np.max(current[:-rows] - current[rows:], initial=0.0)) for current in currents), default=0.0)
 
 
-def _band(recording: Recording, tables: list[dict[str, Array]]) -> tuple[float, float] | None:
-    """Return the band that holds 98 % of the power of the excitation's acceleration (a bench: of its velocity)."""
-    rate = recording.header.sample_rate
-    channel = DRIVERS[recording.header.rig]
-    rows = min([len(table[channel]) for table in tables] + [round(8.0 * rate)])
-    spectra = [scipy.signal.welch(table[channel], rate, nperseg=rows) for table in tables]
-    frequency = spectra[0][0]
-    weight = 1.0 if channel == "floor_acceleration" else frequency**2
-    floor = 2.0 * recording.channels[channel].noise_rms ** 2 / rate
-    power = np.cumsum(np.maximum(np.mean([s[1] for s in spectra], axis=0) - floor, 0.0) * weight)
-    if power[-1] <= 0.0:
-        return None
-    low, high = (float(frequency[np.searchsorted(power, share * power[-1])]) for share in (0.01, 0.99))
-    return low, high
-
-
 def _missing_motion(recording: Recording, visited: _Visited) -> Iterator[str]:
-    travel, velocity, driver = (visited.get(name) for name in ("travel", "velocity", "driver"))
+    travel, driver = visited.get("travel"), visited.get("driver")
     if travel is None:
         yield "no displacement is recorded: end stops, springs and free play are seen through other channels"
     elif recording.header.rig == "seat" and max(-travel.low, travel.high) < _LARGE_TRAVEL:
         place = f"travel stays within {1e3 * travel.low:.0f} to {1e3 * travel.high:.0f} mm"
         yield f"{place}: end stops and progressive springs beyond that cannot be assessed"
-    reached = max(-velocity.lower, velocity.upper) if velocity is not None else _FAST
-    if reached < _FAST:
-        yield f"velocity hardly exceeds {reached:.2g} m/s: the damper's force at speed cannot be assessed"
     if driver is not None and driver.low > -_LIFT:
         place = f"the driver is never accelerated downwards by more than {max(0.0, -driver.low):.2g} m/s^2"
         yield f"{place}: separation from the cushion cannot be assessed"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatsim.recordings.quality.channels import check_ranges, check_shapes
+from seatsim.recordings.quality.channels import check_ranges, check_shapes, check_sizes
 
 RATE = 250.0
 TIME = np.arange(2500) / RATE
@@ -27,9 +27,6 @@ def kinds(check, run):
         ("coil_current", 0.6 + 0.4 * MOVING, [("warning", "range")]),
         ("coil_current", 31.0 * np.abs(MOVING), [("error", "unit")]),
         ("current_command", -0.3 * np.abs(MOVING), [("error", "sign")]),
-        ("damper_temperature", 40.0 + MOVING, []),
-        ("damper_temperature", 313.0 + MOVING, [("error", "unit")]),
-        ("damper_temperature", -41.0 + 0.1 * MOVING, [("error", "unit")]),
     ],
 )
 def test_ranges(under_test, channel, values, expected):
@@ -38,9 +35,10 @@ def test_ranges(under_test, channel, values, expected):
 
 
 def test_a_temperature_in_kelvin_is_named_so_and_one_beyond_it_is_not(under_test):
-    for start, said in ((300.0, True), (600.0, False)):
-        (issue,) = check_ranges(under_test({"damper_temperature": start + MOVING}, RATE, NOISE))
-        assert ("kelvin" in issue.sentence) is said
+    assert not [*check_sizes(under_test({"damper_temperature": 40.0 + MOVING}, RATE, NOISE))]
+    for start, said in ((313.0, True), (600.0, False)):
+        (issue,) = check_sizes(under_test({"damper_temperature": start + MOVING}, RATE, NOISE))
+        assert (issue.severity, issue.kind) == ("error", "unit") and ("is it in K" in issue.sentence) is said
 
 
 def test_flat_tops_are_errors_where_many_rows_stand_there_and_warnings_where_few_do(under_test):

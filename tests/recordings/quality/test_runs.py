@@ -88,14 +88,6 @@ def test_noise_is_said_where_it_is_more_than_three_times_off(runs, factor, is_sa
     assert (("warning", "noise", None) in found(*runs)) is is_said
 
 
-def test_degrees_fahrenheit_are_told_by_the_nominal_temperature(runs):
-    for low, is_said in ((68.0, True), (60.0, False), (25.0, False)):
-        warm = [run._replace(table={**run.table, "damper_temperature": low + np.arange(3000) / 100}) for run in runs]
-        units = [issue for issue in check_all_runs(warm) if issue.kind == "unit"]
-        assert [issue.channel for issue in units] == ["damper_temperature"] * is_said
-        assert all("degF" in issue.sentence for issue in units)
-
-
 @pytest.mark.parametrize(
     ("clock", "expected"),
     [
