@@ -12,7 +12,7 @@ import numpy as np
 from seatsim.importing.doubts import doubt_channel, doubt_pairs, doubt_time
 from seatsim.importing.import_map import Rig
 from seatsim.importing.matching import Column, channel_of, read_columns
-from seatsim.importing.names import SI_UNITS, is_of, quantity_of, read_name, without_unit
+from seatsim.importing.names import SI_UNITS, is_of, read_name, without_unit
 from seatsim.importing.readers.reading import read_file
 from seatsim.importing.signals import DataFile, Group, Signal
 from seatsim.importing.time_axis import Axis, Clock, find_clock, is_spectrum
@@ -22,16 +22,17 @@ from seatsim.recordings.quality.issue import Issue, place_in_run
 from seatsim.recordings.quality.relations import doubt_relations
 from seatsim.recordings.recording import BENCH_CHANNELS, CHANNELS, SEAT_CHANNELS, load_recording
 from seatsim.schema.arrays import Array
-from seatsim.schema.content import Joined, Unwritten, written
 from seatsim.schema.units import conversion
 
 
 class ChannelSummary(NamedTuple):
     """One channel: figures in the unit that stands there; `noise` is the RMS that the high-frequency floor shows.
 
-    `channel` is the channel of a recording that its name means, None where it means none.
+    `group` is that of the file, or the run; `channel` the channel of a recording that the name means, None where it
+    means none.
     """
 
+    group: str
     name: str
     unit: str
     channel: str | None
@@ -44,26 +45,13 @@ class ChannelSummary(NamedTuple):
     noise: float | None
 
 
-class GroupedChannel(NamedTuple):
-    """A channel, and the group of the file in which it stands."""
-
-    group: str
-    summary: Joined[ChannelSummary]
-
-
 class Inspection(NamedTuple):
-    """The channels of a file or a recording, by group, and the doubts about them."""
+    """The channels of a file or a recording, group by group, and the doubts about them."""
 
     source: str
     format: str
-    channels: Unwritten[dict[str, list[ChannelSummary]]]
+    channels: list[ChannelSummary]
     doubts: list[Issue]
-
-    @property
-    @written("channels")
-    def rows(self) -> list[GroupedChannel]:
-        """Every channel with its group."""
-        return [GroupedChannel(group, each) for group, held in self.channels.items() for each in held]
 
 
 def inspect_file(path: Path) -> Inspection:
@@ -73,13 +61,13 @@ def inspect_file(path: Path) -> Inspection:
         InputError: it cannot be read.
     """
     file = read_file(path)
-    channels: dict[str, list[ChannelSummary]] = {}
+    channels: list[ChannelSummary] = []
     doubts = [Issue("note", "left_out", note) for note in file.notes]
     columns = [column for group in file.groups for column in read_columns(group)]
     rig: Rig = "seat" if any(column.meaning.place for column in columns) else "damper_bench"
     for group in file.groups:
         summaries, found = _group(group, rig)
-        channels[group.name] = summaries
+        channels += summaries
         doubts += found
     return Inspection(str(path), file.format, channels, [*doubts, *_doubt_repeats(file)])
 
@@ -101,7 +89,9 @@ def _group(group: Group, rig: Rig) -> tuple[list[ChannelSummary], list[Issue]]:
         if column.meaning.quantity != "mark":
             found += doubt_channel(column.signal.name, values, rate, quantity)
         known[column.signal.name], quantities[column.signal.name] = values, quantity
-        summaries.append(_summarise(column.signal, column.meaning.unit, channel_of(column, rig), rate))
+        figures = _measure(column.signal.values, rate)
+        unit, channel = column.meaning.unit, channel_of(column, rig)
+        summaries.append(ChannelSummary(group.name, column.signal.name, unit, channel, rate, *figures))
     parts = _longest_part(axis, known) if axis else known
     commands = {column.signal.name for column in columns if column.meaning.is_command}
     return summaries, [*found, *doubt_pairs(parts, rate, quantities, commands)]
@@ -144,15 +134,14 @@ def _in_si(column: Column) -> tuple[Array, str | None]:
     return (column.signal.values if found == (1.0, 0.0) else found.factor * column.signal.values + found.zero), quantity
 
 
-def _summarise(signal: Signal, unit: str, channel: str | None, rate: float | None) -> ChannelSummary:
-    """Return the figures of one channel."""
-    values = signal.values[np.isfinite(signal.values)] if np.isnan(signal.values).any() else signal.values
+def _measure(column: Array, rate: float | None) -> tuple[int, float, float, float, float, float | None]:
+    """Return how many values a channel has, the least and the greatest, the mean, the RMS and the noise."""
+    values = column[np.isfinite(column)] if np.isnan(column).any() else column
     if not len(values):
-        return ChannelSummary(signal.name, unit, channel, rate, 0, np.nan, np.nan, np.nan, np.nan, None)
+        return 0, np.nan, np.nan, np.nan, np.nan, None
     noise = noise_of(values, rate) if np.ptp(values) > 0.0 else None
-    low, high, mean = float(np.min(values)), float(np.max(values)), float(np.mean(values))
     rms = float(np.sqrt(values @ values / len(values)))
-    return ChannelSummary(signal.name, unit, channel, rate, len(signal.values), low, high, mean, rms, noise)
+    return len(column), float(np.min(values)), float(np.max(values)), float(np.mean(values)), rms, noise
 
 
 def _doubt_repeats(file: DataFile) -> Iterator[Issue]:
@@ -171,25 +160,20 @@ def inspect_recording(folder: Path) -> Inspection:
         InputError: its header, a table or its nominal scenario cannot be read.
     """
     recording = load_recording(folder)
-    rate = recording.header.sample_rate
-    channels: dict[str, list[ChannelSummary]] = {}
+    rig, rate = recording.header.rig, recording.header.sample_rate
+    channels: list[ChannelSummary] = []
     doubts: list[Issue] = []
+    has_nominal = recording.nominal_file.exists()
     for run in recording.runs:
         table = recording.table(run)
-        channels[run] = _summarise_table(table, CHANNELS[recording.header.rig], rate)
-        found = [
-            issue for name, values in table.items() for issue in doubt_channel(name, values, rate, quantity_of(name))
-        ]
-        found += [] if recording.nominal_file.exists() else doubt_relations(table, rate)
-        doubts += place_in_run(run, found)
+        signals = tuple(Signal(name, CHANNELS[rig][name], values) for name, values in table.items())
+        summaries, found = _group(Group(run, signals, rate), rig)
+        channels += summaries
+        doubts += place_in_run(run, [*found, *([] if has_nominal else doubt_relations(table, rate))])
     doubts = merge_issues(doubts, len(recording.runs))
-    if recording.nominal_file.exists():
+    if has_nominal:
         doubts += examine(recording).issues
     else:
         text = f"{recording.header.nominal} is missing; signs, units and delays are not compared with a simulation"
         doubts.append(Issue("warning", "nominal", text))
     return Inspection(str(folder), "recording", channels, doubts)
-
-
-def _summarise_table(table: Mapping[str, Array], units: Mapping[str, str], rate: float) -> list[ChannelSummary]:
-    return [_summarise(Signal(name, units[name], values), units[name], name, rate) for name, values in table.items()]

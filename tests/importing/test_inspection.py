@@ -14,7 +14,7 @@ from .helpers import kinds, write_csv
 
 def test_figures_of_a_channel(noisy_table, tmp_path):
     found = inspect_file(write_csv(tmp_path / "a.csv", noisy_table))
-    channels = {each.name: each for each in found.channels[""]}
+    channels = {each.name: each for each in found.channels}
     force = channels["damper_force"]
     assert force.channel == "damper_force"
     assert force.rate == 500.0
@@ -69,5 +69,5 @@ def test_rows_written_twice_copies_and_derived_velocities(noisy_table, tmp_path)
 def test_a_recording_is_examined(sound):
     found = inspect_recording(sound)
     header = YAML(typ="safe").load(sound / "recording.yaml")
-    assert list(found.channels) == [run["name"] for run in header["runs"]]
-    assert all(each.channel == each.name for held in found.channels.values() for each in held)
+    assert list(dict.fromkeys(each.group for each in found.channels)) == [run["name"] for run in header["runs"]]
+    assert all(each.channel == each.name for each in found.channels)

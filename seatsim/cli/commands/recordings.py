@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -118,7 +119,7 @@ def _show(found: Inspection) -> None:
     from seatsim.cli.show_table import make_table, show_table
 
     headings = ("channel", "unit", "Hz", "least", "greatest", "RMS", "noise", "mean", "is", "rows")
-    for group, channels in found.channels.items():
+    for group, channels in groupby(found.channels, key=lambda each: each.group):
         title = f"{Path(found.source).name} ({found.format})" + (f", {group}" if group else "")
         rows = []
         for each in channels:
