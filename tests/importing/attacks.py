@@ -52,10 +52,6 @@ def hdf5_never_written(folder):
     return _hdf5(lambda file: file.create_dataset("x", (6 * 10**8,), "f8", chunks=(10**6,), compression="gzip"))
 
 
-def hdf5_large_attribute_type(folder):
-    return _hdf5(lambda file: file.create_dataset("x", (10,), np.dtype(("u1", (2**30,))), chunks=(1,)))
-
-
 def hdf5_virtual_of_itself(folder):
     def fill(file):
         layout = h5py.VirtualLayout((100,), "f8")
@@ -95,14 +91,6 @@ def mat73_cell_in_itself(folder):
     return _mat73(folder, fill)
 
 
-def mat73_large_empty_array(folder):
-    def fill(file):
-        empty = file.create_dataset("empty", data=np.array([2**28, 1], np.uint64))
-        empty.attrs["MATLAB_class"], empty.attrs["MATLAB_empty"] = np.bytes_("double"), np.uint8(1)
-
-    return _mat73(folder, fill)
-
-
 def _mat(*elements):
     return b"MATLAB 5.0 MAT-file".ljust(124) + b"\0\1IM" + b"".join(elements)
 
@@ -123,10 +111,6 @@ def mat_zeros_packed(folder):
 
 def mat_cells_by_dimensions_alone(folder):
     return _mat(_array(1, (2**30, 2**30)))
-
-
-def mat_structures_without_fields(folder):
-    return _mat(_array(2, (2**15, 2**15), _element(5, struct.pack("<i", 8)), _element(1, b"")))
 
 
 def mat_cells_deep_in_each_other(folder):
@@ -212,20 +196,10 @@ def xlsx_packed_zeros(folder):
     return sheet("<row>" + "<c><v>0</v></c>" * 4 + "</row>" + " " * 2**26)
 
 
-def xlsx_many_equal_cells(folder):
-    return sheet(("<row>" + "<c><v>0</v></c>" * 8 + "</row>") * 150_000)
-
-
 def tdms_values_beyond_the_file(folder):
     content = _written(exports.tdms, "a.tdms", folder)
     at = content.index(struct.pack("<IQ", 1, len(ROWS)))
     struct.pack_into("<Q", content, at + 4, 2**40)
-    return bytes(content)
-
-
-def tdms_segment_of_no_length(folder):
-    content = _written(exports.tdms, "a.tdms", folder)
-    struct.pack_into("<QQ", content, 12, 0, 0)
     return bytes(content)
 
 
@@ -242,36 +216,22 @@ def uff_values_beyond_the_file(folder):
     return bytes(_written(exports.uff, "a.uff", folder)).replace(b"%10d" % len(ROWS), b"%10d" % (FAR - 1))
 
 
-def _of_one_value(write, **options):
-    import pyarrow as pa
-
-    content = io.BytesIO()
-    write(pa.table({"a": np.zeros(2**24, "u1")}), content, **options)
-    return content.getvalue()
-
-
 def parquet_of_one_value(folder):
+    import pyarrow as pa
     from pyarrow import parquet
 
-    return _of_one_value(parquet.write_table)
-
-
-def feather_of_one_value(folder):
-    from pyarrow import feather
-
-    return _of_one_value(feather.write_feather, compression="zstd", chunksize=2**24)
+    content = io.BytesIO()
+    parquet.write_table(pa.table({"a": np.zeros(2**24, "u1")}), content)
+    return content.getvalue()
 
 
 ATTACKS = {
     name: make
     for name, make in list(globals().items())
-    if name.partition("_")[0] in tuple(words("hdf5 mat73 mat mdf xlsx tdms rpc uff parquet feather"))
+    if name.partition("_")[0] in tuple(words("hdf5 mat73 mat mdf xlsx tdms rpc uff parquet"))
 } | {
     "mdf_groups_in_a_circle": partial(_mdf_in_a_circle, b"##DG", 0),
-    "mdf_channel_groups_in_a_circle": partial(_mdf_in_a_circle, b"##CG", 0),
-    "mdf_channels_in_a_circle": partial(_mdf_in_a_circle, b"##CN", 0),
     "mdf_channel_composed_of_itself": partial(_mdf_in_a_circle, b"##CN", 1),
-    "mdf_history_in_a_circle": partial(_mdf_in_a_circle, b"##FH", 0),
     "mdf_packed_zeros": partial(_mdf_packed, 2**26),
     "mdf_packed_zeros_that_state_less": partial(_mdf_packed, 64 * len(ROWS)),
 }
