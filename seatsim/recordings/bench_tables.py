@@ -11,7 +11,7 @@ from __future__ import annotations
 import difflib
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
 from pathlib import Path
@@ -78,14 +78,6 @@ _KNOWN = _known()
 """Every name that a column may have, in lower case."""
 
 
-class Columns(NamedTuple):
-    """The columns of a table: name by quantity, forces by the current in their names (or None), those not used."""
-
-    by_quantity: dict[str, str]
-    forces: dict[float | None, str]
-    unused: tuple[str, ...]
-
-
 def meaning(column: str) -> Meaning | None:
     """Return what a column of this name holds, None where the name is not known."""
     plain = re.sub(r"[^0-9a-z.]+", "_", column.lower()).strip("_")
@@ -95,31 +87,26 @@ def meaning(column: str) -> Meaning | None:
     return _KNOWN.get(plain)
 
 
-def _columns_of(names: Iterable[str], file: Path) -> Columns:
-    """Return what the columns of a table hold.
+def _columns_of(names: Sequence[str], file: Path) -> tuple[dict[tuple[str, float | None], str], tuple[str, ...]]:
+    """Return the columns of a table by quantity and the current in their names, and those that hold no known quantity.
 
     Raises:
         InputError: two columns hold the same, or the name of one is misspelt.
     """
-    found, forces, unused = dict[str, str](), dict[float | None, str](), list[str]()
+    found, unused = dict[tuple[str, float | None], str](), list[str]()
     for name in names:
         known = meaning(name)
         if known is None:
             unused.append(name)
-            continue
-        other = forces.get(known.at) if known.quantity == "force" else found.get(known.quantity)
-        if other is not None:
+        elif (other := found.setdefault((known.quantity, known.at), name)) != name:
             raise InputError(f"{file}: '{other}' and '{name}' both hold the {known.quantity}; rename or remove one")
-        if known.quantity == "force":
-            forces[known.at] = name
-        else:
-            found[known.quantity] = name
+    there = {quantity for quantity, _ in found}
     for name in unused:
         close = difflib.get_close_matches(name.lower(), _KNOWN, n=1, cutoff=_MISSPELT)
-        quantity = _KNOWN[close[0]].quantity if close else "nothing"
-        if close and quantity not in {*found, *(["force"] if forces else [])}:
+        if close and (quantity := _KNOWN[close[0]].quantity) not in there:
             raise InputError(f"{file}: column '{name}' is not known; name it {_spelt(quantity)}, or remove it")
-    return Columns(found, forces, tuple(unused))
+    _check_needed(there, names, file)
+    return found, tuple(unused)
 
 
 def _numbers(frame: pd.DataFrame, column: str, file: Path) -> Array:
@@ -129,14 +116,13 @@ def _numbers(frame: pd.DataFrame, column: str, file: Path) -> Array:
     return known.in_si(values) if known else values
 
 
-def _check_needed(there: Iterable[str], columns: Sequence[str], file: Path) -> None:
+def _check_needed(there: Collection[str], columns: Sequence[str], file: Path) -> None:
     """Raise InputError, with the nearest column, at the first quantity that a bench table needs and this one lacks."""
-    lacking = [quantity for quantity in _NEEDED if quantity not in set(there)]
-    if lacking:
-        quantity = lacking[0]
+    quantity = next((each for each in _NEEDED if each not in there), None)
+    if quantity is not None:
         hint, others = nearest(quantity, columns), ", ".join(_QUANTITIES[quantity][0][1:])
-        name = f"name it {_spelt(quantity)} (also {others} with the unit)"
         there_are = f"there are {', '.join(columns[:_LISTED])}{', ...' * (len(columns) > _LISTED)}"
+        name = f"name it {_spelt(quantity)} (also {others} with the unit)"
         raise InputError(f"{file}: no column holds the {quantity}{hint}; {name}; {there_are}")
 
 
@@ -282,21 +268,21 @@ def note_unused(names: Iterable[str]) -> list[str]:
 
 def _records(file: Path, pattern: re.Pattern[str] | None) -> Iterator[BenchRecord]:
     frame = read_table(file)
-    columns = _columns_of(map(str, frame), file)
+    columns, unused = _columns_of([*map(str, frame)], file)
     stated = _read_name(stem(file.name), pattern)
-    _check_needed([*columns.by_quantity, *(["force"] if columns.forces else [])], list(map(str, frame)), file)
-    if "valid" in columns.by_quantity:
-        frame = frame[_numbers(frame, columns.by_quantity.pop("valid"), file) != 0.0]
-    table = {quantity: _numbers(frame, column, file) for quantity, column in columns.by_quantity.items()}
+    if valid := columns.pop(("valid", None), None):
+        frame = frame[_numbers(frame, valid, file) != 0.0]
+    forces = {at: column for (quantity, at), column in columns.items() if quantity == "force"}
+    table = {each: _numbers(frame, column, file) for (each, _), column in columns.items() if each != "force"}
     driven = any(drive in table for drive in _DRIVES)
     for quantity, value in stated.items():
-        if quantity == "temperature" or (quantity in _DRIVES and not driven):
+        if quantity == "temperature" or not driven:
             table.setdefault(quantity, np.full(len(frame), value))
     lines = frame.index.to_numpy() + 2
-    for at, column in columns.forces.items():
+    for at, column in forces.items():
         current = {} if at is None else {"current": np.full(len(frame), at)}
         for record in _split({**table, "force": _numbers(frame, column, file), **current}, file, lines):
-            yield record._replace(unused=columns.unused)
+            yield record._replace(unused=unused)
 
 
 def _split(table: _Table, file: Path, lines: NDArray[np.int64]) -> Iterator[BenchRecord]:
