@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from pydantic import Field
 from pydantic.fields import FieldInfo
 
-from seatsim.excitations.base import Duration, Floor, Quantity, choice, excitation
+from seatsim.excitations.base import Duration, Floor, Quantity, excitation
 from seatsim.excitations.motion import Motion, check_step, clock, ease, floor_of, product, samples, sine, soft_start
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param
 
 _Frequency = Annotated[float, param("Hz", "frequency of the tone", above=0)]
+_Displacement = Annotated[float, param("m", "amplitude of displacement", above=0)]
 _Amplitude = Annotated[float, param("m or m/s^2", "amplitude of displacement or acceleration, see quantity", above=0)]
 
 _TONES: FieldInfo = Field(description="the tones in order", json_schema_extra={"unit": "Hz"}, min_length=1)
@@ -24,7 +25,7 @@ _TONES: FieldInfo = Field(description="the tones in order", json_schema_extra={"
 class Sine(NamedTuple):
     """A tone `z0 = amplitude * sin(2 pi frequency t)`, faded in from rest over the first second."""
 
-    amplitude: Annotated[float, param("m", "amplitude of displacement", above=0)]
+    amplitude: _Displacement
     frequency: _Frequency
     duration: Duration
 
@@ -45,13 +46,12 @@ class SteppedSine(NamedTuple):
     """One tone after the other, each at full amplitude for `cycles` periods; in between the floor rests.
 
     A further period before and one after fade the tone in and out, so a step at frequency f lasts `(cycles +
-    2)/f`. An acceleration amplitude a stands for a displacement amplitude `a/(2 pi f)^2`.
+    2)/f`.
     """
 
     frequencies: Annotated[tuple[_Frequency, ...], _TONES]
     cycles: Annotated[int, param("", "periods at full amplitude in every step", low=1)]
-    amplitude: _Amplitude
-    quantity: Quantity = "displacement"
+    amplitude: _Displacement
 
     @property
     def duration(self) -> float:
@@ -75,14 +75,13 @@ class SteppedSine(NamedTuple):
         frequency, length = np.asarray(self.frequencies)[index], self._lengths[index]
         local = time - (ends - self._lengths)[index]
         omega = 2 * np.pi * frequency
-        amplitude = self.amplitude / (omega**2 if self.quantity == "acceleration" else 1.0)
         tone = product(_window(local, length, 1 / frequency), sine(_line(omega * local, omega)))
-        return floor_of(step, _scaled(amplitude, tone))
+        return floor_of(step, _scaled(self.amplitude, tone))
 
 
 @excitation("chirp")
 class Chirp(NamedTuple):
-    """A tone whose frequency glides from start to stop, linearly in time or by equal octaves per second.
+    """A tone whose frequency glides from start to stop by equal octaves per second.
 
     `z0 = a(t) sin(phi(t))`, `phi' = 2 pi f(t)`. For a displacement amplitude a is constant, for an
     acceleration amplitude it is `amplitude/(2 pi f(t))^2`, so the acceleration has that amplitude but for
@@ -94,7 +93,6 @@ class Chirp(NamedTuple):
     amplitude: _Amplitude
     duration: Duration
     quantity: Quantity = "displacement"
-    sweep: Annotated[Literal["linear", "logarithmic"], choice("how the frequency changes in time")] = "logarithmic"
 
     def floor(self, step: float, seed: int) -> Floor:
         """Return the motion of the floor; `seed` plays no part.
@@ -118,9 +116,6 @@ class Chirp(NamedTuple):
     def _course(self, time: Array) -> tuple[Array, Motion]:
         """Return the phase in rad, and the angular frequency in rad/s with its derivatives."""
         first, last = 2 * np.pi * self.start_frequency, 2 * np.pi * self.stop_frequency
-        if self.sweep == "linear":
-            slope = (last - first) / self.duration
-            return (first + slope * time / 2) * time, _line(first + slope * time, slope)
         rate = np.log(last / first) / self.duration
         omega = first * np.exp(rate * time)
         return (omega - first) / rate, Motion(omega, rate * omega, rate**2 * omega)

@@ -15,15 +15,14 @@ from ..part_space import check
 
 STEP = 0.001
 BUMP = {"height": 0.05, "length": 1.0, "speed": 8, "duration": 6.0, "number": 2, "spacing": 12.0}
-FALLING = {"start_frequency": 15, "stop_frequency": 1.0, "amplitude": 1.0, "duration": 10, "sweep": "linear"}
+FALLING = {"start_frequency": 15, "stop_frequency": 1.0, "amplitude": 1.0, "duration": 10}
 MAPPINGS = [
     (Road, {"road_class": "D", "speed": 12, "duration": 20}),
     (Road, {"road_class": "B", "speed": 20.0, "duration": 20.0, "through": "direct"}),
     (Road, {"road_class": "C", "speed": 1.5, "duration": 3.0}),
     (Iso7096, {"spectral_class": "EM3", "duration": 20}),
     (Sine, {"amplitude": 0.02, "frequency": 1.5, "duration": 10}),
-    (SteppedSine, {"frequencies": [1, 2.5, 4.0], "cycles": 3, "amplitude": 1, "quantity": "acceleration"}),
-    (SteppedSine, {"frequencies": [3.0], "cycles": 2, "amplitude": 0.002}),
+    (SteppedSine, {"frequencies": [1, 2.5, 4.0], "cycles": 3, "amplitude": 0.01}),
     (Chirp, {"start_frequency": 0.5, "stop_frequency": 20, "amplitude": 0.001, "duration": 10}),
     (Chirp, {"quantity": "acceleration", **FALLING}),
     (Bumps, {"shape": "half_sine", **BUMP}),
