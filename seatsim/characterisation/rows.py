@@ -12,7 +12,7 @@ from seatsim.metrics.motion import ratio, rms
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.recordings.quality.damage import Doubter, doubt_dropouts, flat_tops, plateaus
 from seatsim.schema.arrays import Array
-from seatsim.schema.content import Form, IfAny, Unwritten, to_content
+from seatsim.schema.content import Form, IfAny, Unwritten
 from seatsim.simulation.damper_bench import SineTest
 
 _T = TypeVar("_T")
@@ -93,11 +93,6 @@ _FIGURES: dict[str, Callable[[SineTest], float]] = {
     "offset": lambda loop: float(np.mean(loop.force[:-1])),
 }
 """Figures that every cycle has."""
-
-
-def row_columns(row: Row) -> dict[str, object]:
-    """Return a row as it stands in a table of cells: names with their units, notes as one text."""
-    return to_content(row._replace(cycle_values=None)) | {"notes": "; ".join(row.notes)}
 
 
 def _summarise_loops(

@@ -158,7 +158,7 @@ _COLUMNS: Mapping[str, Callable[[Row], float]] = {
 def tabulate_rows(found: Characterisation) -> list[Table]:
     """Return the table of the records."""
     left, rows = len(found.rows) - MOST_ROWS, found.rows[:MOST_ROWS]
-    more = f"; {left} more in cycles.csv" if left > 0 else ""
+    more = f"; {left} more in characterisation.json" if left > 0 else ""
     shown = {head: read for head, read in _COLUMNS.items() if any(math.isfinite(read(row)) for row in rows)}
     lines = [(row.record, _name_motion(row), *(read(row) for read in shown.values())) for row in rows]
     caption = f"Largest forces of rebound and compression, energy and damping of the mean cycle{more}"

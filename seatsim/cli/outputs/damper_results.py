@@ -8,7 +8,6 @@ from pathlib import Path
 
 import typer
 
-from seatsim.characterisation.rows import row_columns
 from seatsim.characterisation.sheet import list_tables
 from seatsim.characterisation.summary import Characterisation
 from seatsim.cli.outputs.writing import name_pictures, write_each, write_outputs
@@ -35,14 +34,13 @@ _NO_COIL = "# No command that changes was recorded: the rates of the actuator ar
 
 
 def present_characterisation(found: Characterisation, folder: Path) -> None:
-    """Print cycles, steps and limits; write `cycles.csv`, `characterisation.json`, `.xlsx`, the report and pictures."""
+    """Print cycles, steps and limits; write `characterisation.json`, `.xlsx`, the report and pictures."""
     show_report_tables([*report.tabulate_rows(found), *report.tabulate_responses(found.sheet)])
     for check in found.sheet.limits:
         (say if check.passes else complain)(str(check))
     warn(found.remarks)
     figures = plot_characterisation(found)
     contents = {
-        "cycles.csv": [row_columns(row) for row in found.rows],
         "characterisation.json": found,
         "characterisation.xlsx": list_tables(found.sheet),
         "report.html": report.report_characterisation(found, figures, f"seatsim characterise {found.source}"),
