@@ -237,9 +237,7 @@ def _weight_records(records: Sequence[BenchRecord], inputs: Sequence[RecordInput
     return [1.0 / (max(s, least) * math.sqrt(n)) for s, n in zip(spreads, counted, strict=True)]
 
 
-def compute_jacobian(
-    problem: IdentificationProblem, vector: Array, residuals: Array, executor: Executor, step: float = _DIFFERENCE_STEP
-) -> Array:
+def compute_jacobian(problem: IdentificationProblem, vector: Array, residuals: Array, executor: Executor) -> Array:
     """Return the derivatives of the residuals, shape (N, P), by forward differences, a column a call of the executor.
 
     The difference goes backwards where the greatest value is near.
@@ -247,7 +245,7 @@ def compute_jacobian(
     _, high = problem.bounds
 
     def column(k: int) -> Array:
-        size = step if vector[k] + step <= high[k] else -step
+        size = _DIFFERENCE_STEP if vector[k] + _DIFFERENCE_STEP <= high[k] else -_DIFFERENCE_STEP
         moved = vector.copy()
         moved[k] += size
         return (problem.residuals(moved) - residuals) / size

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -114,16 +113,7 @@ def _entries(inside: NDArray[np.bool_]) -> int:
     return int(inside[0]) + int(np.count_nonzero(inside[1:] & ~inside[:-1]))
 
 
-class TrackingError(NamedTuple):
-    """How far the delivered force strays from the wanted one."""
-
-    rms: float
-    """RMS of the difference in N."""
-    relative: float
-    """The same over the RMS of the wanted force."""
-
-
-def force_tracking_error(wanted: ArrayLike, delivered: ArrayLike) -> TrackingError:
+def force_tracking_error(wanted: ArrayLike, delivered: ArrayLike) -> tuple[float, float]:
     """Return rms(wanted - delivered) in N, and the same over rms(wanted).
 
     Samples without a wanted force (NaN) are left out. Both figures are NaN where no force is wanted at all,
@@ -139,9 +129,9 @@ def force_tracking_error(wanted: ArrayLike, delivered: ArrayLike) -> TrackingErr
     want, got = as_pair(wanted, delivered, ("wanted", "delivered"))
     asked = ~np.isnan(want)
     if not asked.any():
-        return TrackingError(math.nan, math.nan)
+        return math.nan, math.nan
     error = rms((want - got)[asked])
-    return TrackingError(error, ratio(error, rms(want[asked])))
+    return error, ratio(error, rms(want[asked]))
 
 
 def electrical_energy(current: ArrayLike, resistance: float, sample_rate: float) -> float:

@@ -81,7 +81,7 @@ class Prediction(NamedTuple):
 
 
 def predict_gap(
-    scenario: str | Path | Scenario, recording: str | Path | Recording, diagnosis: str | Path, runs: Sequence[str] = ()
+    scenario: str | Path | Scenario, recording: str | Path | Recording, diagnosis: str | Path
 ) -> Prediction:
     """Return the gap to be expected on the inputs of a recording, of its nominal and of the augmented scenario.
 
@@ -89,7 +89,6 @@ def predict_gap(
         scenario: the augmented scenario that the diagnosis wrote.
         recording: its inputs are used, and its nominal scenario; outputs need not be recorded.
         diagnosis: `diagnosis.json`.
-        runs: all of the recording's where none are named.
 
     Raises:
         InputError: the diagnosis is none or states no model error, it is of another rig (`OtherRigError`), the scenario
@@ -107,7 +106,7 @@ def predict_gap(
         _check_augmented(augmented, stated, causes, Path(diagnosis))
     moved = _move_parameters(augmented, causes)
     rigs = (augmented, recording.nominal, *moved)
-    after, before, *shifted = (_simulate(each, recording, runs or list(recording.runs)) for each in rigs)
+    after, before, *shifted = (_simulate(each, recording) for each in rigs)
     simulated = SimulatedRigs(recording.header.sample_rate, before, after, shifted)
     return _combine(error, simulated, str(recording.folder))
 
@@ -187,9 +186,9 @@ def _spread(missed: Array) -> float:
     return float(np.hypot(beyond, np.std(0.5 * np.log(np.maximum(missed, 1e-300)), ddof=1)))
 
 
-def _simulate(scenario: Scenario, recording: Recording, runs: Sequence[str]) -> dict[str, Array]:
-    """Return the simulated outputs over all samples of the runs, driven by the recorded inputs, shape (N,) each."""
-    parts = [simulate_table(scenario, recording, recording.table(run)) for run in runs]
+def _simulate(scenario: Scenario, recording: Recording) -> dict[str, Array]:
+    """Return the simulated outputs over all samples, driven by the recorded inputs, shape (N,) each."""
+    parts = [simulate_table(scenario, recording, recording.table(run)) for run in recording.runs]
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
