@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from scipy import fft
 
 from seatsim.metrics.motion import as_signal, require_finite, require_positive
-from seatsim.metrics.weighting import ComplexArray
+from seatsim.metrics.weighting import ComplexArray, quadratic
 from seatsim.schema.arrays import Array
 
 _ZERO = (34.0, 0.35)
@@ -77,7 +77,7 @@ def spine_transfer(frequency: ArrayLike) -> ComplexArray:
 
 
 def _mode(s: ComplexArray, corner: float, damping: float) -> ComplexArray:
-    return 1.0 + 2.0 * damping * s / corner + (s / corner) ** 2
+    return quadratic(s, corner, 0.5 / damping)
 
 
 def spine_response(acceleration: ArrayLike, sample_rate: float) -> Array:

@@ -117,17 +117,29 @@ def frequency_response(frequency: ArrayLike, weighting: str = "Wk") -> ComplexAr
     Raises:
         InputError: no weighting has this name.
     """
-    s = 2j * np.pi * np.asarray(frequency, dtype=np.float64)
-    factors = [
-        np.polyval(each.numerator[::-1], s) / np.polyval(each.denominator[::-1], s) for each in sections(weighting)
-    ]
-    return np.asarray(np.prod(factors, axis=0), dtype=np.complex128)
+    c = _constants(weighting)
+    jf = np.asarray(frequency, dtype=np.complex128) * 1j
+    high_pass = jf**2 / (jf**2 + math.sqrt(2) * c.f1 * jf + c.f1**2)
+    low_pass = 1 / quadratic(jf, c.f2, math.sqrt(0.5))
+    transition = (1 + jf / c.f3) / quadratic(jf, c.f4, c.Q4)
+    step: ComplexArray | float = 1.0
+    if c.step:
+        rise = quadratic(jf, c.step.f5, c.step.Q5) / quadratic(jf, c.step.f6, c.step.Q6)
+        step = rise * (c.step.f5 / c.step.f6) ** 2
+    h: ComplexArray = high_pass * low_pass * transition * step * c.K
+    return h
 
 
 def _constants(weighting: str) -> Weighting:
     if weighting not in WEIGHTINGS:
         raise InputError(f"no weighting is called '{weighting}'{permit(weighting, WEIGHTINGS)}")
     return WEIGHTINGS[weighting]
+
+
+def quadratic(jf: ComplexArray, corner: float, quality: float) -> ComplexArray:
+    """Return 1 + s/(Q w) + (s/w)^2 at s = 2 pi jf, w = 2 pi `corner`: the factors 2 pi cancel."""
+    u: ComplexArray = jf / corner
+    return 1 + u / quality + u * u
 
 
 def weight(signal: ArrayLike, sample_rate: float, weighting: str = "Wk") -> Array:
