@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import lru_cache
+from pathlib import Path
 from threading import Lock
 from typing import Annotated, NamedTuple
 
@@ -31,6 +32,8 @@ from seatsim.rig.plant import Plant
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param
+from seatsim.schema.validation import build
+from seatsim.schema.yaml_source import Source
 
 # Margins above this are crossings that rounding alone makes.
 _UNBOUNDED = 1e6
@@ -39,6 +42,13 @@ SOURCE = "Yu et al. 2019, eqs 15-19, on the exact plant and with u = +K y for th
 Gain = Annotated[float, param("N/m, N s/m or kg", "one entry of the gain", low=-1e9, high=1e9)]
 Mass = Annotated[float, param("kg", "mass of a driver", above=0, high=1e4)]
 Factor = Annotated[float, param("-", "delivered over wanted force", above=0, high=10)]
+
+
+class _SavedDesign(NamedTuple):
+    """What a law takes of the file of a design."""
+
+    gain: tuple[tuple[Gain, ...]]
+    measures: tuple[Measure, ...] = ()
 
 
 class OutputFeedback(NamedTuple):
@@ -106,10 +116,12 @@ class StaticOutputFeedback(NamedTuple):
             return self._compile(np.array([self.gain]))
         if self.design is None:
             return self._compile(self._find_loops(plant, floors)[0])
-        design = Design.load(self.design)
-        if design.measures and design.measures != self.measures:
-            raise InputError(f"{self.design} was designed for measures: [{', '.join(design.measures)}]; state the same")
-        return self._compile(design.gain)
+        source = Source(Path(self.design))
+        known = {name: source.data[name] for name in _SavedDesign._fields if name in source.data}
+        saved = build(_SavedDesign, known, source, ())
+        if saved.measures and saved.measures != self.measures:
+            raise InputError(f"{self.design} was designed for measures: [{', '.join(saved.measures)}]; state the same")
+        return self._compile(np.array(saved.gain))
 
     def _compile(self, gain: Array) -> OutputFeedback:
         if gain.shape != (1, len(self.measures)):

@@ -7,6 +7,7 @@ verify for what is true of it, and bound for what no controller can beat.
 
 from controllers.synthesis.certify import Certificate
 from controllers.synthesis.design import ClosedLoop, Design, verify
+from controllers.synthesis.global_proof import GlobalProof
 from controllers.synthesis.plant import GeneralisedPlant
 from controllers.synthesis.solve import SEAT_TIME_BUDGET, find_gain, synthesise
 
@@ -16,6 +17,7 @@ __all__ = [
     "ClosedLoop",
     "Design",
     "GeneralisedPlant",
+    "GlobalProof",
     "find_gain",
     "synthesise",
     "verify",

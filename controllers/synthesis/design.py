@@ -1,14 +1,11 @@
-"""A finished design: what is true of its gain, whatever search it came from, and the YAML file it is kept in.
-
-Reading the file needs neither solver nor plant.
-"""
+"""A finished design: what is true of its gain, whatever search it came from, and the YAML file it is kept in."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,9 +16,7 @@ from controllers.synthesis.norm import grid_norm, hinf_norm
 from controllers.synthesis.plant import MATRICES, GeneralisedPlant, LinearSystem
 from seatsim.rig.designs import Clipping
 from seatsim.schema.arrays import Array
-from seatsim.schema.errors import InputError
 from seatsim.schema.files import write_text
-from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import dump
 
 if TYPE_CHECKING:
@@ -122,21 +117,6 @@ class Design:
         """Write the design as YAML; the file appears whole or not at all."""
         write_text(Path(path), dump(_to_plain(self)))
 
-    @classmethod
-    def load(cls, path: str | Path) -> Design:
-        """Read a design that `save` wrote.
-
-        Raises:
-            InputError: the file is missing, is not YAML, or lacks a key; file and key are named.
-        """
-        plain = Source(Path(path)).data
-        try:
-            return _from_plain(plain)
-        except KeyError as error:
-            raise InputError(f"{path}: the design lacks the key {error}") from error
-        except (TypeError, ValueError, IndexError, AttributeError, InputError) as error:
-            raise InputError(f"{path}: not a design: {error}") from error
-
 
 # Fields of a loop and of its certificate that stand in the file as they are.
 _OF_LOOP = ("gamma", "peak_frequency", "norms_agree", "disk_margin")
@@ -146,7 +126,7 @@ _OF_PROOF = ("factor", "gamma", "delta", "largest_eigenvalue")
 def _to_plain(design: Design) -> dict[str, object]:
     """Return a design as it stands in the file; a static one states no order.
 
-    `certificate` is the worst loop's as one reads it: P itself, rounded. That which `load` reads stands with the loop.
+    `certificate` is the worst loop's as one reads it: P itself, rounded. Its factor stands with the loop.
     """
     plain: dict[str, object] = {"order": design.order} if design.order else {}
     plain |= {"measures": list(design.measures), **_list_fields(design, ("gain", "gamma", "max_gain", "lower_bound"))}
@@ -174,32 +154,6 @@ def _list_fields(record: object, names: Sequence[str]) -> dict[str, object]:
     """Return some fields of a record, arrays as lists."""
     values = {name: getattr(record, name) for name in names}
     return {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in values.items()}
-
-
-def _from_plain(plain: Any) -> Design:
-    gain, loops = np.array(plain["gain"], dtype=float), tuple(_from_plain_loop(loop) for loop in plain["loops"])
-    if not np.isfinite(gain).all():
-        raise ValueError("an entry of gain is not a finite number")
-    if not loops:
-        raise ValueError("loops is empty")
-    wanted = loops[0].plant.free.shape
-    if gain.shape != wanted:
-        raise ValueError(f"gain has the shape {gain.shape}; the plant of its loop has {wanted}, a row for each control")
-    measures = tuple(map(str, plain.get("measures", ())))
-    order = int(plain.get("order", 0))
-    return Design(gain, float(plain["max_gain"]), float(plain["lower_bound"]), loops, measures, order=order)
-
-
-def _from_plain_loop(plain: Any) -> ClosedLoop:
-    poles, proof = np.array(plain["poles"], dtype=float), plain["certificate"]
-    matrices = [plain["plant"][name] for name in MATRICES]
-    plant = GeneralisedPlant.from_matrices(matrices, plain["plant"]["structure"])
-    gamma, frequency, margin = (float(plain[name]) for name in ("gamma", "peak_frequency", "disk_margin"))
-    if proof:
-        factor = np.array(proof["factor"], dtype=float)
-        proof = Certificate(factor, *(float(proof[name]) for name in _OF_PROOF[1:]))
-    agree = bool(plain["norms_agree"])
-    return ClosedLoop(plant, gamma, frequency, agree, proof, margin, poles[:, 0] + 1j * poles[:, 1])
 
 
 # Two frequencies of equal height differ by rounding; a grid higher by more has found what bisection missed.

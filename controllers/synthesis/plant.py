@@ -12,13 +12,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol, cast, runtime_checkable
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
+
+if TYPE_CHECKING:
+    import control
 
 MATRICES = ("A", "B1", "B2", "C1", "C2", "D11", "D12", "D21")
 
@@ -48,31 +51,6 @@ def close_loop(matrices: Sequence[NDArray[Any]], K: NDArray[Any]) -> LinearSyste
     A, B1, B2, C1, C2, D11, D12, D21 = matrices
     left, right = B2 @ K, D12 @ K
     return LinearSystem(A + left @ C2, B1 + left @ D21, C1 + right @ C2, D11 + right @ D21)
-
-
-@runtime_checkable
-class StateSpaceLike(Protocol):
-    """What is used of a `control.StateSpace` (or a continuous `scipy.signal.StateSpace`); both are untyped."""
-
-    @property
-    def A(self) -> ArrayLike:  # noqa: N802 - as in control and scipy
-        """State matrix (n, n)."""
-
-    @property
-    def B(self) -> ArrayLike:  # noqa: N802
-        """Input matrix (n, inputs)."""
-
-    @property
-    def C(self) -> ArrayLike:  # noqa: N802
-        """Output matrix (outputs, n)."""
-
-    @property
-    def D(self) -> ArrayLike:  # noqa: N802
-        """Direct path (outputs, inputs)."""
-
-    @property
-    def dt(self) -> float | bool | None:
-        """Sample time in s; 0 or None for continuous time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,7 +130,7 @@ class GeneralisedPlant:
 
     @classmethod
     def from_state_space(
-        cls, system: StateSpaceLike, disturbances: int, performance: int, structure: ArrayLike | None = None
+        cls, system: control.StateSpace, disturbances: int, performance: int, structure: ArrayLike | None = None
     ) -> GeneralisedPlant:
         """Split a continuous-time system with inputs [w; u] and outputs [z; y].
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TypedDict, Unpack, cast, overload
+from typing import TYPE_CHECKING, TypedDict, Unpack, cast, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,10 +13,13 @@ from numpy.typing import ArrayLike, NDArray
 from controllers.synthesis.design import Design, verify
 from controllers.synthesis.kept import find_kept
 from controllers.synthesis.norm import build_frequency_grid, frequency_response
-from controllers.synthesis.plant import MATRICES, GeneralisedPlant, LinearSystem, StateSpaceLike
+from controllers.synthesis.plant import MATRICES, GeneralisedPlant, LinearSystem
 from controllers.synthesis.search import Progress, TimeBudget, search
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
+
+if TYPE_CHECKING:
+    import control
 
 _MAX_GAIN = 1e6
 """Largest magnitude of an entry of the gain where none is stated."""
@@ -45,7 +48,7 @@ def synthesise(
 ) -> Design: ...
 @overload
 def synthesise(
-    A: StateSpaceLike,
+    A: control.StateSpace,
     /,
     *,
     split: tuple[int, int],
@@ -66,7 +69,7 @@ def synthesise(
 
 
 def synthesise(
-    A: GeneralisedPlant | Sequence[GeneralisedPlant] | StateSpaceLike | ArrayLike,
+    A: GeneralisedPlant | Sequence[GeneralisedPlant] | control.StateSpace | ArrayLike,
     B1: ArrayLike | None = None,
     B2: ArrayLike | None = None,
     C1: ArrayLike | None = None,
@@ -133,7 +136,7 @@ def find_gain(plants: Sequence[GeneralisedPlant]) -> Array:
 
 
 def _collect_plants(
-    first: GeneralisedPlant | Sequence[GeneralisedPlant] | StateSpaceLike | ArrayLike,
+    first: GeneralisedPlant | Sequence[GeneralisedPlant] | control.StateSpace | ArrayLike,
     others: Sequence[ArrayLike | None],
     split: tuple[int, int] | None,
 ) -> list[GeneralisedPlant]:
@@ -149,7 +152,7 @@ def _collect_plants(
                     f"structure; one gain for all wants those of plant 0: {plants[0].free.astype(int).tolist()}"
                 )
         return plants
-    if isinstance(first, StateSpaceLike):
+    if hasattr(first, "dt"):  # as a state space of control or scipy has, in continuous time too
         if split is None:
             raise InputError("a state space needs its split: split=(disturbance inputs, performance outputs)")
         return [GeneralisedPlant.from_state_space(first, *split)]

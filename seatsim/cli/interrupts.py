@@ -12,8 +12,9 @@ import os
 import signal
 import socket
 import sys
+import time
 from contextlib import suppress
-from threading import Event, Thread
+from threading import Thread
 from types import FrameType
 from typing import NoReturn
 
@@ -25,7 +26,6 @@ GRACE = 1.2
 _PATIENCE = 10.0
 """Seconds for which that end waits for files that are being put in place."""
 _received: list[int] = []
-_answered = Event()
 
 
 def end(status: int) -> NoReturn:
@@ -37,12 +37,6 @@ def end(status: int) -> NoReturn:
     remove_leftovers(_PATIENCE)
     # Python would wait for threads: after an interrupt, for as long as the runs take that have begun.
     os._exit(128 + _received[-1] if _received else status)
-
-
-def go_on() -> None:
-    """Say that a signal was answered: what was interrupted is left out, and the command goes on."""
-    _received.clear()
-    _answered.set()
 
 
 def watch_signals() -> None:
@@ -58,7 +52,6 @@ def watch_signals() -> None:
 
 def _interrupt(number: int, frame: FrameType | None) -> NoReturn:
     _received.append(number)
-    _answered.clear()
     raise KeyboardInterrupt
 
 
@@ -68,11 +61,9 @@ def _end_in_time(wakeups: socket.socket) -> None:
     The main thread may have lost its KeyboardInterrupt, and may hold any lock, that of imports too: nothing that is
     done here waits for one.
     """
-    while number := wakeups.recv(1)[0]:
-        if number in SIGNALS:
-            if not _answered.wait(GRACE):
-                break
-            _answered.clear()
+    while (number := wakeups.recv(1)[0]) not in SIGNALS:
+        pass
+    time.sleep(GRACE)
     try:
         remove_leftovers(_PATIENCE)
         say_interrupted()

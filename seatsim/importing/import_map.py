@@ -18,7 +18,6 @@ from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import dump
 
 Rig = Literal["seat", "damper_bench"]
-Gaps = Literal["split"]
 FILE = "map.yaml"
 PRIMITIVE = {("m/s^2", 1): "m/s", ("m/s^2", 2): "m", ("m/s", 1): "m"}
 """Unit of what is differentiated so many times, by the unit of the derivative."""
@@ -69,7 +68,7 @@ class ImportMap(NamedTuple):
     ] = None
     resample: Annotated[float | None, param("Hz", "rows per second of the recording", low=1.0, high=1e6)] = None
     csv: TextLayout = TextLayout()
-    gaps: Gaps | None = None
+    gaps: Literal["split"] | None = None
     actuator: VoltageGain | None = None
     align: Mapping[str, float] = {}
     repeats: Mapping[str, str] = {}

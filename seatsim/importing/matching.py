@@ -8,7 +8,7 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from seatsim.importing.import_map import AxisMap, ChannelMap, Gaps, ImportMap, Rig
+from seatsim.importing.import_map import AxisMap, ChannelMap, ImportMap, Rig
 from seatsim.importing.names import SI_UNITS, Meaning, is_of, read_name, without_unit
 from seatsim.importing.signals import LISTED, DataFile, Group, Signal
 from seatsim.importing.time_axis import check_is_history, find_clock, is_spectrum
@@ -56,8 +56,9 @@ def propose(files: Sequence[DataFile]) -> tuple[ImportMap, list[str]]:
     if "command_voltage" in channels:
         open_ends.append("command_voltage: write actuator: {gain: 1.0}, with the commanded current per volt in A/V")
     holding = [column.group for held in candidates.values() for column in held]
-    time, problem, gaps = _time([c for c in columns if any(c.group is group for group in holding)], len(files) == 1)
-    return ImportMap(channels, chosen, time, gaps=gaps), list(filter(None, [*open_ends, problem]))
+    time, problem, has_gaps = _time([c for c in columns if any(c.group is group for group in holding)], len(files) == 1)
+    found = ImportMap(channels, chosen, time, gaps="split" if has_gaps else None)
+    return found, list(filter(None, [*open_ends, problem]))
 
 
 def read_columns(group: Group) -> list[Column]:
@@ -155,15 +156,15 @@ def _missing(name: str, columns: Sequence[Column], channels: dict[str, ChannelMa
     return f"{name}: no column is it by name; write channels: {{{name}: {{column: ..., unit: ...}}}}; left are {listed}"
 
 
-def _time(columns: Sequence[Column], is_one_file: bool) -> tuple[AxisMap | None, str, Gaps | None]:
-    """Return the column of time, what is open about it, and `split` where it has gaps.
+def _time(columns: Sequence[Column], is_one_file: bool) -> tuple[AxisMap | None, str, bool]:
+    """Return the column of time, what is open about it, and whether it has gaps.
 
     Formats that state their rate need no column.
     """
     clock = next((found for column in columns if (found := find_clock(column.group))), None)
     if clock is None:
         problem = "time: no column holds the time; write sample_rate: in Hz, or time: {column: ..., unit: s}"
-        return None, "" if all(column.group.rate for column in columns) else problem, None
-    gaps: Gaps | None = "split" if clock.axis is not None and len(clock.axis.breaks) and is_one_file else None
+        return None, "" if all(column.group.rate for column in columns) else problem, False
+    has_gaps = clock.axis is not None and len(clock.axis.breaks) > 0 and is_one_file
     problem = f"time: {clock.open}; write time: {{column: {clock.column}, unit: ms}} or s" if clock.open else ""
-    return AxisMap(clock.column, clock.unit), problem, gaps
+    return AxisMap(clock.column, clock.unit), problem, has_gaps

@@ -1,24 +1,20 @@
-"""Interfaces of a control law's design, for code that reports and saves it.
+"""Interface of a control law that is designed, for code that reports and saves its design.
 
-The classes that implement them stand with the synthesis, which `seatsim` never imports.
+The classes stand with the synthesis, which `seatsim` never imports.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from pathlib import Path
-from typing import NamedTuple, Protocol, runtime_checkable
-
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple, Protocol, runtime_checkable
 
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import FloorRecord, Floors, Law
 from seatsim.rig.plant import Plant
 from seatsim.schema.arrays import Array
 
-_Progress = Callable[[str], object]
-"""Callback that gets a line on the progress of a long computation."""
+if TYPE_CHECKING:
+    from controllers.synthesis import Design
 
 
 def unit_of_gain(measure: str) -> str:
@@ -38,141 +34,22 @@ class Clipping(NamedTuple):
     force_error: float
 
 
-class _NormProof(Protocol):
-    """A proof that the H-infinity norm of a stable loop lies below `gamma`."""
-
-    @property
-    def gamma(self) -> float:
-        """Proven upper bound of the norm."""
-
-
-class BoxProof(Protocol):
-    """A proof that no gain in the box of the permitted ones is better than a level below `gamma`."""
-
-    @property
-    def is_proven(self) -> bool:
-        """Whether every part of the box is excluded."""
-
-    @property
-    def boxes(self) -> int:
-        """Number of boxes that are excluded."""
-
-    @property
-    def better(self) -> Array | None:
-        """A better gain that was met instead."""
-
-    def save(self, path: Path) -> None:
-        """Write the proof to a file; the file is complete or absent."""
-
-
-class DesignedLoop(Protocol):
-    """Figures of one plant under the designed gain."""
-
-    @property
-    def gamma(self) -> float:
-        """H-infinity norm from disturbance to performance output."""
-
-    @property
-    def certificate(self) -> _NormProof | None:
-        """Proof of the norm; None where there is none in double precision."""
-
-    @property
-    def disk_margin(self) -> float:
-        """Balanced disk margin at the control, 0 to 2."""
-
-    @property
-    def norms_agree(self) -> bool:
-        """Whether two independent computations of the norm agree to 1e-6."""
-
-
-class SynthesisedDesign(Protocol):
-    """A static output feedback with the loops that it closes, one per plant; figures are those of the worst loop."""
-
-    @property
-    def gain(self) -> Array:
-        """Gain (controls, measurements) in the user's units."""
-
-    @property
-    def measures(self) -> Sequence[str]:
-        """Names of what is measured, in the order of the gain's columns; empty where the plant has none."""
-
-    @property
-    def max_gain(self) -> float:
-        """Largest magnitude that an entry of the gain may have."""
-
-    @property
-    def gamma(self) -> float:
-        """Largest H-infinity norm of the loops."""
-
-    @property
-    def lower_bound(self) -> float:
-        """Lower bound of the norm for linear controllers of any order."""
-
-    @property
-    def certificate(self) -> _NormProof | None:
-        """Proof of `gamma`."""
-
-    @property
-    def peak_frequency(self) -> float:
-        """Frequency in rad/s at which the norm is attained."""
-
-    @property
-    def poles(self) -> NDArray[np.complex128]:
-        """Poles in rad/s."""
-
-    @property
-    def loops(self) -> Sequence[DesignedLoop]:
-        """Every plant under the gain."""
-
-    @property
-    def clipping(self) -> Clipping | None:
-        """What the limits of the damper cost on a run, where one was simulated."""
-
-    @property
-    def proof(self) -> BoxProof | None:
-        """Whether any permitted gain is better by more than 0.1 %, where `prove` was asked."""
-
-    def prove(self, progress: _Progress) -> SynthesisedDesign:
-        """Return the design with its `proof`."""
-
-    def with_clipping(self, clipping: Clipping | None) -> SynthesisedDesign:
-        """Return the design with what the limits of the damper cost."""
-
-    def save(self, path: str | Path) -> None:
-        """Write the design to a file; the file is complete or absent."""
-
-
 @runtime_checkable
 class SynthesisedLaw(Protocol):
-    """A law whose gain is synthesised from weights and whose design can be reported and saved."""
+    """A law whose gain is synthesised from weights, and whose design can be judged, reported and saved."""
 
-    def synthesis(self, plant: Plant, floors: Floors, progress: _Progress) -> SynthesisedDesign:
-        """Return the design for a seat on some floors."""
-
-
-@runtime_checkable
-class TravelLimitedLaw(Protocol):
-    """A law whose weight of the travel may be left to what the seat's end stops permit."""
-
-    @property
-    def is_limited_by_travel(self) -> bool:
-        """Whether the weight is still to be found."""
-
-    def with_travel_weight(self, weight: float) -> Law:
-        """Return the law with a weight in 1/s^2."""
-
-
-@runtime_checkable
-class DescribedLaw(Protocol):
-    """A law that says what its synthesis found."""
+    def synthesis(self, plant: Plant, floors: Floors, progress: Callable[[str], object]) -> Design:
+        """Return the design for a seat on some floors; `progress` is told what is being done."""
 
     def describe(self, plant: Plant, coil: Coil, floors: Floors) -> str:
         """Return a line on gain, norm and margins of the design; empty where nothing was synthesised."""
 
+    @property
+    def is_limited_by_travel(self) -> bool:
+        """Whether the weight of the travel is still to be found: what the seat's end stops permit."""
 
-@runtime_checkable
-class CheckedLaw(Protocol):
-    """A law whose loop can be judged with the gain of a design."""
+    def with_travel_weight(self, weight: float) -> Law:
+        """Return the law with a weight in 1/s^2."""
 
     def margins(self, plant: Plant, coil: Coil, gain: Array) -> str:
         """Return in words the margins of the loop that a gain closes with seat and coil."""

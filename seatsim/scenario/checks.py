@@ -1,23 +1,18 @@
-"""What a scenario file says of its own runs: the checks that they have to meet, and published figures beside theirs.
+"""What a scenario file says of its own runs: the checks that they have to meet.
 
     checks:
       stable: true
       delay_margin: {min: 0.005}
       seat_factor: {max: 0.9, per: [h-infinity]}
-    published:
-      source: where the figures stand
-      rows:
-        - {variant: I, temperature: 80.0, driver_acceleration_rms: 0.908}
 
-`seatsim.simulation.checks` measures the checks: bounds of metrics and of the stability of the control loop. A row of
-published figures names a run by what sets it apart, and gives metrics of it in SI units.
+`seatsim.simulation.checks` measures the checks: bounds of metrics and of the stability of the control loop.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
 
 from seatsim.metrics.table import METRICS
 from seatsim.schema.errors import nearest
@@ -99,31 +94,3 @@ def require_variants(checks: Iterable[Check], variants: Iterable[object], source
                 permitted = f"permitted: {', '.join(known)}" if known else "the scenario has no variants"
                 problem = f"no variant '{name}'{nearest(name, known)}; {permitted}"
                 raise source.error(("checks", check.name, "per"), problem)
-
-
-def published_figures(source: Source) -> tuple[str, Sequence[Mapping[str, Any]]]:
-    """Return where the published figures of a file stand, and a row for each run: labels, and metrics in SI units.
-
-    The file is one that `check_published` has passed; one without published figures has no rows.
-    """
-    stated: Any = source.data.get("published", {})
-    return str(stated.get("source", "published figures")), stated.get("rows", ())
-
-
-def check_published(source: Source, labels: Sequence[str]) -> None:
-    """Raise InputError where published figures of the file are not of the form above; `labels` set its runs apart."""
-    if "published" not in source.data:
-        return
-    published = mapping(source.data["published"], source, ("published",))
-    check_keys(published, ("source", "rows"), source, ("published",))
-    rows = published.get("rows")
-    if not isinstance(rows, list) or not rows:
-        raise source.error(
-            ("published", "rows"), "a list of at least one row, such as '- {variant: I, seat_factor: 0.8}'"
-        )
-    for index, row in enumerate(rows):
-        keys = ("published", "rows", index)
-        naming = [key for key in mapping(row, source, keys) if key in labels or "." in key]
-        check_keys(row, [*naming, "variant", "temperature", *METRICS], source, keys)
-        for name in [name for name in row if name in METRICS]:
-            read_number(row[name], source, (*keys, name))

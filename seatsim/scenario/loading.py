@@ -17,7 +17,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from seatsim.scenario.checks import check_published, require_variants
+from seatsim.scenario.checks import require_variants
 from seatsim.scenario.scenario import Scenario
 from seatsim.scenario.sections import NEEDED, NEEDED_BY_A_SEAT, OF_ALL_RUNS, SECTIONS
 from seatsim.schema.errors import InputError, gathered, nearest, permit, raise_all
@@ -153,8 +153,6 @@ def read_scenario(source: Source, label: Mapping[str, object]) -> Scenario:
     data, errors = source.data, list[InputError]()
     with gathered(errors):
         check_keys(data, (*SECTIONS, *OF_ALL_RUNS), source, ())
-    with gathered(errors):
-        check_published(source, list(label))
     for key in NEEDED + (NEEDED_BY_A_SEAT if set(NEEDED_BY_A_SEAT) & set(data) else ()):
         if key not in data:
             errors.append(source.error((), f"key '{key}' is missing; a scenario has {join_names(_WHOLE)}"))

@@ -203,7 +203,6 @@ SECTIONS: Mapping[str, _Section] = {
 OF_ALL_RUNS: Mapping[str, Schema] = {
     "variants": {"type": "object", "additionalProperties": BY_KEY},
     "sweep": {"type": "object", "additionalProperties": {"type": "array", "minItems": 1}},
-    "published": BY_KEY,
 }
 """Further keys, which make several runs of a file or speak of all of them."""
 NEEDED, NEEDED_BY_A_SEAT = ("damper", "actuator", "temperature"), ("plant", "controller", "excitation")

@@ -17,7 +17,7 @@ import numpy as np
 from seatsim.excitations.periodic import Rest
 from seatsim.metrics.comfort import weighted_rms
 from seatsim.rig.control import LAWS, FloorRecord, ForceLaw
-from seatsim.rig.designs import CheckedLaw, Clipping, DescribedLaw
+from seatsim.rig.designs import Clipping, SynthesisedLaw
 from seatsim.rig.sampled_loop import SampledLoop, build_sampled_loop
 from seatsim.scenario.checks import LOOP_FIGURES, STABLE, Check
 from seatsim.scenario.scenario import Scenario, Start
@@ -184,7 +184,7 @@ def describe_designs(scenarios: Iterable[Scenario]) -> list[str]:
         if control is None or plant is None:
             continue
         law = settle_travel(scenario, control, measure_peak_travel)
-        if isinstance(law, DescribedLaw):
+        if isinstance(law, SynthesisedLaw):
             text = law.describe(plant, scenario.coil, partial(record_floors, scenario, control))
             loop = f"{text}; sampled loop {describe_sampled_loop(scenario)}" if text else ""
             found.setdefault(loop, str(scenario.label.get("variant", scenario.title)))
@@ -194,7 +194,7 @@ def describe_designs(scenarios: Iterable[Scenario]) -> list[str]:
 def measure_clipping(scenario: Scenario, gain: Array) -> Clipping | None:
     """Return what the limits of the damper cost a gain in a run of a scenario; None where its law promises nothing."""
     control, plant = scenario.control, scenario.plant
-    if control is None or plant is None or not isinstance(control.law, CheckedLaw):
+    if control is None or plant is None or not isinstance(control.law, SynthesisedLaw):
         return None
     run = run_one(replace(scenario, control=replace(control, law=control.law.with_gain(gain))))
     floor = FloorRecord(run.history.step, run.history["floor_acceleration"])

@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import lru_cache, partial
 
 from seatsim.rig.control import CompiledLaw, FloorRecord, Law, prepare_law
-from seatsim.rig.designs import TravelLimitedLaw
+from seatsim.rig.designs import SynthesisedLaw
 from seatsim.rig.plant import Plant
 from seatsim.scenario.scenario import Control, Scenario
 from seatsim.schema.errors import InputError, SynthesisError
@@ -53,7 +53,7 @@ def settle_travel(scenario: Scenario, control: Control, peak_travel: _PeakTravel
         SynthesisError: no weight keeps the seat within its travel.
     """
     law = control.law
-    if not isinstance(law, TravelLimitedLaw) or not law.is_limited_by_travel:
+    if not isinstance(law, SynthesisedLaw) or not law.is_limited_by_travel:
         return law
     return law.with_travel_weight(_find_weight(tuple(_list_design_runs(scenario, control)), peak_travel))
 
@@ -90,6 +90,6 @@ def _find_weight(runs: tuple[Scenario, ...], peak_travel: _PeakTravel) -> float:
 
 def _with_weight(run: Scenario, weight: float) -> Scenario:
     control = run.control
-    if control is None or not isinstance(control.law, TravelLimitedLaw):
+    if control is None or not isinstance(control.law, SynthesisedLaw):
         return run
     return replace(run, control=replace(control, law=control.law.with_travel_weight(weight)))

@@ -52,13 +52,6 @@ def test_a_main_thread_that_does_not_answer_is_not_waited_for(number, answer, tm
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_command_that_answers_goes_on(tmp_path):
-    process = stuck("interrupts.go_on(); time.sleep(0.6); print('done', flush=True); break", tmp_path)
-    process.send_signal(signal.SIGINT)
-    shown, _ = process.communicate(timeout=PATIENCE)
-    assert process.returncode == 0 and shown.endswith(b"done\n")
-
-
 SWEEP = "scenario: em5\nvary: {excitation.duration: [3000.0, 3001.0]}\n"
 
 

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
+from controllers.laws.static_output_feedback import StaticOutputFeedback
 from controllers.synthesis import synthesise
-from controllers.synthesis.design import Design
 from seatsim.blind.score.verdicts import read_verdict
 from seatsim.blind.sealed import SEAL, Sealed, seal, unseal
 from seatsim.importing.importing import import_files
@@ -23,6 +23,9 @@ from seatsim.provenance.statement import read_manifest
 from seatsim.recordings.bench_tables import load_bench
 from seatsim.recordings.recording import load_recording
 from seatsim.report.sweep import report_sweep
+from seatsim.rig.coil import Coil
+from seatsim.rig.control import prepare_law
+from seatsim.rig.plant import Plant
 from seatsim.scenario.loading import load, single
 from seatsim.sweeps.engines import Work
 from seatsim.sweeps.execute import execute, prepare
@@ -102,7 +105,7 @@ def make_readers() -> dict[str, Reader]:
         "rows": (swept, f"manifest.json {ROWS}", _read_rows),
         "resumed": (swept, f"manifest.json {ROWS}", _resume),
         "map": ({"a.csv": table, "map.yaml": MAP}, "map.yaml", _import_by_map),
-        "synthesis": ({"a.yaml": make_design()}, "a.yaml", lambda folder: Design.load(folder / "a.yaml").gamma),
+        "synthesis": ({"a.yaml": make_design()}, "a.yaml", _read_design),
         "diagnosis": ({"a.json": DIAGNOSIS}, "a.json", lambda folder: read_verdict(folder / "a.json")),
         "manifest": ({"manifest.json": MANIFEST}, "manifest.json", read_manifest),
         "sealed": (make_sealed(), "sealed folder-seal.txt", _read_sealed),
@@ -111,6 +114,11 @@ def make_readers() -> dict[str, Reader]:
         for name, content in make_formats(table).items()
     }
     return {name: Reader(files, tuple(changed.split()), read) for name, (files, changed, read) in readers.items()}
+
+
+def _read_design(folder: Path) -> object:
+    seat = Plant(20.0, 80.0, 4600.0, 150.0, 6e4, 1500.0)
+    return prepare_law(StaticOutputFeedback(design=str(folder / "a.yaml")), seat, Coil(), 0.005)
 
 
 def _read_recording(folder: Path) -> object:

@@ -114,9 +114,6 @@ seed: 7 => seed: lucky => line 2 | 'lucky' | whole number
 solver: {step: 0.001} => sweep: {plant.driver_mass: 55.0} => line 19 | list
 solver: {step: 0.001} => sweep: {plant.driver_mas: [55.0, 75.0]} => driver_mas | did you mean 'driver_mass'
 solver: {step: 0.001} => variants: {hot: {temperature: boiling}} => line 19, variant 'hot' | 'boiling'
-solver: {step: 0.001} => published: {source: a, rows: [{seat_facto: 0.5}]} => did you mean 'seat_factor'
-solver: {step: 0.001} => published: {source: a, rows: [{seat_factor: abc}]} => line 19 | finite number
-solver: {step: 0.001} => published: {source: a, rows: [{seat_factor: true}]} => line 19 | finite number
 {law: constant, current: 0.5} => {law: static_output_feedback, gain: ['2.0', 1.0]} => line 16 | '2.0' | not permitted
 current: 0.5 => current: 0.5, sample_time: true => line 16 | sample_time | not permitted
 name: good => name: good: bad => line 1 | mapping values

@@ -49,12 +49,3 @@ def test_merged_keys_and_aliases_are_read(seat_file):
     seat_file.write_text(text + "variants: {heavy: {plant: {<<: *rig, driver_mass: 120.0}}}\n")
     (run,) = load(seat_file)
     assert (run.plant.driver_mass, run.plant.frame_mass) == (120.0, 20.0)
-
-
-def test_published_figures_stay_permitted_where_a_sweep_is_overridden(seat_file):
-    seat_file.write_text(
-        seat_file.read_text().replace("temperature: 20.0", "temperature: [20.0, 80.0]")
-        + "published: {source: a paper, rows: [{temperature: 80.0, seat_factor: 0.5}]}\n"
-    )
-    assert len(load(seat_file)) == 2
-    assert len(load(seat_file, {"temperature": 80.0})) == 1

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatsim import load, run
-from seatsim.rig.drivers import BODIES, apparent_mass, body_matrices, head_transmissibility
+from seatsim.rig.drivers import BODIES, body_matrices
 from seatsim.schema.errors import InputError
 from seatsim.simulation.simulate import simulate
 
@@ -18,6 +18,22 @@ temperature: 20.0
 controller: {law: constant, current: 0.0}
 excitation: {kind: sine, amplitude: 0.005, frequency: 3.0, duration: 12.0}
 """
+
+
+def respond(body, frequency):
+    """Acceleration of every mass of a body over that of a rigid seat, by frequency in Hz."""
+    masses, stiffness, damping = body_matrices(body)
+    s = 2j * np.pi * np.asarray(frequency)[..., None, None]
+    drive = (damping * s + stiffness).sum(axis=-1)
+    return np.linalg.solve(np.diag(masses) * s**2 + damping * s + stiffness, drive[..., None])[..., 0]
+
+
+def apparent_mass(body, frequency):
+    return body.contact + respond(body, frequency) @ np.array(body.masses)
+
+
+def head_transmissibility(body, frequency):
+    return respond(body, frequency)[..., body.head]
 
 
 @pytest.fixture

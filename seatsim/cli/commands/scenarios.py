@@ -13,8 +13,8 @@ from seatsim.cli.terminal import announce, answer, show_progress, warn, wrote, w
 from seatsim.schema.errors import InputError, nearest
 
 if TYPE_CHECKING:
+    from controllers.synthesis import Design
     from seatsim.cli.terminal import Report
-    from seatsim.rig.designs import SynthesisedDesign
     from seatsim.scenario.scenario import Scenario
 
 
@@ -100,7 +100,7 @@ def synthesise(
     answer(Source(folder / "design.yaml").data, paths)
 
 
-def _synthesise(scenario: Scenario, progress: Report) -> SynthesisedDesign:
+def _synthesise(scenario: Scenario, progress: Report) -> Design:
     """Return the design of a law that has a synthesis, for the plant of a scenario."""
     from seatsim.rig.designs import SynthesisedLaw
     from seatsim.schema.registry import name_of

@@ -1,23 +1,25 @@
-"""Runs as tables on the terminal: compared, beside published figures; and a design."""
+"""Runs as tables on the terminal, and a design."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from statistics import fmean
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from rich.markup import escape
 from rich.table import Table
 
 from seatsim.cli.show_table import format_number, make_table
 from seatsim.metrics.table import SHORT
-from seatsim.rig.designs import BoxProof, CheckedLaw, Clipping, SynthesisedDesign, unit_of_gain
-from seatsim.scenario.checks import published_figures
+from seatsim.rig.designs import Clipping, SynthesisedLaw, unit_of_gain
 from seatsim.scenario.scenario import Scenario, condition_of, group_by_condition, is_condition
 from seatsim.simulation.checks import describe_sampled_loop
 from seatsim.simulation.result import Run
+
+if TYPE_CHECKING:
+    from controllers.synthesis import Design, GlobalProof
 
 
 def _average(values: Sequence[float]) -> float:
@@ -146,32 +148,7 @@ def _labels(run: Run, keys: Sequence[str]) -> list[str]:
     return [escape(f"{value:g}" if isinstance(value, int | float) else str(value)) for value in values]
 
 
-def make_published_tables(runs: Sequence[Run]) -> list[Table]:
-    """Return one table for each file with published figures: ours, published, and the difference, metric by metric."""
-    tables = []
-    for source in {str(run.scenario.source.path): run.scenario.source for run in runs if run.scenario.source}.values():
-        place, published = published_figures(source)
-        of_file = [run for run in runs if run.scenario.source and run.scenario.source.path == source.path]
-        rows = [cells for row in published for run in of_file for cells in _compare_published(row, run)]
-        if published:
-            headings = ("run", "metric", "ours", "published", "difference")
-            tables.append(make_table(f"beside {place}", headings, rows, (0, 1)))
-    return tables
-
-
-def _compare_published(row: Mapping[str, Any], run: Run) -> Iterator[list[str]]:
-    """Yield the cells of each metric that a row of published figures states of a run, none for another run's row."""
-    label = run.scenario.label
-    if all(label.get(key) == value for key, value in row.items() if key in label):
-        title = ", ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in label.values())
-        for name in [key for key in row if key in run.metrics]:
-            ours, theirs = run.metrics[name].value, float(row[name])
-            difference = f"{100 * (ours / theirs - 1):+.1f} %" if theirs else "-"
-            metric = escape(f"{name} [{run.metrics[name].unit}]")
-            yield [escape(title), metric, f"{ours:.4g}", f"{theirs:.4g}", difference]
-
-
-def make_design_table(design: SynthesisedDesign, scenario: Scenario) -> Table:
+def make_design_table(design: Design, scenario: Scenario) -> Table:
     """Return a design as a table: gain, norm and what no controller can go below, certificate, margins, poles.
 
     The margins in the same row as the disk's are those of the scenario's own plant, coil and controller.
@@ -211,7 +188,7 @@ def _describe_disk_margin(margin: float) -> str:
     return f"gain times {max(least, 0.0):.2g} to {most}, phase {turn:.3g} degrees"
 
 
-def _describe_proof(proof: BoxProof) -> str:
+def _describe_proof(proof: GlobalProof) -> str:
     if proof.better is not None:
         return f"no: {', '.join(f'{value:.6g}' for value in proof.better.ravel())} is better"
     if proof.is_proven:
@@ -226,10 +203,10 @@ def _describe_clipping(clipping: Clipping) -> str:
     )
 
 
-def _check_loop(design: SynthesisedDesign, scenario: Scenario) -> Mapping[str, str]:
+def _check_loop(design: Design, scenario: Scenario) -> Mapping[str, str]:
     """Return what the scenario's own law says of its loop with the design's gain, by heading."""
     control, plant = scenario.control, scenario.plant
-    if control is None or plant is None or not isinstance(control.law, CheckedLaw):
+    if control is None or plant is None or not isinstance(control.law, SynthesisedLaw):
         return {}
     designed = replace(scenario, control=replace(control, law=control.law.with_gain(design.gain)))
     margins = control.law.margins(plant, scenario.coil, design.gain)
