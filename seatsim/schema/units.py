@@ -7,28 +7,17 @@ Units are those of `pint`, in the spellings that loggers and tables use: `m/s2`,
 from __future__ import annotations
 
 import functools
-import math
 import re
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, NamedTuple
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.yaml_text import parse_value
 
 if TYPE_CHECKING:
     import pint
 
-DIMENSIONS = {
-    "acceleration": "m/s^2",
-    "length": "m",
-    "velocity": "m/s",
-    "force": "N",
-    "current": "A",
-    "voltage": "V",
-    "temperature": "degC",
-    "time": "s",
-    "angular_acceleration": "rad/s^2",
-}
-"""The unit of every kind of quantity that a measured channel may hold."""
 STANDARD_GRAVITY = 9.80665
 """m/s^2."""
 
@@ -40,44 +29,21 @@ class Conversion(NamedTuple):
     zero: float = 0.0
 
 
-_FAHRENHEIT, _KELVIN = Conversion(5.0 / 9.0, -160.0 / 9.0), Conversion(1.0, -273.15)
-_USUAL: Mapping[str, Mapping[str, float | Conversion]] = {
-    "m/s^2": {"m/s^2": 1.0, "g": STANDARD_GRAVITY, "mm/s^2": 1e-3, "cm/s^2": 0.01, "ft/s^2": 0.3048},
-    "m": {"m": 1.0, "cm": 0.01, "mm": 1e-3, "um": 1e-6, "inch": 0.0254},
-    "m/s": {"m/s": 1.0, "cm/s": 0.01, "mm/s": 1e-3, "km/h": 1.0 / 3.6},
-    "N": {"N": 1.0, "kN": 1e3, "daN": 10.0, "lbf": 4.4482216152605, "kgf": STANDARD_GRAVITY},
-    "A": {"A": 1.0, "mA": 1e-3},
-    "V": {"V": 1.0, "mV": 1e-3},
-    "degC": {"degC": 1.0, "degF": _FAHRENHEIT, "K": _KELVIN},
-    "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0},
-    "rad/s^2": {"rad/s^2": 1.0, "deg/s^2": math.pi / 180.0},
-    "kg": {"g": 1e-3, "t": 1e3},
-    "N/m": {"N/mm": 1e3, "N/cm": 1e2},
-    "N s/m": {"N s/mm": 1e3, "N s/cm": 1e2},
-}
+_STATED: Any = parse_value(Path(__file__).with_name("units.yaml").read_text(encoding="utf-8"))
+DIMENSIONS: dict[str, str] = _STATED["dimensions"]
+"""The unit of every kind of quantity that a measured channel may hold."""
 CONVERSIONS = {
-    si: {unit: how if isinstance(how, Conversion) else Conversion(how) for unit, how in units.items()}
-    for si, units in _USUAL.items()
+    si: {unit: Conversion(*how) if isinstance(how, list) else Conversion(how) for unit, how in units.items()}
+    for si, units in _STATED["usual"].items()
 }
 """Conversions from the units in which a quantity is usually recorded or stated: to load pint takes 0.6 s."""
 USUAL = {si: tuple(CONVERSIONS[si]) for si in DIMENSIONS.values()}
 """Units in which a quantity is usually recorded, by its SI unit; errors list them, doubts compare with them."""
-OWN_SPELLINGS = {
-    "m/s^2": dict.fromkeys(("g", "gn", "g_n", "g0"), "standard_gravity")
-    | dict.fromkeys(("ms2", "ms-2", "ms^-2", "ms⁻²", "m.s-2"), "m/s^2")
-    | {"gal": "cm/s^2", "mg": "millistandard_gravity"},
-    "degC": dict.fromkeys(("c", "celsius", "deg c", "grad c"), "degC")
-    | dict.fromkeys(("f", "fahrenheit", "deg f"), "degF")
-    | {"k": "kelvin"},
-    "N": {"lb": "lbf", "lbs": "lbf", "kg": "kgf", "kp": "kgf", "newton": "N", "newtons": "N"},
-    "A": {"amp": "A", "amps": "A", "ampere": "A", "amperes": "A"},
-    "V": {"volt": "V", "volts": "V"},
-    "s": {"sec": "s", "msec": "ms", "usec": "us", "sek": "s"},
-    "m": {'"': "inch", "in": "inch", "zoll": "inch"},
+OWN_SPELLINGS: Mapping[str, Mapping[str, str]] = {
+    wanted: {word: unit for unit, words in spellings.items() for word in words}
+    for wanted, spellings in _STATED["spellings"].items()
 }
-"""Spellings that mean something else, or nothing, to pint, by the unit that is wanted: `g` of a mass is a gram."""
-_SIGNS = {"⁻²": "^-2", "²": "^2", "³": "^3", "°": "deg", "℃": "degC", "℉": "degF"}
-_SIGNS |= dict.fromkeys("µμ", "u") | dict.fromkeys("·⋅", "*")
+"""Spellings that mean something else, or nothing, to pint, by the unit that is wanted."""
 _NO_UNITS = ("links",)
 """Words in names that pint takes for units: `links` is German for left."""
 
@@ -146,7 +112,7 @@ def _spelt(unit: str, wanted: str) -> str:
     plain = unit.strip().strip("[]()")
     own = OWN_SPELLINGS.get(wanted, {}).get(plain.lower())
     plain = own or plain
-    for sign, ascii_sign in _SIGNS.items():
+    for sign, ascii_sign in _STATED["signs"].items():
         plain = plain.replace(sign, ascii_sign)
     plain = plain if own else re.sub(r"^([A-Za-z]+)_([A-Za-z]+\d?)$", r"\1/\2", plain)
     plain = re.sub(r"\bsec\b", "s", plain)
