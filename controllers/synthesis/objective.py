@@ -31,23 +31,21 @@ _LEAST = 0.01
 class NormObjective:
     """Abscissa and norm, the worst of one or several plants, by the free gains, in scaled coordinates.
 
-    The free gains, a vector of length `size`, lie between `low` and `high` (nu, ny). The search runs over angles theta
-    with gain = centre + reach sin(theta / reach): nearly the identity for small gains, and a limit is an ordinary
-    stationary point. `unit` (nu, ny) is one of the user's units in scaled coordinates.
+    The free gains, a vector of length `size`, are no larger than `limit` (nu, ny). The search runs over angles theta
+    with gain = limit sin(theta / limit): nearly the identity for small gains, and a limit is an ordinary stationary
+    point. `unit` (nu, ny) is one of the user's units in scaled coordinates.
     """
 
-    def __init__(self, plants: Sequence[GeneralisedPlant], low: Array, high: Array, unit: Array) -> None:
+    def __init__(self, plants: Sequence[GeneralisedPlant], limit: Array, unit: Array) -> None:
         self.plants = list(plants)
         self.free = plants[0].free
-        self._limits = low, high, unit
-        self.unit, self.low, self.high = unit[self.free], low[self.free], high[self.free]
-        self._centre: Array = (self.low + self.high) / 2
-        self._reach: Array = (self.high - self.low) / 2
-        self.size = len(self.low)
+        self._scales = limit, unit
+        self.limit, self.unit = limit[self.free], unit[self.free]
+        self.size = len(self.limit)
 
     def on(self, plants: Sequence[GeneralisedPlant]) -> NormObjective:
         """Return the same objective on other plants."""
-        return NormObjective(plants, *self._limits)
+        return NormObjective(plants, *self._scales)
 
     def gain(self, entries: Array) -> Array:
         """Return the gain matrix with these free entries."""
@@ -67,12 +65,11 @@ class NormObjective:
 
     def entries(self, theta: Array) -> Array:
         """Return the free entries of the gain at angles theta."""
-        return np.asarray(self._centre + self._reach * np.sin(theta / self._reach))
+        return np.asarray(self.limit * np.sin(theta / self.limit))
 
     def angles(self, entries: Array) -> Array:
         """Return the angles of free entries; beyond the limits, of the nearest entries within."""
-        sines = np.clip((entries - self._centre) / self._reach, -_INSIDE, _INSIDE)
-        return np.asarray(self._reach * np.arcsin(sines))
+        return np.asarray(self.limit * np.arcsin(np.clip(entries / self.limit, -_INSIDE, _INSIDE)))
 
     def abscissa(self, theta: Array, ceiling: float = np.inf) -> tuple[float, Array]:
         """Return the largest spectral abscissa and its gradient by theta; above `ceiling` there is no gradient."""
@@ -101,7 +98,7 @@ class NormObjective:
         return float(np.log(highest.value)), self._by_theta(slopes[0, 0] / values[0, 0], theta)
 
     def _by_theta(self, slope: Array, theta: Array) -> Array:
-        return np.asarray(slope[self.free] * np.cos(theta / self._reach))
+        return np.asarray(slope[self.free] * np.cos(theta / self.limit))
 
 
 def differentiate_singular_values(

@@ -80,8 +80,8 @@ def _solve(
 ) -> tuple[Array, float]:
     """Lower the highest peak at fixed frequencies; return entries and that peak. Variables: steps, t / level - 1."""
     unit = objective.sizes(entries)
-    low = np.maximum((objective.low - entries) / unit, -trust)
-    high = np.minimum((objective.high - entries) / unit, trust)
+    low = np.maximum((-objective.limit - entries) / unit, -trust)
+    high = np.minimum((objective.limit - entries) / unit, trust)
 
     @lru_cache(maxsize=1)
     def room(point: bytes) -> tuple[Array, Array]:

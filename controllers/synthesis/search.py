@@ -60,9 +60,9 @@ class TimeBudget(NamedTuple):
 
 
 def search(
-    plants: Sequence[GeneralisedPlant], limits: tuple[Array, Array], seed: int, clock: TimeBudget, progress: Progress
+    plants: Sequence[GeneralisedPlant], max_gain: float, seed: int, clock: TimeBudget, progress: Progress
 ) -> Array:
-    """Return the best gain (nu, ny) found, between the two `limits` (nu, ny).
+    """Return the best gain (nu, ny) found, of entries no larger than `max_gain`.
 
     The first and the last plant are searched together; then whichever is worst with the gain found joins them, until
     none is worse.
@@ -74,9 +74,8 @@ def search(
     scaled = [first, *(scale(plant, like=first) for plant in plants[1:])]
     for each in scaled:
         require_stabilisable(each)
-    low, high = (first.scaled_gain(limit) for limit in limits)
-    unit = first.scaled_gain(np.ones(low.shape))
-    everything = NormObjective([each.plant for each in scaled], low, high, unit)
+    limit, unit = (first.scaled_gain(np.full(plants[0].free.shape, size)) for size in (max_gain, 1.0))
+    everything = NormObjective([each.plant for each in scaled], limit, unit)
     chosen = sorted({0, len(scaled) - 1})
     best: StabilisingGain | None = None
     while True:
@@ -89,12 +88,12 @@ def search(
             starts = chain([known], starts)
         found = _explore(objective, starts, part)
         if not found.candidates:
-            _require_hope([plants[i] for i in chosen], limits, part.after(_PROVEN))
+            _require_hope([plants[i] for i in chosen], max_gain, part.after(_PROVEN))
             while not found.candidates and time.monotonic() < part.after(_REFINED):
                 found = found.with_more(explore(objective, islice(starts, _STARTS), part.after(_REFINED)))
         if not found.candidates:
             raise SynthesisError(
-                f"no stabilising gain with {_permitted(limits)} was found from {found.starts} starts in at most"
+                f"no stabilising gain with |gain| <= {max_gain:g} was found from {found.starts} starts in at most"
                 f" {clock.budget:g} s; the least spectral abscissa reached is {found.abscissa * first.rate:.3g} 1/s"
             )
         best = _lowest(objective, found, starts, seed, part, progress)
@@ -102,7 +101,7 @@ def search(
         worst = int(np.argmax(norms))
         if norms[worst] <= best.gamma * _COVERED or worst in chosen:
             gain = first.physical_gain(everything.gain(best.entries))
-            return np.clip(gain, *limits) * everything.free
+            return np.clip(gain, -max_gain, max_gain) * everything.free
         chosen.append(worst)
 
 
@@ -127,21 +126,17 @@ def _explore(objective: NormObjective, starts: Iterator[StartingGain], clock: Ti
     return found
 
 
-def _require_hope(plants: Sequence[GeneralisedPlant], limits: tuple[Array, Array], deadline: float) -> None:
+def _require_hope(plants: Sequence[GeneralisedPlant], max_gain: float, deadline: float) -> None:
     """Raise where the time until the deadline suffices to prove that no permitted gain stabilises the plants."""
-    free = plants[0].free
-    if free.sum() <= MOST_GAINS:
-        low, high = (limit[free] for limit in limits)
-        proof = prove_no_better(plants, np.inf, low, high, max(deadline - time.monotonic(), 0.0))
+    gains = int(plants[0].free.sum())
+    if gains <= MOST_GAINS:
+        limit = np.full(gains, max_gain)
+        proof = prove_no_better(plants, np.inf, -limit, limit, max(deadline - time.monotonic(), 0.0))
         if proof.is_proven:
             raise SynthesisError(
-                f"no gain with {_permitted(limits)} stabilises this plant: proven for all of them (in boxes:"
+                f"no gain with |gain| <= {max_gain:g} stabilises this plant: proven for all of them (in boxes:"
                 f" {proof.boxes})"
             )
-
-
-def _permitted(limits: tuple[Array, Array]) -> str:
-    return f"|gain| <= {np.abs(limits).max():g}"
 
 
 def _lowest(

@@ -33,7 +33,6 @@ class _Options(TypedDict, total=False):
     """What may be stated of a synthesis, whichever way its plant is given."""
 
     max_gain: float
-    bounds: tuple[ArrayLike, ArrayLike] | None
     order: int
     time_budget: float
     seed: int
@@ -80,7 +79,6 @@ def synthesise(
     *,
     split: tuple[int, int] | None = None,
     max_gain: float = _MAX_GAIN,
-    bounds: tuple[ArrayLike, ArrayLike] | None = None,
     order: int = 0,
     time_budget: float = _TIME_BUDGET,
     seed: int = 0,
@@ -92,7 +90,6 @@ def synthesise(
     gains at zero), or as a `control.StateSpace` with inputs [w; u], outputs [z; y] and `split = (nw, nz)`. Of several
     plants (a sequence) with the same controls and measurements, the one gain minimises the worst norm.
     `max_gain` bounds every |gain_ij| in the user's units: many infima lie at infinite gain, so quote gamma with it.
-    `bounds = (low, high)`, each one number or (nu, ny), bounds the entries further.
     With an `order` k of 1 to 4 the controller has as many states, x_K' = A_K x_K + B_K y, u = C_K x_K + D_K y. The gain
     is then [[D_K, C_K], [B_K, A_K]], (nu + k, ny + k), bounded likewise, and `Design.controller` the state space.
     `time_budget` in s: the search stops there, a computation under way may take a few seconds more. The same seed
@@ -112,7 +109,7 @@ def synthesise(
     if order not in range(5):
         raise InputError(f"order is {order!r}; a controller of order 0 (a static gain) to 4 is wanted")
     plants = [plant.with_controller_states(order) for plant in plants] if order else plants
-    gain = search(plants, _limits(plants[0], max_gain, bounds), seed, TimeBudget(begin, time_budget), progress)
+    gain = search(plants, max_gain, seed, TimeBudget(begin, time_budget), progress)
     loops = tuple(verify(plant, gain, order) for plant in plants)
     design = Design(gain, float(max_gain), 0.0, loops, order=order)
     progress("the bound of any controller")
@@ -131,8 +128,8 @@ def find_gain(plants: Sequence[GeneralisedPlant]) -> Array:
 
     A gain that was found before is taken from the cache.
     """
-    limits, clock = _limits(plants[0], _MAX_GAIN, None), TimeBudget(time.monotonic(), SEAT_TIME_BUDGET)
-    return find_kept(plants, lambda: search(plants, limits, 0, clock, lambda text: None))
+    clock = TimeBudget(time.monotonic(), SEAT_TIME_BUDGET)
+    return find_kept(plants, lambda: search(plants, _MAX_GAIN, 0, clock, lambda text: None))
 
 
 def _collect_plants(
@@ -160,21 +157,6 @@ def _collect_plants(
     if missing:
         raise InputError(f"the plant lacks {', '.join(missing)}; give all of {', '.join(MATRICES)}, or a plant object")
     return [GeneralisedPlant.from_matrices([cast(ArrayLike, first), *(part for part in others if part is not None)])]
-
-
-def _limits(
-    plant: GeneralisedPlant, max_gain: float, bounds: tuple[ArrayLike, ArrayLike] | None
-) -> tuple[Array, Array]:
-    """Least and largest gain, (nu, ny) each."""
-    wanted = (-max_gain, max_gain) if bounds is None else bounds
-    try:
-        low, high = (np.broadcast_to(np.asarray(side, dtype=float), plant.free.shape) for side in wanted)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"bounds must be (low, high), each a number or {plant.free.shape}: {error}") from error
-    low, high = np.maximum(low, -max_gain), np.minimum(high, max_gain)
-    if not np.all(low[plant.free] < high[plant.free]):
-        raise InputError(f"bounds leave an entry no room within max_gain {max_gain:g}: low {low}, high {high}")
-    return low, high
 
 
 Response = NDArray[np.complex128]

@@ -12,7 +12,6 @@ folder nor a file is used that another user may have written.
 
 from __future__ import annotations
 
-import atexit
 import gc
 import hashlib
 import os
@@ -23,7 +22,6 @@ import sysconfig
 import threading
 import warnings
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import ExitStack
 from functools import cache
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
@@ -38,7 +36,6 @@ from numba.core.dispatcher import Dispatcher
 
 from seatsim.compilation.jit import ARITHMETIC
 from seatsim.compilation.messages import report
-from seatsim.schema.guarded import temporary_folder
 from seatsim.schema.registry import current_order
 
 _DIGEST = hashlib.sha256().digest_size
@@ -190,13 +187,13 @@ def _compiled(function: Callable[..., object], plugged: frozenset[type]) -> Call
 
 
 def find_folder(name: str) -> Path | None:
-    """Return a folder in the cache that this user alone may write, or a private one; None where none can be written."""
+    """Return a folder in the cache that this user alone may write; None where there is none, and nothing is kept."""
     folder = cache_folder() / name
     try:
         _make_private(folder)
         if (foreign := find_foreign(folder)) is not None:
-            folder = _private_cache(cache_folder(), foreign) / name
-            _make_private(folder)
+            _warn_of(foreign)
+            return None
     except OSError:
         return None
     return folder if os.access(folder, os.W_OK | os.X_OK) else None
@@ -210,30 +207,18 @@ def _make_private(folder: Path) -> None:
 
 
 @cache
-def _private_cache(wanted: Path, foreign: Path) -> Path:
-    """Return the user's own cache in place of one that others may write, or one for this process; say so once."""
-    place = _user_cache()
-    _make_private(place)
-    if find_foreign(place) is not None:
-        kept = ExitStack()
-        atexit.register(kept.close)
-        place = kept.enter_context(temporary_folder("seatsim-compiled-"))
+def _warn_of(foreign: Path) -> None:
     warnings.warn(
-        f"{foreign} may be written by other users, whose code could be run in place of what is kept in {wanted};"
-        f" compiled code is kept in {place}. Take the right to write from them (chmod go-w {foreign}), or state a"
-        " folder of your own in SEATSIM_CACHE_DIR",
+        f"{foreign} may be written by other users, whose code could be run in place of what is kept: compiled code is"
+        f" not kept. Take the right to write from them (chmod go-w {foreign}), or state a folder of your own in"
+        " SEATSIM_CACHE_DIR",
         stacklevel=2,
     )
-    return place
 
 
 def cache_folder() -> Path:
     """Return the folder of compiled runs: `SEATSIM_CACHE_DIR`, or the user's cache folder."""
-    return Path(os.environ.get("SEATSIM_CACHE_DIR") or _user_cache())
-
-
-def _user_cache() -> Path:
-    return Path(platformdirs.user_cache_dir("seatsim")) / "compiled"
+    return Path(os.environ.get("SEATSIM_CACHE_DIR") or Path(platformdirs.user_cache_dir("seatsim")) / "compiled")
 
 
 def digest(modules: Iterable[ModuleType]) -> str:

@@ -77,17 +77,13 @@ ANSWER = "reproduce.json"
 
 
 class Reproduction(NamedTuple):
-    """What came of running a command again.
-
-    `versions` says what differs of versions and platform, `unnamed` are files of the folder that no manifest names.
-    """
+    """What came of running a command again; `versions` says what differs of versions and platform."""
 
     command: str
     identical: bool
     compared: list[str]
     differences: list[Difference]
     versions: list[str]
-    unnamed: list[str]
 
 
 def reproduce(
@@ -111,16 +107,15 @@ def reproduce(
     arguments, directory = _check_arguments(manifest, folder), _find_directory(manifest, folder)
     _check_files(manifest, folder, directory)
     changed = [*_compare_inputs(manifest, folder), *_compare_code(manifest, own_code)]
-    command, unnamed = manifest.command, _list_unnamed(manifest, folder)
     if changed:
-        return Reproduction(command, False, [], changed, versions, unnamed)
+        return Reproduction(manifest.command, False, [], changed, versions)
     with temporary_folder() as place:
         runs = f": {manifest.counts['runs']} runs" if manifest.counts else ""
-        tell(f"running {command} again{runs}")
-        again = _run(command, arguments, own_code, directory, place / manifest.folder)
+        tell(f"running {manifest.command} again{runs}")
+        again = _run(manifest.command, arguments, own_code, directory, place / manifest.folder)
         differences = list(compare_outputs(manifest, folder, read_manifest(again), again))
     compared = [each.path for each in manifest.outputs]
-    return Reproduction(command, not differences, compared, differences, versions, unnamed)
+    return Reproduction(manifest.command, not differences, compared, differences, versions)
 
 
 def _check_arguments(manifest: Manifest, folder: Path) -> list[str]:
@@ -197,14 +192,6 @@ def _compare_versions(manifest: Manifest) -> Iterator[str]:
         # The own code of a sweep is among its sources.
         if name in now and was != now[name] and not (name == "sources" and manifest.own_code):
             yield f"{name} was {was} and is {now[name]}"
-
-
-def _list_unnamed(manifest: Manifest, folder: Path) -> list[str]:
-    """Return the files of a folder, but for folders with a manifest of their own, of which nothing is known."""
-    known = {MANIFEST, ANSWER, *(each.path for each in manifest.outputs)}
-    others = [path.parent for path in folder.glob(f"*/**/{MANIFEST}")]
-    files = (path for path in folder.rglob("*") if path.is_file() and not any(map(path.is_relative_to, others)))
-    return sorted({path.relative_to(folder).as_posix() for path in files} - known)
 
 
 def _run(command: str, arguments: Sequence[str], own_code: Sequence[Path], directory: Path, out: Path) -> Path:

@@ -6,13 +6,12 @@ The manifest holds no time and no absolute path, so that equal commands on equal
 import hashlib
 import os
 import platform
-import re
 import shlex
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import cache
-from importlib.metadata import PackageNotFoundError, distribution
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import NamedTuple
 
@@ -34,18 +33,15 @@ _LIBRARIES = ("numpy", "scipy", "numba", "pyarrow", "pandas", "matplotlib", "cvx
 def list_versions(libraries: Iterable[str] = _LIBRARIES, files: Iterable[Path] = ()) -> Mapping[str, str]:
     """Return the versions of Python, seatsim and some libraries, with a hash over all sources and `files`."""
     own = {"python": platform.python_version(), "seatsim": seatsim.__version__}
-    return own | {name: _read_version(name) for name in libraries} | {"sources": _digest_sources(tuple(files))}
+    return own | {name: _find_version(name) for name in libraries} | {"sources": _digest_sources(tuple(files))}
 
 
 @cache
-def _read_version(name: str) -> str:
-    """Return the version of a library; `importlib.metadata.version` parses its long description, too."""
+def _find_version(name: str) -> str:
     try:
-        installed = distribution(name)
+        return version(name)
     except PackageNotFoundError:  # the same modules came in another package, such as `cvxpy` in place of `cvxpy-base`
         return "unknown"
-    found = re.search(r"^Version: (.+)$", installed.read_text("METADATA") or "", re.MULTILINE)
-    return found[1].strip() if found else installed.version
 
 
 @cache
@@ -61,19 +57,10 @@ def _digest_sources(more: tuple[Path, ...]) -> str:
     # What is being worked on keeps its version while its figures change.
     state = hashlib.sha256()
     folders = [next(iter(import_named(name).__path__)) for name in sorted(shipped_packages())]
-    sources = [Path(path) for folder in folders for path in _list_sources(folder)]
+    sources = [path for folder in folders for path in sorted(Path(folder).rglob("*.py"))]
     for path in (*sources, *more):
         state.update(path.name.encode() + path.read_bytes())
     return state.hexdigest()[:16]
-
-
-def _list_sources(folder: str) -> Iterator[str]:
-    """Yield the sources below a folder in order; `Path.rglob` takes as long as reading them."""
-    for entry in sorted(os.scandir(folder), key=lambda each: each.name):
-        if entry.is_dir(follow_symlinks=False):
-            yield from _list_sources(entry.path)
-        elif entry.name.endswith(".py"):
-            yield entry.path
 
 
 MANIFEST = "manifest.json"

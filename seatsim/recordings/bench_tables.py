@@ -137,7 +137,7 @@ _T = TypeVar("_T")
 NAMED = r"(?P<current>\d+(?:[.,]\d+)?) ?A(?![a-zA-Z])|(?P<temperature>\d+(?:[.,]\d+)?) ?(?:deg)?C(?![a-zA-Z])"
 """Current and temperature as they usually stand in the names of files."""
 _NAMED_GROUPS = ("current", "temperature")
-_SUFFIXES = (".csv", ".csv.gz", ".csv.bz2", ".csv.xz", ".csv.zip")
+_SUFFIXES = (".csv", ".csv.gz")
 _GAP = 1.5
 """A pause of more median row intervals than this ends a record."""
 _OFF = 1.0

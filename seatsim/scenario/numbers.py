@@ -6,16 +6,14 @@ import dataclasses
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-import numpy as np
-
-from seatsim.effects.base import EFFECTS, acts_on
+from seatsim.effects.base import acts_on
 from seatsim.rig.sensors import Sensors
 from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Scenario
 from seatsim.scenario.sections import SECTIONS
 from seatsim.schema.errors import permit
 from seatsim.schema.fields import FieldSpecification, describe, doubt, field_names, replace_fields
-from seatsim.schema.registry import Record, is_own, specification_of
+from seatsim.schema.registry import Record, is_own
 from seatsim.schema.validation import check_value
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import KeyPath
@@ -139,7 +137,7 @@ def list_doubts(scenario: Scenario) -> list[str]:
     for section, record in _list_records(scenario).items():
         for field in describe(type(record)):
             if problem := doubt(field, getattr(record, field.name)):
-                is_number = section == TEMPERATURE and not _is_thermal(scenario)
+                is_number = section == TEMPERATURE and not isinstance(scenario.temperature, Thermal)
                 keys = (section,) if is_number else (*section.split("."), field.name)
                 doubts.append(f"{scenario.place(*keys)}: {problem}")
     if TEMPERATURE in scenario.label and not _depends_on_temperature(scenario):
@@ -147,25 +145,7 @@ def list_doubts(scenario: Scenario) -> list[str]:
             f"{scenario.place(TEMPERATURE)}: nothing depends on the temperature that is varied, so that all runs"
             " are the same; state damper.temperature_factors, or damper.thermal_fade under effects"
         )
-    return doubts + _list_unread(scenario)
-
-
-def _list_unread(scenario: Scenario) -> list[str]:
-    """Return a sentence for each effect on a thermocouple that nothing reads, since the fluid itself is simulated."""
-    if not _is_thermal(scenario) or scenario.control is None or specification_of(type(scenario.control.law)).replays:
-        return []
-    ramp = np.arange(3.0)
-    return [
-        f"{scenario.place('effects')}: {EFFECTS.name_of(type(effect))} states how the fluid differs from its"
-        " thermocouple, which changes nothing here, since the temperature of the fluid is simulated; state it as a"
-        " number, or replay a recorded damper_temperature"
-        for effect in scenario.effects
-        if acts_on(type(effect), (TEMPERATURE,)) and not np.array_equal(getattr(effect, TEMPERATURE)(1.0, ramp), ramp)
-    ]
-
-
-def _is_thermal(scenario: Scenario) -> bool:
-    return isinstance(scenario.temperature, Thermal)
+    return doubts
 
 
 def _depends_on_temperature(scenario: Scenario) -> bool:

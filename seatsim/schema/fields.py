@@ -23,7 +23,7 @@ from pydantic.fields import FieldInfo
 
 from seatsim.schema.content import list_written
 from seatsim.schema.registry import Record
-from seatsim.schema.units import conversion
+from seatsim.schema.units import CONVERSIONS
 from seatsim.schema.yaml_text import parse_value
 
 _R = TypeVar("_R")
@@ -144,20 +144,6 @@ def _extra_of(hint: object) -> Mapping[str, JsonValue]:
     return info.json_schema_extra if info and isinstance(info.json_schema_extra, dict) else {}
 
 
-_MISTAKEN: Mapping[str, tuple[str, ...]] = {
-    "m": ("mm", "cm"),
-    "kg": ("g", "t"),
-    "N/m": ("N/mm", "N/cm"),
-    "N s/m": ("N s/mm", "N s/cm"),
-    "s": ("ms",),
-    "A": ("mA",),
-    "m/s": ("km/h", "mm/s"),
-    "m/s^2": ("g", "mm/s^2"),
-    "degC": ("K", "degF"),
-}
-"""Units that stand in place of the SI unit, the likelier first."""
-
-
 UNUSUAL = "is unusual, since seats have"
 """In every sentence of a doubt, by which such sentences are found among others."""
 
@@ -180,8 +166,7 @@ def doubt(field: FieldSpecification, value: object) -> str:
 def guess(value: object, field: FieldSpecification) -> str:
     """Return the unit in which a value would be usual, as the end of a sentence; empty where there is none."""
     if isinstance(value, int | float) and field.usual is not None:
-        for unit in _MISTAKEN.get(field.unit, ()):
-            factor, zero = conversion(unit, field.unit)
+        for unit, (factor, zero) in CONVERSIONS.get(field.unit, {}).items():
             if _is_usual(meant := factor * value + zero, field):
                 return f"; {value:g} {unit} would be {meant:.4g} {field.unit}"
     return ""

@@ -1,7 +1,7 @@
 """Files that are written whole or not at all: single ones, and all that a command writes together.
 
-What is not yet whole lies beside its place under a name that begins with `.` and ends in `.part`, and that holds the
-number of the process that writes it. What a killed process has left is removed when something is written there again.
+What is not yet whole lies beside its place under a name that begins with `.` and ends in `.part`. What a killed process
+has left is removed when something is written there a day later.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ import os
 import re
 import secrets
 import shutil
-import socket
 import time
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -21,10 +20,9 @@ from seatsim.schema.content import plain
 from seatsim.schema.errors import InputError, OutputError
 from seatsim.schema.guarded import check_links_on, check_no_link, noted, uncut
 
-_HOST = re.sub(r"[^0-9A-Za-z]", "_", socket.gethostname())[:40]
-_PART = re.compile(r"\..+\.(\w+)-(\d+)-[0-9a-f]{8}\.part(\..*)?")
+_PART = re.compile(r"\..+\.[0-9a-f]{16}\.part(\..*)?")
 _ABANDONED = 86_400.0
-"""Seconds without a change after which what a process of another machine writes counts as left."""
+"""Seconds without a change after which what is half-written counts as left."""
 
 
 def write_whole(path: Path, write: Callable[[Path], object], lasting: bool = False) -> Path:
@@ -171,19 +169,14 @@ def _check_place(path: Path, is_folder: bool = False) -> None:
 
 def _name_part(path: Path) -> Path:
     """Return the place of what is not yet whole; its ending is kept for those who write by ending."""
-    token = f"{_HOST}-{os.getpid()}-{secrets.token_hex(4)}"
     # A name may have 255 bytes.
-    return path.with_name(f".{path.name[:50]}.{token}.part{path.suffix[:10]}")
+    return path.with_name(f".{path.name[:50]}.{secrets.token_hex(8)}.part{path.suffix[:10]}")
 
 
 def remove_left(folder: Path) -> None:
-    """Remove from a folder what processes that are no more have left there half-written.
-
-    Whether one of another machine still runs is not seen from here; what it has not changed for a day is left, too.
-    """
+    """Remove from a folder what has been left there half-written: whoever still writes has changed it within a day."""
     for each in folder.iterdir() if folder.is_dir() else ():
-        found = _PART.fullmatch(each.name)
-        if found and (_is_abandoned(each) if found[1] != _HOST else not _is_running(int(found[2]))):
+        if _PART.fullmatch(each.name) and _is_abandoned(each):
             if each.is_dir():
                 shutil.rmtree(each, ignore_errors=True)
             else:
@@ -195,16 +188,6 @@ def _is_abandoned(part: Path) -> bool:
         return time.time() - part.lstat().st_mtime > _ABANDONED
     except OSError:  # it was put in place meanwhile
         return False
-
-
-def _is_running(process: int) -> bool:
-    if os.name != "posix":  # there a signal of 0 would end it
-        return True
-    try:
-        os.kill(process, 0)
-    except OSError as error:
-        return not isinstance(error, ProcessLookupError)
-    return True
 
 
 def write_text(path: Path, text: str, lasting: bool = False) -> Path:

@@ -6,16 +6,15 @@ values is an error: shifted columns would be taken for each other.
 
 from __future__ import annotations
 
-import bz2
 import csv
 import gzip
 import io
 import lzma
 import zipfile
 import zlib
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -111,20 +110,21 @@ def parse_rows(
 
 
 def unpack(content: bytes, path: Path) -> bytes:
-    """Return the bytes of a table, unpacked where they are packed by gzip, bzip2, xz or as the only file of a ZIP.
+    """Return the bytes of a table, unpacked where they are packed by gzip.
 
     Raises:
         InputError: they are damaged, or larger than the limit once unpacked; no more than that is unpacked.
     """
-    opened = next((opens for magic, opens in _UNPACKED.items() if content.startswith(magic)), None)
-    if opened is None:
-        if content and path.suffix in _PACKED:
-            problem = f"its name ends in {path.suffix}, but it is not packed; copy it again"
+    if not content.startswith(b"\x1f\x8b"):
+        if path.suffix in (".bz2", ".xz", ".zip"):
+            raise InputError(f"{path}: cannot be read as a table: is packed otherwise than by gzip; unpack it")
+        if content and path.suffix == ".gz":
+            problem = "its name ends in .gz, but it is not packed; copy it again"
             raise InputError(f"{path}: cannot be read as a table: {problem}")
         return content
     unpacked = bytearray()
     try:
-        with opened(io.BytesIO(content)) as file:
+        with gzip.GzipFile(fileobj=io.BytesIO(content)) as file:
             while part := file.read(_CHUNK):
                 unpacked += part
                 check_made(len(unpacked), len(content), "what it unpacks to")
@@ -178,22 +178,6 @@ def _check_quotes(content: bytes, rows: int, path: Path) -> None:
         raise InputError(f"{path}, line {line}: a quotation mark is not closed in its line; remove it")
 
 
-def _only_member(packed: io.BytesIO) -> IO[bytes]:
-    archive = zipfile.ZipFile(packed)
-    names = archive.namelist()
-    if len(names) != 1:
-        raise ValueError(f"it holds {len(names)} files, where a table is one")
-    return archive.open(names[0])
-
-
-_UNPACKED: dict[bytes, Callable[[io.BytesIO], io.BufferedIOBase | IO[bytes]]] = {
-    b"\x1f\x8b": lambda packed: gzip.GzipFile(fileobj=packed),
-    b"BZh": bz2.BZ2File,
-    b"\xfd7zXZ": lzma.LZMAFile,
-    b"PK\x03\x04": _only_member,
-}
-"""How a packed file is read, by its first bytes."""
-_PACKED = (".gz", ".bz2", ".xz", ".zip")
 UNPACKING_ERRORS = (OSError, EOFError, ValueError, zlib.error, lzma.LZMAError, zipfile.BadZipFile, NotImplementedError)
 
 

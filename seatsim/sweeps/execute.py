@@ -136,7 +136,7 @@ def execute(
         identity = identify_sweep(definition, plan)
         # The first of several shares makes the manifest, which the others then find.
         with hold_file(folder / ".lock-manifest", wait=True):
-            check_resumable(folder, identity, plan, resume)
+            check_resumable(folder, identity, resume)
             states = [state for _, state, _ in parts.read_states(folder, plan.runs)]
             write_manifest(folder, identity, definition.limits, count_states(states, plan.runs))
         rows = _Rows(folder, plan, share, progress)

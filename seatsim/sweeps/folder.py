@@ -29,8 +29,6 @@ from seatsim.sweeps.plan import Plan
 
 LIBRARIES = ("numpy", "scipy", "numba", "pyarrow")
 """Libraries that a figure, or the bytes of a part, may hang on."""
-_GROWING = ("runs", "replicates", "vary", "table")
-"""Parts of a configuration that may differ where the difference only adds runs."""
 
 
 class _Identity(NamedTuple):
@@ -48,7 +46,7 @@ def identify_sweep(definition: SweepDefinition, plan: Plan) -> _Identity:
     """Return the identity of a sweep."""
     stated = {key: value for key, value in definition.source.data.items() if key not in ("scenario", "seed", "limits")}
     configuration = {"scenario": definition.scenario.data, **stated, "files": dict(_digest_files(plan))}
-    versions, design = list_versions(LIBRARIES, used_files()), _digest_design(plan, plan.runs)
+    versions, design = list_versions(LIBRARIES, used_files()), _digest_design(plan)
     # As it will be read from JSON, so that it equals what was written.
     read_back: dict[str, object] = json.loads(_encode(configuration))
     whole = [configuration, design, versions, definition.seed]
@@ -56,10 +54,10 @@ def identify_sweep(definition: SweepDefinition, plan: Plan) -> _Identity:
     return _Identity(digest, definition.seed, versions, read_back, plan.runs, design)
 
 
-def _digest_design(plan: Plan, runs: int) -> str:
-    """Return a hash over the values of the first runs of a sweep."""
+def _digest_design(plan: Plan) -> str:
+    """Return a hash over the values of the runs of a sweep."""
     state = hashlib.sha256()
-    for run in range(runs):
+    for run in range(plan.runs):
         replicate = run // (plan.points * len(plan.bases))
         state.update(json.dumps([replicate, *plan.values(run).values()], default=str).encode())
     return state.hexdigest()
@@ -211,8 +209,8 @@ def say_ended(folder: Path) -> str:
     return f"{counts['runs'] - counts['pending']} of {counts['runs']} runs"
 
 
-def check_resumable(folder: Path, identity: _Identity, plan: Plan, resume: bool) -> None:
-    """Refuse to go on in a folder that holds another sweep; one that has fewer runs of the same is extended.
+def check_resumable(folder: Path, identity: _Identity, resume: bool) -> None:
+    """Refuse to go on in a folder that holds another sweep.
 
     Raises:
         InputError: the folder holds a sweep and `resume` is not set, or one that differs; the message names how.
@@ -222,7 +220,6 @@ def check_resumable(folder: Path, identity: _Identity, plan: Plan, resume: bool)
             raise InputError(f"{folder}: holds the rows of a sweep without its {_NAME}; choose another --out")
         return
     old = read_manifest(folder)
-    counts = old["counts"]
     if not resume:
         raise InputError(
             f"{folder}: holds a sweep already, {say_ended(folder)} by its last count; go on with it with --resume,"
@@ -230,16 +227,7 @@ def check_resumable(folder: Path, identity: _Identity, plan: Plan, resume: bool)
         )
     if old["identity"] == identity.digest:
         return
-    only_adds = plan.runs >= counts["runs"] and _digest_design(plan, counts["runs"]) == old["design"]
     before = {"seed": old["seed"], "versions": old["versions"], **old["configuration"]}
     now = {"seed": identity.seed, "versions": dict(identity.versions), **identity.configuration}
-    for key in _GROWING if only_adds else ():
-        before.pop(key, None)
-        now.pop(key, None)
-    differences = list(list_differences(before, now))
-    if differences or not only_adds:
-        shown = "; ".join(differences) or "the resolved design differs"
-        raise InputError(
-            f"{folder}: holds another sweep: {shown}. Only what adds runs after the others may differ (more runs of"
-            " sobol, zip or cross, more replicates); choose another --out"
-        )
+    shown = "; ".join(list_differences(before, now)) or "the resolved design differs"
+    raise InputError(f"{folder}: holds another sweep: {shown}; choose another --out")

@@ -2,12 +2,10 @@
 
     run = (replicate * points + point) * bases + base
 
-A base is the scenario, or one of its variants. Replicates vary slowest: more of them only add runs at the end, and so
-do more points where there is one replicate.
+A base is the scenario, or one of its variants. Replicates vary slowest.
 
 A design combines the values of all keys: every combination, side by side, or drawn from a sequence. One that is drawn
-is resolved once, from the seed of the sweep, before anything runs. Where a design of more runs begins with the points
-of one of fewer (`sobol`, `zip`, draws within `cross`), a sweep can be extended.
+is resolved once, from the seed of the sweep, before anything runs.
 """
 
 from __future__ import annotations
@@ -60,7 +58,7 @@ def _resolve_design(definition: SweepDefinition) -> _Columns:
 def _cross(definition: SweepDefinition) -> _Columns:
     """Return every combination of the listed values, each with the same joint draws of the others.
 
-    The draws vary slowest, so that more of them only add points; of the lists the first varies slowest.
+    The draws vary slowest; of the lists the first varies slowest.
     """
     listed = [axis for axis in definition.axes if axis.values is not None]
     drawn = [axis for axis in definition.axes if axis.values is None]

@@ -21,7 +21,8 @@ class SmallExperiment(NamedTuple):
 
 @cache
 def small_experiment(bingham=False):
-    experiment = draw_experiment(np.random.default_rng(6), bingham, CHANNELS, 0.0)
+    drawn = draw_experiment(np.random.default_rng(6), bingham, CHANNELS)
+    experiment = drawn._replace(true=drawn.true | drawn.nominal)
     motions = [simulate_run(experiment, Changes(), k) for k in range(3)]
     context = context_of(experiment, [read_channels(experiment, Changes(), k, motions[k]) for k in range(3)])
     return SmallExperiment(experiment, context, CommandedRuns(experiment, [motion.command for motion in motions]))

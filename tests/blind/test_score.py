@@ -175,7 +175,7 @@ def test_a_verdict_is_read_as_the_contract_has_it(tmp_path):
     }
     path.write_text(json.dumps(data))
     verdict = read_verdict(path)
-    assert (verdict.causes, verdict.named, verdict.group) == (("b", "a", "c"), "b", ("b", "a"))
+    assert (verdict.causes, verdict.named, verdict.groups) == (("b", "a", "c"), "b", (("b", "a"),))
     assert verdict.probabilities == {"a": 0.2, "b": 0.7, "c": 0.0}
     assert (verdict.blocks, verdict.shrink, verdict.shrink_interval) == (("coil", "damper"), 0.8, (0.7, 0.9))
     assert verdict.augmented == tmp_path / "augmented.yaml"

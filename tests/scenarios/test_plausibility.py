@@ -1,6 +1,5 @@
 """Values that are permitted but that no seat has are said, with what was probably meant."""
 
-import numpy as np
 import pytest
 
 import seatsim
@@ -60,27 +59,6 @@ def test_a_temperature_that_changes_nothing(settings, depends, seat_file):
     scenarios = load(seat_file, {"temperature": [20.0, 60.0], **settings})
     assert [any(SAME in doubt for doubt in list_doubts(each)) for each in scenarios] == [not depends] * 2
     assert not list_doubts(load(seat_file, {"temperature": 60.0, **settings})[0])
-
-
-@pytest.mark.parametrize(
-    ("temperature", "values", "said"),
-    [
-        ({"start": 60.0}, {"viscous": 0.004, "lag": 8.0}, True),
-        ({"start": 60.0}, {"viscous": 0.004, "rise": 10.0}, True),
-        ({"start": 60.0}, {"viscous": 0.004}, False),
-        (60.0, {"viscous": 0.004, "rise": 10.0}, False),
-    ],
-)
-def test_a_thermocouple_that_nothing_reads_changes_nothing_and_is_said(temperature, values, said, seat_file):
-    def ask(**values):
-        fade = {"effect": "damper.thermal_fade", "parameters": values}
-        floor = {"kind": "sine", "amplitude": 0.02, "frequency": 1.3, "duration": 2.0}
-        return seatsim.run(seat_file, {"temperature": temperature, "effects": [fade], "excitation": floor}).runs[0]
-
-    found, plain = ask(**values), ask(viscous=0.004)
-    assert any("differs from its thermocouple" in warning for warning in found.warnings) == said
-    same = np.array_equal(found.history["driver_acceleration"], plain.history["driver_acceleration"])
-    assert same == (said or "rise" not in values)
 
 
 def test_a_travel_that_no_seat_has_is_said_where_none_is_stated(seat_file):

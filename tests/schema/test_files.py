@@ -9,7 +9,6 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from seatsim.schema import files
 from seatsim.schema.errors import InputError, OutputError, SeatsimError, nearest
 from seatsim.schema.files import check_folder, plain, remove_left, write_text, write_together, write_whole
 
@@ -99,18 +98,14 @@ def test_where_one_cannot_be_put_in_place_all_stay_as_they_were(tmp_path):
 
 
 def test_what_a_killed_process_has_left_is_removed_and_what_another_writes_is_not(tmp_path):
-    dead, alive = (tmp_path / f".set.{files._HOST}-{number}-0123abcd.part" for number in (2**22 + 1, os.getpid()))
-    for part in (dead, alive):
-        part.mkdir()
-        (part / "a.txt").touch()
-    (tmp_path / f".a.txt.{files._HOST}-{2**22 + 1}-0123abcd.part.txt").touch()
-    (tmp_path / ".kept.part").touch()
-    old, recent = (tmp_path / f".b.txt.node{k}-1-0123abcd.part.txt" for k in range(2))
-    for part, age in ((old, 2 * 86_400), (recent, 3_600)):
+    names = (".set.0123456789abcdef.part", ".kept.part", ".b.txt.0123456789abcdef.part.txt")
+    left, kept, recent = (tmp_path / name for name in names)
+    left.mkdir()
+    for part, age in ((left / "a.txt", 0), (left, 2 * 86_400), (kept, 2 * 86_400), (recent, 3_600)):
         part.touch()
         os.utime(part, (time.time() - age,) * 2)
     write_together(tmp_path / "set", write_two)
-    assert sorted(path.name for path in tmp_path.iterdir()) == sorted([alive.name, recent.name, ".kept.part", "set"])
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted([recent.name, kept.name, "set"])
     remove_left(tmp_path / "absent")
 
 

@@ -27,7 +27,7 @@ def test_a_unit_is_understood_as_it_is_spelt(unit, wanted, value, expected):
     ("unit", "wanted", "expected"),
     [
         ("g", "m", "'g' is no unit of a value in m"), ("kn", "m/s^2", "no unit"), ("kNN", "N", "did you mean 'kN'"),
-        ("", "N", "no unit"), ("1/", "N", "no unit"), ("m/s^2", "m", "such are m, cm, mm"),
+        ("", "N", "no unit"), ("1/", "N", "no unit"), ("m/s^2", "m", "such are m, mm, cm"),
     ],
 )  # fmt: skip
 def test_what_is_no_unit_of_the_quantity_is_an_error_that_lists_some(unit, wanted, expected):

@@ -118,7 +118,7 @@ CHANGES = [
 ]
 
 
-def test_a_change_of_the_sweep_is_refused_by_name_and_more_runs_are_added(write_sweep, carry_out, tmp_path):
+def test_a_change_of_the_sweep_is_refused_by_name(write_sweep, carry_out):
     path = write_sweep()
     carry_out(path)
     with pytest.raises(seatsim.InputError, match="holds a sweep already, 5 of 5 runs"):
@@ -127,13 +127,7 @@ def test_a_change_of_the_sweep_is_refused_by_name_and_more_runs_are_added(write_
         with pytest.raises(seatsim.InputError) as caught:
             carry_out(write_sweep(**change), resume=True)
         assert named in str(caught.value)
-    before = seatsim.read_sweep(tmp_path / "out")
-    carry_out(write_sweep(runs=8), resume=True)
-    after = seatsim.read_sweep(tmp_path / "out")
-    assert len(after) == 8 and after.iloc[:5].equals(before)
-    carry_out(write_sweep(runs=8, replicates=2), resume=True)
-    assert len(seatsim.read_sweep(tmp_path / "out")) == 16
-    text = write_sweep(runs=8, replicates=2).read_text()
+    text = write_sweep().read_text()
     path.write_text(text.replace("frame_mass: 20.0", "frame_mass: 21.0"))
     with pytest.raises(seatsim.InputError, match=r"scenario\.plant\.frame_mass was 20\.0 and is 21\.0"):
         carry_out(path, resume=True)

@@ -2,21 +2,18 @@
 
 import math
 from collections.abc import Callable, Sequence
-from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 from numpy.random import Generator
 
-from seatsim.blind.make.draw_experiment import SCATTER, draw_experiment, draw_varied_experiment
+from seatsim.blind.make.draw_experiment import draw_experiment, draw_varied_experiment
 from seatsim.blind.sealed import EFFECTS, KINDS, Kind
-from seatsim.blind.truth.experiment import CHANNELS, COMPARED, Experiment
+from seatsim.blind.truth.experiment import CHANNELS, Experiment
 from seatsim.blind.truth.faults import scenarios_of
 from seatsim.schema.errors import InputError, nearest
 
-_PRESETS = ("mixed", "varied", "null", "background")
-_BACKGROUND = 6.0
-"""Random force on the frame of the preset `background`, N rms: half of that which counts as an effect of severity 1."""
+_PRESETS = ("mixed", "varied")
 _BINGHAM_SHARE = 0.5
 """Of the rigs."""
 _COMPLETE_SHARE, _AT_MOST_ONE_MISSING = 0.6, 0.93
@@ -51,56 +48,32 @@ def draw_missing_channels(rng: Generator) -> tuple[str, ...]:
 
 
 class CaseSpecification(NamedTuple):
-    """Specification of a case: its kind, and its effects (or the scenarios outside the library).
-
-    `missing` are the channels not recorded (None: drawn), `background` is a random force on the frame, N rms, and
-    `scatter` the largest relative error of a nominal parameter. `varied`: the rig is drawn too, and these two with it.
-    """
+    """Specification of a case: its kind, its effects (or the scenarios outside the library), on what kind of rig."""
 
     kind: Kind
     names: tuple[str, ...] = ()
-    missing: tuple[str, ...] | None = None
-    background: float = 0.0
-    scatter: float = SCATTER
     varied: bool = False
 
     def draw_rig(self, rng: Generator) -> Experiment:
         """Draw a rig and its protocol; neither kind nor names are used, so that nothing of it tells what is wrong."""
-        gone = draw_missing_channels(rng) if self.missing is None else self.missing
+        gone = draw_missing_channels(rng)
         channels = tuple(name for name in CHANNELS if name not in gone)
         bingham = rng.random() < _BINGHAM_SHARE
-        if self.varied:
-            return draw_varied_experiment(rng, bingham, channels)
-        return draw_experiment(rng, bingham, channels, self.scatter, self.background)
+        return (draw_varied_experiment if self.varied else draw_experiment)(rng, bingham, channels)
 
 
 def compose(cases: int, kinds: str | Sequence[str], rng: Generator) -> list[CaseSpecification]:
     """Return the specifications of a set, shuffled.
 
     `mixed`: a fifth none, a fifth two effects, a fifth outside, the rest one effect, the 24 effects equally often.
-    `varied`: the same mix, every case on another rig. `null`: faultless over every subset of channels. `background`:
-    faultless, a random force on the frame, and a repeated run that shows it. Otherwise a kind, which all cases are, or
-    kinds that are gone through in turn.
+    `varied`: the same mix, every case on another rig. Otherwise a kind, which all cases are, or kinds that are gone
+    through in turn.
 
     Raises:
         InputError: there is no such preset or kind.
     """
-    if kinds == "null":
-        subsets = null_subsets()
-        specifications = [CaseSpecification("none", (), subsets[k % len(subsets)]) for k in range(cases)]
-    elif kinds == "background":
-        specifications = [CaseSpecification("none", background=_BACKGROUND) for _ in range(cases)]
-    else:
-        specifications = _specify(_kinds(cases, kinds), rng, kinds == "varied")
+    specifications = _specify(_kinds(cases, kinds), rng, kinds == "varied")
     return [specifications[k] for k in rng.permutation(cases)]
-
-
-def null_subsets() -> list[tuple[str, ...]]:
-    """Return every set of channels to leave out that leaves a floor, a current and something to compare."""
-    optional = (*COMPARED, "damper_temperature", "current_command")
-    subsets = [some for count in range(len(optional) + 1) for some in combinations(optional, count)]
-    needed: list[set[str]] = [{"current_command", "coil_current"}, set(COMPARED) - {"coil_current"}]
-    return [some for some in subsets if not any(either <= set(some) for either in needed)]
 
 
 def _kinds(cases: int, kinds: str | Sequence[str]) -> list[Kind]:

@@ -49,17 +49,14 @@ def scatter_parameters(nominal: Mapping[str, float], rng: Generator, width: floa
     return true
 
 
-def draw_experiment(
-    rng: Generator, bingham: bool, channels: tuple[str, ...], scatter: float = SCATTER, background: float = 0.0
-) -> Experiment:
-    """Draw a rig and its protocol; `background` is the rms of a force on the frame, N, which a repeated run shows."""
+def draw_experiment(rng: Generator, bingham: bool, channels: tuple[str, ...]) -> Experiment:
+    """Draw a rig and its protocol."""
     nominal = PLANT | (BINGHAM if bingham else BOUC_WEN) | COIL
-    true = scatter_parameters(nominal, rng, scatter) | _draw_heat(rng)
+    true = scatter_parameters(nominal, rng) | _draw_heat(rng)
     level = rng.uniform(0.85, 1.2)
     # noise is stated to three digits, and drawn as stated
     noise = {name: float(f"{value * level:.3g}") for name, value in noise_of(channels).items()}
-    forces = (FrameForce("coloured", background, int(rng.integers(1, 10**6))),) if background else ()
-    return Experiment(nominal, true, channels, noise, _draw_runs(rng, bool(background)), forces)
+    return Experiment(nominal, true, channels, noise, _draw_runs(rng))
 
 
 def noise_of(channels: Collection[str]) -> dict[str, float]:
@@ -99,8 +96,8 @@ def _draw_laws(rng: Generator) -> tuple[Array, Array]:
     return np.array(skyhook), np.array([coil.FEEDBACK, 0.9, *gains])
 
 
-def _draw_runs(rng: Generator, repeat: bool) -> tuple[RunPlan, ...]:
-    """Draw two runs on roads, one over bumps, the first again where `repeat`, and the unseen sweep.
+def _draw_runs(rng: Generator) -> tuple[RunPlan, ...]:
+    """Draw two runs on roads, one over bumps, and the unseen sweep.
 
     The order of the draws is part of what a seed means; a set must be the same in every version.
     """
@@ -117,10 +114,9 @@ def _draw_runs(rng: Generator, repeat: bool) -> tuple[RunPlan, ...]:
         laws = [(_SCHEDULED, excitation.draw_current_steps(rng, rows, top)) for _ in laws]
     second = RunPlan("run-b", excitation.draw_road(rng, SECONDS, rms), *laws[0], starts[1])
     third = RunPlan("run-c", excitation.draw_bumps(rng, SECONDS, rng.uniform(6.0, 8.5)), *laws[1], starts[2])
-    again = (first._replace(name="run-d", repeat_of="run-a"),) if repeat else ()
     sweep = excitation.draw_sweep(rng, UNSEEN_SECONDS, 0.9 * rms)
     last = RunPlan("run-u", sweep, _SCHEDULED, excitation.draw_current_steps(rng, unseen, top), starts[3])
-    return (first, second, third, *again, last)
+    return (first, second, third, last)
 
 
 SAMPLE_RATES = (256.0, 400.0, 500.0, 512.0, 800.0, 1000.0)

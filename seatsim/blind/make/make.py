@@ -67,8 +67,8 @@ def make(
 ) -> str:
     """Write a set on simulated rigs; return the key.
 
-    `kinds` is a preset (`mixed`, `varied`, `null`, `background`) or a kind (none, one, two, outside), or kinds
-    that are gone through in turn. The cases are the first ones `of` so many. The rest is that of `make_set`.
+    `kinds` is a preset (`mixed`, `varied`) or a kind (none, one, two, outside), or kinds that are gone through in turn.
+    The cases are the first ones `of` so many. The rest is that of `make_set`.
 
     Raises:
         InputError: fewer than one case, an unknown preset, a folder or file that is another set's.

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -122,8 +122,6 @@ def _find_unseen_shrink(nominal: Path, augmented: Path, unseen: Path) -> _Unseen
     return _UnseenShrink(true, predicted.shrink, predicted.shrink_interval) if predicted else _UnseenShrink(true)
 
 
-_SIZES = (1.5, 2.5, 4.0)
-"""Upper edges, in material limits, of the classes by strength: just material, common, strong."""
 _NAMED = 3
 """Causes of a wrong verdict that are listed."""
 
@@ -206,13 +204,8 @@ class Score(NamedTuple):
     brier: float
     reliability: list[Bin]
     shrink: ShrinkScore | None
-    group_size: float
-    """Mean number of effects in the indistinguishable group that is named."""
     effects: dict[str, Rate]
-    forms: dict[str, Rate]
     confusion: dict[str, dict[str, int]]
-    by_missing: dict[str, Rate]
-    by_size: dict[str, Rate]
     failures: list[Failure]
     cases: int
     untouched: dict[str, int]
@@ -255,10 +248,10 @@ def score_verdicts(
     kinds = {kind: [case for case in cases if case.label["kind"] == kind] for kind in (*KINDS, "carried")}
     known = kinds["one"] + kinds["carried"]
     faulty = [case for case in cases if case.label["kind"] != "none"]
+    names = sorted({case.label["effects"][0] for case in known})
     stated, true = _marginals(cases)
     table = reliability(stated, true)
     recall, precision = _recall_and_precision(kinds["two"])
-    single = known + kinds["outside"]
     return Score(
         right=count_true([c.right for c in cases]),
         kinds={kind: count_true([c.right for c in some]) for kind, some in kinds.items() if some},
@@ -276,12 +269,8 @@ def score_verdicts(
         brier=brier_score(stated, true),
         reliability=table,
         shrink=shrink,
-        group_size=_mean_group_size(cases),
-        effects=_rates_by(known, lambda label: label["effects"][:1]),
-        forms=_rates_by(single, lambda label: label.get("forms", [])),
+        effects={name: count_true([c.right for c in known if c.label["effects"][0] == name]) for name in names},
         confusion=_confusion(cases),
-        by_missing=_rates_by(cases, lambda label: [" ".join(label.get("missing", [])) or "all channels"]),
-        by_size=_rates_by(single, _strength_class),
         failures=[_describe_failure(case) for case in cases if not case.right],
         cases=len(every),
         untouched=_count_named([case for case in every if case.label["kind"] == "untouched"]),
@@ -307,27 +296,6 @@ def _recall_and_precision(cases: Sequence[ScoredCase]) -> tuple[Rate, Rate]:
     both = [(set(case.verdict.selected), set(case.label["effects"])) for case in cases]
     hits = sum(len(selected & true) for selected, true in both)
     return Rate(hits, sum(len(true) for _, true in both)), Rate(hits, sum(len(selected) for selected, _ in both))
-
-
-def _mean_group_size(cases: Sequence[ScoredCase]) -> float:
-    """Return how many effects an answer holds on average, of the verdicts that name some; NaN where none does."""
-    naming = [case.verdict for case in cases if case.verdict.verdict in NAMING and case.verdict.causes]
-    return float(np.mean([len(verdict.group) for verdict in naming])) if naming else math.nan
-
-
-def _rates_by(cases: Iterable[ScoredCase], classes_of: Callable[[Label], Sequence[str]]) -> dict[str, Rate]:
-    """Return how many verdicts are right by class, in the order of the alphabet; a case may belong to several."""
-    flags: dict[str, list[bool]] = {}
-    for case in cases:
-        for name in classes_of(case.label):
-            flags.setdefault(name, []).append(case.right)
-    return {name: count_true(flags[name]) for name in sorted(flags)}
-
-
-def _strength_class(label: Label) -> list[str]:
-    """Return the class of a case by the materiality of its weakest fault."""
-    weakest = min(label.get("materialities") or [math.nan])
-    return [next((f"{edge:.1f} x limit or less" for edge in _SIZES if weakest < edge), "stronger")]
 
 
 def _confusion(cases: Iterable[ScoredCase]) -> dict[str, dict[str, int]]:

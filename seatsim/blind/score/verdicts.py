@@ -39,12 +39,6 @@ class Verdict:
     """Estimated parameters by effect and name."""
 
     @property
-    def group(self) -> tuple[str, ...]:
-        """The indistinguishable group that holds the first cause, or that cause alone."""
-        first = self.causes[:1]
-        return next((group for group in self.groups if first and first[0] in group), first)
-
-    @property
     def named(self) -> str:
         """The first cause, or `none`, `unknown`, `missing` where none is named."""
         return next(iter(self.causes), "unknown") if self.verdict in NAMING else self.verdict

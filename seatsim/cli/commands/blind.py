@@ -36,7 +36,7 @@ def blind_make(
         cases: How many recordings; of a public set the first ones.
         public: The public set of this name, the same everywhere: 60 varied rigs.
         seed: Seed of the draw; drawn and sealed where absent.
-        kinds: mixed, varied, none, one, two, outside, null or background.
+        kinds: mixed, varied, none, one, two or outside.
         carrier: A measured recording into which the effects are put instead.
     """
     from seatsim.blind.carrier.make import make_on_carrier

@@ -142,15 +142,12 @@ def reproduce(
     from seatsim.provenance.reproduce import ANSWER
     from seatsim.provenance.reproduce import reproduce as run_again
     from seatsim.schema.files import write_json
-    from seatsim.schema.text import join_names
 
     with show_progress() as progress:
         found = run_again(folder, own_code or [], progress)
     warn(found.versions, "version")
     for name, problem in found.differences:
         complain(f"{name}: {problem}")
-    if found.unnamed:
-        warn([f"no manifest names {join_names(found.unnamed)}: nothing is known of what made them"])
     if found.identical:
         say(f"{folder}: identical to what seatsim {found.command} writes now: {', '.join(found.compared)}")
     path = write_json((out_folder or folder) / ANSWER, found)

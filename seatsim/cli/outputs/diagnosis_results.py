@@ -187,7 +187,6 @@ def _summarise(score: Score) -> list[tuple[str, ...]]:
         said, cases = _count(score.untouched), str(sum(score.untouched.values()))
         rows.append(("untouched carriers (not scored)", said, cases, ""))
     figures = {"calibration error (ECE)": f"{score.calibration_error:.4f}", "Brier": f"{score.brier:.4f}"}
-    figures["mean group size"] = f"{score.group_size:.2f}"
     rows += [(), *((name, figure, "", "") for name, figure in figures.items())]
     for word, shrink in (("stated", score.shrink), ("predicted", score.shrink and score.shrink.predicted)):
         if shrink is not None:

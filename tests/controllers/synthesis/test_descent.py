@@ -16,7 +16,7 @@ STATE = GeneralisedPlant(-ONE, ONE, ONE, [[1], [0]], ONE, COLUMN, [[0], [1]], 0 
 
 def objective(plant=STATE, limit=50.0):
     limits = np.full(plant.free.shape, limit)
-    return NormObjective([plant], -limits, limits, np.ones_like(limits))
+    return NormObjective([plant], limits, np.ones_like(limits))
 
 
 def starts(*gains):

@@ -12,7 +12,7 @@ from controllers.synthesis.scaling import scale
 
 def objective_of(*plants, limit=50.0):
     limits = np.full(plants[0].free.shape, limit)
-    return NormObjective(plants, -limits, limits, np.ones_like(limits))
+    return NormObjective(plants, limits, np.ones_like(limits))
 
 
 def slopes(function, theta, step=1e-6):
@@ -44,15 +44,12 @@ def test_gradient_of_the_norm(seat, e1, gain):
 
 def test_angles_undo_entries_and_stay_within_limits(seat):
     plant = scale(seat(30.0)).plant
-    low, high = np.array([[-10.0, 0.0]]), np.array([[50.0, 30.0]])
-    objective = NormObjective([plant], low, high, np.ones((1, 2)))
-    for entries in ([3.0, 29.0], [-9.9, 0.1]):
+    objective = NormObjective([plant], np.array([[30.0, 15.0]]), np.ones((1, 2)))
+    for entries in ([3.0, 14.0], [-29.9, 0.1]):
         np.testing.assert_allclose(objective.entries(objective.angles(np.array(entries))), entries)
     wild = objective.entries(np.array([1e3, -77.0]))
-    assert -10.0 <= wild[0] <= 50.0 and 0.0 <= wild[1] <= 30.0
-    np.testing.assert_allclose(objective.entries(objective.angles(np.array([1e9, -5.0]))), [49.97, 0.015])
-    # For small gains about the centre an angle is the entry.
-    assert objective.entries(objective.angles(np.array([20.01, 15.0])))[0] == pytest.approx(20.01)
+    assert abs(wild[0]) <= 30.0 and abs(wild[1]) <= 15.0
+    np.testing.assert_allclose(objective.entries(objective.angles(np.array([1e9, -50.0]))), [29.97, -14.985])
 
 
 def test_unstable_and_silent_loops(random_plant):

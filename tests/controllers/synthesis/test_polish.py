@@ -14,7 +14,7 @@ GAINS = {10.0: [-1937.2, 2013.9], 30.0: [967.0, 2339.1], 50.0: [3268.6, 2613.3]}
 
 def objective(plant, limit=1e6):
     limits = np.full((1, 2), limit)
-    return NormObjective([plant], -limits, limits, np.ones((1, 2)))
+    return NormObjective([plant], limits, np.ones((1, 2)))
 
 
 def later():
@@ -32,7 +32,7 @@ def test_reaches_the_known_optimum_from_nearby(seat, e1):
 def test_several_plants_are_polished_together(seat):
     plants = [seat(50.0, m=m) for m in (50.0, 120.0)]
     limits = np.full((1, 2), 1e6)
-    problem = NormObjective(plants, -limits, limits, np.ones((1, 2)))
+    problem = NormObjective(plants, limits, np.ones((1, 2)))
     entries = polish(problem, np.array([4000.0, 3000.0]), later())
     assert problem.norm(entries) == pytest.approx(1.24271, rel=1e-5)
 

@@ -20,9 +20,8 @@ def state_feedback(pole=-1.0, weight=1.0):
 
 
 def ask(plants, limit=1e3, seconds=SEAT_TIME_BUDGET, lines=None):
-    limits = np.full(plants[0].free.shape, limit)
     lines = [] if lines is None else lines
-    return search(plants, (-limits, limits), 0, TimeBudget(time.monotonic(), seconds), lines.append)
+    return search(plants, limit, 0, TimeBudget(time.monotonic(), seconds), lines.append)
 
 
 def test_the_plant_in_the_middle_joins_where_it_is_worst():
