@@ -26,7 +26,7 @@ import pandas as pd
 from cases import PROCESSES, diagnose_missing, diagnose_without, show_progress
 from threadpoolctl import threadpool_limits
 
-from seatsim.blind.make.compose import CaseSpecification
+from seatsim.blind.make.cases import CaseSpecification
 from seatsim.blind.make.make import case_name, draw_files, make_case
 from seatsim.blind.score.verdicts import Verdict, is_right, read_verdict
 from seatsim.blind.sealed import Label

@@ -11,7 +11,7 @@ from seatsim.report.composing import compose
 from seatsim.report.formatting import choose_advice, explain, format_quantity, show_table
 from seatsim.scenario.scenario import is_condition
 from seatsim.schema.printing import format_number, format_percent, format_unit
-from seatsim.sweeps.outcome import FAILED, UNVERIFIED
+from seatsim.sweeps.engines import FAILED, UNVERIFIED
 from seatsim.sweeps.parts import Exceedance, SweepRows, find_best_choices
 from seatsim.sweeps.sensitivity import Sensitivities, Sensitivity, choose_choice, choose_key
 

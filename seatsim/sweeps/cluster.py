@@ -21,9 +21,8 @@ from seatsim.provenance.statement import list_versions
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.files import make_folder, write_text
 from seatsim.schema.modules import started_elsewhere, use_all, used_files
-from seatsim.sweeps.engines import Work, simulate_one
+from seatsim.sweeps.engines import Outcome, Work, simulate_one
 from seatsim.sweeps.folder import LIBRARIES, list_differences
-from seatsim.sweeps.outcome import Outcome
 from seatsim.sweeps.parts import part_of
 from seatsim.sweeps.plan import Plan, Selection
 

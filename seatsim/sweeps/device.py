@@ -29,8 +29,7 @@ from seatsim.simulation.result import History
 from seatsim.simulation.runs import measure_run
 from seatsim.simulation.simulate import initial_states, is_whole, read_history, set_up
 from seatsim.simulation.validity import list_reasons
-from seatsim.sweeps.engines import LocalEngine, Work
-from seatsim.sweeps.outcome import Outcome, floor_of, outcome_of
+from seatsim.sweeps.engines import LocalEngine, Outcome, Work, floor_of, outcome_of
 from seatsim.sweeps.plan import Plan
 
 _MakeFloor = Callable[[Scenario], Floor | None]

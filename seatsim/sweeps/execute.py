@@ -17,9 +17,8 @@ from seatsim.schema.fields import validated
 from seatsim.schema.guarded import uncut
 from seatsim.sweeps import parts
 from seatsim.sweeps.definition import SweepDefinition, read_definition
-from seatsim.sweeps.engines import Engine, LocalEngine, Work
+from seatsim.sweeps.engines import FAILED, Engine, LocalEngine, Outcome, Work
 from seatsim.sweeps.folder import check_resumable, count_states, hold_file, hold_folder, identify_sweep, write_manifest
-from seatsim.sweeps.outcome import FAILED, Outcome
 from seatsim.sweeps.plan import Plan, check_plan, make_plan
 
 if TYPE_CHECKING:

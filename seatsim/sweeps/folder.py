@@ -24,7 +24,7 @@ from seatsim.schema.guarded import check_no_link, expect, open_in_place, read_js
 from seatsim.schema.modules import used_files
 from seatsim.schema.text import cut
 from seatsim.sweeps.definition import SweepDefinition
-from seatsim.sweeps.outcome import STATES
+from seatsim.sweeps.engines import STATES
 from seatsim.sweeps.plan import Plan
 
 LIBRARIES = ("numpy", "scipy", "numba", "pyarrow")

@@ -23,8 +23,8 @@ from seatsim.schema.arrays import open_parquet, store_numbers, store_texts
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import remove_left, write_whole
 from seatsim.sweeps.definition import DISTRIBUTIONS
+from seatsim.sweeps.engines import DONE, Outcome
 from seatsim.sweeps.folder import read_manifest
-from seatsim.sweeps.outcome import DONE, Outcome
 from seatsim.sweeps.plan import Plan
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from seatsim.blind.make import compose, draw_experiment, folder, materiality
+from seatsim.blind.make import cases, draw_experiment, folder, materiality
 from seatsim.blind.make.materiality import ToleranceRefit
 from seatsim.blind.truth.faults import Changes, SensorFault
 
@@ -28,7 +28,7 @@ def test_parameters_are_scattered_inside_the_width():
 
 def test_channels_are_missing_at_their_rates():
     rng = np.random.default_rng(0)
-    missing = [compose.draw_missing_channels(rng) for _ in range(4000)]
+    missing = [cases.draw_missing_channels(rng) for _ in range(4000)]
     shares = Counter(map(len, missing))
     assert [shares[k] / 4000 for k in range(3)] == pytest.approx([0.6, 0.33, 0.07], abs=0.03)
     single = Counter(some[0] for some in missing if len(some) == 1)
@@ -39,23 +39,23 @@ def test_channels_are_missing_at_their_rates():
 def test_a_severity_is_found_near_a_drawn_target(power):
     sizes, off = [], []
     for k in range(50):
-        found = compose.find_severity(lambda s: 0.4 * s**power, (0.01, 1e3), np.random.default_rng(k))
+        found = cases.find_severity(lambda s: 0.4 * s**power, (0.01, 1e3), np.random.default_rng(k))
         assert found is not None
-        off.append(abs(math.log(found[1] / compose.draw_target(np.random.default_rng(k)))))
+        off.append(abs(math.log(found[1] / cases.draw_target(np.random.default_rng(k)))))
         assert found[1] == pytest.approx(0.4 * found[0] ** power)
         sizes.append(found[1])
     assert min(sizes) >= 1.03 and max(sizes) > 5.0
-    assert np.quantile(off, 0.9) < compose.LOG_TOLERANCE
+    assert np.quantile(off, 0.9) < cases.LOG_TOLERANCE
 
 
 def test_a_severity_stays_inside_what_is_plausible_and_stable():
     rng = np.random.default_rng
-    assert compose.find_severity(lambda s: 0.1 * s, (0.1, 5.0), rng(0)) is None
-    weak = compose.find_severity(lambda s: 0.4 * s, (0.1, 5.0), rng(1))
+    assert cases.find_severity(lambda s: 0.1 * s, (0.1, 5.0), rng(0)) is None
+    weak = cases.find_severity(lambda s: 0.4 * s, (0.1, 5.0), rng(1))
     assert weak is not None and 1.03 <= weak[1] <= 2.0
-    unstable = compose.find_severity(lambda s: 2.0 * s if s < 0.9 else math.inf, (0.1, 50.0), rng(2))
+    unstable = cases.find_severity(lambda s: 2.0 * s if s < 0.9 else math.inf, (0.1, 50.0), rng(2))
     assert unstable is not None and unstable[0] < 0.9
-    assert compose.find_severity(lambda s: math.inf, (0.5, 5.0), rng(0)) is None
+    assert cases.find_severity(lambda s: math.inf, (0.5, 5.0), rng(0)) is None
 
 
 def test_materiality_of_a_gain_and_of_a_parameter():

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from seatsim import load_recording
-from seatsim.blind.make.compose import compose
+from seatsim.blind.make.cases import compose
 from seatsim.blind.make.make import make, make_public
 from seatsim.blind.sealed import EFFECTS, unseal
 from seatsim.schema.errors import InputError

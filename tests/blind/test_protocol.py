@@ -9,8 +9,7 @@ import pytest
 
 from seatsim.blind.carrier.make import draw_changes
 from seatsim.blind.carrier.recorded import encode_carrier, read_carrier
-from seatsim.blind.make.compose import CaseSpecification, compose
-from seatsim.blind.make.draw_case import draw_case
+from seatsim.blind.make.cases import CaseSpecification, compose, draw_case
 from seatsim.blind.make.folder import nominal_scenario, recording_header
 from seatsim.blind.sealed import EFFECTS
 from seatsim.blind.truth.rig import EXCITATION_RATE

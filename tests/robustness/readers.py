@@ -27,9 +27,8 @@ from seatsim.rig.coil import Coil
 from seatsim.rig.control import prepare_law
 from seatsim.rig.plant import Plant
 from seatsim.scenario.loading import load, single
-from seatsim.sweeps.engines import Work
+from seatsim.sweeps.engines import DONE, Outcome, Work
 from seatsim.sweeps.execute import execute, prepare
-from seatsim.sweeps.outcome import DONE, Outcome
 from seatsim.sweeps.parts import count_exceedances, read_rows, tabulate_quantiles
 from seatsim.sweeps.sensitivity import analyse_sensitivity
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from seatsim.scenario.loading import single
-from seatsim.sweeps.outcome import FLOORS_KEPT, floor_of
+from seatsim.sweeps.engines import FLOORS_KEPT, floor_of
 
 
 def test_a_floor_is_made_once_for_equal_scenarios_and_anew_for_another_seed_or_road(seat_file):

@@ -16,8 +16,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.random import Generator
 
-from seatsim.blind.make.compose import CaseSpecification, compose
-from seatsim.blind.make.draw_case import draw_case
+from seatsim.blind.make.cases import CaseSpecification, compose, draw_case
 from seatsim.blind.make.folder import encode_recording, write_folder
 from seatsim.blind.sealed import SEAL, Label, Sealed, key_of, new_key, seal
 from seatsim.schema.errors import InputError

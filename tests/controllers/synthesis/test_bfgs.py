@@ -5,7 +5,7 @@ import time
 import numpy as np
 import pytest
 
-from controllers.synthesis.bfgs import minimise
+from controllers.synthesis.descent import minimise
 
 BOWL = np.array([[3.0, 1.0], [1.0, 40.0]])
 CENTRE = np.array([2.0, -1.0])
