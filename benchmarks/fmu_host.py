@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from seatsim.exchange.block import Block, list_variables
-from seatsim.exchange.fmu import find_compiler, write_fmu
+from seatsim.exchange.export import find_compiler, write_fmu
 from seatsim.schema.arrays import Array
 
 HERE = Path(__file__).parent

@@ -50,9 +50,9 @@ class Design:
     """An output feedback `u = gain @ y`, static or of some `order`, and what is known of its loops, one a plant.
 
     `gain` (nu, ny) is in the user's units, every entry at most `max_gain` in magnitude. `lower_bound` is what no linear
-    controller of any order can go below. `gamma`, `certificate`, `peak_frequency`, `poles` and `plant` are those of
-    the worst loop. `measures` names what is measured, where its user has names for it; `proof`, where it was asked for,
-    says whether any gain within `max_gain` is better (`prove_no_better`), and `clipping` what a damper's limits cost.
+    controller of any order can go below. `gamma` and `certificate` are those of the `worst` loop. `measures` names what
+    is measured, where its user has names for it; `proof`, where it was asked for, says whether any gain within
+    `max_gain` is better (`prove_no_better`), and `clipping` what a damper's limits cost.
     With an order the loops' plants have the controller's states, and the gain is [[D_K, C_K], [B_K, A_K]]
     (`GeneralisedPlant.with_controller_states`).
     """
@@ -88,16 +88,6 @@ class Design:
     def certificate(self) -> Certificate | None:
         """Certificate of the worst loop."""
         return self.worst.certificate
-
-    @property
-    def peak_frequency(self) -> float:
-        """Frequency in rad/s at which the worst loop's norm stands."""
-        return self.worst.peak_frequency
-
-    @property
-    def poles(self) -> NDArray[np.complex128]:
-        """Poles of the worst loop in rad/s."""
-        return self.worst.poles
 
     def prove(self, progress: Callable[[str], object] = lambda text: None) -> Design:
         """Return the design with the proof that no gain within `max_gain` is better by more than 0.1 %.

@@ -64,7 +64,6 @@ class SweepResult(NamedTuple):
     identity: str
     counts: Mapping[str, int]
     limits: Mapping[str, float]
-    design: str
     failures: Annotated[list[str], Form(key="failed")]
     made: Joined[Manifest | None]
 
@@ -155,7 +154,7 @@ def execute(
     failures = [f"run {run}: {reason}" for run, state, reason in found if state == FAILED]
     known = {key: value for key, value in stated.items() if key in Manifest._fields}
     made = validated(Manifest, known) if "command" in known else None
-    return SweepResult(folder, identity.digest, counts, definition.limits, identity.design, failures, made)
+    return SweepResult(folder, identity.digest, counts, definition.limits, failures, made)
 
 
 def sweep(file: str | Path, out: str | Path, jobs: int | None = None, resume: bool = False) -> pd.DataFrame:

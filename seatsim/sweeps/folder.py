@@ -38,20 +38,18 @@ class _Identity(NamedTuple):
     seed: int
     versions: Mapping[str, str]
     configuration: Mapping[str, object]
-    runs: int
-    design: str
 
 
 def identify_sweep(definition: SweepDefinition, plan: Plan) -> _Identity:
     """Return the identity of a sweep."""
     stated = {key: value for key, value in definition.source.data.items() if key not in ("scenario", "seed", "limits")}
     configuration = {"scenario": definition.scenario.data, **stated, "files": dict(_digest_files(plan))}
-    versions, design = list_versions(LIBRARIES, used_files()), _digest_design(plan)
+    versions = list_versions(LIBRARIES, used_files())
     # As it will be read from JSON, so that it equals what was written.
     read_back: dict[str, object] = json.loads(_encode(configuration))
-    whole = [configuration, design, versions, definition.seed]
+    whole = [configuration, _digest_design(plan), versions, definition.seed]
     digest = hashlib.sha256(_encode(whole)).hexdigest()
-    return _Identity(digest, definition.seed, versions, read_back, plan.runs, design)
+    return _Identity(digest, definition.seed, versions, read_back)
 
 
 def _digest_design(plan: Plan) -> str:
@@ -169,7 +167,6 @@ def write_manifest(
         "counts": counts,
         "limits": limits,
         "configuration": identity.configuration,
-        "design": identity.design,
     }
     write_json(folder / _NAME, content, lasting=True)
     return content

@@ -11,7 +11,7 @@ import pytest
 
 from seatsim.compilation.jit import jit
 from seatsim.exchange.c_source import fill
-from seatsim.exchange.fmu import find_compiler
+from seatsim.exchange.export import find_compiler
 from seatsim.exchange.printing.functions import print_function
 from seatsim.exchange.printing.program import Program
 from seatsim.exchange.printing.values import NotPrintableError, Signature

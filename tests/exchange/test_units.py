@@ -12,7 +12,7 @@ from fmpy.validation import validate_fmu
 from seatsim.dampers.base import DAMPERS
 from seatsim.exchange.blocks.damper import damper_block
 from seatsim.exchange.blocks.rig_motion import RigOutputs, rig_block
-from seatsim.exchange.fmu import write_fmu
+from seatsim.exchange.export import write_fmu
 from seatsim.scenario.loading import load
 from seatsim.scenario.scenario import DamperChoice
 from seatsim.schema.errors import InputError

@@ -29,19 +29,6 @@ def test_cross_combines_lists_and_ranges_and_draws_once_for_all_of_them(write_sw
     assert len({row[MASS] for row in rows}) == 4 and len({row[MASS] for row in rows[:6]}) == 1
 
 
-@pytest.mark.parametrize(("design", "runs"), [("cross", (4, 9)), ("sobol", (4, 9)), ("zip", (None, None))])
-def test_a_design_of_more_runs_begins_with_the_points_of_one_of_fewer(design, runs, write_sweep):
-    vary = {MASS: {"uniform": [50, 120]}, STIFFNESS: {"lognormal": [8.4, 0.1]}}
-    lists = ([1000.0, 2000.0], [1000.0, 2000.0, 3000.0])
-    found = []
-    for count, values in zip(runs, lists, strict=True):
-        stated = vary if design != "zip" else {**vary, "plant.cushion_damping": values, CLASS: ["EM1"]}
-        found.append(plan_of(write_sweep(design=design, runs=count, vary=stated)))
-    few, many = found
-    assert [few.values(run) for run in range(few.runs)] == [many.values(run) for run in range(few.runs)]
-    assert many.runs > few.runs
-
-
 def test_a_latin_hypercube_has_one_value_in_each_stratum(write_sweep):
     vary = {MASS: {"uniform": [50, 120]}, STIFFNESS: {"uniform": [4000, 5000]}}
     columns = plan_of(write_sweep(design="lhs", runs=50, vary=vary)).columns

@@ -6,11 +6,13 @@ import subprocess
 import sys
 import time
 
+import numpy as np
 import pytest
 
 import seatsim
+from seatsim.scenario.loading import single
 from seatsim.schema.errors import RunError
-from seatsim.sweeps.engines import LocalEngine
+from seatsim.sweeps.engines import FLOORS_KEPT, LocalEngine, floor_of
 
 from .conftest import bytes_of, floor_code
 
@@ -84,3 +86,18 @@ def is_alive(process):
     except ProcessLookupError:
         return False
     return True
+
+
+def test_a_floor_is_made_once_for_equal_scenarios_and_anew_for_another_seed_or_road(seat_file):
+    def floor(**settings):
+        return floor_of(single(seat_file, {"excitation.duration": 0.5, **settings}))
+
+    first = floor(seed=1)
+    assert floor(seed=1) is first
+    for other in (floor(seed=2), floor(seed=1, **{"excitation.spectral_class": "EM1"})):
+        assert not np.array_equal(other.acceleration, first.acceleration)
+    for seed in range(2, 3 + FLOORS_KEPT):
+        floor(seed=seed)
+    again = floor(seed=1)
+    assert again is not first
+    np.testing.assert_array_equal(again.acceleration, first.acceleration)

@@ -121,8 +121,8 @@ def make_design_table(design: Design, scenario: Scenario) -> Table:
         "lower bound": f"{design.lower_bound:.6g}, of any linear controller of any order",
         "certificate": f"bounded-real lemma at gamma {proof.gamma:.6g}" if proof else "none in double precision",
         "disk margin": _describe_disk_margin(min(loop.disk_margin for loop in design.loops)),
-        "peak": f"{design.peak_frequency / (2 * math.pi):.3g} Hz",
-        "poles": ", ".join(f"{pole:.3g}" for pole in design.poles) + "  [rad/s]",
+        "peak": f"{design.worst.peak_frequency / (2 * math.pi):.3g} Hz",
+        "poles": ", ".join(f"{pole:.3g}" for pole in design.worst.poles) + "  [rad/s]",
     }
     if design.clipping is not None:
         rows["clipping"] = _describe_clipping(design.clipping)

@@ -45,7 +45,7 @@ def test_the_worst_of_several_loops_speaks_for_the_design(design, tmp_path):
     for loops in ((low, high), (high, low)):
         both = Design(design.gain, 1e6, 0.5, loops)
         assert both.worst is high
-        assert (both.gamma, both.peak_frequency) == (3.0, 3.0)
+        assert (both.gamma, both.worst.peak_frequency) == (3.0, 3.0)
         both.save(tmp_path / "both.yaml")
         assert [loop["gamma"] for loop in read(tmp_path / "both.yaml")["loops"]] == [loop.gamma for loop in loops]
 
