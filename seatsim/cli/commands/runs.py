@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import os
 from collections.abc import Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from threading import Thread
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -14,6 +15,7 @@ import typer
 from seatsim.cli.options import Out, OwnCode, Scenarios, Settings, check_out, scenario_settings
 from seatsim.cli.terminal import answer, complain, conclude, count_progress, say, show_progress, warn, wrote, wrote_one
 from seatsim.schema.errors import InputError, SeatsimError
+from seatsim.schema.guarded import uncut
 
 if TYPE_CHECKING:
     from seatsim.scenario.scenario import Scenario
@@ -38,16 +40,20 @@ def _execute(files: Sequence[Sequence[str]], folders: Sequence[Path | None], set
     from seatsim.simulation.result import Result
 
     groups = _load_groups(files, folders, settings)
-    in_order = iter(_simulate([scenario for scenarios, _ in groups for scenario in scenarios]))
-    tables, paths, failures = list[Result](), list[Path](), list[str]()
+    found, interrupted = _simulate([scenario for scenarios, _ in groups for scenario in scenarios])
+    in_order, tables, paths, failures = iter(found), list[Result](), list[Path](), list[str]()
     for scenarios, folder in groups:
         of_group = list(itertools.islice(in_order, len(scenarios)))
         failed = [str(each) for each in of_group if isinstance(each, SeatsimError)]
         failures += failed
         if runs := [each for each in of_group if not isinstance(each, SeatsimError)]:
-            table, written = _present(runs, failed, folder)
+            # What an interrupt left done is kept before the process ends.
+            with uncut() if interrupted else nullcontext():
+                table, written = _present(runs, failed, folder, interrupted)
             tables.append(table)
             paths += written
+    if interrupted:
+        raise KeyboardInterrupt
     answer(RunAnswer(tables, failures), paths)
     if failures:
         raise typer.Exit(1)
@@ -69,8 +75,8 @@ def _load_groups(
     return groups
 
 
-def _simulate(scenarios: list[Scenario]) -> list[Run | SeatsimError]:
-    """Run scenarios side by side; return runs and failures in order."""
+def _simulate(scenarios: list[Scenario]) -> tuple[list[Run | SeatsimError], bool]:
+    """Run scenarios side by side; return runs and failures in order, up to an interrupt, and whether there was one."""
     from seatsim.simulation.runs import run_many
 
     found: list[Run | SeatsimError] = []
@@ -79,12 +85,15 @@ def _simulate(scenarios: list[Scenario]) -> list[Run | SeatsimError]:
     loading = Thread(target=_load_writers)
     loading.start()
     with count_progress("simulating", len(scenarios)) as count:
-        for _, one in run_many(scenarios, lambda _: count(next(finished), len(scenarios))):
-            if isinstance(one, SeatsimError):
-                complain(f"failed: {one}")
-            found.append(one)
+        try:
+            for _, one in run_many(scenarios, lambda _: count(next(finished), len(scenarios))):
+                if isinstance(one, SeatsimError):
+                    complain(f"failed: {one}")
+                found.append(one)
+        except KeyboardInterrupt:
+            return found, True
     loading.join()
-    return found
+    return found, False
 
 
 def _load_writers() -> None:
@@ -99,10 +108,10 @@ def _title(scenarios: Sequence[Scenario]) -> str:
     return names[0] if len(names) == 1 else "comparison"
 
 
-def _present(runs: list[Run], failures: list[str], folder: Path) -> tuple[Result, list[Path]]:
+def _present(runs: list[Run], failures: list[str], folder: Path, interrupted: bool) -> tuple[Result, list[Path]]:
     """Print the table of some runs and the warnings; return their result and its files."""
     from seatsim.cli.outputs.run_tables import make_comparison_table
-    from seatsim.cli.outputs.simulated import write_result
+    from seatsim.cli.outputs.simulated import write_interrupted, write_result
     from seatsim.cli.show_table import show_table
     from seatsim.simulation.checks import describe_designs
     from seatsim.simulation.result import Result
@@ -114,7 +123,7 @@ def _present(runs: list[Run], failures: list[str], folder: Path) -> tuple[Result
     warn(dict.fromkeys(sentence for run in runs for sentence in run.warnings), "warning")
     warn(f"{run.scenario.title}: {sentence}" for run in runs for sentence in run.history.notes)
     result = Result(runs, failures)
-    paths = write_result(result, folder)
+    paths = write_interrupted(result, folder) if interrupted else write_result(result, folder)
     wrote(folder, paths)
     return result, paths
 

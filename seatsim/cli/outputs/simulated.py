@@ -20,6 +20,9 @@ from seatsim.simulation.runs import write_histories
 from seatsim.sweeps.parts import Exceedance
 from seatsim.sweeps.sensitivity import Sensitivity
 
+_MOST_KEPT = 400_000
+"""Rows of the histories that are written after an interrupt, which takes about half a second."""
+
 
 class RunAnswer(NamedTuple):
     """Results, one for each file (`run`) or one of all files (`compare`); `failed` says which runs failed, and why."""
@@ -36,9 +39,23 @@ def write_result(result: Result, folder: Path) -> list[Path]:
     report = report_runs(result.runs, figures, "seatsim run SCENARIO", make_title(result.runs), result.failures)
     seeds = {run.scenario.seed for run in result.runs}
     seed = seeds.pop() if len(seeds) == 1 else None
-    tables = {"summary.csv": result.rows, "summary.json": result}
-    contents = {**tables, "report.html": report, **name_pictures(figures)}
+    contents = {**_summarise(result), "report.html": report, **name_pictures(figures)}
     return print_reports(write_documented(folder, partial(_write_run_files, result, contents), seed))
+
+
+def write_interrupted(result: Result, folder: Path) -> list[Path]:
+    """Write `summary.csv`, `summary.json` and, where it is short, `history.parquet`: who interrupts does not wait."""
+    is_short = sum(len(run.history["time"]) for run in result.runs) <= _MOST_KEPT
+
+    def write(part: Path) -> list[Path]:
+        histories = [write_histories(result.runs, part / "history.parquet")] if is_short else []
+        return [*write_each(_summarise(result), part), *histories]
+
+    return write_together(folder, write)
+
+
+def _summarise(result: Result) -> dict[str, object]:
+    return {"summary.csv": result.rows, "summary.json": result}
 
 
 def _write_run_files(result: Result, contents: Mapping[str, object], folder: Path) -> list[Path]:
