@@ -19,11 +19,6 @@ def test_stated_noise_alone_whitens_white_noise_of_that_size_to_mean_square_1(be
     assert np.mean(whitened**2) == pytest.approx(1.0, abs=0.05)
 
 
-def test_effects_are_ranked_by_their_largest_figure(benchmark):
-    ranked = benchmark("cases").rank_by_figure([("a", 1.0), ("b", 3.0), ("a", 2.0), ("c", 2.5)])
-    assert ranked == [("b", 3.0), ("c", 2.5), ("a", 2.0)]
-
-
 def test_a_sparse_regression_keeps_the_columns_that_the_target_is_made_of(benchmark):
     columns = np.random.default_rng(0).standard_normal((5, 4000))
     target = 2.0 * columns[1] + 1.0 * columns[3] + 0.1 * columns[4]

@@ -66,10 +66,6 @@ def test_model_three_has_the_least_displacement_at_every_temperature(study):
         assert study["II", t].displacement >= (least if t == 20.0 else 1.05 * least)
 
 
-def test_models_two_and_three_are_the_same_inverse_at_20_degrees(study):
-    assert study["II", 20.0] == study["III", 20.0]
-
-
 def test_displacement_of_model_two_grows_with_temperature(study):
     grown = [study["II", t].displacement for t in TEMPERATURES]
     assert np.all(np.diff(grown) > 0.4)
@@ -97,10 +93,6 @@ def test_a_stiff_spring_makes_three_the_best_in_both_columns(stiff):
             assert stiff["III", t][column] <= 1.0005 * least
     for column in (0, 1):
         assert np.all(np.diff([stiff["II", t][column] for t in TEMPERATURES]) > 0.0)
-
-
-def test_a_stiff_spring_takes_the_difference_of_one_and_three_away(stiff):
-    assert stiff["I", 80.0].displacement / stiff["III", 80.0].displacement < 1.03
 
 
 def test_a_damper_three_times_as_asymmetric_comes_within_five_percent():
