@@ -40,11 +40,6 @@ def test_vdv_of_a_sine(conform):
     conform("VDV of a sine of 3 m/s^2 over 60 s, m/s^1.75", "A (3 T / 8)^(1/4)", found, expected, tolerance=1e-11)
 
 
-def test_vdv_of_a_day():
-    hour = sine(1.0, 4.0, 3600, 100.0)
-    assert daily_vdv(vdv(hour[:6000], 100.0), 60.0, 3600.0) == pytest.approx(vdv(hour, 100.0), rel=1e-9)
-
-
 def test_estimated_vdv_of_gaussian_motion_is_six_percent_high(conform):
     x = np.random.default_rng(2).normal(size=500_000)
     found = estimated_vdv(1.0, 500.0) / vdv(x, RATE)
@@ -95,11 +90,6 @@ def test_seat_factor_weighs_what_the_seat_adds():
     floor, added = sine(1.0, 1.0, 200), sine(1.0, 6.0, 200)
     expected = math.hypot(abs(frequency_response(1.0)), abs(frequency_response(6.0))) / abs(frequency_response(1.0))
     assert seat_factor(floor + added, floor, RATE) == pytest.approx(expected, rel=2e-3)
-
-
-def test_seat_factor_needs_equal_lengths():
-    with pytest.raises(InputError, match="driver has 3 samples, floor has 4"):
-        seat_factor(np.ones(3), np.ones(4), RATE)
 
 
 def test_dose_of_a_sine(conform):

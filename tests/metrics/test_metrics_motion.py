@@ -92,14 +92,6 @@ def test_transmissibility_of_a_known_seat(seconds, conform):
     assert found.frequency[1] == pytest.approx(0.1)
 
 
-@pytest.mark.parametrize(("seconds", "segments"), [(5, 8), (20, 8), (60, 11), (600, 119)])
-def test_segments_suit_the_record(seconds, segments):
-    noise = np.random.default_rng(13).normal(size=seconds * 100)
-    found = transmissibility(noise, noise, 100.0)
-    assert found.segments == segments
-    assert found.coherence == pytest.approx(1.0)
-
-
 def test_floor_at_rest_has_no_transmissibility():
     found = transmissibility(np.zeros(1000), np.ones(1000), 100.0)
     assert np.isnan(found.response).all()

@@ -87,18 +87,6 @@ def test_a_bench_answers_with_the_damper_at_the_speed_of_its_displacement(bench)
     assert np.all(answer["coil_current"] == 0.0)
 
 
-def test_noise_of_a_displacement_is_smoothed_out(bench):
-    noisy = MOVED.displacement + 1e-5 * np.random.default_rng(0).standard_normal(1500)
-    errors = [
-        np.std(
-            respond(bench, MOVED._replace(displacement=noisy, displacement_noise=noise))["damper_force"]
-            - 500.0 * 0.08 * np.cos(8.0 * ROWS)
-        )
-        for noise in (0.0, 1e-5)
-    ]
-    assert errors[1] < 0.1 * errors[0]
-
-
 def test_a_command_is_held_and_followed_from_the_recorded_current_on(bench):
     command = np.where(ROWS < 1.0, 0.2, 0.8)
     start = np.full(1500, 0.6)

@@ -10,9 +10,8 @@ from seatsim.metrics.table import Metric
 from seatsim.scenario.loading import load, single
 from seatsim.schema.errors import RunError
 from seatsim.schema.registry import specification_of
-from seatsim.simulation.result import UNITS, Channel, History, Result
+from seatsim.simulation.result import Channel, History, Result
 from seatsim.simulation.runs import compare, run, run_many, run_one
-from seatsim.simulation.simulate import simulate
 from seatsim.simulation.validity import LARGEST_RESIDUAL, list_ranges_left, list_reasons
 
 
@@ -21,17 +20,6 @@ def scenario(kept_seat_file):
     return load(kept_seat_file, {"excitation": {"kind": "sine", "amplitude": 0.02, "frequency": 1.0, "duration": 2.0}})[
         0
     ]
-
-
-@pytest.fixture(scope="module")
-def history(scenario):
-    return simulate(scenario)
-
-
-def test_every_channel_is_there_with_its_unit_and_in_its_order_of_time(scenario, history):
-    assert set(history.channels) == set(UNITS)
-    assert np.allclose(history["time"], 0.001 * np.arange(2001))
-    assert all(len(values) == 2001 for values in history.channels.values())
 
 
 def test_a_channel_has_a_unit_and_what_is_computed_from_it_has_none(scenario):
