@@ -6,8 +6,6 @@ from pathlib import Path
 
 import pytest
 
-from seatsim.schema import registry
-
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "docs"))
 from equations import convert, convert_equations  # noqa: E402
@@ -36,10 +34,3 @@ def test_every_equation_is_balanced(page):
         bare = block.replace(r"\{", "").replace(r"\}", "")
         assert bare.count("{") == bare.count("}"), block
         assert re.search(r"(?<![\\\w])(alpha|exp|tanh)\b", bare) is None, block
-
-
-def test_every_damper_of_the_package_stands_on_a_page():
-    text = "".join(page.read_text(encoding="utf-8") for page in (ROOT / "docs" / "reference").glob("dampers_*.md"))
-    for name in registry.names("damper"):
-        own = registry.is_own(registry.find("damper", name))
-        assert own or f"\n## {name}\n\n" in text
