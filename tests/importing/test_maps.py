@@ -57,14 +57,6 @@ def test_lateral_axes_and_commands_of_other_things_are_left(tmp_path):
     assert {name: entry.column for name, entry in proposal.channels.items()} == {"floor_acceleration": "acc_floor_z"}
 
 
-def test_a_bench_is_recognised(tmp_path):
-    names = ["Weg_mm", "Kraft_N", "Strom_A", "Geschwindigkeit_mm_s"]
-    proposal, _ = propose([read_file(file_of(tmp_path, names, "t_ms"))])
-    assert proposal.rig == "damper_bench"
-    assert set(proposal.channels) == {"displacement", "damper_force", "coil_current", "velocity"}
-    assert proposal.channels["velocity"].unit == "mm/s"
-
-
 @pytest.mark.parametrize(
     ("names", "expected"),
     [
