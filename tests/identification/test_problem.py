@@ -1,25 +1,17 @@
 """The problem that a fit solves: its statement from records, its residuals, its Jacobian, and how it is searched."""
 
 import math
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 
 from seatsim.identification.damper_record import find_model
 from seatsim.identification.problem import BenchModel, find_origin, predict_force, state_problem
-from seatsim.identification.search import search_globally
 from seatsim.identification.settings import IdentificationSettings as Settings
 from seatsim.rig.temperature import TemperatureFactors
 
 from ..text import words
-from .benches import BINGHAM, made, sines
-
-
-@pytest.fixture(scope="module")
-def executor():
-    with ThreadPoolExecutor(2) as executor:
-        yield executor
+from .benches import BINGHAM, made
 
 
 def stated(records, settings=None, origin=0.0):
@@ -57,25 +49,6 @@ def test_a_bench_comes_back_from_its_vector_with_coil_and_temperature():
     """)
     low, high = problem.bounds
     assert high[-6] == pytest.approx(math.log(30.0)) and low[-4] == pytest.approx(-3.0) and high[-1] == math.inf
-
-
-def test_what_stands_at_a_bound_is_named():
-    problem, _ = stated([made(current=1.0)])
-    vector = problem.coordinates.to_vector(BINGHAM)
-    low, high = problem.bounds
-    at = problem.labels.index("fc_b")
-    assert problem.labels_at_bounds(vector) == []
-    for end in (low[at] + 5e-4, high[at] - 5e-4):
-        vector[at] = end
-        assert problem.labels_at_bounds(vector) == ["fc_b"]
-
-
-def test_the_global_search_comes_closer_and_repeats_itself(executor):
-    _, short = stated(sines(BINGHAM, noise=0.0))
-    start = short.coordinates.to_vector(short.coordinates.start)
-    first, again = (search_globally(short, start, 3, 150, executor) for _ in range(2))
-    assert np.array_equal(first, again) and short.cost(first) < 0.2 * short.cost(start)
-    assert not np.array_equal(first, search_globally(short, start, 4, 150, executor))
 
 
 # --------------------------------------------------------------------------------------------- the statement

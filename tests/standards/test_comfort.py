@@ -173,15 +173,6 @@ def test_a_unit_of_something_else_is_refused(tmp_path):
     assert turning.axes["rz"].removed == pytest.approx(0.0, abs=1e-9) and turning.axes["rz"].dose.rms > 0.1
 
 
-def test_other_formats_than_csv_give_the_same(tmp_path):
-    german = write(tmp_path, "german.csv", Beschl_Fahrer=tone())
-    german.write_text("Prüfstand 7\n" + german.read_text().replace(",", ";").replace(".", ","), encoding="cp1252")
-    frame = pd.DataFrame({"time": TIME, "driver_acceleration": tone()})
-    frame.to_parquet(tmp_path / "ride.parquet")
-    for path in (german, tmp_path / "ride.parquet"):
-        assert comfort(path, unit="m/s^2").axes["z"].dose.rms == pytest.approx(1.0, rel=5e-3)
-
-
 def test_the_command_prints_one_object_and_writes_only_where_asked(ride, tmp_path, seatsim_command):
     status, printed, _ = seatsim_command("comfort", ride, "--json", "--hours", "4")
     found = json.loads(printed)
