@@ -46,12 +46,3 @@ def test_without_weighted_accelerations_it_says_so(runs):
     bare = [dataclasses.replace(run, metrics={}) for run in runs(["soft", "hard"])]
     [axes] = plot_pareto(bare).axes
     assert "200 samples" in axes.texts[0].get_text()
-
-
-@pytest.mark.parametrize(("factor", "lines"), [(0.9, 1), (0.2, 0)])
-def test_the_floor_is_a_line_where_the_seat_factor_is_one_unless_it_is_far_above(factor, lines, runs):
-    found = runs(["soft", "hard"])
-    for run in found:
-        run.metrics["seat_factor"] = Metric(factor * run.metrics["driver_acceleration_weighted"].value, "-", "")
-    axes = plot_pareto(found).axes[0]
-    assert [line.get_ydata()[0] for line in axes.lines] == pytest.approx([1 / factor] * lines)

@@ -11,8 +11,7 @@ from seatsim.plots.runs import looks, signals
 from seatsim.plots.runs.comparison import plot_comparison, plot_pareto
 from seatsim.plots.runs.dampers import plot_force_velocity
 from seatsim.plots.runs.signals import CLOSE_UP
-from seatsim.plots.style import GREY
-from seatsim.plots.thinning import BINS, find_loudest, thin_line
+from seatsim.plots.thinning import BINS, thin_line
 from seatsim.simulation.naming import find_swept_number
 from seatsim.simulation.result import History
 
@@ -50,12 +49,6 @@ def test_thinning_keeps_extremes_and_order():
     np.testing.assert_array_equal(thin_y, y[thin_x.astype(int)])
 
 
-def test_the_loudest_samples_agree_with_a_sum_over_every_window():
-    values = np.random.default_rng(0).standard_normal(200)
-    energy = [np.sum(values[k : k + 30] ** 2) for k in range(170)]
-    assert find_loudest(values, 0.1, 3.0, 0.1).start == pytest.approx(0.1 * np.argmax(energy))
-
-
 def test_the_close_up_is_stated_and_shared(made_up):
     figure = plot_time_histories([made_up({"variant": "a"}), made_up({"variant": "b"}, seconds=7.0)])
     start, end = figure.axes[0].get_xlim()
@@ -78,27 +71,12 @@ def test_a_force_is_wanted_only_where_a_law_wants_one(made_up):
     assert len(without.lines) == 1
 
 
-def test_a_channel_that_chatters_lies_pale_behind_the_others(made_up):
-    calm, other = made_up({"variant": "a"}), made_up({"variant": "b"})
-    force = calm.history["damper_force"] + 200.0 * (-1.0) ** np.arange(len(calm.history["time"]))
-    axes = plot_time_histories([with_channels(calm, damper_force=force), other, other]).axes[2]
-    assert [line.get_alpha() for line in axes.lines] == [signals.PALE, 1.0, 1.0]
-    assert axes.lines[0].get_zorder() < axes.lines[1].get_zorder()
-
-
 def test_the_density_of_white_noise_is_flat(made_up):
     run = made_up(seconds=60.0)
     floor, _ = plot_psd([run]).axes[0].lines
     level, high = 2 * run.history.step * np.var(run.history["floor_acceleration"]), floor.get_xdata() > 5
     np.testing.assert_allclose(floor.get_ydata()[high], level, rtol=0.6)
     assert np.mean(floor.get_ydata()[high]) == pytest.approx(level, rel=0.05)
-
-
-def test_a_floor_that_runs_share_is_drawn_once(made_up):
-    same = [made_up({"variant": name}) for name in "ab"]
-    assert len(plot_psd(same).axes[0].lines) == 3
-    assert len(plot_psd([same[0], made_up({"variant": "c"}, motion=2.0)]).axes[0].lines) == 4
-    assert legend(plot_psd(same)) == ["a", "b", "floor"]
 
 
 def test_transmissibility_is_drawn_where_the_floor_has_power_and_explains_the_motion(made_up):
@@ -145,11 +123,6 @@ def test_force_velocity_shows_the_run_within_the_dampers_curves(made_up):
     assert axes.collections[0].get_clim() == ends and bar.get_ylim() == ends
 
 
-def test_of_several_runs_the_damper_whose_current_varies_is_shown(made_up):
-    still = with_channels(run := made_up({"variant": "a"}), coil_current=np.zeros(len(run.history["time"])))
-    assert "seat, b" in texts(plot_force_velocity([still, made_up({"variant": "b"})]))[0]
-
-
 def test_a_sweep_is_compared_over_its_number(made_up):
     runs = [made_up({"variant": v, "temperature": t}) for v in "ab" for t in (80, 20, 50)]
     figure = plot_comparison(runs)
@@ -189,11 +162,3 @@ def test_a_variant_has_one_colour_in_all_pictures(made_up):
     }
     assert {line.get_color() for line in lines} == colours[0] | colours[1]
     assert len({(look.label, look.alpha) for look in drawn}) == 4
-
-
-def test_a_colour_is_of_one_run_and_those_that_are_no_line_are_grey(made_up):
-    many = [made_up({"variant": f"law {n}"}, seconds=0.1) for n in range(12)]
-    colours = [each.colour for each in looks.choose_looks(many).values()]
-    shown = [look.colour for look in looks.show_runs(many)[0].looks]
-    assert len(set(shown)) == len(shown) == 8
-    assert sorted(colours) == sorted([*shown, *[GREY] * 4])

@@ -1,10 +1,9 @@
 """Pages, legends and text that all figures share."""
 
-import numpy as np
 from matplotlib.figure import Figure
 
 from seatsim.plots import style
-from seatsim.plots.style import Grid, clean_text
+from seatsim.plots.style import clean_text
 
 
 def test_a_text_is_cut_in_the_middle_and_never_a_formula():
@@ -24,26 +23,3 @@ def test_ticks_of_a_logarithmic_axis_are_plain_numbers_or_over_many_decades_powe
     assert named[:2] == ["10⁻⁶", "10⁻⁵"] and named[-3:] == ["1", "10", "10²"]
     style.scale_log(axes, "y", 1e-6, 9e-6)
     assert axes.yaxis.get_major_formatter()(2e-6, 0) == "2×10⁻⁶"
-
-
-def test_lines_that_coincide_are_named_in_the_note_and_nothing_else_changes():
-    looks = style.make_entries(["a", "$b$", "other"])
-    figure, [[left], [right]] = style.make_page("title", "A note that is a line long." * 3, Grid((1.0, 1.0)), looks)
-    x = np.linspace(0.0, 1.0, 50)
-    for axes, shift in ((left, 0.0), (right, 1e-3)):
-        for look, values in zip(looks, (x, x + shift, 1.0 - x), strict=True):
-            style.draw_line(axes, x, values, look)
-    height = figure.get_figheight()
-    before = [axes.get_position().height * height for axes in figure.axes]
-    style.name_coincident(figure)
-    assert " ".join(figure.texts[1].get_text().split()).endswith(r"“a” and “\$b\$” coincide.")
-    grown = figure.get_figheight()
-    assert grown == height + style.LINE
-    np.testing.assert_allclose([axes.get_position().height * grown for axes in figure.axes], before)
-    right.lines[1].set_ydata(x + 0.1)
-    assert "coincide" not in style.name_coincident(_without_note(figure)).texts[1].get_text()
-
-
-def _without_note(figure):
-    figure.texts[1].set_text("")
-    return figure

@@ -10,7 +10,7 @@ import seatsim
 from seatsim.dampers.base import DAMPERS
 from seatsim.provenance.statement import at_work
 from seatsim.recordings.header import NOT_STATED
-from seatsim.report.credibility import Factor, read_conditions, say_doubt, show_card, trace_inputs, validate, verify
+from seatsim.report.credibility import read_conditions, trace_inputs, validate, verify
 from seatsim.report.diagnosis import judge_diagnosis
 from seatsim.report.gap import judge_gap
 from seatsim.report.runs import judge_runs
@@ -54,15 +54,6 @@ def test_a_condition_that_fails_ends_the_level(compared, held_out, error, noise,
 def test_inputs_have_their_hashes_their_ranges_their_sources_and_their_tolerances(given, level):
     best = {"doubts": [], "dampers": PUBLISHED, "parameters_known": True, "inputs": 3}
     assert trace_inputs(**best | given).level == level
-
-
-def test_a_card_says_what_the_next_level_asks_for_and_the_doubt_is_of_the_weakest_factor():
-    best, weak = Factor("verification", "all balances", (True, True)), Factor("robustness", "one run", (False,))
-    rows = {row[0]: row[1:] for row in show_card([best, weak]).blocks[1].rows}
-    assert rows["verification"] == ["2\u00a0of\u00a02", "All balances.", "–"]
-    assert rows["robustness"] == ["0\u00a0of\u00a01", "One run.", read_conditions()["robustness"][0]]
-    assert say_doubt([best, weak]) == "The weakest point of this result is its robustness: one run."
-    assert say_doubt([best]) == ""
 
 
 def test_evidence_of_a_run_is_measured_on_it_and_on_what_was_read():

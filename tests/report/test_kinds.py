@@ -6,8 +6,6 @@ import pytest
 
 from seatsim.characterisation.summary import Characterisation
 from seatsim.characterisation.tabulate import make_sheet
-from seatsim.cli.outputs.diagnosis_results import make_gap_table
-from seatsim.cli.show_table import make_plain
 from seatsim.plots.bench.identification import plot_predictions
 from seatsim.report.dampers import report_characterisation, report_identification
 from seatsim.report.gap import report_gap, say_gap
@@ -67,23 +65,6 @@ def test_a_gap_says_where_it_is_largest_and_what_to_do():
     assert outline.rows("Gap of each run")["damper force"][0] == "29 %"
     assert any(heading.startswith("Damper force, RMS difference: ") for heading in outline.headings)
     assert say_gap(gap(0.021)).endswith("there is nothing left to explain.")
-
-
-def test_noise_that_is_not_stated_is_not_printed_as_none():
-    found = gap(0.3, floor=0.0, run=pair(20.0))
-    outline = Outline(render_report(report_gap("x", found, JUDGED, "seatsim gap a b")))
-    assert "no sensor noise is stated" in outline.headings[0]
-    shown = make_plain(make_gap_table(found)), found._repr_html_()
-    assert outline.rows("Gap over all runs")["damper force"][:2] == ["30 %", "not stated"]
-    assert all(text.count("not stated") == 2 for text in shown)
-
-
-def test_a_short_recording_has_no_spectrum():
-    whole = pair(1.0)
-    signals = [{"damper_force": each["damper_force"][:40]} for each in (whole.measured, whole.simulated)]
-    short = whole._replace(time=whole.time[:40], measured=signals[0], simulated=signals[1])
-    outline = Outline(render_report(report_gap("x", gap(0.3, run=short), JUDGED, "seatsim gap a b")))
-    assert "frequency [Hz]" not in outline.words and "time [s]" in outline.words
 
 
 def test_an_identification_says_how_well_it_predicts_and_what_the_data_leave_open():
