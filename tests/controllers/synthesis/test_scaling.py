@@ -6,6 +6,22 @@ import pytest
 from controllers.synthesis.scaling import scale
 
 
+@pytest.fixture
+def scaled(seat):
+    return scale(seat(30.0))
+
+
+def test_columns_rows_rates_and_both_ends_are_of_one_size(scaled):
+    plant = scaled.plant
+    for sizes in (np.linalg.norm(plant.B2, axis=0), np.linalg.norm(plant.C2, axis=1)):
+        assert np.all((sizes > 0.7) & (sizes < 1.5))
+    assert 0.5 <= np.linalg.norm(plant.B1) / np.linalg.norm(plant.C1) <= 2.0
+    rates = np.abs(np.linalg.eigvals(plant.A))
+    assert 0.7 < np.exp(np.log(rates).mean()) < 1.5
+    off = plant.A - np.diag(np.diag(plant.A))
+    assert np.abs(off).max() < 20
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_the_coordinates_do_not_depend_on_the_units_of_disturbance_performance_and_time(random_plant, seed):
     p, far = random_plant(seed), 2.0**20
