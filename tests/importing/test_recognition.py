@@ -1,5 +1,7 @@
 """What a column is by the words of its name and its unit together, and of which rig its file is."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -8,6 +10,8 @@ from seatsim.importing.names import read_name
 from seatsim.importing.readers.reading import read_file
 from seatsim.importing.signals import DataFile, Group, Signal
 from seatsim.importing.time_axis import find_clock
+
+from ..text import parse
 
 T = np.arange(500) / 250.0
 
@@ -21,28 +25,10 @@ def file_of(tmp_path, *columns):
     return DataFile(tmp_path / "a.csv", "CSV", (Group("", tuple(signals)),))
 
 
-@pytest.mark.parametrize(
-    ("name", "unit", "quantity", "stated"),
-    [
-        ("Sitz x", "m/s^2", "acceleration", "m/s^2"),
-        ("v2", "m/s2", "acceleration", "m/s2"),
-        ("v_ist_m_s2", "", "acceleration", "m/s2"),
-        ("v_ms", "", "velocity", ""),
-        ("s", "mm", "displacement", "mm"),
-        ("s", "s", "time", "s"),
-        ("Temps", "s", "time", "s"),
-        ("Temps", "", "time", ""),
-        ("Temp", "°C", "temperature", "°C"),
-        ("T1", "degC", "temperature", "degC"),
-        ("Spannung Kraftsensor", "V", "voltage", "V"),
-        ("Loading time", "s", "time", "s"),
-        ("F", "kN", "force", "kN"),
-        ("Weg", "Milimeter", "displacement", "Milimeter"),
-        ("Frequenz", "Hz", "frequency", "Hz"),
-        ("Kanal 3", "bit", None, "bit"),
-        ("Ax", "", "acceleration", ""),
-    ],
-)
+NAMES = parse(Path(__file__).with_name("column_names.yaml").read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize(("name", "unit", "quantity", "stated"), NAMES)
 def test_the_unit_decides_between_the_words_of_a_name(name, unit, quantity, stated):
     found = read_name(name, unit)
     assert (found.quantity, found.unit) == (quantity, stated)

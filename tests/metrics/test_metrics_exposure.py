@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seatsim.metrics.comfort import dose, find_shocks, join_doses, motion_sickness_dose, seat_transmission
-from seatsim.metrics.exposure import assess_exposure
+from seatsim.metrics.exposure import DIRECTIONS, assess_exposure, direction
 from seatsim.metrics.motion import rms
 from seatsim.metrics.weighting import weight
 from seatsim.schema.errors import InputError
@@ -102,3 +102,16 @@ def test_seat_of_three_runs_says_whether_they_agree():
     apart = seat_transmission([dose(sine(0.7 * a), RATE) for a in (1.0, 1.02, 1.15)], base)
     assert apart.within_spread is False
     assert seat_transmission(seat[:2], base[:2]).within_spread is None
+
+
+def test_directions_are_those_of_the_standard():
+    assert {axis: (d.weighting, d.comfort) for axis, d in DIRECTIONS.items() if "." in axis} == {
+        "back.x": ("Wc", 0.8),
+        "back.y": ("Wd", 0.5),
+        "back.z": ("Wd", 0.4),
+        "feet.x": ("Wk", 0.25),
+        "feet.y": ("Wk", 0.25),
+        "feet.z": ("Wk", 0.4),
+    }
+    with pytest.raises(InputError, match=r"did you mean 'back\.x'"):
+        direction("backx")

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
+from seatsim.effects.seat import Friction
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant
 from seatsim.rig.temperature import TemperatureFactors
@@ -14,6 +15,7 @@ from seatsim.simulation.augment import (
     augment_plant,
     augment_temperature,
     read_sensors,
+    select_in_loop,
     undo_reading,
 )
 
@@ -72,3 +74,9 @@ def test_readings_are_made_in_order_and_undone_in_the_opposite_one():
     assert both["damper_force"] == pytest.approx([3.0, 9.0])
     assert undo_reading(effects, both["damper_force"], "damper_force", 0.1) == pytest.approx(values)
     assert both["coil_current"] == pytest.approx(values + 1.0)
+
+
+def test_a_second_effect_of_a_kind_is_carried_beside_the_first():
+    one, two = (Friction(force) for force in (20.0, 30.0))
+    carried, alone = select_in_loop([one, two])[1], select_in_loop([one])[1]
+    assert len(carried) == len(alone) + 1 and {one, two} <= set(carried) and carried[-1] is two
