@@ -9,7 +9,6 @@ from seatsim.metrics.comfort import seat_factor
 from seatsim.metrics.motion import rms
 from seatsim.metrics.table import summarise
 from seatsim.metrics.weighting import weight
-from seatsim.schema.errors import InputError
 
 STEP = 0.001
 
@@ -79,26 +78,3 @@ def test_the_jerk_of_a_tone_is_its_acceleration_times_its_angular_frequency(step
     found = summarise({"driver_acceleration": tone}, step)["driver_jerk_rms"]
     assert found.unit == "m/s^3" and found.value == pytest.approx(2 * np.pi * 4.0 / math.sqrt(2.0), rel=1e-3)
     assert "driver_jerk_rms" not in summarise({"driver_acceleration": [1.0]}, step)
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"step": 0.0}, "step"),
-        ({"step": math.nan}, "step"),
-        ({"travel": (1.0, -1.0)}, "travel"),
-        ({"coil_resistance": -1.0}, "resistance"),
-    ],
-)
-def test_refuses_settings_out_of_range(options, message):
-    with pytest.raises(InputError, match=message):
-        summarise(history(), **{"step": STEP, **options})
-
-
-def test_refuses_channels_that_do_not_fit():
-    with pytest.raises(InputError, match="different numbers of samples"):
-        summarise({"coil_current": np.ones(4), "damper_force": np.ones(5)}, STEP)
-    with pytest.raises(InputError, match="driver_acceleration: sample 2 is not finite"):
-        summarise({"driver_acceleration": [1.0, 2.0, math.nan]}, STEP)
-    with pytest.raises(InputError, match="coil_current"):
-        summarise({"coil_current": np.ones((4, 2))}, STEP)

@@ -4,15 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from matplotlib.colors import to_hex
 
 from seatsim.effects.base import EFFECTS
 from seatsim.plots.runs import looks, signals
-from seatsim.plots.runs.comparison import plot_comparison, plot_pareto
+from seatsim.plots.runs.comparison import plot_comparison
 from seatsim.plots.runs.dampers import plot_force_velocity
 from seatsim.plots.runs.signals import CLOSE_UP
 from seatsim.plots.thinning import BINS, thin_line
-from seatsim.simulation.naming import find_swept_number
 from seatsim.simulation.result import History
 
 
@@ -79,22 +77,6 @@ def test_the_density_of_white_noise_is_flat(made_up):
     assert np.mean(floor.get_ydata()[high]) == pytest.approx(level, rel=0.05)
 
 
-def test_transmissibility_is_drawn_where_the_floor_has_power_and_explains_the_motion(made_up):
-    run = made_up(seconds=60.0)
-    floor = run.history["floor_acceleration"]
-    follows = np.fft.rfft(floor)
-    follows[np.fft.rfftfreq(len(floor), run.history.step) > 5.0] = 0.0
-    noise = 0.1 * np.std(floor) * np.random.default_rng(9).standard_normal(len(floor))
-    run = with_channels(run, driver_acceleration=np.fft.irfft(follows, len(floor)) + noise)
-    _, line = plot_transmissibility([run]).axes[0].lines
-    frequency, gain = line.get_xdata(), line.get_ydata()
-    assert np.all(np.isfinite(gain[frequency < 4.0])) and np.isnan(gain[frequency > 6.0]).mean() > 0.9
-    slow = np.fft.irfft(follows, len(floor))
-    run = with_channels(run, floor_acceleration=slow + 1e-6 * floor, driver_acceleration=slow + 1e-6 * floor)
-    _, line = plot_transmissibility([run]).axes[0].lines
-    assert np.isnan(line.get_ydata()[line.get_xdata() > 6.0]).all()
-
-
 AT_REST = {"motion": 0.0}
 
 
@@ -133,13 +115,6 @@ def test_a_sweep_is_compared_over_its_number(made_up):
     assert figure.axes[2].lines[0].get_ydata()[2] == pytest.approx(travel)
 
 
-def test_only_numbers_that_change_in_every_run_are_swept(made_up):
-    pairs = [[{"a": 1, "b": 1}, {"a": 2, "b": 1}], [{"a": 1}] * 2, [{"a": 1}, {"b": 2}], [{"a": True}, {"a": False}],
-             [{"a": "x"}, {"a": "y"}]]  # fmt: skip
-    found = [find_swept_number([made_up(label, seconds=0.1) for label in labels]) for labels in pairs]
-    assert found == ["a", "", "", "", ""]
-
-
 def test_more_runs_than_lines_can_tell_apart(made_up):
     mass = "plant.driver_mass"
     sweep = [made_up({"variant": v, mass: m}, seconds=0.1) for v in "abc" for m in (50, 60, 70)]
@@ -148,17 +123,3 @@ def test_more_runs_than_lines_can_tell_apart(made_up):
     spread = [run.scenario.label["seed"] for run in looks.show_runs(many)[0].runs]
     assert len(spread) == 8 and spread[0] == 0 and spread[-1] == 19
     assert "8 of 20 runs are shown, spread evenly over their order." in " ".join(texts(plot_psd(many))[1].split())
-
-
-def test_a_variant_has_one_colour_in_all_pictures(made_up):
-    runs = [made_up({"variant": v, "temperature": t}, name=n) for n in "ab" for v in ("on", "off") for t in (20, 50)]
-    drawn = [look for shown in looks.show_runs(runs) for look in shown.looks]
-    colours = [{look.colour for look in drawn if look.label.startswith(v)} for v in ("on", "off")]
-    lines = plot_comparison(runs).axes[0].lines
-    points = plot_pareto(runs).axes[0].collections
-    assert [len(each) for each in colours] == [1, 1] and colours[0] != colours[1]
-    assert {line.get_color() for line in lines} == {
-        to_hex(colour).upper() for dots in points for colour in dots.get_facecolor()
-    }
-    assert {line.get_color() for line in lines} == colours[0] | colours[1]
-    assert len({(look.label, look.alpha) for look in drawn}) == 4
