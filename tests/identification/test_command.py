@@ -19,17 +19,12 @@ from seatsim.identification.settings import IdentificationSettings as Settings
 from seatsim.scenario.loading import single
 from seatsim.schema.errors import InputError
 
+from ..text import beside
 from .benches import BINGHAM, made, sines
 
 FILES = {"parameters.yaml", "fit.json", "report.html", "loops.png"}
 DOCUMENTED = {*FILES, "manifest.json"}
-SCENARIO = """\
-plant: {frame_mass: 20.0, driver_mass: 80.0, suspension_stiffness: 4600.0, suspension_damping: 150.0,
-        cushion_stiffness: 60000.0, cushion_damping: 1500.0}
-temperature: 20.0
-controller: {law: constant, current: 0.5}
-excitation: {kind: sine, amplitude: 0.01, frequency: 2.0, duration: 2.0}
-"""
+SCENARIO = beside(__file__, "seat_without_damper.yaml")
 
 
 def command(*arguments):

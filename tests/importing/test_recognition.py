@@ -1,7 +1,5 @@
 """What a column is by the words of its name and its unit together, and of which rig its file is."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -11,7 +9,7 @@ from seatsim.importing.readers.reading import read_file
 from seatsim.importing.signals import DataFile, Group, Signal
 from seatsim.importing.time_axis import find_clock
 
-from ..text import parse
+from ..text import beside, parse
 
 T = np.arange(500) / 250.0
 
@@ -25,7 +23,7 @@ def file_of(tmp_path, *columns):
     return DataFile(tmp_path / "a.csv", "CSV", (Group("", tuple(signals)),))
 
 
-NAMES = parse(Path(__file__).with_name("column_names.yaml").read_text(encoding="utf-8"))
+NAMES = parse(beside(__file__, "column_names.yaml"))
 
 
 @pytest.mark.parametrize(("name", "unit", "quantity", "stated"), NAMES)

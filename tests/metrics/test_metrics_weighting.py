@@ -10,30 +10,10 @@ from scipy import signal as sp
 from seatsim.metrics.weighting import WEIGHTINGS, frequency_response, weight
 from seatsim.schema.errors import InputError
 
-from ..text import parse
+from ..text import beside, parse
 
-NOMINAL = np.array(
-    [0.5, 0.63, 0.8, 1, 1.25, 1.6, 2, 2.5, 3.15, 4, 5, 6.3, 8, 10, 12.5, 16, 20, 25, 31.5, 40, 50, 63, 80]
-)
 EXACT = 10 ** (np.arange(-3, 20) / 10)
-WK = (
-    np.array(
-        parse("""
-    [418, 459, 477, 482, 484, 494, 531, 631, 804, 967, 1039, 1054, 1036, 988, 902, 768, 636, 513, 405, 314, 246,
-     186, 132]
-""")
-    )
-    / 1000
-)
-WD = (
-    np.array(
-        parse("""
-    [853, 944, 992, 1011, 1008, 968, 890, 776, 642, 512, 409, 323, 253, 212, 161, 125, 100, 80, 63.2, 49.4, 38.8,
-     29.5, 21.1]
-""")
-    )
-    / 1000
-)
+NOMINAL, WK, WD = np.array(parse(beside(__file__, "weighting_table.yaml"))).T * [[1.0], [1e-3], [1e-3]]
 RATES = (200.0, 500.0, 1000.0, 10000.0)
 
 

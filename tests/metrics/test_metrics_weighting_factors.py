@@ -3,17 +3,15 @@
 The factors are those that the tests of phonometry 3.3 state as transcribed from the standard.
 """
 
-from pathlib import Path
-
 import pytest
 
 from seatsim.metrics.weighting import WEIGHTINGS, frequency_response
 
-from ..text import parse
+from ..text import beside, parse
 
 LOWEST = {"Wf": -17, "Wh": -1}
 """Band of the first factor; band n has the centre 10^(n/10) Hz; -10 where none is listed."""
-FACTORS = parse(Path(__file__).with_name("weighting_factors.yaml").read_text(encoding="utf-8"))
+FACTORS = parse(beside(__file__, "weighting_factors.yaml"))
 
 
 def test_every_weighting_has_factors():

@@ -10,10 +10,10 @@ import pytest
 from seatsim.cli.app import main
 from seatsim.provenance import reproduce as reproduction
 from seatsim.provenance.reproduce import _is_same, compare_outputs, reproduce
-from seatsim.provenance.statement import at_work, read_manifest, state_command
+from seatsim.provenance.statement import read_manifest
 from seatsim.schema.errors import InputError
 
-from ..text import parse
+from ..text import beside, parse
 
 RECORDING = Path(__file__).resolve().parents[2] / "scenarios" / "data" / "recording"
 OUTPUTS = ["comfort.json", "report.html", "running_rms.png", "spectra.png"]
@@ -84,7 +84,7 @@ def test_a_missing_input_is_an_error(project, never):
         reproduce(project / "out" / "c")
 
 
-STRANGE = parse(Path(__file__).with_name("strange_manifests.yaml").read_text(encoding="utf-8"))
+STRANGE = parse(beside(__file__, "strange_manifests.yaml"))
 
 
 @pytest.mark.parametrize(("fields", "said"), STRANGE)
@@ -159,9 +159,3 @@ def test_outputs_outside_the_folder_are_not_read(project, name):
     manifest = read_manifest(folder)
     with pytest.raises(InputError, match=r"manifest\.json: output .* lies outside its folder"):
         list(compare_outputs(manifest, folder, manifest, folder))
-
-
-def test_a_command_at_work_is_stated_as_it_can_be_typed_again():
-    assert state_command("in Python") == "in Python"
-    with at_work("run", [("--set", "seed=1"), ("--out", "o")], ["a b.yaml", "/nowhere/c.yaml"]):
-        assert state_command("") == "seatsim run 'a b.yaml' /nowhere/c.yaml --set=seed=1"

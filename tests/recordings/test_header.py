@@ -1,29 +1,14 @@
 """What a header states of tolerances, the error of the model and what was changed for a run, and what it may not."""
 
-from pathlib import Path
-
 import pytest
 
 from seatsim.recordings.header import Header
 from seatsim.recordings.recording import load_recording
 from seatsim.schema.errors import InputError
 
-from ..text import cases
+from ..text import beside, cases
 
-GOOD = """\
-rig: seat
-sample_rate: 500.0
-parameter_tolerance: {default: 0.03, plant.driver_mass: 0.1, damper.parameters.c_a: fitted}
-nominal: nominal.yaml
-model_error: 0.05
-runs:
-  - {name: a, file: a.csv}
-  - {name: b, file: b.csv, repeat_of: a}
-  - name: c
-    file: c.csv
-    set: {plant.driver_mass: 95, controller.current: 0.0, temperature: 35.0}
-channels: {floor_acceleration: {unit: m/s^2}, driver_acceleration: {unit: m/s^2}}
-"""
+GOOD = beside(__file__, "good_header.yaml")
 TOLERANCE = "{default: 0.03, plant.driver_mass: 0.1, damper.parameters.c_a: fitted}"
 
 
@@ -64,7 +49,7 @@ def test_what_is_left_out_has_its_usual_value(folder):
     assert Header("seat", 1.0, "n", {"plant.driver_mass": 0.1}).default_tolerance == 0.02
 
 
-CASES = cases(Path(__file__).with_name("wrong_headers.txt").read_text(encoding="utf-8"))
+CASES = cases(beside(__file__, "wrong_headers.txt"))
 
 
 @pytest.mark.parametrize(("old", "new", "words"), CASES, ids=[new for _, new, _ in CASES])

@@ -4,7 +4,6 @@ Figures may differ by 2 %, the words by nothing.
 """
 
 import re
-from pathlib import Path
 
 import pytest
 
@@ -13,11 +12,11 @@ from seatsim.scenario.loading import load
 from seatsim.schema.errors import SeatsimError
 from seatsim.simulation.runs import run_many
 
-from ..text import parse
+from ..text import beside, parse
 from .kinds import SEAT
 
 NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?(?= m/s²| %| mm| times| from|,)")
-CASES = parse(Path(__file__).with_name("headlines.yaml").read_text(encoding="utf-8"))
+CASES = parse(beside(__file__, "headlines.yaml"))
 
 
 def report(settings):

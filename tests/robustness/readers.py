@@ -26,27 +26,11 @@ from ..importing import exports
 EXAMPLES = Path(__file__).resolve().parents[2] / "scenarios"
 RECORDING, BENCH = EXAMPLES / "data" / "recording", EXAMPLES / "data" / "bench"
 SHORT_ROWS, FEW_ROWS = 600, 200
-DIAGNOSIS = (
-    b'{"verdict": "known", "where": [{"block": "damper", "share": 0.9}], "causes": [{"effect": "damper.remanence",'
-    b' "probability": 0.97, "shrink": 0.87, "parameters": {"width": {"value": 0.08, "std": 0.004, "unit": "A"}}}],'
-    b' "selected": ["damper.remanence"], "indistinguishable": [], "experiment": null, "held_out": ["run-c"],'
-    b' "gap": {"before": {"overall": 0.31, "channels": {"damper_force": 0.4}}, "shrink": 0.87,'
-    b' "shrink_interval": [0.82, 0.9]}, "augmented": "augmented.yaml"}'
-)
+DIAGNOSIS = Path(__file__).with_name("diagnosis.json").read_bytes()
 """A `diagnosis.json`."""
-MANIFEST = (
-    b'{"seed": 1, "versions": {"seatsim": "0.1.0"}, "platform": {"system": "Linux"}, "command": "comfort",'
-    b' "arguments": ["--hours=6.0", "--", "rec"], "directory": "../..", "folder": "c", "own_code": [],'
-    b' "inputs": [{"path": "../../rec/recording.yaml", "sha256": "00", "bytes": 4}],'
-    b' "outputs": [{"path": "comfort.json", "sha256": "00", "bytes": 4}], "measured": {}}'
-)
+MANIFEST = Path(__file__).with_name("manifest.json").read_bytes()
 """The manifest of a command."""
-MAP = (
-    b"rig: seat\nsample_rate: 500.0\ncsv: {decimal: '.'}\nruns: {first: [a.csv]}\nalign: {a.csv: 0.25}\nchannels:\n"
-    b"  floor_acceleration: {column: floor_acceleration, unit: m/s^2, scale: 1.0, remove_mean: true}\n"
-    b"  driver_acceleration: {column: driver_acceleration, unit: m/s^2, sign: -1, delay: 0.002, noise_rms: 0.05}\n"
-    b"  suspension_displacement: {column: suspension_displacement, unit: m, offset: 0.001, fill: true}\n"
-)
+MAP = Path(__file__).with_name("map.yaml").read_bytes()
 """A map for the import of a table."""
 
 

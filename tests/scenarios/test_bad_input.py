@@ -9,33 +9,13 @@ from seatsim.scenario.describe import describe
 from seatsim.scenario.loading import load
 from seatsim.schema.errors import InputError, list_sentences
 
-from ..text import cases
+from ..text import beside, cases
 
-GOOD = """\
-name: good
-seed: 7
-plant:
-  frame_mass: 20.0
-  driver_mass: 80.0
-  suspension_stiffness: 4600.0
-  suspension_damping: 150.0
-  cushion_stiffness: 60000.0
-  cushion_damping: 1500.0
-damper:
-  model: bouc_wen
-  parameters: {c_a: 250.0, c_b: 350.0, alpha_a: 45.0, alpha_b: 620.0, k0: 0.0, x0: 0.0, f0: 0.0, A: 2000.0,
-               beta: 1000.0, gamma: 1000.0, n: 2}
-actuator: {rate: 130.0, max_current: 1.0}
-temperature: 20.0
-controller: {law: constant, current: 0.5}
-excitation: {kind: sine, amplitude: 0.01, frequency: 2.0, duration: 1.0}
-effects: []
-solver: {step: 0.001}
-"""
+GOOD = beside(__file__, "good.yaml")
 
 # what is replaced, by what, and what the error must say
 CASES = [
-    *cases(Path(__file__).with_name("wrong_scenarios.txt").read_text(encoding="utf-8")),
+    *cases(beside(__file__, "wrong_scenarios.txt")),
     ("name: good", "\tname: good", ["line 1"]),
     (GOOD, "", ["holds no mapping"]),
     (GOOD, "- a\n- b\n", ["holds no mapping"]),

@@ -8,16 +8,10 @@ from seatsim.rig.drivers import BODIES, apparent_mass, head_transmissibility
 from seatsim.schema.errors import InputError
 from seatsim.simulation.simulate import simulate
 
+from ..text import beside
+
 FREQUENCY = np.arange(0.5, 20.0, 0.05)
-SEAT = """
-plant: {frame_mass: 20.0, driver_mass: 60.0, suspension_stiffness: 4600.0, suspension_damping: 750.0,
-        cushion_stiffness: 60000.0, cushion_damping: 1500.0}
-damper: {model: bingham, parameters: {c_a: 0.0, c_b: 0.0, fc_a: 0.0, fc_b: 0.0, v_ref: 0.01, f0: 0.0}}
-actuator: {rate: 130.0, max_current: 1.0}
-temperature: 20.0
-controller: {law: constant, current: 0.0}
-excitation: {kind: sine, amplitude: 0.005, frequency: 3.0, duration: 12.0}
-"""
+SEAT = beside(__file__, "seat_for_bodies.yaml")
 
 
 @pytest.fixture

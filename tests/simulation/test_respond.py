@@ -14,15 +14,9 @@ from seatsim.schema.registry import find
 from seatsim.simulation.inputs import BenchInputs, Forces, SeatInputs
 from seatsim.simulation.respond import SEAT_OUTPUTS, respond
 
-SEAT = """\
-plant: {frame_mass: 20.0, driver_mass: 80.0, suspension_stiffness: 4600.0, suspension_damping: 150.0,
-        cushion_stiffness: 60000.0, cushion_damping: 1500.0}
-damper: {model: bingham, parameters: {c_a: 500.0, c_b: 0.0, fc_a: 0.0, fc_b: 0.0, f0: 0.0, v_ref: 0.004}}
-actuator: {rate: 130.0, max_current: 1.0}
-temperature: 20.0
-controller: {law: replay}
-excitation: {kind: recording}
-"""
+from ..text import beside
+
+SEAT = beside(__file__, "replayed_seat.yaml")
 STEP = 0.001
 
 

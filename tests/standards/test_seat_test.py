@@ -17,19 +17,11 @@ from seatsim.standards.seat_rows import SEATED_SHARE, weighted_input
 from seatsim.standards.seat_test import INERT_MASS
 
 from ..answers import check_answer
+from ..text import beside
 
 DAMPING = 600.0
-SEAT = f"""
-plant: {{frame_mass: 20.0, driver_mass: 60.0, suspension_stiffness: 4600.0, suspension_damping: 150.0,
-        cushion_stiffness: 60000.0, cushion_damping: 1500.0, travel: [-0.05, 0.05]}}
-damper:
-  model: bingham
-  parameters: {{c_a: {DAMPING}, c_b: 0.0, fc_a: 0.0, fc_b: 0.0, v_ref: 0.01, f0: 0.0}}
-actuator: {{rate: 130.0, max_current: 1.0}}
-temperature: 20.0
-controller: {{law: constant, current: 0.0}}
-excitation: {{kind: iso7096, spectral_class: EM5, duration: 62.0}}
-"""
+"""N s/m, of the damper in `linear_seat.yaml`."""
+SEAT = beside(__file__, "linear_seat.yaml")
 
 
 @pytest.fixture(scope="module")

@@ -1,7 +1,5 @@
 """Designs: which values are combined, drawn within their bounds, and refused before anything runs."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from scipy import stats
@@ -12,7 +10,7 @@ from seatsim.sweeps.definition import read_definition
 from seatsim.sweeps.execute import prepare
 from seatsim.sweeps.plan import make_plan
 
-from ..text import parse
+from ..text import beside, parse
 
 WIDE = {"plant": {}, "sweep": {f"effects.{k}.parameters.high": [0.1] * 100 for k in range(4)}}
 MASS, STIFFNESS, CLASS = "plant.driver_mass", "plant.suspension_stiffness", "excitation.spectral_class"
@@ -101,7 +99,7 @@ TOO_MANY = [
     [{"scenario": WIDE}, ["makes 100000000 runs; a scenario has at most 10000"]],
     [LONG, ["makes 10000000000 runs (1000000 points x 10000 replicates)", "at most 10000000"]],
 ]
-WRONG = [*parse(Path(__file__).with_name("wrong_sweeps.yaml").read_text(encoding="utf-8")), *TOO_MANY]
+WRONG = [*parse(beside(__file__, "wrong_sweeps.yaml")), *TOO_MANY]
 
 
 @pytest.mark.parametrize(("stated", "parts"), WRONG)

@@ -11,22 +11,11 @@ from seatsim.recordings.recording import load_recording
 from seatsim.scenario.scenario import Start
 from seatsim.schema.errors import InputError, RunError
 
+from ...text import beside
 from ..builders import SerialExecutor
 from .toy import Added, add_up, draw_signals, make_problem
 
-HEADER = """\
-rig: seat
-sample_rate: 200.0
-parameter_tolerance: 0.05
-nominal: nominal.yaml
-runs: [{name: long, file: long.csv}, {name: short, file: short.csv, repeat_of: long}]
-channels:
-  floor_acceleration: {unit: m/s^2, noise_rms: 0.01}
-  driver_acceleration: {unit: m/s^2, noise_rms: 0.02}
-  frame_acceleration: {unit: m/s^2, noise_rms: 0.1}
-  suspension_displacement: {unit: m, noise_rms: 0.5}
-  coil_current: {unit: A}
-"""
+HEADER = beside(__file__, "header.yaml")
 
 
 @pytest.fixture

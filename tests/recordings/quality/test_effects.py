@@ -1,7 +1,6 @@
 """What an effect of the library does to sound data is no fault of theirs, however large it is."""
 
 import dataclasses
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,9 +13,9 @@ from seatsim.simulation.augment import read_sensors
 from seatsim.simulation.respond import respond
 
 from ...faulty_recordings import rewrite, scaled
-from ...text import parse
+from ...text import beside, parse
 
-LARGE = parse(Path(__file__).with_name("large_effects.yaml").read_text(encoding="utf-8"))
+LARGE = parse(beside(__file__, "large_effects.yaml"))
 """Effects at the upper end of what is plausible, in several forms."""
 ON_A_CHANNEL = {
     "sensor.gain": ({"error": 1.0}, {"error": -0.5}),
