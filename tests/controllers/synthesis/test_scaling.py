@@ -3,12 +3,24 @@
 import numpy as np
 import pytest
 
+from controllers.synthesis.norm import hinf_norm
 from controllers.synthesis.scaling import scale
+
+GAIN = np.array([[967.0, 2339.0]])
 
 
 @pytest.fixture
 def scaled(seat):
     return scale(seat(30.0))
+
+
+def test_the_norm_stays_and_the_gain_is_mapped(seat, scaled):
+    plant = seat(30.0)
+    small = scaled.scaled_gain(GAIN)
+    np.testing.assert_array_equal(scaled.physical_gain(small), GAIN)
+    raw, moved = hinf_norm(plant.close(GAIN)), hinf_norm(scaled.plant.close(small))
+    assert moved.value == pytest.approx(raw.value, rel=1e-12)
+    assert moved.frequency * scaled.rate == pytest.approx(raw.frequency, rel=1e-5)
 
 
 def test_columns_rows_rates_and_both_ends_are_of_one_size(scaled):
