@@ -12,6 +12,7 @@ from seatsim.effects.base import EFFECTS
 from seatsim.effects.damper import GasSpring
 from seatsim.effects.sensor import Gain
 from seatsim.recordings.recording import ChannelEntry
+from seatsim.rig.plant import Plant
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.scenario.scenario import DamperChoice
 from seatsim.schema.fields import bounds
@@ -153,3 +154,11 @@ def test_frictions_have_the_same_forms_so_that_none_is_preferred_where_no_load_c
         for name in ("damper.seal_friction", "suspension.friction")
     ]
     assert forms[0] == forms[1]
+
+
+def test_buffers_beside_a_soft_spring_are_softer():
+    problem = posed()
+    plant = Plant(20.0, 60.0, 920.0, 100.0, 8e4, 300.0)
+    soft = dataclasses.replace(problem, scenario=dataclasses.replace(problem.scenario, plant=plant))
+    stop = by_effect(list_candidates(soft))["suspension.end_stop"][0]
+    assert (stop.start[2], stop.low[2], stop.high[2]) == pytest.approx((2000.0, 1000.0, 2e5))

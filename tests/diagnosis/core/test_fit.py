@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from seatsim.diagnosis.fit import PATTERN_STEPS, fit, search_pattern, solve_step
+from seatsim.diagnosis.fit import PATTERN_STEPS, fit, list_directions, search_pattern, solve_step
 from seatsim.diagnosis.objective import PRIOR_STD
 from seatsim.diagnosis.settings import DiagnosisSettings
 
@@ -121,3 +121,10 @@ def test_a_pattern_search_ends_within_its_smallest_step_of_the_minimum_and_evalu
     assert found.parameters.values[-1][0] == pytest.approx(1.0, abs=smallest)
     assert found.cost < start.cost and np.array_equal(found.parameters.deviations, start.parameters.deviations)
     assert search_pattern(objective, found) is found
+
+
+@pytest.mark.parametrize(("count", "directions"), [(1, 2), (2, 8), (3, 18)])
+def test_a_pattern_search_goes_along_one_parameter_or_two(count, directions):
+    found = list_directions(count)
+    assert found.shape == (directions, count) and len({tuple(each) for each in found}) == directions
+    assert np.all(np.isin(np.count_nonzero(found, axis=1), (1, 2)))

@@ -108,3 +108,12 @@ def test_an_effect_that_the_scenario_states_is_screened_from_what_it_states(star
     stated = offer("b.two", start=start, low=low, high=high, cls=Stated)._replace(nominal=0.6)
     (found,) = screened(objective, [stated])
     assert found.parameters.values[0][0] == pytest.approx(expected, abs=0.02)
+
+
+@pytest.mark.parametrize("true, expected", [(1.28, 1.27), (1.17, 1.16), (1.07, 1.08), (0.85, 1 / 1.16), (1.0, 1.0)])
+def test_a_limit_is_tried_a_little_to_the_side_that_the_prediction_points_to(true, expected):
+    # What a limit adds falls with it: 2 - limit of the signal.
+    objective = pose({"d.limit": 2.0 - true})
+    (found,) = screened(objective, [offer("d.limit", start=1.0, low=0.0, high=1e3, cls=Limited)])
+    assert found.parameters.terms[0].is_limit
+    assert found.parameters.values[0][0] == pytest.approx(expected)

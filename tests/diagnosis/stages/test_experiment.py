@@ -3,10 +3,12 @@
 import dataclasses
 import re
 
+import numpy as np
 import pytest
 
 from seatsim.diagnosis.candidates import Candidate, list_candidates
-from seatsim.diagnosis.design import candidate_experiments
+from seatsim.diagnosis.design import candidate_experiments, experiment
+from seatsim.diagnosis.design.candidate_experiments import list_candidate_experiments
 from seatsim.diagnosis.design.experiment import propose_experiment
 from seatsim.diagnosis.fit import refit
 from seatsim.effects.sensor import Gain
@@ -85,3 +87,14 @@ def test_a_wrong_sensor_is_told_from_another_driver_by_calibrating_it_and_the_ot
     assert 0.0 < found.likeness_now <= 1.0 and found.likeness_then == 0.0
     beside = propose_experiment(*fit_members(objective, *terms, "suspension.progressive_spring"))
     assert beside.reason.startswith(f"{found.reason}; beside that, ") and beside.kind in ("excitation", "none")
+
+
+def test_the_reach_of_an_excitation_is_its_share_of_the_travel(equivalent):
+    objective, nuisances, _ = equivalent
+    problem, rig = objective.problem, nuisances.evaluation.parameters
+    (sweep,) = [each for each in list_candidate_experiments(problem) if each.name == "sweep"]
+    travel = experiment._respond(problem, sweep, rig)["suspension_displacement"]
+    assert experiment._measure_reach(problem, sweep, rig) == pytest.approx(np.max(np.abs(travel)) / 0.05)
+    plant = problem.scenario.plant._replace(travel=(-1e3, 0.02))
+    stated = dataclasses.replace(problem, scenario=dataclasses.replace(problem.scenario, plant=plant))
+    assert experiment._measure_reach(stated, sweep, rig) == pytest.approx(np.max(travel) / 0.02)
