@@ -30,17 +30,6 @@ def test_energy_damping_and_offset_of_a_bingham_damper(record, sine):
     assert row.current == 0.5 and math.isnan(row.temperature) and row.notes == ()
 
 
-def test_an_offset_stroke_noise_and_rests_are_no_matter(record, sine):
-    centred, seconds = sine(0.005, 2.0)
-    offset, _ = sine(0.005, 2.0, offset=0.031)
-    a = summarise_record(record(centred, seconds))
-    moved = record(offset, seconds)
-    noise = 2e-5 * np.random.default_rng(0).standard_normal(len(moved.force))
-    b = summarise_record(moved._replace(displacement=moved.displacement + noise))
-    assert a.cycles == b.cycles
-    assert b.energy == pytest.approx(a.energy, rel=5e-3) and b.amplitude == pytest.approx(a.amplitude, rel=2e-2)
-
-
 @pytest.mark.parametrize("kind", ["chirp", "random", "still", "one cycle"])
 def test_what_is_not_cyclic_is_told(record, kind):
     t = np.linspace(0.0, 8.0, 4000)

@@ -148,25 +148,3 @@ def test_a_model_without_a_source_is_not_kept(model):
     )
     assert model(before=inline.format(1)) == (3.0, False)
     assert model(before=inline.format(2)) == (6.0, False)
-
-
-KEY = """
-import sys
-import seatsim
-from seatsim.compilation.cached import digest
-from seatsim.schema import registry
-from seatsim.simulation import simulate
-parts = [registry.find("damper", "bouc_wen"), registry.find("law", "hybrid"), registry.find("effect", "coil.lag")]
-print(digest(sys.modules[name] for name in ("seatsim.kernel.loop", *(part.__module__ for part in parts))))
-"""
-
-
-def test_tests_and_commands_share_what_is_compiled(tmp_path):
-    """pytest loads this package as a plugin, and rewrites the asserts of plugins: what is compiled must have none."""
-    file = tmp_path / "test_key.py"
-    file.write_text(f"def test_key():\n    exec({KEY!r}, {{}})\n")
-    command = subprocess.run([sys.executable, "-c", KEY], capture_output=True, text=True, check=True)
-    tests = [sys.executable, "-m", "pytest", "-q", "-s", "-n", "0", "-c", os.devnull, "--rootdir", tmp_path, file]
-    plain = os.environ | {"PYTEST_ADDOPTS": ""}
-    found = subprocess.run(tests, capture_output=True, text=True, check=True, cwd=tmp_path, env=plain)
-    assert command.stdout.strip() in found.stdout

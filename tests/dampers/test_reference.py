@@ -126,12 +126,6 @@ class TestYu2019:
             claim, "table 1 of Yu et al. 2019: RMSE / sqrt(1 - R2)", np.std(forces), implied, tolerance=0.01 * implied
         )
 
-    def test_the_force_is_continuous_at_rest_and_where_the_rationals_end(self):
-        damper, tiny = Yu2019(), 1e-9
-        for v in (0.0, damper.held_from, -damper.held_from):
-            sides = [damper.force(0.001, v + s, 1.2, COLD, POSITIVE) for s in (-tiny, tiny)]
-            assert sides[0] == pytest.approx(sides[1], abs=1e-2)
-
 
 def test_motion_off_centre_is_better_predicted_by_the_recent_mean_than_by_the_sign(shared):
     """The swept sine of UTFSM moves between -4 mm and 0: the branch has to come from the recent mean."""

@@ -8,10 +8,9 @@ import pytest
 from seatsim.cli.outputs.run_tables import make_comparison_table
 from seatsim.metrics.table import Metric
 from seatsim.scenario.loading import load, single
-from seatsim.schema.errors import RunError
 from seatsim.schema.registry import specification_of
 from seatsim.simulation.result import Channel, History, Result
-from seatsim.simulation.runs import compare, run, run_many, run_one
+from seatsim.simulation.runs import run
 from seatsim.simulation.validity import LARGEST_RESIDUAL, list_ranges_left, list_reasons
 
 
@@ -42,26 +41,6 @@ def test_a_channel_has_a_unit_and_what_is_computed_from_it_has_none(scenario):
     with pytest.raises(ValueError, match="read-only"):
         force *= force
     assert Channel(np.zeros(2), "x", "m").shape == (2,)
-
-
-def test_the_table_has_a_row_for_each_run_and_what_sets_it_apart(kept_seat_file):
-    short = {"excitation.duration": 2.0, "variants": {"soft": {"plant.driver_mass": 60.0}, "hard": {}}}
-    table = run(kept_seat_file, short).table
-    assert list(table["variant"]) == ["soft", "hard"] and list(table.columns[:2]) == ["scenario", "variant"]
-    single_runs = [run_one(one) for one in load(kept_seat_file, short)]
-    for name in ("driver_acceleration_rms", "suspension_displacement_rms"):
-        assert list(table[name]) == [one.metrics[name].value for one in single_runs]
-    assert len(compare([kept_seat_file, kept_seat_file], {"excitation.duration": 2.0}).runs) == 2
-    assert Result(single_runs)["time"][-1] == single_runs[0]["time"][-1]
-
-
-def test_many_runs_are_yielded_in_order_with_their_failures(scenario):
-    falling = replace(scenario, plant=scenario.plant._replace(suspension_stiffness=-1e6, suspension_damping=-1e4))
-    done = []
-    pairs = list(run_many([scenario, falling, scenario], done.append))
-    assert [pair[0] for pair in pairs] == [scenario, falling, scenario] and len(done) == 3
-    assert isinstance(pairs[1][1], RunError)
-    assert np.array_equal(pairs[0][1]["damper_force"], pairs[2][1]["damper_force"])
 
 
 def warned(scenario, share, speed=0.0, current=0.0, warmer=0.0):

@@ -5,7 +5,6 @@ import pandas as pd
 import pytest
 from scipy.stats import qmc
 
-from seatsim.plots.sweeps import plot_comfort
 from seatsim.report.sweep import advise_on_keys, tabulate_best
 from seatsim.sweeps.parts import SweepRows, count_exceedances
 from seatsim.sweeps.sensitivity import analyse_sensitivity, choose_key
@@ -61,20 +60,6 @@ def test_shares_have_wilson_intervals(known, conform):
     for end, found_end, expected in (("low", first.low, 0.0435), ("high", first.high, 0.2136)):
         conform(f"95 % interval of a share of 5 of 50, {end} end", "Wilson 1927", found_end, expected, tolerance=1e-4)
     assert [row.exceeding for row in found[1:]] == [0, 0, 0]
-
-
-@pytest.mark.parametrize(("key", "front"), [("controller.damping", ["Pareto front"]), ("plant.driver_mass", [])])
-def test_each_road_has_a_picture_of_comfort_over_travel_and_a_front_where_runs_are_rivals(key, front):
-    road, value = np.repeat(["B", "C", "D"], 20), np.tile([60.0, 80.0], 30)
-    noise = np.random.default_rng(3).random((2, 60))
-    travel = "suspension_displacement_rms"
-    frame = pd.DataFrame({"excitation.road_class": road, key: value, COMFORT: noise[0], travel: noise[1]})
-    rows = rows_of(frame, [key, "excitation.road_class"])
-    rows = rows._replace(metrics=[COMFORT, travel])
-    figure = plot_comfort(rows, rows.keys)
-    assert [axes.get_title(loc="left")[-1] for axes in figure.axes] == ["B", "C", "D"]
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["60.00", "80.00", *front]
-    assert len(plot_comfort(rows, [key]).axes) == 1
 
 
 def test_a_condition_is_never_advised_on_as_a_choice():
