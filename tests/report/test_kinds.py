@@ -25,28 +25,6 @@ def test_a_run_says_comfort_and_travel():
     assert outline.rows("Settings")["plant.driver_mass"] == ["kg", "60"]
 
 
-def test_a_comparison_names_the_most_comfortable_run_and_marks_it():
-    text = render("runs")
-    best = min(runs(), key=lambda run: run.metrics["driver_acceleration_weighted"].value)
-    assert f"“{best.scenario.label['variant']}” is the most comfortable" in Outline(text).headings[0]
-    assert text.count('<tr class="strong">') == 1 and len(text) < 700_000
-    assert text.count("<img ") == len(pictures()) >= 5
-
-
-def test_conditions_with_several_runs_are_compared_each_by_itself():
-    others = []
-    for run in runs():
-        half = {name: metric._replace(value=0.5 * metric.value) for name, metric in run.metrics.items()}
-        others.append(replace(run, scenario=replace(run.scenario, name="smoother", seed=2), metrics=half))
-    report = report_runs([*runs(), *others], {}, "seatsim compare a b", "two")
-    said = "“skyhook” is the most comfortable under both conditions. The worst of them is seat: the driver"
-    assert report.answer.startswith(said)
-    blocks = {section.anchor: section.blocks[-1] for section in report.sections if section.blocks}
-    assert list(blocks["signals"].runs) == ["seat", "smoother"] and len(blocks["signals"].lines) == 4
-    assert blocks["figures"].strong == [0, 4]
-    render_report(report)
-
-
 def test_a_run_that_cannot_be_relied_on_is_marked_and_never_the_best():
     best = min(runs(), key=lambda run: run.metrics["driver_acceleration_weighted"].value)
     doubted = [replace(run, unverified=("a reason",)) if run is best else run for run in runs()]
