@@ -50,6 +50,13 @@ def test_chirp_passes_its_frequencies(sweep, start, stop):
     assert np.abs(floor.displacement[1000:]).max() == pytest.approx(0.01, rel=1e-3)
 
 
+@pytest.mark.parametrize("sweep", ["linear", "logarithmic"])
+def test_chirp_of_acceleration_has_that_amplitude(sweep):
+    acceleration = Chirp(1.0, 20.0, 2.0, 60.0, "acceleration", sweep).floor(STEP, 0).acceleration[5000:]
+    peaks = np.abs(acceleration.reshape(-1)[: len(acceleration) // 1000 * 1000]).reshape(-1, 1000).max(axis=1)
+    np.testing.assert_allclose(peaks, 2.0, rtol=0.02)
+
+
 def test_chirp_between_equal_frequencies_is_refused():
     with pytest.raises(InputError, match="use kind: sine"):
         Chirp(3.0, 3.0, 0.01, 10.0).floor(STEP, 0)

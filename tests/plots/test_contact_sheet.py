@@ -5,7 +5,6 @@ from itertools import combinations
 from urllib.parse import unquote
 from xml.etree import ElementTree
 
-import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
@@ -128,11 +127,3 @@ def test_scenarios_have_pictures_of_their_own(made_up):
     assert {"psd_em1", "psd_em5", "time_histories_em1", "transmissibility_em5"} <= set(figures) and "psd" not in figures
     first, second = ([text.get_text() for text in figures[f"psd_{n}"].legends[0].get_texts()] for n in ("em1", "em5"))
     assert first == second == ["skyhook", "off", "floor"]
-
-
-def test_a_run_is_not_changed_by_drawing_it(made_up):
-    run = made_up()
-    before = {name: values.copy() for name, values in run.history.channels.items()}
-    plot_result(Result([run]))
-    for name, values in run.history.channels.items():
-        np.testing.assert_array_equal(values, before[name])

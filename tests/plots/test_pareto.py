@@ -32,9 +32,3 @@ def test_panels_are_titled_and_points_named_by_what_sets_them_apart(runs):
     named = [text.get_text() for text in figure.legends[0].get_texts()]
     assert sorted(name.partition("  ")[2] for name in named if name[1] == " ") == ["hard", "soft"]
     assert {text.get_text() for text in figure.axes[0].texts} == {"A", "B"}
-
-
-def test_without_weighted_accelerations_it_says_so(runs):
-    bare = [dataclasses.replace(run, metrics={}) for run in runs(["soft", "hard"])]
-    [axes] = plot_pareto(bare).axes
-    assert "200 samples" in axes.texts[0].get_text()

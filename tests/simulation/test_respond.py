@@ -9,7 +9,6 @@ from seatsim.effects.base import off
 from seatsim.excitations.base import Floor
 from seatsim.scenario.loading import load, single
 from seatsim.scenario.scenario import Start
-from seatsim.schema.errors import InputError
 from seatsim.schema.registry import find
 from seatsim.simulation.inputs import BenchInputs, Forces, SeatInputs
 from seatsim.simulation.respond import SEAT_OUTPUTS, respond
@@ -98,11 +97,6 @@ def test_a_command_voltage_counts_with_its_gain_and_a_command_before_it(bench):
     assert respond(bench, both)["coil_current"][-1] == pytest.approx(0.1, rel=1e-9)
     too_much = respond(bench, MOVED._replace(current_command=np.full(1500, 3.0)))["coil_current"]
     assert too_much[-1] == pytest.approx(1.0, rel=1e-9)
-
-
-def test_a_bench_cannot_be_shaken_as_a_seat(bench, inputs):
-    with pytest.raises(InputError, match="has no seat to simulate"):
-        respond(bench, inputs)
 
 
 def test_a_recorded_temperature_scales_the_damper(bench):

@@ -89,14 +89,6 @@ def test_a_figure_without_value_and_an_open_energy_balance_are_reasons(kept_seat
     assert "0.0011 of the energy is unaccounted for" in reason
 
 
-def test_a_step_too_long_to_weight_is_said(kept_seat_file):
-    short = {"excitation.duration": 2.0, "controller.sample_time": 0.01}
-    for step, count in ((0.005, 0), (0.01, 1)):
-        (found,) = run(kept_seat_file, {**short, "solver.step": step}).runs
-        assert ("seat_factor" in found.metrics) == (count == 0) and len(found.warnings) == count
-        assert all("choose a step of 5 ms or less" in warning for warning in found.warnings)
-
-
 def test_a_run_says_why_its_figures_are_unverified(kept_seat_file):
     sure, (doubtful,) = (
         run(kept_seat_file).runs[0],

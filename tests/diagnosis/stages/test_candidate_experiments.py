@@ -74,3 +74,11 @@ def test_factors_change_the_free_keys_of_an_excitation_and_no_current_exceeds_th
     assert bump.text == "drive over a bump of 25 mm" and bump.scenario["excitation"]["height"] == 0.025
     for name, item in EXCITATIONS.items():
         assert set(item.free) <= {*item.keys, *item.law} - {"kind", "law"}, name
+
+
+def test_a_bench_repeats_the_motion_of_its_damper(bench):
+    found, inputs = by_name(bench)["coil_current"].floor, bench.inputs["first"]
+    assert found.step == 1.0 / RATE and not found.acceleration.any() and not found.velocity.any()
+    assert found.displacement is inputs.displacement
+    assert found.command is inputs.current_command and found.temperature is inputs.damper_temperature
+    assert found.coil_current is None
