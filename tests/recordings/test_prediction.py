@@ -119,6 +119,8 @@ def test_the_command_shows_both_and_writes_them(heavier, tmp_path, seatsim_comma
     content = json.loads((tmp_path / "out" / "gap.json").read_text())
     predicted, measured = content["predicted"], content["measured"]
     assert content["overall"] == measured["after"] and set(content["channels"]) == set(predicted["channels"])
+    for part in ("before", "after"):
+        assert predicted[part] == pytest.approx(measured[part], rel=0.05)
     assert predicted["shrink"] == pytest.approx(measured["shrink"], abs=0.05)
     low, high = predicted["shrink_interval"]
     assert low <= predicted["shrink"] <= high
