@@ -70,6 +70,21 @@ def test_without_current_nothing_that_depends_on_it_is_free():
     assert [c.name for c in laws.components if c.field == "c0"] == ["c0[0]"]
 
 
+def test_a_law_has_one_value_for_each_of_few_currents():
+    between = coordinates(ModifiedBoucWen(), levels=2)
+    ours = [c for c in between.components if c.field == "alpha"]
+    assert [(c.at, c.label) for c in ours] == [(0.0, "alpha(0 A)"), (1.0, "alpha(1 A)")]
+    assert between.to_record(between.to_vector(between.start)).alpha[2:] == (0.0, 0.0)
+
+
+def test_a_law_that_is_nowhere_negative_stays_so():
+    record = ModifiedBoucWen()
+    between = coordinates(record)
+    assert all(c.low == 0.0 for c in between.components if c.field in ("c0", "c1", "alpha"))
+    free = coordinates(record._replace(alpha=(100.0, -900.0, 0.0, 0.0), c0=(0.0, 0.0, 0.0, 0.0)))
+    assert all(c.low == -math.inf for c in free.components if c.field in ("c0", "alpha"))
+
+
 def test_a_damper_is_scaled_in_force_and_current():
     record = ModifiedBoucWen()
     other = rescale_damper(record, 3.0, 2.0)

@@ -113,13 +113,3 @@ def test_a_sweep_is_compared_over_its_number(made_up):
     np.testing.assert_array_equal(figure.axes[0].lines[0].get_xdata(), [20.0, 50.0, 80.0])
     travel = 1e3 * runs[0].metrics["suspension_displacement_rms"].value
     assert figure.axes[2].lines[0].get_ydata()[2] == pytest.approx(travel)
-
-
-def test_more_runs_than_lines_can_tell_apart(made_up):
-    mass = "plant.driver_mass"
-    sweep = [made_up({"variant": v, mass: m}, seconds=0.1) for v in "abc" for m in (50, 60, 70)]
-    assert [look.label for look in looks.show_runs(sweep)[0].looks] == ["a", "b", "c"]
-    many = [made_up({"seed": n}, seconds=0.1) for n in range(20)]
-    spread = [run.scenario.label["seed"] for run in looks.show_runs(many)[0].runs]
-    assert len(spread) == 8 and spread[0] == 0 and spread[-1] == 19
-    assert "8 of 20 runs are shown, spread evenly over their order." in " ".join(texts(plot_psd(many))[1].split())
