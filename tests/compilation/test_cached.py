@@ -1,4 +1,4 @@
-"""What the key of the cache is made of, module by module, without compiling anything."""
+"""The folder of the cache: the one that was chosen, and safe from other users."""
 
 import os
 
