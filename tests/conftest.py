@@ -15,23 +15,13 @@ from seatsim.schema import modules, registry
 
 from .faulty_recordings import record_sound_rig
 from .ledger import Ledger, conform
+from .text import beside
 
 __all__ = ["conform"]
 
 pytest_plugins = ["pytester"]
 ROOT = Path(__file__).resolve().parents[1]
-SEAT = """\
-plant: {frame_mass: 20.0, driver_mass: 80.0, suspension_stiffness: 4600.0, suspension_damping: 150.0,
-        cushion_stiffness: 60000.0, cushion_damping: 1500.0}
-damper:
-  model: bouc_wen
-  parameters: {c_a: 250.0, c_b: 350.0, alpha_a: 45.0, alpha_b: 620.0, k0: 0.0, x0: 0.0, f0: 0.0, A: 2000.0,
-               beta: 1000.0, gamma: 1000.0, n: 2}
-actuator: {rate: 130.0, max_current: 1.0}
-temperature: 20.0
-controller: {law: static_output_feedback, gain: [2.0, 2147.6], sample_time: 0.005}
-excitation: {kind: iso7096, spectral_class: EM5, duration: 6.0}
-"""
+SEAT = beside(__file__, "seat.yaml")
 
 
 gc.set_threshold(100_000, 50, 100)

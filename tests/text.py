@@ -1,5 +1,7 @@
 """Tables of tests as text: a mapping or rows, written as in a scenario."""
 
+from pathlib import Path
+
 from ruamel.yaml import YAML
 
 
@@ -20,3 +22,8 @@ def cases(text):
     """
     rows = (line.split(" => ") for line in text.replace("\\\n", "").strip("\n").splitlines())
     return [(*(part.replace("\\n", "\n") for part in (old, new)), said.split(" | ")) for old, new, said in rows]
+
+
+def beside(file, name):
+    """Return the text of a file that lies beside a module."""
+    return Path(file).with_name(name).read_text(encoding="utf-8")

@@ -1,11 +1,6 @@
 """Effects in each of their forms: all that a record allows is there, sizes are scaled, and verdicts are judged."""
 
-import pytest
-
-from seatsim.blind.score.verdicts import Verdict
 from seatsim.effects.base import EFFECTS
-from seatsim.effects.coil import CurrentLimit
-from seatsim.effects.seat import EndStop, Friction
 from seatsim.schema.registry import names
 
 
@@ -16,39 +11,3 @@ def test_every_parameter_of_an_effect_has_a_form_in_which_it_is_stated(benchmark
         # The band and the phase of an unmeasured input change how it is made, and not what it is.
         left_out = {"low", "high", "phase"} if name == "floor.unmeasured_input" else set()
         assert stated == set(EFFECTS.find(name)._fields) - left_out, name
-
-
-def test_a_size_is_multiplied_and_a_limit_divided(benchmark):
-    case = benchmark("effect_forms").FormCase
-    assert case("suspension.friction", 1, 0.5).record == Friction(12.0, 2e-4)
-    assert case("coil.current_limit", 0, 2.0).record == CurrentLimit(0.25)
-    assert case("suspension.end_stop", 1, 2.0).record == EndStop(-0.009, 0.009, 60000.0, 0.5, 2.0)
-
-
-@pytest.mark.parametrize(
-    ("verdict", "moved", "left", "right"),
-    [
-        (Verdict("known", selected=("coil.delay",)), 0.3, 0.2, True),
-        (Verdict("ambiguous", selected=("coil.lag",), groups=(("coil.lag", "coil.delay"),)), 0.3, 0.2, True),
-        (Verdict("known", selected=("coil.lag",)), 0.3, 0.2, False),
-        (Verdict("unknown", selected=("coil.delay",)), 0.3, 0.2, False),
-        (Verdict("none"), 0.3, 0.2, False),
-        (Verdict("none"), 0.04, 0.2, True),
-        (Verdict("none"), 0.3, 0.04, True),
-        (Verdict("missing"), 0.01, 1.0, False),
-    ],
-)
-def test_a_verdict_is_right_if_it_names_the_effect_or_nothing_material_is_left(benchmark, verdict, moved, left, right):
-    module = benchmark("effect_forms")
-    found = module.FoundForm(module.FormCase("coil.delay", 0, 1.0), verdict, moved, left, "")
-    assert found.right is right
-
-
-def test_first_all_typical_sizes_then_the_others(benchmark):
-    module = benchmark("effect_forms")
-    cases = module.list_cases(["coil.delay", "driver.mass"], (1.0, 0.5))
-    assert [(each.effect, each.form, each.factor) for each in cases] == [
-        (effect, form, factor)
-        for factor in (1.0, 0.5)
-        for form, effect in ((0, "coil.delay"), (0, "driver.mass"), (1, "driver.mass"))
-    ]

@@ -1,39 +1,8 @@
 """Cases on measured recordings: how they are counted, nominals that hold mechanisms, and the joint fit beside them."""
 
-import json
-
 import pytest
 
-from seatsim.blind.score.verdicts import Verdict
-
 from ..blind.carriers import bench_carrier, offset, write_carrier
-
-CARRIED = {"kind": "carried", "effects": ["sensor.gain"], "blocks": ["sensor"]}
-
-
-@pytest.mark.parametrize(
-    ("said", "expected"),
-    [
-        (Verdict("unknown", causes=("sensor.gain",)), "first"),
-        (Verdict("known", causes=("coil.lag",), groups=(("coil.lag", "sensor.gain"),)), "pair"),
-        (Verdict("known", causes=("coil.lag",), selected=("coil.lag",)), "wrong"),
-        (Verdict("unknown", causes=("coil.lag",)), "missed"),
-        (Verdict("missing"), "missed"),
-    ],
-)
-def test_outcomes(benchmark, said, expected):
-    assert benchmark("measured_carriers").outcome(CARRIED, said) == expected
-
-
-def test_cases_that_a_method_has_not_done_and_untouched_ones_are_not_counted(benchmark, tmp_path):
-    labels = {tmp_path / "rig" / name: CARRIED for name in ("a", "b", "c")}
-    labels[tmp_path / "rig" / "d"] = {"kind": "untouched", "effects": [], "blocks": []}
-    for name in ("a", "b", "d"):
-        (tmp_path / "rig" / name / "bic").mkdir(parents=True)
-    said = {"verdict": "known", "causes": [{"effect": "sensor.gain"}], "selected": ["sensor.gain"]}
-    (tmp_path / "rig" / "a" / "bic" / "diagnosis.json").write_text(json.dumps(said))
-    found = benchmark("measured_carriers").list_outcomes(labels, "bic")
-    assert found.to_numpy().tolist() == [["rig", "sensor.gain", "first"], ["rig", "sensor.gain", "missed"]]
 
 
 def test_a_nominal_holds_the_mechanism_that_the_records_show(benchmark, tmp_path):

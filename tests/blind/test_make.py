@@ -1,13 +1,10 @@
 """Sets: repeatable, resumable, sealed, and silent about their labels."""
 
 import gzip
-from collections import Counter
 
-import numpy as np
 import pytest
 
 from seatsim import load_recording
-from seatsim.blind.make.cases import compose
 from seatsim.blind.make.make import make, make_public
 from seatsim.blind.sealed import EFFECTS, unseal
 from seatsim.schema.errors import InputError
@@ -77,19 +74,6 @@ def test_wrong_keys_and_changed_files_are_refused(whole, tmp_path):
         unseal(sealed, key, folder)
     with pytest.raises(InputError, match="lies inside"):
         make(1, 1, folder, folder / "sealed", processes=1)
-
-
-@pytest.mark.parametrize("preset", ["mixed", "varied"])
-def test_the_composition(preset):
-    orders = compose(400, preset, np.random.default_rng(0))
-    assert {order.varied for order in orders} == {preset == "varied"}
-    assert Counter(order.kind for order in orders) == {"none": 80, "one": 160, "two": 80, "outside": 80}
-    singles = [order.names[0] for order in orders if order.kind == "one"]
-    assert {singles.count(effect) for effect in EFFECTS} <= {6, 7}
-    assert all(len(set(order.names)) == 2 for order in orders if order.kind == "two")
-    assert [order.kind for order in orders[:20]].count("none") < 15
-    with pytest.raises(InputError, match="did you mean 'outside'"):
-        compose(3, "outsid", np.random.default_rng(0))
 
 
 def test_a_public_set_is_the_same_bytes_whoever_makes_it_and_its_name_fixes_what_its_key_opens(tmp_path):

@@ -105,15 +105,6 @@ def test_a_change_of_a_carrier_alters_no_file_but_its_signals(make, tmp_path):
             assert kept(content) == kept(before[name]), change.form
 
 
-def test_a_command_recorded_as_zero_or_one_can_be_changed(tmp_path):
-    carrier = bench_carrier()
-    table = {**carrier.tables["run-0"], "current_command": np.repeat([0.0, 1.0], 1000)}
-    read = read_carrier(write_carrier(carrier._replace(tables={"run-0": table}), tmp_path / "carrier"))
-    changed = {"run-0": {**table, "current_command": 1.234 * table["current_command"]}}
-    lines = gzip.decompress(encode_carrier(read._replace(tables=changed), ("run-0",))["run-0.csv.gz"])
-    assert float(lines.decode().splitlines()[-1].split(",")[-1]) == pytest.approx(1.234)
-
-
 def digits(table):
     """Return how many digits after the point each column of a table has, but its time."""
     rows = [line.split(",")[1:] for line in gzip.decompress(table).decode().splitlines()[1:]]

@@ -16,7 +16,7 @@ from seatsim.cli.outputs.diagnosis_results import make_score_tables
 from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
 
-from .carriers import bench_carrier, offset, seat_carrier, write_carrier, write_yaml
+from .carriers import bench_carrier, offset, write_yaml
 
 ONE = {"kind": "one", "effects": ["damper.remanence"], "blocks": ["damper"], "forms": ["remanence-decay"]}
 TWO = {"kind": "two", "effects": ["coil.lag", "driver.mass"], "blocks": ["coil", "driver"]}
@@ -137,27 +137,6 @@ def test_shrink_claimed_and_reached(tmp_path):
     off = np.array([0.9 - true["a"], 0.6 - true["b"], 0.1 - true["f"]])
     assert (found.mean_difference, found.bias) == pytest.approx((np.mean(np.abs(off)), np.mean(off)))
     assert score_shrink(base, opened, dict.fromkeys(said, Verdict("known")), 1, None) is None
-
-
-@pytest.mark.parametrize("bench_case", [True, False])
-def test_a_diagnosis_of_another_kind_of_rig_is_named(bench_case, tmp_path):
-    case, other = (bench_carrier(), seat_carrier()) if bench_case else (seat_carrier(), bench_carrier())
-    folder = write_carrier(case, tmp_path / "case-0001")
-    files = {path.name: path.read_bytes() for path in folder.iterdir()}
-    figures = {"driver_acceleration" if bench_case else "damper_force": [0.1]}
-    missed = dict.fromkeys(figures, 0.1)
-    error = {
-        "bands": [[0.0, None]],
-        "noise_rms": missed,
-        "channels": figures,
-        "measured_over_simulated": figures,
-        "by_run": [{"run": "a", "channels": figures, "missed_rms": missed}],
-    }
-    (folder / "diagnosis.json").write_text(json.dumps({"verdict": "known", "causes": [], "model_error": error}))
-    augmented = write_yaml(other.nominal, folder / "augmented.yaml")
-    said = Verdict("known", shrink=0.5, augmented=augmented)
-    with pytest.raises(InputError, match=r"is of another kind of rig than .*case-0001, which is of rig"):
-        score_shrink(tmp_path, Sealed({"case-0001": ONE}, {"case-0001": files}, {}), {"case-0001": said}, 1, None)
 
 
 def test_a_verdict_is_read_as_the_contract_has_it(tmp_path):

@@ -11,7 +11,6 @@ from seatsim.schema.errors import InputError
 
 from ..identification.benches import columns
 from ..text import words
-from .conftest import DAMPER
 
 
 def command(*arguments):
@@ -35,14 +34,6 @@ def test_a_bench_table_gives_files_and_a_table(record, sine, tmp_path):
     whole = json.loads((tmp_path / "out" / "characterisation.json").read_text())
     assert [(row["current_A"], row["cycles"]) for row in whole["records"]] == [(1.0, 8), (0.0, 8)]
     assert len(whole["records"][0]["cycle_values"]["energy"]) == 8 and whole["response"] == []
-
-
-def test_a_damper_of_a_file(tmp_path):
-    path, stated = tmp_path / "damper.yaml", f"model: bouc_wen, parameters: {DAMPER._replace(f0=25.0)._asdict()}"
-    path.write_text(f"damper: {{{stated}}}\nactuator: {{rate: 50, max_current: 0.8}}\n")
-    assert load_damper(path).record.f0 == 25.0
-    path.write_text("model: original_bingham\nparameters: {f0: 25.0}\n")
-    assert load_damper(path).record.f0 == 25.0
 
 
 @pytest.mark.parametrize(

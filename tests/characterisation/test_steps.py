@@ -1,20 +1,13 @@
 """Steps of current: found where they are, and response times of known coils."""
 
-import math
-
 import numpy as np
 import pytest
 
-from seatsim.characterisation.steps import find_crossing, find_steps, measure_responses
+from seatsim.characterisation.steps import find_steps, measure_responses
 
 
 def square(on, off, period):
     return lambda t: np.where(t % period < 0.5 * period, off, on)
-
-
-def triangle(speed, period):
-    """Constant speed out and back; reversals fall between the steps of a current of half the period."""
-    return lambda t: speed * (0.25 * period - np.abs((t + 0.125 * period) % period - 0.5 * period))
 
 
 def test_steps_are_found_where_they_are():
@@ -30,18 +23,6 @@ def test_steps_are_found_where_they_are():
 def test_what_does_not_step_has_no_steps(wave):
     t = np.arange(4000) / 1000.0
     assert find_steps(wave(t), 1000.0, False) == []
-
-
-@pytest.mark.parametrize("noise", [0.0, 3.0])
-def test_rise_and_fall_of_a_known_coil_at_constant_speed(record, noise):
-    made = record(triangle(0.08, 4.0), 12.0, square(0.9, 0.1, 2.0), lag=(150.0, 70.0), noise=noise)
-    rise, fall = sorted(measure_responses(made), key=lambda answer: not answer.rises)
-    assert rise.speed == pytest.approx(0.08) and rise.note == fall.note == ""
-    for answer, rate in ((rise, 150.0), (fall, 70.0)):
-        t90, t95 = (find_crossing(answer.time, answer.share, level) for level in (0.9, 0.95))
-        assert t95 == pytest.approx(math.log(20.0) / rate, rel=0.03 + 0.05 * (noise > 0), abs=5e-4)
-        assert t90 == pytest.approx(math.log(10.0) / rate, rel=0.06, abs=5e-4)
-    assert math.isnan(rise.current_t10)
 
 
 def test_what_cannot_be_determined_says_why(record):

@@ -82,8 +82,3 @@ def test_shells_complete_keys_and_names(typed, among, meaning, seatsim_command, 
     found = dict((*line.split("\t"), "")[:2] for line in seatsim_command()[1].splitlines())
     assert all(name.startswith(typed.split(" ")[-1]) for name in found)
     assert meaning in found[among]
-
-
-def test_without_a_command_three_things_to_try_are_said(seatsim_command):
-    status, out, _ = seatsim_command()
-    assert status == 0 and "Three things to try" in out and out.count("\n  seatsim ") == 3

@@ -117,6 +117,15 @@ def test_an_edited_source_is_compiled_anew_and_found_again_once_it_is_as_it_was(
     assert model() == (HERE, True)
 
 
+@pytest.mark.parametrize("constant", ["(float(np.loadtxt('gain')),)", "np.loadtxt('gain', ndmin=1)"])
+def test_a_constant_of_another_file_does_not_run_stale(model, constant):
+    (model.folder / "slope.py").write_text("import numpy as np" + SLOPE.replace("0.5", constant))
+    (model.folder / "model.py").write_text(MODEL.replace("+ GAIN", "+ GAIN[0]"))
+    for gain in (0.5, 0.7):
+        (model.folder / "gain").write_text(str(gain))
+        assert model() == (pytest.approx(6.0 + gain), False)
+
+
 def test_a_source_edited_after_its_import_does_not_mislead_later_runs(model):
     change = "p = Path('model.py'); p.write_text(p.read_text().replace('1.0 *', '2.0 *'))"
     assert model(before=change)[0] == HERE
@@ -148,25 +157,3 @@ def test_a_model_without_a_source_is_not_kept(model):
     )
     assert model(before=inline.format(1)) == (3.0, False)
     assert model(before=inline.format(2)) == (6.0, False)
-
-
-KEY = """
-import sys
-import seatsim
-from seatsim.compilation.cached import digest
-from seatsim.schema import registry
-from seatsim.simulation import simulate
-parts = [registry.find("damper", "bouc_wen"), registry.find("law", "hybrid"), registry.find("effect", "coil.lag")]
-print(digest(sys.modules[name] for name in ("seatsim.kernel.loop", *(part.__module__ for part in parts))))
-"""
-
-
-def test_tests_and_commands_share_what_is_compiled(tmp_path):
-    """pytest loads this package as a plugin, and rewrites the asserts of plugins: what is compiled must have none."""
-    file = tmp_path / "test_key.py"
-    file.write_text(f"def test_key():\n    exec({KEY!r}, {{}})\n")
-    command = subprocess.run([sys.executable, "-c", KEY], capture_output=True, text=True, check=True)
-    tests = [sys.executable, "-m", "pytest", "-q", "-s", "-n", "0", "-c", os.devnull, "--rootdir", tmp_path, file]
-    plain = os.environ | {"PYTEST_ADDOPTS": ""}
-    found = subprocess.run(tests, capture_output=True, text=True, check=True, cwd=tmp_path, env=plain)
-    assert command.stdout.strip() in found.stdout

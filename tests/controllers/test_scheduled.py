@@ -7,7 +7,7 @@ from controllers.laws.scheduled_output_feedback import ScheduledOutputFeedback
 from controllers.laws.static_output_feedback import StaticOutputFeedback
 from controllers.seat_plant import Weights
 from seatsim.rig.coil import Coil
-from seatsim.rig.control import Measurement, no_floors, prepare_law
+from seatsim.rig.control import Measurement, prepare_law
 from seatsim.rig.plant import Plant
 from seatsim.schema.errors import InputError
 
@@ -73,19 +73,6 @@ def test_amplitude_is_that_of_a_harmonic_travel_and_is_forgotten():
     assert state[0] == pytest.approx(0.04 * np.exp(-1), rel=1e-2)
 
 
-def test_amplitude_rises_before_the_travel_does():
-    law = compile_law(travels=(0.0, 0.05), gains=((0.0, 1.0), (0.0, 2.0)))
-    moving = law.update(REST._replace(velocity=0.04 * NATURAL), (0.0, 0.0, 0.0))
-    assert moving[0] == pytest.approx(0.04)
-
-
-def test_every_measure_has_its_gain():
-    measures = ("frame_velocity", "velocity", "driver_acceleration")
-    law = compile_law(travels=(0.0, 0.05), gains=((1.0, 2.0, 3.0), (5.0, 6.0, 7.0)), measures=measures)
-    y = REST._replace(frame_velocity=1.0, velocity=10.0, driver_acceleration=100.0, displacement=9.0)
-    assert law.wanted_force(y, (0.025, 0.0, 0.0)) == pytest.approx(3.0 + 40.0 + 500.0)
-
-
 def test_synthesis_makes_up_for_a_weaker_damper():
     law = compile_law(temperatures=(20.0, 80.0), weights=Weights(30.0), force_factors=(1.0, 0.67))
     np.testing.assert_allclose(np.array(law.velocity)[1] * 0.67, law.velocity[0], rtol=1e-3)
@@ -96,13 +83,6 @@ def test_synthesis_at_each_point_is_that_of_its_weight():
     for place, weight in enumerate((10.0, 50.0)):
         single = prepare_law(StaticOutputFeedback(weights=Weights(weight)), SEAT, COIL, 0.005)
         assert (law.displacement[place], law.velocity[place]) == (single.displacement, single.velocity)
-
-
-def test_lists_serve_as_tuples():
-    given = StaticOutputFeedback(weights=Weights(), masses=[50.0, 80.0], force_factors=[1.0])
-    stated = StaticOutputFeedback(weights=Weights(), masses=(50.0, 80.0), force_factors=(1.0,))
-    assert prepare_law(given, SEAT, COIL, 0.005) == prepare_law(stated, SEAT, COIL, 0.005)
-    assert given.describe(SEAT, COIL, no_floors) == stated.describe(SEAT, COIL, no_floors)
 
 
 GAINS = ((1.0, 1.0), (1.0, 1.0))

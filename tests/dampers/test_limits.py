@@ -2,8 +2,6 @@
 
 import pytest
 
-from seatsim.dampers.bouc_wen_variants import AMPLITUDE, LEAST_AMPLITUDE, excitation_factor
-from seatsim.dampers.pieces import limited
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.registry import find, names
 
@@ -22,12 +20,3 @@ def test_a_set_valued_friction_is_what_the_regularised_one_tends_to(name, curren
         assert smooth.force(0.0, v, current, SCALING, ()) == pytest.approx(rest + sign * friction, rel=1e-12)
     assert friction > 0.0 and smooth.coulomb(current, SCALING) == 0.0
     assert sharp._replace(fc_a=-1.0, fc_b=0.0).coulomb(current, SCALING) == 0.0
-
-
-def test_at_rest_a_frequency_is_the_usual_one_and_the_amplitude_the_least():
-    assert excitation_factor(0.7, 0.3, 0.0, 0.0) == pytest.approx((LEAST_AMPLITUDE / AMPLITUDE) ** 0.3)
-
-
-def test_a_limit_below_zero_leaves_no_force():
-    assert (limited(5.0, -3.0), limited(-5.0, -3.0)) == (0.0, 0.0)
-    assert (limited(5.0, 0.5), limited(-5.0, 0.5), limited(0.2, 0.5)) == (0.5, -0.5, 0.2)

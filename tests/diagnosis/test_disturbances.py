@@ -63,12 +63,6 @@ def test_a_wandering_zero_of_the_floor_is_told_from_a_motion_of_it(posed):
 
 
 @pytest.mark.slow
-def test_a_random_force_that_is_withheld_is_unknown(posed):
-    shaken = disturbed(posed, pushed(1.0, 15.0))
-    assert solved(shaken, OTHERS | {"floor.unmeasured_input"}).decision.verdict == "unknown"
-
-
-@pytest.mark.slow
 def test_a_random_force_is_named_beside_an_effect_that_hides_it(posed):
     rubbing = find("effect", "suspension.friction")(force=20.0, presliding=2e-4)
     solution = solved(disturbed(posed, pushed(10.0, 14.0), [rubbing]))

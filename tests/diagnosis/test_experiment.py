@@ -10,12 +10,9 @@ from ruamel.yaml import YAML
 import seatsim
 from seatsim.diagnosis.candidates import list_candidates
 from seatsim.diagnosis.design.experiment import propose_experiment
-from seatsim.diagnosis.design.separability import measure_collinearity
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.noise import weigh_noise
 from seatsim.diagnosis.objective import Objective, Parameters
-from seatsim.diagnosis.screen import measure_sensitivities
-from seatsim.diagnosis.select import Selection
 from seatsim.effects.damper import GasSpring, SealFriction
 from seatsim.excitations.recording import RecordedRun
 from seatsim.recordings.recording import load_recording
@@ -57,24 +54,6 @@ def fitted(rig, names):
 def rubbing(sound, tmp_path_factory):
     effect = SealFriction(force=35.0, presliding=3e-4)
     return fitted(recorded(sound, tmp_path_factory.mktemp("rubbing"), effect, ["damper_force"]), FRICTIONS)
-
-
-def test_without_a_load_cell_one_friction_is_like_the_other_and_unlike_the_rest(rubbing):
-    objective, _, members = rubbing
-    nominal = objective.evaluate([Parameters(objective.problem.nominal)])[0]
-    sensitivities = measure_sensitivities(objective, nominal, list_candidates(objective.problem))
-    selection = Selection(
-        nominal,
-        ((nominal,), tuple(members.values())),
-        objective.linearise_nuisances(nominal),
-        sensitivities=sensitivities,
-    )
-    named = [*FRICTIONS, "driver.mass", "damper.free_play", "sensor.gain", "no.such"]
-    names, matrix = measure_collinearity(selection, named)
-    assert names == named[:-1]
-    assert matrix.shape == (5, 5) and np.allclose(matrix, matrix.T) and np.all(np.diag(matrix) == 1.0)
-    assert matrix[0, 1] > 0.95 and matrix[0, 2:].max() < 0.8
-    assert np.all((matrix >= 0.0) & (matrix <= 1.0))
 
 
 def test_a_load_cell_tells_friction_in_the_damper_from_friction_in_the_linkage(rubbing):

@@ -13,22 +13,14 @@ from seatsim.simulation.augment import augment_damper, augment_factors, read_sen
 from seatsim.simulation.damper_bench import bench_force
 from seatsim.simulation.simulate import simulate
 
+from ..text import beside
+
 NAMES = names("effect")
 STEP = 1e-3
 BINGHAM = Bingham()
 INERT = Bingham(0.0, 0.0, 0.0, 0.0)
 """A damper without any force."""
-SEAT = """\
-plant: {frame_mass: 20.0, driver_mass: 80.0, suspension_stiffness: 4600.0, suspension_damping: 150.0,
-        cushion_stiffness: 60000.0, cushion_damping: 1500.0}
-damper: {model: bingham, parameters: {c_a: 250.0, c_b: 350.0, fc_a: 45.0, fc_b: 620.0, f0: 0.0, v_ref: 0.004},
-         temperature_factors: {viscous: -0.004, yield_force: -0.004}}
-actuator: {rate: 130.0, max_current: 1.0}
-temperature: 40.0
-controller: {law: on_off_skyhook, sample_time: 0.005}
-excitation: {kind: chirp, amplitude: 0.03, start_frequency: 0.7, stop_frequency: 5.0, duration: 3.0}
-seed: 3
-"""
+SEAT = beside(__file__, "shaken_seat.yaml")
 
 
 def seat(folder, settings=None):

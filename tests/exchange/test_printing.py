@@ -181,10 +181,3 @@ def test_what_has_no_counterpart_is_refused_by_name(function):
     number = Signature(numba.float64)
     with pytest.raises(NotPrintableError, match=f"test_printing.{function.__name__}"):
         Program(print_function).function(function, (number, number))
-
-
-def test_a_function_is_printed_once_for_the_same_types():
-    program, number = Program(print_function), Signature(numba.float64)
-    first = program.function(tuples, (number, number))
-    assert program.function(tuples, (number, number)) == first
-    assert program.source().count("split(real x)") == 1

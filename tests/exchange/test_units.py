@@ -210,15 +210,6 @@ def test_a_parameter_keeps_its_bounds_and_acts(open_unit):
     assert unit.getReal([number["damper.f0"]]) == [0.0]
 
 
-def test_every_parameter_has_unit_bounds_and_meaning(units):
-    described = fmpy.read_model_description(str(units / "damper2.fmu"))
-    found = {v.name: v for v in described.modelVariables}
-    assert (found["damper.n"].unit, found["damper.n"].min, found["damper.n"].max) == ("1", "1.0", "20.0")
-    assert found["damper.c_a"].description == "viscous damping at zero current"
-    assert found["is_current"].type == "Boolean"
-    assert all(v.description for v in described.modelVariables)
-
-
 OF_C = set(
     words("""
     exp expm1 log pow sqrt sin cos tan atan atan2 tanh sinh cosh hypot fabs floor ceil fmod copysign

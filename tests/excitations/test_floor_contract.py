@@ -80,29 +80,6 @@ def test_every_key_is_described(name):
     assert isinstance(specification_of(cls).source, str)
 
 
-@pytest.mark.parametrize(
-    ("cls", "wrong"),
-    [
-        (Road, {"road_class": "I"}),
-        (Road, {"speed": 0}),
-        (Road, {"speed": "12"}),
-        (Road, {"duration": -1.0}),
-        (Road, {"vehicle": {"cab_mass": 0}}),
-        (Road, {"vehicle": {"cab_mas": 400}}),
-        (Road, {"rougness": 1}),
-        (Iso7096, {"spectral_class": "EM10"}),
-        (SteppedSine, {"frequencies": []}),
-        (SteppedSine, {"frequencies": [1, -2]}),
-        (SteppedSine, {"cycles": 1.5}),
-        (Bumps, {"shape": "square"}),
-    ],
-)
-def test_wrong_keys_are_refused(cls, wrong):
-    mapping = next(m for c, m in MAPPINGS if c is cls)
-    with pytest.raises(ValueError, match="validation error"):
-        build(cls, {**mapping, **wrong})
-
-
 def test_a_run_of_less_than_two_steps_is_refused():
     with pytest.raises(InputError, match="fewer than two steps"):
         Sine(0.01, 2.0, 0.001).floor(STEP, 0)

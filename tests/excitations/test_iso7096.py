@@ -6,19 +6,11 @@ from scipy.signal import welch
 
 from seatsim.excitations.iso7096 import CLASSES, LOWEST, Iso7096, acceleration_density
 
+from ..text import beside, parse
+
 SOURCE = "ISO 7096:2000 as the HVLab toolbox codes it"
 # RMS of every class in m/s^2, peak of its density in (m/s^2)^2/Hz, and the frequency of the peak in Hz.
-STATED = {
-    "EM1": (1.71, 2.20, 1.94),
-    "EM2": (2.05, 2.40, 2.12),
-    "EM3": (1.73, 1.71, 2.12),
-    "EM4": (0.96, 0.53, 2.12),
-    "EM5": (1.94, 0.76, 2.09),
-    "EM6": (1.65, 0.34, 7.65),
-    "EM7": (2.26, 5.54, 3.24),
-    "EM8": (1.05, 0.40, 3.33),
-    "EM9": (1.63, 0.78, 4.01),
-}
+STATED = parse(beside(__file__, "iso7096.yaml"))
 
 
 @pytest.mark.parametrize("name", CLASSES)

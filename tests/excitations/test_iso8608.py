@@ -48,13 +48,6 @@ def test_velocity_has_the_variance_of_a_flat_spectrum(conform):
     conform(claim, "4 pi^2 n0^2 Gd V times the band", variance, expected, tolerance=0.02 * expected)
 
 
-def test_elevation_is_nearly_gaussian():
-    acceleration = Road("B", SPEED, 120.0).floor(STEP, 2).acceleration[1000:]
-    standard = acceleration / acceleration.std()
-    assert abs(np.mean(standard**3)) < 0.1
-    assert np.mean(standard**4) == pytest.approx(3.0, abs=0.3)
-
-
 def test_classes_are_scaled_copies():
     a, c = (Road(k, SPEED, 20.0).floor(STEP, 9).acceleration for k in "AC")
     np.testing.assert_allclose(c, 4 * a, rtol=1e-9, atol=1e-12)

@@ -19,12 +19,6 @@ def test_sine_is_exact_after_its_first_second(conform):
         conform(claim, "closed form", deviation, tolerance=1e-12)
 
 
-def test_short_sine_is_faded_in_over_its_first_quarter():
-    floor = Sine(0.01, 5.0, 2.0).floor(STEP, 0)
-    t = floor.time[501:]
-    np.testing.assert_allclose(floor.displacement[501:], 0.01 * np.sin(10 * np.pi * t), atol=1e-15)
-
-
 def test_stepped_sine_holds_its_amplitude_in_every_step():
     frequencies, cycles = (1.0, 2.0, 5.0), 4
     made = SteppedSine(frequencies, cycles, 0.5)

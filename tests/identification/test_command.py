@@ -13,23 +13,18 @@ from seatsim.cli.app import app
 from seatsim.cli.outputs.damper_results import write_identification
 from seatsim.identification import model_benchmark as module
 from seatsim.identification.identify import identify
-from seatsim.identification.model_benchmark import BenchmarkEntry, benchmark_models, rank_entries
+from seatsim.identification.model_benchmark import benchmark_models
 from seatsim.identification.search import ignore_progress
 from seatsim.identification.settings import IdentificationSettings as Settings
 from seatsim.scenario.loading import single
 from seatsim.schema.errors import InputError
 
+from ..text import beside
 from .benches import BINGHAM, made, sines
 
 FILES = {"parameters.yaml", "fit.json", "report.html", "loops.png"}
 DOCUMENTED = {*FILES, "manifest.json"}
-SCENARIO = """\
-plant: {frame_mass: 20.0, driver_mass: 80.0, suspension_stiffness: 4600.0, suspension_damping: 150.0,
-        cushion_stiffness: 60000.0, cushion_damping: 1500.0}
-temperature: 20.0
-controller: {law: constant, current: 0.5}
-excitation: {kind: sine, amplitude: 0.01, frequency: 2.0, duration: 2.0}
-"""
+SCENARIO = beside(__file__, "seat_without_damper.yaml")
 
 
 def command(*arguments):
@@ -131,16 +126,6 @@ def test_a_league_goes_on_past_a_model_that_fails(tmp_path):
     assert [place.model for place in found] == ["bingham", "hong_sigmoid_gaussian"]
     assert "mean alone fits better; choose another model" in found[1].failed and math.isnan(found[1].train_fit_percent)
     assert [each.model for each in kept] == ["bingham"]
-
-
-def test_places_are_ranked_by_what_was_held_out_where_anything_was():
-    def place(model, train, test):
-        return BenchmarkEntry(model, train, test, 5, 100.0, 1.0)
-
-    nan, bad = float("nan"), float("-inf")
-    held_out = [place("wild", 99.0, bad), place("good", 80.0, 90.0), place("fair", 95.0, 85.0), place("none", nan, nan)]
-    assert [p.model for p in rank_entries(held_out)] == ["good", "fair", "wild", "none"]
-    assert [p.model for p in rank_entries([place("a", 80.0, nan), place("b", 90.0, nan)])] == ["b", "a"]
 
 
 # ------------------------------------------------------------------------------------------------- what is refused

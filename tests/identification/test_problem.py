@@ -1,25 +1,17 @@
 """The problem that a fit solves: its statement from records, its residuals, its Jacobian, and how it is searched."""
 
 import math
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 
 from seatsim.identification.damper_record import find_model
-from seatsim.identification.problem import BenchModel, find_origin, predict_force, state_problem
-from seatsim.identification.search import search_globally
+from seatsim.identification.problem import BenchModel, find_origin, state_problem
 from seatsim.identification.settings import IdentificationSettings as Settings
 from seatsim.rig.temperature import TemperatureFactors
 
 from ..text import words
-from .benches import BINGHAM, made, sines
-
-
-@pytest.fixture(scope="module")
-def executor():
-    with ThreadPoolExecutor(2) as executor:
-        yield executor
+from .benches import BINGHAM, made
 
 
 def stated(records, settings=None, origin=0.0):
@@ -59,25 +51,6 @@ def test_a_bench_comes_back_from_its_vector_with_coil_and_temperature():
     assert high[-6] == pytest.approx(math.log(30.0)) and low[-4] == pytest.approx(-3.0) and high[-1] == math.inf
 
 
-def test_what_stands_at_a_bound_is_named():
-    problem, _ = stated([made(current=1.0)])
-    vector = problem.coordinates.to_vector(BINGHAM)
-    low, high = problem.bounds
-    at = problem.labels.index("fc_b")
-    assert problem.labels_at_bounds(vector) == []
-    for end in (low[at] + 5e-4, high[at] - 5e-4):
-        vector[at] = end
-        assert problem.labels_at_bounds(vector) == ["fc_b"]
-
-
-def test_the_global_search_comes_closer_and_repeats_itself(executor):
-    _, short = stated(sines(BINGHAM, noise=0.0))
-    start = short.coordinates.to_vector(short.coordinates.start)
-    first, again = (search_globally(short, start, 3, 150, executor) for _ in range(2))
-    assert np.array_equal(first, again) and short.cost(first) < 0.2 * short.cost(start)
-    assert not np.array_equal(first, search_globally(short, start, 4, 150, executor))
-
-
 # --------------------------------------------------------------------------------------------- the statement
 
 
@@ -85,20 +58,6 @@ def test_the_global_search_comes_closer_and_repeats_itself(executor):
 def test_an_origin_is_the_middle_of_motion_that_is_far_from_zero(middle, origin):
     record = made()
     assert find_origin([record._replace(displacement=record.displacement + middle)]) == pytest.approx(origin, abs=1e-4)
-
-
-def test_the_short_problem_holds_the_liveliest_rows_behind_a_run_up():
-    # slow, then four times as fast: the lively stretch lies in the second half
-    slow, fast = made(frequency=1.0, seconds=30.0), made(frequency=4.0, seconds=30.0)
-    names = ("displacement", "velocity", "force", "current")
-    long = slow._replace(**{name: np.append(getattr(slow, name), getattr(fast, name)) for name in names})
-    whole, short = stated([long])
-    (inputs,) = short.inputs
-    assert len(whole.inputs[0].force) == 15001 and whole.inputs[0].counted == 0
-    assert len(inputs.force) - inputs.counted == pytest.approx(5000, abs=1) and inputs.counted >= 4900
-    assert np.max(np.abs(inputs.v)) == pytest.approx(2.0 * math.pi * 4.0 * 0.01, rel=1e-3)
-    force = predict_force(BenchModel(BINGHAM, TemperatureFactors()), inputs)
-    np.testing.assert_allclose(force[inputs.counted :], inputs.force[inputs.counted :], atol=1e-6)
 
 
 @pytest.mark.parametrize("warmer, reference", [(4.0, None), (6.0, 23.0)])

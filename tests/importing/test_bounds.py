@@ -5,7 +5,6 @@ import time
 import pytest
 
 from seatsim.importing.readers.reading import read_file
-from seatsim.schema.bounds import LEAST, TIMES, TooMuchError, check_made
 from seatsim.schema.errors import InputError
 
 from .attacks import ATTACKS, sheet
@@ -25,15 +24,6 @@ def test_a_structure_that_asks_for_too_much_is_refused_at_once(name, tmp_path):
     # Far less than what is asked for would take.
     assert time.process_time() - start < 60.0
     assert "\n" not in str(raised.value)
-
-
-def test_what_a_file_may_make_grows_with_its_size_between_two_limits():
-    check_made(LEAST, 1)
-    check_made(TIMES * 2**20, 2**20)
-    check_made(2**31, 2**28)
-    for made, size in ((LEAST + 1, 1), (TIMES * 2**20 + 1, 2**20), (2**30 + 1, 2**26), (2**31 + 1, 2**28)):
-        with pytest.raises(TooMuchError, match="of memory; permitted"):
-            check_made(made, size)
 
 
 def test_stated_dimensions_of_a_sheet_do_not_count(tmp_path):

@@ -26,13 +26,6 @@ def test_import_shows_its_map_and_writes_a_recording(noisy_table, tmp_path, seat
     )
 
 
-def test_bad_input_is_one_line_and_exit_2(tmp_path, seatsim_command):
-    (tmp_path / "a.csv").write_text("")
-    status, out, err = seatsim_command("import", tmp_path / "a.csv", "--out", tmp_path / "out")
-    assert (status, out, err.count("\n")) == (2, "", 1) and "a.csv: is empty" in err
-    assert not (tmp_path / "out").exists()
-
-
 def test_a_nominal_without_a_current_is_asked_for_one(noisy_table, tmp_path, seatsim_command):
     table = {name: noisy_table[name] for name in ("time", "floor_acceleration", "driver_acceleration")}
     path = write_csv(tmp_path / "a.csv", table)

@@ -93,12 +93,6 @@ def test_acquisitions_below_each_other_are_one_table(tmp_path):
     assert any("names again" in note for note in file.notes)
 
 
-def test_a_file_that_is_not_there_names_its_neighbour(tmp_path):
-    (tmp_path / "run-1.csv").write_text("a,b\n1,2\n3,4\n")
-    with pytest.raises(InputError, match=r"did you mean 'run-1\.csv'"):
-        read_file(tmp_path / "run-l.csv")
-
-
 def test_a_missing_library_is_one_sentence_with_the_command(tmp_path, monkeypatch):
     path = tmp_path / "a.tdms"
     path.write_bytes(b"TDSm" + b"\0" * 60)

@@ -28,15 +28,7 @@ def test_figures_of_a_channel(noisy_table, tmp_path):
 
 def damaged(values, kind):
     values = values.copy()
-    if kind == "spikes":
-        values[[700, 2200]] += 8.0 * np.std(values)
-    elif kind == "dropout":
-        values[1000:1060] = 0.0
-    elif kind == "clipped":
-        values = np.clip(values, -0.8 * np.std(values), 0.8 * np.std(values))
-    elif kind == "constant":
-        values[:] = 3.0
-    elif kind == "missing":
+    if kind == "missing":
         values[500:520] = np.nan
     elif kind == "held":
         values = np.repeat(values[::5], 5)[: len(values)]
@@ -47,9 +39,7 @@ def damaged(values, kind):
     return values
 
 
-@pytest.mark.parametrize(
-    "kind", ["spikes", "dropout", "clipped", "constant", "missing", "held", "resolution", "smooth"]
-)
+@pytest.mark.parametrize("kind", ["missing", "held", "resolution", "smooth"])
 def test_a_damaged_channel_is_doubted(noisy_table, tmp_path, kind, channel="driver_acceleration"):
     path = write_csv(tmp_path / "a.csv", {**noisy_table, channel: damaged(noisy_table[channel], kind)})
     assert kind in kinds(inspect_file(path).doubts, channel)

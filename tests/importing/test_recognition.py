@@ -9,6 +9,8 @@ from seatsim.importing.readers.reading import read_file
 from seatsim.importing.signals import DataFile, Group, Signal
 from seatsim.importing.time_axis import find_clock
 
+from ..text import beside, parse
+
 T = np.arange(500) / 250.0
 
 
@@ -21,28 +23,10 @@ def file_of(tmp_path, *columns):
     return DataFile(tmp_path / "a.csv", "CSV", (Group("", tuple(signals)),))
 
 
-@pytest.mark.parametrize(
-    ("name", "unit", "quantity", "stated"),
-    [
-        ("Sitz x", "m/s^2", "acceleration", "m/s^2"),
-        ("v2", "m/s2", "acceleration", "m/s2"),
-        ("v_ist_m_s2", "", "acceleration", "m/s2"),
-        ("v_ms", "", "velocity", ""),
-        ("s", "mm", "displacement", "mm"),
-        ("s", "s", "time", "s"),
-        ("Temps", "s", "time", "s"),
-        ("Temps", "", "time", ""),
-        ("Temp", "°C", "temperature", "°C"),
-        ("T1", "degC", "temperature", "degC"),
-        ("Spannung Kraftsensor", "V", "voltage", "V"),
-        ("Loading time", "s", "time", "s"),
-        ("F", "kN", "force", "kN"),
-        ("Weg", "Milimeter", "displacement", "Milimeter"),
-        ("Frequenz", "Hz", "frequency", "Hz"),
-        ("Kanal 3", "bit", None, "bit"),
-        ("Ax", "", "acceleration", ""),
-    ],
-)
+NAMES = parse(beside(__file__, "column_names.yaml"))
+
+
+@pytest.mark.parametrize(("name", "unit", "quantity", "stated"), NAMES)
 def test_the_unit_decides_between_the_words_of_a_name(name, unit, quantity, stated):
     found = read_name(name, unit)
     assert (found.quantity, found.unit) == (quantity, stated)

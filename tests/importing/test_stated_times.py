@@ -9,7 +9,7 @@ from seatsim.importing.importing import import_files
 from seatsim.importing.readers.reading import read_file
 from seatsim.schema.errors import InputError
 
-from ..text import words
+from ..text import beside, words
 from .helpers import LET_LIBRARIES_WARN, read_run
 from .test_alignment import band_limited
 
@@ -82,21 +82,7 @@ def test_a_column_of_dates_is_the_time(tmp_path, kind, index):
     assert read_run(tmp_path / "out")["floor_acceleration"].to_numpy() == pytest.approx(floor, rel=1e-6)
 
 
-HEAD = """\
-    -1
-    58
-a title
-NONE
-NONE
-NONE
-NONE
-    {kind}         0    0         0 Fahrer             0   2 NONE               0   0
-         2{points:>10}{even:>10}  0.00000e+00  4.00000e-03  0.00000e+00
-{axis:>10}    0    0    0 {label:20} {unit:20}
-        12    0    0    0 Acceleration         m/s^2
-         0    0    0    0 NONE                 NONE
-         0    0    0    0 NONE                 NONE
-"""
+HEAD = beside(__file__, "data_set_58.txt")
 
 
 def uff(path, values, points=None, kind=1, even=1, axis=17, label="Time", unit="s"):

@@ -29,12 +29,6 @@ def test_an_assumed_model_has_a_state_and_a_temperature_of_its_own(own, measured
     assert model_scaling(model, HOT, measured) == pytest.approx(expected, rel=1e-14)
 
 
-def test_what_is_no_model_is_refused():
-    for call in (model_state, model_scaling):
-        with pytest.raises(TypeError, match="Linear is no model for the inverse"):
-            call(Linear(), (), ())
-
-
 def test_motion_runs_along_straight_lines_between_samples():
     x0, x1, v0, v1, length = 0.2, 0.9, -0.5, 0.7, 0.4
     found = follow_state(Cubes(), (1.0, 2.0, 3.0), Motion(x0, v0, 0.6), Motion(x1, v1, 0.6), HOT, length)

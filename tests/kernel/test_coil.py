@@ -5,7 +5,7 @@ import pytest
 
 from seatsim.dampers.bingham import Bingham
 from seatsim.rig.coil import Coil
-from seatsim.rig.temperature import TemperatureFactors, Thermal
+from seatsim.rig.temperature import Thermal
 
 from .rigs import STEP, driven, rough
 
@@ -80,14 +80,3 @@ def test_an_insulated_damper_keeps_its_work_and_the_heat_of_its_coil(conform):
     conform(
         "insulated damper, temperature after 2 s, degC", "balance of energy", found, expected, tolerance=1e-5 * expected
     )
-
-
-def test_temperature_scales_viscous_and_yield_force():
-    factors = TemperatureFactors(viscous=-0.005, yield_force=-0.008)
-    viscous, yielding = np.exp(-0.005 * 60.0), np.exp(-0.008 * 60.0)
-    floor = rough(1.0, rms=3.0)
-    hot = driven(DAMPER, floor, 0.5, factors=factors, temperature=80.0)
-    weak = Bingham(250.0 * viscous, 350.0 * viscous, 45.0 * yielding, 620.0 * yielding, v_ref=0.1)
-    cold = driven(weak, floor, 0.5)
-    for name in ("damper_force", "driver_acceleration"):
-        assert hot[name] == pytest.approx(cold[name], abs=1e-9)

@@ -8,19 +8,9 @@ from seatsim.scenario.loading import load
 from seatsim.sweeps.device import as_device_lane
 
 from ..conftest import SEAT
+from ..text import beside, parse
 
-SCENARIOS = {
-    "modified Bouc-Wen with sensors, end stop and self-heating": {
-        "damper": {"model": "modified_bouc_wen"},
-        "controller.sensors": {"bandwidth": 80.0, "displacement_noise": 1e-4},
-        "effects": [{"effect": "suspension.end_stop", "parameters": {"low": -0.04, "high": 0.04}}],
-        "temperature": {"start": 20.0, "ambient": 20.0, "heat_capacity": 500.0, "conductance": 1.0},
-    },
-    "yu2019 with an assumed inverse": {
-        "damper": {"model": "yu2019"},
-        "controller.inverse": {"model": "yu2019", "temperature": 20.0},
-    },
-}
+SCENARIOS = parse(beside(__file__, "cuda_lanes.yaml"))
 
 
 @pytest.mark.parametrize("settings", SCENARIOS.values(), ids=SCENARIOS)

@@ -7,16 +7,9 @@ import pytest
 
 import seatsim
 from seatsim.dampers.bouc_wen import BoucWen
-from seatsim.kernel.hooks import MOST_DEBT, MOST_WORK, owe
+from seatsim.kernel.hooks import MOST_DEBT, MOST_WORK
 from seatsim.schema.errors import RunError
 from seatsim.simulation.damper_bench import bench_force
-
-
-def test_parts_beyond_the_mean_are_owed_and_those_below_it_pay_back():
-    assert owe(0.0, 1.0) == 0.0
-    assert owe(0.0, MOST_WORK + 30.0) == 30.0
-    assert owe(30.0, 1.0) == 0.0
-    assert owe(500.0, 60.0) == 500.0 + 60.0 - MOST_WORK
 
 
 def test_a_bench_that_is_too_stiff_is_given_up():

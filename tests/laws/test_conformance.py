@@ -73,14 +73,6 @@ def test_weights_too_far_apart_are_refused():
             prepare_law(law, SEAT, COIL, 0.005)
 
 
-def test_a_run_follows_its_seed_and_nothing_else(interpreted, kept_seat_file):
-    first, again, other = (
-        seatsim.run(kept_seat_file, settings("lqg", NOISY, seed))["current_command"] for seed in (3, 3, 4)
-    )
-    np.testing.assert_array_equal(first, again)
-    assert not np.array_equal(first, other)
-
-
 @pytest.mark.parametrize("law", LAWS)
 def test_compiled_and_interpreted_answers_agree(law):
     record, state = ready(law)

@@ -51,15 +51,6 @@ def test_a_plan_is_optimal_within_the_limits_of_its_last_pass():
         assert cost[0] <= cost[1] * (1 + 1e-3) + 1e-9
 
 
-def test_no_force_is_driven_and_the_same_state_gives_the_same_force():
-    made = planner()
-    forces = [made.force(state) for state in STATES]
-    assert np.all(np.array(forces) * STATES[:, 1] >= 0.0)
-    assert [made.force(state) for state in STATES] == forces
-    low, high = DeliverableForces().limits(STATES[:, 1])
-    assert np.all((forces >= low - 1e-9) & (forces <= high + 1e-9))
-
-
 def test_the_compiled_loop_calls_the_solver_on_sensors_and_counts_its_time(kept_seat_file):
     settings = {
         "controller": {"law": "mpc", "sample_time": 0.005, "sensors": {"acceleration_noise": 0.05}},

@@ -6,8 +6,6 @@ from scipy.signal import cont2discrete, lfilter
 
 from seatsim.rig.control import Measurement
 from seatsim.rig.sensors import Sensors, at_rest
-from seatsim.scenario.loading import load
-from seatsim.schema.errors import InputError
 
 STEP, EVERY = 0.001, 5
 PERIOD = STEP * EVERY
@@ -83,11 +81,3 @@ def test_noise_follows_the_seed_and_has_the_stated_size():
     assert not np.allclose(noise, sensors.noise(20000, 8))
     np.testing.assert_allclose(noise.std(axis=0), [1e-4, 0.05, 0.05, 0.05], rtol=0.02)
     assert np.abs(np.corrcoef(noise.T) - np.eye(4)).max() < 0.03
-
-
-def test_sensors_stand_under_the_controller(seat_file):
-    (scenario,) = load(seat_file, {"controller.sensors": {"bandwidth": 60.0}})
-    assert scenario.control.sensors == Sensors(bandwidth=60.0)
-    assert load(seat_file)[0].control.sensors is None
-    with pytest.raises(InputError, match=r"controller.sensors.bandwith: unknown key .*'bandwidth'"):
-        load(seat_file, {"controller.sensors": {"bandwith": 60.0}})

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-import seatsim
 from seatsim.metrics.objective_rating import ObjectiveRating, rate_agreement
 
 RATE = 1e4
@@ -29,15 +28,6 @@ def test_a_constant_that_is_off_is_rated_as_by_hand():
     assert found.overall == pytest.approx(0.4 * (2 / 3) ** 2 + 0.2 * 2.6)
     assert figures(np.ones(100), 1.5 * np.ones(100)) == pytest.approx([0.0, 1.0, 0.0, 1.0])
     assert figures(np.ones(100), 1.04 * np.ones(100))[0] == 1.0
-
-
-def test_a_ramp_that_is_scaled_loses_slope():
-    ramp = np.linspace(0.0, 1.0, 101)
-    off = 0.2 * ramp
-    corridor = np.mean(np.clip((0.5 - off) / 0.45, 0.0, 1.0) ** 2)
-    assert figures(ramp, 1.2 * ramp)[::3] == pytest.approx([corridor, 1.0 - 0.2 / 2.0])
-    assert figures(ramp, ramp + 0.3)[3] == pytest.approx(1.0)
-    assert figures(ramp, 4.0 * ramp)[3] == 0.0
 
 
 @pytest.mark.parametrize("late", [7, -7, 19, -19, 20])
@@ -73,26 +63,5 @@ def test_figures_are_those_of_objective_rating_metrics(curve, expected):
     assert figures(PULSE, curve) == pytest.approx(expected, abs=2e-6)
 
 
-def test_a_long_curve_is_rated_as_a_short_one_of_the_same_shape():
-    time = np.arange(30000) / 500.0
-    slow, wide = np.exp(-(((time - 28.0) / 6.0) ** 2)), np.exp(-(((time - 30.0) / 8.0) ** 2))
-    short = np.exp(-(((TIME - 0.07) / 0.015) ** 2)), np.exp(-(((TIME - 0.075) / 0.02) ** 2))
-    assert figures(slow, wide, 500.0) == pytest.approx(figures(*short), abs=5e-3)
-
-
 def test_a_curve_at_rest_correlates_with_nothing():
     assert figures(PULSE, 0.0 * PULSE)[1:] == pytest.approx([1.0, 0.0, 0.5])
-
-
-@pytest.mark.parametrize(
-    ("reference", "curve", "expected"),
-    [
-        (np.zeros(50), np.ones(50), "reference: must have at least 5 samples, of which one is not 0"),
-        (np.ones(4), np.ones(4), "at least 5 samples"),
-        (np.ones(50), np.ones(51), "reference has 50 samples, curve has 51"),
-        (np.ones(50), np.full(50, np.nan), "curve: sample 0 is not finite"),
-    ],
-)
-def test_curves_that_cannot_be_rated_are_refused(reference, curve, expected):
-    with pytest.raises(seatsim.InputError, match=expected):
-        rate_agreement(reference, curve, RATE)

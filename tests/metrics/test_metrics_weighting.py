@@ -9,7 +9,10 @@ import pytest
 from seatsim.metrics.weighting import WEIGHTINGS, frequency_response, weight
 from seatsim.schema.errors import InputError
 
+from ..text import beside, parse
+
 EXACT = 10 ** (np.arange(-3, 20) / 10)
+NOMINAL, WK, WD = np.array(parse(beside(__file__, "weighting_table.yaml"))).T * [[1.0], [1e-3], [1e-3]]
 RATES = (200.0, 500.0, 1000.0, 10000.0)
 
 

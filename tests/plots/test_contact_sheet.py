@@ -1,21 +1,15 @@
-"""Every picture of every kind of result: legible, inside its page, free of collisions, fit for a page of HTML.
-
-`contact_sheet.png`, in the folder of pytest's temporary files, shows all of them.
-"""
+"""Every picture of every kind of result: legible, inside its page, free of collisions, fit for a page of HTML."""
 
 import re
 from itertools import combinations
 from urllib.parse import unquote
 from xml.etree import ElementTree
 
-import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
-from PIL import Image
 
 from seatsim.characterisation.summary import characterise
-from seatsim.diagnosis.residuals import drop_start, find_worst
 from seatsim.plots.bench.characterisation import plot_characterisation
 from seatsim.plots.bench.identification import plot_predictions
 from seatsim.plots.bench.vibration import plot_damping, plot_vibration
@@ -68,7 +62,6 @@ OTHERS = {
     "seat test": draw_seat_test, "study": lambda: draw_figures(analyse_sensitivity(kinds.sweep()), kinds.sweep()),
     "comfort": lambda: plot_vibration(kinds.working_day()),
 }  # fmt: skip
-DRAWN = []
 
 
 @pytest.fixture(scope="module", params=[*RUNS, *OTHERS])
@@ -77,7 +70,6 @@ def figures(request, made_up):
     drawn = plot_result(Result(RUNS[kind](made_up))) if kind in RUNS else OTHERS[kind]()
     for figure in drawn.values():
         FigureCanvasAgg(figure).draw()
-        DRAWN.append(Image.fromarray(np.asarray(figure.canvas.buffer_rgba())))
     return drawn
 
 
@@ -130,36 +122,8 @@ def test_a_picture_inside_a_page_is_a_drawing_of_its_own(figures):
         assert all(text.get_visible() for text in figure.texts)
 
 
-def test_the_first_second_is_left_out_and_the_worst_channel_is_mapped():
-    diagnosis = diagnoses.known()
-    trace, motion = find_worst(diagnosis)
-    assert trace.channel == "frame_acceleration" and trace.time[0] == 1.0
-    assert len(motion["velocity"]) == len(trace.time) == len(drop_start(diagnosis.evidence.traces[0]).time)
-
-
 def test_scenarios_have_pictures_of_their_own(made_up):
     figures = plot_result(Result(RUNS["scenarios"](made_up)))
     assert {"psd_em1", "psd_em5", "time_histories_em1", "transmissibility_em5"} <= set(figures) and "psd" not in figures
     first, second = ([text.get_text() for text in figures[f"psd_{n}"].legends[0].get_texts()] for n in ("em1", "em5"))
     assert first == second == ["skyhook", "off", "floor"]
-
-
-def test_a_run_is_not_changed_by_drawing_it(made_up):
-    run = made_up()
-    before = {name: values.copy() for name, values in run.history.channels.items()}
-    plot_result(Result([run]))
-    for name, values in run.history.channels.items():
-        np.testing.assert_array_equal(values, before[name])
-
-
-def test_the_contact_sheet(tmp_path_factory):
-    """All pictures that were drawn, in columns of one picture each; to be looked at."""
-    heights, places = [0] * 8, []
-    for image in DRAWN:
-        column = heights.index(min(heights))
-        places.append((column * (image.width + 20), heights[column]))
-        heights[column] += image.height + 20
-    sheet = Image.new("RGB", (8 * 600, max(*heights, 1)), "#999")
-    for image, place in zip(DRAWN, places, strict=True):
-        sheet.paste(image, place)
-    sheet.save(tmp_path_factory.getbasetemp() / "contact_sheet.png")

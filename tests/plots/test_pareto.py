@@ -32,26 +32,3 @@ def test_panels_are_titled_and_points_named_by_what_sets_them_apart(runs):
     named = [text.get_text() for text in figure.legends[0].get_texts()]
     assert sorted(name.partition("  ")[2] for name in named if name[1] == " ") == ["hard", "soft"]
     assert {text.get_text() for text in figure.axes[0].texts} == {"A", "B"}
-
-
-def test_points_of_a_panel_that_is_alone_have_their_names_beside_it_each_in_a_line_of_its_own(runs):
-    same = [dataclasses.replace(run, metrics=runs(["a"])[0].metrics) for run in runs(["soft", "hard", "tuned", "off"])]
-    [axes] = plot_pareto(same).axes
-    assert {text.get_text() for text in axes.texts} == {"soft", "hard", "tuned", "off"}
-    heights = np.sort([text.xyann[1] for text in axes.texts]) * axes.bbox.height / axes.figure.dpi
-    assert np.all(np.diff(heights) > 0.16) and len(axes.collections[0].get_offsets()) == 4
-
-
-def test_without_weighted_accelerations_it_says_so(runs):
-    bare = [dataclasses.replace(run, metrics={}) for run in runs(["soft", "hard"])]
-    [axes] = plot_pareto(bare).axes
-    assert "200 samples" in axes.texts[0].get_text()
-
-
-@pytest.mark.parametrize(("factor", "lines"), [(0.9, 1), (0.2, 0)])
-def test_the_floor_is_a_line_where_the_seat_factor_is_one_unless_it_is_far_above(factor, lines, runs):
-    found = runs(["soft", "hard"])
-    for run in found:
-        run.metrics["seat_factor"] = Metric(factor * run.metrics["driver_acceleration_weighted"].value, "-", "")
-    axes = plot_pareto(found).axes[0]
-    assert [line.get_ydata()[0] for line in axes.lines] == pytest.approx([1 / factor] * lines)

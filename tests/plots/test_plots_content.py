@@ -4,17 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from matplotlib.colors import to_hex
 
 from seatsim.effects.base import EFFECTS
 from seatsim.plots.runs import looks, signals
-from seatsim.plots.runs.comparison import plot_comparison, plot_pareto
+from seatsim.plots.runs.comparison import plot_comparison
 from seatsim.plots.runs.dampers import plot_force_velocity
 from seatsim.plots.runs.signals import CLOSE_UP
-from seatsim.plots.style import GREY
-from seatsim.plots.thinning import BINS, find_loudest, thin_line
+from seatsim.plots.thinning import BINS, thin_line
 from seatsim.scenario.loading import load
-from seatsim.simulation.naming import find_swept_number
 from seatsim.simulation.result import History
 
 
@@ -51,12 +48,6 @@ def test_thinning_keeps_extremes_and_order():
     np.testing.assert_array_equal(thin_y, y[thin_x.astype(int)])
 
 
-def test_the_loudest_samples_agree_with_a_sum_over_every_window():
-    values = np.random.default_rng(0).standard_normal(200)
-    energy = [np.sum(values[k : k + 30] ** 2) for k in range(170)]
-    assert find_loudest(values, 0.1, 3.0, 0.1).start == pytest.approx(0.1 * np.argmax(energy))
-
-
 def test_the_close_up_is_stated_and_shared(made_up):
     figure = plot_time_histories([made_up({"variant": "a"}), made_up({"variant": "b"}, seconds=7.0)])
     start, end = figure.axes[0].get_xlim()
@@ -79,14 +70,6 @@ def test_a_force_is_wanted_only_where_a_law_wants_one(made_up):
     assert len(without.lines) == 1
 
 
-def test_a_channel_that_chatters_lies_pale_behind_the_others(made_up):
-    calm, other = made_up({"variant": "a"}), made_up({"variant": "b"})
-    force = calm.history["damper_force"] + 200.0 * (-1.0) ** np.arange(len(calm.history["time"]))
-    axes = plot_time_histories([with_channels(calm, damper_force=force), other, other]).axes[2]
-    assert axes.lines[0].get_alpha() == signals.PALE < min(line.get_alpha() for line in axes.lines[1:])
-    assert axes.lines[0].get_zorder() < axes.lines[1].get_zorder()
-
-
 def test_of_many_runs_the_close_up_has_those_at_the_ends_and_names_those_left_out(made_up):
     runs = [made_up({"variant": f"law {k}"}, motion=1.0 + (k - 2.1) ** 2) for k in range(5)]
     runs[1] = with_scenario(runs[1], control=load("em5")[1].control)
@@ -105,29 +88,6 @@ def test_the_density_of_white_noise_is_flat(made_up):
     level, high = 2 * run.history.step * np.var(run.history["floor_acceleration"]), floor.get_xdata() > 5
     np.testing.assert_allclose(floor.get_ydata()[high], level, rtol=0.6)
     assert np.mean(floor.get_ydata()[high]) == pytest.approx(level, rel=0.05)
-
-
-def test_a_floor_that_runs_share_is_drawn_once(made_up):
-    same = [made_up({"variant": name}) for name in "ab"]
-    assert len(plot_psd(same).axes[0].lines) == 3
-    assert len(plot_psd([same[0], made_up({"variant": "c"}, motion=2.0)]).axes[0].lines) == 4
-    assert legend(plot_psd(same)) == ["a", "b", "floor"]
-
-
-def test_transmissibility_is_drawn_where_the_floor_has_power_and_explains_the_motion(made_up):
-    run = made_up(seconds=60.0)
-    floor = run.history["floor_acceleration"]
-    follows = np.fft.rfft(floor)
-    follows[np.fft.rfftfreq(len(floor), run.history.step) > 5.0] = 0.0
-    noise = 0.1 * np.std(floor) * np.random.default_rng(9).standard_normal(len(floor))
-    run = with_channels(run, driver_acceleration=np.fft.irfft(follows, len(floor)) + noise)
-    _, line = plot_transmissibility([run]).axes[0].lines
-    frequency, gain = line.get_xdata(), line.get_ydata()
-    assert np.all(np.isfinite(gain[frequency < 4.0])) and np.isnan(gain[frequency > 6.0]).mean() > 0.9
-    slow = np.fft.irfft(follows, len(floor))
-    run = with_channels(run, floor_acceleration=slow + 1e-6 * floor, driver_acceleration=slow + 1e-6 * floor)
-    _, line = plot_transmissibility([run]).axes[0].lines
-    assert np.isnan(line.get_ydata()[line.get_xdata() > 6.0]).all()
 
 
 AT_REST = {"motion": 0.0}
@@ -158,11 +118,6 @@ def test_force_velocity_shows_the_run_within_the_dampers_curves(made_up):
     assert axes.collections[0].get_clim() == ends and bar.get_ylim() == ends
 
 
-def test_of_several_runs_the_damper_whose_current_varies_is_shown(made_up):
-    still = with_channels(run := made_up({"variant": "a"}), coil_current=np.zeros(len(run.history["time"])))
-    assert "seat, b" in texts(plot_force_velocity([still, made_up({"variant": "b"})]))[0]
-
-
 def test_a_sweep_is_compared_over_its_number(made_up):
     runs = [made_up({"variant": v, "temperature": t}) for v in "ab" for t in (80, 20, 50)]
     figure = plot_comparison(runs)
@@ -171,42 +126,3 @@ def test_a_sweep_is_compared_over_its_number(made_up):
     np.testing.assert_array_equal(figure.axes[0].lines[0].get_xdata(), [20.0, 50.0, 80.0])
     travel = 1e3 * runs[0].metrics["suspension_displacement_rms"].value
     assert figure.axes[2].lines[0].get_ydata()[2] == pytest.approx(travel)
-
-
-def test_only_numbers_that_change_in_every_run_are_swept(made_up):
-    pairs = [[{"a": 1, "b": 1}, {"a": 2, "b": 1}], [{"a": 1}] * 2, [{"a": 1}, {"b": 2}], [{"a": True}, {"a": False}],
-             [{"a": "x"}, {"a": "y"}]]  # fmt: skip
-    found = [find_swept_number([made_up(label, seconds=0.1) for label in labels]) for labels in pairs]
-    assert found == ["a", "", "", "", ""]
-
-
-def test_more_runs_than_lines_can_tell_apart(made_up):
-    mass = "plant.driver_mass"
-    sweep = [made_up({"variant": v, mass: m}, seconds=0.1) for v in "abc" for m in (50, 60, 70)]
-    assert [look.label for look in looks.show_runs(sweep)[0].looks] == ["a", "b", "c"]
-    many = [made_up({"seed": n}, seconds=0.1) for n in range(20)]
-    spread = [run.scenario.label["seed"] for run in looks.show_runs(many)[0].runs]
-    assert len(spread) == 8 and spread[0] == 0 and spread[-1] == 19
-    assert "8 of 20 runs are compared, spread evenly over their order." in " ".join(texts(plot_psd(many))[1].split())
-
-
-def test_a_variant_has_one_colour_in_all_pictures(made_up):
-    runs = [made_up({"variant": v, "temperature": t}, name=n) for n in "ab" for v in ("on", "off") for t in (20, 50)]
-    drawn = [look for shown in looks.show_runs(runs) for look in shown.looks]
-    colours = [{look.colour for look in drawn if look.label.startswith(v)} for v in ("on", "off")]
-    lines = plot_comparison(runs).axes[0].lines
-    points = plot_pareto(runs).axes[0].collections
-    assert [len(each) for each in colours] == [1, 1] and colours[0] != colours[1]
-    assert {line.get_color() for line in lines} == {
-        to_hex(colour).upper() for dots in points for colour in dots.get_facecolor()
-    }
-    assert {line.get_color() for line in lines} == colours[0] | colours[1]
-    assert len({(look.label, look.alpha) for look in drawn}) == 4
-
-
-def test_a_colour_is_of_one_run_and_those_that_are_no_line_are_grey(made_up):
-    many = [made_up({"variant": f"law {n}"}, seconds=0.1) for n in range(12)]
-    colours = [each.colour for each in looks.choose_looks(many).values()]
-    shown = [look.colour for look in looks.show_runs(many)[0].looks]
-    assert len(set(shown)) == len(shown) == 8
-    assert sorted(colours) == sorted([*shown, *[GREY] * 4])

@@ -4,13 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from seatsim.plots import style
-from seatsim.plots.style import Grid, clean_text
-
-
-def test_a_text_is_cut_in_the_middle_and_never_a_formula():
-    assert clean_text("abcdefghij", 6) == "ab…hij"
-    assert clean_text("_hidden", 20) == " _hidden"
-    assert clean_text("$x$", 20) == r"\$x\$"
+from seatsim.plots.style import Grid
 
 
 def test_ticks_of_a_logarithmic_axis_are_plain_numbers_or_over_many_decades_powers_of_ten():

@@ -10,8 +10,10 @@ import pytest
 from seatsim.cli.app import main
 from seatsim.provenance import reproduce as reproduction
 from seatsim.provenance.reproduce import _is_same, compare_outputs, reproduce
-from seatsim.provenance.statement import at_work, read_manifest, state_command
+from seatsim.provenance.statement import read_manifest
 from seatsim.schema.errors import InputError
+
+from ..text import beside, parse
 
 RECORDING = Path(__file__).resolve().parents[2] / "scenarios" / "data" / "recording"
 OUTPUTS = ["comfort.json", "report.html", "running_rms.png", "spectra.png"]
@@ -82,30 +84,10 @@ def test_a_missing_input_is_an_error(project, never):
         reproduce(project / "out" / "c")
 
 
-@pytest.mark.parametrize(
-    ("fields", "said"),
-    [
-        ({"command": "explore"}, "'explore' is not run again"),
-        ({"command": "blind"}, "is not run again"),
-        ({"arguments": ["--with=evil.py", "--", "rec"]}, "'--with=evil.py' is not run again"),
-        ({"arguments": ["--out=elsewhere", "--", "rec"]}, "'--out=elsewhere' is not run again"),
-        ({"arguments": ["rec"]}, "have no '--'"),
-        ({"arguments": ["--", "/etc/passwd"]}, "none of the inputs"),
-        ({"folder": "a/../../elsewhere"}, "holds a slash"),
-        ({"inputs": [{"path": "/etc/passwd", "sha256": "0"}]}, "is an absolute path"),
-        ({"inputs": [{"path": "\\\\host\\share", "sha256": "0"}]}, "is an absolute path"),
-        (
-            {"inputs": [{"path": "example:../pyproject.toml", "sha256": "0"}], "arguments": ["--hours=6.0", "--"]},
-            "examples/pyproject.toml: cannot be read",
-        ),
-        ({"own_code": [{"path": "../../evil.py", "sha256": "0"}]}, "not run unless you name it"),
-        ({"directory": "../nowhere"}, "is not there"),
-        ({"outputs": 3}, "outputs is 3"),
-        ({"inputs": [{"path": "rec", "sha256": 3}]}, "inputs.0.sha256 is 3: input should be a valid string"),
-        ({"outputs": [{"path": 3, "sha256": "0"}]}, "outputs.0.path is 3"),
-        ({"arguments": [3]}, "arguments.0 is 3"),
-    ],
-)
+STRANGE = parse(beside(__file__, "strange_manifests.yaml"))
+
+
+@pytest.mark.parametrize(("fields", "said"), STRANGE)
 def test_what_a_strangers_manifest_may_not_ask_for_is_refused(project, never, fields, said):
     change(project, **fields)
     with pytest.raises(InputError, match=said.replace("\\", "\\\\")):
@@ -172,9 +154,3 @@ def test_outputs_outside_the_folder_are_not_read(project, name):
     manifest = read_manifest(folder)
     with pytest.raises(InputError, match=r"manifest\.json: output .* lies outside its folder"):
         list(compare_outputs(manifest, folder, manifest, folder))
-
-
-def test_a_command_at_work_is_stated_as_it_can_be_typed_again():
-    assert state_command("in Python") == "in Python"
-    with at_work("run", [("--set", "seed=1"), ("--out", "o")], ["a b.yaml", "/nowhere/c.yaml"]):
-        assert state_command("") == "seatsim run 'a b.yaml' /nowhere/c.yaml --set=seed=1"

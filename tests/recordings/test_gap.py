@@ -11,7 +11,6 @@ from seatsim.recordings.gap import gap, measure_gap, pool_runs
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.recording import load_recording
 from seatsim.scenario.loading import single
-from seatsim.schema.content import to_content
 
 from ..faulty_recordings import FAULTS, NOISE, WARNINGS, edit, rewrite
 
@@ -27,14 +26,6 @@ def test_gap_and_diagnosis_refuse_a_fault_in_the_sentence_of_the_examination(cop
     rewrite(copy, FAULTS[name][0])
     sentence = refusal(lambda: seatsim.gap(copy / "nominal.yaml", copy))
     assert sentence == refusal(lambda: seatsim.diagnose(copy)) == refusal(lambda: refuse(examine(load_recording(copy))))
-
-
-def test_warnings_of_the_examination_are_notes_of_the_gap(copy):
-    for name in ("a dropout", "noisier than stated"):
-        rewrite(copy, WARNINGS[name][0])
-    found = seatsim.gap(copy / "nominal.yaml", copy)
-    assert list(found.notes) == examine(load_recording(copy)).sentences and len(found.notes) == 2
-    assert to_content(found)["notes"] == list(found.notes)
 
 
 def test_a_sound_recording_has_no_notes_and_any_scenario_is_held_against_it(copy, sound_gap):

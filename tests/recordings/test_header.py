@@ -6,22 +6,9 @@ from seatsim.recordings.header import Header
 from seatsim.recordings.recording import load_recording
 from seatsim.schema.errors import InputError
 
-from ..text import cases
+from ..text import beside, cases
 
-GOOD = """\
-rig: seat
-sample_rate: 500.0
-parameter_tolerance: {default: 0.03, plant.driver_mass: 0.1, damper.parameters.c_a: fitted}
-nominal: nominal.yaml
-model_error: 0.05
-runs:
-  - {name: a, file: a.csv}
-  - {name: b, file: b.csv, repeat_of: a}
-  - name: c
-    file: c.csv
-    set: {plant.driver_mass: 95, controller.current: 0.0, temperature: 35.0}
-channels: {floor_acceleration: {unit: m/s^2}, driver_acceleration: {unit: m/s^2}}
-"""
+GOOD = beside(__file__, "good_header.yaml")
 TOLERANCE = "{default: 0.03, plant.driver_mass: 0.1, damper.parameters.c_a: fitted}"
 
 
@@ -62,48 +49,7 @@ def test_what_is_left_out_has_its_usual_value(folder):
     assert Header("seat", 1.0, "n", {"plant.driver_mass": 0.1}).default_tolerance == 0.02
 
 
-CASES = cases(r"""
-rig: seat => rig: chair => line 1, rig: 'chair' | permitted: seat, damper_bench
-sample_rate => sample_rat => did you mean 'sample_rate'
-driver_acceleration: {unit => driver_accel: {unit => did you mean 'driver_acceleration'
-floor_acceleration: {unit: m/s^2} => floor_acceleration: {unit: mm} => 'mm' is no unit of a value in m/s^2
-nominal: nominal.yaml => nominal: 3 => nominal: 3
-name: b => name: a => name of two runs
-model_error: 0.05 => model_eror: 0.05 => line 5 | model_eror | did you mean 'model_error'
-model_error: 0.05 => model_error: 1.5 => line 5, model_error: 1.5 | at most 1
-model_error: 0.05 => model_error: -0.1 => line 5, model_error: -0.1 | at least 0
-model_error: 0.05 => model_error: small => line 5, model_error: 'small' | finite number
-{default: 0.03, plant.driver_mass: 0.1, damper.parameters.c_a: fitted} => 2 => \
-line 3, parameter_tolerance: 2 | at most 1
-{default: 0.03, plant.driver_mass: 0.1, damper.parameters.c_a: fitted} => fited => \
-line 3, parameter_tolerance: 'fited' | did you mean 'fitted' | a fraction from 0 to 1
-{default: 0.03, plant.driver_mass: 0.1, damper.parameters.c_a: fitted} => true => \
-line 3, parameter_tolerance: True | finite number
-{default: 0.03, plant.driver_mass: 0.1, damper.parameters.c_a: fitted} => .nan => \
-line 3, parameter_tolerance: nan | finite number
-{default: 0.03, plant.driver_mass: 0.1, damper.parameters.c_a: fitted} => [0.1] => \
-line 3, parameter_tolerance: [0.1] | finite number
-default: 0.03 => default: -0.03 => line 3, parameter_tolerance.default: -0.03 | at least 0
-driver_mass: 0.1 => driver_mass: much => line 3, parameter_tolerance.plant.driver_mass: 'much' | permitted
-driver_mass: 0.1 => drivr_mass: 0.1 => \
-line 3, parameter_tolerance.plant.drivr_mass | no such number | did you mean 'plant.driver_mass'
-plant.driver_mass: 0.1 => temperature: 0.1 => line 3, parameter_tolerance.temperature | no such number
-parameters.c_a: fitted => c_a: fitted => parameter_tolerance.damper.c_a | 'damper.parameters.c_a'
-driver_mass: 95 => drver_mass: 95 => \
-line 11, runs.2.set.plant.drver_mass | did you mean 'plant.driver_mass' | plant.frame_mass, 
-driver_mass: 95 => driver_mass: -95 => line 11, runs.2.set.plant.driver_mass: -95 | greater than 0 kg
-driver_mass: 95 => driver_mass: heavy => line 11, runs.2.set.plant.driver_mass: 'heavy' | finite number
-driver_mass: 95 => driver_mass: .inf => line 11, runs.2.set.plant.driver_mass: inf | finite number
-controller.current: 0.0 => controller.current: -1.0 => runs.2.set.controller.current: -1.0 | at least 0 A
-temperature: 35.0 => temperature: 900.0 => line 11, runs.2.set.temperature: 900.0 | at most 200 degC
-temperature: 35.0 => damper.model: bingham => line 11, runs.2.set.damper.model | 'bingham' | number
-temperature: 35.0 => damper.parameters.fc_a: 1.0 => runs.2.set.damper.parameters.fc_a | no such number
-{plant.driver_mass: 95, controller.current: 0.0, temperature: 35.0} => 95 => line 11, runs.2.set: 95
-    set: =>     sett: => line 11, runs.2.sett | did you mean 'set'
-repeat_of: a} => repeat_of: a, set: {plant.driver_mass: 95}} => \
-line 8, runs.1.repeat_of | 'a' has another 'set' | leave out repeat_of
-repeat_of: a => repeat_of: aa => line 8, runs.1.repeat_of | did you mean 'a'
-""")
+CASES = cases(beside(__file__, "wrong_headers.txt"))
 
 
 @pytest.mark.parametrize(("old", "new", "words"), CASES, ids=[new for _, new, _ in CASES])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seatsim.recordings.recording import BENCH_CHANNELS, SEAT_CHANNELS, ChannelEntry, Header, Recording, RunEntry
-from seatsim.recordings.replay import COMPARED, LEFT_OUT, recorded_inputs, select_compared, stands_out
+from seatsim.recordings.replay import recorded_inputs
 from seatsim.simulation.inputs import BenchInputs
 
 
@@ -50,17 +50,3 @@ def test_a_bench_is_driven_row_by_row():
     assert inputs.current_command is None
     for name in ("displacement", "velocity", "command_voltage", "coil_current", "damper_temperature"):
         assert getattr(inputs, name) is table[name]
-
-
-def test_compared_are_the_outputs_after_the_first_second():
-    table = {name: np.arange(1000.0) for name in SEAT_CHANNELS}
-    found = select_compared(table, "seat", 250.0)
-    assert tuple(found) == COMPARED["seat"]
-    assert LEFT_OUT == 1.0 and all(values[0] == 250.0 and len(values) == 750 for values in found.values())
-    assert tuple(select_compared(table, "damper_bench", 250.0)) == ("damper_force", "coil_current")
-
-
-def test_a_channel_stands_out_from_three_times_its_noise():
-    values = np.array([-1.0, 1.0])
-    assert stands_out(values, 0.33) and not stands_out(values, 0.34)
-    assert not stands_out(np.ones(5), 0.0) and not stands_out(np.zeros(0), 0.0)

@@ -102,15 +102,3 @@ def test_what_cannot_be_of_one_rig_is_refused(pair, change, nominal, problem):
     with pytest.raises(seatsim.InputError, match=problem) as raised:
         join(pair, change, nominal)
     assert str(raised.value).startswith(str(pair[1]))
-
-
-def test_a_bench_is_no_seat(pair, tmp_path):
-    (tmp_path / "nominal.yaml").write_text(
-        "damper: {model: modified_bouc_wen}\nactuator: {rate: 130.0, max_current: 1.0}\ntemperature: 20.0\n"
-    )
-    (tmp_path / "recording.yaml").write_text(
-        "rig: damper_bench\nsample_rate: 250.0\nnominal: nominal.yaml\nruns: [{name: a, file: a.csv}]\n"
-        "channels: {displacement: {unit: m}, damper_force: {unit: N}}\n"
-    )
-    with pytest.raises(seatsim.InputError, match=r"rig: damper_bench is not permitted beside .*: rig seat"):
-        join_recordings(load_recording(pair[0]), load_recording(tmp_path))

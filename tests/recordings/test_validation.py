@@ -10,23 +10,13 @@ from seatsim.recordings.recording import load_recording
 from seatsim.recordings.replay import replay
 from seatsim.schema.content import to_content
 
+from ..text import beside
+
 RATE, DAMPING = 1000.0, 800.0
 RUNS = {"a": (3, 0.1), "b": (6, 0.05)}
 """Seconds, and peak speed in m/s of a sine of 1 Hz."""
-NOMINAL = """\
-damper: {model: bingham, parameters: {c_a: 1000.0, c_b: 0.0, fc_a: 0.0, fc_b: 0.0, v_ref: 0.005, f0: 0.0}}
-actuator: {rate: 100.0, max_current: 2.0}
-temperature: 20.0
-"""
-HEADER = """\
-rig: damper_bench
-sample_rate: 1000.0
-nominal: nominal.yaml
-parameter_tolerance: {default: 0.0, damper.parameters.c_a: %s}
-runs: [{name: a, file: a.csv}, {name: b, file: b.csv}]
-channels: {displacement: {unit: m}, velocity: {unit: m/s, noise_rms: %s}, damper_force: {unit: N, noise_rms: 2.0},
-           current_command: {unit: A}}
-"""
+NOMINAL = beside(__file__, "validated_nominal.yaml")
+HEADER = beside(__file__, "validated_header.yaml")
 
 
 @pytest.fixture

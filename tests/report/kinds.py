@@ -35,27 +35,13 @@ from seatsim.standards.seat_rows import DampingRow, DampingTest, SeatRow, SeatTe
 from seatsim.sweeps.parts import SweepRows, count_exceedances
 from seatsim.sweeps.sensitivity import analyse_sensitivity
 
-from ..text import parse
+from ..text import beside, parse
 from .diagnoses import with_every_run
 
 COMFORT, TRAVEL = "driver_acceleration_weighted", "suspension_displacement_rms"
 
 
-SEAT = parse("""
-    name: seat
-    plant: {frame_mass: 20.0, driver_mass: 60.0, suspension_stiffness: 4600.0, suspension_damping: 100.0,
-            cushion_stiffness: 60000.0, cushion_damping: 1500.0}
-    damper:
-      model: bouc_wen
-      parameters: {c_a: 120.0, c_b: 350.0, alpha_a: 25.0, alpha_b: 620.0, k0: 0.0, x0: 0.0, f0: 0.0, A: 2000.0,
-                   beta: 1000.0, gamma: 1000.0, n: 2}
-      temperature_factors: {viscous: -0.01, yield_force: -0.01}
-    actuator: {rate: 130.0, max_current: 1.0}
-    temperature: 20.0
-    controller: {law: skyhook, damping: 1000.0, sample_time: 0.005}
-    excitation: {kind: iso7096, spectral_class: EM2, duration: 10.0}
-    effects: [{effect: suspension.end_stop, parameters: {low: -0.045, high: 0.045}}]
-""")
+SEAT = parse(beside(__file__, "seat.yaml"))
 """A rig for short runs, all of which take the same two compiled loops."""
 
 

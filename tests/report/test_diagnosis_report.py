@@ -8,14 +8,14 @@ import pytest
 
 from seatsim.diagnosis import result
 from seatsim.diagnosis.result import Cause, Estimate, GapFigures
-from seatsim.report.diagnosis import advise, format_estimate, report_diagnosis, say_action, say_cause, say_diagnosis
+from seatsim.report.diagnosis import report_diagnosis, say_action, say_cause
 from seatsim.report.formatting import format_sentence, read_words
 from seatsim.report.rendering import render_report
 from seatsim.schema.printing import format_percent
 from seatsim.schema.registry import names
 
 from ..text import words
-from .diagnoses import CASES, ambiguous, known, none, unknown, with_every_run
+from .diagnoses import CASES, known, with_every_run
 from .kinds import render
 from .outline import Outline
 
@@ -128,11 +128,6 @@ def test_a_group_names_both_blocks_and_what_would_decide(pages):
     assert any("To tell the likely causes apart: add load cell" in text for text in outline.words)
 
 
-def test_the_nominal_simulation_is_not_called_one_with_effects(pages):
-    outline = Outline(pages["unknown"][1])
-    assert not any("with effect" in words for words in outline.words)
-
-
 def test_every_effect_is_said_in_plain_words():
     assert set(read_words().effects) == set(names("effect"))
     for shift, side in ((0.0166, "late"), (-0.0166, "early")):
@@ -142,19 +137,3 @@ def test_every_effect_is_said_in_plain_words():
     assert say_cause(Cause("sensor.gain", 1.0, 0.9, gain)) == "the channel driver acceleration reads with a wrong scale"
     assert all("{" not in say_cause(Cause(name, 1.0, 0.9, {})) and say_action(name) for name in read_words().effects)
     assert say_cause(Cause("own.effect", 1.0, 0.9, {})).startswith("own.effect is at work")
-
-
-def test_a_cause_at_the_end_of_its_range_is_to_be_confirmed():
-    found = known()
-    first = found.causes[0]
-    estimate = Estimate(-0.5, 0.1, "-", (-0.5, 1.0), True)
-    ended = first._replace(parameters={"error": estimate}, at_bound=True)
-    advice = advise(replace(found, causes=[ended], selected=[first.effect]))
-    assert f"Confirm {first.effect} first: all of its size lies at the end of its range." in advice
-    assert format_estimate(estimate).endswith("(the end of its range)")
-
-
-def test_a_share_of_the_gap_is_said():
-    assert say_diagnosis(known()).endswith("of the gap beyond noise; what is left is 3.5 % of the signals' spread.")
-    assert "noise alone makes" in say_diagnosis(none()) and "noise alone makes" in say_diagnosis(unknown())
-    assert "which look the same here" in say_diagnosis(ambiguous())

@@ -6,8 +6,6 @@ import pytest
 
 from seatsim.characterisation.summary import Characterisation
 from seatsim.characterisation.tabulate import make_sheet
-from seatsim.cli.outputs.diagnosis_results import make_gap_table
-from seatsim.cli.show_table import make_plain
 from seatsim.plots.bench.identification import plot_predictions
 from seatsim.report.dampers import report_characterisation, report_identification
 from seatsim.report.gap import report_gap, say_gap
@@ -25,28 +23,6 @@ def test_a_run_says_comfort_and_travel():
     assert outline.rows("Every figure of the run")["RMS suspension travel"][0].endswith(" mm")
     assert "seatsim run seat.yaml" in outline.words
     assert outline.rows("Settings")["plant.driver_mass"] == ["kg", "60"]
-
-
-def test_a_comparison_names_the_most_comfortable_run_and_marks_it():
-    text = render("runs")
-    best = min(runs(), key=lambda run: run.metrics["driver_acceleration_weighted"].value)
-    assert f"“{best.scenario.label['variant']}” is the most comfortable" in Outline(text).headings[0]
-    assert text.count('<tr class="strong">') == 1 and len(text) < 700_000
-    assert text.count("<img ") == len(pictures()) >= 5
-
-
-def test_conditions_with_several_runs_are_compared_each_by_itself():
-    others = []
-    for run in runs():
-        half = {name: metric._replace(value=0.5 * metric.value) for name, metric in run.metrics.items()}
-        others.append(replace(run, scenario=replace(run.scenario, name="smoother", seed=2), metrics=half))
-    report = report_runs([*runs(), *others], {}, "seatsim compare a b", "two")
-    said = "“skyhook” is the most comfortable under both conditions. The worst of them is seat: the driver"
-    assert report.answer.startswith(said)
-    blocks = {section.anchor: section.blocks[-1] for section in report.sections if section.blocks}
-    assert list(blocks["signals"].runs) == ["seat", "smoother"] and len(blocks["signals"].lines) == 4
-    assert blocks["figures"].strong == [0, 4]
-    render_report(report)
 
 
 def test_a_run_that_cannot_be_relied_on_is_marked_and_never_the_best():
@@ -67,23 +43,6 @@ def test_a_gap_says_where_it_is_largest_and_what_to_do():
     assert outline.rows("Gap of each run")["damper force"][0] == "29 %"
     assert any(heading.startswith("Damper force, RMS difference: ") for heading in outline.headings)
     assert say_gap(gap(0.021)).endswith("there is nothing left to explain.")
-
-
-def test_noise_that_is_not_stated_is_not_printed_as_none():
-    found = gap(0.3, floor=0.0, run=pair(20.0))
-    outline = Outline(render_report(report_gap("x", found, "seatsim gap a b")))
-    assert "no sensor noise is stated" in outline.headings[0]
-    shown = make_plain(make_gap_table(found)), found._repr_html_()
-    assert outline.rows("Gap over all runs")["damper force"][:2] == ["30 %", "not stated"]
-    assert all(text.count("not stated") == 2 for text in shown)
-
-
-def test_a_short_recording_has_no_spectrum():
-    whole = pair(1.0)
-    signals = [{"damper_force": each["damper_force"][:40]} for each in (whole.measured, whole.simulated)]
-    short = whole._replace(time=whole.time[:40], measured=signals[0], simulated=signals[1])
-    outline = Outline(render_report(report_gap("x", gap(0.3, run=short), "seatsim gap a b")))
-    assert "frequency [Hz]" not in outline.words and "time [s]" in outline.words
 
 
 def test_an_identification_says_how_well_it_predicts_and_what_the_data_leave_open():

@@ -1,4 +1,4 @@
-"""Damaged files for every reader: each is read, or refused by one sentence, soon and without leaving anything."""
+"""Damaged files of every kind that others send: each is read, or refused by one sentence, soon and leaving nothing."""
 
 import random
 import time
@@ -14,8 +14,7 @@ from .readers import make_readers
 
 MUTANTS, LIMIT = 25, 120.0
 NAMES = (
-    *("scenario", "variants", "recording", "table", "bench", "sweep", "design", "floor", "rows", "resumed"),
-    *("map", "synthesis", "diagnosis", "manifest", "sealed"),
+    *("scenario", "variants", "recording", "table", "bench", "sweep", "floor", "map", "diagnosis", "manifest"),
     *(f"format {name}" for name in FORMATS),
 )
 pytestmark = [

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import seatsim
@@ -35,12 +34,3 @@ def test_every_example_runs_whose_checks_do_not_run_it(path, seatsim_command, tm
 def test_the_shipped_recording_is_that_of_its_nominal_rig():
     folder = FOLDER / "data" / "recording"
     assert seatsim.gap(folder / "nominal.yaml", folder).overall < 1e-3
-
-
-def test_a_measured_road_takes_the_place_of_the_generated_one(shared):
-    road = shared / "data" / "roads" / "profile_1.csv.gz"
-    measured = seatsim.run("measured-road", {"excitation.path": str(road), "excitation.duration": 10.0})
-    generated = seatsim.run("measured-road", {"excitation.duration": 10.0})
-    assert np.all(np.isfinite(measured.table.driver_acceleration_weighted))
-    assert not np.allclose(measured["floor_acceleration"], generated["floor_acceleration"])
-    assert measured.table.energy_residual.max() < 1e-4

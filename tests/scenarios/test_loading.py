@@ -35,17 +35,3 @@ def test_an_example_is_found_by_name(tmp_path, here):
     for elsewhere in (tmp_path / "quickstart.yaml", "elsewhere/quickstart.yaml"):
         with pytest.raises(seatsim.InputError, match="no such file"):
             load(elsewhere)
-
-
-def test_whole_numbers_and_exponents_are_numbers(seat_file):
-    (run,) = load(seat_file, {"plant.driver_mass": 80, "solver": {"step": 1e-3}})
-    assert isinstance(run.plant.driver_mass, float)
-    seat_file.write_text(seat_file.read_text() + "solver: {step: 1e-3}\n")
-    assert load(seat_file)[0].solver.step == 1e-3
-
-
-def test_merged_keys_and_aliases_are_read(seat_file):
-    text = seat_file.read_text().replace("plant: {", "plant: &rig {")
-    seat_file.write_text(text + "variants: {heavy: {plant: {<<: *rig, driver_mass: 120.0}}}\n")
-    (run,) = load(seat_file)
-    assert (run.plant.driver_mass, run.plant.frame_mass) == (120.0, 20.0)

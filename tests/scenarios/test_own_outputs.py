@@ -140,11 +140,6 @@ def test_a_floor_that_compiled_code_cannot_read_is_refused(bad, seat_file, how, 
         simulate(scenario(seat_file, {"excitation": {"kind": "bad:BadFloor", "how": how}}))
 
 
-def test_a_floor_of_lists_is_one_of_arrays(bad, seat_file):
-    found = simulate(scenario(seat_file, {"excitation": {"kind": "bad:BadFloor", "how": "list"}}))
-    assert len(found["time"]) == 500
-
-
 @pytest.mark.parametrize("short, words", [(1.0, r"shape \(7,\)"), (0.0, r"gives inf at sample 50, 0.05 s")])
 def test_an_effect_that_gives_other_samples_is_named(bad, seat_file, short, words):
     effects = [{"effect": "bad:BadPush", "parameters": {"short": short}}]

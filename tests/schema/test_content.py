@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from seatsim.schema.arrays import Array
-from seatsim.schema.content import Form, IfAny, Joined, Unwritten, show_record, to_content, written
+from seatsim.schema.content import Form, IfAny, Joined, Unwritten, to_content, written
 from seatsim.schema.json_schema import answer_schema
 
 
@@ -79,10 +79,3 @@ def test_the_schema_refuses_what_is_never_written():
     for key, wrong in never.items():
         with pytest.raises(jsonschema.ValidationError):
             jsonschema.validate(WRITTEN | {key: wrong}, answer_schema(Line))
-
-
-def test_a_notebook_shows_values_and_records_in_lists_as_tables():
-    shown = show_record({"a": {"b": 0.123456}, "none": None, "rows": [{"x<": 1, "deep": {"y": 2}}] * 20})
-    assert "<td>a.b</td><td>0.1235</td>" in shown and "<td>none</td><td></td>" in shown
-    assert shown.count("<th>x&lt;</th>") == 1 and shown.count("<td>1</td>") == 12 and "deep" not in shown
-    assert "0.12" not in show_record({"a": {"b": 0.123456}, "c": 1}, "c")

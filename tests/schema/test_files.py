@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from seatsim.schema.errors import InputError, OutputError, SeatsimError, nearest
+from seatsim.schema.errors import InputError, OutputError, SeatsimError
 from seatsim.schema.files import check_folder, plain, remove_left, write_text, write_together, write_whole
 
 
@@ -45,12 +45,6 @@ def test_a_folder_that_cannot_be_made_is_bad_input(tmp_path):
         write_text(tmp_path / "file" / "result.txt", "")
 
 
-def test_the_nearest_name_is_proposed_where_one_is_near():
-    assert nearest("fricton", ["friction", "end_stop"]) == " (did you mean 'friction'?)"
-    assert nearest("xyz", ["friction", "end_stop"]) == ""
-    assert (InputError.exit_status, SeatsimError.exit_status) == (2, 1)
-
-
 @pytest.mark.parametrize("mask", [0o022, 0o077])
 def test_files_have_the_mode_that_the_umask_leaves(tmp_path, mask):
     before = os.umask(mask)
@@ -80,11 +74,6 @@ def test_files_that_belong_together_replace_others_together(tmp_path):
     write_together(folder, write_two)
     assert contents(folder) == {"a.txt": "new", "b/c.txt": "new", "other.txt": "stays"}
     assert list(tmp_path.iterdir()) == [folder]
-
-
-def test_the_current_folder_is_a_place_as_well(tmp_path, here):
-    write_together(Path(), write_two)
-    assert contents(tmp_path) == {"a.txt": "new", "b/c.txt": "new"}
 
 
 def test_where_one_cannot_be_put_in_place_all_stay_as_they_were(tmp_path):

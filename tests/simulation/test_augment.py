@@ -5,16 +5,12 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from seatsim.dampers.bingham import Bingham
-from seatsim.effects.base import ON_DAMPER, ON_SEAT, acts_on, off
-from seatsim.kernel.augmented import AugmentedDamper
+from seatsim.effects.seat import Friction
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant
 from seatsim.rig.temperature import TemperatureFactors
-from seatsim.schema.registry import find, names, specification_of
 from seatsim.simulation.augment import (
     augment_coil,
-    augment_damper,
     augment_factors,
     augment_plant,
     augment_temperature,
@@ -25,10 +21,6 @@ from seatsim.simulation.augment import (
 
 PLANT_80 = Plant(20.0, 80.0, 4600.0, 150.0, 60000.0, 1500.0)
 COIL = Coil(rate=130.0, max_current=1.0)
-
-
-def effect(name, **values):
-    return off(find("effect", name))._replace(**values)
 
 
 class Doubled(NamedTuple):
@@ -84,38 +76,7 @@ def test_readings_are_made_in_order_and_undone_in_the_opposite_one():
     assert both["coil_current"] == pytest.approx(values + 1.0)
 
 
-ALL_ON_DAMPER = {find("effect", name) for name in names("effect") if acts_on(find("effect", name), ON_DAMPER)}
-ALL_ON_SEAT = {find("effect", name) for name in names("effect") if acts_on(find("effect", name), ON_SEAT)}
-
-
-def test_the_loop_carries_all_effects_of_a_side_where_one_is_at_work_or_all_where_it_is_asked():
-    none = [effect("driver.mass", change=5.0)]
-    assert select_in_loop(none) == ((), ())
-    friction, seal = effect("suspension.friction", force=20.0), effect("damper.seal_friction", force=20.0)
-    assert select_in_loop([friction])[0] == () == select_in_loop([seal])[1]
-    for effects, carry_all in (([friction, seal], None), (none, True), ([friction], True)):
-        on_damper, on_seat = select_in_loop(effects, carry_all)
-        assert {type(each) for each in on_damper} == ALL_ON_DAMPER
-        assert {type(each) for each in on_seat} == ALL_ON_SEAT
-        assert all(each == off(type(each)) for each in (*on_damper, *on_seat) if each not in (friction, seal))
-        assert (friction in on_seat) is (friction in effects)
-    kinds = [tuple(map(type, side)) for side in select_in_loop(none, True)]
-    assert kinds == [tuple(map(type, side)) for side in select_in_loop([friction, seal])]
-    assert kinds[1] == tuple(map(type, select_in_loop([friction])[1]))
-
-
 def test_a_second_effect_of_a_kind_is_carried_beside_the_first():
-    first, second = (effect("suspension.friction", force=force) for force in (20.0, 30.0))
-    on_seat = select_in_loop([first, second])[1]
-    assert len(on_seat) == len(ALL_ON_SEAT) + 1 and {first, second} <= set(on_seat)
-    assert on_seat[-1] is second
-
-
-def test_a_damper_with_effects_has_their_state_behind_its_own():
-    record = Bingham(250.0, 350.0, 45.0, 620.0)
-    initial = specification_of(Bingham).initial
-    assert augment_damper(record, ()) == (record, initial)
-    remanence = effect("damper.remanence", width=0.1)
-    damper, state = augment_damper(record, (remanence,))
-    assert damper == AugmentedDamper(record, (remanence,))
-    assert state == initial + specification_of(type(remanence)).initial
+    one, two = (Friction(force) for force in (20.0, 30.0))
+    carried, alone = select_in_loop([one, two])[1], select_in_loop([one])[1]
+    assert len(carried) == len(alone) + 1 and {one, two} <= set(carried) and carried[-1] is two

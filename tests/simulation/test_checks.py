@@ -27,16 +27,6 @@ def figures(file, checks, **settings):
     return {checked.check: checked.figure for run in runs for checked in check_run(run)}
 
 
-def test_a_metric_is_compared_with_its_bounds(seat_file):
-    found = figures(
-        seat_file, {"seat_factor": {"max": 0.01}, "suspension_displacement_peak": {"min": 0.001, "max": 1.0}}
-    )
-    assert not found["seat_factor"].is_within
-    assert "seat_factor is" in str(found["seat_factor"])
-    assert "at most 0.01" in str(found["seat_factor"])
-    assert found["suspension_displacement_peak"].is_within
-
-
 @pytest.mark.parametrize(
     ("change", "stable", "said"),
     [

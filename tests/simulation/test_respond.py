@@ -9,20 +9,13 @@ from seatsim.effects.base import off
 from seatsim.excitations.base import Floor
 from seatsim.scenario.loading import load, single
 from seatsim.scenario.scenario import Start
-from seatsim.schema.errors import InputError
 from seatsim.schema.registry import find
 from seatsim.simulation.inputs import BenchInputs, Forces, SeatInputs
 from seatsim.simulation.respond import SEAT_OUTPUTS, respond
 
-SEAT = """\
-plant: {frame_mass: 20.0, driver_mass: 80.0, suspension_stiffness: 4600.0, suspension_damping: 150.0,
-        cushion_stiffness: 60000.0, cushion_damping: 1500.0}
-damper: {model: bingham, parameters: {c_a: 500.0, c_b: 0.0, fc_a: 0.0, fc_b: 0.0, f0: 0.0, v_ref: 0.004}}
-actuator: {rate: 130.0, max_current: 1.0}
-temperature: 20.0
-controller: {law: replay}
-excitation: {kind: recording}
-"""
+from ..text import beside
+
+SEAT = beside(__file__, "replayed_seat.yaml")
 STEP = 0.001
 
 
@@ -87,18 +80,6 @@ def test_a_bench_answers_with_the_damper_at_the_speed_of_its_displacement(bench)
     assert np.all(answer["coil_current"] == 0.0)
 
 
-def test_noise_of_a_displacement_is_smoothed_out(bench):
-    noisy = MOVED.displacement + 1e-5 * np.random.default_rng(0).standard_normal(1500)
-    errors = [
-        np.std(
-            respond(bench, MOVED._replace(displacement=noisy, displacement_noise=noise))["damper_force"]
-            - 500.0 * 0.08 * np.cos(8.0 * ROWS)
-        )
-        for noise in (0.0, 1e-5)
-    ]
-    assert errors[1] < 0.1 * errors[0]
-
-
 def test_a_command_is_held_and_followed_from_the_recorded_current_on(bench):
     command = np.where(ROWS < 1.0, 0.2, 0.8)
     start = np.full(1500, 0.6)
@@ -116,11 +97,6 @@ def test_a_command_voltage_counts_with_its_gain_and_a_command_before_it(bench):
     assert respond(bench, both)["coil_current"][-1] == pytest.approx(0.1, rel=1e-9)
     too_much = respond(bench, MOVED._replace(current_command=np.full(1500, 3.0)))["coil_current"]
     assert too_much[-1] == pytest.approx(1.0, rel=1e-9)
-
-
-def test_a_bench_cannot_be_shaken_as_a_seat(bench, inputs):
-    with pytest.raises(InputError, match="has no seat to simulate"):
-        respond(bench, inputs)
 
 
 def test_a_recorded_temperature_scales_the_damper(bench):

@@ -8,11 +8,9 @@ import pytest
 from seatsim.cli.outputs.run_tables import make_comparison_table
 from seatsim.metrics.table import Metric
 from seatsim.scenario.loading import load, single
-from seatsim.schema.errors import RunError
 from seatsim.schema.registry import specification_of
-from seatsim.simulation.result import UNITS, Channel, History, Result
-from seatsim.simulation.runs import compare, run, run_many, run_one
-from seatsim.simulation.simulate import simulate
+from seatsim.simulation.result import Channel, History, Result
+from seatsim.simulation.runs import run
 from seatsim.simulation.validity import LARGEST_RESIDUAL, list_ranges_left, list_reasons
 
 
@@ -21,17 +19,6 @@ def scenario(kept_seat_file):
     return load(kept_seat_file, {"excitation": {"kind": "sine", "amplitude": 0.02, "frequency": 1.0, "duration": 2.0}})[
         0
     ]
-
-
-@pytest.fixture(scope="module")
-def history(scenario):
-    return simulate(scenario)
-
-
-def test_every_channel_is_there_with_its_unit_and_in_its_order_of_time(scenario, history):
-    assert set(history.channels) == set(UNITS)
-    assert np.allclose(history["time"], 0.001 * np.arange(2001))
-    assert all(len(values) == 2001 for values in history.channels.values())
 
 
 def test_a_channel_has_a_unit_and_what_is_computed_from_it_has_none(scenario):
@@ -54,26 +41,6 @@ def test_a_channel_has_a_unit_and_what_is_computed_from_it_has_none(scenario):
     with pytest.raises(ValueError, match="read-only"):
         force *= force
     assert Channel(np.zeros(2), "x", "m").shape == (2,)
-
-
-def test_the_table_has_a_row_for_each_run_and_what_sets_it_apart(kept_seat_file):
-    short = {"excitation.duration": 2.0, "variants": {"soft": {"plant.driver_mass": 60.0}, "hard": {}}}
-    table = run(kept_seat_file, short).table
-    assert list(table["variant"]) == ["soft", "hard"] and list(table.columns[:2]) == ["scenario", "variant"]
-    single_runs = [run_one(one) for one in load(kept_seat_file, short)]
-    for name in ("driver_acceleration_rms", "suspension_displacement_rms"):
-        assert list(table[name]) == [one.metrics[name].value for one in single_runs]
-    assert len(compare([kept_seat_file, kept_seat_file], {"excitation.duration": 2.0}).runs) == 2
-    assert Result(single_runs)["time"][-1] == single_runs[0]["time"][-1]
-
-
-def test_many_runs_are_yielded_in_order_with_their_failures(scenario):
-    falling = replace(scenario, plant=scenario.plant._replace(suspension_stiffness=-1e6, suspension_damping=-1e4))
-    done = []
-    pairs = list(run_many([scenario, falling, scenario], done.append))
-    assert [pair[0] for pair in pairs] == [scenario, falling, scenario] and len(done) == 3
-    assert isinstance(pairs[1][1], RunError)
-    assert np.array_equal(pairs[0][1]["damper_force"], pairs[2][1]["damper_force"])
 
 
 def warned(scenario, share, speed=0.0, current=0.0, warmer=0.0):
@@ -120,14 +87,6 @@ def test_a_figure_without_value_and_an_open_energy_balance_are_reasons(kept_seat
         assert reason == "driver_vdv has no finite value"
     (reason,) = list_reasons(scenario, history, figures(energy_residual=1.1 * LARGEST_RESIDUAL))
     assert "0.0011 of the energy is unaccounted for" in reason
-
-
-def test_a_step_too_long_to_weight_is_said(kept_seat_file):
-    short = {"excitation.duration": 2.0, "controller.sample_time": 0.01}
-    for step, count in ((0.005, 0), (0.01, 1)):
-        (found,) = run(kept_seat_file, {**short, "solver.step": step}).runs
-        assert ("seat_factor" in found.metrics) == (count == 0) and len(found.warnings) == count
-        assert all("choose a step of 5 ms or less" in warning for warning in found.warnings)
 
 
 def test_a_run_says_why_its_figures_are_unverified(kept_seat_file):

@@ -88,24 +88,14 @@ def test_wrong_files_are_one_error_each(ride, tmp_path):
         comfort(ride.with_name("rode.csv"))
     with pytest.raises(InputError, match="no column has a usual name"):
         comfort(write(tmp_path, "odd.csv", a=short))
-    (tmp_path / "text.csv").write_text("a;b\n1;2\n")
-    with pytest.raises(InputError, match="at least 2 rows of numbers"):
-        comfort(tmp_path / "text.csv")
-    broken = short.copy()
-    broken[100] = math.nan
+    broken = np.where(np.arange(5000) == 100, math.nan, short)
     with pytest.raises(InputError, match="row 101, acc_z: not a finite number"):
         comfort(write(tmp_path, "hole.csv", acc_z=broken))
-    pd.DataFrame({"acc_z": short}).to_csv(tmp_path / "timeless.csv", index=False)
-    with pytest.raises(InputError, match="no column holds the time"):
-        comfort(tmp_path / "timeless.csv")
-    assert comfort(tmp_path / "timeless.csv", rate=RATE).sample_rate == RATE
     for wrong in ({"rate": 0.0}, {"hours": 25.0}, {"hours": math.nan}):
         with pytest.raises(InputError, match="above 0"):
-            comfort(tmp_path / "timeless.csv", **({"rate": RATE} | wrong))
-    clock = pd.date_range("2026-11-23", periods=len(short), freq="2ms").astype(str)
-    assert comfort(write(tmp_path, "clock.csv", time_s=clock, acc_z=short)).sample_rate == RATE
-    with pytest.raises(InputError, match=r"timeless\.csv, acc_z: .*needs 200 Hz or more"):
-        comfort(tmp_path / "timeless.csv", rate=100.0)
+            comfort(ride, **wrong)
+    with pytest.raises(InputError, match=r"ride\.csv, acc_z: .*needs 200 Hz or more"):
+        comfort(ride, rate=100.0)
     with pytest.raises(InputError, match="does not rise in even steps"):
         comfort(write(tmp_path, "jump.csv", time_s=TIME[:5000] + 0.5 * (TIME[:5000] > 6), acc_z=short))
 
@@ -125,15 +115,6 @@ def test_a_unit_of_something_else_is_refused(tmp_path):
         comfort(write(tmp_path, acc_z_g=tone()), {"rz": "acc_z_g"})
     turning = comfort(write(tmp_path, spin_deg_s2=np.rad2deg(tone())), {"rz": "spin_deg_s2"})
     assert turning.axes["rz"].removed == pytest.approx(0.0, abs=1e-9) and turning.axes["rz"].dose.rms > 0.1
-
-
-def test_other_formats_than_csv_give_the_same(tmp_path):
-    german = write(tmp_path, "german.csv", Beschl_Fahrer=tone())
-    german.write_text("Prüfstand 7\n" + german.read_text().replace(",", ";").replace(".", ","), encoding="cp1252")
-    frame = pd.DataFrame({"time": TIME, "driver_acceleration": tone()})
-    frame.to_parquet(tmp_path / "ride.parquet")
-    for path in (german, tmp_path / "ride.parquet"):
-        assert comfort(path, unit="m/s^2").axes["z"].dose.rms == pytest.approx(1.0, rel=5e-3)
 
 
 def test_the_command_prints_one_object_and_writes_only_where_asked(ride, tmp_path, seatsim_command):

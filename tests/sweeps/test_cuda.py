@@ -8,29 +8,9 @@ from pathlib import Path
 from seatsim.kernel import cuda_lanes
 from seatsim.sweeps import device
 
-FEEDBACK = {"law": "static_output_feedback", "gain": [2.0, 2147.6], "sample_time": 0.005}
-NOISY = {"bandwidth": 80.0, "displacement_noise": 1e-4, "acceleration_noise": 0.05}
-VARY = {
-    "damper": [{"model": name} for name in ("modified_bouc_wen", "yu2019", "original_bingham", "modified_bouc_wen")],
-    "controller": [
-        FEEDBACK | {"sensors": NOISY},
-        FEEDBACK | {"inverse": {"model": "modified_bouc_wen", "temperature": 20.0}},
-        {"law": "skyhook", "damping": 2000.0, "sample_time": 0.002},
-        {"law": "constant", "current": 0.2},
-    ],
-    "temperature": [20.0, 60.0, {"start": 20.0, "ambient": 10.0, "heat_capacity": 50.0, "conductance": 1.0}, 20.0],
-    "actuator.delay": [0.0034, 0.0, 0.002, 0.0],
-    "driver": [{"model": name} for name in ("single_mass", "single_mass", "iso5982", "single_mass")],
-    "excitation.duration": [0.03, 0.4, 0.03, 0.01],
-    "plant.travel": [[-0.004, 0.004], [-0.05, 0.05], [-0.05, 0.05], [-0.05, 0.05]],
-    "effects": [
-        [{"effect": "suspension.end_stop", "parameters": {"low": -0.0005, "high": 0.0005}}],
-        [],
-        [],
-        [{"effect": "floor.unmeasured_input", "parameters": {"rms": 5.0}}],
-    ],
-}
-"""The last of these runs has a force over time, for which a lane has no room."""
+from ..text import beside, parse
+
+VARY = parse(beside(__file__, "cuda_runs.yaml"))
 
 
 def test_rows_are_those_of_the_local_engine(write_sweep, tmp_path):

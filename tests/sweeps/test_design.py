@@ -10,6 +10,8 @@ from seatsim.sweeps.definition import read_definition
 from seatsim.sweeps.execute import prepare
 from seatsim.sweeps.plan import make_plan
 
+from ..text import beside, parse
+
 WIDE = {"plant": {}, "sweep": {f"effects.{k}.parameters.high": [0.1] * 100 for k in range(4)}}
 MASS, STIFFNESS, CLASS = "plant.driver_mass", "plant.suspension_stiffness", "excitation.spectral_class"
 
@@ -79,42 +81,15 @@ def test_a_run_is_the_scenario_with_its_values_and_a_replicate_the_next_seed(wri
     assert plan.values(5) == {"variant": "b", MASS: 55.0, "effects.0.parameters.high": 0.03}
 
 
-@pytest.mark.parametrize(
-    ("stated", "parts"),
-    [
-        ({"desing": "lhs"}, ["unknown key", "did you mean 'design'"]),
-        ({"design": "sobel"}, ["line", "did you mean 'sobol'", "cross, zip, lhs"]),
-        ({"design": "lhs", "runs": None}, ["'runs' is missing"]),
-        ({"runs": 0}, ["runs", "at least 1"]),
-        ({"vary": None}, ["'vary' is missing"]),
-        ({"vary": {"plant.driver_mas": [80.0]}}, ["line", "did you mean 'driver_mass'"]),
-        ({"vary": {"plantt.driver_mass": [80.0]}}, ["did you mean 'plant'"]),
-        ({"vary": {MASS: {"normal": [80, 60]}}}, ["line", MASS, "greater than 0 kg", "run "]),
-        ({"vary": {MASS: [80.0, -1.0]}}, ["line", "-1.0 is not permitted", "(run 1 of 2)"]),
-        ({"vary": {MASS: 80.0}}, ["single value", "{from: A, to: B, steps: N}"]),
-        ({"vary": {MASS: []}}, ["the list is empty"]),
-        ({"vary": {MASS: {"normall": [80, 6]}}}, ["did you mean 'normal'"]),
-        ({"vary": {MASS: {"uniform": [80, 60]}}}, ["greater than the first"]),
-        ({"vary": {MASS: {"normal": [80, 0]}}}, ["standard deviation"]),
-        ({"vary": {MASS: {"normal": [80, 6], "low": 90, "high": 70}}}, ["greater than low"]),
-        ({"vary": {MASS: {"uniform": [50, 60], "low": 55}}}, ["truncate normal and lognormal"]),
-        ({"vary": {MASS: {"choice": {50: 0.5, 80: 0.6}}}}, ["sum to 1.1"]),
-        ({"vary": {MASS: {"from": 1, "to": 2, "steps": 1.5}}}, ["steps", "whole number"]),
-        ({"vary": {"effects.0.parameters.high": [0.1]}}, ["line", "effects", "not a list"]),
-        ({"design": "zip", "vary": {MASS: [60.0, 70.0], STIFFNESS: [4.0] * 3}}, ["plant.driver_mass 2"]),
-        ({"limits": {"driver_vdw": 9.0}}, ["did you mean 'driver_vdv'"]),
-        ({"vary": {CLASS: ["EM1", "EM99"]}}, ["line", "'EM99' is not permitted"]),
-        ({"design": "table", "vary": None}, ["CSV file"]),
-        ({"scenario": "nowhere.yaml"}, ["line", "no such file"]),
-        ({"vary": {MASS: [60.0] * 1000, STIFFNESS: [4e3] * 1000}, "replicates": 10000},
-         ["makes 10000000000 runs (1000000 points x 10000 replicates)", "at most 10000000"]),
-        ({"vary": {MASS: {"from": 50, "to": 90, "steps": 10**5}, STIFFNESS: {"from": 4e3, "to": 5e3, "steps": 10**5}}},
-         ["makes 10000000000 runs", "design: sobol"]),
-        ({"vary": {MASS: {"from": 50, "to": 90, "steps": 10**10}}}, ["steps", "at most 1000000"]),
-        ({"vary": {MASS: {"normal": [80, 6]}, STIFFNESS: [4e3] * 2}, "runs": 10**7}, ["makes 20000000 runs"]),
-        ({"scenario": WIDE}, ["makes 100000000 runs; a scenario has at most 10000"]),
-    ],
-)  # fmt: skip
+LONG = {"vary": {MASS: [60.0] * 1000, STIFFNESS: [4e3] * 1000}, "replicates": 10000}
+TOO_MANY = [
+    [{"scenario": WIDE}, ["makes 100000000 runs; a scenario has at most 10000"]],
+    [LONG, ["makes 10000000000 runs (1000000 points x 10000 replicates)", "at most 10000000"]],
+]
+WRONG = [*parse(beside(__file__, "wrong_sweeps.yaml")), *TOO_MANY]
+
+
+@pytest.mark.parametrize(("stated", "parts"), WRONG)
 def test_what_is_wrong_is_refused_before_anything_runs(stated, parts, write_sweep, tmp_path):
     with pytest.raises(seatsim.InputError) as caught:
         prepare(write_sweep(**stated))

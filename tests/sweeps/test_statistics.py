@@ -5,7 +5,6 @@ import pandas as pd
 import pytest
 from scipy.stats import qmc
 
-from seatsim.plots.sweeps import find_front, plot_comfort
 from seatsim.report.sweep import advise_on_keys, tabulate_best
 from seatsim.sweeps.parts import SweepRows, count_exceedances
 from seatsim.sweeps.sensitivity import analyse_sensitivity, choose_key
@@ -45,13 +44,6 @@ def test_sobol_indices_are_the_exact_ones(known, conform):
     assert best.key == "b" and (best.at_low, best.at_high) == pytest.approx((-0.9 + 2 / 3, 0.9 + 2 / 3), abs=0.15)
 
 
-def test_noise_widens_the_intervals_and_is_told(known):
-    noisy = known.assign(**{COMFORT: known[COMFORT] + np.random.default_rng(2).normal(0, 3, len(known))})
-    found = analyse_sensitivity(rows_of(noisy, "abct"))
-    assert found.rows[0].explained < 0.6
-    assert found.rows[0].total_high - found.rows[0].total_low > 0.05
-
-
 def test_indices_are_refused_where_they_have_no_meaning(known):
     together = known.assign(b=known.a)
     assert "a and b vary together" in analyse_sensitivity(rows_of(together, "abc")).problem
@@ -68,25 +60,6 @@ def test_shares_have_wilson_intervals(known, conform):
     for end, found_end, expected in (("low", first.low, 0.0435), ("high", first.high, 0.2136)):
         conform(f"95 % interval of a share of 5 of 50, {end} end", "Wilson 1927", found_end, expected, tolerance=1e-4)
     assert [row.exceeding for row in found[1:]] == [0, 0, 0]
-
-
-def test_the_front_holds_what_nothing_is_better_than():
-    travel, comfort = np.array([3.0, 1.0, 2.0, 2.0, 1.0]), np.array([1.0, 5.0, 2.0, 3.0, 6.0])
-    assert list(find_front(travel, comfort)) == [1, 2, 0]
-
-
-@pytest.mark.parametrize(("key", "front"), [("controller.damping", ["Pareto front"]), ("plant.driver_mass", [])])
-def test_each_road_has_a_picture_of_comfort_over_travel_and_a_front_where_runs_are_rivals(key, front):
-    road, value = np.repeat(["B", "C", "D"], 20), np.tile([60.0, 80.0], 30)
-    noise = np.random.default_rng(3).random((2, 60))
-    travel = "suspension_displacement_rms"
-    frame = pd.DataFrame({"excitation.road_class": road, key: value, COMFORT: noise[0], travel: noise[1]})
-    rows = rows_of(frame, [key, "excitation.road_class"])
-    rows = rows._replace(metrics=[COMFORT, travel])
-    figure = plot_comfort(rows, rows.keys)
-    assert [axes.get_title(loc="left")[-1] for axes in figure.axes] == ["B", "C", "D"]
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["60.00", "80.00", *front]
-    assert len(plot_comfort(rows, [key]).axes) == 1
 
 
 def test_a_condition_is_never_advised_on_as_a_choice():

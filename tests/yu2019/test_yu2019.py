@@ -66,30 +66,6 @@ def test_model_three_has_the_least_displacement_at_every_temperature(study):
         assert study["II", t].displacement >= (least if t == 20.0 else 1.05 * least)
 
 
-def test_models_two_and_three_are_the_same_inverse_at_20_degrees(study):
-    assert study["II", 20.0] == study["III", 20.0]
-
-
-def test_displacement_of_model_two_grows_with_temperature(study):
-    grown = [study["II", t].displacement for t in TEMPERATURES]
-    assert np.all(np.diff(grown) > 0.4)
-    assert grown[-1] / study["III", 80.0].displacement == pytest.approx(5.6 / 3.9, rel=0.05)
-
-
-def test_order_of_accelerations_does_not_follow(study):
-    for t in (40.0, 60.0, 80.0):
-        assert study["II", t].acceleration < study["III", t].acceleration
-    for t in TEMPERATURES:
-        assert study["I", t].acceleration == pytest.approx(study["III", t].acceleration, rel=1e-3)
-
-
-def test_what_sets_one_apart_from_three_is_a_static_offset(study):
-    one, three = study["I", 80.0], study["III", 80.0]
-    assert one.mean == pytest.approx(-1.62, abs=0.05)
-    spread = (one.displacement**2 - one.mean**2) ** 0.5
-    assert spread == pytest.approx(three.displacement, rel=0.015)
-
-
 def test_a_stiff_spring_makes_three_the_best_in_both_columns(stiff):
     for t in TEMPERATURES:
         for column in (0, 1):
@@ -97,10 +73,6 @@ def test_a_stiff_spring_makes_three_the_best_in_both_columns(stiff):
             assert stiff["III", t][column] <= 1.0005 * least
     for column in (0, 1):
         assert np.all(np.diff([stiff["II", t][column] for t in TEMPERATURES]) > 0.0)
-
-
-def test_a_stiff_spring_takes_the_difference_of_one_and_three_away(stiff):
-    assert stiff["I", 80.0].displacement / stiff["III", 80.0].displacement < 1.03
 
 
 def test_a_damper_three_times_as_asymmetric_comes_within_five_percent():
@@ -127,15 +99,6 @@ def test_no_floor_gives_the_published_ratio_of_accelerations_on_the_study_s_seat
     assert largest.displacement == pytest.approx((191.0 + 2147.6) / (191.0 + 0.67 * 2147.6), rel=0.003)
 
 
-@pytest.mark.parametrize("name", list(linear.FLOORS))
-@pytest.mark.parametrize("stiffness", [2000.0, 8000.0, 20000.0])
-def test_less_damping_gives_more_displacement_on_every_floor(name, stiffness):
-    found = linear.ratio(linear.SEAT._replace(suspension_stiffness=stiffness), linear.FLOORS[name])
-    largest = linear.bound(linear.SEAT._replace(suspension_stiffness=stiffness))
-    assert 1.0 < found.displacement <= largest.displacement
-    assert found.acceleration <= largest.acceleration
-
-
 def optimum(plant):
     return synthesise(build_generalised_plant(plant, Weights(travel=17.0))).gain[0]
 
@@ -150,26 +113,11 @@ def test_the_published_gain_is_the_optimum_which_fixes_only_the_sums_of_spring_a
     assert sums == pytest.approx(np.add(other, (9000.0, 50.0)), rel=0.01)
 
 
-def test_the_symmetric_part_misses_what_table_1_says_of_the_conventional_model():
-    damper = reproduction.study_damper()
-    r2, md, _ = reproduction.indices(reproduction.loops(damper), reproduction.loops(damper._replace(asymmetry=0.0)))
-    assert r2 == pytest.approx(0.9894, abs=0.002)
-    assert md == pytest.approx(0.0969, abs=0.02)
-
-
 def test_the_conventional_model_fits_as_well_as_table_1_says():
     _, (r2, md, rmse) = reproduction.conventional_fit(reproduction.study_damper())
     assert r2 == pytest.approx(0.9894, abs=0.001)
     assert md == pytest.approx(0.0969, abs=0.02)
     assert rmse < 30.0 < 88.2
-
-
-def test_models_differ_in_what_the_study_says_only():
-    for scenario in load(SCENARIOS / "study.yaml"):
-        model, inverse, damper = scenario.label["variant"], scenario.control.inverse, scenario.damper
-        assert inverse.damper.record == damper.record._replace(asymmetry=0.0 if model == "I" else 1.0)
-        assert inverse.damper.factors == damper.factors
-        assert inverse.temperature == (20.0 if model == "II" else None)
 
 
 def test_the_variations_leave_the_rest_as_it_is():

@@ -25,21 +25,6 @@ def test_the_single_step_gain_of_the_seat_is_near_the_best(seat, designed, e1):
     assert designed(e1).gamma <= norm < 1.75 * designed(e1).gamma
 
 
-def test_the_single_step_gain_takes_in_measurement_noise(random_plant):
-    p = random_plant(3, n=2, ny=2, nu=1)
-    noisy = GeneralisedPlant(p.A, p.B1, p.B2, p.C1, p.C2, p.D11, 0 * p.D12, p.D21)
-    gain = find_single_step_gain(noisy, 1.0, later())
-    assert gain.shape == (1, 2) and noisy.close(gain).abscissa < 0
-
-
-def test_what_has_no_single_step_gain(seat, random_plant):
-    assert find_single_step_gain(scale(seat(30.0, structure=[[0, 1]])).plant, 1.0, later()) is None
-    assert find_single_step_gain(scale(seat(30.0)).plant, 1.0, time.monotonic() - 1) is None
-    p = random_plant(0)
-    twice = GeneralisedPlant(p.A, p.B1, p.B2, p.C1, p.C2[[0, 0]], p.D11, p.D12, 0 * p.D21)
-    assert find_single_step_gain(twice, 1.0, later()) is None
-
-
 @pytest.mark.parametrize("size", [1 / 30, 1.0, 30.0])
 def test_the_single_step_gain_of_a_measured_state_is_near_the_best_in_any_unit_of_the_state(size):
     # Where y is the state, the structured Lyapunov matrix is no restriction.

@@ -60,14 +60,6 @@ def test_bisection_agrees_with_the_grid(seed):
     assert largest_singular_values(some, peak.frequency)[0] == pytest.approx(peak.value, rel=1e-10)
 
 
-@pytest.mark.parametrize("seed", range(5))
-def test_does_not_depend_on_units(seed):
-    some = random_loop(seed, n=5, nw=2, nz=2)
-    units = 10.0 ** np.random.default_rng(seed).uniform(-4, 4, 5)
-    moved = LinearSystem(some.A * units / units[:, None], some.B / units[:, None], some.C * units, some.D)
-    assert hinf_norm(moved).value == pytest.approx(hinf_norm(some).value, rel=1e-9)
-
-
 @pytest.mark.parametrize("rate", [1e-5, 1e5])
 @pytest.mark.parametrize("seed", range(6))
 def test_does_not_depend_on_the_unit_of_time(seed, rate):

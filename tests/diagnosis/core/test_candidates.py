@@ -9,10 +9,8 @@ from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.diagnosis.candidates import list_candidates
 from seatsim.diagnosis.objective import Parameters
 from seatsim.effects.base import EFFECTS
-from seatsim.effects.coil import CoilLag, Delay
-from seatsim.effects.damper import FreePlay, GasSpring, SealFriction
-from seatsim.effects.seat import Friction, Mass
-from seatsim.effects.sensor import Bias, ClockSkew, Gain, SensorLag
+from seatsim.effects.damper import GasSpring
+from seatsim.effects.sensor import Gain
 from seatsim.recordings.recording import ChannelEntry
 from seatsim.rig.plant import Plant
 from seatsim.rig.temperature import TemperatureFactors
@@ -91,18 +89,6 @@ def test_a_form_that_the_damper_has_already_is_no_candidate():
     assert "damper.preyield_hysteresis" not in by_effect(list_candidates(posed(damper=BoucWen())))
 
 
-def test_the_first_parameter_keeps_the_fields_bounds_and_shapes_stay_near_their_start(listed):
-    bent = listed["cushion.hardening"][1]
-    # The reach is 8: a shape from 2e3 stays within 250 and 16e3; the field itself would permit 0 to 1e6.
-    assert bent.low == (0.0, 2e3 / 8.0) and bent.high == (2e3, 8.0 * 2e3)
-    held = listed["cushion.separation"][5]
-    assert held.free == ("limit", "held") and held.low == (0.0, 0.5 / 8.0)
-    # The field's own bound is nearer than the reach.
-    assert held.high == (1e9, 1.0)
-    sharp = listed["damper.magnetic_saturation"][1]
-    assert sharp.free == ("bend", "sharpness") and sharp.low[1] == 0.5
-
-
 @pytest.mark.parametrize("name", sorted(set(names("effect")) - {"floor.unmeasured_input"}))
 def test_an_effect_is_sought_as_its_record_has_it_by_default_and_with_each_further_parameter(listed, name):
     """A user who states an effect by what its record requires gets a form that a diagnosis knows, and so on."""
@@ -135,14 +121,6 @@ def test_a_limit_starts_within_what_the_recording_reaches():
     assert found["coil.current_limit"][0].start == (0.8,)
 
 
-def test_buffers_beside_a_soft_spring_are_softer():
-    problem = posed()
-    plant = Plant(20.0, 60.0, 920.0, 100.0, 8e4, 300.0)
-    soft = dataclasses.replace(problem, scenario=dataclasses.replace(problem.scenario, plant=plant))
-    stop = by_effect(list_candidates(soft))["suspension.end_stop"][0]
-    assert (stop.start[2], stop.low[2], stop.high[2]) == pytest.approx((2000.0, 1000.0, 2e5))
-
-
 def test_only_what_grows_towards_off_is_a_limit(listed):
     assert listed["cushion.separation"][0].is_limit
     assert listed["suspension.end_stop"][0].limits == [True, True, False, False, False]
@@ -153,28 +131,6 @@ def test_only_what_grows_towards_off_is_a_limit(listed):
     assert shared.free == ("travel", "share") and shared.limits == [False, True] and not shared.is_limit
     starts = [each.start for each in listed["damper.preyield_hysteresis"] if each.structure == shared.structure]
     assert starts == [(3e-4, 0.3)]
-
-
-ABSURD = [
-    (Gain, "error", (-0.6, 1.5)),
-    (Bias, "share", (-60.0, 60.0)),
-    (SensorLag, "time", (0.2,)),
-    (ClockSkew, "shift", (-0.6, 0.6)),
-    (CoilLag, "time", (0.3,)),
-    (Delay, "time", (0.3,)),
-    (Friction, "force", (3e3,)),
-    (SealFriction, "force", (3e3,)),
-    (GasSpring, "preload", (-6e3, 6e3)),
-    (FreePlay, "gap", (0.03,)),
-    (Mass, "change", (-200.0, 200.0)),
-]
-"""Sizes that no engineer would believe of a rig that runs."""
-
-
-def test_absurd_sizes_are_outside_the_range_of_an_effect():
-    for cls, field, sizes in ABSURD:
-        low, high = bounds(cls, field)
-        assert all(not low <= size <= high for size in sizes), (cls, field)
 
 
 def test_starts_off_values_and_what_a_fit_reaches_are_within_the_range_of_an_effect(listed):
@@ -200,6 +156,9 @@ def test_frictions_have_the_same_forms_so_that_none_is_preferred_where_no_load_c
     assert forms[0] == forms[1]
 
 
-def test_a_parameter_that_the_scenario_leaves_off_starts_as_in_the_form(listed):
-    found = by_effect(list_candidates(posed(effects=(GasSpring(10.0),))))["damper.gas_spring"]
-    assert found[1].start == (30.0, 500.0) and (found[1].scale > 0.0).all()
+def test_buffers_beside_a_soft_spring_are_softer():
+    problem = posed()
+    plant = Plant(20.0, 60.0, 920.0, 100.0, 8e4, 300.0)
+    soft = dataclasses.replace(problem, scenario=dataclasses.replace(problem.scenario, plant=plant))
+    stop = by_effect(list_candidates(soft))["suspension.end_stop"][0]
+    assert (stop.start[2], stop.low[2], stop.high[2]) == pytest.approx((2000.0, 1000.0, 2e5))

@@ -89,11 +89,6 @@ def test_the_share_left_is_that_of_channels_with_a_material_gap():
     assert len(found) == 2 and found[0] == pytest.approx(shares[0])
 
 
-def having(names):
-    """Return an evaluation with effects of one letter each, of which nothing else is asked."""
-    return Evaluation(Parameters(np.zeros(0), tuple(offer(name) for name in names)), {}, {}, 0.0)
-
-
 @pytest.mark.parametrize(
     "chosen, equivalent, groups",
     [

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from seatsim.diagnosis.noise import weigh_gap
-from seatsim.diagnosis.objective import Evaluation
 
 from .toy import Cubed, Edge, add_up, draw_signals, make_problem, offer, offer_two, place, weigh_stated, whiten
 
@@ -44,13 +43,6 @@ def test_the_cost_is_the_whitened_square_and_the_prior(objective, rig, evaluatio
     prior = (0.25**2 + 0.5**2) / 0.58**2
     assert evaluation.cost == pytest.approx(total + prior, rel=1e-12)
     assert evaluation.parameters is rig
-
-
-def test_the_excess_is_reduced_chi_square_less_one_and_never_negative(rig):
-    whitened = {"first": np.zeros((2, 30)), "second": np.zeros((2, 20))}
-    assert Evaluation(rig, {}, whitened, 100.0).rows == 100
-    assert Evaluation(rig, {}, whitened, 250.0).excess == pytest.approx(1.5)
-    assert Evaluation(rig, {}, whitened, 40.0).excess == 0.0
 
 
 def test_at_an_upper_bound_the_difference_is_taken_downwards(objective):

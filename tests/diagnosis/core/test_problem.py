@@ -5,29 +5,17 @@ import dataclasses
 import numpy as np
 import pytest
 
-from seatsim.diagnosis import problem
 from seatsim.diagnosis.problem import check_nominal, normalise_rms_errors, pose_problem
 from seatsim.effects.sensor import Gain
 from seatsim.recordings.recording import load_recording
 from seatsim.scenario.scenario import Start
 from seatsim.schema.errors import InputError, RunError
 
+from ...text import beside
 from ..builders import SerialExecutor
 from .toy import Added, add_up, draw_signals, make_problem
 
-HEADER = """\
-rig: seat
-sample_rate: 200.0
-parameter_tolerance: 0.05
-nominal: nominal.yaml
-runs: [{name: long, file: long.csv}, {name: short, file: short.csv, repeat_of: long}]
-channels:
-  floor_acceleration: {unit: m/s^2, noise_rms: 0.01}
-  driver_acceleration: {unit: m/s^2, noise_rms: 0.02}
-  frame_acceleration: {unit: m/s^2, noise_rms: 0.1}
-  suspension_displacement: {unit: m, noise_rms: 0.5}
-  coil_current: {unit: A}
-"""
+HEADER = beside(__file__, "header.yaml")
 
 
 @pytest.fixture
@@ -71,14 +59,6 @@ def test_a_step_divides_a_row_and_is_at_most_two_milliseconds(posed):
     floor = posed.inputs["short"].floor
     assert floor.step == pytest.approx(0.005 / 3) and posed.inputs["short"].interval == 0.005
     assert len(floor.acceleration) == 410 * 3 + 1
-
-
-@pytest.mark.parametrize("rate, parts", [(500.0, 1), (250.0, 2), (100.0, 5), (499.0, 2)])
-def test_a_row_of_whole_steps_is_not_divided_further(rate, parts, folder):
-    (folder / "recording.yaml").write_text(
-        HEADER.replace("200.0", str(rate)).replace("short.csv, repeat", "long.csv, repeat")
-    )
-    assert pose_problem(load_recording(folder), SerialExecutor()).parts == parts
 
 
 @pytest.mark.parametrize(
@@ -164,24 +144,3 @@ def test_an_error_is_counted_in_standard_deviations_by_run(linear):
     assert normalise_rms_errors(linear.on_runs(["first"]), uneven)[0] != pytest.approx(expected)
     part = linear.on_runs(["first"])
     assert normalise_rms_errors(part, uneven)[0] == pytest.approx(2.0 / part.spread[0] / np.sqrt(2.0))
-
-
-def test_a_motion_that_only_a_sensor_reads_otherwise_is_simulated_once(posed, monkeypatch):
-    simulated, runs = [], ("long", "short")
-    respond = problem.respond
-
-    def count(scenario, *arguments, **named):
-        simulated.append(scenario.effects)
-        return respond(scenario, *arguments, **named)
-
-    monkeypatch.setattr(problem, "respond", count)
-    plain = {run: posed.simulated(run, posed.nominal, ()) for run in runs}
-    simulated.clear()
-    for error in (0.1, 0.2, 0.3):
-        for run in runs:
-            read = posed.simulated(run, posed.nominal, (Gain("driver_acceleration", error),))
-            np.testing.assert_allclose(read, plain[run] * [[1.0], [1.0 + error]])
-    assert simulated == [(), ()]
-    # The current that flows at the start is read by a sensor.
-    posed.simulated("long", posed.nominal, (Gain("coil_current", 0.1),))
-    assert simulated[2] == (Gain("coil_current", 0.1),)

@@ -65,15 +65,6 @@ def test_no_shortcut_of_the_search_misses_the_best_of_all_sets(amounts):
         assert sets[0].cost == pytest.approx(best_cost(objective, best), rel=1e-5)
 
 
-def test_no_set_is_larger_than_the_largest():
-    amounts = {"true.one": 1.4, "true.two": -0.6, "true.three": 0.5}
-    assert len(search(pose(amounts))[0].sets) == 4
-    found, told = search(pose(amounts), largest=1)
-    assert len(found.sets) == 2 and told == ["fitting sets of 1"]
-    assert len(search(pose(amounts), largest=2)[0].sets) == 3
-    assert len(search(pose(amounts, largest_set=2))[0].sets) == 3
-
-
 def test_a_search_ends_where_nothing_is_left_or_an_effect_gains_too_little():
     amounts = {"true.one": 1.4, "true.two": -0.6}
     # Nothing that is below a very large excess is worth explaining.

@@ -3,7 +3,6 @@
 import copy
 import dataclasses
 import io
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -102,15 +101,6 @@ def test_every_candidate_can_be_run_and_exported_wherever_the_nominal_can(proble
             back = single(tmp_path / "augmented.yaml")
             set_up(back, back.plant, back.control, False, None)
             rig_block(back)
-
-
-def test_a_section_that_the_file_lacks_is_made(problem):
-    data = {"damper": {"model": "bouc_wen"}}
-    scenario = dataclasses.replace(problem.scenario, source=SimpleNamespace(data=data))
-    other = dataclasses.replace(problem, scenario=scenario, parameters=NUISANCES[1:2])
-    content = write_augmented(other, place(other, deviations=[1.0]))
-    assert content == {"damper": {"model": "bouc_wen", "parameters": {"c_a": 275.0}}, "effects": []}
-    assert data == {"damper": {"model": "bouc_wen"}}
 
 
 def types_within(value):

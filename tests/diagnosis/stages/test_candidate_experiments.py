@@ -52,16 +52,6 @@ def test_a_switched_current_is_off_and_nearly_full_every_quarter_of_a_second(sea
         assert candidate.floor.command[rows] == pytest.approx([0.0, 0.0, 1.8, 1.8, 0.0, 1.8])
 
 
-def test_interventions_keep_the_floor_of_the_first_run_but_in_a_locked_seat(seat):
-    found, recorded = by_name(seat), seat.inputs["first"].floor
-    for name in ("coil_current", "zero_current", "warm_up", "added_mass", "load_cell"):
-        assert np.array_equal(found[name].floor.acceleration, recorded.acceleration)
-        assert found[name].scenario is None
-    assert found["locked_seat"].scenario is None
-    for values in found["locked_seat"].floor[1:4]:
-        assert np.array_equal(values, np.zeros(len(recorded.acceleration)))
-
-
 def test_each_intervention_changes_one_thing(seat):
     found, recorded = by_name(seat), seat.inputs["first"].floor
     zero = found["zero_current"].floor

@@ -52,10 +52,3 @@ def test_an_effect_that_was_not_fitted_is_taken_as_its_first_candidate_was_scree
     names, matrix = compare(objective, ["b", "a"], [[(offer("a", "two"), 1.0)]], offered)
     left = [leave(objective, whiten(objective, cause)) for cause in ("three", "two")]
     assert names == ["b", "a"] and matrix[0, 1] == pytest.approx(cosine(*left), abs=1e-6)
-
-
-def test_names_that_cannot_act_here_are_left_out_and_repeated_ones_said_once(folder):
-    objective = make_objective(folder)
-    found = compare(objective, ["a", "no.such", "a"], [[(offer("a", "one"), 1.0)]])
-    assert found.effects == ["a"] and np.array_equal(found.matrix, [[1.0]])
-    assert compare(objective, [], []).matrix.shape == (0, 0)

@@ -6,18 +6,13 @@ import pytest
 from seatsim.diagnosis.localise.discrepancy import Discrepancy
 from seatsim.diagnosis.localise.disturbance import (
     BIAS_DRIFT,
-    FORCE_FROM_OUTSIDE,
     add_strength,
     find_bias_drift,
-    find_disturbance,
-    put_beside,
 )
 from seatsim.diagnosis.objective import Evaluation
 from seatsim.diagnosis.result import Cause, Estimate
-from seatsim.diagnosis.select import Selection
-from seatsim.diagnosis.spectra import smooth_spectrum
 
-from .toy import CHANNELS, Added, offer, place, pose, push, record, weigh_stated
+from .toy import CHANNELS, place, pose, record, weigh_stated
 
 
 @pytest.fixture(scope="module")
@@ -65,40 +60,6 @@ def test_a_drift_is_sought_in_the_one_channel_that_stays_open(problem, gaps, cha
         assert np.array_equal(drift.traces[run][k], evaluation.residuals[run][k])
         assert not np.any(np.delete(drift.traces[run], k, axis=0))
     assert find_bias_drift(objective, left(problem, *gaps, cycles=20)) is None
-
-
-def test_a_drift_counts_as_noise_of_its_channel(problem):
-    objective = weigh_stated(problem)
-    drift = find_bias_drift(objective, left(problem, 0.0, 0.2, 0.0, 0.0))
-    beside = put_beside(objective, drift)
-    for run, trace in drift.traces.items():
-        power = objective.weights.power[run]
-        added = smooth_spectrum(np.abs(np.fft.rfft(trace)[:, : power.shape[1]]) ** 2, 0.15)
-        np.testing.assert_allclose(beside.weights.power[run], power + added)
-
-
-@pytest.fixture(scope="module")
-def pushed(folder):
-    """A rig with an effect and a random force on its frame, and what the search for the effect alone leaves."""
-    recording = record(folder, (Added("one", 0.8),), {"first": 1200, "second": 1000}, CHANNELS[:4], 0.01)
-    problem = pose(recording)
-    added = push(problem, 3.0, "suspension")
-    for run, change in added.items():
-        problem.measured[run] += np.array(list(change.values()))
-    objective = weigh_stated(problem)
-    calibrated, one = (objective.evaluate([place(problem, *terms)])[0] for terms in ((), ((offer("a", "one"), 0.8),)))
-    return objective, Selection(calibrated, ((calibrated,), (one,)), objective.linearise_nuisances(calibrated))
-
-
-def test_a_force_is_found_beside_the_effect_that_leaves_least(pushed):
-    objective, selection = pushed
-    disturbance = find_disturbance(objective, selection)
-    assert (disturbance.effect, disturbance.found.block) == (FORCE_FROM_OUTSIDE, "floor")
-    beside = put_beside(objective, disturbance)
-    calibrated, one = beside.evaluate([sets[0].parameters for sets in selection.sets])
-    # Of what the force did nothing is left, of what the effect did, most.
-    assert selection.sets[1][0].excess > 10.0 and abs(one.cost / one.rows - 1.0) < 0.15
-    assert calibrated.excess > 3.0
 
 
 def test_a_cause_has_the_strength_of_its_signal_and_the_channel_that_errs():

@@ -111,24 +111,6 @@ def test_a_planted_signal_is_likeliest_in_its_block(folder, block):
         assert np.std(found[block].signals[run] - signal) < 0.35 * np.std(signal)
 
 
-def test_an_error_of_one_channel_is_that_sensors(folder):
-    objective = make_objective(folder)
-    measured = {run: values.copy() for run, values in objective.problem.measured.items()}
-    for seed, values in enumerate(measured.values()):
-        values[2] += slow_signal(values.shape[1], 0.01, seed)
-    problem = dataclasses.replace(objective.problem, measured=measured)
-    found = evaluate(dataclasses.replace(objective, problem=problem))
-    sensor = found["sensor"]
-    assert likeliest(found) == "sensor"
-    assert (sensor.quantity, sensor.unit, sensor.channel) == (
-        "error of suspension_displacement",
-        "m",
-        "suspension_displacement",
-    )
-    residual = problem.measured["first"][2] - problem.simulated("first", problem.nominal, ())[2]
-    assert np.allclose(sensor.signals["first"], residual)
-
-
 def test_without_a_load_cell_damper_and_suspension_are_one(folder):
     with_it, without = (
         plant_everywhere(make_objective(folder, channels), "suspension")[0] for channels in (CHANNELS[:4], CHANNELS[:3])

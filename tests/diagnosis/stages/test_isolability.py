@@ -45,10 +45,6 @@ def test_the_groups_are_those_of_the_published_table(absent, merged):
     assert sum(map(len, groups)) == 6
 
 
-def test_the_temperature_changes_no_group():
-    assert find_isolable_groups("seat", ALL | {"damper_temperature"}) == find_isolable_groups("seat", ALL)
-
-
 @pytest.mark.parametrize(
     ("channels", "groups"),
     [
@@ -132,19 +128,6 @@ NEVER = (
 ])  # fmt: skip
 def test_sentences_on_a_bench(further, sentences):
     assert describe_missing_sensors("damper_bench", {"displacement", *further.split()}) == [*sentences, NEVER]
-
-
-@pytest.mark.parametrize(
-    ("absent", "sentence"),
-    [
-        ("damper_force", "without damper_force, damper and suspension cannot be distinguished: add a load cell"),
-        ("coil_current", "without coil_current, damper and coil cannot be distinguished: log the current"),
-        ("current_command", "coil cannot be assessed: log the commanded current"),
-        ("driver_acceleration", "suspension, cushion and driver cannot be distinguished: add an accelerometer"),
-    ],
-)
-def test_a_missing_channel_and_its_remedy_are_one_sentence(absent, sentence):
-    assert any(sentence in said for said in describe_missing_sensors("seat", ALL - {absent}))
 
 
 def test_a_full_seat_lacks_nothing_but_the_floor_against_the_suspension():

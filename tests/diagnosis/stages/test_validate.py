@@ -170,14 +170,6 @@ def test_other_excitations_and_the_spread_from_run_to_run_widen_the_interval(fol
     assert wide == pytest.approx(narrow * np.sqrt(0.1**2 + 0.2**2) / 0.1)
 
 
-@pytest.mark.parametrize("amount", [0.97, 1.3, 2.2])
-def test_an_interval_holds_its_shrink_and_no_gap_shrinks_by_more_than_itself(folder, amount):
-    problem = pose(record(folder, (Added("one", 1.0),), noise=1e-3))
-    found = measure(problem, scenarios(problem, 0.0, 0.0, amount), "first", 0.1)
-    low, high = found.shrink_interval
-    assert low <= found.shrink <= high <= 1.0
-
-
 BLOCKS, LENGTH = 40, 20
 
 

@@ -27,6 +27,7 @@ from seatsim.schema.registry import register
 from seatsim.simulation.augment import augment_plant, read_sensors
 from seatsim.simulation.respond import SEAT_OUTPUTS
 
+from ...text import beside
 from ..builders import SerialExecutor, place
 from ..builders import weigh_stated as weigh_stated
 
@@ -35,15 +36,7 @@ CHANNELS = SEAT_OUTPUTS
 UNITS = ("m/s^2", "m/s^2", "m", "N", "A")
 SIZES = np.array([1.0, 1.0, 0.01, 100.0, 0.5])
 """Natural size of each channel, in which noise and taps are stated here."""
-NOMINAL = """\
-plant: {frame_mass: 20.0, driver_mass: 80.0, suspension_stiffness: 4600.0, suspension_damping: 150.0,
-        cushion_stiffness: 60000.0, cushion_damping: 1500.0}
-damper: {model: bingham, parameters: {c_a: 250.0, c_b: 350.0, fc_a: 45.0, fc_b: 620.0, f0: 0.0, v_ref: 0.004}}
-actuator: {rate: 130.0, max_current: 1.0}
-temperature: 20.0
-controller: {law: constant, current: 0.3}
-excitation: {kind: sine, amplitude: 0.01, frequency: 2.0, duration: 2.0}
-"""
+NOMINAL = beside(__file__, "toy_nominal.yaml")
 TAPS = {
     "floor": [[0.8, 0.4], [0.6, 0.5], [-0.7, 0.4], [0.5, -0.3], [0.0, 0.0]],
     "frame force": [[0.02, 0.01], [0.004, 0.006], [0.02, 0.01], [0.004, 0.002], [0.0, 0.0]],

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatsim.recordings.quality.channels import check_ranges, check_shapes, check_sizes
+from seatsim.recordings.quality.channels import check_ranges, check_shapes
 
 RATE = 250.0
 TIME = np.arange(2500) / RATE
@@ -34,29 +34,12 @@ def test_ranges(under_test, channel, values, expected):
     assert kinds(check_ranges, run) == [(*found, channel) for found in expected]
 
 
-def test_a_temperature_in_kelvin_is_named_so_and_one_beyond_it_is_not(under_test):
-    assert not [*check_sizes(under_test({"damper_temperature": 40.0 + MOVING}, RATE, NOISE))]
-    for start, said in ((313.0, True), (600.0, False)):
-        (issue,) = check_sizes(under_test({"damper_temperature": start + MOVING}, RATE, NOISE))
-        assert (issue.severity, issue.kind) == ("error", "unit") and ("is it in K" in issue.sentence) is said
-
-
 def test_flat_tops_are_errors_where_many_rows_stand_there_and_warnings_where_few_do(under_test):
     spike = np.where(np.abs(np.arange(2500) - 1000) < 3, 4.0, MOVING)
     for clipped, limit, severity in ((np.minimum(MOVING, 1.5), 1.5, "error"), (spike, 4.0, "warning")):
         found = list(check_shapes(under_test({"frame_acceleration": clipped}, RATE, NOISE)))
         assert [(issue.severity, issue.kind) for issue in found] == [(severity, "clipped")]
         assert f"{np.sum(clipped == limit)} rows stand at its extreme {limit:.4g}" in found[0].sentence
-
-
-def test_a_stuck_stretch_is_placed_in_time_and_a_shorter_one_is_none(under_test):
-    for seconds, expected in ((0.6, ["stuck"]), (0.4, [])):
-        rows = slice(500, 500 + round(seconds * RATE))
-        values = MOVING.copy()
-        values[rows] = values[500]
-        found = list(check_shapes(under_test({"frame_acceleration": values}, RATE, NOISE)))
-        assert [issue.kind for issue in found] == expected
-        assert all("is stuck from 2 to 2.6 s" in issue.sentence for issue in found)
 
 
 def test_held_values_are_told_with_their_rows_unless_they_are_coarser_than_the_noise(under_test):

@@ -53,8 +53,3 @@ def test_exchanged_currents_are_told_by_the_coil_alone(run):
     (issue,) = check_exchanged_currents(swapped)
     assert (issue.kind, issue.severity, issue.channel) == ("exchange", "error", "current_command")
     assert "current_command and coil_current: are exchanged" in issue.sentence
-
-
-def test_without_a_command_no_exchange_is_looked_for(run):
-    table = {name: values for name, values in run.table.items() if name != "current_command"}
-    assert list(check_exchanged_currents(run._replace(table=table))) == []

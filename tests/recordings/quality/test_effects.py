@@ -13,31 +13,9 @@ from seatsim.simulation.augment import read_sensors
 from seatsim.simulation.respond import respond
 
 from ...faulty_recordings import rewrite, scaled
-from ...text import parse
+from ...text import beside, parse
 
-LARGE = parse("""
-    damper.thermal_fade: [{viscous: 0.02, yielding: 0.02, rise: 60.0}, {viscous: -0.02, rise: 60.0}]
-    damper.gas_spring: [{preload: 800.0}, {preload: -300.0, stiffness: 5000.0}]
-    damper.asymmetry: [{viscous: 0.9, yielding: 0.9}, {viscous: 0.0, pulling: 0.9}]
-    damper.preyield_hysteresis: [{travel: 0.01}, {travel: 0.0, lag: 0.05}, {travel: 0.0, behind: 0.05}]
-    damper.magnetic_saturation: [{bend: 10.0}]
-    damper.remanence: [{width: 0.5}, {width: 1.0}]
-    damper.free_play: [{gap: 0.005, stiffness: 100000.0}, {gap: 0.005}, {gap: 0.01, turning: 0.02}]
-    damper.seal_friction: [{force: 500.0}, {force: 500.0, presliding: 0.001}]
-    coil.lag: [{time: 0.2}]
-    coil.asymmetric_lag: [{time: 0.2}]
-    coil.delay: [{time: 0.2}]
-    coil.current_limit: [{limit: 0.1}]
-    suspension.friction: [{force: 300.0}, {force: 100.0, presliding: 0.001}]
-    suspension.end_stop: [{low: -0.005, high: 0.005}, {low: -0.018, high: 0.018, power: 2.0}]
-    suspension.progressive_spring: [{rise: 5000.0}, {helper: 20.0, reach: 0.01}]
-    cushion.hardening: [{rise: 2000.0}]
-    cushion.separation: [{limit: 20.0}]
-    driver.mass: [{change: 70.0}, {change: -60.0}]
-    driver.biodynamics: [{share: 0.9, frequency: 4.0, damping: 0.1}]
-    floor.unmeasured_input: [{rms: 400.0}, {rms: 0.0, tone: 1000.0, frequency: 6.0}]
-    sensor.clock_skew: [{shift: 0.1}, {shift: -0.1}]
-""")
+LARGE = parse(beside(__file__, "large_effects.yaml"))
 """Effects at the upper end of what is plausible, in several forms."""
 ON_A_CHANNEL = {
     "sensor.gain": ({"error": 1.0}, {"error": -0.5}),

@@ -43,11 +43,6 @@ def test_the_tables_are_without_the_constant_of_all_runs_together(heavy):
     assert without_gravity(clean).removed == clean.removed
 
 
-def test_a_sound_recording_is_the_same(sound):
-    recording = load_recording(sound)
-    assert without_gravity(recording) is recording
-
-
 @pytest.mark.parametrize(("mean", "is_gravity"), [(9.4, True), (9.2, False), (10.2, True)])
 def test_a_few_percent_tell_gravity_from_an_offset(sound, tmp_path, mean, is_gravity):
     folder = tmp_path / "one"

@@ -41,17 +41,6 @@ def runs(under_test):
     ]
 
 
-def test_runs_that_are_too_short_together_are_errors_or_warnings(runs):
-    def cut(seconds):
-        return [run._replace(table={n: v[: round(seconds * RATE)] for n, v in run.table.items()}) for run in runs]
-
-    assert found(*cut(6.1)) == []
-    assert ("warning", "short", None) in found(*cut(5.9))
-    assert ("warning", "short", None) in found(*cut(3.1))
-    assert ("error", "short", None) in found(*cut(2.9))
-    assert ("error", "short", "a") in found(*cut(1.02)) and ("error", "short", "a") not in found(*cut(1.03))
-
-
 def test_a_single_run_and_a_duplicate_are_named(runs):
     assert found(runs[0]) == [("warning", "single", "a")] and "is the only run" in said(runs[0])
     twice = runs[0], runs[1]._replace(table=runs[0].table)
@@ -104,9 +93,3 @@ def test_a_clock_is_held_against_the_sample_rate(runs, tmp_path, clock, expected
     issues = list(check_clock(run))
     assert [(issue.severity, issue.kind) for issue in issues] == expected
     assert all("3.00" in issue.sentence for issue in issues if issue.kind == "jump")
-
-
-def test_a_table_without_a_clock_is_taken_at_its_word(runs, tmp_path):
-    run = runs[0]._replace(recording=dataclasses.replace(runs[0].recording, folder=tmp_path))
-    pd.DataFrame(run.table).to_csv(tmp_path / "a.csv", index=False)
-    assert list(check_clock(run)) == []
