@@ -65,12 +65,21 @@ def decide_verdict(searches: Sequence[Search], effects: Sequence[str]) -> Decisi
 
 
 def _merge_same(weighed: Sequence[tuple[Hypothesis, float]]) -> list[tuple[Hypothesis, float]]:
-    """Return one hypothesis for the same effects, as an offset of a sensor and its drift: the likeliest."""
+    """Return one hypothesis for the same effects, as an offset of a sensor and its drift.
+
+    Of those whose sets have the fewest effects that are not material it is the likeliest.
+    """
     merged: dict[frozenset[str], tuple[Hypothesis, float]] = {}
-    for each, weight in sorted(weighed, key=lambda pair: pair[1]):
+    for each, weight in sorted(weighed, key=lambda pair: (-_count_effects(pair[0]), pair[1])):
         _, before = merged.get(each.names, (each, 0.0))
         merged[each.names] = each, before + weight
     return list(merged.values())
+
+
+def _count_effects(hypothesis: Hypothesis) -> int:
+    """Return how many effects a hypothesis has, material or not."""
+    rig, search = hypothesis.rig, hypothesis.search
+    return len(rig.parameters.names | search.effect) if rig and search else 0
 
 
 def _shows_no_gap(problem: DiagnosisProblem, selection: Selection) -> bool:

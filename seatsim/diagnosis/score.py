@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import softmax
 
-from seatsim.diagnosis.localise.disturbance import Disturbance
+from seatsim.diagnosis.localise.disturbance import BIAS_DRIFT, Disturbance
 from seatsim.diagnosis.movement import (
     expect_power,
     measure_relative_movements,
@@ -49,6 +49,8 @@ class _Fit(NamedTuple):
     features: dict[str, Weight]
 
 
+_Gaps = Mapping[frozenset[str], float]
+"""Gap of every set of a search by the names of its effects."""
 FILE = Path(__file__).with_name("score.yaml")
 """What `benchmarks/fit_score.py` wrote."""
 CASES, WEIGHTS = read_packaged(FILE, _Fit)
@@ -71,17 +73,13 @@ class Search(NamedTuple):
 class Hypothesis(NamedTuple):
     """What may explain the recording: a rig and a search, beside whose disturbance it stands, with features by name.
 
-    Without a rig it stands for an unknown cause.
+    Without a rig it stands for an unknown cause. `names` are those of its material effects; of all where none is.
     """
 
     features: dict[str, float]
     rig: Evaluation | None = None
     search: Search | None = None
-
-    @property
-    def names(self) -> frozenset[str]:
-        """Names of its effects."""
-        return self.rig.parameters.names | self.search.effect if self.rig and self.search else frozenset()
+    names: frozenset[str] = frozenset()
 
 
 def list_hypotheses(searches: Sequence[Search]) -> list[Hypothesis]:
@@ -91,9 +89,10 @@ def list_hypotheses(searches: Sequence[Search]) -> list[Hypothesis]:
     """
     first, *_ = searches
     count, calibrated = first.objective.settings.selection.finalists, first.selection.calibrated
+    gaps = [_measure_gaps(search) for search in searches]
     hypotheses = [
-        Hypothesis(_describe_set(calibrated, search, rig, gaps), rig, search)
-        for search, gaps in zip(searches, map(_measure_gaps, searches), strict=True)
+        _describe_set(calibrated, search, rig, own, gaps[0])
+        for search, own in zip(searches, gaps, strict=True)
         for rig in search.selection.list_finalists(count)
         if search.disturbance or rig.parameters.terms
     ]
@@ -101,36 +100,41 @@ def list_hypotheses(searches: Sequence[Search]) -> list[Hypothesis]:
     return [*hypotheses, Hypothesis({"unknown": 1.0, "prior": prior})]
 
 
-def _describe_set(
-    calibrated: Evaluation, search: Search, rig: Evaluation, gaps: Mapping[frozenset[str], float]
-) -> dict[str, float]:
-    """Return the features of a fitted set of effects; `gaps` are those of all sets of its search, by their names."""
-    objective, names = search.objective, rig.parameters.names
-    problem = objective.problem
+def _describe_set(calibrated: Evaluation, search: Search, rig: Evaluation, gaps: _Gaps, alone: _Gaps) -> Hypothesis:
+    """Return a fitted set of effects with its features; `gaps` are of its search, `alone` of that without a disturbance.
+
+    A random signal takes any gap, however right it is, so that effects beside one have credit for what they take alone.
+    """
+    objective, parameters, names = search.objective, rig.parameters, rig.parameters.names
+    problem, beside = objective.problem, search.disturbance
     worst = max([0.0, *measure_shares_left(problem, calibrated, rig)])
     smaller = [gap for others, gap in gaps.items() if others < names]
+    nothing = alone[frozenset()]
     movements = measure_relative_movements(problem, rig)
+    movements += [relate_to_material(problem, beside.measure_movements(problem))] if beside else []
+    most = [float(np.max(each)) for each in movements]
+    effects = [*(term.effect for term in parameters.terms), *search.effect]
     features = {
+        "gap": math.log(alone.get(names, nothing) / nothing),
         "gap_gain": math.log(gaps[names] / min(smaller, default=gaps[names])),
         "worst": math.log(worst + _LITTLE),
-        "prior": objective.measure_prior(rig.parameters),
-        "parameters": float(len(rig.parameters.effect_components)),
+        "movement": min(0.0, math.log(min(most) + _LEAST_MOVEMENT)),
+        "prior": objective.measure_prior(parameters),
+        "parameters": float(len(parameters.effect_components)),
+        "sensors": float(sum(effect.startswith("sensor.") for effect in effects)),
     }
-    # A random signal takes any gap, however right it is.
-    if search.disturbance is None:
-        features["gap"] = math.log(gaps[names] / gaps[calibrated.parameters.names])
-    else:
-        movements = [*movements, relate_to_material(problem, search.disturbance.measure_movements(problem))]
+    if beside:
         features |= {
             "disturbance": 1.0,
-            "disturbance_effects": float(len(movements)),
-            "predicted": search.disturbance.found.shares["everything"],
+            "disturbance_effects": float(len(effects)),
+            "predicted": beside.found.shares["everything"],
+            "drift": float(beside.effect == BIAS_DRIFT),
         }
-    moved = min(float(np.max(each)) for each in movements)
-    return features | {"movement": min(0.0, math.log(moved + _LEAST_MOVEMENT))}
+    material = frozenset(effect for effect, moved in zip(effects, most, strict=True) if moved > 1.0)
+    return Hypothesis(features, rig, search, material or frozenset(effects))
 
 
-def _measure_gaps(search: Search) -> dict[frozenset[str], float]:
+def _measure_gaps(search: Search) -> _Gaps:
     """Return the gap of every set of a search by the names of its effects."""
     return {rig.parameters.names: _measure_gap(search.objective, rig) for sets in search.selection.sets for rig in sets}
 
