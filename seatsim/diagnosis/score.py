@@ -101,7 +101,7 @@ def list_hypotheses(searches: Sequence[Search]) -> list[Hypothesis]:
 
 
 def _describe_set(calibrated: Evaluation, search: Search, rig: Evaluation, gaps: _Gaps, alone: _Gaps) -> Hypothesis:
-    """Return a fitted set of effects with its features; `gaps` are of its search, `alone` of that without a disturbance.
+    """Return a fitted set of effects with its features; `gaps` are of its search, `alone` of one without disturbance.
 
     A random signal takes any gap, however right it is, so that effects beside one have credit for what they take alone.
     """

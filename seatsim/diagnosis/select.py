@@ -124,11 +124,6 @@ def select_effects(
             larger[:] = _best_of_each_set([*larger, *_fit_twins(objective, larger[0], candidates, nuisances)])
             if not _gains(objective, sets):
                 break
-        if len(sets) > settings.largest_set and sets[-1][0].excess < settings.enlarge * sets[-2][0].excess:
-            progress("eliminating backwards")
-            sets[-2] = _best_of_each_set([*sets[-2], *_eliminate_backwards(objective, sets[-1][0], nuisances)])
-            twins = _fit_twins(objective, sets[-2][0], candidates, nuisances)
-            sets[-2] = _best_of_each_set([*sets[-2], *twins])
     fitted = tuple(tuple(each) for each in sets)
     return Selection(rig.nominal, fitted, nuisances, sensitivities=sensitivities, notes=notes)
 
@@ -226,12 +221,6 @@ def _begin_best(objective: Objective, starts: Sequence[Evaluation], nuisances: L
     settings = objective.settings.selection
     begun = [fit(objective, each, nuisances, settings.begun_steps) for each in starts[: settings.finalists]]
     return min(begun, key=lambda each: each.cost)
-
-
-def _eliminate_backwards(objective: Objective, best: Evaluation, nuisances: Linearisation) -> list[Evaluation]:
-    """Return fits of a set without one effect (backward elimination); the set without its last one is known already."""
-    starts = [best.parameters.remove(term.effect) for term in best.parameters.terms[:-1]]
-    return [fit(objective, start, nuisances) for start in objective.evaluate(starts)]
 
 
 def _best_of_each_set(evaluations: Sequence[Evaluation]) -> list[Evaluation]:

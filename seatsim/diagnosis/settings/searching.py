@@ -99,10 +99,6 @@ class SelectionSettings(NamedTuple):
     """Reduced chi-square less 1 below which nothing is left to explain.
     Trades off: lower: false alarms; higher: weak effects are missed.
     Chosen: on simulated rigs."""
-    enlarge: float = 0.45
-    """Share of what is left that a last effect leaves at most for the others to be left out in turn.
-    Trades off: higher: time.
-    Chosen: on simulated rigs."""
     worthwhile: float = 0.85
     """Larger sets are sought while the last enlargement left less than this share.
     Trades off: higher: time.

@@ -45,6 +45,10 @@ def best_cost(objective, names):
     return 2.0 * lsq_linear(matrix, target, (-reach, reach), method="bvls", tol=1e-14).cost
 
 
+MIXED = {"decoy.mix": {"true.one": 1.0, "true.two": 1.0, "decoy.0": 0.5}}
+"""A decoy that explains more alone than either of the planted effects, which it imitates together."""
+
+
 @pytest.mark.parametrize(
     "amounts",
     [
@@ -72,22 +76,6 @@ def test_a_search_ends_where_nothing_is_left_or_an_effect_gains_too_little():
     # The first effect leaves a sixth of the gap, which is not less than a tenth.
     assert len(search(pose(amounts, worthwhile=0.1))[0].sets) == 2
     assert len(search(pose(amounts, worthwhile=0.9))[0].sets) == 3
-
-
-MIXED = {"decoy.mix": {"true.one": 1.0, "true.two": 1.0, "decoy.0": 0.5}}
-"""A decoy that explains more alone than either of the planted effects, which it imitates together."""
-
-
-def test_a_first_effect_that_later_ones_make_idle_is_eliminated():
-    amounts, offered = {"true.one": 1.0, "true.two": 0.9}, ("decoy.mix", "true.one", "true.two", "decoy.1")
-    found, told = search(pose(amounts, MIXED, beam=1), offered)
-    assert told[-1] == "eliminating backwards"
-    assert names_of(found.sets[3])[0] == {"decoy.mix", "true.one", "true.two"}
-    assert names_of(found.sets[2])[0] == {"true.one", "true.two"}
-    exact = best_cost(pose(amounts, MIXED), ["true.one", "true.two"])
-    assert found.sets[2][0].cost == pytest.approx(exact, rel=1e-6)
-    costs = [each.cost for each in found.sets[2]]
-    assert costs == sorted(costs)
 
 
 def test_an_effect_is_in_a_set_once_and_the_best_structure_of_it_is_kept():
