@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from seatsim.diagnosis.estimates import estimate_standard_deviations
 from seatsim.diagnosis.fit import find_step, fit
 from seatsim.diagnosis.movement import is_material
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters
@@ -25,6 +26,8 @@ _SETS_COMPARED = 8
 """Sets of each size that are cross-validated; more take more time."""
 _FOLDS = 3
 """Parts of the runs that are left out in turn."""
+_SURE = 2.0
+"""Standard deviations from which an error of a sensor is no chance."""
 _DOUBTFUL = 1.5
 """Factor by which a run left out may get worse before the step of the other runs is checked and shortened."""
 
@@ -53,6 +56,7 @@ def select_by_cross_validation(objective: Objective, selection: Selection) -> _S
     found = [(chosen, before)]
     for sets in selection.sets[1:]:
         compared = [each for each in sets[:_SETS_COMPARED] if is_material(problem, each)]
+        compared = [each for each in compared if _shows_sensors(objective, each, selection.nuisances)]
         tried = []
         for each in compared:
             after = cross_validate(objective, each, selection.nuisances)
@@ -69,6 +73,22 @@ def select_by_cross_validation(objective: Objective, selection: Selection) -> _S
             break
         (chosen, before), equivalent = best[0], [evaluation for evaluation, _ in best[1:]]
     return _Supported(chosen, equivalent, [(each, _weigh(objective, each, left)) for each, left in found])
+
+
+def _shows_sensors(objective: Objective, evaluation: Evaluation, nuisances: Linearisation) -> bool:
+    """Whether every error of a sensor in a set is larger than chance and the errors of the rig's form make it.
+
+    Sensors are calibrated, and a small lag or gain of one stands in for whatever the rig lacks.
+    """
+    parameters, at = evaluation.parameters, evaluation.parameters.effect_components.start
+    if not _count_sensors(evaluation):
+        return True
+    sizes = np.abs(parameters.vector) / estimate_standard_deviations(objective, evaluation, nuisances)
+    for term in parameters.terms:
+        if term.block == "sensor" and np.all(sizes[at : at + term.sizes] < _SURE):
+            return False
+        at += len(term.free)
+    return True
 
 
 def _list_equals(objective: Objective, tried: Sequence[tuple[Evaluation, float]]) -> list[tuple[Evaluation, float]]:
