@@ -24,10 +24,10 @@ from threadpoolctl import threadpool_limits
 from typical_effects import CHANNELS
 
 from seatsim.diagnosis.candidates import Candidate, list_candidates
-from seatsim.diagnosis.estimates import estimate_standard_deviations
 from seatsim.diagnosis.noise import weigh_noise
 from seatsim.diagnosis.objective import Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, pose_problem
+from seatsim.diagnosis.uncertainty import estimate_standard_deviations
 from seatsim.diagnosis.validate import refit_closely
 from seatsim.recordings.header import Header, RunEntry
 from seatsim.recordings.nuisance import vary

@@ -14,12 +14,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.diagnosis.estimates import estimate_standard_deviations
 from seatsim.diagnosis.fit import find_step, fit
 from seatsim.diagnosis.movement import is_material
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters
 from seatsim.diagnosis.problem import normalise_rms_errors
 from seatsim.diagnosis.select import Selection
+from seatsim.diagnosis.uncertainty import estimate_standard_deviations
 from seatsim.schema.arrays import Array
 
 _SETS_COMPARED = 8
@@ -80,12 +80,13 @@ def _shows_sensors(objective: Objective, evaluation: Evaluation, nuisances: Line
 
     Sensors are calibrated, and a small lag or gain of one stands in for whatever the rig lacks.
     """
-    parameters, at = evaluation.parameters, evaluation.parameters.effect_components.start
     if not _count_sensors(evaluation):
         return True
-    sizes = np.abs(parameters.vector) / estimate_standard_deviations(objective, evaluation, nuisances)
-    for term in parameters.terms:
-        if term.block == "sensor" and np.all(sizes[at : at + term.sizes] < _SURE):
+    parameters, deviations = evaluation.parameters, estimate_standard_deviations(objective, evaluation, nuisances)
+    at = parameters.effect_components.start
+    for term, values in zip(parameters.terms, parameters.values, strict=True):
+        by_chance = _SURE * term.scale[: term.sizes] * deviations[at : at + term.sizes]
+        if term.block == "sensor" and np.all(np.abs(term.from_nominal(values.tolist())) < by_chance):
             return False
         at += len(term.free)
     return True

@@ -15,6 +15,7 @@ from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Pa
 from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
 from seatsim.diagnosis.result import Gaps, RunGaps
 from seatsim.diagnosis.solution import Solution, call_unknown, give_up_effects
+from seatsim.diagnosis.uncertainty import BLOCK_LENGTH
 from seatsim.recordings.gap import GapFigures, Signals, compare_signals, loud_channels
 from seatsim.recordings.model_error import ModelError, measure_model_error
 from seatsim.recordings.replay import replay
@@ -24,8 +25,6 @@ from seatsim.schema.errors import InputError, RunError
 
 _CLOSELY_SETTLED = 1e-5
 """The stated fit ends where a step lowers its cost by less than this share."""
-BLOCK_LENGTH = 1.0
-"""s; length of the blocks of the bootstrap: several periods of the seat's resonance, and many in a run."""
 _DRAWS = 400
 """Samples of the bootstrap."""
 _PERCENTILES = 5.0, 95.0

@@ -167,3 +167,11 @@ def test_every_set_tried_is_returned_with_its_weight():
     charged = [np.exp((each.parameters.deviations[0] / 0.58) ** 2 / 40.0) for each in (calibrated, one, two)]
     weights = np.log([1.0, 0.05, 0.05]) - 20.0 * np.log(np.array(expected) * charged)
     np.testing.assert_allclose([weight for _, weight in tried], weights, atol=0.02)
+
+
+def test_an_error_of_a_sensor_is_supported_only_where_it_is_no_chance():
+    # Its size is 1.3 times its standard deviation, by what the rest of the gap may be.
+    weak = pose(amounts={"rig.one": 0.1, "rig.unknown": 1.0}, independent=1e4)
+    assert select(weak, [("rig.alike",)]) == ({"rig.alike"}, [])
+    assert select(weak, [("sensor.alike",)]) == (set(), [])
+    assert select(pose(independent=1e4), [("sensor.alike",)]) == ({"sensor.alike"}, [])

@@ -94,7 +94,7 @@ def test_features_are_figures_of_the_fits(rig):
     left = [math.log((gap + 0.02) / (gaps[0] + 0.02)) for gap in gaps]
     assert single.features == pytest.approx(
         {"gap": left[1], "gap_gain": left[1], "worst": math.log(3.4 / 4.0 + 0.02), "movement": 0.0, "prior": 0.0}
-        | {"parameters": 1.0},
+        | {"parameters": 1.0, "sensors": 0.0},
         abs=3e-2,
     )
     assert pair.features["gap"] == pytest.approx(left[2], abs=0.05)
@@ -109,6 +109,12 @@ def test_an_effect_that_moves_less_than_material_has_a_feature_of_its_own(rig):
     tiny, large, _ = list_alone(rig, 10.0, [({"c.three": 1.0}, 0.2), ({"b.two": 1.0}, 0.3)])
     assert tiny.features["movement"] == pytest.approx(math.log(0.02 / 0.05 + 0.01), abs=1e-3)
     assert large.features["movement"] == 0.0
+
+
+def test_an_effect_of_a_set_that_is_not_material_is_not_named(rig):
+    single, pair, _ = list_alone(rig, 10.0, [({"b.two": 1.0}, 0.3)], [({"b.two": 1.0, "c.three": 1.0}, 0.1)])
+    assert single.names == pair.names == {"b.two"}
+    assert decide(rig, 10.0, [({"b.two": 1.0}, 0.3)], [({"b.two": 1.0, "c.three": 1.0}, 0.1)]).chosen is not pair.rig
 
 
 def test_a_search_beside_a_disturbance_adds_its_sets_and_the_disturbance_alone(rig):
@@ -127,6 +133,8 @@ def test_a_search_beside_a_disturbance_adds_its_sets_and_the_disturbance_alone(r
     ]  # fmt: skip
     assert {*alone.features, *with_effects.features, *unknown.features} == set(WEIGHTS)
     assert "predicted" not in alone.features and with_effects.features["predicted"] == 0.2
+    # Beside a disturbance an effect has credit for what it takes alone, a set that was not fitted alone for nothing.
+    assert (disturbed.features["gap"], with_effects.features["gap"]) == (alone.features["gap"], 0.0)
     decision = decide_verdict([first, beside], EFFECTS)
     weights = weigh_hypotheses([alone, disturbed, with_effects, unknown])
     assert decision.probabilities["z.other"] == pytest.approx(weights[1] + weights[2])
