@@ -30,9 +30,9 @@ from seatsim.schema.fields import param
 
 SETTINGS = {"verbose": False, "adaptive_rho": False, "eps_abs": 1e-4, "eps_rel": 1e-4, "max_iter": 500}
 """Of OSQP: a fixed penalty, so that an answer does not depend on the machine's timing."""
-UNIT = 100.0
+_UNIT = 100.0
 """N; forces are planned in this unit, which makes the programme's numbers of order one."""
-PASSES = 2
+_PASSES = 2
 
 
 class DeliverableForces(NamedTuple):
@@ -61,7 +61,7 @@ class Planner:
         min over F   sum_j (acceleration zc''_j)^2 + (travel x_j)^2 + (force F_j)^2  + cost to go of the LQR
         subject to   F_j within the envelope at the velocity v_j of the plan before
 
-    The first plan is the LQR's; each of `PASSES` takes the velocities of the one before. It has no memory: the same
+    The first plan is the LQR's; each of `_PASSES` takes the velocities of the one before. It has no memory: the same
     state gives the same force. `times` collects the seconds that each answer took.
     """
 
@@ -89,8 +89,8 @@ class Planner:
         self.free, self.forced = _condensed(transition, input_gain, horizon)
         cost = np.kron(np.eye(horizon), z.T @ z)
         cost[-4:, -4:] = to_go
-        hessian = UNIT**2 * (self.forced.T @ cost @ self.forced + effort * np.eye(horizon))
-        self.linear = UNIT * self.forced.T @ cost @ self.free
+        hessian = _UNIT**2 * (self.forced.T @ cost @ self.forced + effort * np.eye(horizon))
+        self.linear = _UNIT * self.forced.T @ cost @ self.free
         self.times: list[float] = []
         self.solver, wide = osqp.OSQP(), np.full(horizon, 1e6)
         upper, identity = csc_matrix(np.triu(hessian)), eye(horizon, format="csc")
@@ -103,14 +103,14 @@ class Planner:
         self.times.append(time.perf_counter() - begin)
         return float(forces[0])
 
-    def plan(self, state: Array, passes: int = PASSES) -> Array:
+    def plan(self, state: Array, passes: int = _PASSES) -> Array:
         """Return the planned forces in N, shape (N,)."""
         forces: Array = self.first @ state
         for _ in range(passes):
             low, high = self.limits(state, forces)
-            self.solver.update(q=self.linear @ state, l=low / UNIT, u=high / UNIT)
-            self.solver.warm_start(x=forces / UNIT, y=np.zeros(len(forces)))
-            forces = np.clip(UNIT * self.solver.solve(raise_error=False).x, low, high)
+            self.solver.update(q=self.linear @ state, l=low / _UNIT, u=high / _UNIT)
+            self.solver.warm_start(x=forces / _UNIT, y=np.zeros(len(forces)))
+            forces = np.clip(_UNIT * self.solver.solve(raise_error=False).x, low, high)
         return forces
 
     def limits(self, state: Array, forces: Array) -> tuple[Array, Array]:
@@ -133,7 +133,7 @@ _planners: dict[int, Planner] = {}
 _numbers = itertools.count()
 
 
-def plan_force(number: int, x: float, v: float, xc: float, vc: float) -> float:
+def _plan_force(number: int, x: float, v: float, xc: float, vc: float) -> float:
     """Return the force in N that a planner wants in a state."""
     return _planners[number].force(np.array([x, v, xc, vc]))
 
@@ -142,7 +142,7 @@ def plan_force(number: int, x: float, v: float, xc: float, vc: float) -> float:
 def ask_planner(number: int, x: State) -> float:
     """Return the same to compiled code."""
     with objmode(force="float64"):
-        force = plan_force(number, x[0], x[1], x[2], x[3])
+        force = _plan_force(number, x[0], x[1], x[2], x[3])
     return force
 
 

@@ -29,7 +29,7 @@ from seatsim.schema.arrays import Array
 EXACT = Context(prec=MAX_PREC, Emin=MIN_EMIN, Emax=MAX_EMAX, traps=[Inexact])
 
 
-def without_rounding(matrix: Array) -> NDArray[np.object_]:
+def _without_rounding(matrix: Array) -> NDArray[np.object_]:
     """Return a matrix of doubles as one of decimals, to be used under the context `EXACT`."""
     return np.array([[Decimal(value) for value in row] for row in matrix.tolist()], dtype=object)
 
@@ -39,9 +39,9 @@ def rounded(matrix: NDArray[Any]) -> Array:
     return matrix.astype(float) + 0.0  # no zero keeps a sign
 
 
-def close_exactly(plant: GeneralisedPlant, gain: Array) -> LinearSystem:
+def _close_exactly(plant: GeneralisedPlant, gain: Array) -> LinearSystem:
     """Return A, B, C, D of the closed loop as `GeneralisedPlant.close` does, without rounding."""
-    *matrices, K = (without_rounding(matrix) for matrix in (*(getattr(plant, name) for name in MATRICES), gain))
+    *matrices, K = (_without_rounding(matrix) for matrix in (*(getattr(plant, name) for name in MATRICES), gain))
     return close_loop(matrices, K)
 
 
@@ -99,7 +99,7 @@ def largest_lmi_eigenvalue(plant: GeneralisedPlant, gain: Array, factor: Array, 
     try:
         with localcontext(EXACT):
             T, back, one = _invert(factor)
-            A, B, C, D = close_exactly(plant, gain)
+            A, B, C, D = _close_exactly(plant, gain)
             flow, drive, seen = (rounded(part) for part in (one.T @ T @ A @ back, one.T @ T @ B, C @ back))
     except np.linalg.LinAlgError:
         return np.inf
@@ -120,7 +120,7 @@ def _invert(factor: Array) -> tuple[NDArray[np.object_], NDArray[np.object_], ND
     inverse = np.asarray(np.linalg.inv(factor), dtype=float)
     if not np.isfinite(inverse).all():
         raise np.linalg.LinAlgError
-    T, back = without_rounding(factor), without_rounding(inverse)
+    T, back = _without_rounding(factor), _without_rounding(inverse)
     return T, back, T @ back
 
 
@@ -128,10 +128,10 @@ def _recentre(plant: GeneralisedPlant, gain: Array, factor: Array) -> LinearSyst
     """Return the closed loop in the states `factor` x, in which P becomes the identity, free of the loop's rounding."""
     identity = np.eye(len(factor))
     with localcontext(EXACT):
-        A, B, C, D = close_exactly(plant, gain)
+        A, B, C, D = _close_exactly(plant, gain)
         T, back, one = _invert(factor)
         # The inverse of factor is back (I + E)^-1, with E = factor back - I as small as rounding.
-        correction = np.linalg.inv(identity + rounded(one - without_rounding(identity)))
+        correction = np.linalg.inv(identity + rounded(one - _without_rounding(identity)))
         flow, seen = rounded(T @ A @ back) @ correction, rounded(C @ back) @ correction
         return LinearSystem(flow, rounded(T @ B), seen, rounded(D))
 

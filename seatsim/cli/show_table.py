@@ -70,7 +70,7 @@ def show_table(*tables: Table) -> None:
             if left_out:
                 say(f"left out, as the terminal is narrow: {', '.join(left_out)}")
         else:
-            say(make_plain(table))
+            say(_make_plain(table))
 
 
 def show_report_tables(tables: Iterable[ReportTable]) -> None:
@@ -85,7 +85,7 @@ def show_report_tables(tables: Iterable[ReportTable]) -> None:
         show_table(make_table(table.caption, headings, rows, range(table.words), caption))
 
 
-def make_plain(table: Table) -> str:
+def _make_plain(table: Table) -> str:
     """Return a table as text: a line of headings, then a line for each row, two spaces between aligned columns."""
     columns = [_pad(column, table.show_header) for column in table.columns]
     lines = ["  ".join(cells).rstrip() for cells in zip(*columns, strict=True)]

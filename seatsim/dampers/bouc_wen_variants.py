@@ -160,7 +160,7 @@ class NonsymmetricalBoucWen(NamedTuple):
         return (normalised_rate(rho, self.sigma, self.n, v - self.mu, z[0]),)
 
 
-AMPLITUDE, LEAST_AMPLITUDE, _MOST_AMPLITUDE = 0.01, 0.001, 0.025
+_AMPLITUDE, _LEAST_AMPLITUDE, _MOST_AMPLITUDE = 0.01, 0.001, 0.025
 """Amplitude in m at which the factor of the excitation is 1, and the range beyond which it is held."""
 _FREQUENCY, _LEAST_FREQUENCY, _MOST_FREQUENCY = 2.0 * math.pi, 0.2 * math.pi, 30.0 * math.pi
 """Angular frequency in rad/s at which that factor is 1, and the range beyond which it is held."""
@@ -181,9 +181,9 @@ def excitation_factor(d2: float, d4: float, s: float, r: float) -> float:
     """Return `(W / W0)^d2 (X / X0)^d4` from the mean squares s of displacement [m^2] and r of velocity [m^2/s^2]."""
     squared = (max(r, 0.0) + _AT_REST * _FREQUENCY**2) / (max(s, 0.0) + _AT_REST)
     frequency = min(max(math.sqrt(squared), _LEAST_FREQUENCY), _MOST_FREQUENCY)
-    amplitude = min(max(math.sqrt(2.0 * max(s, 0.0)), LEAST_AMPLITUDE), _MOST_AMPLITUDE)
+    amplitude = min(max(math.sqrt(2.0 * max(s, 0.0)), _LEAST_AMPLITUDE), _MOST_AMPLITUDE)
     of_frequency: float = (frequency / _FREQUENCY) ** d2
-    of_amplitude: float = (amplitude / AMPLITUDE) ** d4
+    of_amplitude: float = (amplitude / _AMPLITUDE) ** d4
     return of_frequency * of_amplitude
 
 
@@ -236,7 +236,7 @@ class CurrentDependentBoucWen(NamedTuple):
 
 @utfsm_damper(
     "frequency_dependent_bouc_wen",
-    initial=(0.0, 0.5 * AMPLITUDE**2, 0.5 * (_FREQUENCY * AMPLITUDE) ** 2, 0.0),
+    initial=(0.0, 0.5 * _AMPLITUDE**2, 0.5 * (_FREQUENCY * _AMPLITUDE) ** 2, 0.0),
     state="d, displacement about its recent mean in m; s, recent mean square of d in m^2; r, recent mean square of"
     f" the velocity in m^2/s^2; {NORMALISED}",
     confidence="reading",

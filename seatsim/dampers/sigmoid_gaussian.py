@@ -17,7 +17,7 @@ _Row = tuple[float, float, float, float, float]
 
 CURRENTS = np.array([0.0, 0.25, 0.5, 0.75, 1.0, 2.0])
 """Test currents in A; the paper prints the third as 0.25 again."""
-TABLES = np.array(
+_TABLES = np.array(
     [
         [  # table 1, test 1: 1 Hz, 4 mm; columns a [kN], b [kN], c [1/u], sigma [u] (printed as alpha), r [kN u]
             [-0.24, -0.13, 6.00, 0.60, 0.07],
@@ -46,17 +46,17 @@ def _cubics() -> Array:
     # Imported here: it takes a third of a second, for which every command would wait.
     from scipy.interpolate import PchipInterpolator
 
-    return np.array([np.moveaxis(PchipInterpolator(CURRENTS, table).c, 0, -1) for table in TABLES])
+    return np.array([np.moveaxis(PchipInterpolator(CURRENTS, table).c, 0, -1) for table in _TABLES])
 
 
-def table_row(test: int, current: float) -> _Row:
+def _table_row(test: int, current: float) -> _Row:
     """Return (a, b, c, sigma, r) of test 1 or 2, monotone between the test currents and held beyond them."""
     return _row(_cubics()[test - 1], current)
 
 
-@specialise(table_row)
+@specialise(_table_row)
 def _compile_table_row(test: types.Type, current: types.Type) -> Callable[[int, float], _Row]:
-    """Return `table_row` for compiled code, of which the cubics are constants."""
+    """Return `_table_row` for compiled code, of which the cubics are constants."""
     cubics = _cubics()
     return lambda test, current: _row(cubics[test - 1], current)
 
@@ -111,7 +111,7 @@ class HongSigmoidGaussian(NamedTuple):
 
     def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
-        a, b, c, sigma, r = table_row(self.test, i)
+        a, b, c, sigma, r = _table_row(self.test, i)
         u = v / self.v_unit
         # G is written about its middle a + b/2, so that it cannot overflow.
         mean = -0.5 * b * math.tanh(0.5 * c * u)

@@ -144,7 +144,7 @@ def write_fmu(block: Block, version: int, path: Path) -> None:
         for name, content in files.items():
             (folder / Path(name).name).write_bytes(content)
         library = folder / "library"
-        compile_library(folder / f"fmi{version}.c", library)
+        _compile_library(folder / f"fmi{version}.c", library)
         files[_name_library(version, identifier(block))] = library.read_bytes()
 
     def pack(part: Path) -> None:
@@ -250,7 +250,7 @@ def _read_choice() -> list[str]:
         raise InputError(f"the variable CC is {stated!r}: {error}; state a compiler and its flags") from error
 
 
-def compile_library(source: Path, library: Path) -> None:
+def _compile_library(source: Path, library: Path) -> None:
     """Compile a C file into a shared library.
 
     Raises:

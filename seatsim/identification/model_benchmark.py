@@ -58,7 +58,7 @@ def benchmark_models(
     models = names("damper") if _ALL in models else models
     split_records(records, settings)  # what cannot be held out is refused before the first fit
     _check_fixed(settings.fix, models)
-    return rank_entries([_benchmark_model(records, model, settings, progress, keep) for model in models])
+    return _rank_entries([_benchmark_model(records, model, settings, progress, keep) for model in models])
 
 
 def _benchmark_model(
@@ -82,7 +82,7 @@ def _benchmark_model(
     return BenchmarkEntry(found.model, train, test, *figures, confidence=found.confidence)
 
 
-def rank_entries(entries: Sequence[BenchmarkEntry]) -> list[BenchmarkEntry]:
+def _rank_entries(entries: Sequence[BenchmarkEntry]) -> list[BenchmarkEntry]:
     """Return entries, the best fit on held-out records first (on training ones where none is held out)."""
     held_out = any(math.isfinite(entry.test_fit_percent) for entry in entries)
 

@@ -57,7 +57,7 @@ def search_parameters(
     """
     default = default_vector(problem)
     first = descend_from_defaults(short, executor, progress)
-    reached = search_globally(short, first.vector, seed, _PER_PARAMETER * len(default), executor, progress)
+    reached = _search_globally(short, first.vector, seed, _PER_PARAMETER * len(default), executor, progress)
     near = refine(short, reached, executor, progress, _EVALUATIONS_ON_STRETCHES)
     start = min((first, near), key=_cost).vector
     found = refine(problem, start, executor, progress, _EVALUATIONS_ON_RECORDS).vector
@@ -95,7 +95,7 @@ def _match_force(problem: IdentificationProblem, vector: Array) -> Array:
     return problem.to_vector(bench._replace(damper=rescale_damper(bench.damper, ratio, problem.coordinates.end)))
 
 
-def search_globally(
+def _search_globally(
     problem: IdentificationProblem,
     start: Array,
     seed: int,

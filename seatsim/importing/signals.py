@@ -178,7 +178,7 @@ def as_text(value: object) -> str:
     return single.decode(errors="replace") if isinstance(single, bytes) else str(single)
 
 
-def in_seconds(times: NDArray[np.generic]) -> NDArray[np.generic]:
+def _in_seconds(times: NDArray[np.generic]) -> NDArray[np.generic]:
     """Return durations in s, or dates in s since the first of them; other values as they are."""
     if times.dtype.kind not in "mM":
         return times
@@ -195,7 +195,7 @@ def signals_of(
     name: str, array: NDArray[np.generic], unit: str = "", columns: Sequence[str] = (), units: Sequence[str] = ()
 ) -> list[Signal]:
     """Return the channels of an array of shape (N,), (N, k) or (k, N), k smaller; a matrix is `name#1`, `name#2`."""
-    found = in_seconds(np.squeeze(np.asarray(array)))
+    found = _in_seconds(np.squeeze(np.asarray(array)))
     if found.dtype.kind not in "fiub" or found.ndim not in (1, 2) or found.size < 2:
         return []
     values = found.astype(np.float64)

@@ -145,8 +145,8 @@ def _friction(free: float, v: float, slip: float, limit: float, mass: float) -> 
 
 MASSES = 4
 """Masses that a body has room for."""
-Vector = tuple[float, ...]
-Matrix = tuple[Vector, ...]
+_Vector = tuple[float, ...]
+_Matrix = tuple[_Vector, ...]
 
 
 class BodySpecification(NamedTuple):
@@ -165,9 +165,9 @@ class SeatedBody(NamedTuple):
     where the sum over a column of K or C is not 0 its mass is linked to the contact point. A mass of 0 stays at rest.
     """
 
-    masses: Vector
-    stiffness: Matrix
-    damping: Matrix
+    masses: _Vector
+    stiffness: _Matrix
+    damping: _Matrix
 
     def inner_mass(self, plant: Plant, z: State) -> float:
         """Return the masses in kg that the contact point carries."""
@@ -189,7 +189,7 @@ class SeatedBody(NamedTuple):
 
 
 @jit
-def _pull(stiffness: Matrix, damping: Matrix, z: State) -> Vector:
+def _pull(stiffness: _Matrix, damping: _Matrix, z: State) -> _Vector:
     """Return K x + C x' in N."""
     return (
         _row(stiffness[0], damping[0], z),
@@ -200,7 +200,7 @@ def _pull(stiffness: Matrix, damping: Matrix, z: State) -> Vector:
 
 
 @jit
-def _row(k: Vector, c: Vector, z: State) -> float:
+def _row(k: _Vector, c: _Vector, z: State) -> float:
     springs = k[0] * z[0] + k[1] * z[1] + k[2] * z[2] + k[3] * z[3]
     return springs + c[0] * z[4] + c[1] * z[5] + c[2] * z[6] + c[3] * z[7]
 

@@ -50,7 +50,7 @@ PER_OCTAVE = 12
 """Bands in an octave, finer than the resonance of a seat is wide."""
 LEAST_SAMPLES = 64
 """Samples from which on a signal has a density."""
-SEGMENTS = 4
+_SEGMENTS = 4
 """Least number of half-overlapping segments: half of what a coherence needs, for lines half as far apart.
 
 What is lost in averages comes back where bands hold several lines.
@@ -65,7 +65,7 @@ def estimate_density(step: float, signals: Sequence[Array]) -> tuple[Array, Arra
     shortest = min(map(len, signals))
     if shortest < LEAST_SAMPLES:
         return np.empty(0), np.empty(0)
-    length = min(round(LONGEST / step), 2 * (shortest // (SEGMENTS + 1)))
+    length = min(round(LONGEST / step), 2 * (shortest // (_SEGMENTS + 1)))
     found = [power_spectral_density(values, 1 / step, length) for values in signals]
     return _average_bands(found[0][0], np.mean([power for _, power in found], axis=0))
 
@@ -146,7 +146,7 @@ def transmissibility(floor: ArrayLike, driver: ArrayLike, sample_rate: float) ->
 
 TRUSTED = 0.5
 """Least coherence of a transmissibility: below it most of the driver's motion is not the floor's."""
-STRETCH = 3
+_STRETCH = 3
 """Least neighbouring bands of a transmissibility that are trusted: by chance a single one is coherent anywhere."""
 POWER = 1e-3
 """Least density of the floor over its highest at which it has power enough for a transmissibility."""
@@ -168,7 +168,7 @@ def trusted_gain(floor: Array, driver: Array, sample_rate: float, highest: float
     response, coherence = _divide_spectra(floor_psd, driver_psd, real + 1j * imaginary)
     inside = frequency <= highest
     is_strong = floor_psd >= POWER * np.max(floor_psd[inside], initial=1e-300)
-    whole = np.ones(STRETCH, bool)
+    whole = np.ones(_STRETCH, bool)
     known = binary_opening((is_strong & (coherence >= TRUSTED))[inside], whole)
     ends = np.flatnonzero(binary_opening(~known, whole) & np.logical_or.accumulate(known))
     if ends.size:

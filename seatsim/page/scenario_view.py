@@ -82,7 +82,7 @@ def read_number(request: Mapping[str, object], slider: Slider) -> float:
     return float(value) / slider.factor
 
 
-def read_choice(request: Mapping[str, object], choice: Choice) -> str:
+def _read_choice(request: Mapping[str, object], choice: Choice) -> str:
     """Return the chosen value of a request, the first one where the request has none.
 
     Raises:
@@ -164,7 +164,7 @@ class ScenarioView:
 
     def choose(self, request: Mapping[str, object]) -> Scenario:
         """Return the scenario that a request describes."""
-        chosen = {choice.name: read_choice(request, choice) for choice in self.choices}
+        chosen = {choice.name: _read_choice(request, choice) for choice in self.choices}
         base, road, law = load(self.path)[int(chosen.get("run", "0"))], chosen["road"], chosen["law"]
         numbers = [(slider, read_number(request, slider)) for slider in self.sliders]
         keys, label = {"mass": "plant.driver_mass", "temperature": "temperature"}, dict(base.label)

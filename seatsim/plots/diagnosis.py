@@ -29,7 +29,7 @@ from seatsim.schema.printing import Quantity, describe_channel, format_number
 
 BINS = (22, 13)
 """Bins of a map over velocity and over the other quantity."""
-DOTS = 2500
+_DOTS = 2500
 SMALLEST = 1e-4
 """Gap below which none is drawn: a logarithmic scale has no zero."""
 UNITS = {"velocity": "m/s", "displacement": "m", "coil_current": "A", "damper_temperature": "degC"}
@@ -42,8 +42,8 @@ DECADES = 9.0
 """Decades below the highest density that a spectrum shows: down to the noise of a good sensor."""
 NOMINAL = Entry("nominal", "#ECB78C", width=2.2)
 """A pale `COLOURS[1]`, wide upon the measured signal, and the last simulation thin upon both, so that all are seen."""
-REFITTED, AUGMENTED = Entry("refitted", COLOURS[2], width=1.0), Entry("with effects", COLOURS[0], width=1.0)
-SIMULATED = Entry("simulated", COLOURS[1], width=1.0)
+_REFITTED, AUGMENTED = Entry("refitted", COLOURS[2], width=1.0), Entry("with effects", COLOURS[0], width=1.0)
+_SIMULATED = Entry("simulated", COLOURS[1], width=1.0)
 NOISE = Entry("sensor noise", "black", ":", width=1.3)
 _BAND = Entry(f"±{_SHADED:g} RMS of the noise", style.AREA, width=8)
 GRID = Grid((1.5, 1.0, 1.3), left=1.04, gap=(0.0, 0.5))
@@ -70,12 +70,12 @@ def plot_diagnosis(diagnosis: Diagnosis) -> dict[str, Figure]:
 
 def plot_all_of_gap(found: Gap) -> dict[str, Figure]:
     """Return a figure of each channel of a gap by name, the one with the largest gap first."""
-    return _plot_channels(residuals.list_traces(found), {"nominal": SIMULATED})
+    return _plot_channels(residuals.list_traces(found), {"nominal": _SIMULATED})
 
 
 def find_last(diagnosis: Diagnosis) -> Entry:
     """Return the look of the simulation of `augmented.yaml`; without effects it is the refitted one."""
-    return AUGMENTED if diagnosis.selected else REFITTED
+    return AUGMENTED if diagnosis.selected else _REFITTED
 
 
 def _plot_gaps(diagnosis: Diagnosis) -> Figure | None:
@@ -83,7 +83,7 @@ def _plot_gaps(diagnosis: Diagnosis) -> Figure | None:
     gap, last = diagnosis.gap, find_last(diagnosis)
     names = ["overall", *gap.before.channels]
     stages = [(gap.before, NOMINAL._replace(colour=COLOURS[1], mark="o"))]
-    stages += [(gap.calibrated, REFITTED._replace(mark="D"))] if last is AUGMENTED else []
+    stages += [(gap.calibrated, _REFITTED._replace(mark="D"))] if last is AUGMENTED else []
     stages += [(gap.after, last._replace(mark="s")), (gap.floor, NOISE._replace(label="noise floor", mark="|"))]
     looks = [look._replace(dashes="none") for _, look in stages]
     rows = [[({**gaps.channels, "overall": gaps.overall}).get(name) or 0.0 for gaps, _ in stages] for name in names]
@@ -160,7 +160,7 @@ def _plot_discrepancy(diagnosis: Diagnosis) -> Figure | None:
     first, *panels = page.list_panels(1 + len(motion))
     style.draw_line(first, *thin_line(found.time, shown.factor * found.values), Entry("", COLOURS[6], width=1.0))
     first.set(xlabel="time [s]", ylabel=shown.axis)
-    every = max(1, len(found.values) // DOTS)
+    every = max(1, len(found.values) // _DOTS)
     for axes, (name, values) in zip(panels, motion.items(), strict=True):
         own = _describe_motion(diagnosis, name)
         places, lacking = own.factor * values[::every], shown.factor * found.values[::every]

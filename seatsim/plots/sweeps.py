@@ -66,7 +66,7 @@ def plot_comfort(rows: SweepRows, order: Sequence[str]) -> Figure | None:
             axes.scatter(x, y, s=14, linewidths=0, alpha=0.7, color=look.colour, rasterized=True)
         travel, comfort = (part[name].to_numpy(float) for name in (TRAVEL, COMFORT))
         if has_front:
-            front = find_front(travel, comfort)
+            front = _find_front(travel, comfort)
             # Between two runs of it no other is known to be better than the left one; behind the dots it hides none.
             style.draw_line(axes, 1e3 * travel[front], comfort[front], _FRONT).set(drawstyle="steps-post", zorder=0.9)
         style.set_title(axes, title)
@@ -74,7 +74,7 @@ def plot_comfort(rows: SweepRows, order: Sequence[str]) -> Figure | None:
     return page.figure
 
 
-def find_front(travel: Array, comfort: Array) -> NDArray[np.intp]:
+def _find_front(travel: Array, comfort: Array) -> NDArray[np.intp]:
     """Return the indices of the runs that no other is better than in both, by rising travel."""
     order = np.lexsort((comfort, travel))
     best = np.minimum.accumulate(comfort[order])

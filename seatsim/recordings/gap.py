@@ -196,14 +196,14 @@ def forecast_gap(scenario: str | Path | Scenario, recording: str | Path | Record
     refuse(examination)
     predicted = predict_gap(scenario, recording, diagnosis)
     notes = tuple(dict.fromkeys([*note_unused_log(scenario, recording), *examination.sentences]))
-    if not has_outputs(recording):
+    if not _has_outputs(recording):
         return Forecast(math.nan, {}, GapFigures(math.nan, {}), notes, predicted=predicted)
     before, after = measure_gap(recording.nominal, recording), _assess(scenario, recording, list(recording.runs), notes)
     measured = MeasuredShrink(before.overall, after.overall, 1.0 - after.overall / before.overall, before.channels)
     return Forecast(**vars(after), measured=measured, predicted=predicted)
 
 
-def has_outputs(recording: Recording) -> bool:
+def _has_outputs(recording: Recording) -> bool:
     """Whether an output is recorded; a coil current is an input where it drives the damper in place of a command."""
     recorded, commands = set(recording.channels), {"current_command", "command_voltage"}
     outputs = recorded.intersection(COMPARED[recording.header.rig])

@@ -24,7 +24,7 @@ from seatsim.schema.printing import format_number, format_unit
 
 ROWS = 3000
 """Most rows of a record that are drawn over time, from the stretch with the highest speed."""
-GOOD, FAIR = 90.0, 75.0
+GOOD, _FAIR = 90.0, 75.0
 """Fits in per cent from which on a model is called good, or usable."""
 
 
@@ -38,7 +38,7 @@ def report_identification(found: Identification, figures: Figures, command: str)
     loose, mean = [each.name for each in found.information.estimates if not each.identified], found.assessed
     advice = choose_advice(
         hold_out=found.mean("test") is None,
-        other_models=mean is not None and mean.fit_percent < FAIR,
+        other_models=mean is not None and mean.fit_percent < _FAIR,
         undetermined=loose,
         copy=True,
     )
@@ -51,7 +51,7 @@ def _say_fit(found: Identification) -> str:
     mean = found.assessed
     if mean is None:
         return f"{found.model} was fitted, but no record assesses it."
-    word = "well" if mean.fit_percent >= GOOD else "usably" if mean.fit_percent >= FAIR else "poorly"
+    word = "well" if mean.fit_percent >= GOOD else "usably" if mean.fit_percent >= _FAIR else "poorly"
     held_out, fitted = "that took no part in the fit", "it was fitted to; none was held out"
     where = f"on records {held_out}" if found.mean("test") else f"on the records {fitted}"
     return (

@@ -21,10 +21,10 @@ from seatsim.report.packing import MEASURED, NOMINAL, pack_traces
 from seatsim.schema.printing import MINUS, UNKNOWN, describe_channel, format_number, format_percent, format_unit
 from seatsim.schema.text import join_names
 
-STAGES = {"before": "nominal", "calibrated": "refitted", "after": "with effects", "floor": "noise floor"}
+_STAGES = {"before": "nominal", "calibrated": "refitted", "after": "with effects", "floor": "noise floor"}
 """How each gap of a diagnosis is called."""
 _NEARLY_ALL = 0.98
-LIKELY = 0.05
+_LIKELY = 0.05
 """Probability from which on the parameters of a cause are printed."""
 _ALIKE, _MOST_PAIRS = 0.5, 12
 """Collinearity from which on two effects are named as similar, and the most pairs that are."""
@@ -50,13 +50,13 @@ def report_diagnosis(diagnosis: Diagnosis) -> Report:
     if diagnosis.verdict == "none":
         sections |= {anchor: [] for anchor in ("causes", "missing", "confusions", "maps")}
     about, command = f"Diagnosis: {diagnosis.name}", f"seatsim diagnose {diagnosis.name}"
-    answer = [say_diagnosis(diagnosis), format_sentence(diagnosis.sentence)]
-    report = compose("diagnosis", about, answer, advise(diagnosis), sections, _list_notes(diagnosis), command)
+    answer = [_say_diagnosis(diagnosis), format_sentence(diagnosis.sentence)]
+    report = compose("diagnosis", about, answer, _advise(diagnosis), sections, _list_notes(diagnosis), command)
     badge = (diagnosis.verdict, *read_words().verdicts[diagnosis.verdict])
     return report._replace(badge=badge)
 
 
-def say_diagnosis(diagnosis: Diagnosis) -> str:
+def _say_diagnosis(diagnosis: Diagnosis) -> str:
     """Return the answer as an engineer says it: what is the matter, and how much of the gap that explains."""
     gap = diagnosis.gap
     size, noise = format_percent(gap.before.overall), formatting.say_noise(gap.floor.overall)
@@ -77,7 +77,7 @@ def say_diagnosis(diagnosis: Diagnosis) -> str:
     return f"{clauses[0].upper()}{clauses[1:]}. {_say_share(diagnosis)}"
 
 
-def advise(diagnosis: Diagnosis) -> list[str]:
+def _advise(diagnosis: Diagnosis) -> list[str]:
     """Return what to do next: look at the rig, decide between equals, use the scenario."""
     if diagnosis.verdict == "none":
         return choose_advice(use_nominal=True)
@@ -116,12 +116,12 @@ def _say_share(diagnosis: Diagnosis) -> str:
     return f"{subject} {format_percent(share)} of the gap beyond noise{rest}."
 
 
-def format_estimate(value: Estimate | str) -> str:
+def _format_estimate(value: Estimate | str) -> str:
     """Return a parameter with its standard deviation, rounded to two digits of that, its unit, and whether it ends."""
     if isinstance(value, str):
         return value
     if value.at_bound:
-        return f"{format_estimate(value._replace(at_bound=False))} (the end of its range)"
+        return f"{_format_estimate(value._replace(at_bound=False))} (the end of its range)"
     shown = describe_channel("", value.unit)
     unit = "" if shown.unit == "-" else f" {shown.unit}"
     value = value._replace(value=shown.factor * value.value, std=shown.factor * value.std)
@@ -153,12 +153,12 @@ def say_action(effect: str) -> str:
 
 def _show_causes(diagnosis: Diagnosis) -> list[Table]:
     """Return where the gap lies, which effects may cause it, and their parameters."""
-    shown = [each for each in diagnosis.causes if each.probability >= LIKELY or each.effect in diagnosis.selected]
+    shown = [each for each in diagnosis.causes if each.probability >= _LIKELY or each.effect in diagnosis.selected]
     rows = []
     for cause in shown:
         meaning = format_sentence(formatting.describe_effect(cause.effect)) or UNKNOWN
         shares = (format_percent(cause.probability), format_percent(cause.shrink))
-        sizes = "; ".join(f"{name} {format_estimate(value)}" for name, value in cause.parameters.items()) or UNKNOWN
+        sizes = "; ".join(f"{name} {_format_estimate(value)}" for name, value in cause.parameters.items()) or UNKNOWN
         rows.append((cause.effect, meaning, sizes, *shares))
     if rest := [each.probability for each in diagnosis.causes if each not in shown]:
         most = f"≤ {format_percent(max(rest))}".replace("≤ <", "<")
@@ -209,7 +209,7 @@ def _show_gaps(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
     """Return the gaps by channel, drawn and as a table, those of every run, and the refitted parameters."""
     gap, held = diagnosis.gap, ", ".join(diagnosis.held_out) or "all runs"
     # Without effects the gap after them is that of the refit.
-    stages = {key: name for key, name in STAGES.items() if key != "after" or diagnosis.selected}
+    stages = {key: name for key, name in _STAGES.items() if key != "after" or diagnosis.selected}
     rows = [_make_row(gap, name, name.replace("_", " "), stages) for name in ("overall", *gap.before.channels)]
     head = ["channel", *stages.values(), "shrinks by"]
     blocks: list[Block] = [Text(f"{_describe_shrink(diagnosis)} {EXPLAINED}".strip()), *show_pictures(figures, "gaps")]
@@ -229,7 +229,7 @@ def _show_gaps(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
 
 def _make_row(gaps: Gaps | RunGaps, channel: str, name: str, keys: Iterable[str]) -> list[str]:
     """Return the gaps of a channel, or of all ("overall"), over the signal's standard deviation."""
-    figures: dict[str, GapFigures] = {key: getattr(gaps, key) for key in STAGES}
+    figures: dict[str, GapFigures] = {key: getattr(gaps, key) for key in _STAGES}
     sizes = {key: {**each.channels, "overall": each.overall}.get(channel) for key, each in figures.items()}
     before, after = sizes["before"], sizes["after"]
     change = 1 - after / before if after is not None and before else None

@@ -20,7 +20,7 @@ from seatsim.report.formatting import format_noise, format_quantity, say_noise, 
 from seatsim.report.packing import MEASURED, pack_traces
 from seatsim.schema.printing import UNKNOWN, format_percent
 
-NEAR_NOISE = 1.2
+_NEAR_NOISE = 1.2
 """Gap over the noise of the sensors up to which nothing is left to explain."""
 SMALLEST = 1e-4
 """Gap below which nothing is left to explain."""
@@ -54,7 +54,7 @@ def say_gap(found: Gap) -> str:
 
 def _is_explained(found: Gap) -> bool:
     """Return whether a gap is of the size of the sensors' noise, or smaller than any that matters."""
-    return found.overall <= max(NEAR_NOISE * found.floor.overall, SMALLEST)
+    return found.overall <= max(_NEAR_NOISE * found.floor.overall, SMALLEST)
 
 
 def _tabulate_gaps(found: Gap) -> list[Table]:

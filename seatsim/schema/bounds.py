@@ -14,9 +14,9 @@ from typing import NamedTuple
 from seatsim.schema.errors import InputError
 from seatsim.schema.guarded import in_mib
 
-LEAST, _LARGEST = 2**24, 2**30
+_LEAST, _LARGEST = 2**24, 2**30
 """Bytes that any file may make, and up to which it may make more than a number of each of its bytes."""
-TIMES, BYTES_OF_NUMBER = 100, 8
+_TIMES, BYTES_OF_NUMBER = 100, 8
 """How many times its size a file may make: where it is packed or doubled, and where each byte becomes a number."""
 BYTES_OF_PART = 256
 """Bytes that a part takes in memory, however small it is: a channel, a group, a text."""
@@ -35,7 +35,7 @@ class Part(NamedTuple):
 
 def permitted_of(size: int) -> int:
     """Return how many bytes a file of `size` bytes may make."""
-    return max(LEAST, min(_LARGEST, TIMES * size), BYTES_OF_NUMBER * size)
+    return max(_LEAST, min(_LARGEST, _TIMES * size), BYTES_OF_NUMBER * size)
 
 
 def check_made(made: float, size: int, what: str = "what it states") -> None:
@@ -44,7 +44,7 @@ def check_made(made: float, size: int, what: str = "what it states") -> None:
     if made > permitted:
         raise TooMuchError(
             f"{what} would take at least {in_mib(made)} of memory; permitted for a file of {in_mib(size)} are"
-            f" {in_mib(permitted)} ({TIMES} times its size, at least {in_mib(LEAST)}, up to {in_mib(_LARGEST)})"
+            f" {in_mib(permitted)} ({_TIMES} times its size, at least {in_mib(_LEAST)}, up to {in_mib(_LARGEST)})"
         )
 
 

@@ -144,7 +144,7 @@ def _extra_of(hint: object) -> Mapping[str, JsonValue]:
     return info.json_schema_extra if info and isinstance(info.json_schema_extra, dict) else {}
 
 
-UNUSUAL = "is unusual, since seats have"
+_UNUSUAL = "is unusual, since seats have"
 """In every sentence of a doubt, by which such sentences are found among others."""
 
 
@@ -159,7 +159,7 @@ def doubt(field: FieldSpecification, value: object) -> str:
     unit = "" if field.unit == "-" else f" {field.unit}"
     for odd in value if isinstance(value, tuple) else (value,):
         if isinstance(odd, int | float) and not _is_usual(odd, field):
-            return f"{odd:g}{unit} {UNUSUAL} {low:g} to {high:g}{unit}{guess(odd, field)}"
+            return f"{odd:g}{unit} {_UNUSUAL} {low:g} to {high:g}{unit}{guess(odd, field)}"
     return ""
 
 

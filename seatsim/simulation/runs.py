@@ -39,11 +39,11 @@ def compare(paths: Iterable[str | Path], settings: Mapping[str, object] | None =
 
 
 def _run_all(scenarios: Sequence[Scenario]) -> Result:
-    carry_all = share_a_loop(scenarios)
+    carry_all = _share_a_loop(scenarios)
     return Result([run_one(one, carry_all) for one in scenarios])
 
 
-def share_a_loop(scenarios: Iterable[Scenario]) -> bool | None:
+def _share_a_loop(scenarios: Iterable[Scenario]) -> bool | None:
     """Return `carry_all_effects` of scenarios that run together: None where they differ in effects, else False.
 
     Loops for one set of effects are compiled in half the time that one takes which carries all.
@@ -80,7 +80,7 @@ def run_many(
     Raises:
         InputError: a scenario turned out to be wrong.
     """
-    carry_all = share_a_loop(scenarios)
+    carry_all = _share_a_loop(scenarios)
 
     def attempt(scenario: Scenario) -> Run | RunError | SynthesisError:
         try:

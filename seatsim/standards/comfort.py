@@ -159,7 +159,7 @@ def comfort(
         duration=next(iter(joined.values())).duration,
         sample_rate=records[0].sample_rate,
         axes=axes,
-        totals=total_values(joined),
+        totals=_total_values(joined),
         exposure=assess_exposure(joined, hours),
         seat={axis: seat_transmission(*pair) for axis, pair in seats.items()},
         motion_sickness=_motion_sickness(records, named["z"]) if "z" in named else None,
@@ -169,7 +169,7 @@ def comfort(
     )
 
 
-def total_values(doses: Mapping[str, Dose]) -> dict[str, float]:
+def _total_values(doses: Mapping[str, Dose]) -> dict[str, float]:
     """Return a_v = sqrt(sum over axes of k^2 a_w^2) in m/s^2 by point of contact, and of all points as `overall`.
 
     Source: ISO 2631-1:1997, equation 10 in 8.2.2, and 8.2.3 for several points; k as in `seatsim.metrics.exposure`.

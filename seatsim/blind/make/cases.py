@@ -40,7 +40,7 @@ _Known = list[tuple[float, float]]
 """Severities and their materialities."""
 
 
-def draw_missing_channels(rng: Generator) -> tuple[str, ...]:
+def _draw_missing_channels(rng: Generator) -> tuple[str, ...]:
     """Draw the channels that are not recorded: none in 60 % of cases, rarely two."""
     u = rng.random()
     if u < _COMPLETE_SHARE:
@@ -58,7 +58,7 @@ class CaseSpecification(NamedTuple):
 
     def draw_rig(self, rng: Generator) -> Experiment:
         """Draw a rig and its protocol; neither kind nor names are used, so that nothing of it tells what is wrong."""
-        gone = draw_missing_channels(rng)
+        gone = _draw_missing_channels(rng)
         channels = tuple(name for name in CHANNELS if name not in gone)
         bingham = rng.random() < _BINGHAM_SHARE
         return (draw_varied_experiment if self.varied else draw_experiment)(rng, bingham, channels)

@@ -20,7 +20,7 @@ from seatsim.schema.arrays import Array
 SECONDS = 24.0
 """Of a recorded run: about 30 periods of the suspension, as a drive over one stretch of road gives."""
 UNSEEN_SECONDS = 14.0
-SCATTER = 0.015
+_SCATTER = 0.015
 """Largest relative error of a nominal parameter; inside the stated tolerance of 2 %, so a faultless rig is one."""
 _STEPPED = 0.4
 """Share of the rigs whose current is stepped in every run, not controlled in some."""
@@ -36,7 +36,7 @@ _HYSTERESIS = {"A": 2000.0, "beta": 1000.0, "gamma": 1000.0, "n": 2.0}
 BOUC_WEN = {"is_bingham": 0.0, **_FORCES, "k0": 0.0, "x0": 0.0, "f0": 0.0, **_HYSTERESIS}
 
 
-def scatter_parameters(nominal: Mapping[str, float], rng: Generator, width: float = SCATTER) -> dict[str, float]:
+def _scatter_parameters(nominal: Mapping[str, float], rng: Generator, width: float = _SCATTER) -> dict[str, float]:
     """Return true parameters: each nominal one off by up to `width`, those at zero by that share of their scale.
 
     Every parameter takes one number of the generator, also those that stay exact.
@@ -52,7 +52,7 @@ def scatter_parameters(nominal: Mapping[str, float], rng: Generator, width: floa
 def draw_experiment(rng: Generator, bingham: bool, channels: tuple[str, ...]) -> Experiment:
     """Draw a rig and its protocol."""
     nominal = PLANT | (BINGHAM if bingham else BOUC_WEN) | COIL
-    true = scatter_parameters(nominal, rng) | _draw_heat(rng)
+    true = _scatter_parameters(nominal, rng) | _draw_heat(rng)
     level = rng.uniform(0.85, 1.2)
     # noise is stated to three digits, and drawn as stated
     noise = {name: float(f"{value * level:.3g}") for name, value in noise_of(channels).items()}
@@ -126,17 +126,17 @@ _NOISE_FACTOR = 2.0
 """Largest factor by which a channel's noise is above or below that of the usual sensors."""
 _BACKGROUND_SHARE = 1.0 / 3.0
 """Share of the rigs that have a force on the frame beside the floor, and a repeated run that shows it."""
-BACKGROUND = (0.01, 0.03)
+_BACKGROUND = (0.01, 0.03)
 """Rms of that force over that of the force between floor and frame."""
-LARGEST_BACKGROUND = 0.8
+_LARGEST_BACKGROUND = 0.8
 """Materiality of that force: as strong as it were an effect it would be `floor.unmeasured_input`, and no background."""
 _OFFSET_SHARE = 0.4
 """Share of the Bouc-Wen dampers whose accumulator has a nominal stiffness and force."""
-STEEPEST = 8000.0
+_STEEPEST = 8000.0
 """Largest rate at which a regularised yield force may stop the frame, 1/s; the steps of the truth resolve it."""
 _FEEDBACK_GAIN = 2.0
 """By which the feedback's gains are above those of the standard rig, whose floor has more low frequencies."""
-LEAST_VISCOUS = 250.0
+_LEAST_VISCOUS = 250.0
 """N s/m; below it a damper in a mount with play is stiffer than the steps of the truth resolve."""
 
 
@@ -161,10 +161,10 @@ def draw_varied_experiment(rng: Generator, bingham: bool, channels: tuple[str, .
     """Draw a rig and its protocol; a third of them have a background force and a repeated run."""
     rate = float(rng.choice(SAMPLE_RATES))
     tolerance = float(f"{_log_uniform(rng, _SMALLEST_TOLERANCE, _LARGEST_TOLERANCE):.2g}")
-    nominal = draw_nominal(rng, bingham)
+    nominal = _draw_nominal(rng, bingham)
     factors = {name: _log_uniform(rng, 1.0 / _NOISE_FACTOR, _NOISE_FACTOR) for name in noise_of(channels)}
     noise = {name: float(f"{value * factors[name]:.3g}") for name, value in noise_of(channels).items()}
-    true = scatter_parameters(nominal, rng, tolerance) | _draw_heat(rng)
+    true = _scatter_parameters(nominal, rng, tolerance) | _draw_heat(rng)
     colours = {name: _draw_colour(rng) for name in noise}
     experiment = Experiment(nominal, true, channels, noise, (), (), rate, tolerance, colours)
     repeat = rng.random() < _BACKGROUND_SHARE
@@ -176,7 +176,7 @@ def _log_uniform(rng: Generator, low: float, high: float) -> float:
     return math.exp(rng.uniform(math.log(low), math.log(high)))
 
 
-def draw_nominal(rng: Generator, bingham: bool) -> dict[str, float]:
+def _draw_nominal(rng: Generator, bingham: bool) -> dict[str, float]:
     """Draw the parameters of seat, damper and coil, rounded to three digits as an owner states them."""
     frame, resonance, ratios = _SEATS[int(rng.integers(len(_SEATS)))]
     ms, m = rng.uniform(*frame), rng.uniform(*_DRIVER)
@@ -204,9 +204,9 @@ def _draw_damper(rng: Generator, plant: dict[str, float], ratio: float, bingham:
         name: BOUC_WEN[name] * size / ratio ** (power - 1.0) * _log_uniform(rng, 1.0 / 1.5, 1.5)
         for name, power in powers.items()
     }
-    damper["c_a"] = max(damper["c_a"], LEAST_VISCOUS)
+    damper["c_a"] = max(damper["c_a"], _LEAST_VISCOUS)
     if bingham:
-        steepest = ratio**2 * (damper["y_a"] + damper["y_b"]) / (STEEPEST * plant["ms"])
+        steepest = ratio**2 * (damper["y_a"] + damper["y_b"]) / (_STEEPEST * plant["ms"])
         return damper | {"is_bingham": 1.0, "f0": 0.0, "v_ref": max(steepest, 0.002) * _log_uniform(rng, 1.0, 4.0)}
     slope, share = _log_uniform(rng, 500.0, 2500.0), rng.uniform(0.3, 0.7)
     offset = rng.random() < _OFFSET_SHARE
@@ -247,9 +247,9 @@ def _add_background(experiment: Experiment, rng: Generator) -> Experiment:
     """Return the experiment with a random force on the frame, a share of that between floor and frame, not material."""
     motions = [simulate_run(experiment, Changes(), k, step=COARSE_STEP) for k in range(len(experiment.runs) - 1)]
     carried = experiment.true["ms"] * motions[0].frame + experiment.true["m"] * motions[0].driver
-    rms = rng.uniform(*BACKGROUND) * float(np.std(carried))
+    rms = rng.uniform(*_BACKGROUND) * float(np.std(carried))
     force = FrameForce("coloured", rms, int(rng.integers(1, 10**6)))
     runs = CommandedRuns(experiment, [motion.command for motion in motions])
     size, _ = runs.materiality(Changes(frame_forces=(force,)), Changes())
-    weaker = force._replace(rms=rms * min(1.0, LARGEST_BACKGROUND / size))
+    weaker = force._replace(rms=rms * min(1.0, _LARGEST_BACKGROUND / size))
     return experiment._replace(background=(weaker,))

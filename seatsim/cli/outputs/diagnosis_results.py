@@ -33,7 +33,7 @@ _LISTED = 6
 
 def present_gap(found: Gap, scenario: str, recording: Path, folder: Path) -> None:
     """Print the gap of a replayed scenario; write `gap.json`, and `report.html` where outputs were measured."""
-    show_table(make_gap_table(found))
+    show_table(_make_gap_table(found))
     warn(found.notes)
     contents: dict[str, object] = {"gap.json": found}
     if found.channels:
@@ -67,7 +67,7 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> list[Path]:
     return write_outputs(folder, {**scenarios, "report.html": report, "diagnosis.json": diagnosis})
 
 
-def make_gap_table(found: Gap) -> Table:
+def _make_gap_table(found: Gap) -> Table:
     """Return the gap of each channel and overall: with the noise floor, or beside what was to be expected of it."""
     if isinstance(found, Forecast):
         return _make_forecast_table(found)

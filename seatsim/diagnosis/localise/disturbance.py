@@ -23,7 +23,7 @@ from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.spectra import Spectra, measure_power
 from seatsim.schema.arrays import Array
 
-FORCE_FROM_OUTSIDE, BIAS_DRIFT = "floor.unmeasured_input", "sensor.bias"
+_FORCE_FROM_OUTSIDE, BIAS_DRIFT = "floor.unmeasured_input", "sensor.bias"
 
 
 class Disturbance(NamedTuple):
@@ -49,11 +49,11 @@ def list_disturbances(objective: Objective, selection: Selection) -> list[Distur
 
     Where both are drifts it is the one beside the best sets.
     """
-    found = find_bias_drift(objective, selection.calibrated), find_disturbance(objective, selection)
+    found = find_bias_drift(objective, selection.calibrated), _find_disturbance(objective, selection)
     return list({each.effect: each for each in found if each}.values())
 
 
-def find_disturbance(objective: Objective, selection: Selection) -> Disturbance | None:
+def _find_disturbance(objective: Objective, selection: Selection) -> Disturbance | None:
     """Return the random signal beside which one of the best sets leaves least, None where it is no such effect.
 
     A disturbance shows only about a rig with the effects beside it, and they are found only where the disturbance is
@@ -74,7 +74,7 @@ def find_disturbance(objective: Objective, selection: Selection) -> Disturbance 
     found = describe_discrepancy(problem, rig.parameters, block, likeliest)
     if block == "suspension":
         found = found._replace(block="floor")
-        return _disturb(objective, FORCE_FROM_OUTSIDE, found, likeliest)
+        return _disturb(objective, _FORCE_FROM_OUTSIDE, found, likeliest)
     # An input that was reconstructed, as the floor's motion, does not hold the noise of its sensor.
     noise = float(problem.noise[problem.channels.index(found.channel)]) if found.channel in problem.channels else 0.0
     if is_bias_drift(problem.settings.localisation, found, problem.rate, noise):
@@ -125,7 +125,7 @@ def find_bias_drift(objective: Objective, evaluation: Evaluation) -> Disturbance
 def put_beside(objective: Objective, disturbance: Disturbance) -> Objective:
     """Return the objective beside a disturbance."""
     problem, weights = objective.problem, objective.weights
-    if disturbance.effect == FORCE_FROM_OUTSIDE:
+    if disturbance.effect == _FORCE_FROM_OUTSIDE:
         about = problem.about(disturbance.found.signals, disturbance.traces)
         return Objective(about, weights.add_force(disturbance.amplitudes))
     return Objective(problem, weights.add({run: np.abs(each) ** 2 for run, each in disturbance.amplitudes.items()}))

@@ -116,15 +116,15 @@ _ENERGY = (
     _Figure("energy per cycle [J]", "energy"),
     _Figure("equivalent damping\n[kN·s/m]", "damping", 1e-3),
 )
-BY_CURRENT = Abscissa("current [A]", lambda r: r.current, lambda r: f"{r.temperature:.0f} °C")
-BY_TEMPERATURE = Abscissa("temperature [°C]", lambda r: r.temperature, lambda r: f"{r.current:.3g} A")
-BY_FREQUENCY = Abscissa("frequency [Hz]", lambda r: r.frequency, lambda r: "")
+_BY_CURRENT = Abscissa("current [A]", lambda r: r.current, lambda r: f"{r.temperature:.0f} °C")
+_BY_TEMPERATURE = Abscissa("temperature [°C]", lambda r: r.temperature, lambda r: f"{r.current:.3g} A")
+_BY_FREQUENCY = Abscissa("frequency [Hz]", lambda r: r.frequency, lambda r: "")
 
 
 def _plot_energy(found: Characterisation) -> Figure:
     """Return peaks, energy and damping over the current, and over the temperature where it varies, line by setting."""
     rows = [row for row in found.rows if row.loop is not None]
-    blocks = choose_abscissas(rows)
+    blocks = _choose_abscissas(rows)
     looks, note = choose_looks(blocks)
     if any(np.isfinite(getattr(row, f"{figure.name}_sd", np.nan)) for row in rows for figure in _ENERGY):
         note += " Error bars, where larger than a dot: standard deviation over the cycles."
@@ -135,7 +135,7 @@ def _plot_energy(found: Characterisation) -> Figure:
     return style.name_coincident(page.figure)
 
 
-def choose_abscissas(rows: Sequence[Row]) -> list[tuple[Abscissa, list[list[Row]]]]:
+def _choose_abscissas(rows: Sequence[Row]) -> list[tuple[Abscissa, list[list[Row]]]]:
     """Return what figures are drawn over, with the groups of rows that make a line each.
 
     Over the current at the lowest temperature of each setting; over the temperature at its largest current; over the
@@ -145,11 +145,11 @@ def choose_abscissas(rows: Sequence[Row]) -> list[tuple[Abscissa, list[list[Row]
     currents, warmed = (list(map(select, groups)) for select in (select_lowest_temperature, select_largest_current))
     blocks = []
     if any(len({row.current for row in group}) > 1 for group in currents):
-        blocks.append((BY_CURRENT, currents))
+        blocks.append((_BY_CURRENT, currents))
     known = [row.temperature for row in rows if np.isfinite(row.temperature)]
     if (known and max(known) - min(known) > WARMER) or any(row.temperature_range > WARMER for row in rows):
-        blocks.append((BY_TEMPERATURE, warmed))
-    return blocks or [(BY_FREQUENCY, groups)]
+        blocks.append((_BY_TEMPERATURE, warmed))
+    return blocks or [(_BY_FREQUENCY, groups)]
 
 
 def choose_looks(blocks: Sequence[tuple[Abscissa, list[list[Row]]]]) -> tuple[dict[str, Entry], str]:
@@ -175,7 +175,7 @@ def _draw_trend(
         ordered = sorted(group, key=across.value)
         places = [across.value(row) for row in ordered]
         values, spreads = zip(*map(figure.read, ordered), strict=True)
-        apart = bool(np.all(np.diff(places) > (WARMER if across is BY_TEMPERATURE else 0.0)))
+        apart = bool(np.all(np.diff(places) > (WARMER if across is _BY_TEMPERATURE else 0.0)))
         style.draw_line(axes, places, values, look if apart else look._replace(dashes="none"))
         ends = np.nan_to_num(spreads)
         axes.errorbar(places, values, ends, fmt="none", ecolor=look.colour, capsize=2.5, elinewidth=0.9)

@@ -26,23 +26,23 @@ _SAME_CURRENT = 0.02
 
 def plot_loops(found: Characterisation) -> Figure:
     """Return the loops by current for each amplitude and frequency, and by temperature where it varies."""
-    families, left_out = find_families(found.rows)
+    families, left_out = _find_families(found.rows)
     note = "Mean of the steady cycles. Displacement from mid-stroke."
     note += f" {left_out} further settings are not shown." if left_out else ""
     return plot_families(f"Loops: {found.name}", note, families)
 
 
-def find_families(rows: Sequence[Row]) -> tuple[list[Family], int]:
+def _find_families(rows: Sequence[Row]) -> tuple[list[Family], int]:
     """Return the families of loops by current, then by temperature, and the number of settings left out."""
     groups = group_by_setting(rows)
     chosen = spread_evenly(groups, MOST)
     warm = [group for group in chosen if _varies([row.temperature for row in select_largest_current(group)], WARMER)]
     warm = [group for group in warm if _varies([row.current for row in group], _SAME_CURRENT)]
-    families = [*map(order_by_current, chosen), *map(order_by_temperature, spread_evenly(warm, _MOST_WARM))]
+    families = [*map(_order_by_current, chosen), *map(_order_by_temperature, spread_evenly(warm, _MOST_WARM))]
     return families, len(groups) - len(chosen)
 
 
-def order_by_current(group: Sequence[Row]) -> Family:
+def _order_by_current(group: Sequence[Row]) -> Family:
     """Return the loops of one setting in the order of the currents, at the lowest temperature where it varies.
 
     Where the current is always the same they are in the order of the temperatures; where neither tells them apart, of
@@ -53,7 +53,7 @@ def order_by_current(group: Sequence[Row]) -> Family:
     legend, names = "current", [f"{row.current:.3g} A" for row in rows]
     if len(set(names)) < len(rows):
         if all(np.diff([row.temperature for row in rows]) > WARMER):
-            return order_by_temperature(group)
+            return _order_by_temperature(group)
         full = [row.record for row in rows]
         # The current, or the time in the record, stands behind the last comma; it may be all that differs.
         short = [name.rpartition(",")[0] or name for name in full]
@@ -63,7 +63,7 @@ def order_by_current(group: Sequence[Row]) -> Family:
     return Family(describe_setting(rows[0]) + at, legend, list(zip(names, map(_centre_loop, rows), strict=True)))
 
 
-def order_by_temperature(group: Sequence[Row]) -> Family:
+def _order_by_temperature(group: Sequence[Row]) -> Family:
     """Return the loops of one setting in the order of the temperatures, at the largest current."""
     rows = spread_evenly(sorted(select_largest_current(group), key=lambda row: row.temperature), MOST_LINES)
     loops = [(f"{row.temperature:.0f} °C", _centre_loop(row)) for row in rows]

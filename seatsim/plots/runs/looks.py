@@ -17,7 +17,7 @@ from seatsim.simulation.result import Run
 
 MOST = 8
 """Most runs that lines of one panel can tell apart."""
-MOST_CLOSE = 3
+_MOST_CLOSE = 3
 """Most runs that can be told apart over time, where a law may switch at every sample."""
 
 _FADED = 0.65
@@ -55,7 +55,7 @@ def show_runs(runs: Sequence[Run]) -> list[Shown]:
 
 def choose_extremes(shown: Shown) -> Shown:
     """Return the most and the least comfortable of some runs, and the best passive one; all, where they are few."""
-    if len(shown.runs) <= MOST_CLOSE:
+    if len(shown.runs) <= _MOST_CLOSE:
         return shown
     is_weighted = all(np.isfinite(run.read_metric(COMFORT)) for run in shown.runs)
     pairs = list(zip(shown.runs, shown.looks, strict=True))
@@ -80,7 +80,7 @@ def choose_looks(runs: Sequence[Run]) -> dict[int, Entry]:
     names = {id(run): name for part in parts for name, run in zip(naming.label_runs(part), part, strict=True)}
     families = names
     if len({run.scenario.label.get("variant") for run in runs}) > 1:
-        families = {id(run): name_variant(run) for run in runs}
+        families = {id(run): _name_variant(run) for run in runs}
     members, drawn = dict[str, list[str]](), [run for part in parts for run in _select_shown(part)[0]]
     for run in [*drawn, *runs]:
         family = members.setdefault(families[id(run)], [])
@@ -100,7 +100,7 @@ def explain_grey(looks: Mapping[int, Entry]) -> str:
     return " Grey: runs that pictures over frequency leave out." * is_grey
 
 
-def name_variant(run: Run) -> str:
+def _name_variant(run: Run) -> str:
     """Return the variant of a run, or its scenario where it has none."""
     return str(run.scenario.label.get("variant", run.scenario.name))
 

@@ -31,7 +31,7 @@ LETTERS = 13
 """Letters of a line of a label beside a panel that is this low."""
 NEAR = 0.2
 """Share of an end stop's distance that the motion must reach for the stop to be drawn; else it would look flat."""
-RESTLESS, PALE = 2.5, 0.3
+_RESTLESS, _PALE = 2.5, 0.3
 """Length of a line over the median of a panel's lines from which on it is drawn pale behind them, and its opacity."""
 CHANNELS = ("driver_acceleration", "suspension_displacement", "damper_force", "coil_current")
 _TARGETS = {"damper_force": "wanted_force", "coil_current": "current_command"}
@@ -102,8 +102,8 @@ def _draw_lines(axes: Axes, lines: Sequence[tuple[Run, str, Entry]], window: Win
         drawn.append(style.draw_line(axes, *thin_line(run.history["time"][part], values), look))
     lengths = [float(np.nansum(np.abs(np.diff(line.get_ydata())))) for line in drawn]
     for line, length in zip(drawn, lengths, strict=True):
-        if length > RESTLESS * float(np.median(lengths)) > 0.0:
-            line.set(alpha=PALE, zorder=1.9)
+        if length > _RESTLESS * float(np.median(lengths)) > 0.0:
+            line.set(alpha=_PALE, zorder=1.9)
 
 
 def _find_limits(runs: Sequence[Run]) -> list[float]:

@@ -17,7 +17,7 @@ _PILED = 3.0
 _FLICKER = 0.5
 """Least share of rows that differ from the row before where noise exceeds the resolution: white noise of one step gives
 three quarters."""
-_SPIKE, AROUND, _ALONE = 8.0, 25, 4.0
+_SPIKE, _AROUND, _ALONE = 8.0, 25, 4.0
 """A spike bends so many times as much as usual, and so many times as much as anything within so many rows."""
 _LEAST_FOR_SPIKES = 5
 """Rows below which nothing is a spike."""
@@ -213,7 +213,7 @@ def _stands_alone(values: Array, bend: Array, row: int) -> bool:
     """Say whether one row is a spike: its neighbours agree, and nothing near bends nearly as much."""
     before, at, after = values[row : row + 3]
     agree = abs(after - before) < 0.3 * min(abs(at - before), abs(at - after))
-    near = np.concatenate([bend[max(0, row - AROUND) : max(0, row - 1)], bend[row + 2 : row + AROUND]])
+    near = np.concatenate([bend[max(0, row - _AROUND) : max(0, row - 1)], bend[row + 2 : row + _AROUND]])
     return bool(agree and bend[row] > _ALONE * float(np.max(near, initial=0.0)))
 
 

@@ -97,8 +97,8 @@ def check_noise(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
         seen = min((measure_level(run.table[channel], run.rate) for run in runs), key=lambda level: level.fourth)
         if channel == "current_command" or stated == 0.0 or not 0.0 < seen.fourth < np.inf:
             continue
-        repeated = list_unrepeated(recording.runs, tables, channel)
-        all_of = measure_unrepeated(repeated)
+        repeated = _list_unrepeated(recording.runs, tables, channel)
+        all_of = _measure_unrepeated(repeated)
         text = f"noise_rms is stated as {stated:g}, but about {seen.fourth:.2g} is seen"
         is_too_small = seen.third > _NOISE_OFF * stated and seen.fourth > _WHITE * seen.third
         levels = (measure_level(values, runs[0].rate).fourth for values in repeated)
@@ -129,7 +129,7 @@ def _less_is_seen(runs: Sequence[RunUnderTest], channel: str, seen: Level, state
     return issue_in_all_runs("warning", "noise", f"{text}; {advice}", channel)
 
 
-def list_unrepeated(entries: Mapping[str, RunEntry], tables: Mapping[str, Table], channel: str) -> list[Array]:
+def _list_unrepeated(entries: Mapping[str, RunEntry], tables: Mapping[str, Table], channel: str) -> list[Array]:
     """Return what does not come again of each pair of repeats: their difference over the root of 2, shape (N,)."""
     found = []
     for run, entry in entries.items():
@@ -140,7 +140,7 @@ def list_unrepeated(entries: Mapping[str, RunEntry], tables: Mapping[str, Table]
     return found
 
 
-def measure_unrepeated(unrepeated: Sequence[Array]) -> float:
+def _measure_unrepeated(unrepeated: Sequence[Array]) -> float:
     """Return the RMS of what does not repeat itself, at all frequencies, NaN without repeats."""
     return min((float(np.std(values)) for values in unrepeated), default=np.nan)
 
