@@ -149,9 +149,9 @@ def jumping():
     "table, problem",
     [
         (plain().drop(columns="displacement_m").assign(displacment_m=0.0),
-         "column 'displacment_m' is not known; name it 'displacement_m' or 'displacement_cm'"),
+         "column 'displacment_m' is not known; name it 'displacement_m' or 'displacement_mm'"),
         (plain().drop(columns="displacement_m").assign(disp_mm=0.0),
-         "no column holds the displacement (did you mean 'disp_mm'?); name it 'displacement_m' or 'displacement_cm'"),
+         "no column holds the displacement (did you mean 'disp_mm'?); name it 'displacement_m' or 'displacement_mm'"),
         (plain().drop(columns="force_N").assign(force_filtered=0.0),
          "no column holds the force (did you mean 'force_filtered'?); name it 'force_N' or 'force_kN'"),
         (plain().drop(columns="time_s"), "no column holds the time"),

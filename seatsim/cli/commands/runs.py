@@ -110,14 +110,14 @@ def _title(scenarios: Sequence[Scenario]) -> str:
 
 def _present(runs: list[Run], failures: list[str], folder: Path, interrupted: bool) -> tuple[Result, list[Path]]:
     """Print the table of some runs and the warnings; return their result and its files."""
-    from seatsim.cli.outputs.run_tables import make_comparison_table
+    from seatsim.cli.outputs.run_tables import make_comparison_table, make_overall_table
     from seatsim.cli.outputs.simulated import write_interrupted, write_result
     from seatsim.cli.show_table import show_table
     from seatsim.simulation.checks import describe_designs
     from seatsim.simulation.result import Result
 
     scenarios = [run.scenario for run in runs]
-    show_table(make_comparison_table(runs, _title(scenarios)))
+    show_table(make_comparison_table(runs, _title(scenarios)), *make_overall_table(runs))
     for sentence in describe_designs(scenarios):
         say(sentence)
     warn(dict.fromkeys(sentence for run in runs for sentence in run.warnings), "warning")

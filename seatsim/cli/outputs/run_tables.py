@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from statistics import fmean
 from typing import TYPE_CHECKING, NamedTuple
 
 from rich.markup import escape
@@ -13,7 +14,7 @@ from rich.table import Table
 from seatsim.cli.show_table import format_number, make_table
 from seatsim.metrics.table import SHORT
 from seatsim.rig.designs import Clipping, SynthesisedLaw, unit_of_gain
-from seatsim.scenario.scenario import Scenario, group_by_condition
+from seatsim.scenario.scenario import Scenario, condition_of, group_by_condition, is_condition
 from seatsim.simulation.checks import describe_sampled_loop
 from seatsim.simulation.result import Run
 
@@ -21,13 +22,19 @@ if TYPE_CHECKING:
     from controllers.synthesis import Design, GlobalProof
 
 
+def _average(values: Sequence[float]) -> float:
+    """Return the geometric mean, in which the same saving counts alike on a rough and on a smooth floor."""
+    return math.exp(fmean(map(math.log, values))) if min(values) > 0 else fmean(values)
+
+
 class _Column(NamedTuple):
-    """A metric in the table: the unit shown, the factor to it, and its decimals."""
+    """A metric in the table: the unit shown, the factor to it, its decimals, and what sums it up over conditions."""
 
     metric: str
     unit: str
     scale: float
     decimals: int
+    summarise: Callable[[Sequence[float]], float] = _average
 
     @property
     def heading(self) -> str:
@@ -41,8 +48,8 @@ _COLUMNS = (
     _Column("driver_vdv", "m/s¹·⁷⁵", 1.0, 2),
     _Column("seat_factor", "-", 1.0, 2),
     _Column("suspension_displacement_rms", "mm", 1e3, 2),
-    _Column("suspension_displacement_peak", "mm", 1e3, 1),
-    _Column("end_stop_hits", "-", 1.0, 0),
+    _Column("suspension_displacement_peak", "mm", 1e3, 1, max),
+    _Column("end_stop_hits", "-", 1.0, 0, sum),
     _Column("driver_jerk_rms", "m/s³", 1.0, 1),
     _Column("current_rms", "A", 1.0, 2),
 )
@@ -71,8 +78,41 @@ def make_comparison_table(runs: Sequence[Run], title: str) -> Table:
     return make_table(title, headings, rows, range(len(keys)), caption)
 
 
+def make_overall_table(runs: Sequence[Run]) -> list[Table]:
+    """Return the table of choices over all conditions; none unless each of several was run under each of several.
+
+    A choice is what is labelled and no condition, such as a variant. The smallest mean, peak and sum are bold.
+    """
+    conditions = {condition_of(run.scenario) for run in runs}
+    choices: dict[tuple[str, ...], list[Run]] = {}
+    keys = [key for key in _label_keys(runs) if not is_condition(key)]
+    for run in runs:
+        choices.setdefault(tuple(_labels(run, keys)), []).append(run)
+    complete = all(
+        len({condition_of(run.scenario) for run in of}) == len(of) == len(conditions) for of in choices.values()
+    )
+    if len(conditions) < 2 or len(choices) < 2 or not complete or any(run.unverified for run in runs):
+        return []
+    columns = _list_shown(runs)
+    totals = {labels: [_summarise(of, each) for each in columns] for labels, of in choices.items()}
+    least = [min(filter(math.isfinite, column), default=math.nan) for column in zip(*totals.values(), strict=True)]
+    rows = []
+    for labels, values in totals.items():
+        judged = zip(columns, values, least, strict=True)
+        marked = [_write(value, each, each in _COMPARED and value == low) for each, value, low in judged]
+        rows.append([*labels, *marked])
+    title = f"Over all {len(conditions)} conditions: geometric means, the largest peak, all hits"
+    headings = [*map(_head_label, keys), *(each.heading for each in columns)]
+    return [make_table(title, headings, rows, range(len(keys)))]
+
+
 def _values(runs: Sequence[Run], column: _Column) -> list[float]:
     return [run.metrics[column.metric].value for run in runs if column.metric in run.metrics]
+
+
+def _summarise(runs: Sequence[Run], column: _Column) -> float:
+    values = _values(runs, column)
+    return column.summarise(values) if values else math.nan
 
 
 def _list_shown(runs: Sequence[Run]) -> list[_Column]:
@@ -81,12 +121,13 @@ def _list_shown(runs: Sequence[Run]) -> list[_Column]:
 
 def _cell(run: Run, column: _Column, rivals: Sequence[Run]) -> str:
     """Return a figure of a run, bold where none of its rivals has a smaller one."""
-    if column.metric not in run.metrics:
-        return "-"
-    value = run.metrics[column.metric].value
-    text = format_number(value * column.scale, f".{column.decimals}f")
     least = min(filter(math.isfinite, _values(rivals, column)), default=math.nan)
-    return f"[bold green]{text}[/]" if value == least else text
+    return next((_write(value, column, value == least) for value in _values([run], column)), "-")
+
+
+def _write(value: float, column: _Column, is_best: bool) -> str:
+    text = format_number(value * column.scale, f".{column.decimals}f")
+    return f"[bold green]{text}[/]" if is_best else text
 
 
 def _label_keys(runs: Sequence[Run]) -> list[str]:
