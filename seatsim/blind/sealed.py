@@ -78,7 +78,7 @@ class Label(TypedDict, total=False):
     rig: dict[str, float]
     """Nominal parameters of seat, damper and coil."""
     order: dict[str, object]
-    """What the case was ordered to be, see `make.compose.CaseSpecification`."""
+    """What the case was ordered to be, see `make.cases.CaseSpecification`."""
 
 
 _LARGEST = 2**30

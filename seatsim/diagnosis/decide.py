@@ -14,6 +14,7 @@ from typing import Literal
 
 import numpy as np
 
+from seatsim.diagnosis.fit import fit
 from seatsim.diagnosis.movement import group_equivalent, is_material, measure_remainders
 from seatsim.diagnosis.objective import Evaluation
 from seatsim.diagnosis.problem import DiagnosisProblem
@@ -61,25 +62,27 @@ def decide_verdict(searches: Sequence[Search], effects: Sequence[str]) -> Decisi
     verdict: Verdict = "ambiguous" if groups else "known"
     if unknown > right - settings.further_name * len(beside) - settings.wrong_name * (1.0 - right):
         verdict, groups = "unknown", []
-    return Decision(verdict, chosen.rig or selection.calibrated, groups, probabilities, 0.0, unknown, chosen.search)
+    rig = _fit_named(chosen) or selection.calibrated
+    return Decision(verdict, rig, groups, probabilities, 0.0, unknown, chosen.search)
 
 
 def _merge_same(weighed: Sequence[tuple[Hypothesis, float]]) -> list[tuple[Hypothesis, float]]:
-    """Return one hypothesis for the same effects, as an offset of a sensor and its drift.
-
-    Of those whose sets have the fewest effects that are not material it is the likeliest.
-    """
+    """Return one hypothesis for the same effects, as an offset of a sensor and its drift: the likeliest."""
     merged: dict[frozenset[str], tuple[Hypothesis, float]] = {}
-    for each, weight in sorted(weighed, key=lambda pair: (-_count_effects(pair[0]), pair[1])):
+    for each, weight in sorted(weighed, key=lambda pair: pair[1]):
         _, before = merged.get(each.names, (each, 0.0))
         merged[each.names] = each, before + weight
     return list(merged.values())
 
 
-def _count_effects(hypothesis: Hypothesis) -> int:
-    """Return how many effects a hypothesis has, material or not."""
+def _fit_named(hypothesis: Hypothesis) -> Evaluation | None:
+    """Return the rig of a hypothesis, fitted again without those of its effects that are not material."""
     rig, search = hypothesis.rig, hypothesis.search
-    return len(rig.parameters.names | search.effect) if rig and search else 0
+    if rig is None or search is None or rig.parameters.names <= hypothesis.names:
+        return rig
+    objective = search.objective.unhurried
+    start = objective.evaluate([rig.parameters.remove(*rig.parameters.names - hypothesis.names)])[0]
+    return fit(objective, start, search.selection.nuisances)
 
 
 def _shows_no_gap(problem: DiagnosisProblem, selection: Selection) -> bool:

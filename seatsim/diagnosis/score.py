@@ -73,7 +73,8 @@ class Search(NamedTuple):
 class Hypothesis(NamedTuple):
     """What may explain the recording: a rig and a search, beside whose disturbance it stands, with features by name.
 
-    Without a rig it stands for an unknown cause. `names` are those of its material effects; of all where none is.
+    Without a rig it stands for an unknown cause. `names` are those of its effects that are material, of all where none
+    is, and of the disturbance.
     """
 
     features: dict[str, float]
@@ -130,8 +131,8 @@ def _describe_set(calibrated: Evaluation, search: Search, rig: Evaluation, gaps:
             "predicted": beside.found.shares["everything"],
             "drift": float(beside.effect == BIAS_DRIFT),
         }
-    material = frozenset(effect for effect, moved in zip(effects, most, strict=True) if moved > 1.0)
-    return Hypothesis(features, rig, search, material or frozenset(effects))
+    material = frozenset(term.effect for term, moved in zip(parameters.terms, most, strict=False) if moved > 1.0)
+    return Hypothesis(features, rig, search, (material or names) | search.effect)
 
 
 def _measure_gaps(search: Search) -> _Gaps:

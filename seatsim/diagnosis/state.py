@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Sequence
+from itertools import chain
 
 from seatsim.diagnosis.alternatives import are_forms_due, compare_damper_forms, describe_forms, describe_obstacle
 from seatsim.diagnosis.answer import list_calibrated, write_answer, write_augmented
@@ -92,8 +93,9 @@ def _propose_experiment(
     """Return the experiment that separates the first group of equivalent effects, None where there is no group."""
     if decision.verdict != "ambiguous":
         return None
-    # The members were fitted in sets of the same size; the rig found is the first that holds one of them.
-    fitted = [found.evaluation, *selection.sets[len(found.evaluation.parameters.terms)]]
+    # The members were mostly fitted in sets of the same size; the rig found is the first that holds one of them.
+    of_size = selection.sets[len(found.evaluation.parameters.terms)]
+    fitted = [found.evaluation, *of_size, *chain.from_iterable(selection.sets)]
     members = {name: next(each for each in fitted if name in each.parameters.names) for name in decision.groups[0]}
     return propose_experiment(objective, found, members)
 

@@ -16,13 +16,16 @@ from seatsim.importing.names import SI_UNITS, is_of, read_name, without_unit
 from seatsim.importing.readers.reading import read_file
 from seatsim.importing.signals import DataFile, Group, Signal
 from seatsim.importing.time_axis import Axis, Clock, find_clock, is_spectrum
-from seatsim.recordings.quality.damage import find_repeated_rows, noise_of
+from seatsim.recordings.quality.damage import noise_of
 from seatsim.recordings.quality.examination import examine, merge_issues
 from seatsim.recordings.quality.issue import Issue, place_in_run
 from seatsim.recordings.quality.relations import doubt_relations
 from seatsim.recordings.recording import BENCH_CHANNELS, CHANNELS, SEAT_CHANNELS, load_recording
 from seatsim.schema.arrays import Array
 from seatsim.schema.units import conversion
+
+_RARE = 0.01
+"""Share of rows in which a channel repeats itself, above which it is too coarse to show rows written twice."""
 
 
 class ChannelSummary(NamedTuple):
@@ -145,10 +148,11 @@ def _measure(column: Array, rate: float | None) -> tuple[int, float, float, floa
 
 
 def _doubt_repeats(file: DataFile) -> Iterator[Issue]:
-    """Yield rows that repeat the row before in every channel but the time."""
+    """Yield rows that repeat the row before in every channel, where at least three vary from row to row."""
     for group in file.groups:
-        rows = find_repeated_rows([s.values for s in group.signals if read_name(s.name).quantity != "time"])
-        if len(rows):
+        steps = [np.diff(s.values) == 0.0 for s in group.signals if read_name(s.name).quantity != "time"]
+        rows = np.flatnonzero(np.all(steps, axis=0)) + 1
+        if sum(np.mean(same) < _RARE for same in steps) >= 3 and len(rows):
             repeat = f"repeat the row before in all channels, first row {rows[0]}; they were written twice"
             yield Issue("warning", "repeated_rows", f"{len(rows)} rows {repeat}")
 

@@ -57,7 +57,9 @@ def _digest_sources(more: tuple[Path, ...]) -> str:
     # What is being worked on keeps its version while its figures change.
     state = hashlib.sha256()
     folders = [next(iter(import_named(name).__path__)) for name in sorted(shipped_packages())]
-    sources = [path for folder in folders for path in sorted(Path(folder).rglob("*.py"))]
+    # Tables beside the code are part of it; the examples are not.
+    kinds = (path for folder in folders for kind in ("*.py", "*.yaml") for path in sorted(Path(folder).rglob(kind)))
+    sources = [path for path in kinds if "examples" not in path.parts]
     for path in (*sources, *more):
         state.update(path.name.encode() + path.read_bytes())
     return state.hexdigest()[:16]
@@ -150,7 +152,7 @@ REPEATABLE: Mapping[str, frozenset[str]] = {
         "characterise": "--limits --beside --pattern --window",
         "identify": "--model --test --test-fraction --fix --ignore-temperature --seed",
         "import": "--map --nominal",
-        "comfort": "--channel --hours --run --block --rate --unit",
+        "comfort": "--channel --hours --run --rate --unit",
         "seat-test": "--class --set",
         "sweep": "",
         "sweep-report": "",

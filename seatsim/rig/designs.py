@@ -1,6 +1,6 @@
 """Interface of a control law that is designed, for code that reports and saves its design.
 
-The classes stand with the synthesis, which `seatsim` never imports.
+The classes stand with the synthesis, which `seatsim` imports for its types alone.
 """
 
 from __future__ import annotations

@@ -145,7 +145,7 @@ def _extra_of(hint: object) -> Mapping[str, JsonValue]:
 
 
 _UNUSUAL = "is unusual, since seats have"
-"""In every sentence of a doubt, by which such sentences are found among others."""
+"""In every sentence of a doubt about a value."""
 
 
 def doubt(field: FieldSpecification, value: object) -> str:

@@ -178,7 +178,9 @@ class LocalEngine(NamedTuple):
                 if here in ended:
                     # From the first outcome on, since something may have been compiled for it.
                     since, done = (since, done + 1) if since else (time.monotonic(), 0)
-                yield [outcome for future in ended for outcome in future.result()]
+                yield [outcome for future in ended if not future.exception() for outcome in future.result()]
+                for future in ended:
+                    future.result()
 
     def _count_processes(self, alone: float) -> int:
         """Return how many further processes pay where this one would need so many seconds alone."""

@@ -1,6 +1,6 @@
 """What the values of a channel look like, whatever they mean: plateaus, flat tops, smallest step, white noise."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -35,9 +35,6 @@ SILENT = 3e-5
 """Noise as a share of the swing below which no sensor is."""
 _COARSE, _LEVELLED = 1.2, 0.3
 """Share of its step below which noise is hidden by the resolution; ratio of small to usual gaps of what has steps."""
-_RARE, _LEAST_FINE = 0.01, 2
-"""Share of rows in which a channel repeats itself, above which it is too coarse to show rows that were written twice;
-and least channels that show them."""
 MOST_ROWS = 200_000
 """Rows that the slower checks look at."""
 
@@ -196,17 +193,6 @@ def find_spikes(values: Array, factor: float = _SPIKE) -> NDArray[np.int_]:
     if len(rows) > _MOST_CANDIDATES:
         return np.empty(0, dtype=np.int_)
     return np.array([row + 1 for row in rows if _stands_alone(values, bend, int(row))], dtype=np.int_)
-
-
-def find_repeated_rows(channels: Sequence[Array]) -> NDArray[np.int_]:
-    """Return the rows that hold in every channel that varies what the row before holds, as those written twice do.
-
-    None where only one channel changes from row to row: coarse ones repeat themselves by chance.
-    """
-    same = [np.diff(values) == 0.0 for values in channels if np.ptp(values) > 0.0]
-    if sum(float(np.mean(each)) < _RARE for each in same) < _LEAST_FINE:
-        return np.empty(0, dtype=np.int_)
-    return np.flatnonzero(np.all(same, axis=0)) + 1
 
 
 def _stands_alone(values: Array, bend: Array, row: int) -> bool:

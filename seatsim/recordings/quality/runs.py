@@ -4,17 +4,27 @@ import itertools
 from collections.abc import Iterator, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter1d
 
-from seatsim.recordings.quality.damage import find_repeated_rows, find_spikes, measure_level
+from seatsim.recordings.quality.damage import find_spikes, is_fine, measure_level
 from seatsim.recordings.quality.issue import LATE, Issue, RunUnderTest, Severity, issue_in_all_runs
 from seatsim.recordings.quality.relations import filter_band, find_delay
 from seatsim.recordings.quality.sensors import check_constants, check_noise
 from seatsim.recordings.recording import MOTION
 from seatsim.recordings.replay import LEAST_ROWS, LEFT_OUT
+from seatsim.rig.temperature import Thermal
+from seatsim.schema.arrays import Array
 from seatsim.schema.tables import numbers, read_table
 
+_LEAST_FINE = 2
+"""Channels with noise finer than their resolution from which on no two rows are alike by chance."""
 _LEAST_REPEATED = 4
 """Rows written twice from which on they are said: fewer shift no signal by more than a few milliseconds."""
+_BEYOND_CHANCE = 5.0
+"""Ratio to the number of rows that channels repeat together by chance from which rows were written twice."""
+_AROUND = 25
+"""Rows about one over which chance is counted."""
 _NOISY = 1e-4
 """Noise as a share of the swing above which it is that of a sensor, and not of arithmetic."""
 _STEP = 16.0
@@ -39,11 +49,38 @@ def check_rows(run: RunUnderTest) -> Iterator[Issue]:
 
 
 def _doubled(run: RunUnderTest) -> Iterator[Issue]:
-    again = find_repeated_rows([*run.table.values()])
-    if len(again) >= _LEAST_REPEATED:
+    if sum(is_fine(run, channel) for channel in MOTION if channel in run.table) < _LEAST_FINE:
+        return
+    again = find_repeated_rows(np.array([values for values in run.table.values() if np.ptp(values) > 0.0]))
+    if len(again):
         severity: Severity = "warning" if len(again) / run.rate <= LATE else "error"
         text = f"{len(again)} rows hold in every channel what a row before holds, the first is row {again[0] + 1}"
         yield run.issue(severity, "doubled", f"{text}; they were written twice: remove them")
+
+
+def find_repeated_rows(channels: Array) -> NDArray[np.intp]:
+    """Return the rows of blocks that follow themselves at once: single rows written twice, or a whole buffer.
+
+    channels: shape (channels, N), or (N,). Equal rows far apart are no fault: a periodic motion measured with coarse
+    converters has them by chance. So has a rig at rest, where rows equal the last but one as often as the last, and
+    channels so coarse that each repeats itself often: they do so together as often as the product of their shares says.
+    """
+    values = np.atleast_2d(channels)
+    # Equal rows have equal sums, and others differ, but for chances of one in 10^12.
+    marks = np.random.default_rng(0).random(len(values)) @ (values / np.std(values, axis=1, keepdims=True))
+    order = np.argsort(marks, kind="stable")
+    distances, counts = np.unique(np.diff(order)[np.diff(marks[order]) == 0.0], return_counts=True)
+    found = [np.empty(0, dtype=np.intp)]
+    for distance in distances[counts >= np.maximum(distances, _LEAST_REPEATED)]:
+        equal, by_chance = (marks[lag:] == marks[:-lag] for lag in (distance, distance + 1))
+        alone = (values[:, distance:] == values[:, :-distance]) & ~equal
+        together = np.sum(np.prod(uniform_filter1d(alone.astype(float), _AROUND, axis=1), axis=0))
+        if np.sum(equal) >= _LEAST_REPEATED + 2 * np.sum(by_chance) + _BEYOND_CHANCE * together:
+            ends = np.flatnonzero(np.diff(np.concatenate([[False], equal, [False]])))
+            blocks = zip(ends[::2], ends[1::2], strict=True)
+            rows = [np.arange(first, end) + distance for first, end in blocks if end - first >= distance]
+            found += rows if sum(map(len, rows)) >= _LEAST_REPEATED else []
+    return np.unique(np.concatenate(found))
 
 
 def _check_stated(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
@@ -100,7 +137,7 @@ def check_clock(run: RunUnderTest) -> Iterator[Issue]:
 
 def check_all_runs(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     """Report faults that need all runs together."""
-    for check in (_length, _duplicates, _repeats, _at_rest, check_noise, check_constants, _check_stated):
+    for check in (_length, _duplicates, _repeats, _at_rest, check_noise, check_constants, _check_stated, _fahrenheit):
         yield from check(runs)
 
 
@@ -150,3 +187,13 @@ def _at_rest(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
             yield run.issue("error", "still", text, run.driver)
         else:
             yield run.issue(resting, "still", "nothing moves by more than three times its stated noise; remove the run")
+
+
+def _fahrenheit(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
+    """Report a lowest temperature that, read as degF, is the one that the nominal scenario states."""
+    channel, nominal = "damper_temperature", runs[0].nominal.temperature
+    stated = nominal.start if isinstance(nominal, Thermal) else nominal
+    low = min((float(np.min(run.table[channel])) for run in runs if channel in run.table), default=stated)
+    if abs(low - stated) > 20.0 and abs((low - 32.0) / 1.8 - stated) < 2.5:
+        text = f"is never below {low:.3g} degC where the nominal scenario states {stated:g} degC"
+        yield issue_in_all_runs("warning", "unit", f"{text}; if it is in degF, convert it", channel)

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from seatsim.recordings.quality.damage import find_repeated_rows
-from seatsim.recordings.quality.runs import check_rows
+from seatsim.recordings.quality.runs import check_rows, find_repeated_rows
 
 NOISE = np.random.default_rng(0).standard_normal(2000)
 
@@ -12,11 +11,31 @@ NOISE = np.random.default_rng(0).standard_normal(2000)
 SLOW_SINE = 10.0 * np.sin(4.0 * np.pi * np.arange(4000) / 200.0) + 0.03 * np.random.default_rng(1).standard_normal(4000)
 
 
-def test_rows_that_were_written_twice_are_told_from_those_of_coarse_channels():
-    again = NOISE[np.sort([*range(2000), *range(700, 705)])]
-    assert find_repeated_rows([again, again**2]).tolist() == [701, 703, 705, 707, 709]
-    for coarse in (np.round(SLOW_SINE, 1), np.round(NOISE, 0)):
-        assert np.sum(np.diff(coarse) == 0.0) > 25 and len(find_repeated_rows([coarse, coarse**3])) == 0
+@pytest.mark.parametrize(
+    ("values", "again"),
+    [
+        # single rows, and a whole buffer, that were written twice
+        (NOISE[np.sort([*range(2000), *range(700, 705)])], [701, 703, 705, 707, 709]),
+        (NOISE[[*range(708), *range(700, 2000)]], list(range(708, 716))),
+        # a slow sine of a coarse converter, and a rig at rest, repeat themselves by chance
+        (np.round(SLOW_SINE, 2), []),
+        (np.round(NOISE, 0), []),
+    ],
+)
+def test_rows_that_were_written_twice_are_told_from_equal_ones(values, again):
+    assert len(np.unique(values)) < len(values)
+    assert find_repeated_rows(values).tolist() == again
+
+
+def test_coarse_channels_repeat_each_other_by_chance():
+    time, generator = np.arange(6000) / 500.0, np.random.default_rng(2)
+    motion = np.array([10.0 * np.sin(np.pi * time), np.cos(np.pi * time)]) + [
+        [0.01],
+        [0.01],
+    ] * generator.standard_normal((2, 6000))
+    coarse = np.round(motion / 0.015) * 0.015
+    assert np.sum(np.all(coarse[:, 1:] == coarse[:, :-1], axis=0)) > 25
+    assert len(find_repeated_rows(coarse)) == 0
 
 
 @pytest.mark.parametrize(("others", "found"), [(NOISE[::-1], 0), (None, 5)])
