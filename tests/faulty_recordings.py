@@ -27,10 +27,8 @@ FEEDBACK = {"excitation.duration": 8.0, "controller.sample_time": 0.008}
 
 def record_sound_rig(scenario, folder):
     """Simulate two runs of a seat scenario, 8 s at 250 Hz each, and save them as a recording with noise."""
-    runs = {
-        "feedback": FEEDBACK,
-        "switched": {"excitation.duration": 8.0, "controller": {"law": "on_off_skyhook", "on": 0.6}},
-    }
+    switched = {"excitation.duration": 8.0, "controller": {"law": "on_off_skyhook", "on": 0.6}}
+    runs = {"feedback": FEEDBACK, "switched": switched}
     result = seatsim.run(scenario, {"variants": runs, "solver": {"step": 1.0 / RATE}})
     save_recording(result, folder, list(NOISE))
     generator = np.random.default_rng(5)
@@ -78,9 +76,7 @@ def late(seconds, *channels):
 
 def clipped(channel, share):
     """Cut a channel at a share of its largest value."""
-    return lambda f: f.assign(
-        **{channel: f[channel].clip(-share * f[channel].abs().max(), share * f[channel].abs().max())}
-    )
+    return lambda f: f.assign(**{channel: f[channel].clip(*(f[channel].abs().max() * np.array([-share, share])))})
 
 
 def blurred(faulty):
@@ -124,6 +120,10 @@ def doubled(frame):
     return frame.iloc[np.sort([*range(len(frame)), *range(700, 705)])]
 
 
+def halved(frame):
+    return frame.iloc[::2]
+
+
 def without_time(fault):
     return lambda frame: fault(frame).drop(columns="time")
 
@@ -159,6 +159,10 @@ def at_rest(frame):
     return frame.assign(**{c: (NOISE[c] * generator.standard_normal(len(frame))).round(7) for c in moving})
 
 
+def upside_down(frame):
+    return frame.assign(**{c: -frame[c] for c in frame if c.endswith("_acceleration")})
+
+
 SIGNS = words("""
     floor_acceleration frame_acceleration driver_acceleration suspension_displacement damper_force current_command
     coil_current
@@ -168,7 +172,7 @@ FAULTS = {f"sign of {c}": (scaled(c, -1.0), c, "sign is swapped") for c in SIGNS
     "holes": (holed("frame_acceleration"), "frame_acceleration", "line 752, frame_acceleration: 'nan' (and 25 more"),
     "no column": (lambda frame: frame.drop(columns="coil_current"), "coil_current", "is missing"),
     "missing rows": (without(3.0, 3.4), "time", "rows are missing"),
-    "another rate": (lambda frame: frame.iloc[::2], "time", "rows are 0.008 s apart"),
+    "another rate": (halved, "time", "rows are 0.008 s apart"),
     "half a second": (lambda frame: frame.iloc[:125], None, "its first second is left out"),
     "two seconds": (lambda frame: frame.iloc[:500], None, "2 s remain to compare"),
     "clipped force": (clipped("damper_force", 0.7), "damper_force", "is clipped"),
@@ -182,11 +186,7 @@ FAULTS = {f"sign of {c}": (scaled(c, -1.0), c, "sign is swapped") for c in SIGNS
     "travel in inch": (scaled("suspension_displacement", 1 / 0.0254), "suspension_displacement", "in inch"),
     "floor in g": (scaled("floor_acceleration", 1 / G), "floor_acceleration", "in g"),
     "force in kN": (scaled("damper_force", 1e-3), "damper_force", "in kN"),
-    "accelerations upside down": (
-        lambda f: f.assign(**{c: -f[c] for c in f if c.endswith("_acceleration")}),
-        "driver_acceleration",
-        "signs are swapped",
-    ),
+    "accelerations upside down": (upside_down, "driver_acceleration", "signs are swapped"),
     "frame for driver": (exchanged("frame_acceleration", "driver_acceleration"), "frame_acceleration", "exchanged"),
     "floor for frame": (exchanged("floor_acceleration", "frame_acceleration"), "floor_acceleration", "exchanged"),
     "late displacement": (late(0.1, "suspension_displacement"), "suspension_displacement", "s late"),
@@ -204,11 +204,7 @@ WARNINGS = {
     "no command at all": (constant("current_command"), "current_command", "is 0 throughout while coil_current changes"),
     "doubled rows": (without_time(doubled), None, "hold in every channel what a row before holds"),
     "lost rows": (without_time(without(2.8, 2.88)), "suspension_displacement", "rows were lost"),
-    "a rate that is twice too low": (
-        without_time(lambda f: f.iloc[::2]),
-        "suspension_displacement",
-        "or the sample rate",
-    ),
+    "a rate that is twice too low": (without_time(halved), "suspension_displacement", "or the sample rate"),
     "spikes of the floor": (spiked("floor_acceleration"), "floor_acceleration", "spikes of up to"),
     "spikes of the force": (spiked("damper_force"), "damper_force", "spikes of up to"),
 }

@@ -41,6 +41,7 @@ from seatsim.simulation.simulate import simulate
 from seatsim.simulation.validity import LARGEST_RESIDUAL
 
 from .effects import rigs
+from .laws.records import REQUIRED
 from .robustness.test_damper_space import draw_value
 
 STEP, SAMPLES = 1e-3, 600
@@ -52,9 +53,7 @@ DRAWN = SEAT._fields[:6]
 SIZES = Measurement(1.0, 0.02, 0.2, 0.2, 0.2, 1.0, 2.0, 2.0, 300.0, 0.5, 20.0, 1.0)
 """Usual size of each measurement, in its unit."""
 USUAL: Mapping[str, Mapping[str, object]] = {
-    "constant": {"current": 0.5},
-    "static_output_feedback": {"gain": (2.0, 2147.6)},
-    "scheduled_output_feedback": {"temperatures": (20.0, 80.0), "gains": ((2.0, 2147.6), (2.0, 2800.0))},
+    **REQUIRED,
     "floor.unmeasured_input": {"rms": 10.0},
     "bumps": {"shape": "half_sine", "height": 0.05, "length": 1.0, "speed": 8.0, "duration": 2.0},
     "chirp": {"start_frequency": 0.5, "stop_frequency": 20.0, "amplitude": 0.01, "duration": 2.0},

@@ -10,19 +10,12 @@ from ..text import parse
 
 RATE, SECONDS, COIL_RATE = 500.0, 4.0, 60.0
 C, FC = (400.0, 900.0), (60.0, 500.0)
-BENCH_CHANNELS = {
-    "displacement": {"unit": "m"},
-    "damper_force": {"unit": "N", "noise_rms": 0.5},
-    "current_command": {"unit": "A"},
-}
-SEAT_CHANNELS = {
-    "floor_acceleration": {"unit": "m/s^2"},
-    "driver_acceleration": {"unit": "m/s^2", "noise_rms": 1e-3},
-    "suspension_displacement": {"unit": "m", "noise_rms": 1e-6},
-}
-PLANT = parse("""
-    {frame_mass: 20.0, driver_mass: 80.0, suspension_stiffness: 9000.0, suspension_damping: 600.0,
-     cushion_stiffness: 60000.0, cushion_damping: 1500.0}
+BENCH_CHANNELS, SEAT_CHANNELS, PLANT = parse("""
+    - {displacement: {unit: m}, damper_force: {unit: N, noise_rms: 0.5}, current_command: {unit: A}}
+    - {floor_acceleration: {unit: m/s^2}, driver_acceleration: {unit: m/s^2, noise_rms: 0.001},
+       suspension_displacement: {unit: m, noise_rms: 0.000001}}
+    - {frame_mass: 20.0, driver_mass: 80.0, suspension_stiffness: 9000.0, suspension_damping: 600.0,
+       cushion_stiffness: 60000.0, cushion_damping: 1500.0}
 """)
 SCALES = ("c_a", "c_b", "fc_a", "fc_b")
 

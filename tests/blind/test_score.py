@@ -16,6 +16,7 @@ from seatsim.cli.outputs.diagnosis_results import make_score_tables
 from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
 
+from ..text import parse
 from .carriers import bench_carrier, offset, write_yaml
 
 ONE = {"kind": "one", "effects": ["damper.remanence"], "blocks": ["damper"], "forms": ["remanence-decay"]}
@@ -142,16 +143,12 @@ def test_shrink_claimed_and_reached(tmp_path):
 def test_a_verdict_is_read_as_the_contract_has_it(tmp_path):
     path = tmp_path / "diagnosis.json"
     assert read_verdict(path) == Verdict("missing")
-    data = {
-        "verdict": "ambiguous",
-        "where": [{"block": "coil", "share": 0.9}, {"block": "damper", "share": 0.1}],
-        "causes": [{"effect": "a", "probability": 0.2}, {"effect": "b", "probability": 0.7}, {"effect": "c"}],
-        "selected": ["b"],
-        "indistinguishable": [["b", "a"]],
-        "isolable": [["coil", "damper"], ["driver"]],
-        "gap": {"shrink": 0.8, "shrink_interval": [0.7, 0.9]},
-        "augmented": "augmented.yaml",
-    }
+    data = parse("""
+        {verdict: ambiguous, where: [{block: coil, share: 0.9}, {block: damper, share: 0.1}], selected: [b],
+         causes: [{effect: a, probability: 0.2}, {effect: b, probability: 0.7}, {effect: c}],
+         indistinguishable: [[b, a]], isolable: [[coil, damper], [driver]], augmented: augmented.yaml,
+         gap: {shrink: 0.8, shrink_interval: [0.7, 0.9]}}
+    """)
     path.write_text(json.dumps(data))
     verdict = read_verdict(path)
     assert (verdict.causes, verdict.named, verdict.groups) == (("b", "a", "c"), "b", (("b", "a"),))

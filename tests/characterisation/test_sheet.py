@@ -67,10 +67,8 @@ def test_tables_that_are_read_side_by_side_give_what_their_records_give(folder, 
 
 
 def test_gas_and_friction_are_told_apart(sheet):
-    assert [(row.current, row.temperature) for row in sheet.gas_force] == [
-        (row.current, row.temperature) for row in sheet.friction
-    ]
     for gas, friction in zip(sheet.gas_force, sheet.friction, strict=True):
+        assert (gas.current, gas.temperature) == (friction.current, friction.temperature)
         assert gas.force == pytest.approx(GAS, abs=0.5) and gas.stiffness == pytest.approx(SPRING, rel=0.015)
         assert friction.force == pytest.approx(force_of(gas.speed, gas.current, gas.temperature), rel=0.01)
 
@@ -116,9 +114,8 @@ def test_responses_count_from_the_current(tmp_path):
     columns = {"time_s": time, "displacement_m": x, "velocity_m_s": v, "force_N": force, "coil_current_A": current}
     pd.DataFrame(columns).to_csv(tmp_path / "steps.csv", index=False)
     rows = characterise(tmp_path).sheet.response
-    assert [(round(row.before), round(row.after), row.direction) for row in rows] == [
-        (0, 1, "rebound"), (1, 0, "compression"),
-    ]  # fmt: skip
+    steps = [(round(row.before), round(row.after), row.direction) for row in rows]
+    assert steps == [(0, 1, "rebound"), (1, 0, "compression")]
     for row, rate in zip(rows, (130.0, 80.0), strict=True):
         begun = math.log(1 / 0.9) / rate
         assert row.t10 == pytest.approx(0.0, abs=5e-4) and row.start == pytest.approx(0.0, abs=1e-3)
@@ -175,9 +172,8 @@ def test_the_command_judges_limits_and_writes_a_workbook(folder, tmp_path, seats
 )
 def test_a_wrong_limit_is_one_clear_error(folder, tmp_path, seatsim_command, text, expected):
     (tmp_path / "limits.yaml").write_text(text)
-    status, out, err = seatsim_command(
-        "characterise", min(folder.iterdir()), "--limits", tmp_path / "limits.yaml", "--out", tmp_path / "out"
-    )
+    options = ("--limits", tmp_path / "limits.yaml", "--out", tmp_path / "out")
+    status, out, err = seatsim_command("characterise", min(folder.iterdir()), *options)
     assert status == 2 and expected in " ".join((out + err).split()) and not (tmp_path / "out").exists()
 
 

@@ -29,14 +29,14 @@ with temporary_folder() as folder:
 """
 
 
+def start(arguments, **options):
+    environment = os.environ | {"PYTHONPATH": str(ROOT)} | options.pop("env", {})
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    return subprocess.Popen([sys.executable, *arguments], env=environment, **pipes, **options)
+
+
 def stuck(answer, place):
-    environment = os.environ | {"PYTHONPATH": str(ROOT), "TMPDIR": str(place)}
-    process = subprocess.Popen(
-        [sys.executable, "-c", STUCK.format(answer=answer)],
-        env=environment,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-    )
+    process = start(["-c", STUCK.format(answer=answer)], env={"TMPDIR": str(place)})
     assert process.stdout.readline() == b"ready\n"
     return process
 
@@ -65,13 +65,7 @@ SWEEP = "scenario: em5\nvary: {excitation.duration: [3000.0, 3001.0]}\n"
 )
 def test_a_command_says_that_it_was_interrupted(number, command, tmp_path):
     (tmp_path / "sweep.yaml").write_text(SWEEP)
-    process = subprocess.Popen(
-        [sys.executable, "-X", "importtime", "-m", "seatsim", *command, "--out", "out"],
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
-        cwd=tmp_path,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-    )
+    process = start(["-X", "importtime", "-m", "seatsim", *command, "--out", "out"], cwd=tmp_path)
     while b"seatsim.cli.app" not in process.stderr.readline():  # each module is told of once it is loaded
         assert process.poll() is None
     with pytest.raises(subprocess.TimeoutExpired):
@@ -92,12 +86,7 @@ def test_a_signal_before_signals_are_watched_is_answered_with_a_word(number, arg
     stop = f"import os; os.kill(os.getpid(), {int(number)})"
     now = f"class Now:\n    end = None\n    @staticmethod\n    def watch_signals():\n        {stop}"
     program = f"{now}\n{code}"
-    done = subprocess.run(
-        [sys.executable, "-c", program, *arguments],
-        capture_output=True,
-        timeout=PATIENCE,
-        check=False,
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
-    )
-    assert done.returncode == 128 + number and done.stderr == b"error: interrupted\n"
-    assert done.stdout == (b'{"error": "interrupted"}\n' if arguments else b"")
+    process = start(["-c", program, *arguments])
+    said, error = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 128 + number and error == b"error: interrupted\n"
+    assert said == (b'{"error": "interrupted"}\n' if arguments else b"")

@@ -22,9 +22,8 @@ def test_a_wrong_word_is_refused_and_nothing_is_written(
 
 def test_a_law_without_counterpart_is_named_and_nothing_is_written(seatsim_command, tmp_path):
     out = tmp_path / "controller.c"
-    status, _, err = seatsim_command(
-        "export", "quickstart", "--to", "c", "--what", "controller", "--out", out, "--set", "controller={law: mpc}"
-    )
+    options = ("--to", "c", "--what", "controller", "--out", out, "--set", "controller={law: mpc}")
+    status, _, err = seatsim_command("export", "quickstart", *options)
     assert status == 2 and "controllers.laws.model_predictive.ask_planner" in err
     assert list(tmp_path.iterdir()) == []
 

@@ -37,12 +37,9 @@ def test_new_classes_run_in_a_scenario(tmp_path, seat_file, forget_own_code):
     for kind in REGISTERED:
         (path,) = write_new(kind, tmp_path / f"own_{kind}")
         seatsim.use(path)
-    own = {
-        "damper": {"model": "own_damper"},
-        "controller": {"law": "own_controller"},
-        "excitation": {"kind": "own_excitation", "duration": 2.0},
-        "effects": [{"effect": "suspension.own_effect", "parameters": {"drag": 100.0}}],
-    }
+    own = {"damper": {"model": "own_damper"}, "controller": {"law": "own_controller"}}
+    own |= {"excitation": {"kind": "own_excitation", "duration": 2.0}}
+    own |= {"effects": [{"effect": "suspension.own_effect", "parameters": {"drag": 100.0}}]}
     result = seatsim.run(seat_file, own)
     assert result["driver_acceleration"].std() > 0.1
     assert find("damper", "own_damper").__name__ == "OwnDamper"

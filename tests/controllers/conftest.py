@@ -17,12 +17,8 @@ def seat():
 
     def build(e1, structure=None, ms=20.0, m=80.0, kf=4600.0, cf=200.0, kc=60000.0, cc=1500.0):
         both = 1 / m + 1 / ms
-        A = [
-            [0, 1, 0, 0],
-            [-kf / ms, -cf / ms, kc / ms, cc / ms],
-            [0, 0, 0, 1],
-            [kf / ms, cf / ms, -kc * both, -cc * both],
-        ]
+        frame, cushion = [-kf / ms, -cf / ms, kc / ms, cc / ms], [kf / ms, cf / ms, -kc * both, -cc * both]
+        A = [[0, 1, 0, 0], frame, [0, 0, 0, 1], cushion]
         C1 = [[e1, 0, 0, 0], [0, 0, -kc / m, -cc / m]]
         nothing = np.zeros((2, 1))
         B1, B2, C2 = [[0], [-1], [0], [0]], [[0], [-1 / ms], [0], [1 / ms]], np.eye(2, 4)

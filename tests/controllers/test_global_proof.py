@@ -93,9 +93,8 @@ def make_drifting_mass():
 def make_half_reached():
     """Of z = (x1, x2) the control moves x2 only: T from w to x1 is 1 / (s + 0.5), with the norm 2."""
     none = np.zeros((2, 1))
-    return GeneralisedPlant(
-        np.diag([-0.5, -1.0]), np.ones((2, 1)), np.array([[0.0], [1.0]]), np.eye(2), np.eye(2), none, none, none
-    )
+    A, B1, B2 = np.diag([-0.5, -1.0]), np.ones((2, 1)), np.array([[0.0], [1.0]])
+    return GeneralisedPlant(A, B1, B2, np.eye(2), np.eye(2), none, none, none)
 
 
 def make_lag(sign):

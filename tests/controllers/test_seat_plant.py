@@ -96,9 +96,8 @@ def test_a_law_that_contradicts_itself_says_so(law, words):
 
 
 def test_law_designs_for_the_worst_of_drivers_and_factors():
-    law = StaticOutputFeedback(
-        weights=Weights(50.0), masses=(50.0, 120.0), force_factors=(0.67, 1.0), displacement_gain=False
-    )
+    ranges = {"masses": (50.0, 120.0), "force_factors": (0.67, 1.0)}
+    law = StaticOutputFeedback(weights=Weights(50.0), displacement_gain=False, **ranges)
     design = law.synthesis(SEAT)
     assert len(design.loops) == 4
     scan = [

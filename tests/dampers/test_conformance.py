@@ -23,11 +23,8 @@ def states(model, specification, count=20):
     rng = np.random.default_rng(7)
     found = []
     for _ in range(count):
-        x, v, i = (
-            rng.uniform(-0.02, 0.02),
-            rng.uniform(-1, 1) * specification.max_speed,
-            rng.uniform(0, specification.max_current),
-        )
+        x, v = rng.uniform(-0.02, 0.02), rng.uniform(-1, 1) * specification.max_speed
+        i = rng.uniform(0, specification.max_current)
         z = specification.initial
         for _ in range(40):
             z = tuple(a + 2e-4 * b for a, b in zip(z, rates_of(model, x, v, i, z), strict=True))

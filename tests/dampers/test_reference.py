@@ -2,6 +2,7 @@
 
 import math
 from functools import partial
+from itertools import product
 
 import numpy as np
 import pytest
@@ -113,18 +114,11 @@ class TestYu2019:
 
     def test_force_level_that_the_published_errors_imply(self, conform):
         # RMSE 16.2 N at R2 = 0.9946 over all tests: a standard deviation of 220 N
-        forces = [
-            paper_test(Yu2019(), x, f, i, t).force
-            for x in (0.004, 0.006, 0.008)
-            for f in (0.5, 0.6, 0.7)
-            for i in (0.0, 0.4, 0.8, 1.2)
-            for t in (20.0, 40.0, 60.0, 80.0)
-        ]
+        tests = product((0.004, 0.006, 0.008), (0.5, 0.6, 0.7), (0.0, 0.4, 0.8, 1.2), (20.0, 40.0, 60.0, 80.0))
+        forces = [paper_test(Yu2019(), *each).force for each in tests]
         implied = 16.2 / math.sqrt(1.0 - 0.9946)
-        claim = "yu2019, standard deviation of the force over all tests, N"
-        conform(
-            claim, "table 1 of Yu et al. 2019: RMSE / sqrt(1 - R2)", np.std(forces), implied, tolerance=0.01 * implied
-        )
+        claim, source = "yu2019, standard deviation of the force over all tests, N", "table 1 of Yu et al. 2019"
+        conform(claim, f"{source}: RMSE / sqrt(1 - R2)", np.std(forces), implied, tolerance=0.01 * implied)
 
 
 def test_motion_off_centre_is_better_predicted_by_the_recent_mean_than_by_the_sign(shared):

@@ -48,11 +48,6 @@ BENCH = {"actuator": {"rate": 130.0, "max_current": 1.0}, "temperature": 20.0}
 SEAT = BENCH | {"plant": PLANT, "controller": {"law": "replay"}, "excitation": {"kind": "recording"}}
 
 
-def dump(path, content):
-    with path.open("w") as file:
-        YAML(typ="safe").dump(content, file)
-
-
 def narrow_band(rng, low, high, size):
     """Return a random signal of this RMS between two frequencies in Hz, shape (rows,)."""
     rows = round(RATE * (SECONDS + 1))
@@ -82,8 +77,9 @@ def record(folder, nominal="bingham", rig="damper_bench", effects=(), runs=3, ou
     """Write a recording of a rig with a Bouc-Wen damper beside a nominal scenario, and return its problem."""
     folder.mkdir(exist_ok=True)
     base, units = (SEAT, SEAT_CHANNELS) if rig == "seat" else (BENCH, BENCH_CHANNELS)
-    dump(folder / "nominal.yaml", base | {"damper": {"model": nominal, "parameters": NOMINALS[nominal]}})
-    dump(folder / "true.yaml", base | {"damper": {"model": "bouc_wen", "parameters": TRUE}})
+    damper = {"model": nominal, "parameters": NOMINALS[nominal]}
+    YAML(typ="safe").dump(base | {"damper": damper}, folder / "nominal.yaml")
+    YAML(typ="safe").dump(base | {"damper": {"model": "bouc_wen", "parameters": TRUE}}, folder / "true.yaml")
     truth, rng = dataclasses.replace(single(folder / "true.yaml"), effects=effects), np.random.default_rng(4)
     for k in range(runs):
         table = drive(rig, rng)
@@ -93,7 +89,7 @@ def record(folder, nominal="bingham", rig="damper_bench", effects=(), runs=3, ou
     channels = {name: {"unit": units[name], "noise_rms": NOISE.get(name, 0.0)} for name in table}
     entries = [{"name": f"run-{k}", "file": f"run-{k}.csv"} for k in range(runs)]
     header = {"rig": rig, "sample_rate": RATE, "nominal": "nominal.yaml", "runs": entries, "channels": channels}
-    dump(folder / "recording.yaml", header)
+    YAML(typ="safe").dump(header, folder / "recording.yaml")
     return pose(folder)
 
 

@@ -11,12 +11,8 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
-CONTRACTS = {
-    contract["name"]: contract
-    for contract in tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"][
-        "contracts"
-    ]
-}
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+CONTRACTS = {contract["name"]: contract for contract in PROJECT["tool"]["importlinter"]["contracts"]}
 DIAGRAMS = dict(re.findall(r"<!-- contract: (.+?) -->\n```text\n(.*?)```", PAGE, re.DOTALL))
 HOUSE = "values flow one way through the house"
 FURTHER = {"cvxpy", "yaml", "pydantic_core", "annotated_types", "llvmlite"}
@@ -70,8 +66,7 @@ def test_every_package_stands_in_the_diagram():
 
 def test_modules_begin_with_what_the_core_installs():
     """Libraries of an extra are imported where they are used: without them everything else runs."""
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    core = {re.match(r"[\w.-]+", each)[0] for each in project["dependencies"]} | FURTHER
+    core = {re.match(r"[\w.-]+", each)[0] for each in PROJECT["project"]["dependencies"]} | FURTHER
     others = {
         (name, path.relative_to(ROOT).parts[1])
         for package in ("seatsim", "controllers")

@@ -1,6 +1,7 @@
 """Every damper, every effect and every law but one that solves in a loop has a counterpart in C."""
 
 import dataclasses
+import re
 import subprocess
 from pathlib import Path
 
@@ -19,8 +20,9 @@ from seatsim.exchange.export import find_compiler, identifier, make_files, write
 from seatsim.exchange.printing.values import NotPrintableError
 from seatsim.rig.plant import control_system
 from seatsim.scenario.loading import load
-from seatsim.scenario.scenario import DamperChoice
 from seatsim.schema.errors import InputError
+
+from .test_units import block_of
 
 STRICT = ("-Wall", "-Wextra", "-Wconversion", "-Wpedantic", "-Werror")
 """Warnings that the rules for control units ask for; none is left."""
@@ -35,11 +37,8 @@ def run_vector(path, *flags):
 
 
 def test_every_damper_is_printed(seat_file):
-    scenario = load(seat_file)[0]
     for name in DAMPERS.names():
-        cls = DAMPERS.find(name)
-        choice = DamperChoice(cls(), DAMPERS.specification_of(cls).factors)
-        assert f"{cls.__name__}_force" in print_model(damper_block(dataclasses.replace(scenario, damper=choice)))
+        assert f"{DAMPERS.find(name).__name__}_force" in print_model(block_of(name, seat_file))
 
 
 def test_every_effect_of_the_loop_is_printed(seat_file):
@@ -103,11 +102,8 @@ def test_sources_compile_without_a_warning(make, name, tmp_path):
 
 
 def test_a_rig_with_effects_passes_its_test_vector(seat_file, tmp_path):
-    effects = [
-        {"effect": "damper.remanence", "parameters": {"width": 0.05}},
-        {"effect": "driver.biodynamics", "parameters": {"share": 0.2}},
-        {"effect": "coil.delay", "parameters": {"time": 0.0043}},
-    ]
+    given = {"damper.remanence": {"width": 0.05}, "driver.biodynamics": {"share": 0.2}, "coil.delay": {"time": 0.0043}}
+    effects = [{"effect": name, "parameters": parameters} for name, parameters in given.items()]
     (tmp_path / "rig.c").write_text(print_c(rig_block(load(seat_file, {"effects": effects})[0])))
     done = run_vector(tmp_path / "rig.c")
     assert done.returncode == 0, done.stdout
@@ -126,13 +122,9 @@ def test_a_name_stays_out_of_the_code(name, seat_file, tmp_path):
 
 def test_a_changed_number_of_the_test_vector_is_found(seat_file, tmp_path):
     text = print_c(damper_block(load(seat_file)[0]))
-    (tmp_path / "damper.c").write_text(
-        text.replace("nominal_parameters = {{250.0", "nominal_parameters = {{251.0").replace(
-            "nominal_parameters = {{R(250.0)", "nominal_parameters = {{R(251.0)"
-        )
-    )
-    done = run_vector(tmp_path / "damper.c")
-    assert done.returncode == 1
+    changed = re.sub(r"(nominal_parameters = \{\{(?:R\()?)250\.0", r"\g<1>251.0", text)
+    (tmp_path / "damper.c").write_text(changed)
+    assert changed != text and run_vector(tmp_path / "damper.c").returncode == 1
 
 
 def test_a_mat_file_holds_plant_and_design(seat_file, tmp_path):

@@ -61,13 +61,9 @@ def open_unit(units, tmp_path):
 
 def motion():
     t = STEP * np.arange(SAMPLES)
-    return {
-        "displacement": 0.01 * np.sin(25.0 * t),
-        "velocity": 0.25 * np.cos(25.0 * t),
-        "acceleration": -6.25 * np.sin(25.0 * t),
-        "command": 0.8 * (t > 0.1),
-        "temperature": 20.0 + 100.0 * t,
-    }
+    sine, cosine = np.sin(25.0 * t), np.cos(25.0 * t)
+    moved = {"displacement": 0.01 * sine, "velocity": 0.25 * cosine, "acceleration": -6.25 * sine}
+    return moved | {"command": 0.8 * (t > 0.1), "temperature": 20.0 + 100.0 * t}
 
 
 def evaluate(block, inputs, step):
@@ -96,11 +92,8 @@ def test_a_rig_in_a_host_in_c_equals_its_simulation(host, seat_file, tmp_path, c
     scenario = load(seat_file)[0]
     history = simulate(scenario, carry_all_effects=False)
     floor = scenario.excitation.floor(scenario.solver.step, scenario.seed)
-    inputs = {
-        "floor_acceleration": floor.acceleration[:-1],
-        "floor_velocity": floor.velocity[:-1],
-        "floor_jerk": np.diff(floor.acceleration) / STEP,
-    }
+    inputs = {"floor_acceleration": floor.acceleration[:-1], "floor_velocity": floor.velocity[:-1]}
+    inputs |= {"floor_jerk": np.diff(floor.acceleration) / STEP}
     hosted = host.run_unit(rig_block(scenario), 2, inputs, tmp_path, STEP)
     for k, name in enumerate(RigOutputs._fields):
         expected = history[name][:-1] if name == "current_command" else history[name][1:]
@@ -119,9 +112,8 @@ def test_fmpy_finds_nothing_and_simulates(version, units):
     table["time"] = STEP * np.arange(SAMPLES)
     for name, values in inputs.items():
         table[name] = values
-    result = fmpy.simulate_fmu(
-        path, stop_time=0.2, output_interval=STEP, input=table, output=["force", "current"], step_size=STEP
-    )
+    steps = {"stop_time": 0.2, "output_interval": STEP, "step_size": STEP}
+    result = fmpy.simulate_fmu(path, input=table, output=["force", "current"], **steps)
     assert result["current"][-1] == pytest.approx(0.8, rel=1e-5)
     assert np.max(np.abs(result["force"])) > 100.0
 
@@ -144,9 +136,8 @@ def test_a_rig_driven_by_the_floor_acceleration_alone_follows_its_simulation(ver
     floor["time"], floor["floor_acceleration"] = history["time"], history["floor_acceleration"]
     write_fmu(rig_block(scenario), version, tmp_path / "rig.fmu")
     limits = {"driver_acceleration": 5e-4, "coil_current": 2e-3, "suspension_displacement": 3e-4}
-    found = fmpy.simulate_fmu(
-        str(tmp_path / "rig.fmu"), stop_time=8.0, output_interval=STEP, step_size=STEP, input=floor, output=[*limits]
-    )
+    steps = {"stop_time": 8.0, "output_interval": STEP, "step_size": STEP}
+    found = fmpy.simulate_fmu(str(tmp_path / "rig.fmu"), input=floor, output=[*limits], **steps)
     for name, limit in limits.items():
         error = found[name][: len(floor)] - history[name]
         deviation = np.sqrt(np.mean(error**2)) / np.std(history[name])

@@ -49,13 +49,8 @@ def sines(damper, noise=0.02):
 
 def columns(record):
     """Return a record as a table with units in its names."""
-    table = {
-        "time_s": record.time,
-        "displacement_mm": 1e3 * record.displacement,
-        "velocity_m_s": record.velocity,
-        "force_kN": 1e-3 * record.force,
-        "current_A": record.current,
-    }
+    table = {"time_s": record.time, "displacement_mm": 1e3 * record.displacement, "velocity_m_s": record.velocity}
+    table |= {"force_kN": 1e-3 * record.force, "current_A": record.current}
     return pd.DataFrame(table)
 
 

@@ -121,18 +121,14 @@ def test_a_recording_of_a_bench_is_read_as_it_says(tmp_path):
     assert found.name == "run-a" and found.commanded and found.current.max() == 1.0 and not found.in_volts
     assert found.velocity[50] == pytest.approx(0.01)
     text = (tmp_path / "recording.yaml").read_text()
-    (tmp_path / "nominal.yaml").write_text(
-        "damper: {model: modified_bouc_wen}\nactuator: {rate: 130.0, max_current: 1.0}\ntemperature: 20.0\n"
-    )
+    nominal = "damper: {model: modified_bouc_wen}\nactuator: {rate: 130.0, max_current: 1.0}\ntemperature: 20.0\n"
+    (tmp_path / "nominal.yaml").write_text(nominal)
     (tmp_path / "recording.yaml").write_text(text.replace("run-a.csv", "run-a.csv, set: {temperature: 50.0}"))
     with pytest.raises(InputError, match="run run-a sets temperature; one damper, as it is, is identified"):
         load_bench(tmp_path)
-    head = (
-        text.replace("damper_bench", "seat")
-        .replace("displacement: {unit: m}", "floor_acceleration: {unit: m/s^2}")
-        .replace("command_voltage: {unit: V}", "coil_current: {unit: A}")
-    )
-    (tmp_path / "recording.yaml").write_text(head)
+    text = text.replace("displacement: {unit: m}", "floor_acceleration: {unit: m/s^2}").replace("damper_bench", "seat")
+    text = text.replace("command_voltage: {unit: V}", "coil_current: {unit: A}")
+    (tmp_path / "recording.yaml").write_text(text)
     with pytest.raises(InputError, match=r"rig 'seat' with floor_acceleration.* 'rig: damper_bench'"):
         load_bench(tmp_path)
 

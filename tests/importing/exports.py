@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pyuff
 
-from ..text import parse
+from ..text import parse, words
 
 UNITS = parse("""
     {floor_acceleration: m/s^2, frame_acceleration: m/s^2, driver_acceleration: m/s^2,
@@ -94,11 +94,7 @@ def lvm(path, table):
 
 
 def mdf(path, table):
-    signals = [
-        asammdf.Signal(samples=values, timestamps=table["time"], name=name, unit=UNITS[name])
-        for name, values in table.items()
-        if name != "time"
-    ]
+    signals = [asammdf.Signal(table[name], table["time"], name=name, unit=unit) for name, unit in UNITS.items()]
     with asammdf.MDF(version="4.10") as file:
         file.append(signals, common_timebase=True)
         file.save(path, overwrite=True)
@@ -106,13 +102,8 @@ def mdf(path, table):
 
 def tdms(path, table):
     with nptdms.TdmsWriter(path) as writer:
-        writer.write_segment(
-            [
-                nptdms.ChannelObject("daq", name, values, {"unit_string": UNITS[name], "wf_increment": 0.002})
-                for name, values in table.items()
-                if name != "time"
-            ]
-        )
+        stated = {name: {"unit_string": unit, "wf_increment": 0.002} for name, unit in UNITS.items()}
+        writer.write_segment([nptdms.ChannelObject("daq", name, table[name], each) for name, each in stated.items()])
 
 
 def uff(path, table):
@@ -133,18 +124,11 @@ def rpc(path, table):
     channels = {name: values for name, values in table.items() if name != "time"}
     points, frame = len(table["time"]), 1024
     frames = -(-points // frame)
-    header = {
-        "FORMAT": "BINARY_IEEE_LITTLE_END",
-        "NUM_HEADER_BLOCKS": "",
-        "NUM_PARAMS": "",
-        "FILE_TYPE": "TIME_HISTORY",
-        "DATA_TYPE": "FLOATING_POINT",
-        "DELTA_T": "2.0000000E-03",
-        "CHANNELS": str(len(channels)),
-        "PTS_PER_FRAME": str(frame),
-        "PTS_PER_GROUP": str(2 * frame),
-        "FRAMES": str(frames),
-    }
+    stated = f"""
+        FORMAT=BINARY_IEEE_LITTLE_END NUM_HEADER_BLOCKS= NUM_PARAMS= FILE_TYPE=TIME_HISTORY DATA_TYPE=FLOATING_POINT
+        DELTA_T=2.0000000E-03 CHANNELS={len(channels)} PTS_PER_FRAME={frame} PTS_PER_GROUP={2 * frame} FRAMES={frames}
+    """
+    header = dict(entry.split("=") for entry in words(stated))
     for number, name in enumerate(channels, 1):
         header |= {f"DESC.CHAN_{number}": name, f"UNITS.CHAN_{number}": UNITS[name], f"SCALE.CHAN_{number}": "1.0"}
     header["NUM_PARAMS"] = str(len(header))

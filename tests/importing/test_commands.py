@@ -21,9 +21,8 @@ def test_import_shows_its_map_and_writes_a_recording(noisy_table, tmp_path, seat
     header = YAML(typ="safe").load(tmp_path / "out" / "recording.yaml")
     assert header["sample_rate"] == 500.0
     assert header["rig"] == "seat"
-    assert {each.name for each in (tmp_path / "out").iterdir()} == set(
-        words("recording.yaml map.yaml run-a.csv.gz manifest.json")
-    )
+    files = words("recording.yaml map.yaml run-a.csv.gz manifest.json")
+    assert {each.name for each in (tmp_path / "out").iterdir()} == set(files)
 
 
 def test_a_nominal_without_a_current_is_asked_for_one(noisy_table, tmp_path, seatsim_command):

@@ -49,10 +49,8 @@ FAULTS = {
 def warm_table(noisy_table):
     generator = np.random.default_rng(7)
     rows = len(noisy_table["time"])
-    return {
-        **noisy_table,
-        "damper_temperature": 20.0 + np.linspace(0, 1, rows) + 0.05 * generator.standard_normal(rows),
-    }
+    warm = 20.0 + np.linspace(0, 1, rows) + 0.05 * generator.standard_normal(rows)
+    return {**noisy_table, "damper_temperature": warm}
 
 
 def import_table(folder, table, *options):

@@ -39,13 +39,8 @@ LAYOUTS = {
     "matrix": {"t": TIME, "data": np.column_stack([FORCE, FLOOR])},
     "x, y, z": {"x": FORCE, "y": FLOOR, "z": FLOOR, "fs": 500.0},
 }  # fmt: skip
-EXPECTED = {
-    "Simulink, three dimensions": {"force#1", "force#2"},
-    "imc": {"force"},
-    "cells": {"force"},
-    "matrix": {"data#1", "data#2"},
-    "x, y, z": {"x", "y", "z"},
-}
+EXPECTED = {"Simulink, three dimensions": {"force#1", "force#2"}, "matrix": {"data#1", "data#2"}}
+EXPECTED |= {"imc": {"force"}, "cells": {"force"}, "x, y, z": {"x", "y", "z"}}
 IN_NEWTON = ("dSPACE", "catman", "imc", "flat", "cells")
 
 

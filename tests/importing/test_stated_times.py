@@ -71,11 +71,8 @@ def test_a_column_of_dates_is_the_time(tmp_path, kind, index):
     dates = pd.Timestamp("2026-03-01") + times
     floor, driver = (band_limited(seed, TIME[:1000]) for seed in (1, 2))
     frame = pd.DataFrame({"floor_acceleration": floor, "driver_acceleration": driver})
-    frame.index = {
-        "durations": times,
-        "named": dates.rename("Datum"),
-        "zone": dates.tz_localize("Europe/Berlin"),
-    }.get(index, dates)
+    several = {"durations": times, "named": dates.rename("Datum"), "zone": dates.tz_localize("Europe/Berlin")}
+    frame.index = several.get(index, dates)
     frame = frame.reset_index(names="Datum") if index == "column" else frame
     getattr(frame, f"to_{kind}")(tmp_path / f"a.{kind}")
     assert import_files([tmp_path / f"a.{kind}"], tmp_path / "out").rate == 500.0

@@ -40,18 +40,10 @@ def test_a_matrix_of_hdf5_has_names_and_units_in_attributes(tmp_path):
 def test_groups_of_other_rates_and_starts_share_the_clock_of_their_file(tmp_path):
     slow = SLOW[:1500] + 0.25
     with asammdf.MDF(version="4.10") as file:
-        file.append(
-            [
-                asammdf.Signal(band_limited(1, FAST), FAST, name="floor_acceleration", unit="m/s^2"),
-                asammdf.Signal(band_limited(2, FAST), FAST, name="current_command", unit="A"),
-            ]
-        )
-        file.append(
-            [
-                asammdf.Signal(1e3 * band_limited(3, slow), slow, name="Federweg", unit="mm"),
-                asammdf.Signal(band_limited(2, slow - 0.02), slow, name="coil_current", unit="A"),
-            ]
-        )
+        floor = asammdf.Signal(band_limited(1, FAST), FAST, name="floor_acceleration", unit="m/s^2")
+        file.append([floor, asammdf.Signal(band_limited(2, FAST), FAST, name="current_command", unit="A")])
+        travel = asammdf.Signal(1e3 * band_limited(3, slow), slow, name="Federweg", unit="mm")
+        file.append([travel, asammdf.Signal(band_limited(2, slow - 0.02), slow, name="coil_current", unit="A")])
         file.save(tmp_path / "a.mf4")
     found = import_files([tmp_path / "a.mf4"], tmp_path / "out")
     assert found.rate == 500.0
@@ -93,13 +85,10 @@ def test_units_stand_in_the_metadata_of_parquet(tmp_path):
     import pyarrow as pa
     import pyarrow.parquet as pq
 
-    fields = [
-        pa.field("t", pa.float64(), metadata={"unit": "ms"}),
-        pa.field("acc floor", pa.float32(), metadata={"unit": "g"}),
-    ]
-    pq.write_table(
-        pa.table([1e3 * FAST, band_limited(1, FAST).astype("f4")], schema=pa.schema(fields)), tmp_path / "a.parquet"
-    )
+    time, floor = pa.field("t", pa.float64(), metadata={"unit": "ms"}), pa.field("acc floor", pa.float32())
+    schema = pa.schema([time, floor.with_metadata({"unit": "g"})])
+    table = pa.table([1e3 * FAST, band_limited(1, FAST).astype("f4")], schema=schema)
+    pq.write_table(table, tmp_path / "a.parquet")
     assert found_in(read_file(tmp_path / "a.parquet")) == {("", "t"): ("ms", None), ("", "acc floor"): ("g", None)}
     assert import_files([tmp_path / "a.parquet"], tmp_path / "out").rate == 500.0
 
@@ -107,16 +96,9 @@ def test_units_stand_in_the_metadata_of_parquet(tmp_path):
 @pytest.mark.parametrize("packed", [False, True])
 def test_variables_of_mat_files_are_those_that_scipy_reads(tmp_path, packed):
     inner = {"x": np.eye(2), "unit": "m/s²", "deeper": {"y": np.arange(3.0)}}
-    stored = {
-        "matrix": np.arange(6.0).reshape(2, 3),
-        "short": np.arange(5, dtype=np.int16),
-        "text": "hällo",
-        "on": np.array([True, False]),
-        "empty": np.zeros((0, 3)),
-        "inner": inner,
-        "cells": np.array(["a", 1.0], dtype=object),
-        "complex": np.array([1 + 2j]),
-    }
+    stored = {"matrix": np.arange(6.0).reshape(2, 3), "short": np.arange(5, dtype=np.int16), "text": "hällo"}
+    stored |= {"on": np.array([True, False]), "empty": np.zeros((0, 3)), "inner": inner}
+    stored |= {"cells": np.array(["a", 1.0], dtype=object), "complex": np.array([1 + 2j])}
     savemat(tmp_path / "a.mat", stored, do_compression=packed)
     found = read_values(tmp_path / "a.mat", (tmp_path / "a.mat").read_bytes())
     expected = loadmat(tmp_path / "a.mat")

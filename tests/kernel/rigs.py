@@ -22,11 +22,6 @@ COIL, NO_HEAT = Coil(), TemperatureFactors()
 METRICS = ("frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force", "coil_current")
 
 
-def true_model(damper):
-    """The inverse knows the damper."""
-    return TrueModel(damper)
-
-
 def rough(duration, step=STEP, rms=1.0, seed=0, low=1.0, high=12.0):
     """Random floor acceleration of 60 tones that fades in over half a second, shape (N,)."""
     rng = np.random.default_rng(seed)
@@ -51,10 +46,9 @@ def run(
     velocity = np.concatenate([[0.0], np.cumsum(0.5 * (floor[1:] + floor[:-1])) * step])
     inputs = LoopInputs(floor, velocity, np.full(rows, temperature), replayed, prescribed, NONE, NONE, **start)
     timing = Timing(step, every, tolerance, thermal is not None)
-    model = true_model(damper) if model is None else model
-    setup = LoopSetup(
-        Rig(plant, damper, effects), coil, factors, thermal or Thermal(), law, model, timing, coil.max_current
-    )
+    model = TrueModel(damper) if model is None else model
+    rig, heat = Rig(plant, damper, effects), thermal or Thermal()
+    setup = LoopSetup(rig, coil, factors, heat, law, model, timing, coil.max_current)
     out = np.empty((len(CHANNELS), rows)).T
     loop = compiled(run_loop, (type(damper), type(law), type(model.damper), *map(type, effects)))
     rest, followed = (specification_of(type(part)).initial for part in (damper, model.damper))

@@ -25,9 +25,8 @@ def conforms(conform):
     def check(claim, source, history, reference, tolerance):
         deviation = max(deviations(history, reference).values())
         conform(f"{claim}: greatest deviation of an RMS", source, deviation, tolerance=tolerance)
-        conform(
-            f"{claim}: share of the energy that is missing", "balance of energy", imbalance(history), tolerance=1e-4
-        )
+        missing = f"{claim}: share of the energy that is missing"
+        conform(missing, "balance of energy", imbalance(history), tolerance=1e-4)
 
     return check
 
@@ -65,9 +64,8 @@ def test_a_smooth_damper_at_constant_current(tolerance, conforms):
 )
 def test_a_switching_law_on_stiff_and_sticking_rigs(v_ref, friction, every, conforms):
     floor = rough(3.0, rms=3.0)
-    reference = channels(
-        skyhook(Yielding(250.0, 350.0, 45.0, 620.0, v_ref, friction), floor, every, 800, 130.0, 1.0, 0.0)
-    )
+    p = Yielding(250.0, 350.0, 45.0, 620.0, v_ref, friction)
+    reference = channels(skyhook(p, floor, every, 800, 130.0, 1.0, 0.0))
     h = run(Bingham(v_ref=v_ref), OnOffSkyhook(), floor, every=every, effects=(Friction(friction),))
     claim = f"on-off skyhook every {every} ms, v_ref {1e3 * v_ref:g} mm/s, linkage friction {friction:g} N"
     conforms(claim, STEPPING, h, reference, 1e-2)

@@ -26,12 +26,9 @@ def test_the_linear_seat(damping, ratio, conform):
     A = s.A + s.B2 @ [[0.0, ratio * damping, 0.0, 0.0]]
     _, states, _ = lsim(StateSpace(A, s.B1, np.eye(4), np.zeros((4, 1))), floor, STEP * np.arange(len(floor)))
     h = driven(linear(damping), floor, 0.0, plant=plant)
-    expected = dict(
-        zip(("suspension_displacement", "suspension_velocity", "cushion_displacement"), states.T, strict=False)
-    )
-    expected["driver_acceleration"] = states @ s.C1[1]
-    expected["frame_acceleration"] = states @ A[1]
-    expected["damper_force"] = damping * ratio * states[:, 1]
+    names = ("suspension_displacement", "suspension_velocity", "cushion_displacement")
+    expected = dict(zip(names, states.T, strict=False)) | {"damper_force": damping * ratio * states[:, 1]}
+    expected |= {"driver_acceleration": states @ s.C1[1], "frame_acceleration": states @ A[1]}
     for name, values in expected.items():
         deviation = np.max(np.abs(h[name] - values)) / max(1e-9, np.max(np.abs(values)))
         claim = f"linear seat, damper {damping:g} N s/m, ratio {ratio:g}: deviation of {name}, over its greatest value"

@@ -62,12 +62,8 @@ def test_a_still_damper_warms_up_by_its_coil(conform):
     end = 25.0 + 0.8**2 * 5.0 / 4.0
     expected = end + (20.0 - end) * np.exp(-4.0 / 2.0 * STEP * np.arange(2001))
     deviation = np.max(np.abs(h["damper_temperature"] - expected))
-    conform(
-        "still damper that its coil warms up, deviation of the temperature, K",
-        "closed form",
-        deviation,
-        tolerance=6.6e-3,
-    )
+    claim = "still damper that its coil warms up, deviation of the temperature, K"
+    conform(claim, "closed form", deviation, tolerance=6.6e-3)
 
 
 def test_an_insulated_damper_keeps_its_work_and_the_heat_of_its_coil(conform):
@@ -77,6 +73,5 @@ def test_an_insulated_damper_keeps_its_work_and_the_heat_of_its_coil(conform):
     ohmic = 5.0 * np.trapezoid(h["coil_current"] ** 2, dx=STEP)
     expected = 20.0 + (h["energy_damper"][-1] + ohmic) / 3.0
     found = h["damper_temperature"][-1]
-    conform(
-        "insulated damper, temperature after 2 s, degC", "balance of energy", found, expected, tolerance=1e-5 * expected
-    )
+    claim = "insulated damper, temperature after 2 s, degC"
+    conform(claim, "balance of energy", found, expected, tolerance=1e-5 * expected)

@@ -25,14 +25,8 @@ print(json.dumps({name: [value.hex() for value in values.tolist()] for name, val
 def run(file, way, folder, **environment):
     """The channels of a run in a process of its own, every number in full."""
     environment = os.environ | {"SEATSIM_CACHE_DIR": str(folder)} | environment
-    done = subprocess.run(
-        [sys.executable, "-c", RUN, str(file), way],
-        cwd=ROOT,
-        env=environment,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+    command = [sys.executable, "-c", RUN, str(file), way]
+    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=True)
     return {name: [float.fromhex(value) for value in values] for name, values in json.loads(done.stdout).items()}
 
 

@@ -71,12 +71,8 @@ def test_the_least_current_that_serves(name, conform):
             assert answer.served == 0.0
             short = max(short, (abs(answer.force - wanted) - closest) / np.ptp(forces))
     assert 5 < served < count - 5
-    conform(
-        f"inverse of {name}: relative miss of a force that a current serves",
-        "the force that was asked for",
-        missed,
-        tolerance=1e-6,
-    )
+    claim = f"inverse of {name}: relative miss of a force that a current serves"
+    conform(claim, "the force that was asked for", missed, tolerance=1e-6)
     claim = f"inverse of {name}: farther from a force that none serves than the best current, over the range of forces"
     conform(claim, "dense search, 5 001 currents", max(short, 0.0), tolerance=1e-6)
 

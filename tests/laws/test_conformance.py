@@ -19,16 +19,11 @@ NOISY = {"displacement_noise": 1e-4, "acceleration_noise": 0.05}
 
 
 def settings(law, sensors=None, seed=3):
-    controller = {"law": law, "sample_time": 0.005} | {
-        k: list(v) if isinstance(v, tuple) else v for k, v in REQUIRED.get(law, {}).items()
-    }
-    return {
-        "seed": seed,
-        "controller": controller | ({} if sensors is None else {"sensors": sensors}),
-        "excitation": {"kind": "road", "road_class": "D", "speed": 12.0, "duration": 0.8},
-        "start": {"displacement": 0.02},
-        "solver": {"step": 0.0025},
-    }
+    required = {k: list(v) if isinstance(v, tuple) else v for k, v in REQUIRED.get(law, {}).items()}
+    controller = {"law": law, "sample_time": 0.005} | required | ({} if sensors is None else {"sensors": sensors})
+    excitation = {"kind": "road", "road_class": "D", "speed": 12.0, "duration": 0.8}
+    start, solver = {"displacement": 0.02}, {"step": 0.0025}
+    return {"seed": seed, "controller": controller, "excitation": excitation, "start": start, "solver": solver}
 
 
 @pytest.fixture(scope="module")

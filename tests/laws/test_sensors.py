@@ -52,10 +52,8 @@ def test_velocities_are_made_of_readings(motion):
     seen = motion[-1]
     v = filtered([WD, 0.0], [1, WD], seen.displacement, PERIOD)
     np.testing.assert_allclose(seen.velocity, v, rtol=1e-9, atol=1e-9)
-    for velocity, reading in (
-        (seen.frame_velocity, seen.frame_acceleration),
-        (seen.driver_velocity, seen.driver_acceleration),
-    ):
+    frame, driver = (seen.frame_velocity, seen.frame_acceleration), (seen.driver_velocity, seen.driver_acceleration)
+    for velocity, reading in (frame, driver):
         np.testing.assert_allclose(velocity, filtered([1.0], [1, WC], reading, PERIOD), rtol=1e-9, atol=1e-9)
 
 

@@ -192,9 +192,8 @@ RUBS = {"damper.seal_friction": {"force": 60.0}}
 def test_a_fit_finds_the_effect_that_the_recording_holds(recorded):
     fitted = recorded.show({"effects": RUBS, "fit": True})
     assert fitted.fitted["damper.seal_friction"]["force"] < 60.0
-    before, after, shown = (
-        each.tables[0].rows for each in (recorded.show({}), fitted, recorded.show({"effects": fitted.fitted}))
-    )
+    views = recorded.show({}), fitted, recorded.show({"effects": fitted.fitted})
+    before, after, shown = (each.tables[0].rows for each in views)
     assert [row[1] for row in after] == [row[1] for row in before] and shown == after
 
 

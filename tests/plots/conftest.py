@@ -36,14 +36,9 @@ def made_up_channels(n, motion, warming, wanted):
     x = 0.02 * motion * np.sin(2 * np.pi * 1.2 * STEP * np.arange(n))
     v = np.gradient(x, STEP)
     channels = {channel: np.zeros(n) for channel in UNITS}
-    return channels | {
-        "time": STEP * np.arange(n),
-        "floor_acceleration": motion * noise,
-        "driver_acceleration": motion * np.convolve(noise, np.full(40, 1 / 40))[:n],
-        "suspension_displacement": x,
-        "suspension_velocity": v,
-        "damper_force": 1500 * v,
-        "wanted_force": 2000 * v if wanted else np.full(n, np.nan),
-        "coil_current": np.minimum(1.0, np.abs(v)),
-        "damper_temperature": 20.0 + warming * np.linspace(0, 1, n),
-    }
+    channels |= {"time": STEP * np.arange(n), "suspension_displacement": x, "suspension_velocity": v}
+    smooth = np.convolve(noise, np.full(40, 1 / 40))[:n]
+    channels |= {"floor_acceleration": motion * noise, "driver_acceleration": motion * smooth}
+    channels |= {"damper_force": 1500 * v, "wanted_force": 2000 * v if wanted else np.full(n, np.nan)}
+    warm = 20.0 + warming * np.linspace(0, 1, n)
+    return channels | {"coil_current": np.minimum(1.0, np.abs(v)), "damper_temperature": warm}

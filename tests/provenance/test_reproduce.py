@@ -55,9 +55,8 @@ def test_a_manifest_holds_command_inputs_and_outputs_by_relative_paths(made):
     found = json.loads(text)
     assert str(made) not in text
     assert (found["command"], found["arguments"]) == ("comfort", ["--hours=6.0", "--", "rec"])
-    assert [each["path"] for each in found["inputs"]] == [
-        f"../../rec/{name}" for name in ("recording.yaml", "run-1.csv.gz", "run-2.csv.gz")
-    ]
+    read = [f"../../rec/{name}" for name in ("recording.yaml", "run-1.csv.gz", "run-2.csv.gz")]
+    assert [each["path"] for each in found["inputs"]] == read
     assert [each["path"] for each in found["outputs"]] == OUTPUTS
     assert {"seed", "versions", "platform"} <= set(found)
 

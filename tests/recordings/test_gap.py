@@ -37,16 +37,13 @@ def test_a_sound_recording_has_no_notes_and_any_scenario_is_held_against_it(copy
 
 @pytest.mark.parametrize("logged", [("current_command", "coil_current"), ("coil_current",), ()])
 def test_a_law_that_leaves_the_recorded_current_unused_is_a_note(copy, logged):
-    edit(
-        copy,
-        lambda header: [header["channels"].pop(name, None) for name in {"current_command", "coil_current"} - {*logged}],
-    )
+    lost = {"current_command", "coil_current"} - {*logged}
+    edit(copy, lambda header: [header["channels"].pop(name, None) for name in lost])
     own = single(copy / "nominal.yaml", {"controller": {"law": "skyhook", "damping": 1000.0}})
     said = [note for note in gap(own, copy).notes if "law 'skyhook' drives the coil" in note]
     assert len(said) == (1 if logged else 0) and all(name in said[0] for name in logged)
-    (copy / "nominal.yaml").write_text(
-        (copy / "nominal.yaml").read_text().replace("law: replay", "law: constant, current: 0.1")
-    )
+    text = (copy / "nominal.yaml").read_text().replace("law: replay", "law: constant, current: 0.1")
+    (copy / "nominal.yaml").write_text(text)
     found = examine(load_recording(copy)).sentences
     assert any("law 'constant' drives the coil" in note for note in found) == bool(logged)
 

@@ -16,12 +16,9 @@ def recording_of(rig, table, rate, gain=None):
     return Recording(Path("nowhere"), Header(rig, rate, "nominal.yaml"), {"a": RunEntry("a", "a.csv")}, channels, gain)
 
 
-TABLE = {
-    "floor_acceleration": np.array([0.0, 4.0, -2.0]),
-    "current_command": np.array([0.2, 0.6, 0.9]),
-    "coil_current": np.array([0.1, 0.5, 0.3]),
-    "damper_temperature": np.array([20.0, 24.0, 26.0]),
-}
+CHANNELS = ("floor_acceleration", "current_command", "coil_current", "damper_temperature")
+ROWS = np.array([[0.0, 4.0, -2.0], [0.2, 0.6, 0.9], [0.1, 0.5, 0.3], [20.0, 24.0, 26.0]])
+TABLE = dict(zip(CHANNELS, ROWS, strict=True))
 
 
 def test_a_seat_is_driven_linearly_between_rows_with_commands_held():
@@ -35,18 +32,11 @@ def test_a_seat_is_driven_linearly_between_rows_with_commands_held():
 
 
 def test_a_bench_is_driven_row_by_row():
-    rows = np.arange(4.0)
-    table = {
-        "displacement": rows,
-        "velocity": rows + 10,
-        "command_voltage": rows + 20,
-        "coil_current": rows + 30,
-        "damper_temperature": rows + 40,
-        "damper_force": rows + 50,
-    }
+    names = ("displacement", "velocity", "command_voltage", "coil_current", "damper_temperature", "damper_force")
+    table = {name: np.arange(4.0) + 10 * k for k, name in enumerate(names)}
     inputs = recorded_inputs(recording_of("damper_bench", table, 500.0, gain=0.4), table, 0.001)
     assert isinstance(inputs, BenchInputs)
     assert (inputs.interval, inputs.displacement_noise, inputs.voltage_gain) == (0.002, 0.5, 0.4)
     assert inputs.current_command is None
-    for name in ("displacement", "velocity", "command_voltage", "coil_current", "damper_temperature"):
+    for name in names[:-1]:
         assert getattr(inputs, name) is table[name]

@@ -45,12 +45,8 @@ def test_conventions_geometry_and_exponents_do_not_vary():
 
 def test_a_parameter_is_off_by_its_tolerance_times_the_deviation():
     nominal = scenario()
-    parameters = (
-        Nuisance("damper", "c_b", -350.0, 35.0),
-        Nuisance("coil", "rate", 130.0, 13.0),
-        Nuisance("plant", "driver_mass", 80.0, 8.0),
-        Nuisance("damper", "f0", 0.0, 10.0),
-    )
+    parameters = [Nuisance("damper", "c_b", -350.0, 35.0), Nuisance("coil", "rate", 130.0, 13.0)]
+    parameters += [Nuisance("plant", "driver_mass", 80.0, 8.0), Nuisance("damper", "f0", 0.0, 10.0)]
     varied = vary(nominal, parameters, np.array([1.0, -0.5, 0.25, -1.0]))
     assert varied.damper.record == DAMPER._replace(c_b=-315.0, f0=-10.0)
     assert varied.coil == Coil(rate=123.5)
@@ -67,16 +63,14 @@ def test_a_parameter_may_have_a_tolerance_of_its_own():
     assert found["plant.driver_mass"] == 40.0 and found["actuator.rate"] == pytest.approx(39.0)
     assert found["plant.frame_mass"] == 2.0 and "damper.parameters.c_a" not in found
     # A convention varies where it has a tolerance of its own, and only there.
-    assert found["plant.damper_ratio"] == 0.05 and "plant.damper_ratio" not in {
-        each.key for each in list_nuisances(scenario(), 0.1)
-    }
+    assert found["plant.damper_ratio"] == 0.05
+    assert "plant.damper_ratio" not in {each.key for each in list_nuisances(scenario(), 0.1)}
 
 
 def test_no_parameter_leaves_the_range_of_its_field():
     found = {each.key: each for each in list_nuisances(scenario(BoucWen(alpha_a=0.0, f0=-5.0)), 1.0)}
-    mass, offset, stiffness = (
-        found[key] for key in ("plant.frame_mass", "damper.parameters.f0", "damper.parameters.k0")
-    )
+    keys = ("plant.frame_mass", "damper.parameters.f0", "damper.parameters.k0")
+    mass, offset, stiffness = (found[key] for key in keys)
     assert mass.at(-1.0) == pytest.approx(0.05 * 20.0) and mass.at(1.0) == 40.0
     assert offset.at(-1.0) == -10.0 and stiffness.at(-1.0) == -4600.0
     assert found["plant.suspension_damping"].at(-3.0) == pytest.approx(0.05 * 150.0)

@@ -63,9 +63,8 @@ def test_doubtful_parameters_and_unlike_runs_widen_the_interval(error):
     sure = combine(error, before, after)
     doubtful = combine(error, before, after, [after + white(5, 0.3)])
     assert doubtful.shrink == sure.shrink and doubtful.shrink_interval[0] < sure.shrink_interval[0] - 0.1
-    alike = measure_model_error(
-        [(run, {"x": white(0) + 0.15 * white(9)}, {"x": white(0)}) for run in "ab"], {"x": 0.0}, RATE, 100.0
-    )
+    runs = [(run, {"x": white(0) + 0.15 * white(9)}, {"x": white(0)}) for run in "ab"]
+    alike = measure_model_error(runs, {"x": 0.0}, RATE, 100.0)
     assert np.ptp(combine(alike, before, after).shrink_interval) < 0.5 * np.ptp(sure.shrink_interval)
     alone = measure_model_error([("a", {"x": white(0) + 0.15 * white(9)}, {"x": white(0)})], {"x": 0.0}, RATE, 100.0)
     assert np.ptp(combine(alone, before, after).shrink_interval) > np.ptp(combine(alike, before, after).shrink_interval)

@@ -44,9 +44,8 @@ def recorded(kept, tmp_path):
 def test_the_replay_of_an_own_noiseless_recording_leaves_no_gap(result, tmp_path, absent, conform):
     folder = save_recording(result, tmp_path, [name for name in CHANNELS if name not in absent])
     claim = f"replay of an own noiseless recording{''.join(f' without {name}' for name in absent)}: overall gap"
-    conform(
-        claim, "the simulation that was recorded", seatsim.gap(folder / "nominal.yaml", folder).overall, tolerance=1e-3
-    )
+    found = seatsim.gap(folder / "nominal.yaml", folder).overall
+    conform(claim, "the simulation that was recorded", found, tolerance=1e-3)
 
 
 def test_noise_is_added_as_it_is_stated(result, kept, tmp_path):

@@ -12,12 +12,8 @@ def test_a_sweep_makes_every_combination_in_order(seat_file):
         + "variants: {light: {plant.driver_mass: 55.0}, heavy: {plant.driver_mass: 120.0}}\n"
     )
     runs = load(seat_file)
-    assert [(run.label["variant"], run.temperature, run.plant.driver_mass) for run in runs] == [
-        ("light", 20.0, 55.0),
-        ("light", 80.0, 55.0),
-        ("heavy", 20.0, 120.0),
-        ("heavy", 80.0, 120.0),
-    ]
+    stated = [(name, warm, mass) for name, mass in (("light", 55.0), ("heavy", 120.0)) for warm in (20.0, 80.0)]
+    assert [(run.label["variant"], run.temperature, run.plant.driver_mass) for run in runs] == stated
     assert runs[1].title == "seat (light, temperature 80.0)"
 
 

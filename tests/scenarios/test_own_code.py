@@ -61,16 +61,11 @@ def strange(tmp_path, forget_own_code):
     return folder
 
 
-def commands(folder, out):
-    """Every command that a scenario or a recording of the folder could make run its code."""
+def command(name, folder, out):
+    """A command that a scenario or a recording of the folder could make run its code."""
     nominal = folder / "nominal.yaml"
-    return {
-        "gap": ("gap", nominal, folder, "--out", out),
-        "diagnose": ("diagnose", folder, "--out", out),
-        "run": ("run", nominal, "--out", out),
-        "compare": ("compare", nominal, nominal, "--out", out),
-        "synthesise": ("synthesise", nominal, "--out", out),
-    }
+    given = {"gap": (nominal, folder), "diagnose": (folder,), "compare": (nominal, nominal)}
+    return name, *given.get(name, (nominal,)), "--out", out
 
 
 NAMES = ("gap", "diagnose", "run", "compare", "synthesise")
@@ -80,7 +75,7 @@ NAMES = ("gap", "diagnose", "run", "compare", "synthesise")
 def test_a_module_beside_a_recording_is_not_run(name, inside, strange, tmp_path, seatsim_command, searched):
     searched(strange if inside else tmp_path)
     folder, out = (Path("."), tmp_path / "out") if inside else (Path("strange"), tmp_path / "out")
-    arguments = commands(folder, out)[name]
+    arguments = command(name, folder, out)
     status, _, error = seatsim_command(*arguments)
     assert status == 2
     assert "line" in error and "damper.model" in error and "no module 'powerlaw' is installed" in error
@@ -94,8 +89,8 @@ def test_a_module_beside_a_recording_is_not_run(name, inside, strange, tmp_path,
 def test_python_started_in_the_folder_of_a_recording_does_not_run_its_module(strange):
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
     for start in (["-m", "seatsim", "run", "nominal.yaml"], ["-c", "import seatsim; seatsim.load('nominal.yaml')"]):
-        command = [sys.executable, *start]
-        done = subprocess.run(command, cwd=strange, env=environment, capture_output=True, text=True, check=False)
+        words = [sys.executable, *start]
+        done = subprocess.run(words, cwd=strange, env=environment, capture_output=True, text=True, check=False)
         assert done.returncode != 0
         assert "seatsim.use('powerlaw.py')" in done.stderr
         assert not (strange / "stolen").exists()

@@ -69,16 +69,14 @@ def strange(tmp_path, marks):
 
 
 def started(arguments, folder):
-    return subprocess.run(
-        arguments, cwd=folder, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True, check=False
-    )
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    return subprocess.run(arguments, cwd=folder, env=environment, capture_output=True, text=True, check=False)
 
 
 @pytest.mark.slow
 def test_commands_that_are_started_in_the_folder_run_nothing_of_it(strange, marks, tmp_path):
-    done = started(
-        [sys.executable, "-m", "seatsim", "gap", "nominal.yaml", ".", "--out", str(tmp_path / "out")], strange
-    )
+    command = [sys.executable, "-m", "seatsim", "gap", "nominal.yaml", ".", "--out", str(tmp_path / "out")]
+    done = started(command, strange)
     assert done.returncode == 0, done.stderr
     assert not list(marks.iterdir())
 
@@ -185,12 +183,8 @@ def parquet(path, mark):
 
 def formula(path, mark):
     asammdf = pytest.importorskip("asammdf")
-    signal = asammdf.Signal(
-        np.arange(9, dtype=np.int32),
-        np.arange(9.0),
-        name="a",
-        conversion={"formula": f"X1 + __import__('os').mkdir('{mark}')"},
-    )
+    conversion = {"formula": f"X1 + __import__('os').mkdir('{mark}')"}
+    signal = asammdf.Signal(np.arange(9, dtype=np.int32), np.arange(9.0), name="a", conversion=conversion)
     content = io.BytesIO()
     with asammdf.MDF() as file:
         file.append([signal])
@@ -198,16 +192,9 @@ def formula(path, mark):
     path.write_bytes(content.getvalue())
 
 
-TRAPS = {
-    "a.pkl": pickled,
-    "a.csv": pickled,
-    "a.npz": archive,
-    "a.npy": array,
-    "a.mat": matlab,
-    "a.h5": hdf5,
-    "a.parquet": parquet,
-    "a.mf4": formula,
-    "$(mkdir marks;cd marks).csv": lambda path, mark: path.write_text(f"`mkdir {mark}`,=cmd|' /C'!A0\n1,2\n3,4\n"),
+FILES = words("a.pkl a.csv a.npz a.npy a.mat a.h5 a.parquet a.mf4")
+TRAPS = dict(zip(FILES, (pickled, pickled, archive, array, matlab, hdf5, parquet, formula), strict=True)) | {
+    "$(mkdir marks;cd marks).csv": lambda path, mark: path.write_text(f"`mkdir {mark}`,=cmd|' /C'!A0\n1,2\n3,4\n")
 }
 
 

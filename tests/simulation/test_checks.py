@@ -14,12 +14,9 @@ from seatsim.simulation.checks import check_run
 LOOP = {"law": "static_output_feedback", "gain": [0.0, 1500.0], "sample_time": 0.005}
 SHORT = {"excitation": {"kind": "road", "road_class": "C", "speed": 15.0, "duration": 5.0}}
 
-UNDAMPED = {
-    "controller": {"law": "constant", "current": 0.0},
-    "plant.suspension_damping": 0.0,
-    "plant.cushion_damping": 0.0,
-    "damper": {"model": "original_bingham", "parameters": {"c0": [0.0] * 4, "fc": [0.0] * 4, "f0": 0.0}},
-}
+PASSIVE = {"controller": {"law": "constant", "current": 0.0}}
+NO_FORCE = {"model": "original_bingham", "parameters": {"c0": [0.0] * 4, "fc": [0.0] * 4, "f0": 0.0}}
+UNDAMPED = PASSIVE | {"plant.suspension_damping": 0.0, "plant.cushion_damping": 0.0, "damper": NO_FORCE}
 
 
 def figures(file, checks, **settings):
@@ -34,7 +31,7 @@ def figures(file, checks, **settings):
         ({"actuator": {"rate": 130.0, "max_current": 1.0, "delay": 0.2}}, False, "spectral radius"),
         ({"controller": {**LOOP, "gain": [0.0, -9000.0]}}, False, "spectral radius"),
         ({"controller": {"law": "skyhook", "damping": 1500.0, "sample_time": 0.005}}, True, "after a release"),
-        ({"controller": {"law": "constant", "current": 0.0}}, True, "after a release"),
+        (PASSIVE, True, "after a release"),
         # A seat without any damping swings on.
         (UNDAMPED, False, "after a release"),
     ],
@@ -63,20 +60,11 @@ def test_the_margins_are_those_of_the_sampled_loop_beyond_the_delay_of_the_coil(
 
 
 def test_a_check_may_be_made_of_some_variants(seat_file):
-    variants = {"soft": {"controller": {"law": "constant", "current": 0.0}}, "controlled": {}}
-    runs = seatsim.run(
-        seat_file,
-        {
-            **SHORT,
-            "controller": LOOP,
-            "variants": variants,
-            "checks": {"delay_margin": {"min": 0.005, "per": ["controlled"]}, "seat_factor": {"max": 9.0}},
-        },
-    ).runs
-    assert [[checked.check for checked in check_run(run)] for run in runs] == [
-        ["seat_factor"],
-        ["delay_margin", "seat_factor"],
-    ]
+    variants = {"soft": PASSIVE, "controlled": {}}
+    checks = {"delay_margin": {"min": 0.005, "per": ["controlled"]}, "seat_factor": {"max": 9.0}}
+    runs = seatsim.run(seat_file, {**SHORT, "controller": LOOP, "variants": variants, "checks": checks}).runs
+    found = [[checked.check for checked in check_run(run)] for run in runs]
+    assert found == [["seat_factor"], ["delay_margin", "seat_factor"]]
 
 
 @pytest.mark.parametrize(
@@ -101,7 +89,7 @@ def test_a_check_that_cannot_be_made_is_an_error_with_its_place(seat_file, check
 
 def test_margins_of_a_law_without_a_linear_loop_are_refused_with_the_way_out(seat_file):
     with pytest.raises(seatsim.InputError, match=r"law constant wants a current.*per: \[VARIANT\]"):
-        figures(seat_file, {"delay_margin": {"min": 0.01}}, controller={"law": "constant", "current": 0.0})
+        figures(seat_file, {"delay_margin": {"min": 0.01}}, **PASSIVE)
 
 
 def test_pytest_collects_a_test_for_each_check_and_run(pytester, seat_file):
@@ -109,12 +97,10 @@ def test_pytest_collects_a_test_for_each_check_and_run(pytester, seat_file):
     sweep = "sweep: {temperature: [20.0, 80.0]}\nexcitation: {kind: rest, duration: 1.0}\n"
     kept = "".join(line + "\n" for line in text.splitlines() if not line.startswith("excitation"))
     pytester.makeini("[pytest]")  # settings of a folder above do not count
-    pytester.makefile(
-        ".yaml", seat=kept + sweep + "checks: {suspension_displacement_peak: {max: 1}, current_rms: {min: 5.0}}\n"
-    )
+    checks = "checks: {suspension_displacement_peak: {max: 1}, current_rms: {min: 5.0}}\n"
+    pytester.makefile(".yaml", seat=kept + sweep + checks)
     pytester.makefile(".yaml", other=text, wrong=text + "checks: {seat_facto: {max: 1.0}}\n")
-    result = pytester.runpytest_inprocess(
-        "-p", "no:seatsim", "--continue-on-collection-errors", plugins=[seatsim.pytest_plugin]
-    )
+    options = ("-p", "no:seatsim", "--continue-on-collection-errors")
+    result = pytester.runpytest_inprocess(*options, plugins=[seatsim.pytest_plugin])
     result.assert_outcomes(passed=2, failed=2, errors=1)
     result.stdout.fnmatch_lines(["*did you mean 'seat_factor'*", "*current_rms is 0*at least 5 A*"])

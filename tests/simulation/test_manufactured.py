@@ -45,17 +45,13 @@ def error(scenario, step):
     force, current = damper_force(scenario, t)
     cushion = plant.cushion_stiffness * xc + plant.cushion_damping * vc
     suspension = plant.suspension_stiffness * x * (1 + RISE * x**2) + plant.suspension_damping * v + RATIO * force
-    forces = Forces(
-        plant.frame_mass * (a + floor) + suspension - cushion, plant.driver_mass * (a + ac + floor) + cushion
-    )
+    on_driver = plant.driver_mass * (a + ac + floor) + cushion
+    forces = Forces(plant.frame_mass * (a + floor) + suspension - cushion, on_driver)
     h = simulate(replace(scenario, solver=Solver(step, 1e-7)), Floor(step, floor, 0 * t, 0 * t), forces)
     work = h["energy_floor"] - sum(h[f"energy_{part}"] for part in ("damper", "suspension", "cushion", "stored"))
-    return [
-        np.max(np.abs(h["driver_acceleration"] - (a + ac + floor))),
-        np.max(np.abs(h["suspension_displacement"] - x)),
-        np.max(np.abs(h["coil_current"] - current)),
-        np.max(np.abs(work)) / np.max(np.abs(h["energy_floor"])),
-    ]
+    names = ("driver_acceleration", "suspension_displacement", "coil_current")
+    errors = [h[name] - exact for name, exact in zip(names, (a + ac + floor, x, current), strict=True)]
+    return [np.max(np.abs(each)) for each in (*errors, work / np.max(np.abs(h["energy_floor"])))]
 
 
 def test_the_chosen_motion_is_met_and_steps_converge(seat_file, conform):
@@ -63,12 +59,8 @@ def test_the_chosen_motion_is_met_and_steps_converge(seat_file, conform):
     scenario = single(seat_file, settings)
     coarse, fine = error(scenario, 1e-3), error(scenario, 2.5e-4)
     # Inputs are straight lines between samples, which is exact to the second order.
-    for name, found, tolerance in zip(
-        ("acceleration of the driver, m/s^2", "displacement, m", "current, A", "balance of energy, share"),
-        fine,
-        (2e-3, 2e-7, 1e-12, 1e-6),
-        strict=True,
-    ):
+    names = ("acceleration of the driver, m/s^2", "displacement, m", "current, A", "balance of energy, share")
+    for name, found, tolerance in zip(names, fine, (2e-3, 2e-7, 1e-12, 1e-6), strict=True):
         claim = f"whole rig at 0.25 ms, greatest error: {name}"
         conform(claim, "manufactured solution", found, tolerance=tolerance)
     assert fine[0] < coarse[0] / 12 and fine[1] < coarse[1] / 12

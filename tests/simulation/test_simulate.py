@@ -7,7 +7,7 @@ import pytest
 
 from seatsim.cli.outputs.run_tables import make_comparison_table
 from seatsim.metrics.table import Metric
-from seatsim.scenario.loading import load, single
+from seatsim.scenario.loading import single
 from seatsim.schema.registry import specification_of
 from seatsim.simulation.result import Channel, History, Result
 from seatsim.simulation.runs import run
@@ -16,9 +16,8 @@ from seatsim.simulation.validity import LARGEST_RESIDUAL, list_ranges_left, list
 
 @pytest.fixture(scope="module")
 def scenario(kept_seat_file):
-    return load(kept_seat_file, {"excitation": {"kind": "sine", "amplitude": 0.02, "frequency": 1.0, "duration": 2.0}})[
-        0
-    ]
+    sine = {"kind": "sine", "amplitude": 0.02, "frequency": 1.0, "duration": 2.0}
+    return single(kept_seat_file, {"excitation": sine})
 
 
 def test_a_channel_has_a_unit_and_what_is_computed_from_it_has_none(scenario):
@@ -27,15 +26,8 @@ def test_a_channel_has_a_unit_and_what_is_computed_from_it_has_none(scenario):
     assert (force.name, force.unit) == ("damper_force", "N")
     for part in (force[10:20], force[::2], force[force > 0.0], force[[1, 2]]):
         assert (part.name, part.unit) == ("damper_force", "N")
-    computed = (
-        2.0 * force,
-        force * force,
-        force / (force + 1e3),
-        force > 0.0,
-        np.cumsum(force),
-        force.cumsum(),
-        np.sqrt(force**2),
-    )
+    computed = [2.0 * force, force * force, force / (force + 1e3), force > 0.0]
+    computed += [np.cumsum(force), force.cumsum(), np.sqrt(force**2)]
     assert {(each.name, each.unit) for each in computed} == {("", "")}
     assert isinstance(force[0], float)
     with pytest.raises(ValueError, match="read-only"):
@@ -90,14 +82,10 @@ def test_a_figure_without_value_and_an_open_energy_balance_are_reasons(kept_seat
 
 
 def test_a_run_says_why_its_figures_are_unverified(kept_seat_file):
-    sure, (doubtful,) = (
-        run(kept_seat_file).runs[0],
-        run(kept_seat_file, {"excitation": {"kind": "rest", "duration": 4.0}}).runs,
-    )
-    assert sure.unverified == ()
-    assert "seat_factor has no finite value" in doubtful.unverified and set(doubtful.unverified) <= set(
-        doubtful.warnings
-    )
+    sure = run(kept_seat_file).runs[0]
+    (doubtful,) = run(kept_seat_file, {"excitation": {"kind": "rest", "duration": 4.0}}).runs
+    assert sure.unverified == () and set(doubtful.unverified) <= set(doubtful.warnings)
+    assert "seat_factor has no finite value" in doubtful.unverified
     assert Result([sure, doubtful]).rows[1]["unverified"] == "; ".join(doubtful.unverified)
     quiet = make_comparison_table([sure, doubtful, sure], "both")
     assert [next(iter(quiet.columns[0].cells)), list(quiet.columns[0].cells)[1][-1]] == ["seat", "*"]

@@ -17,9 +17,8 @@ def gain():
 
 
 def run(mass, temperature, controller, **settings):
-    return seatsim.run(
-        NAME, {"plant.driver_mass": mass, "temperature": temperature, "controller": controller} | settings
-    )
+    condition = {"plant.driver_mass": mass, "temperature": temperature}
+    return seatsim.run(NAME, condition | {"controller": controller} | settings)
 
 
 def cost(result):

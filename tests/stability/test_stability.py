@@ -30,9 +30,8 @@ def margins(mass):
 
 
 def radius(mass, sample_time, late=0):
-    return build_sampled_loop(OutputFeedback(*GAIN[0]), (), seat(mass), COIL, sample_time, step=sample_time).radius(
-        late
-    )
+    loop = build_sampled_loop(OutputFeedback(*GAIN[0]), (), seat(mass), COIL, sample_time, step=sample_time)
+    return loop.radius(late)
 
 
 @pytest.mark.parametrize("mass", [40.0, 80.0, 150.0])
@@ -118,10 +117,7 @@ def comes_to_rest(result):
 )
 def test_no_limit_cycle_of_the_full_loop(kept_seat_file, damper, temperature, inverse):
     settings = {} if damper == "bouc_wen" else {"damper": {"model": damper}}
-    settings |= {
-        "damper.temperature_factors": {"viscous": -0.0067, "yield_force": -0.0067},
-        "temperature": temperature,
-        "actuator.delay": 0.004,
-    }
+    fading = {"viscous": -0.0067, "yield_force": -0.0067}
+    settings |= {"damper.temperature_factors": fading, "temperature": temperature, "actuator.delay": 0.004}
     settings |= {"controller.inverse": INVERSES[inverse]} if INVERSES[inverse] else {}
     comes_to_rest(seatsim.run(kept_seat_file, settings | RELEASED))

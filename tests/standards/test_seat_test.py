@@ -114,9 +114,8 @@ def test_a_run_that_breaks_off_leaves_the_others_and_is_a_line_with_its_reason(
         return simulate(case)
 
     monkeypatch.setattr("seatsim.standards.seat_test.simulate", broken)
-    status, printed, said = seatsim_command(
-        "seat-test", scenario, "--class", "em5", "--out", tmp_path / "out", "--json"
-    )
+    options = ("--class", "em5", "--out", tmp_path / "out", "--json")
+    status, printed, said = seatsim_command("seat-test", scenario, *options)
     found, path = check_answer("seat-test", printed), tmp_path / "out" / "seat_test.json"
     assert {**found, "files": found["files"][:1]} == json.loads(path.read_text()) | {"files": [str(path)]}
     assert all({"class", "mass", "seat", "limit", "pass", "clause"} <= set(row) for row in found["classes"])

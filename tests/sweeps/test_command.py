@@ -17,11 +17,8 @@ from .conftest import MASSES, bytes_of
 
 
 def test_a_sweep_and_its_report(write_sweep, tmp_path, seatsim_command):
-    vary = {
-        **MASSES,
-        "plant.suspension_stiffness": {"uniform": [4000, 5000]},
-        "excitation.spectral_class": ["EM1", "EM5"],
-    }
+    stiffness = {"plant.suspension_stiffness": {"uniform": [4000, 5000]}}
+    vary = {**MASSES, **stiffness, "excitation.spectral_class": ["EM1", "EM5"]}
     path, out = write_sweep(vary=vary, runs=12, limits={"driver_acceleration_weighted": 0.1}), tmp_path / "out"
     status, text, _ = seatsim_command("check", path)
     assert status == 0 and "sweep, no errors; 24 runs over plant.driver_mass" in text
@@ -43,11 +40,9 @@ def test_a_sweep_and_its_report(write_sweep, tmp_path, seatsim_command):
 
 def test_what_is_wrong_is_one_sentence(write_sweep, tmp_path, seatsim_command, monkeypatch):
     path, out = write_sweep(runs=2), tmp_path / "out"
-    for options, sentence in (
-        (["--address", "tcp://here:1"], "add --engine dask"),
-        (["--part", "3/2"], "write K/N with K from 1 to N"),
-    ):
-        status, _, err = seatsim_command("sweep", path, "--out", out, *options)
+    wrong = {"--address tcp://here:1": "add --engine dask", "--part 3/2": "write K/N with K from 1 to N"}
+    for option, sentence in wrong.items():
+        status, _, err = seatsim_command("sweep", path, "--out", out, *option.split())
         assert status == 2 and sentence in err and not out.exists()
     monkeypatch.setitem(sys.modules, "distributed", None)
     status, _, err = seatsim_command("sweep", path, "--out", out, "--engine", "dask")

@@ -25,9 +25,8 @@ def test_cross_combines_lists_and_ranges_and_draws_once_for_all_of_them(write_sw
     plan = plan_of(write_sweep(vary=vary, runs=4))
     rows = [plan.values(run) for run in range(plan.runs)]
     assert plan.runs == 24 and plan.keys == [CLASS, MASS, "temperature"]
-    assert [(row[CLASS], row["temperature"]) for row in rows[:6]] == [
-        (name, degrees) for name in ("EM1", "EM5") for degrees in (20, 50, 80)
-    ]
+    crossed = [(name, degrees) for name in ("EM1", "EM5") for degrees in (20, 50, 80)]
+    assert [(row[CLASS], row["temperature"]) for row in rows[:6]] == crossed
     assert len({row[MASS] for row in rows}) == 4 and len({row[MASS] for row in rows[:6]}) == 1
 
 

@@ -23,14 +23,8 @@ def test_reaches_the_optimum_and_proves_it(seat, designed, e1, conform):
     claim = f"static output feedback of the seat, e1 {e1:g}"
     conform(f"{claim}: gamma", "optimum, derived apart", design.gamma, gamma, tolerance=1e-6 * gamma)
     for k, unit in enumerate(("N/m", "N s/m")):
-        tolerance = 2e-4 * abs(gain[k])
-        conform(
-            f"{claim}: gain {k + 1}, {unit}",
-            "optimum, derived apart",
-            design.gain[0, k],
-            gain[k],
-            tolerance=tolerance,
-        )
+        each, tolerance = f"{claim}: gain {k + 1}, {unit}", 2e-4 * abs(gain[k])
+        conform(each, "optimum, derived apart", design.gain[0, k], gain[k], tolerance=tolerance)
     for norm, way in ((grid_norm, "grid of frequencies"), (hinf_norm, "Hamiltonian bisection")):
         deviation = norm(loop).value / design.gamma - 1
         conform(f"{claim}: relative deviation of the loop's norm from gamma", way, deviation, tolerance=1e-6)
@@ -41,10 +35,8 @@ def test_reaches_the_optimum_and_proves_it(seat, designed, e1, conform):
     assert proof.largest_eigenvalue < 0
     assert largest_lmi_eigenvalue(seat(e1), design.gain, proof.factor, proof.gamma) == proof.largest_eigenvalue
     assert design.worst.norms_agree
-    bound = FULL_ORDER[e1]
-    conform(
-        f"{claim}: lower bound", "Riccati equations in 60 digits", design.lower_bound, bound, tolerance=1e-5 * bound
-    )
+    bound, way = FULL_ORDER[e1], "Riccati equations in 60 digits"
+    conform(f"{claim}: lower bound", way, design.lower_bound, bound, tolerance=1e-5 * bound)
 
 
 @pytest.mark.parametrize("e1", OPTIMA)
@@ -81,12 +73,9 @@ def test_matrices_plant_and_state_space_agree(seat, designed):
     p = seat(30.0)
     D = np.block([[p.D11, p.D12], [p.D21, np.zeros((2, 1))]])
     system = control.ss(p.A, np.hstack([p.B1, p.B2]), np.vstack([p.C1, p.C2]), D)
-    designs = [
-        designed(30.0),
-        synthesise(p.A, p.B1, p.B2, p.C1, p.C2, p.D11, p.D12, p.D21, time_budget=SEAT_TIME_BUDGET),
-        synthesise(system, split=(1, 2), time_budget=SEAT_TIME_BUDGET),
-    ]
-    assert len({design.gain.tobytes() for design in designs}) == 1
+    of_matrices = synthesise(p.A, p.B1, p.B2, p.C1, p.C2, p.D11, p.D12, p.D21, time_budget=SEAT_TIME_BUDGET)
+    of_system = synthesise(system, split=(1, 2), time_budget=SEAT_TIME_BUDGET)
+    assert len({design.gain.tobytes() for design in (designed(30.0), of_matrices, of_system)}) == 1
 
 
 def test_one_gain_for_drivers_of_50_to_120_kg(seat, conform):
@@ -110,9 +99,8 @@ def test_published_gain_is_near_the_optimum_at_the_weight_that_fits_it(seat, des
 def test_the_printed_design_problem_has_no_solution():
     # Eq 15 with z0'' and zs'' as outside disturbances: the infimum is that of any controller, at infinite gain.
     s = state_space(Plant(20.0, 80.0, 4600.0, 200.0, 60000.0, 1500.0), "yu2019")
-    plant = GeneralisedPlant(
-        s.A, s.B1, s.B2, s.C1 * [[10.0], [1.0]], s.C2, np.zeros((2, 2)), np.zeros((2, 1)), np.zeros((2, 2))
-    )
+    C1, none = s.C1 * [[10.0], [1.0]], np.zeros((2, 2))
+    plant = GeneralisedPlant(s.A, s.B1, s.B2, C1, s.C2, none, none[:, :1], none)
     small, large = (synthesise(plant, max_gain=limit) for limit in (1e3, 1e4))
     assert np.abs(small.gain).max() > 0.99e3 and np.abs(large.gain).max() > 0.99e4
     assert small.gamma > large.gamma > large.lower_bound == pytest.approx(1.82311, abs=1e-5)

@@ -109,9 +109,8 @@ def hong_sigmoid_gaussian(p, m):
     """Hong et al., eqs 4, 6, 7 (published; the sign of eq 7 reversed): F = a + b / (1 + e^cv) - sgn(v') D."""
     table = [[float(word) for word in row.split()] for row in HONG[p.test].split("|")]
     rows = PchipInterpolator([0.0, 0.25, 0.5, 0.75, 1.0, 2.0], table)(np.clip(m.i, 0.0, 2.0))
-    a, b, c, sigma, r = np.moveaxis(1e3 * rows, -1, 0) * np.array([1, 1, 1e-3, 1e-3, 1]).reshape(
-        -1, *[1] * np.ndim(m.i)
-    )
+    units = np.array([1, 1, 1e-3, 1e-3, 1]).reshape(-1, *[1] * np.ndim(m.i))
+    a, b, c, sigma, r = np.moveaxis(1e3 * rows, -1, 0) * units
     u = m.v / p.v_unit
     sigmoid, density = a + b * expit(-c * u), np.exp(-(u**2) / (2 * sigma**2)) / np.sqrt(2 * np.pi * sigma**2)
     offset = a + b / 2
@@ -149,21 +148,15 @@ def yu2017(p, m, e):
     height = p.c1 + p.c2 * expit(-p.c3 * e) + p.c_i1 * np.exp(p.c_i2 * m.i)
     speed = np.abs(m.v)
     backbone = -np.expm1(p.b1 * speed) * expit(-p.b2 * speed) * np.sign(m.v)
-    return height * m.plastic * (backbone + p.d1 * np.exp(-((speed - p.d2) ** 2) / p.d3) * m.branch), envelope_rate(
-        m.v, e
-    )
+    shape = backbone + p.d1 * np.exp(-((speed - p.d2) ** 2) / p.d3) * m.branch
+    return height * m.plastic * shape, envelope_rate(m.v, e)
 
 
-@equation(
-    "yu2019",
-    f0=30.0,
-    asymmetry=0.6,
-    p=(0.01, 3586.0, 1.298e6),
-    p_den=(14600.0, 1.18e6, 900.0),
-    n=(0.01, 19.17, 7.0, 4140.0),
-    q=(0.612, 0.2, 14.4, 3.0, 2.0, 1.0, 30.0),
-    q_den=(0.1, 137.7, 0.5, 50.0, 1.0, 9137.0),
-)
+YU2019 = {"p": (0.01, 3586.0, 1.298e6), "p_den": (14600.0, 1.18e6, 900.0), "n": (0.01, 19.17, 7.0, 4140.0)}
+YU2019 |= {"q": (0.612, 0.2, 14.4, 3.0, 2.0, 1.0, 30.0), "q_den": (0.1, 137.7, 0.5, 50.0, 1.0, 9137.0)}
+
+
+@equation("yu2019", f0=30.0, asymmetry=0.6, **YU2019)
 def yu2019(p, m):
     """Yu et al. 2019, eqs 1-4, 9-12 (published; coefficients of numerator and denominator apart, sgn(x) of eq 12)."""
 

@@ -96,12 +96,8 @@ def li_viscoelastic_plastic(p, m, y, x2, u):
     acceleration = (share * m.v - u) / INERTANCE
     flow = share * (law(p.cv, held(p, m)) * m.v + p.R * acceleration) * m.viscous
     force = f - past(f, fc) + flow + p.fs * m.plastic * np.sign(m.v) + p.f0
-    return (
-        force,
-        past(f, fc) / ((k1 + p.k2) * m.elastic * SETTLING),
-        p.k2 * m.elastic * e2 / (p.c2 * m.viscous),
-        acceleration,
-    )
+    slide = past(f, fc) / ((k1 + p.k2) * m.elastic * SETTLING)
+    return force, slide, p.k2 * m.elastic * e2 / (p.c2 * m.viscous), acceleration
 
 
 @equation("stiffness_viscosity_elasto_slide", rest=[0.0], f0=30.0, k0=6000.0)

@@ -95,16 +95,13 @@ def test_an_effect_is_sought_as_its_record_has_it_by_default_and_with_each_furth
     cls, away = EFFECTS.find(name), EFFECTS.specification_of(EFFECTS.find(name)).off
     usual = cls._field_defaults
     if required := [field for field in cls._fields if field not in (*usual, "channel")]:
-        assert any(
-            set(required) <= set(each.free)
-            and all(each.fixed.get(field, value) == value for field, value in usual.items())
-            and all(
-                low <= usual[field] <= high
-                for field, low, high in zip(each.free, each.low, each.high, strict=True)
-                if field in usual
-            )
-            for each in listed[name]
-        )
+
+        def has_defaults(form):
+            ranges = zip(form.free, form.low, form.high, strict=True)
+            are_within = all(low <= usual.get(field, low) <= high for field, low, high in ranges)
+            return are_within and all(form.fixed.get(field, value) == value for field, value in usual.items())
+
+        assert any(set(required) <= set(each.free) and has_defaults(each) for each in listed[name])
     sought = {
         field
         for each in listed[name]
@@ -149,11 +146,9 @@ def test_starts_off_values_and_what_a_fit_reaches_are_within_the_range_of_an_eff
 
 
 def test_frictions_have_the_same_forms_so_that_none_is_preferred_where_no_load_cell_tells_them(listed):
-    forms = [
-        [(each.free, each.start, each.low, each.high) for each in listed[name]]
-        for name in ("damper.seal_friction", "suspension.friction")
-    ]
-    assert forms[0] == forms[1]
+    seal, linkage = listed["damper.seal_friction"], listed["suspension.friction"]
+    for name in ("free", "start", "low", "high"):
+        assert [getattr(each, name) for each in seal] == [getattr(each, name) for each in linkage]
 
 
 def test_buffers_beside_a_soft_spring_are_softer():

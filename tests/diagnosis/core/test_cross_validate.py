@@ -88,9 +88,8 @@ def select(objective, *sets):
     tried = [[fitted(objective, *names) for names in size] for size in sets]
     calibrated = fitted(objective)
     nuisances = objective.linearise_nuisances(calibrated)
-    chosen, equivalent, _ = select_by_cross_validation(
-        objective, Selection(calibrated, ((calibrated,), *map(tuple, tried)), nuisances)
-    )
+    selection = Selection(calibrated, ((calibrated,), *map(tuple, tried)), nuisances)
+    chosen, equivalent, _ = select_by_cross_validation(objective, selection)
     return set(chosen.parameters.names), [set(each.parameters.names) for each in equivalent]
 
 

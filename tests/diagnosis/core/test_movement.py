@@ -60,9 +60,8 @@ def test_a_remainder_is_what_exceeds_the_noise_in_standard_deviations():
     found = measure_remainders(objective.problem, evaluated(objective, b_two=1.0))
     np.testing.assert_allclose(found, np.sqrt([0.3**2 - 0.05**2, 0.02**2 - 0.01**2]))
     # Less than the noise is nothing.
-    np.testing.assert_allclose(
-        measure_remainders(objective.problem, evaluated(objective, a_one=1.0, b_two=1.0, c_three=0.8)), 0.0
-    )
+    whole = evaluated(objective, a_one=1.0, b_two=1.0, c_three=0.8)
+    np.testing.assert_allclose(measure_remainders(objective.problem, whole), 0.0)
 
 
 def stated(by_run, remainder=(0.0, 0.0)):

@@ -25,10 +25,8 @@ def test_noise_of_the_floor_is_carried_through_the_rig_and_counts():
     gain, noise = np.array([3.0, 0.5]), 0.4
     problem = pose({"model_error": 0.0, "replicates": 12}, floor_noise=noise, floor_gain=tuple(gain))
     weights, rng = weigh_noise(problem), np.random.default_rng(11)
-    drawn = {
-        run: own + gain[:, None] * noise * rng.standard_normal(own.shape[1])
-        for run, own in draw(problem, NOISE).items()
-    }
+    quiet, carried = draw(problem, NOISE), gain[:, None] * noise
+    drawn = {run: own + carried * rng.standard_normal(own.shape[1]) for run, own in quiet.items()}
     found, count = mean_squares(weights, drawn)
     # Beside the numbers' own error, that of a spectrum estimated from 12 x 9 bins or more.
     np.testing.assert_allclose(found, 1.0, atol=3.5 * np.sqrt(2.0 / count) + 0.02)
@@ -76,10 +74,8 @@ def test_what_repeats_differ_by_counts_where_it_is_more_than_the_noise_and_there
 
 def test_what_a_force_may_have_done_to_all_channels_weighs_as_little_as_its_power_says():
     rng, count = np.random.default_rng(2), 40
-    power, force = (
-        rng.uniform(0.5, 2.0, (2, count)),
-        rng.standard_normal((2, count)) + 1j * rng.standard_normal((2, count)),
-    )
+    power = rng.uniform(0.5, 2.0, (2, count))
+    force = rng.standard_normal((2, count)) + 1j * rng.standard_normal((2, count))
     weights = NoiseWeights({"first": power}).add_force({"first": 3.0 * force})
     white = NoiseWeights({"first": np.full((2, count), 2.0)})
 

@@ -2,7 +2,6 @@
 
 import copy
 import dataclasses
-import io
 
 import numpy as np
 import pytest
@@ -22,17 +21,12 @@ from seatsim.simulation.simulate import set_up
 
 from .toy import NOMINAL, place, pose, record
 
-NUISANCES = (
-    Nuisance("plant", "driver_mass", 80.0, 8.0),
-    Nuisance("damper", "c_a", 250.0, 25.0),
-    Nuisance("coil", "rate", 130.0, 13.0),
-    Nuisance("coil", "delay", 0.01, 0.002),
-)
+NUISANCES = (Nuisance("plant", "driver_mass", 80.0, 8.0), Nuisance("damper", "c_a", 250.0, 25.0))
+NUISANCES += (Nuisance("coil", "rate", 130.0, 13.0), Nuisance("coil", "delay", 0.01, 0.002))
 PRESENT = "effects: [{effect: driver.mass, parameters: {change: 3}}]\n"
 BIAS = Candidate("sensor.bias", Bias, {"channel": "damper_force", "drift": 0.0}, ("share",), (0.1,), (-1.0,), (1.0,))
-BODY = Candidate(
-    "driver.biodynamics", Biodynamics, {}, ("share", "frequency", "damping"), (0.2, 5.0, 0.3), (0,) * 3, (9,) * 3
-)
+SHAPE = ("share", "frequency", "damping")
+BODY = Candidate("driver.biodynamics", Biodynamics, {}, SHAPE, (0.2, 5.0, 0.3), (0,) * 3, (9,) * 3)
 
 
 @pytest.fixture
@@ -96,8 +90,7 @@ def test_every_candidate_can_be_run_and_exported_wherever_the_nominal_can(proble
     for candidate in {each.structure: each for each in list_candidates(other)}.values():
         for values in (candidate.low, candidate.high):
             content = write_augmented(other, Parameters(np.zeros(0)).add(candidate, np.array(values)))
-            with (tmp_path / "augmented.yaml").open("w") as stream:
-                YAML(typ="safe").dump(content, stream)
+            YAML(typ="safe").dump(content, tmp_path / "augmented.yaml")
             back = single(tmp_path / "augmented.yaml")
             set_up(back, back.plant, back.control, False, None)
             rig_block(back)
@@ -124,9 +117,7 @@ def test_all_is_of_plain_types_and_reads_back_as_the_same_rig(problem, tmp_path)
     content = write_augmented(other, rig)
     assert set(types_within(content)) <= {dict, list, str, int, float}
     assert type(content["effects"][2]["parameters"]["damping"]) is float
-    stream = io.StringIO()
-    YAML(typ="safe").dump(content, stream)
-    (tmp_path / "augmented.yaml").write_text(stream.getvalue())
+    YAML(typ="safe").dump(content, tmp_path / "augmented.yaml")
     back = single(tmp_path / "augmented.yaml")
     assert back.plant.driver_mass == 84.0 and back.damper.record.c_a == 225.0 and back.coil.delay == 0.0105
     assert back.effects[1:] == (Bias("damper_force", 0.25, 0.0), Biodynamics(0.3, 4.5, 1.0))

@@ -4,11 +4,7 @@ import numpy as np
 import pytest
 
 from seatsim.diagnosis.localise.discrepancy import Discrepancy
-from seatsim.diagnosis.localise.disturbance import (
-    BIAS_DRIFT,
-    add_strength,
-    find_bias_drift,
-)
+from seatsim.diagnosis.localise.disturbance import BIAS_DRIFT, add_strength, find_bias_drift
 from seatsim.diagnosis.objective import Evaluation
 from seatsim.diagnosis.result import Cause, Estimate
 

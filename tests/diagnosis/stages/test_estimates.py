@@ -74,23 +74,18 @@ def rms_gap(problem, run, amounts):
     table = problem.recording.table(run)
     floor = table["floor_acceleration"]
     simulated = add_taps("floor", floor) + sum(a * add_taps(c, floor) for c, a in amounts.items())
-    gaps = [
-        np.sqrt(np.mean((table[n] - simulated[k])[SKIP:] ** 2)) / np.std(table[n][SKIP:])
-        for k, n in enumerate(problem.channels)
-    ]
-    return np.sqrt(np.mean(np.square(gaps)))
+    pairs = [(table[name][SKIP:], simulated[k, SKIP:]) for k, name in enumerate(problem.channels)]
+    return np.sqrt(np.mean([np.mean((measured - own) ** 2) / np.var(measured) for measured, own in pairs]))
 
 
 def test_an_effect_shrinks_the_calibrated_gap_of_the_held_out_run(folder):
     # Two effects are at work, of four that may be; one of them is chosen.
     objective = pose_one(folder, (Added("one", 0.5), Added("two", 0.2)))
     problem = objective.problem
-    rigs = {
-        "calibrated": place(problem, deviations=[0.1, 0.2]),
-        "single": place(problem, (offer("a.one", "one", start=0.25), 0.4), deviations=[0.1, 0.0]),
-        "twice": place(problem, (TWICE, 0.5, 0.2)),
-        "augmented": place(problem, (offer("a.one", "one", start=0.25), 0.45), deviations=[0.0, 0.05]),
-    }
+    one = offer("a.one", "one", start=0.25)
+    rigs = {"calibrated": place(problem, deviations=[0.1, 0.2]), "twice": place(problem, (TWICE, 0.5, 0.2))}
+    rigs |= {"single": place(problem, (one, 0.4), deviations=[0.1, 0.0])}
+    rigs |= {"augmented": place(problem, (one, 0.45), deviations=[0.0, 0.05])}
     rigs = {name: objective.evaluate([rig])[0] for name, rig in rigs.items()}
     kept = [rigs[name].parameters for name in ("calibrated", "augmented")]
     calibrated, augmented = objective.on_runs(["first"]).evaluate(kept)
@@ -133,9 +128,8 @@ def test_motion_is_that_of_the_held_out_run_with_the_slope_of_its_travel(folder)
     table = {"coil_current": 2.0 * rows, "damper_temperature": 3.0 * rows, "floor_acceleration": rows}
     found = trace_motion(with_table(problem, **table, suspension_displacement=wave), "first")
     assert list(found) == ["coil_current", "damper_temperature", "displacement", "velocity"]
-    assert np.array_equal(found["coil_current"], 2.0 * rows[SKIP:]) and np.array_equal(
-        found["displacement"], wave[SKIP:]
-    )
+    assert np.array_equal(found["coil_current"], 2.0 * rows[SKIP:])
+    assert np.array_equal(found["displacement"], wave[SKIP:])
     # A peak in every fifth row is gone in an average over five.
     assert found["velocity"][10:-10] == pytest.approx(0.01)
     bench = trace_motion(with_table(problem, displacement=wave, velocity=rows), "first")
@@ -149,9 +143,7 @@ def test_comfort_is_the_rms_of_the_quoted_channels(folder):
 
     known = [("damper_force", "N"), ("suspension_displacement", "m"), ("driver_acceleration", "m/s^2")]
     found = compare_comfort([trace(*each) for each in known])
-    assert [(f.quantity, f.unit) for f in found] == [
-        ("RMS driver acceleration", "m/s^2"),
-        ("RMS suspension displacement", "m"),
-    ]
+    quoted = [("RMS driver acceleration", "m/s^2"), ("RMS suspension displacement", "m")]
+    assert [(f.quantity, f.unit) for f in found] == quoted
     for figure in found:
         assert (figure.measured, figure.nominal, figure.after) == pytest.approx(np.sqrt([17.0, 25.0, 10.0]))

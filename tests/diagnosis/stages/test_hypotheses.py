@@ -103,9 +103,8 @@ def test_a_planted_signal_is_likeliest_in_its_block(folder, block):
     assert likeliest(found) == block
     ranked = sorted(each.negative_log_evidence for each in found.values())
     assert ranked[0] < 1.0 and ranked[1] > ranked[0] + 1.0
-    assert (found[block].quantity, found[block].unit) == (
-        ("acceleration", "m/s^2") if block == "floor" else ("force", "N")
-    )
+    stated = ("acceleration", "m/s^2") if block == "floor" else ("force", "N")
+    assert (found[block].quantity, found[block].unit) == stated
     assert found[block].channel == "" and list(found[block].signals) == ["first", "second"]
     for run, signal in signals.items():
         assert np.std(found[block].signals[run] - signal) < 0.35 * np.std(signal)
@@ -130,11 +129,8 @@ def test_a_coil_is_asked_where_its_current_is_recorded(folder):
         flowing = np.zeros(len(floor.acceleration))
         flowing += np.interp(np.arange(len(flowing)) / problem.parts, SKIP + np.arange(len(more)), more, 0.0, 0.0)
         driven = floor._replace(command=floor.command + flowing)
-        measured[run] = (
-            problem.measured[run]
-            + problem.simulated(run, problem.nominal, (), problem.inputs[run]._replace(floor=driven))
-            - problem.simulated(run, problem.nominal, ())
-        )
+        moved = problem.simulated(run, problem.nominal, (), problem.inputs[run]._replace(floor=driven))
+        measured[run] = problem.measured[run] + moved - problem.simulated(run, problem.nominal, ())
     found = evaluate(dataclasses.replace(objective, problem=dataclasses.replace(problem, measured=measured)))
     assert likeliest(found) == "coil"
     assert (found["coil"].quantity, found["coil"].unit, found["coil"].channel) == ("current", "A", "")

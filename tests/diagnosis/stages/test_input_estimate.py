@@ -68,9 +68,8 @@ def test_a_current_is_what_was_logged_beyond_that_of_the_simulated_coil(folder):
 def test_what_a_repeat_answers_to_a_floor_of_its_own_is_no_disturbance(folder):
     own = np.random.default_rng(5).standard_normal(SKIP + SAMPLES)
     runs = {"first": own + np.random.default_rng(6).standard_normal(len(own)), "again": own}
-    objective = weigh_stated(
-        pose(record(folder, runs=runs, channels=CHANNELS[:3], noise=LOUD, repeats={"again": "first"}))
-    )
+    recording = record(folder, runs=runs, channels=CHANNELS[:3], noise=LOUD, repeats={"again": "first"})
+    objective = weigh_stated(pose(recording))
     nominal = evaluate_nominal(objective)
     assert np.std(objective.problem.measured["first"] - objective.problem.measured["again"]) > 0.5
     assert np.std(estimate_nonrepeatable_force(objective, nominal)["again"]) < 0.01
@@ -88,9 +87,8 @@ def repeat(folder, forces, noise=LOUD):
     """Return an objective with a run, its repeat and a third run, and the nominal rig; forces act on the frame."""
     floor = np.random.default_rng(4).standard_normal(SKIP + SAMPLES)
     runs = {"first": floor, "other": 250, "again": floor}
-    objective = weigh_stated(
-        pose(record(folder, runs=runs, channels=CHANNELS[:3], noise=noise, repeats={"again": "first"}))
-    )
+    recording = record(folder, runs=runs, channels=CHANNELS[:3], noise=noise, repeats={"again": "first"})
+    objective = weigh_stated(pose(recording))
     objective = plant(objective, PORTS["suspension"], forces)
     return objective, evaluate_nominal(objective)
 

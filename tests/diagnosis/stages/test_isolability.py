@@ -110,9 +110,8 @@ def test_groups_are_those_of_ranks_of_the_seats_equations(size):
         assert found == group_by_rank(channels), channels
 
 
-NEVER = (
-    "damper and sensor cannot be distinguished by any channel: only the form of an effect, or a repeat of a run, can"
-)
+BY_FORM = "cannot be distinguished by any channel: only the form of an effect, or a repeat of a run, can"
+NEVER = f"damper and sensor {BY_FORM}"
 
 
 @pytest.mark.parametrize(("further", "sentences"), [
@@ -132,15 +131,13 @@ def test_sentences_on_a_bench(further, sentences):
 
 def test_a_full_seat_lacks_nothing_but_the_floor_against_the_suspension():
     (sentence,) = describe_missing_sensors("seat", ALL)
-    assert sentence.startswith("suspension and floor cannot be distinguished by any channel")
+    assert sentence == f"suspension and floor {BY_FORM}"
 
 
 def test_a_seat_without_the_driver_lists_what_cannot_be_told_and_what_cannot_be_judged():
-    assert describe_missing_sensors("seat", ALL - {"driver_acceleration", "damper_force"}) == [
-        "without damper_force, damper and suspension or cushion or driver cannot be distinguished: add a load cell at"
-        " the damper",
-        "without driver_acceleration, damper or suspension, cushion and driver cannot be distinguished: add an"
-        " accelerometer at the driver",
-        "suspension and floor cannot be distinguished by any channel: only the form of an effect, or a repeat of a run,"
-        " can",
-    ]
+    load_cell, driver, floor = describe_missing_sensors("seat", ALL - {"driver_acceleration", "damper_force"})
+    said = "without {}, {} cannot be distinguished: add {}".format
+    blocks = "damper and suspension or cushion or driver", "damper or suspension, cushion and driver"
+    assert load_cell == said("damper_force", blocks[0], "a load cell at the damper")
+    assert driver == said("driver_acceleration", blocks[1], "an accelerometer at the driver")
+    assert floor == f"suspension and floor {BY_FORM}"

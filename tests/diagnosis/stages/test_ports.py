@@ -67,9 +67,8 @@ def test_a_current_adds_to_that_of_the_coil_and_is_never_negative(objective):
 
 
 def test_a_rig_that_leaves_all_bounds_misses_by_far(objective):
-    problem = dataclasses.replace(
-        objective.problem, scenario=dataclasses.replace(objective.problem.scenario, effects=(Diverging(1.0),))
-    )
+    scenario = dataclasses.replace(objective.problem.scenario, effects=(Diverging(1.0),))
+    problem = dataclasses.replace(objective.problem, scenario=scenario)
     rig = build(dataclasses.replace(objective, problem=problem), PORTS["suspension"])
     found = rig.simulate_with(np.zeros(rig.samples))
     assert np.array_equal(found, np.tile(FAR_OFF * problem.spread[:, None], rig.samples))

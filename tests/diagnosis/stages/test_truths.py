@@ -7,6 +7,7 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
+import pandas as pd
 import pytest
 from ruamel.yaml import YAML
 
@@ -31,21 +32,20 @@ MIDDLE, LONG = dict.fromkeys(RUNS, 400), dict.fromkeys(RUNS, 800)
 SLOW = {run: slow_floor(SKIP + 300, seed) for seed, run in enumerate(RUNS, 3)}
 
 
+def on_frame(problem, error):
+    """Return an error of the frame's accelerometer in each run, by its number of rows."""
+    return {run: {"frame_acceleration": error(values.shape[1])} for run, values in problem.measured.items()}
+
+
 def drift(problem):
     """A zero of the frame's accelerometer that wanders."""
-    return {
-        run: {"frame_acceleration": 0.3 * np.sin(2.0 * np.pi * 0.25 / problem.rate * np.arange(values.shape[1]))}
-        for run, values in problem.measured.items()
-    }
+    return on_frame(problem, lambda rows: 0.3 * np.sin(2.0 * np.pi * 0.25 / problem.rate * np.arange(rows)))
 
 
 def hiss(problem):
     """White noise on the frame's accelerometer, far above what its sensor states."""
     rng = np.random.default_rng(9)
-    return {
-        run: {"frame_acceleration": 0.5 * rng.standard_normal(values.shape[1])}
-        for run, values in problem.measured.items()
-    }
+    return on_frame(problem, lambda rows: 0.5 * rng.standard_normal(rows))
 
 
 def pushed(newtons, port):
@@ -196,19 +196,12 @@ def test_neither_the_order_of_the_channels_nor_that_of_the_runs_changes_the_answ
     back, turned = slice(None, None, -1), problem.recording
     runs = dict(list(turned.runs.items())[:2][back] + list(turned.runs.items())[2:])
     channels = problem.channels[back]
-    other = dataclasses.replace(
-        problem,
-        channels=channels,
-        recording=dataclasses.replace(turned, runs=runs),
-        runs=tuple(runs),
-        measured={run: problem.measured[run][back] for run in runs},
-    )
+    recording = dataclasses.replace(turned, runs=runs)
+    measured = {run: problem.measured[run][back] for run in runs}
+    other = dataclasses.replace(problem, channels=channels, recording=recording, runs=tuple(runs), measured=measured)
     again = diagnose_problem(other, without=row.without)
-    assert (again.verdict, again.selected, again.indistinguishable) == (
-        found.verdict,
-        found.selected,
-        found.indistinguishable,
-    )
+    for stated in ("verdict", "selected", "indistinguishable"):
+        assert getattr(again, stated) == getattr(found, stated)
     for effect, (field, _) in row.sizes.items():
         values = [next(c for c in each.causes if c.effect == effect).parameters[field].value for each in (found, again)]
         assert values[1] == pytest.approx(values[0], rel=1e-3)
@@ -241,9 +234,7 @@ def write(recording, folder, tolerance=0.1, runs=None):
     for run in runs or recording.runs:
         rows = recording.tables[run]
         table = {"time": np.arange(len(rows["floor_acceleration"])) / recording.header.sample_rate} | rows
-        np.savetxt(
-            folder / f"{run}.csv", np.array([*table.values()]).T, "%.17g", ",", header=",".join(table), comments=""
-        )
+        pd.DataFrame(table).to_csv(folder / f"{run}.csv", index=False)
     stated = recording.channels.items()
     channels = {name: {"unit": entry.unit, "noise_rms": float(entry.noise_rms)} for name, entry in stated}
     header = {"rig": "seat", "sample_rate": 200.0, "nominal": "nominal.yaml", "channels": channels}

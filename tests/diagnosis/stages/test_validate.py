@@ -8,13 +8,7 @@ import pytest
 from seatsim.diagnosis import validate
 from seatsim.diagnosis.objective import Evaluation, Parameters
 from seatsim.diagnosis.settings import DiagnosisSettings
-from seatsim.diagnosis.validate import (
-    choose_held_out_run,
-    choose_typical_run,
-    measure_gaps,
-    refit_without,
-    replay_runs,
-)
+from seatsim.diagnosis.validate import choose_held_out_run, choose_typical_run, measure_gaps, refit_without, replay_runs
 from seatsim.effects.sensor import Gain
 from seatsim.scenario.loading import single
 
@@ -92,11 +86,8 @@ def test_the_typical_run_shrinks_as_all_runs_together(shares, after, chosen):
     moves = {run: {"one": np.sqrt(share)} for run, share in zip(runs, shares, strict=True)}
     problem = Moved(moves, runs, DiagnosisSettings(), tuple(zip(runs, after, strict=True)))
     rig = Parameters(np.zeros(0)).add(offer("x.one", "one"), np.array([1.0]))
-    residuals = [
-        {run: np.full((1, 4), left) for run, left in zip(runs, each, strict=True)} for each in ([1.0] * 3, after)
-    ]
-    rigs = [Evaluation(rig, of_rig, {}, 0.0) for of_rig in residuals]
-    assert choose_typical_run(problem, *rigs) == chosen
+    residuals = [dict(zip(runs, np.multiply.outer(each, np.ones((1, 4))), strict=True)) for each in ([1.0] * 3, after)]
+    assert choose_typical_run(problem, *(Evaluation(rig, of_rig, {}, 0.0) for of_rig in residuals)) == chosen
 
 
 def test_without_effects_or_other_runs_the_last_is_held_out():
@@ -131,10 +122,8 @@ def test_a_scenario_has_the_parameters_and_effects_of_a_rig_beside_its_own(folde
 
 def scenarios(problem, *amounts):
     nominal = problem.recording.nominal
-    return tuple(
-        make_scenario(problem, nominal, place(problem, (offer("x", "one"), a)) if a else place(problem))
-        for a in amounts
-    )
+    rigs = [place(problem, (offer("x", "one"), amount)) if amount else place(problem) for amount in amounts]
+    return tuple(make_scenario(problem, nominal, rig) for rig in rigs)
 
 
 def measure(problem, three, name, spread):

@@ -61,18 +61,11 @@ def bench(tmp_path_factory):
         columns = {"displacement": stroke[::2] + 2e-5 * noise[0], "damper_force": force + 3.0 * noise[1]}
         pd.DataFrame(columns | {"coil_current": current}).to_csv(folder / f"{name}.csv.gz", index=False)
     units = {"displacement": ("m", 2e-5), "damper_force": ("N", 3.0), "coil_current": ("A", 0.0)}
-    header = {
-        "rig": "damper_bench",
-        "sample_rate": RATE,
-        "nominal": "nominal.yaml",
-        "runs": [{"name": name, "file": f"{name}.csv.gz"} for name in MOTIONS],
-        "channels": {c: {"unit": u, "noise_rms": n} for c, (u, n) in units.items()},
-    }
-    nominal = {
-        "damper": {"model": "bouc_wen", "parameters": DAMPER._asdict()},
-        "temperature": 20.0,
-        "actuator": {"rate": 130.0, "max_current": 1.0},
-    }
+    header = {"rig": "damper_bench", "sample_rate": RATE, "nominal": "nominal.yaml"}
+    header |= {"runs": [{"name": name, "file": f"{name}.csv.gz"} for name in MOTIONS]}
+    header |= {"channels": {c: {"unit": u, "noise_rms": n} for c, (u, n) in units.items()}}
+    nominal = {"damper": {"model": "bouc_wen", "parameters": DAMPER._asdict()}, "temperature": 20.0}
+    nominal |= {"actuator": {"rate": 130.0, "max_current": 1.0}}
     YAML(typ="safe").dump(header, folder / "recording.yaml")
     YAML(typ="safe").dump(nominal, folder / "nominal.yaml")
     return folder

@@ -36,9 +36,8 @@ def test_a_sound_run_contradicts_nothing(run):
 def test_a_late_coil_current_is_a_warning_and_a_late_motion_an_error(run, channel, seconds, severity, words):
     late = np.roll(run.table[channel], round(seconds * run.rate))
     found = list(check_consistency(with_channel(run, **{channel: late})))
-    assert [(issue.severity, issue.kind, issue.channel) for issue in found] == (
-        [(severity, "late", channel)] if severity else []
-    )
+    expected = [(severity, "late", channel)] if severity else []
+    assert [(issue.severity, issue.kind, issue.channel) for issue in found] == expected
     assert all(words in issue.sentence for issue in found)
 
 

@@ -17,28 +17,22 @@ from ...text import beside, parse
 
 LARGE = parse(beside(__file__, "large_effects.yaml"))
 """Effects at the upper end of what is plausible, in several forms."""
-ON_A_CHANNEL = {
-    "sensor.gain": ({"error": 1.0}, {"error": -0.5}),
-    "sensor.bias": ({"share": 5.0}, {"share": -5.0}),
-    "sensor.lag": ({"time": 0.1},),
-}
+ON_A_CHANNEL = {"sensor.gain": ({"error": 1.0}, {"error": -0.5}), "sensor.lag": ({"time": 0.1},)}
+ON_A_CHANNEL |= {"sensor.bias": ({"share": 5.0}, {"share": -5.0})}
 OF_A_SEAT = ("suspension.", "cushion.", "driver.", "floor.")
 CHANNELS = parse("""
     seat: [floor_acceleration, frame_acceleration, driver_acceleration, suspension_displacement, damper_force,
         coil_current]
     bench: [displacement, damper_force, coil_current]
 """)
+LISTED = [(rig, name, several) for rig in CHANNELS for name, several in LARGE.items()]
+LISTED = [each for each in LISTED if each[0] == "seat" or not each[1].startswith(OF_A_SEAT)]
+for rig, channels in CHANNELS.items():
+    for name, several in ON_A_CHANNEL.items():
+        LISTED += [(rig, name, [{"channel": channel, **values} for values in several]) for channel in channels]
 CASES = [
     pytest.param(rig, name, values, marks=pytest.mark.slow if k else ())
-    for rig in CHANNELS
-    for name, several in LARGE.items()
-    for k, values in enumerate(several)
-    if rig == "seat" or not name.startswith(OF_A_SEAT)
-] + [
-    pytest.param(rig, name, {"channel": channel, **values}, marks=pytest.mark.slow if k else ())
-    for rig, channels in CHANNELS.items()
-    for channel in channels
-    for name, several in ON_A_CHANNEL.items()
+    for rig, name, several in LISTED
     for k, values in enumerate(several)
 ]
 """Every form and sign; the first of each is in the fast suite."""

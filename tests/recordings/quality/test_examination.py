@@ -96,12 +96,8 @@ def test_a_fault_of_one_run_is_placed_there(copy):
 
 
 def test_where_two_faults_explain_it_alike_both_are_named(copy):
-    edit(
-        copy,
-        lambda header: [
-            header["channels"].pop(c) for c in ("frame_acceleration", "suspension_displacement", "damper_force")
-        ],
-    )
+    lost = ("frame_acceleration", "suspension_displacement", "damper_force")
+    edit(copy, lambda header: [header["channels"].pop(channel) for channel in lost])
     rewrite(copy, scaled("floor_acceleration", -1.0))
     (sentence,) = errors(copy)
     assert "floor_acceleration" in sentence

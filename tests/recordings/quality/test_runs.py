@@ -26,19 +26,12 @@ def said(*runs):
 @pytest.fixture
 def runs(under_test):
     """Two runs of white motion, whose noise is stated as it is."""
-    noise = {"floor_acceleration": 1.0, "driver_acceleration": 1.0}
-    return [
-        under_test(
-            {
-                "floor_acceleration": 9.0 * np.sin(np.arange(3000) / (20.0 + k)) + motion(k),
-                "driver_acceleration": 9.0 * np.sin(np.arange(3000) / (30.0 + k)) + motion(k + 5),
-            },
-            RATE,
-            noise,
-            name,
-        )
-        for k, name in enumerate("ab")
+    noise, rows = dict.fromkeys(("floor_acceleration", "driver_acceleration"), 1.0), np.arange(3000)
+    swings = [
+        [9.0 * np.sin(rows / (slow + k)) + motion(k + seed) for slow, seed in ((20.0, 0), (30.0, 5))] for k in (0, 1)
     ]
+    tables = [dict(zip(noise, swing, strict=True)) for swing in swings]
+    return [under_test(table, RATE, noise, name) for table, name in zip(tables, "ab", strict=True)]
 
 
 def test_a_single_run_and_a_duplicate_are_named(runs):
