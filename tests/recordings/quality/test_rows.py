@@ -29,10 +29,8 @@ def test_rows_that_were_written_twice_are_told_from_equal_ones(values, again):
 
 def test_coarse_channels_repeat_each_other_by_chance():
     time, generator = np.arange(6000) / 500.0, np.random.default_rng(2)
-    motion = np.array([10.0 * np.sin(np.pi * time), np.cos(np.pi * time)]) + [
-        [0.01],
-        [0.01],
-    ] * generator.standard_normal((2, 6000))
+    slow = np.array([10.0 * np.sin(np.pi * time), np.cos(np.pi * time)])
+    motion = slow + 0.01 * generator.standard_normal((2, 6000))
     coarse = np.round(motion / 0.015) * 0.015
     assert np.sum(np.all(coarse[:, 1:] == coarse[:, :-1], axis=0)) > 25
     assert len(find_repeated_rows(coarse)) == 0
