@@ -63,7 +63,7 @@ def format_number(value: float | None, digits: int = 3) -> str:
     exponent = math.floor(math.log10(abs(float(f"{value:.{digits - 1}e}"))))
     if not -5 < exponent < 7:
         mantissa, _, power = f"{value:.{digits - 1}e}".partition("e")
-        return f"{mantissa} × 10{str(int(power)).translate(RAISED)}".replace("-", MINUS)
+        return f"{mantissa}\u00a0×\u00a010{str(int(power)).translate(RAISED)}".replace("-", MINUS)
     return f"{value:.{max(0, digits - 1 - exponent)}f}".replace("-", MINUS)
 
 

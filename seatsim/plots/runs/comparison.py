@@ -22,6 +22,8 @@ from seatsim.simulation import naming
 from seatsim.simulation.result import Run
 
 FLOOR = Entry("as much as the floor (SEAT = 1)", DARK, ":", 1.6)
+_AREA, _COVERED = 60.0, 5.0
+"""Area of a point, and distance in dots of the picture below which one covers another."""
 _APART = 0.17
 """Least distance in inches of the names beside a panel."""
 NEAR = 1.6
@@ -117,7 +119,10 @@ def _draw_panel(axes: Axes, panel: Panel, looks: Mapping[str, Entry]) -> None:
     # Of a letter and a name the letter.
     texts = [looks[name].label.partition("  ")[0] for name in panel.names]
     x, y = panel.points.T
-    axes.scatter(x, y, s=60, color=[looks[name].colour for name in panel.names], edgecolors="1.0", zorder=4)
+    # A point that a later one covers is larger, so that it is a ring about it.
+    places = axes.transData.transform(panel.points)
+    sizes = [_AREA * (1 + np.sum(np.hypot(*(places[k + 1 :] - place).T) < _COVERED)) for k, place in enumerate(places)]
+    axes.scatter(x, y, s=sizes, color=[looks[name].colour for name in panel.names], edgecolors="1.0", zorder=4)
     _name_points(axes, panel.points, texts)
     style.set_title(axes, panel.title)
 
