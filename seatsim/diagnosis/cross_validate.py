@@ -26,8 +26,8 @@ _SETS_COMPARED = 8
 """Sets of each size that are cross-validated; more take more time."""
 _FOLDS = 3
 """Parts of the runs that are left out in turn."""
-_SURE = 2.0
-"""Standard deviations from which an error of a sensor is no chance."""
+_LAG, _SURE = "sensor.lag", 2.0
+"""The lag of a sensor, and the standard deviations from which it is no chance."""
 _DOUBTFUL = 1.5
 """Factor by which a run left out may get worse before the step of the other runs is checked and shortened."""
 
@@ -56,7 +56,7 @@ def select_by_cross_validation(objective: Objective, selection: Selection) -> _S
     found = [(chosen, before)]
     for sets in selection.sets[1:]:
         compared = [each for each in sets[:_SETS_COMPARED] if is_material(problem, each)]
-        compared = [each for each in compared if _shows_sensors(objective, each, selection.nuisances)]
+        compared = [each for each in compared if _shows_lags(objective, each, selection.nuisances)]
         tried = []
         for each in compared:
             after = cross_validate(objective, each, selection.nuisances)
@@ -75,18 +75,18 @@ def select_by_cross_validation(objective: Objective, selection: Selection) -> _S
     return _Supported(chosen, equivalent, [(each, _weigh(objective, each, left)) for each, left in found])
 
 
-def _shows_sensors(objective: Objective, evaluation: Evaluation, nuisances: Linearisation) -> bool:
-    """Whether every error of a sensor in a set is larger than chance and the errors of the rig's form make it.
+def _shows_lags(objective: Objective, evaluation: Evaluation, nuisances: Linearisation) -> bool:
+    """Whether a sensor's lag in a set is larger than chance and the errors of the rig's form make it.
 
-    Sensors are calibrated, and a small lag or gain of one stands in for whatever the rig lacks.
+    A small one stands in for whatever turns the phase of a loop that the rig lacks.
     """
-    if not _count_sensors(evaluation):
+    if _LAG not in evaluation.parameters.names:
         return True
     parameters, deviations = evaluation.parameters, estimate_standard_deviations(objective, evaluation, nuisances)
     at = parameters.effect_components.start
     for term, values in zip(parameters.terms, parameters.values, strict=True):
         by_chance = _SURE * term.scale[: term.sizes] * deviations[at : at + term.sizes]
-        if term.block == "sensor" and np.all(np.abs(term.from_nominal(values.tolist())) < by_chance):
+        if term.effect == _LAG and np.all(np.abs(term.from_nominal(values.tolist())) < by_chance):
             return False
         at += len(term.free)
     return True

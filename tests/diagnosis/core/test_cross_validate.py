@@ -15,7 +15,7 @@ from seatsim.diagnosis.settings import DiagnosisSettings
 from .toy import add_up, draw_signals, make_problem, offer, place, stack, weigh_stated
 
 RUNS = {"first": 80, "second": 100, "third": 120}
-NAMES = ["nominal", "nuisance 0", "rig.one", "rig.two", "rig.alike", "rig.overfit", "sensor.alike", "rig.unknown"]
+NAMES = ["nominal", "nuisance 0", "rig.one", "rig.two", "rig.alike", "rig.overfit", "sensor.lag", "rig.unknown"]
 TRUE = {"rig.one": 1.0, "rig.two": 0.7, "rig.unknown": 0.4}
 
 
@@ -26,7 +26,7 @@ def pose(runs=RUNS, amounts=TRUE, **settings):
     signals = draw_signals(NAMES, runs)
     for run, own in signals.items():
         own["rig.alike"] = 0.99 * own["rig.one"] + 0.1 * own["rig.alike"]
-        own["sensor.alike"] = 0.999 * own["rig.one"] + 0.01 * own["sensor.alike"]
+        own["sensor.lag"] = 0.999 * own["rig.one"] + 0.01 * own["sensor.lag"]
         # It imitates the gap of the last run, and is another thing in the others.
         last = own["rig.one"] + 0.5 * own["rig.two"]
         own["rig.overfit"] = 1.5 * last if run == list(runs)[-1] else 0.5 * own["rig.overfit"]
@@ -132,9 +132,9 @@ def test_sets_that_help_as_much_are_equivalent():
 
 
 def test_of_two_that_help_as_much_the_rig_is_chosen_before_the_sensor():
-    assert select(pose(), [("sensor.alike",), ("rig.one",)]) == ({"rig.one"}, [{"sensor.alike"}])
+    assert select(pose(), [("sensor.lag",), ("rig.one",)]) == ({"rig.one"}, [{"sensor.lag"}])
     assert select(pose(), [("rig.alike",), ("rig.one",)]) == ({"rig.one"}, [{"rig.alike"}])
-    assert select(pose(), [("sensor.alike",)]) == ({"sensor.alike"}, [])
+    assert select(pose(), [("sensor.lag",)]) == ({"sensor.lag"}, [])
 
 
 @pytest.mark.parametrize(
@@ -168,9 +168,9 @@ def test_every_set_tried_is_returned_with_its_weight():
     np.testing.assert_allclose([weight for _, weight in tried], weights, atol=0.02)
 
 
-def test_an_error_of_a_sensor_is_supported_only_where_it_is_no_chance():
+def test_a_lag_of_a_sensor_is_supported_only_where_it_is_no_chance():
     # Its size is 1.3 times its standard deviation, by what the rest of the gap may be.
     weak = pose(amounts={"rig.one": 0.1, "rig.unknown": 1.0}, independent=1e4)
     assert select(weak, [("rig.alike",)]) == ({"rig.alike"}, [])
-    assert select(weak, [("sensor.alike",)]) == (set(), [])
-    assert select(pose(independent=1e4), [("sensor.alike",)]) == ({"sensor.alike"}, [])
+    assert select(weak, [("sensor.lag",)]) == (set(), [])
+    assert select(pose(independent=1e4), [("sensor.lag",)]) == ({"sensor.lag"}, [])
