@@ -55,8 +55,11 @@ def select_by_cross_validation(objective: Objective, selection: Selection) -> _S
     before = _charge(objective, chosen, 1.0)
     found = [(chosen, before)]
     for sets in selection.sets[1:]:
-        compared = [each for each in sets[:_SETS_COMPARED] if is_material(problem, each)]
-        compared = [each for each in compared if _shows_lags(objective, each, selection.nuisances)]
+        compared = [
+            each
+            for each in sets[:_SETS_COMPARED]
+            if is_material(problem, each) and _shows_lags(objective, each, selection.nuisances)
+        ]
         tried = []
         for each in compared:
             after = cross_validate(objective, each, selection.nuisances)
@@ -82,14 +85,11 @@ def _shows_lags(objective: Objective, evaluation: Evaluation, nuisances: Lineari
     """
     if _LAG not in evaluation.parameters.names:
         return True
-    parameters, deviations = evaluation.parameters, estimate_standard_deviations(objective, evaluation, nuisances)
-    at = parameters.effect_components.start
-    for term, values in zip(parameters.terms, parameters.values, strict=True):
-        by_chance = _SURE * term.scale[: term.sizes] * deviations[at : at + term.sizes]
-        if term.effect == _LAG and np.all(np.abs(term.from_nominal(values.tolist())) < by_chance):
-            return False
-        at += len(term.free)
-    return True
+    rig, deviations = evaluation.parameters, estimate_standard_deviations(objective, evaluation, nuisances)
+    parts = zip(rig.terms, rig.values, rig.split(deviations), strict=True)
+    term, values, chance = next(each for each in parts if each[0].effect == _LAG)
+    sizes = np.abs(term.from_nominal(values.tolist()))
+    return bool(np.any(sizes >= _SURE * (term.scale * chance)[: term.sizes]))
 
 
 def _list_equals(objective: Objective, tried: Sequence[tuple[Evaluation, float]]) -> list[tuple[Evaluation, float]]:

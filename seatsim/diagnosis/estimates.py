@@ -71,20 +71,19 @@ def _estimate_parameters(
 ) -> dict[str, _FoundEffect]:
     """Return what was found of each effect."""
     parameters, found = evaluation.parameters, {}
-    ends = parameters.find_at_bound(1.0 - AT_BOUND)
-    deviations = estimate_standard_deviations(objective, evaluation, nuisances)
-    start, shortest = len(parameters.deviations), _LEAST_TIME / objective.problem.rate
-    for term, values in zip(parameters.terms, parameters.values, strict=True):
+    shortest = _LEAST_TIME / objective.problem.rate
+    ends = parameters.split(parameters.find_at_bound(1.0 - AT_BOUND))
+    deviations = parameters.split(estimate_standard_deviations(objective, evaluation, nuisances))
+    for term, values, deviation, at_end in zip(parameters.terms, parameters.values, deviations, ends, strict=True):
         units = {field.name: field.unit for field in describe(term.cls)}
         estimates: dict[str, Estimate | str] = {}
         if "channel" in term.fixed:
             estimates["channel"] = str(term.fixed["channel"])
         for k, (name, value) in enumerate(zip(term.free, values, strict=True)):
-            std = max(float(deviations[start + k] * term.scale[k]), shortest if units[name] == "s" else 0.0)
+            std = max(float(deviation[k] * term.scale[k]), shortest if units[name] == "s" else 0.0)
             bound = float(term.low[k]), float(term.high[k])
-            estimates[name] = Estimate(float(value), std, units[name], bound, bool(ends[start + k]))
-        found[term.effect] = _FoundEffect(estimates, bool(np.all(ends[start : start + term.sizes])))
-        start += len(term.free)
+            estimates[name] = Estimate(float(value), std, units[name], bound, bool(at_end[k]))
+        found[term.effect] = _FoundEffect(estimates, bool(np.all(at_end[: term.sizes])))
     return found
 
 

@@ -14,6 +14,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,8 @@ from seatsim.diagnosis.problem import NEVER, DiagnosisProblem, OutOfTimeError
 from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.schema.arrays import Array
 from seatsim.schema.registry import Record
+
+_T = TypeVar("_T", bound=np.generic)
 
 
 @dataclass(frozen=True)
@@ -92,12 +95,15 @@ class Parameters:
         """Return the parameters at another vector, clipped to the bounds, which no rounding exceeds."""
         low, high = self.limits
         vector = np.clip(vector, low, high)
-        values, start = [], len(self.deviations)
-        for term in self.terms:
-            # The product may be beyond a bound by a rounding, and no file with such a value would be read.
-            values.append(np.clip(vector[start : start + len(term.free)] * term.scale, term.low, term.high))
-            start += len(term.free)
-        return Parameters(vector[: len(self.deviations)], self.terms, tuple(values))
+        parts = zip(self.terms, self.split(vector), strict=True)
+        # The product may be beyond a bound by a rounding, and no file with such a value would be read.
+        values = tuple(np.clip(part * term.scale, term.low, term.high) for term, part in parts)
+        return Parameters(vector[: len(self.deviations)], self.terms, values)
+
+    def split(self, components: NDArray[_T]) -> list[NDArray[_T]]:
+        """Return what something with the components of `vector` has of each effect, shape (len(free),) each."""
+        ends = np.cumsum([len(self.deviations), *(len(term.free) for term in self.terms)])
+        return np.split(components, ends)[1:-1]
 
     def shift(self, component: int, step: float) -> tuple[Parameters, float]:
         """Return the parameters with one component moved by a difference step, downwards near the upper bound."""

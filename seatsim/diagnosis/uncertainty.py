@@ -1,7 +1,6 @@
 """Standard deviations of fitted parameters.
 
-A fit weighs the whitened numbers r by `K = (J J' + P)^-1 J`, so that its
-estimate moves by `K r`. What moves it is
+A fit weighs the whitened numbers r by `K = (J J' + P)^-1 J`, so that its estimate moves by `K r`. What moves it is
 
 - noise: `K K'`, or what blocks of time show, `sum over blocks b of (K_b r_b)(K_b r_b)'`, where that is more, as with
   residuals that are correlated in time or between channels (the sandwich of Huber 1967, clustered by time);
