@@ -62,10 +62,12 @@ def choose_extremes(shown: Shown) -> Shown:
     ranked = sorted(pairs, key=lambda pair: pair[0].read_metric(COMFORT if is_weighted else UNWEIGHTED))
     known = [("most comfortable", ranked[0]), ("least comfortable", ranked[-1])]
     known += [("best passive", pair) for pair in ranked if is_passive(pair[0].scenario)][:1]
-    chosen = [pair for pair in pairs if any(pair is each for _, each in known)]
-    why = [join_names([words for words, each in known if each is pair]) for pair in chosen]
-    drawn = join_names([f"“{look.label}” ({words})" for (_, look), words in zip(chosen, why, strict=True)])
-    left = [f"“{look.label}”" for _, look in (pair for pair in pairs if not any(pair is each for each in chosen))]
+    why = dict[int, list[str]]()
+    for words, (run, _) in known:
+        why.setdefault(id(run), []).append(words)
+    chosen = [pair for pair in pairs if id(pair[0]) in why]
+    drawn = join_names([f"“{look.label}” ({join_names(why[id(run)])})" for run, look in chosen])
+    left = [f"“{look.label}”" for run, look in pairs if id(run) not in why]
     omission = f"{shown.omission} Shown: {drawn}. Left out: {name_some(left)}."
     return shown._replace(runs=[run for run, _ in chosen], looks=[look for _, look in chosen], omission=omission)
 
