@@ -96,6 +96,13 @@ def list_calibrated(parameters: Sequence[Nuisance], deviations: Array) -> list[C
     return calibrated
 
 
+def describe_bounds(parameters: Sequence[CalibratedParameter]) -> list[str]:
+    """Return a sentence on the parameters that would be refitted beyond their tolerance, none where there is none."""
+    held = [f"{each.name} {each.nominal:.4g} (fitted {each.value:.4g})" for each in parameters if each.at_bound]
+    advice = "check these nominal values, or state a wider tolerance"
+    return [f"at the bound of their tolerance: {', '.join(held)}; {advice}"] if held else []
+
+
 def write_augmented(problem: DiagnosisProblem, parameters: Parameters) -> dict[str, object]:
     """Return the content of `augmented.yaml`."""
     source = problem.scenario.source

@@ -15,7 +15,6 @@ from seatsim.diagnosis.result import Diagnosis
 from seatsim.diagnosis.settings import DiagnosisSettings
 from seatsim.diagnosis.solve import solve
 from seatsim.diagnosis.state import state_diagnosis
-from seatsim.diagnosis.widen import search_wider
 from seatsim.recordings.header import NOT_STATED, USUAL
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.recording import Recording, join_recordings, load_recording
@@ -102,9 +101,7 @@ def diagnose_problem(
         check_nominal(problem)
         deadline = Deadline(time.monotonic() + _SEARCH_SHARE * budget)
         solution = solve(problem.until(deadline), without, tell)
-        solution, at_bound = search_wider(solution, without, tell)
-        said = [*notes, *at_bound]
-        began = [at for _, at in stages[1:]] + [math.inf]
+        said, began = list(notes), [at for _, at in stages[1:]] + [math.inf]
         cut = dict.fromkeys(stage for (stage, _), until in zip(stages, began, strict=True) if until > deadline.end)
         if deadline.is_past and cut:
             spent = f"the budget of {budget:g} s was spent, so that the answer is the best so far"

@@ -48,12 +48,6 @@ def fit(
     return evaluation
 
 
-def refit(objective: Objective, parameters: Parameters) -> Evaluation:
-    """Return the evaluation at the end of a fit from some parameters, linearised there."""
-    start = objective.evaluate([parameters])[0]
-    return fit(objective, start, objective.linearise_nuisances(start))
-
-
 def refit_on(objective: Objective, rig: Linearisation, settled: float | None = None) -> Evaluation:
     """Return the evaluation at the end of a fit on the runs of an objective, from a rig linearised over more runs."""
     return fit(objective, objective.weigh_again(rig.evaluation), rig, settled=settled)

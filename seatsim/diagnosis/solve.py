@@ -46,9 +46,6 @@ def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress)
     """
     task, objective = pose_search(problem, without, progress)
     first = search(task, objective)
-    if first.decision.verdict == "none" and differ_materially(problem):
-        # What repeats differ by is noise while effects are sought; where none is found it is itself the gap.
-        first = search(task, Objective(problem, weigh_noise(problem, repeats=False)))
     if first.decision.verdict == "unknown":
         first = _in_time(_search_beyond_broadband, task, first) or first
     if not problem.bench:
@@ -67,7 +64,7 @@ def pose_search(problem: DiagnosisProblem, without: Sequence[str], progress: Pro
     task = SearchTask(list_candidates(problem, without), effects, progress)
     progress("weighing the channels")
     objective = Objective(problem, weigh_noise(problem))
-    if not problem.bench:
+    if not problem.bench and not differ_materially(problem):
         nominal = objective.unhurried.evaluate([Parameters(problem.nominal)])[0]
         if forces := estimate_nonrepeatable_force(objective, nominal):
             objective = Objective(problem, objective.weights.add(carry_force(problem, forces)))

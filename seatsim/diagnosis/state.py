@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from itertools import chain
 
 from seatsim.diagnosis.alternatives import are_forms_due, compare_damper_forms, describe_forms, describe_obstacle
-from seatsim.diagnosis.answer import list_calibrated, write_answer, write_augmented
+from seatsim.diagnosis.answer import describe_bounds, list_calibrated, write_answer, write_augmented
 from seatsim.diagnosis.decide import Decision
 from seatsim.diagnosis.design.experiment import propose_experiment
 from seatsim.diagnosis.design.isolability import describe_missing_sensors, find_isolable_groups
@@ -45,6 +45,7 @@ def state_diagnosis(
     none = describe_obstacle(problem) or "No other form of the damper was found to fit its force better."
     asked = [none] if damper_forms and not forms else []
     at_work = {solution.stochastic, *decision.chosen.parameters.names}
+    parameters = list_calibrated(problem.parameters, validation.fitted.deviations)
     diagnosis = Diagnosis(
         name=recording.folder.name, verdict=decision.verdict, sentence="", where=list(solution.where), causes=causes,
         probability_none=decision.none, probability_unknown=decision.unknown,
@@ -53,12 +54,12 @@ def state_diagnosis(
         experiment=_propose_experiment(objective, solution.selection, decision, validation.found),
         held_out=[validation.run], isolable=find_isolable_groups(rig, channels), gap=validation.gaps,
         notes=[
-            *notes, *solution.selection.notes, *describe_missing_sensors(rig, channels), *asked,
-            *list_unvisited(recording),
+            *notes, *describe_bounds(parameters), *solution.selection.notes,
+            *describe_missing_sensors(rig, channels), *asked, *list_unvisited(recording),
         ],
         augmented=write_augmented(problem, validation.augmented.parameters),
         evidence=_collect_evidence(validation, causes), alternatives=forms,
-        parameters=list_calibrated(problem.parameters, validation.fitted.deviations),
+        parameters=parameters,
         model_error=state_model_error(problem, runs),
         error_budget=budget_errors(validation.scenarios[2], recording, validation.run, problem.channels),
     )  # fmt: skip

@@ -4,6 +4,7 @@ from concurrent.futures import Executor, Future
 
 import numpy as np
 
+from seatsim.diagnosis.fit import fit
 from seatsim.diagnosis.noise import weigh_uniformly
 from seatsim.diagnosis.objective import Objective, Parameters
 
@@ -29,3 +30,9 @@ def place(problem, *terms, deviations=None):
     for candidate, *values in terms:
         parameters = parameters.add(candidate, np.array(values, dtype=float))
     return parameters
+
+
+def refit(objective, parameters):
+    """Return the evaluation at the end of a fit from some parameters, linearised there."""
+    start = objective.evaluate([parameters])[0]
+    return fit(objective, start, objective.linearise_nuisances(start))

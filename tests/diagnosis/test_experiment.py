@@ -10,7 +10,6 @@ from ruamel.yaml import YAML
 import seatsim
 from seatsim.diagnosis.candidates import list_candidates
 from seatsim.diagnosis.design.experiment import propose_experiment
-from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.noise import weigh_noise
 from seatsim.diagnosis.objective import Objective, Parameters
 from seatsim.effects.damper import GasSpring, SealFriction
@@ -21,6 +20,7 @@ from seatsim.scenario.loading import single
 from seatsim.simulation.simulate import simulate
 
 from ..faulty_recordings import edit, noisy, rewrite
+from .builders import refit
 from .posed import pose
 
 pytestmark = pytest.mark.slow

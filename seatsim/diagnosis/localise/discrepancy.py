@@ -36,10 +36,11 @@ _WORTH_NAMING = 0.1
 def explain_signal(problem: DiagnosisProblem, parameters: Parameters, signals: Mapping[str, Array]) -> dict[str, float]:
     """Return the share of a signal's variance (R2 on runs left out) that each family of regressors predicts.
 
+    It is the variance about the mean of each run: an offset is no more a sign of the motion than a mean current is.
     `everything` stands for all families together; a family alone may predict better, since it overfits less.
     """
     regressors = {run: _list_regressors(problem, parameters, run) for run in problem.runs}
-    target = {run: _decimate(problem, signals[run]) for run in problem.runs}
+    target = {run: _decimate(problem, signals[run] - np.mean(signals[run])) for run in problem.runs}
     families = list(regressors[problem.runs[0]])
     shares = {
         family: predict_share({run: each[family] for run, each in regressors.items()}, target) for family in families
@@ -98,7 +99,7 @@ def _list_regressors(problem: DiagnosisProblem, parameters: Parameters, run: str
     v = np.gradient(x, 1.0 / problem.rate)
     x, v, i, a = (_decimate(problem, values) for values in (x, v, current, floor))
     slow, fast = np.tanh(v / _SLOW_SLIP), np.tanh(v / _FAST_SLIP)
-    return {
+    families = {
         "displacement": np.array([x, x * np.abs(x), x**3]),
         "velocity": np.array([v, v * np.abs(v), v**3, slow, fast]),
         "velocity and current": np.array([i, i * v, i * slow, i * fast, i**2 * slow, i * x, np.gradient(i)]),
@@ -106,6 +107,7 @@ def _list_regressors(problem: DiagnosisProblem, parameters: Parameters, run: str
         "remembered motion": np.array([x, v, *(_remember(each, time) for each in (x, v) for time in _MEMORIES)]),
         "floor motion": _lag(a),
     }
+    return {family: each - each.mean(axis=1, keepdims=True) for family, each in families.items()}
 
 
 def _lag(values: Array) -> Array:

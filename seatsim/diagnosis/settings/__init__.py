@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from seatsim.diagnosis.settings.examining import DamperFormSettings, DesignSettings, LocalisationSettings
 from seatsim.diagnosis.settings.judging import CrossValidationSettings, DecisionSettings, ValidationSettings
-from seatsim.diagnosis.settings.searching import FitSettings, NoiseSettings, SelectionSettings, WideningSettings
+from seatsim.diagnosis.settings.searching import FitSettings, NoiseSettings, SelectionSettings
 
 
 class DiagnosisSettings(NamedTuple):
@@ -28,4 +28,3 @@ class DiagnosisSettings(NamedTuple):
     localisation: LocalisationSettings = LocalisationSettings()
     design: DesignSettings = DesignSettings()
     damper_forms: DamperFormSettings = DamperFormSettings()
-    widening: WideningSettings = WideningSettings()

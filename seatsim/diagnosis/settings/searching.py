@@ -1,4 +1,4 @@
-"""Settings of the noise model, of the fits, of the search for effects, and of its second pass."""
+"""Settings of the noise model, of the fits, and of the search for effects."""
 
 from __future__ import annotations
 
@@ -102,17 +102,4 @@ class SelectionSettings(NamedTuple):
     worthwhile: float = 0.85
     """Larger sets are sought while the last enlargement left less than this share.
     Trades off: higher: time.
-    Chosen: on simulated rigs."""
-
-
-class WideningSettings(NamedTuple):
-    """The second search, with wider tolerances of the parameters that end at their bounds."""
-
-    factor: float = 3.0
-    """Factor on the tolerance of parameters at their bounds.
-    Trades off: larger: a parameter takes the place of an effect; smaller: what a fit has absorbed stays absorbed.
-    Chosen: by convention."""
-    clearly_less: float = 0.5
-    """Share of the remainder that the same effects may leave for a second search, and that may leave to be stated.
-    Trades off: higher: stated tolerances are overruled by what lies outside the library.
     Chosen: on simulated rigs."""

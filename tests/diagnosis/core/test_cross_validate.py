@@ -6,12 +6,12 @@ from scipy.optimize import lsq_linear
 
 from seatsim.diagnosis import cross_validate as cv
 from seatsim.diagnosis.cross_validate import cross_validate, select_by_cross_validation
-from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.noise import weigh_gap
 from seatsim.diagnosis.objective import Objective
 from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.settings import DiagnosisSettings
 
+from ..builders import refit
 from .toy import add_up, draw_signals, make_problem, offer, place, stack, weigh_stated
 
 RUNS = {"first": 80, "second": 100, "third": 120}

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.objective import Parameters
 from seatsim.diagnosis.screen import measure_sensitivities, name_unstable, screen_candidates
 
+from ..builders import refit
 from .toy import Edge, Limited, Stated, add_up, draw_signals, make_problem, offer, offer_two, place, stack, weigh_stated
 
 NAMES = ["nominal", "nuisance 0", "a.one", "a.one beside", "b.two", "c.three", "d.limit"]

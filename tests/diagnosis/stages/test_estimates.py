@@ -8,12 +8,12 @@ import pytest
 from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.decide import Decision
 from seatsim.diagnosis.estimates import compare_comfort, estimate_causes, trace_motion
-from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.result import Trace
 from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.solution import Solution
 from seatsim.diagnosis.uncertainty import estimate_standard_deviations
 
+from ..builders import refit
 from .toy import RATE, SKIP, Added, AddedTwice, add_taps, offer, place, pose, record, weigh_stated, whiten
 
 PRIOR = 0.58

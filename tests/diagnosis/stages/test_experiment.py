@@ -10,9 +10,9 @@ from seatsim.diagnosis.candidates import Candidate, list_candidates
 from seatsim.diagnosis.design import candidate_experiments, experiment
 from seatsim.diagnosis.design.candidate_experiments import list_candidate_experiments
 from seatsim.diagnosis.design.experiment import propose_experiment
-from seatsim.diagnosis.fit import refit
 from seatsim.effects.sensor import Gain
 
+from ..builders import refit
 from .toy import SKIP, Added, offer, place, pose, record, slow_floor, weigh_stated
 
 NOISE = 0.05

@@ -83,7 +83,13 @@ def test_a_force_that_the_rig_makes_is_predicted_by_its_family(problem, make, fa
     found = explain_signal(problem, place(problem), of_motion(problem, make))
     assert max(FAMILIES, key=lambda each: found[each]) == family
     # Averages of rows blur what bends within a row.
-    assert found[family] > 0.35 and found["everything"] >= found[family]
+    assert found[family] > 0.3 and found["everything"] >= found[family]
+
+
+def test_an_offset_is_no_sign_of_the_motion(problem):
+    rng = np.random.default_rng(3)
+    signals = {run: 2.0 + 0.1 * rng.standard_normal(values.shape[1]) for run, values in problem.measured.items()}
+    assert explain_signal(problem, place(problem), signals)["everything"] < 0.1
 
 
 def test_a_single_run_is_predicted_by_halves():

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from seatsim.diagnosis.decide import Decision
-from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.solution import Solution
 from seatsim.diagnosis.validate import validate_on_held_out
 
+from ..builders import refit
 from .toy import CHANNELS, Added, offer, place, pose, record, weigh_stated
 
 RUNS = {"first": 300, "second": 240, "third": 360}
