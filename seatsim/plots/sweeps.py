@@ -13,7 +13,7 @@ from seatsim.plots import style
 from seatsim.plots.style import COLOURS, Entry, Grid, describe_metric
 from seatsim.scenario.scenario import is_condition
 from seatsim.schema.arrays import Array
-from seatsim.schema.printing import Quantity, describe_channel, format_number
+from seatsim.schema.printing import Quantity, describe_channel, format_number, format_unit
 from seatsim.sweeps.parts import SweepRows
 
 ROAD = "excitation."
@@ -48,7 +48,8 @@ def plot_comfort(rows: SweepRows, order: Sequence[str]) -> Figure | None:
     colour = next((key for key in order if key != road and few[key] <= _MOST_GROUPS), None)
     parts = [("", shown)]
     if road is not None:
-        parts = [(f"{road.removeprefix(ROAD)} {format_level(value)}", part) for value, part in shown.groupby(road)]
+        words, unit = road.rpartition(".")[2].replace("_", " ").capitalize(), format_unit(rows.units.get(road, ""))
+        parts = [(f"{words} {format_level(value)} {unit}".strip(), part) for value, part in shown.groupby(road)]
     values = [] if colour is None else sorted(shown[colour].unique())
     names = [*map(format_level, values)] or ["a run"]
     looks = [Entry(name, COLOURS[k], "none", mark="o") for k, name in enumerate(names)]
