@@ -164,13 +164,13 @@ def _plot_discrepancy(diagnosis: Diagnosis) -> Figure | None:
     page = style.make_page(title, note, grid)
     first, *panels = page.list_panels(1 + len(motion))
     style.draw_line(first, *thin_line(found.time, shown.factor * found.values), Entry("", COLOURS[6], width=1.0))
-    first.set(xlabel="time [s]", ylabel=shown.axis)
+    first.set(xlabel="time [s]", ylabel=fill(shown.axis, LETTERS))
     every = max(1, len(found.values) // _DOTS)
     for axes, (name, values) in zip(panels, motion.items(), strict=True):
         own = _describe_motion(diagnosis, name)
         places, lacking = own.factor * values[::every], shown.factor * found.values[::every]
         axes.scatter(places, lacking, s=3, color=COLOURS[6], linewidths=0, rasterized=True)
-        axes.set(xlabel=own.axis, ylabel=shown.axis)
+        axes.set(xlabel=own.axis, ylabel=fill(shown.axis, LETTERS))
     return page.figure
 
 

@@ -228,7 +228,7 @@ def name_coincident(figure: Figure) -> Figure:
                 found.setdefault((words, *group), []).append(axes)
     for (words, *group), panels in found.items():
         is_shared = len(panels) == sum(set(group) <= set(lines) for lines in named)
-        where = "" if is_shared else f" ({', '.join(map(_name_panel, panels))})"
+        where = "" if is_shared else f" ({', '.join(dict.fromkeys(map(_name_panel, panels)))})"
         sentences.append(words.format(name_some([f"“{name.strip()}”" for name in group]), where))
         if is_shared and "coincide" in words:
             _nest_lines(figure, group)
@@ -331,7 +331,7 @@ def measure_names(names: Sequence[str]) -> float:
 
 def explain_empty(axes: Axes, text: str) -> None:
     """Write into the middle of a panel why it is empty."""
-    axes.set_yticks([])
+    axes.set(xticks=[], yticks=[])
     lines = wrap(text, int(axes.get_position().width * WIDTH / LETTER))
     axes.text(0.5, 0.5, "\n".join(lines), transform=axes.transAxes, ha="center", va="center", color=DARK)
 

@@ -118,12 +118,11 @@ def _draw_panel(axes: Axes, panel: Panel, looks: Mapping[str, Entry]) -> None:
     axes.set(ylim=_pad(comfort), ylabel=describe_metric(COMFORT).axis)
     # Of a letter and a name the letter.
     texts = [looks[name].label.partition("  ")[0] for name in panel.names]
-    x, y = panel.points.T
     # A point that a later one covers is larger, so that it is a ring about it.
     places = axes.transData.transform(panel.points)
     above = [np.sum(np.hypot(*(places[k + 1 :] - place).T) < _COVERED) for k, place in enumerate(places)]
     sizes, colours = (_SIZE + _WIDER * np.array(above)) ** 2, [looks[name].colour for name in panel.names]
-    axes.scatter(x, y, s=sizes, color=colours, edgecolors="1.0", linewidths=0.5, zorder=4)
+    axes.scatter(travel, panel.points[:, 1], s=sizes, color=colours, edgecolors="1.0", linewidths=0.5, zorder=4)
     _name_points(axes, panel.points, texts)
     style.set_title(axes, panel.title)
 
