@@ -57,6 +57,7 @@ OTHERS = {
     "identification": lambda: {"loops": plot_predictions(kinds.identification(["test", "test"]))},
     "seat test": draw_seat_test, "study": lambda: draw_figures(analyse_sensitivity(kinds.sweep()), kinds.sweep()),
     "comfort": lambda: plot_vibration(kinds.working_day()),
+    "sensor": lambda: plot_diagnosis(diagnoses.unknown(lacking=("sensor", "error of frame_acceleration", "m/s^2"))),
 }  # fmt: skip
 
 

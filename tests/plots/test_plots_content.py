@@ -90,12 +90,9 @@ def test_the_density_of_white_noise_is_flat(made_up):
     assert np.mean(floor.get_ydata()[high]) == pytest.approx(level, rel=0.05)
 
 
-AT_REST = {"motion": 0.0}
-
-
 @pytest.mark.parametrize(
     ("picture", "change", "reason"),
-    [(plot_psd, AT_REST, "at rest"), (plot_transmissibility, AT_REST, "no floor motion"),
+    [(plot_psd, {"motion": 0.0}, "at rest"), (plot_transmissibility, {"motion": 0.0}, "no floor motion"),
      (plot_transmissibility, {"seconds": 0.5}, "needs 4.5 s"), (plot_transmissibility, {}, "explains less than 0.5")],
 )  # fmt: skip
 def test_an_empty_spectrum_says_which_cause_empties_it(picture, change, reason, made_up):
