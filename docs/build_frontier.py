@@ -34,7 +34,8 @@ class Curve(NamedTuple):
     values: tuple[float, ...]
 
 
-PASSIVE, SKYHOOK, SYNTHESISED, _ = style.make_entries(["viscous damper", "hybrid skyhook", "H-infinity gain", ""])
+# Of the quickstart's variants in their order, so that each has its colour of the quickstart's pictures.
+SYNTHESISED, _, SKYHOOK, PASSIVE = style.make_entries(["H-infinity gain", "", "hybrid skyhook", "viscous damper"])
 CURVES = (
     Curve(PASSIVE, "passive, best", "damper.parameters.c_a", (330.0, 400.0, 500.0, 650.0, 850.0, 1100.0, 1500.0)),
     Curve(SKYHOOK, "hybrid skyhook", "controller.damping", (700.0, 1000.0, 1300.0, 1700.0, 2300.0, 3000.0)),

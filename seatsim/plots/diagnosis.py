@@ -21,6 +21,7 @@ from seatsim.metrics.motion import rms
 from seatsim.metrics.spectra import estimate_density
 from seatsim.plots import style
 from seatsim.plots.densities import draw_densities, find_first, state_method
+from seatsim.plots.loops import SIGNS
 from seatsim.plots.style import COLOURS, MEASURED, Entry, Grid
 from seatsim.plots.thinning import Window, find_loudest, thin_line
 from seatsim.recordings.gap import Gap
@@ -34,7 +35,7 @@ SMALLEST = 1e-4
 """Gap below which none is drawn: a logarithmic scale has no zero."""
 UNITS = {"velocity": "m/s", "displacement": "m", "coil_current": "A", "damper_temperature": "degC"}
 """Units of the motion, current and temperature over which an error is drawn."""
-SECONDS, RASTER = 2.0, 0.05
+SECONDS, RASTER = 2.0, 0.1
 """Length in s of the window that is shown, and the raster on which it begins."""
 _SHADED = 2.0
 """Standard deviations of the noise that are shaded."""
@@ -46,6 +47,8 @@ _REFITTED, AUGMENTED = Entry("refitted", COLOURS[2], width=1.0), Entry("with eff
 _SIMULATED = Entry("simulated", COLOURS[1], width=1.0)
 NOISE = Entry("sensor noise", "black", ":", width=1.3)
 _BAND = Entry(f"±{_SHADED:g} RMS of the noise", style.AREA, width=8)
+_POSITIVE = {"suspension": "lifts the frame", "cushion": "pushes driver and frame apart", "driver": "lifts the driver"}
+"""What a force does to the seat that is positive and lacks in a block other than the damper."""
 GRID = Grid((1.5, 1.0, 1.3), left=1.04, gap=(0.0, 0.5))
 _Looks: TypeAlias = dict[str, Entry]
 """Looks of simulations that are compared with a measurement, by their names in a trace."""
@@ -82,7 +85,7 @@ def _plot_gaps(diagnosis: Diagnosis) -> Figure | None:
     """Return the gap of each channel on its way from the nominal simulation to the noise floor."""
     gap, last = diagnosis.gap, find_last(diagnosis)
     names = ["overall", *gap.before.channels]
-    stages = [(gap.before, NOMINAL._replace(colour=COLOURS[1], mark="o"))]
+    stages = [(gap.before, NOMINAL._replace(mark="o"))]
     stages += [(gap.calibrated, _REFITTED._replace(mark="D"))] if last is AUGMENTED else []
     stages += [(gap.after, last._replace(mark="s")), (gap.floor, NOISE._replace(label="noise floor", mark="|"))]
     looks = [look._replace(dashes="none") for _, look in stages]
@@ -154,18 +157,20 @@ def _plot_discrepancy(diagnosis: Diagnosis) -> Figure | None:
     known = {name: values for name, values in diagnosis.evidence.motion.items() if len(values) == len(found.values)}
     motion = {name: values for name, values in known.items() if name in UNITS and residuals.varies(values)}
     grid = Grid((1.6,) * (1 + len(motion) // 2), columns=2, gap=(0.75, 0.6))
-    title = f"The missing {shown.words} of the {found.block}"
-    note = "What the simulation lacks to agree with the held-out run: over time, then over what moves or changes."
+    title = f"{shown.words[:1].upper()}{shown.words[1:]} that the simulation lacks in the {found.block}"
+    run = diagnosis.evidence.traces[0].run if diagnosis.evidence.traces else "the held-out run"
+    note = f"On {run}, over time, then over what moves or changes. "
+    note += SIGNS if found.block == "damper" else f"Positive: {_POSITIVE.get(found.block, 'more than is simulated')}."
     page = style.make_page(title, note, grid)
     first, *panels = page.list_panels(1 + len(motion))
     style.draw_line(first, *thin_line(found.time, shown.factor * found.values), Entry("", COLOURS[6], width=1.0))
-    first.set(xlabel="time [s]", ylabel=shown.axis)
+    first.set(xlabel="time [s]", ylabel=fill(shown.axis, LETTERS))
     every = max(1, len(found.values) // _DOTS)
     for axes, (name, values) in zip(panels, motion.items(), strict=True):
         own = _describe_motion(diagnosis, name)
         places, lacking = own.factor * values[::every], shown.factor * found.values[::every]
         axes.scatter(places, lacking, s=3, color=COLOURS[6], linewidths=0, rasterized=True)
-        axes.set(xlabel=own.axis, ylabel=shown.axis)
+        axes.set(xlabel=own.axis, ylabel=fill(shown.axis, LETTERS))
     return page.figure
 
 
@@ -187,15 +192,15 @@ def _plot_channel(trace: Trace, group: Sequence[Trace], looks: _Looks) -> Figure
     density = [estimate_density(step, signals) for signals in ([each.measured for each in group], *left_over)]
     first = find_first(density)
     note = f"{window} of {trace.run}, where the difference has most energy; RMS over the whole run."
-    note += " Middle panel: measured less simulated."
+    note += " A thin line lies upon the wide ones with which it agrees. Middle panel: measured less simulated."
     legend, grid = [MEASURED, *looks.values(), *[NOISE, _BAND] * bool(noise)], GRID
     if np.isfinite(first):
         note += f" Lowest panel: power densities of the measured signal and of what differs. {state_method(first)}"
     else:
         grid, legend = GRID._replace(heights=GRID.heights[:2]), [entry for entry in legend if entry is not NOISE]
-    sizes = {look.label if len(looks) > 1 else "": rms(_subtract(trace, name)) for name, look in looks.items()}
-    sizes |= {"noise": trace.noise_rms} if trace.noise_rms > 0 else {}
-    figures = [f"{name} {format_number(shown.factor * size)}\u00a0{shown.unit}".strip() for name, size in sizes.items()]
+    sizes = [(look.label, rms(_subtract(trace, name))) for name, look in looks.items()]
+    sizes += [("noise", trace.noise_rms)] * (trace.noise_rms > 0)
+    figures = [f"{name} {format_number(shown.factor * x)} {shown.unit}".replace(" ", "\u00a0") for name, x in sizes]
     title = f"{shown.words[:1].upper()}{shown.words[1:]}, RMS difference: {', '.join(figures)}"
     figure, [[upper], [lower], *spectra] = style.make_page(title, note, grid, legend)
     inside = (trace.time >= window.start) & (trace.time <= window.end)
@@ -207,7 +212,6 @@ def _plot_channel(trace: Trace, group: Sequence[Trace], looks: _Looks) -> Figure
     lower.axhline(0.0, color="0.6", linewidth=0.8, zorder=0.5)
     upper.set_ylabel(fill(f"{shown.words} [{shown.unit}]", LETTERS))
     lower.set_ylabel(f"difference\n[{shown.unit}]")
-    lower.yaxis.set_offset_position("right")
     for axes in (upper, lower):
         axes.set_xlim(*window)
         axes.set_xlabel("time [s]", labelpad=1)
@@ -215,9 +219,12 @@ def _plot_channel(trace: Trace, group: Sequence[Trace], looks: _Looks) -> Figure
     if noise:
         lower.axhspan(-_SHADED * noise, _SHADED * noise, color=style.AREA, linewidth=0, zorder=0)
         # Its edges stand before the lines, which hide a band that they fill.
-        lower.axhspan(-_SHADED * noise, _SHADED * noise, facecolor="none", edgecolor="black", linestyle=":", zorder=3)
+        lower.hlines((-_SHADED * noise, _SHADED * noise), *window, colors="black", linestyles=":", zorder=3)
         # The one-sided density of white noise of RMS s is 2 s^2 dt.
         densities.append((density[0][0], np.full(len(density[0][0]), 2 * noise**2 * step)))
+    # Differences that no gap counts, such as those of rounding, look like none.
+    least, (low, high) = SMALLEST * shown.factor * float(np.ptp(trace.measured)), lower.get_ylim()
+    lower.set_ylim(min(-least, low), max(least, high))
     for [axes] in spectra:
         draw_densities(axes, densities, [MEASURED, *looks.values(), NOISE][: len(densities)], decades=DECADES)
         style.scale_frequency_axis(axes, first, 0.5 / step)

@@ -37,7 +37,7 @@ def plot_families(title: str, note: str, families: Sequence[Family]) -> Figure:
     letters = [len(name) for family in families for name in (family.legend, *(name for name, _ in family.loops))]
     right = max(0.95, 0.55 + style.LETTER * max(letters, default=0))
     grid = Grid((2.0,) * len(families), 2, right=right, top=0.3, gap=(0.3, 0.85))
-    page = style.make_page(title, f"{note} {SIGNS}", grid)
+    page = style.make_page(title, f"{note} {SIGNS}".strip(), grid)
     for panels, family in zip(page.rows, families, strict=True):
         picked = style.sample_colours(family.colours, len(family.loops))
         for (name, loop), colour in zip(family.loops, picked, strict=True):
@@ -53,7 +53,7 @@ def plot_families(title: str, note: str, families: Sequence[Family]) -> Figure:
                 borderaxespad=0, fontsize=style.FONT, title_fontsize=style.FONT, handlelength=1.2, handletextpad=0.5,
                 markerscale=3,
             )  # fmt: skip
-    return page.figure
+    return style.name_coincident(page.figure)
 
 
 def plot_model(name: str) -> Figure:

@@ -6,25 +6,27 @@ as wide as a telephone shows it legibly; a screen shows two side by side.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
-from itertools import chain, cycle
+from itertools import cycle
 from textwrap import wrap
 from typing import Literal, NamedTuple
 
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, to_hex
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
-from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
+from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator, ScalarFormatter
 from matplotlib.typing import LineStyleType
 from numpy.typing import ArrayLike
 
 from seatsim.metrics.table import METRICS, SHORT
-from seatsim.schema.printing import LONGEST, RAISED, Quantity, describe_channel, shorten
+from seatsim.schema.printing import LONGEST, MINUS, RAISED, Quantity, describe_channel, shorten
 from seatsim.schema.text import name_some
 
 WIDTH = 5.8
@@ -112,6 +114,17 @@ def describe_metric(name: str) -> Quantity:
     return describe_channel(SHORT.get(name, name), METRICS[name].unit)
 
 
+class _Numbers(ScalarFormatter):
+    """Numbers of an axis; a power of ten that all share stands in its label, before the unit."""
+
+    def set_locs(self, locs: list[float]) -> None:
+        super().set_locs(locs)
+        if isinstance(self.axis, Axis):
+            power = self.get_offset().replace(MINUS, "-").translate(RAISED).replace("¹e", "10") + " "
+            self.axis.offsetText.set_visible(False)
+            self.axis.label.set_text(re.sub(r"\[(10\S+ )?", f"[{power.lstrip()}", self.axis.label.get_text()))
+
+
 def clean_text(text: str, longest: int = LONGEST) -> str:
     """Return a text of at most `longest` letters that matplotlib prints as it stands.
 
@@ -162,7 +175,8 @@ def make_page(title: str, note: str, grid: Grid, legend: Sequence[Entry] = ()) -
 
 
 def _break(text: str, letters: int) -> list[str]:
-    """Return the lines of a cleaned text; a figure keeps its per cent sign and its degree."""
+    """Return the lines of a cleaned text; names in quotation marks stay whole, as do a figure and its sign."""
+    text = re.sub("“[^”]*”", lambda name: name[0].replace(" ", "\u00a0"), text)
     return wrap(text.replace(" %", "\u00a0%").replace(" °", "\u00a0°"), letters)
 
 
@@ -187,7 +201,7 @@ def add_colour_bar(axes: Axes, drawn: ScalarMappable, label: str, extend: str = 
     """
     box = axes.get_position()
     beside = axes.figure.add_axes((box.x1 + 0.025, box.y0, 0.025, box.height))
-    bar = axes.figure.colorbar(drawn, cax=beside, label=label, extend=extend)
+    bar = axes.figure.colorbar(drawn, cax=beside, label=label, extend=extend, format=_Numbers())
     if bar.solids is not None:
         # Dots may be translucent.
         bar.solids.set_alpha(1.0)
@@ -195,25 +209,36 @@ def add_colour_bar(axes: Axes, drawn: ScalarMappable, label: str, extend: str = 
 
 
 def name_coincident(figure: Figure) -> Figure:
-    """Return a finished figure in which lines that lie on each other in all of their panels are named and all seen."""
+    """Return a finished figure whose note names lines that lie on each other, and those that its scales leave out.
+
+    It says in which panels, where that is not so in all that these lines share; else those on each other are all seen.
+    """
     # matplotlib gives lines of its own a label that begins with an underscore.
-    panels = [{str(line.get_label()): line for line in axes.lines} for axes in figure.axes]
-    names = [name for name in dict.fromkeys(chain(*panels)) if name.strip() and name[0] != "_"]
-    groups: dict[str, list[str]] = {}
-    for name in names:
-        shared = {first: [each for each in panels if {first, name} <= set(each)] for first in groups}
-        alike = (
-            first for first, found in shared.items()
-            if found and all(_lie_on_each_other(each[first], each[name]) for each in found)
-        )  # fmt: skip
-        groups.setdefault(next(alike, name), []).append(name)
-    several = [group for group in groups.values() if len(group) > 1]
-    for group in several:
-        _nest_lines(figure, group)
-    if several:
-        named = [name_some([f"“{name.strip()}”" for name in group]) for group in several]
-        _lengthen_note(figure, " ".join(f"{names} coincide." for names in named))
+    named = [{n: line for line in axes.lines if (n := str(line.get_label())) and n[0] != "_"} for axes in figure.axes]
+    found, sentences = dict[tuple[str, ...], list[Axes]](), list[str]()
+    for axes, lines in zip(figure.axes, named, strict=True):
+        groups: dict[str, list[str]] = {}
+        for name, line in lines.items():
+            is_seen = bool(np.any(np.asarray(line.get_ydata(), float) >= axes.get_ylim()[0]))
+            alike = (first for first in groups if first and _lie_on_each_other(lines[first], line))
+            groups.setdefault(next(alike, name) if is_seen else "", []).append(name)
+        for first, group in groups.items():
+            if len(group) > 1 or not first:
+                words = "{} coincide{}." if first else "Nothing of {} lies within the scales{}."
+                found.setdefault((words, *group), []).append(axes)
+    for (words, *group), panels in found.items():
+        is_shared = len(panels) == sum(set(group) <= set(lines) for lines in named)
+        where = "" if is_shared else f" ({', '.join(dict.fromkeys(map(_name_panel, panels)))})"
+        sentences.append(words.format(name_some([f"“{name.strip()}”" for name in group]), where))
+        if is_shared and "coincide" in words:
+            _nest_lines(figure, group)
+    _lengthen_note(figure, " ".join(sentences))
     return figure
+
+
+def _name_panel(axes: Axes) -> str:
+    """Return the title of a panel, or else what an axis of it is called, without the unit."""
+    return " ".join((axes.get_title(loc="left") or axes.get_ylabel() or axes.get_xlabel()).partition("[")[0].split())
 
 
 def _nest_lines(figure: Figure, group: Sequence[str]) -> None:
@@ -236,16 +261,18 @@ def _nest_lines(figure: Figure, group: Sequence[str]) -> None:
 
 
 def _lie_on_each_other(one: Line2D, other: Line2D) -> bool:
-    """Return whether two lines of as many points differ by no more than the width of the wider one."""
+    """Return whether each point of a line is as near to one of another, of as many points, as the wider one is wide."""
     first, second = (line.get_transform().transform(line.get_xydata()) * 72 / line.figure.dpi for line in (one, other))
     known = np.isfinite(first)
     if first.shape != second.shape or len(first) < 2 or np.any(known != np.isfinite(second)):
         return False
-    return bool(np.max(np.abs(first - second)[known], initial=0.0) <= max(one.get_linewidth(), other.get_linewidth()))
+    # A thinned line has the least and the largest value of an interval in either order.
+    apart = np.fmin.reduce([np.max(np.abs(first - np.roll(second, k, axis=0)), axis=1) for k in (-1, 0, 1)])
+    return bool(np.max(apart[known.all(axis=1)], initial=0.0) <= max(one.get_linewidth(), other.get_linewidth()))
 
 
 def _lengthen_note(figure: Figure, sentence: str) -> None:
-    """Put a sentence of cleaned names behind the note of a figure, which grows; all else keeps its size."""
+    """Put sentences of cleaned names behind the note of a figure, which grows; all else keeps its size."""
     note, old = figure.texts[1], float(figure.get_figheight())
     before = note.get_text().splitlines()
     lines = _break(" ".join([*before, sentence]), NOTE)
@@ -290,6 +317,13 @@ def scale_frequency_axis(axes: Axes, low: float, high: float) -> None:
     axes.set_xlabel("frequency [Hz]")
 
 
+def number_places(axes: Axes, places: Sequence[float]) -> None:
+    """Write the numbers of rising places along a panel where there is room for each; else round numbers stay."""
+    room = np.min(np.diff(places), initial=np.inf) / np.ptp(axes.get_xlim()) * axes.get_position().width * WIDTH
+    if room > LETTER * (2 + max(len(f"{place:g}") for place in places)):
+        axes.set_xticks(places)
+
+
 def measure_names(names: Sequence[str]) -> float:
     """Return the width in inches that the names of rows need."""
     return 0.3 + LETTER * min(32, max(map(len, names), default=0))
@@ -297,7 +331,7 @@ def measure_names(names: Sequence[str]) -> float:
 
 def explain_empty(axes: Axes, text: str) -> None:
     """Write into the middle of a panel why it is empty."""
-    axes.set_yticks([])
+    axes.set(xticks=[], yticks=[])
     lines = wrap(text, int(axes.get_position().width * WIDTH / LETTER))
     axes.text(0.5, 0.5, "\n".join(lines), transform=axes.transAxes, ha="center", va="center", color=DARK)
 
@@ -347,8 +381,11 @@ def _add_panel(figure: Figure, place: tuple[float, float, float, float]) -> Axes
     axes.spines[["top", "right"]].set_visible(False)
     axes.tick_params(labelsize=FONT)
     along = max(2, int(axes.bbox.width / axes.figure.dpi / _NUMBER))
-    # Of few numbers, multiples of 3 and 4 are often the only ones on both sides of 0.
-    steps = (1, 2, 5, 10) if along > _FEW else (1, 2, 3, 4, 5, 10)
+    # Of few numbers, multiples of 3 are often the only ones on both sides of 0.
+    steps = (1, 2, 5, 10) if along > _FEW else (1, 2, 3, 5, 10)
     axes.xaxis.set_major_locator(MaxNLocator(along, steps=steps))
     axes.yaxis.set_major_locator(MaxNLocator("auto", steps=(1, 2, 5, 10)))
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter(_Numbers())
+    axes.ticklabel_format(useOffset=False, scilimits=(-3, 6))
     return axes

@@ -13,7 +13,8 @@ from seatsim.plots import style
 from seatsim.plots.style import COLOURS, Entry, Grid, describe_metric
 from seatsim.scenario.scenario import is_condition
 from seatsim.schema.arrays import Array
-from seatsim.schema.printing import Quantity, describe_channel, format_number
+from seatsim.schema.printing import Quantity, describe_channel, format_number, format_unit
+from seatsim.simulation.naming import name_key
 from seatsim.sweeps.parts import SweepRows
 
 ROAD = "excitation."
@@ -30,7 +31,12 @@ def describe_column(name: str, units: Mapping[str, str]) -> Quantity:
 
 def format_level(value: object) -> str:
     """Return the value of a key as text."""
-    return format_number(value, 4) if isinstance(value, float) else str(value)
+    return min(f"{value:g}", format_number(value, 4), key=len) if isinstance(value, float) else str(value)
+
+
+def _state(rows: SweepRows, key: str, value: object) -> str:
+    """Return the value of a key with its unit."""
+    return f"{format_level(value)} {format_unit(rows.units.get(key, ''))}".removesuffix("-").strip()
 
 
 def plot_comfort(rows: SweepRows, order: Sequence[str]) -> Figure | None:
@@ -48,11 +54,11 @@ def plot_comfort(rows: SweepRows, order: Sequence[str]) -> Figure | None:
     colour = next((key for key in order if key != road and few[key] <= _MOST_GROUPS), None)
     parts = [("", shown)]
     if road is not None:
-        parts = [(f"{road.removeprefix(ROAD)} {format_level(value)}", part) for value, part in shown.groupby(road)]
+        parts = [(f"{name_key(road)} {_state(rows, road, value)}", part) for value, part in shown.groupby(road)]
     values = [] if colour is None else sorted(shown[colour].unique())
-    names = [*map(format_level, values)] or ["a run"]
+    names = [_state(rows, str(colour), value) for value in values] or ["a run"]
     looks = [Entry(name, COLOURS[k], "none", mark="o") for k, name in enumerate(names)]
-    said = "" if colour in (None, "variant") else f" The colours are values of {colour}."
+    said = "" if colour in (None, "variant") else f" The colours are values of the {name_key(colour)}."
     columns = min(2, len(parts))
     grid = Grid((3.2 if columns == 1 else 2.0,) * -(-len(parts) // columns), columns, top=0.3, gap=(0.7, 0.85))
     note = f"Lower left is better.{style.OWN_SCALES * (len(parts) > 1)}{said}"
@@ -69,7 +75,7 @@ def plot_comfort(rows: SweepRows, order: Sequence[str]) -> Figure | None:
             front = _find_front(travel, comfort)
             # Between two runs of it no other is known to be better than the left one; behind the dots it hides none.
             style.draw_line(axes, 1e3 * travel[front], comfort[front], _FRONT).set(drawstyle="steps-post", zorder=0.9)
-        style.set_title(axes, title)
+        style.set_title(axes, f"{title[:1].upper()}{title[1:]}")
         axes.set(xlabel=describe_metric(TRAVEL).axis, ylabel=describe_metric(COMFORT).axis)
     return page.figure
 

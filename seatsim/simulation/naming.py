@@ -49,7 +49,7 @@ def is_number(value: object) -> TypeGuard[float]:
 
 def label_axis(scenario: Scenario, key: str) -> str:
     """Return the label of an axis over the swept key, with its unit."""
-    return f"{_name_key(key)} [{format_unit(find_unit(scenario, key)) or '-'}]"
+    return f"{name_key(key)} [{format_unit(find_unit(scenario, key)) or '-'}]"
 
 
 def _describe(scenario: Scenario, named: bool, without: Collection[str] = ()) -> str:
@@ -64,13 +64,14 @@ def describe_swept(scenario: Scenario, key: str, value: object) -> str:
         return str(value)
     if isinstance(value, str):
         # The last word tells enough of a key whose value is a name: class EM2.
-        return f"{_name_key(key).rpartition(' ')[2]} {value}"
+        return f"{name_key(key).rpartition(' ')[2]} {value}"
     text = f"{value:g}" if is_number(value) else str(value)
     unit = format_unit(find_unit(scenario, key)).removesuffix("-")
-    return f"{text} {unit}" if key == "temperature" else f"{_name_key(key)} {text} {unit}".strip()
+    return f"{text} {unit}" if key == "temperature" else f"{name_key(key)} {text} {unit}".strip()
 
 
-def _name_key(key: str) -> str:
+def name_key(key: str) -> str:
+    """Return what a swept key is called, without the place where it stands."""
     return "damper temperature" if key == "temperature" else key.rpartition(".")[2].replace("_", " ")
 
 

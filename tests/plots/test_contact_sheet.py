@@ -46,10 +46,6 @@ def draw_gap():
     return plot_all_of_gap(Gap(found.overall, found.channels, GapFigures(0.0, floor), replayed=runs))
 
 
-def draw_bench():
-    return plot_characterisation(characterise("scenarios/data/bench"))
-
-
 def draw_seat_test():
     found = kinds.seat_test()
     return plot_damping(found._replace(damping=dict.fromkeys(("em1", "em5"), found.damping["seat"])))
@@ -57,10 +53,11 @@ def draw_seat_test():
 
 OTHERS = {
     **{f"diagnosis, {name}": lambda make=make: plot_diagnosis(make()) for name, make in diagnoses.CASES.items()},
-    "gap": draw_gap, "bench": draw_bench,
+    "gap": draw_gap, "bench": lambda: plot_characterisation(characterise("scenarios/data/bench")),
     "identification": lambda: {"loops": plot_predictions(kinds.identification(["test", "test"]))},
     "seat test": draw_seat_test, "study": lambda: draw_figures(analyse_sensitivity(kinds.sweep()), kinds.sweep()),
     "comfort": lambda: plot_vibration(kinds.working_day()),
+    "sensor": lambda: plot_diagnosis(diagnoses.unknown(lacking=("sensor", "error of frame_acceleration", "m/s^2"))),
 }  # fmt: skip
 
 

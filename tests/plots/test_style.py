@@ -40,9 +40,14 @@ def test_lines_that_coincide_are_named_in_the_note_and_both_are_seen():
     assert grown == height + style.LINE
     np.testing.assert_allclose([axes.get_position().height * grown for axes in figure.axes], before)
     right.lines[1].set_ydata(x + 0.1)
-    assert "coincide" not in style.name_coincident(_without_note(figure)).texts[1].get_text()
+    left.lines[2].set_ydata(x - 9.0)
+    left.set_title("first", loc="left")
+    note = " ".join(style.name_coincident(figure).texts[1].get_text().split())
+    assert note.endswith(r"“a” and “\$b\$” coincide (first). Nothing of “other” lies within the scales (first).")
 
 
-def _without_note(figure):
-    figure.texts[1].set_text("")
-    return figure
+def test_a_power_of_ten_that_numbers_share_stands_before_the_unit():
+    figure, [[axes]] = style.make_page("title", "note", Grid((1.0,)))
+    axes.set(ylim=(-4e-7, 4e-7), ylabel="difference [A]", xlabel="time [s]")
+    figure.draw_without_rendering()
+    assert (axes.get_ylabel(), axes.get_xlabel()) == ("difference [10⁻⁷ A]", "time [s]")

@@ -125,12 +125,12 @@ def ambiguous():
     )  # fmt: skip
 
 
-def unknown(channels=tuple(SEAT)):
+def unknown(channels=tuple(SEAT), lacking=("damper", "force", "N")):
     motion, _, lacks = rig()
     rows = np.arange(len(motion["velocity"])) / RATE
     force = lacks["damper_force"] + 3 * np.random.default_rng(6).standard_normal(len(rows))
     words = ["It follows the sign of the velocity.", "It is there only while the current falls."]
-    discrepancy = result.DiscrepancySignal("damper", "force", "N", rows, force, words)
+    discrepancy = result.DiscrepancySignal(*lacking, rows, force, words)
     base = known(channels)
     found = [replace(trace, after=trace.calibrated) for trace in base.evidence.traces]
     return replace(

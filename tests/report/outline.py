@@ -42,9 +42,8 @@ class Outline:
         self.headings = [text_of(each) for each in elements if each.tag in ("h1", "h2", "h3")]
         self.references = [each.get(key) for each in elements for key in ("src", "href") if each.get(key)]
         self.tables = [each for each in elements if each.tag == "table"]
-        pieces = [each.tail for each in elements] + [
-            each.text for each in elements if each.tag not in ("style", "script")
-        ]
+        pieces = [each.tail for each in elements]
+        pieces += [each.text for each in elements if each.tag not in ("style", "script")]
         for image in (each for each in elements if each.tag == "img"):
             drawing = ElementTree.fromstring(unquote(image.get("src").removeprefix("data:image/svg+xml,")))
             pieces += [each.text for each in drawing.iter("{http://www.w3.org/2000/svg}text")]

@@ -62,8 +62,8 @@ def _plot_spectra(found: Comfort, axes: Sequence[str]) -> Figure:
     page = style.make_page("Vibration over frequency", state_method(first), grid, looks)
     for panel, axis, drawn in zip(page.list_panels(), chosen, densities, strict=True):
         style.scale_frequency_axis(panel, first, HIGHEST)
-        panel.set_ylabel("density [(m/s²)²/Hz]")
-        style.set_title(panel, f"{axis}, {found.axes[axis].direction.weighting}")
+        panel.set_ylabel("power density\n[(m/s²)²/Hz]")
+        style.set_title(panel, f"{axis} axis, weighted by {found.axes[axis].direction.weighting}")
         draw_densities(panel, drawn, looks, HIGHEST)
     return style.name_coincident(page.figure)
 

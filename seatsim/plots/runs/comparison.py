@@ -22,8 +22,8 @@ from seatsim.simulation import naming
 from seatsim.simulation.result import Run
 
 FLOOR = Entry("as much as the floor (SEAT = 1)", DARK, ":", 1.6)
-_AREA, _COVERED = 60.0, 5.0
-"""Area of a point, and distance in dots of the picture below which one covers another."""
+_SIZE, _WIDER, _COVERED = 7.7, 2.5, 3.0
+"""Points across a dot and more of one about it; distance in dots of the picture below which one covers another."""
 _APART = 0.17
 """Least distance in inches of the names beside a panel."""
 NEAR = 1.6
@@ -118,11 +118,11 @@ def _draw_panel(axes: Axes, panel: Panel, looks: Mapping[str, Entry]) -> None:
     axes.set(ylim=_pad(comfort), ylabel=describe_metric(COMFORT).axis)
     # Of a letter and a name the letter.
     texts = [looks[name].label.partition("  ")[0] for name in panel.names]
-    x, y = panel.points.T
     # A point that a later one covers is larger, so that it is a ring about it.
     places = axes.transData.transform(panel.points)
-    sizes = [_AREA * (1 + np.sum(np.hypot(*(places[k + 1 :] - place).T) < _COVERED)) for k, place in enumerate(places)]
-    axes.scatter(x, y, s=sizes, color=[looks[name].colour for name in panel.names], edgecolors="1.0", zorder=4)
+    above = [np.sum(np.hypot(*(places[k + 1 :] - place).T) < _COVERED) for k, place in enumerate(places)]
+    sizes, colours = (_SIZE + _WIDER * np.array(above)) ** 2, [looks[name].colour for name in panel.names]
+    axes.scatter(travel, panel.points[:, 1], s=sizes, color=colours, edgecolors="1.0", linewidths=0.5, zorder=4)
     _name_points(axes, panel.points, texts)
     style.set_title(axes, panel.title)
 
@@ -162,6 +162,6 @@ def plot_comparison(runs: Sequence[Run]) -> Figure | None:
             points = [(float(run.scenario.label[key]), shown.factor * run.read_metric(metric)) for run in group]
             places, values = zip(*sorted(points, key=lambda point: point[0]), strict=True)
             style.draw_line(axes, places, values, look._replace(width=1.6, mark="o"))
-        axes.set(xlabel=axis, ylabel=f"{shown.words} [{shown.unit}]")
-        axes.set_ylim(0, 1.05 * axes.get_ylim()[1])
+        axes.set(xlabel=axis, ylabel=f"{shown.words} [{shown.unit}]", ylim=(0, 1.05 * axes.get_ylim()[1]))
+        style.number_places(axes, places)
     return style.name_coincident(page.figure)

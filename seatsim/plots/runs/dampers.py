@@ -43,14 +43,15 @@ def plot_force_velocity(runs: Sequence[Run]) -> Figure:
     velocity = stroke_ratio * run.history["suspension_velocity"]
     force, current = run.history["damper_force"], run.history["coil_current"]
     amplitude = max(_SLOWEST, float(np.max(np.abs(velocity)))) / (2 * math.pi * FREQUENCY)
-    currents = (0.0, run.scenario.coil.max_current)
+    currents = {0.0: "0.5", run.scenario.coil.max_current: "black"}
     tests = [sine_test(damper.record, amplitude, FREQUENCY, i, temperature, damper.factors) for i in currents]
-    looks = [Entry(f"sine test at {i:g} A", c, width=1.8) for i, c in zip(currents, ("0.5", "black"), strict=True)]
+    looks = [Entry(f"sine test at {i:g} A, {temperature:.3g} °C", c, width=1.8) for i, c in currents.items()]
     changes = float(np.ptp(current)) > 0
     colour = style.sample_colours("viridis", 3)[1] if changes else COLOURS[0]
-    sample = Entry("the run" + " (colour: current)" * changes, colour, "none", mark="o")
+    warmth = dict.fromkeys(f"{end(run.history['damper_temperature']):.3g}" for end in (np.min, np.max))
+    sample = Entry(f"run at {' to '.join(warmth)} °C{' (colour: current)' * changes}", colour, "none", mark="o")
     areas = Entry("the damper gives energy back", style.AREA, width=8)
-    note = f"Sine tests at {temperature:g} °C, amplitude {1e3 * amplitude:.3g} mm, {FREQUENCY:g} Hz. {SIGNS}"
+    note = f"Sine tests: amplitude {1e3 * amplitude:.3g} mm, {FREQUENCY:g} Hz. {SIGNS}"
     note += f" One of {len(runs)} runs: the one whose current varies the most." * (len(runs) > 1 and changes)
     title = f"Damper at work: {naming.make_title([run])}"
     figure, [[axes]] = style.make_page(title, note, Grid((3.3,), right=1.0), [sample, *looks, areas])
@@ -68,4 +69,4 @@ def plot_force_velocity(runs: Sequence[Run]) -> Figure:
     for corner in ((-right, 0.0), (0.0, -top)):
         axes.add_patch(Rectangle(corner, right, top, facecolor=style.AREA, zorder=0))
     axes.set(xlim=(-right, right), ylim=(-top, top), xlabel="damper velocity [m/s]", ylabel="damper force [N]")
-    return figure
+    return style.name_coincident(figure)

@@ -11,7 +11,7 @@ from seatsim.metrics.table import COMFORT, UNWEIGHTED
 from seatsim.plots.style import GREY, Entry, make_entries
 from seatsim.plots.thinning import spread_evenly
 from seatsim.scenario.scenario import is_passive
-from seatsim.schema.text import join_names, name_some
+from seatsim.schema.text import join_names
 from seatsim.simulation import naming
 from seatsim.simulation.result import Run
 
@@ -67,8 +67,7 @@ def choose_extremes(shown: Shown) -> Shown:
         why.setdefault(id(run), []).append(words)
     chosen = [pair for pair in pairs if id(pair[0]) in why]
     drawn = join_names([f"“{look.label}” ({join_names(why[id(run)])})" for run, look in chosen])
-    left = [f"“{look.label}”" for run, look in pairs if id(run) not in why]
-    omission = f"{shown.omission} Shown: {drawn}. Left out: {name_some(left)}."
+    omission = f"{shown.omission} Shown: {drawn}. Left out: {len(pairs) - len(chosen)} of {len(pairs)} runs."
     return shown._replace(runs=[run for run, _ in chosen], looks=[look for _, look in chosen], omission=omission)
 
 
@@ -125,12 +124,8 @@ def _select_shown(runs: Sequence[Run]) -> tuple[list[Run], list[str], str]:
     if 1 < len(group) <= MOST:
         at = ", ".join(naming.describe_swept(runs[0].scenario, key, value) for key, value in first.items())
         return group, naming.label_runs(group, without=first), f" {len(group)} of {len(runs)} runs are compared: {at}."
-    chosen = spread_evenly(runs, MOST)
-    return (
-        chosen,
-        naming.label_runs(chosen),
-        f" {MOST} of {len(runs)} runs are compared, spread evenly over their order.",
-    )
+    chosen, omission = spread_evenly(runs, MOST), f" {MOST} of {len(runs)} runs are compared, spread over their order."
+    return chosen, naming.label_runs(chosen), omission
 
 
 def _swept_values(run: Run) -> dict[str, object]:

@@ -128,8 +128,8 @@ def plot_psd(shown: Shown) -> Figure:
     signals += [(run.history, "driver_acceleration") for run in shown.runs]
     found = [estimate_density(history.step, [history[channel]]) for history, channel in signals]
     first, legend = find_first(found), [] if find_problem(found, HIGHEST) else [*drivers, *floors]
-    title, note = f"Driver acceleration over frequency: {shown.title}", state_method(first) + shown.omission
-    figure, [[axes]] = style.make_page(title, note, GRID, legend)
+    note = (state_method(first) if legend else "There is no density to show.") + shown.omission
+    figure, [[axes]] = style.make_page(f"Driver acceleration over frequency: {shown.title}", note, GRID, legend)
     style.scale_frequency_axis(axes, first, HIGHEST)
     axes.set_ylabel("power density [(m/s²)²/Hz]")
     draw_densities(axes, found, [*floors, *drivers], HIGHEST)
