@@ -278,7 +278,6 @@ def _list_nonrepeatable(problem: DiagnosisProblem) -> list[Array]:
 
     The difference of two repeats has twice its power.
     """
-    measured, entries = problem.measured, problem.recording.runs
-    pairs = [(entries[run].repeat_of or "", run) for run in problem.runs if entries[run].repeat_of in problem.runs]
+    measured, pairs = problem.measured, problem.repeats
     lengths = [min(measured[first].shape[1], measured[second].shape[1]) for first, second in pairs]
     return [(measured[a][:, :n] - measured[b][:, :n]) / np.sqrt(2.0) for (a, b), n in zip(pairs, lengths, strict=True)]
