@@ -9,8 +9,7 @@ from numba import types
 
 from seatsim.exchange.block import RATES, Block, Variable, list_variables
 from seatsim.exchange.printing.functions import print_function
-from seatsim.exchange.printing.program import Program
-from seatsim.exchange.printing.values import REAL, Signature, is_empty, is_row, number
+from seatsim.exchange.printing.program import REAL, Program, Signature, is_empty, is_row, number
 
 _SAMPLES = 200
 """Samples of the test vector."""

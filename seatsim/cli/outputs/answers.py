@@ -15,8 +15,7 @@ from typing import NamedTuple
 from seatsim.recordings.header import Header, RunEntry
 from seatsim.recordings.recording import ChannelEntry, VoltageGain
 from seatsim.rig.coil import Coil
-from seatsim.scenario.damper import damper_schema, schema_of_models
-from seatsim.scenario.sections import scenario_schema
+from seatsim.scenario.sections import damper_schema, scenario_schema, schema_of_models
 from seatsim.schema.json_schema import BY_KEY, TEXT, Schema, head_schema, mapping_schema, properties_of, record_schema
 from seatsim.sweeps.definition import sweep_schema
 

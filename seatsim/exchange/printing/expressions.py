@@ -12,8 +12,22 @@ import numpy as np
 from numba import types
 
 from seatsim.compilation.jit import GENERIC
-from seatsim.exchange.printing.program import Scope, build_tuple, element, part, source_of
-from seatsim.exchange.printing.values import BOOLEAN, INTEGER, REAL, Rank, Signature, Value, is_known, is_tuple, number
+from seatsim.exchange.printing.program import (
+    BOOLEAN,
+    INTEGER,
+    REAL,
+    Rank,
+    Scope,
+    Signature,
+    Value,
+    build_tuple,
+    element,
+    is_known,
+    is_tuple,
+    number,
+    part,
+    source_of,
+)
 
 _ARITHMETIC: dict[type[ast.operator], tuple[str, Callable[[float, float], float]]] = {
     ast.Add: ("+", operator.add),

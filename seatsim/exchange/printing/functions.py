@@ -8,16 +8,21 @@ from collections.abc import Callable
 from numba import types
 
 from seatsim.exchange.printing.expressions import arithmetic, print_expression
-from seatsim.exchange.printing.program import Printed, Program, Scope, element, origin, source_of
-from seatsim.exchange.printing.values import (
+from seatsim.exchange.printing.program import (
     NOTHING,
     REAL,
     NotPrintableError,
+    Printed,
+    Program,
+    Scope,
     Signature,
     Value,
+    element,
     is_empty,
     is_known,
     is_tuple,
+    origin,
+    source_of,
     whole_as_int64,
 )
 
