@@ -354,11 +354,14 @@ def explore(
         no_browser: Print the address and open no browser.
     """
     try:
-        from seatsim.page.app import find_target, serve
+        from seatsim.page.app import open_target, serve
     except ModuleNotFoundError as error:
         if error.name is None or error.name.partition(".")[0] not in ("starlette", "uvicorn"):
             raise
         raise InputError(_PAGE_EXTRA) from error
     path = Path(target)
     folder = path if path.is_dir() else path.parent if path.exists() else Path()
-    serve(find_target(path), folder, port, not no_browser, announce)
+    with show_progress() as progress:
+        progress("loading the models")
+        opened = open_target(path)
+    serve(opened, folder, port, not no_browser, announce)

@@ -132,39 +132,24 @@ def _make_forms_table(diagnosis: Diagnosis) -> Table:
     return make_table(f"other forms of the damper than {replaced}", headings, rows, left=(0, 1))
 
 
-_RATE = ("share", "count", "95 % interval")
 _FAILURES_LISTED = 12
 """Failures in the table."""
 
 
 def make_score_tables(score: Score) -> list[Table]:
-    """Return the tables of a score, the summary first."""
-    named = [(truth, _count(named)) for truth, named in score.confusion.items()]
-    every = score.reliability
-    bins = [(f"{b.low:.4f} - {b.high:.4f}", f"{b.stated:.4f}", f"{b.true:.4f}", str(b.count)) for b in every]
-    sizes = [(s.case, s.effect, s.parameter, f"{s.true:.4g}", f"{s.found:.4g}") for s in score.found_sizes]
-    found = [make_table("sizes of effects that were found", ("case", "effect", "parameter", "true", "found"), sizes)]
+    """Return the summary of a score and its failures as tables; score.json has more."""
     failures = [_describe(failure) for failure in score.failures[:_FAILURES_LISTED]]
     if (more := len(score.failures) - _FAILURES_LISTED) > 0:
         failures.append((f"and {more} more", *[""] * 6))
     headings = ("case", "truth", "limit x", "missing", "verdict", "named", "where")
-    return [
-        make_table(f"blind score, {score.cases} cases", ("what", *_RATE), _summarise(score)),
-        make_table("by effect", ("effect", *_RATE), [(name, *_cells(rate)) for name, rate in score.effects.items()]),
-        make_table("what was named", ("truth", "named (times)"), named, left=(0, 1)),
-        make_table("reliability of the marginal probabilities", ("from - to", "stated", "true", "count"), bins),
-        *(found if sizes else []),
-        make_table("failures", headings, failures),
-    ]
+    columns = ("what", "share", "count", "95 % interval")
+    summary = make_table(f"blind score, {score.cases} cases", columns, _summarise(score))
+    return [summary, make_table("failures", headings, failures)]
 
 
 def _cells(rate: Rate) -> tuple[str, str, str]:
     low, high = rate.interval
     return f"{rate.value:.3f}", f"{rate.right}/{rate.total}", f"{low:.2f}-{high:.2f}"
-
-
-def _count(named: Mapping[str, int]) -> str:
-    return ", ".join(f"{name} {count}" for name, count in named.items())
 
 
 def _summarise(score: Score) -> list[tuple[str, ...]]:
@@ -184,7 +169,8 @@ def _summarise(score: Score) -> list[tuple[str, ...]]:
     }
     rows: list[tuple[str, ...]] = [(name, *_cells(rate)) for name, rate in rates.items() if rate.total]
     if score.untouched:
-        said, cases = _count(score.untouched), str(sum(score.untouched.values()))
+        said = ", ".join(f"{name} {count}" for name, count in score.untouched.items())
+        cases = str(sum(score.untouched.values()))
         rows.append(("untouched carriers (not scored)", said, cases, ""))
     figures = {"calibration error (ECE)": f"{score.calibration_error:.4f}", "Brier": f"{score.brier:.4f}"}
     rows += [(), *((name, figure, "", "") for name, figure in figures.items())]

@@ -69,5 +69,4 @@
     const answer = send("/save", { ...values(), name: find("name").value });
     saved.textContent = await answer.then(found => `saved as ${found.saved}`, error => error.message);
   });
-  find("stop").addEventListener("click", () => send("/stop", {}));
 })();
