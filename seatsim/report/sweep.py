@@ -10,9 +10,9 @@ from seatsim.report.blocks import Block, Figures, Report, Table, Text, show_pict
 from seatsim.report.composing import compose
 from seatsim.report.formatting import choose_advice, explain, format_quantity, show_table
 from seatsim.scenario.scenario import is_condition
-from seatsim.schema.printing import format_number, format_percent, format_unit
+from seatsim.schema.printing import format_percent, format_unit
 from seatsim.sweeps.engines import FAILED, UNVERIFIED
-from seatsim.sweeps.parts import Exceedance, SweepRows, find_best_choices
+from seatsim.sweeps.parts import Exceedance, SweepRows
 from seatsim.sweeps.sensitivity import Sensitivities, Sensitivity, choose_choice, choose_key
 
 _MATTERS = 0.1
@@ -31,7 +31,6 @@ def report_sweep(rows: SweepRows, found: Sensitivities, exceeded: Sequence[Excee
     settings = [*seeds, Text(f"Identity of the sweep: {rows.manifest['identity']}")]
     sections: dict[str, Sequence[Block]] = {
         "limits": _show_limits(exceeded, rows),
-        "choices": tabulate_best(rows),
         "sensitivity": _show_sensitivity(found, rows),
         "pareto": show_pictures(figures, "comfort"),
         "states": _show_states(rows),
@@ -69,34 +68,14 @@ def state_importance(found: Sensitivities, rows: SweepRows) -> list[str]:
 
 
 def advise_on_keys(found: Sequence[Sensitivity], rows: SweepRows) -> list[str]:
-    """Return what to do about the strongest choice, and where the strongest condition is the worst."""
+    """Return what to do about the strongest choice."""
     texts = []
     if (choice := choose_choice(found, rows)) is not None:
         share = f"of the choices it explains the most of the variance, {format_percent(choice.total)}"
         lead = f"{'Tighten the tolerance of' if choice.key in rows.drawn else 'Settle'} {choice.key} first"
         lead = f"Leave {choice.key} as it is, and the other varied choices" if choice.total < _MATTERS else lead
         texts.append(f"{lead}: {share}.")
-    if (condition := choose_key([row for row in found if is_condition(row.key)], rows)) is not None:
-        words = describe_column(condition.metric, rows.units).words
-        ends = ((condition.at_low, condition.low), (condition.at_high, condition.high))
-        worst, level = max(ends, key=lambda end: end[0])
-        at = f"{format_level(level)} {describe_column(condition.key, rows.units).unit}".removesuffix(" -")
-        mean = format_quantity(worst, rows.units[condition.metric])
-        texts.append(f"Judge every choice at {condition.key} {at}: there the mean {words} is largest, {mean}.")
     return texts
-
-
-def tabulate_best(rows: SweepRows) -> list[Table]:
-    """Return the most comfortable choice under each condition, the worst condition first; nothing of random points."""
-    keys, best = find_best_choices(rows)
-    if best is None:
-        return []
-    shown = best.head(MOST_LINES).itertuples(index=False, name=None)
-    lines = [[*map(format_level, line[:-1]), format_number(float(line[-1]))] for line in shown]
-    left = len(best) - len(lines)
-    others = f"; and {left} other conditions" if left else ""
-    caption = f"Most comfortable choice under each condition, the worst condition first{others}"
-    return tabulate(caption, [*keys, describe_column(COMFORT, rows.units).axis], lines, len(keys))
 
 
 def _advise(found: Sensitivities, exceeded: Sequence[Exceedance], rows: SweepRows) -> list[str]:

@@ -17,11 +17,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from seatsim.metrics.exposure import ACTION
-from seatsim.metrics.table import COMFORT, METRICS
-from seatsim.scenario.scenario import is_condition
+from seatsim.metrics.table import METRICS
 from seatsim.schema.arrays import open_parquet, store_numbers, store_texts
 from seatsim.schema.errors import InputError
-from seatsim.schema.files import remove_left, write_whole
+from seatsim.schema.files import write_whole
 from seatsim.sweeps.definition import DISTRIBUTIONS
 from seatsim.sweeps.engines import DONE, Outcome
 from seatsim.sweeps.folder import read_manifest
@@ -49,12 +48,6 @@ def runs_of(part: int, runs: int) -> range:
 def _part_path(folder: Path, part: int) -> Path:
     """Return the file of a part."""
     return folder / "runs" / f"part-{part:06d}.parquet"
-
-
-def remove_unfinished(folder: Path) -> None:
-    """Remove what a process that was killed had not finished writing; nobody else may be writing."""
-    for path in (folder, folder / "runs", folder / "histories"):
-        remove_left(path)
 
 
 def read_outcomes(folder: Path, part: int) -> list[Outcome]:
@@ -231,21 +224,6 @@ def read_rows(folder: Path) -> SweepRows:
         metrics=[name for name in METRICS if usable[name].notna().any()],
         units=frame.attrs["units"],
     )
-
-
-def find_best_choices(rows: SweepRows) -> tuple[list[str], pd.DataFrame | None]:
-    """Return the keys, conditions first, and the most comfortable choice under each condition, the worst one first.
-
-    Comfort is the mean over seeds. Only a design with every choice under every condition can be compared so: else there
-    is no frame.
-    """
-    conditions = [key for key in rows.keys if is_condition(key)]
-    keys = [*conditions, *(key for key in rows.keys if key not in conditions)]
-    if not 0 < len(conditions) < len(keys) or rows.is_random or COMFORT not in rows.metrics:
-        return keys, None
-    means = rows.usable.groupby(keys, as_index=False)[COMFORT].mean()
-    groups = means.groupby(conditions)[COMFORT]
-    return keys, means.loc[groups.idxmin()].sort_values(COMFORT, ascending=False) if groups.size().min() > 1 else None
 
 
 def is_number(column: pd.Series) -> bool:

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -209,11 +209,10 @@ class Selection(NamedTuple):
     runs: tuple[tuple[int, int], ...]
 
 
-def make_plan(definition: SweepDefinition, foresee: Callable[[int], None] = lambda runs: None) -> Plan:
+def make_plan(definition: SweepDefinition) -> Plan:
     """Return the runs of a sweep: the points of its design, for each variant of its scenario and each replicate.
 
-    A varied key takes the place of the scenario's own sweep of it. `foresee` is called with the number of runs before
-    any of them is made.
+    A varied key takes the place of the scenario's own sweep of it.
 
     Raises:
         InputError: there are too many, the design cannot be resolved, or a varied key is one that the scenario varies
@@ -232,7 +231,6 @@ def make_plan(definition: SweepDefinition, foresee: Callable[[int], None] = lamb
             f"makes {runs} runs ({shown}); permitted: at most {MOST_RUNS}. Vary fewer"
             " keys, or draw 'runs' points with design: sobol",
         )
-    foresee(runs)
     columns = _resolve_design(definition)
     for key in columns:
         if key in bases[0].label:

@@ -145,8 +145,6 @@ _FAILURES_SHOWN = 5
 _EXCEEDED_SHOWN = 12
 """Limits by group that are printed; the page has more."""
 _DOUBTS_SHOWN = 5
-_MANY_RUNS = 100_000
-"""Runs from which on their number is said at once, since checking them takes seconds."""
 _SweepFile = Annotated[Path, typer.Argument(help="A sweep file: a scenario, and what is varied.", show_default=False)]
 
 
@@ -180,7 +178,7 @@ def sweep(
 
     folder = out_folder or Path("out") / file.stem
     part = read_share(share) if share else None
-    prepared = prepare(file, _foresee)
+    prepared = prepare(file)
     warn(prepared.doubts[:_DOUBTS_SHOWN], "warning")
     if slurm is not None:
         path = write_slurm(slurm, file, folder, prepared.plan, keep == "histories", own_code or [])
@@ -207,11 +205,6 @@ def sweep(
     answer(result, [folder / "manifest.json"])
     if result.failures:
         raise typer.Exit(1)
-
-
-def _foresee(runs: int) -> None:
-    if runs >= _MANY_RUNS:
-        say(f"{runs} runs; all of their values are checked before the first run begins")
 
 
 def sweep_report(

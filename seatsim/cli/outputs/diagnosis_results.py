@@ -18,6 +18,7 @@ from seatsim.recordings.gap import Forecast, Gap, GapFigures
 from seatsim.report.diagnosis import report_diagnosis
 from seatsim.report.gap import report_gap
 from seatsim.scenario.loading import single
+from seatsim.schema.fields import read_packaged
 from seatsim.schema.files import write_text
 from seatsim.schema.guarded import temporary_folder
 from seatsim.schema.registry import is_own
@@ -155,18 +156,8 @@ def _cells(rate: Rate) -> tuple[str, str, str]:
 def _summarise(score: Score) -> list[tuple[str, ...]]:
     """Return the rows of the summary: rates of what is right, then figures of probabilities and of the shrink."""
     rates = {"right": score.right} | {f"right: {kind}": value for kind, value in score.kinds.items()}
-    rates |= {
-        "outside: unknown and right block": score.outside_with_block,
-        "top-1 (one effect)": score.top1,
-        "wrong effect named (one effect)": score.wrong_names,
-        "top-3 (one effect)": score.top3,
-        "right block first": score.block,
-        "right block first, merged as isolable": score.block_coarse,
-        "false alarms": score.false_alarms,
-        "gap detected": score.detected,
-        "two effects: recall": score.two_recall,
-        "two effects: precision": score.two_precision,
-    }
+    named = read_packaged(Path(__file__).with_name("score.yaml"), dict[str, str])
+    rates |= {words: getattr(score, name) for words, name in named.items()}
     rows: list[tuple[str, ...]] = [(name, *_cells(rate)) for name, rate in rates.items() if rate.total]
     if score.untouched:
         said = ", ".join(f"{name} {count}" for name, count in score.untouched.items())

@@ -9,7 +9,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from statistics import fmean
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from rich.markup import escape
 from rich.table import Table
@@ -23,6 +23,7 @@ from seatsim.report.runs import report_runs
 from seatsim.rig.designs import Clipping, SynthesisedLaw, unit_of_gain
 from seatsim.scenario.scenario import Scenario, condition_of, group_by_condition, is_condition
 from seatsim.schema.content import Unwritten
+from seatsim.schema.fields import read_packaged
 from seatsim.schema.files import write_together
 from seatsim.simulation.checks import describe_sampled_loop
 from seatsim.simulation.naming import make_title
@@ -40,6 +41,9 @@ def _average(values: Sequence[float]) -> float:
     return math.exp(fmean(map(math.log, values))) if min(values) > 0 else fmean(values)
 
 
+_SUMMARIES: Mapping[str, Callable[[Sequence[float]], float]] = {"average": _average, "peak": max, "sum": sum}
+
+
 class _Column(NamedTuple):
     """A metric in the table: the unit shown, the factor to it, its decimals, and what sums it up over conditions."""
 
@@ -47,7 +51,7 @@ class _Column(NamedTuple):
     unit: str
     scale: float
     decimals: int
-    summarise: Callable[[Sequence[float]], float] = _average
+    over: Literal["average", "peak", "sum"]
 
     @property
     def heading(self) -> str:
@@ -55,17 +59,7 @@ class _Column(NamedTuple):
         return SHORT[self.metric].replace(" ", "\n", 1) + f"\n[{self.unit}]"
 
 
-_COLUMNS = (
-    _Column("driver_acceleration_rms", "m/s²", 1.0, 3),
-    _Column("driver_acceleration_weighted", "m/s²", 1.0, 3),
-    _Column("driver_vdv", "m/s¹·⁷⁵", 1.0, 2),
-    _Column("seat_factor", "-", 1.0, 2),
-    _Column("suspension_displacement_rms", "mm", 1e3, 2),
-    _Column("suspension_displacement_peak", "mm", 1e3, 1, max),
-    _Column("end_stop_hits", "-", 1.0, 0, sum),
-    _Column("driver_jerk_rms", "m/s³", 1.0, 1),
-    _Column("current_rms", "A", 1.0, 2),
-)
+_COLUMNS = read_packaged(Path(__file__).with_name("columns.yaml"), tuple[_Column, ...])
 _COMPARED = _COLUMNS[:-1]
 """Columns of which the smallest value is the best."""
 _UNVERIFIED_MARK = " *"
@@ -125,7 +119,7 @@ def _values(runs: Sequence[Run], column: _Column) -> list[float]:
 
 def _summarise(runs: Sequence[Run], column: _Column) -> float:
     values = _values(runs, column)
-    return column.summarise(values) if values else math.nan
+    return _SUMMARIES[column.over](values) if values else math.nan
 
 
 def _list_shown(runs: Sequence[Run]) -> list[_Column]:

@@ -338,20 +338,16 @@ def build_tuple(scope: Scope, items: list[Value], cls: type | None = None) -> Va
     return Value(f"({name}){{{{{listed}}}}}" if is_row(kind) else f"({name}){{{listed}}}", kind, known, False)
 
 
-def element(scope: Scope, owner: Value, index: int | Value, node: ast.AST | None = None) -> Value:
+def element(scope: Scope, owner: Value, index: int | Value) -> Value:
     """Return one element of a tuple, by its position or, where all have one type, by a number known later."""
     if isinstance(index, Value):
         if not is_row(owner.type):
-            raise scope.refuse(node or ast.Pass(), "the position in a tuple of several types must be a constant")
+            raise TypeError("the position in a tuple of several types must be a constant")
         return Value(f"{scope.keep(owner).code}.at[{index.code}]", owner.type.dtype)
     index %= len(owner.type)
     kind = tuple(owner.type)[index]
-    if isinstance(owner.known, tuple):
-        found = owner.known[index]
-        if not isinstance(found, tuple):
-            return number(found)
-        pairs = zip(found, kind, strict=True)
-        return build_tuple(scope, [number(float(v) if k == REAL else v) for v, k in pairs])
+    if isinstance(owner.known, tuple) and not isinstance(owner.known[index], tuple):
+        return number(owner.known[index])
     if is_empty(kind):
         return Value("", kind)
     held = scope.keep(owner)
