@@ -149,12 +149,9 @@ def count_times(hits: float) -> str:
 def _state_range(groups: Sequence[Alternatives]) -> list[str]:
     """Return what runs come to of which no two share a condition, the worst first, so that none is called better."""
     worst, mildest = groups[0], groups[-1]
-    low, high = _measure_comfort(mildest.runs[0]), _measure_comfort(worst.runs[0])
-    ends = f"{format_quantity(low, 'm/s^2')} to {_state_comfort(worst.runs[0])}"
-    said = f"{ends}; the worst is “{_name_alone(worst)}”, the mildest “{_name_alone(mildest)}”."
-    if high <= (1 + SAME) * low:
-        said = f"the same, {_state_comfort(worst.runs[0])}."
-    said = f"Under {len(groups)} conditions the driver feels {said}"
+    low, high = format_quantity(_measure_comfort(mildest.runs[0]), "m/s^2"), _state_comfort(worst.runs[0])
+    named = f"the worst is “{_name_alone(worst)}”, the mildest “{_name_alone(mildest)}”"
+    said = f"Under {len(groups)} conditions the driver feels {low} to {high}; {named}."
     if len({choice_of(group.runs[0].scenario) for group in groups}) == 1:
         return [said]
     return [said, "No two runs share floor, temperature and driver, so that none is called better than another."]

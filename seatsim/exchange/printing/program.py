@@ -12,6 +12,7 @@ import math
 import textwrap
 from collections.abc import Callable, Collection
 from enum import IntEnum
+from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -24,12 +25,7 @@ from seatsim.schema.errors import InputError
 REAL, INTEGER, BOOLEAN, NOTHING = types.float64, types.int64, types.boolean, types.none
 Rank = IntEnum("Rank", "UNARY PRODUCT SUM COMPARISON LOGIC CHOICE")
 """Ranks of C's operators, from the one that binds most; 0 is a name, a literal or a call."""
-_TAKEN = """
-auto break case char const continue default do double else enum extern float for goto if inline int long register
-restrict return short signed sizeof static struct switch typedef union unsigned void volatile while real R main
-read write time signal exp log pow tanh sin cos tan atan sqrt fabs floor ceil fmod abs round div index gamma
-y0 y1 yn j0 j1 jn remove rename link select least greatest
-"""
+_TAKEN = Path(__file__).parents[1].joinpath("c", "taken.txt").read_text().split()
 """Words of C and of its library."""
 
 
@@ -118,7 +114,7 @@ def field_names(kind: types.Type) -> tuple[str, ...]:
 
 def identifier(name: str) -> str:
     """Return a name that C permits and that is not taken by its library."""
-    return f"{name}_" if name in _TAKEN.split() else name
+    return f"{name}_" if name in _TAKEN else name
 
 
 def whole_as_int64(kind: types.Type) -> types.Type:
