@@ -35,7 +35,7 @@ def write_whole(path: Path, write: Callable[[Path], object], lasting: bool = Fal
             if lasting:
                 with part.open("rb") as file:
                     os.fsync(file.fileno())
-            with uncut():
+            with uncut:
                 part.replace(path)
         except OSError as error:
             raise OutputError(f"{path}: cannot be written: {error.strerror or error}; nothing of it is left") from error
@@ -70,7 +70,7 @@ def write_together(folder: Path, write: Callable[[Path], Iterable[Path]]) -> lis
         try:
             part.mkdir()
             names = [path.relative_to(part) for path in write(part)]
-            with uncut():
+            with uncut:
                 _put_in_place(part, folder, names)
         except OSError as error:
             raise OutputError(f"{folder}: cannot be written: {error.strerror or error}; it is as it was") from error

@@ -137,7 +137,7 @@ def execute(
             if left := sum(map(len, rows.missing())):
                 raise RunError(f"{folder}: the engine ended without {left} of its runs; go on with --resume")
         finally:
-            with uncut(), hold_file(folder / ".lock-manifest", wait=True):
+            with uncut, hold_file(folder / ".lock-manifest", wait=True):
                 rows.flush()
                 found = list(parts.read_states(folder, plan.runs))
                 counts = count_states((state for _, state, _ in found), plan.runs)

@@ -61,7 +61,7 @@ def _execute(files: Sequence[Sequence[str]], folders: Sequence[Path | None], set
         failures += failed
         if runs := [each for each in of_group if not isinstance(each, SeatsimError)]:
             # What an interrupt left done is kept before the process ends.
-            with uncut() if interrupted else nullcontext():
+            with uncut if interrupted else nullcontext():
                 table, written = _present(runs, failed, folder, interrupted)
             tables.append(table)
             paths += written
