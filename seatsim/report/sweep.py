@@ -27,10 +27,11 @@ _MOST_REASONS = 8
 def report_sweep(rows: SweepRows, found: Sensitivities, exceeded: Sequence[Exceedance]) -> Report:
     """Return the report of a sweep from its rows and the statistics on them."""
     figures, count = draw_figures(found, rows), rows.usable.seed.nunique()
+    limits = tabulate_limits(exceeded, rows)
     seeds = explain("seeds" if count > 1 else "one_seed", count=str(count))
     settings = [*seeds, Text(f"Identity of the sweep: {rows.manifest['identity']}")]
     sections: dict[str, Sequence[Block]] = {
-        "limits": _show_limits(exceeded, rows),
+        "limits": [*explain("drawn" if rows.is_random else "not_drawn"), *limits] if limits else [],
         "sensitivity": _show_sensitivity(found, rows),
         "pareto": show_pictures(figures, "comfort"),
         "states": _show_states(rows),
@@ -127,20 +128,17 @@ def _show_sensitivity(found: Sensitivities, rows: SweepRows) -> list[Block]:
     return blocks
 
 
-def _show_limits(exceeded: Sequence[Exceedance], rows: SweepRows) -> list[Block]:
-    if not exceeded:
-        return []
-    what, lead = ("probability", "drawn") if rows.is_random else ("share of the runs", "not_drawn")
-    lines = []
+def tabulate_limits(exceeded: Sequence[Exceedance], rows: SweepRows) -> list[Table]:
+    """Return how often each limit is exceeded, by group; nothing where no run has a limited metric."""
+    lines, what = [], "probability" if rows.is_random else "share of the runs"
     for row in exceeded[:MOST_LINES]:
         metric = describe_column(row.metric, rows.units).words
         limit = format_quantity(row.limit, rows.units[row.metric])
         share, low, high = map(format_percent, (row.share, row.low, row.high))
         counted = (f"{row.exceeding} of {row.runs}", share, f"{low} to {high}")
         lines.append((*map(format_level, row.group.values()), metric, limit, *counted))
-    groups = list(exceeded[0].group)
-    head = [*groups, "metric", "limit", "runs above", what, "95 % interval"]
-    return [*explain(lead), *tabulate("Runs above each limit", head, lines, len(groups) + 1)]
+    head = [*rows.texts, "metric", "limit", "runs above", what, "95 % interval"]
+    return tabulate("Runs above each limit", head, lines, len(rows.texts) + 1)
 
 
 def _show_states(rows: SweepRows) -> list[Table]:

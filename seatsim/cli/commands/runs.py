@@ -142,8 +142,6 @@ def _present(runs: list[Run], failures: list[str], folder: Path, interrupted: bo
 
 _FAILURES_SHOWN = 5
 """Failed runs whose reasons are printed; the others stand in the rows."""
-_EXCEEDED_SHOWN = 12
-"""Limits by group that are printed; the page has more."""
 _DOUBTS_SHOWN = 5
 _SweepFile = Annotated[Path, typer.Argument(help="A sweep file: a scenario, and what is varied.", show_default=False)]
 
@@ -220,18 +218,12 @@ def sweep_report(
         out_folder: Folder for the files.
     """
     from seatsim.cli.outputs.simulated import write_sweep_report
-    from seatsim.metrics.table import SHORT
+    from seatsim.cli.show_table import show_report_tables
 
     with show_progress():
         report = write_sweep_report(folder, out_folder)
     say(report.sentence)
-    for row in report.exceeded[:_EXCEEDED_SHOWN]:
-        who = "".join(f"{value}: " for value in row.group.values())
-        unit = f" {row.unit}".removesuffix(" -")
-        say(
-            f"{who}{SHORT.get(row.metric, row.metric)} above {row.limit:g}{unit}: {row.exceeding} of {row.runs} runs,"
-            f" {100 * row.share:.3g} % ({100 * row.low:.3g} to {100 * row.high:.3g} %)"
-        )
+    show_report_tables(report.limits)
     conclude(report, out_folder or folder, report.paths)
 
 

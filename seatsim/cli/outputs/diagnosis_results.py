@@ -3,38 +3,35 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.table import Table
 
 from seatsim.cli.outputs.writing import write_outputs
-from seatsim.cli.show_table import make_table, show_table
+from seatsim.cli.show_table import make_table, show_report_tables, show_table
 from seatsim.cli.terminal import conclude, say, warn
 from seatsim.diagnosis.result import Diagnosis
-from seatsim.effects.base import EFFECTS
-from seatsim.recordings.gap import Forecast, Gap, GapFigures
-from seatsim.report.diagnosis import report_diagnosis
-from seatsim.report.gap import report_gap
+from seatsim.recordings.gap import Forecast, Gap
+from seatsim.report.diagnosis import report_diagnosis, tabulate_diagnosis
+from seatsim.report.gap import report_gap, tabulate_gaps
 from seatsim.scenario.loading import single
 from seatsim.schema.fields import read_packaged
 from seatsim.schema.files import write_text
 from seatsim.schema.guarded import temporary_folder
-from seatsim.schema.registry import is_own
 from seatsim.schema.yaml_text import dump
 
 if TYPE_CHECKING:
     from seatsim.blind.score.score import Failure, Score
     from seatsim.blind.score.verdicts import Rate
 
-_LISTED = 6
-"""Causes in the table."""
-
 
 def present_gap(found: Gap, scenario: str, recording: Path, folder: Path) -> None:
     """Print the gap of a replayed scenario; write `gap.json`, and `report.html` where outputs were measured."""
-    show_table(_make_gap_table(found))
+    if isinstance(found, Forecast):
+        show_table(_make_forecast_table(found))
+    else:
+        show_report_tables(tabulate_gaps(found))
     warn(found.notes)
     contents: dict[str, object] = {"gap.json": found}
     if found.channels:
@@ -45,9 +42,10 @@ def present_gap(found: Gap, scenario: str, recording: Path, folder: Path) -> Non
 
 
 def present_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
-    """Print the gaps, the likeliest causes and the answer in a sentence, and write the files of a diagnosis."""
-    show_table(*make_tables(diagnosis))
+    """Print the gaps, the likely causes, the verdict and the answer in a sentence; write the files of a diagnosis."""
+    show_report_tables(tabulate_diagnosis(diagnosis))
     warn(diagnosis.notes)
+    say(f"verdict: {diagnosis.verdict}")
     say(diagnosis.sentence)
     conclude(diagnosis, folder, write_diagnosis(diagnosis, folder))
 
@@ -68,14 +66,6 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> list[Path]:
     return write_outputs(folder, {**scenarios, "report.html": report, "diagnosis.json": diagnosis})
 
 
-def _make_gap_table(found: Gap) -> Table:
-    """Return the gap of each channel and overall: with the noise floor, or beside what was to be expected of it."""
-    if isinstance(found, Forecast):
-        return _make_forecast_table(found)
-    title = "gap, in standard deviations of what was measured"
-    return _tabulate_gaps(title, {"gap": found}, found.floor)
-
-
 def _make_forecast_table(found: Forecast) -> Table:
     """Return the gap to be expected before and after, beside the measured one where outputs are recorded."""
     predicted, measured = found.predicted, found.measured
@@ -91,46 +81,6 @@ def _make_forecast_table(found: Forecast) -> Table:
     headings = ("channel", "expected before", "expected after", "measured before", "measured after")
     rows = [(name, *(f"{value:.4f}" for value in row)) for name, row in gaps.items()]
     return make_table(title, headings[: len(rows[0])], [*rows[:-1], (), rows[-1]])
-
-
-def _tabulate_gaps(title: str, gaps: Mapping[str, Gap | GapFigures], floor: GapFigures) -> Table:
-    """Return gaps by channel, each in a column under its heading, beside the noise floor; one of 0 is not stated."""
-    *columns, noise = ({**each.channels, "overall": each.overall} for each in (*gaps.values(), floor))
-    rows = [
-        (name, *(f"{column[name]:.4f}" for column in columns), f"{noise[name]:.4f}" if noise[name] else "not stated")
-        for name in columns[0]
-    ]
-    return make_table(title, ("channel", *gaps, "noise floor"), [*rows[:-1], (), rows[-1]])
-
-
-def make_tables(diagnosis: Diagnosis) -> list[Table]:
-    """Return the gaps, the likeliest causes and, where they were tried, other forms of the damper as tables."""
-    gap, forms = diagnosis.gap, [_make_forms_table(diagnosis)] if diagnosis.alternatives else []
-    gaps = {"nominal": gap.before, "refitted": gap.calibrated, "with effects": gap.after}
-    title = f"gap on {', '.join(diagnosis.held_out)}, in standard deviations"
-    return [_tabulate_gaps(title, gaps, gap.floor), _make_cause_table(diagnosis), *forms]
-
-
-def _make_cause_table(diagnosis: Diagnosis) -> Table:
-    listed = diagnosis.causes[:_LISTED]
-    rows = [(_label(c.effect), f"{c.probability:.2f}", f"{c.shrink:.2f}", ", ".join(c.ends)) for c in listed]
-    for name, probability in (("none", diagnosis.probability_none), ("unknown", diagnosis.probability_unknown)):
-        rows.append((name, f"{probability:.2f}", "", ""))
-    shown = 4 if any(cause.ends for cause in listed) else 3
-    headings = ("effect", "probability", "own shrink", "at end of range")[:shown]
-    return make_table(f"verdict: {diagnosis.verdict}", headings, [row[:shown] for row in rows], left=(0, 3))
-
-
-def _label(effect: str) -> str:
-    """Return the name of an effect, marked where it is the user's own."""
-    return f"{effect} (own)" if effect in EFFECTS.names() and is_own(EFFECTS.find(effect)) else effect
-
-
-def _make_forms_table(diagnosis: Diagnosis) -> Table:
-    replaced, listed = diagnosis.alternatives[0].replaces, diagnosis.alternatives[:_LISTED]
-    rows = [(form.model, ", ".join(form.beside), f"{form.shrink:.2f}", f"{form.refitted:.2f}") for form in listed]
-    headings = ("form", "beside", "shrink", f"{replaced} as free")
-    return make_table(f"other forms of the damper than {replaced}", headings, rows, left=(0, 1))
 
 
 _FAILURES_LISTED = 12

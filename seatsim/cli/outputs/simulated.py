@@ -19,6 +19,7 @@ from seatsim.cli.outputs.writing import name_pictures, write_each, write_outputs
 from seatsim.cli.show_table import format_number, make_table
 from seatsim.metrics.table import SHORT
 from seatsim.provenance.statement import write_documented
+from seatsim.report.blocks import Table as ReportTable
 from seatsim.report.runs import report_runs
 from seatsim.rig.designs import Clipping, SynthesisedLaw, unit_of_gain
 from seatsim.scenario.scenario import Scenario, condition_of, group_by_condition, is_condition
@@ -271,6 +272,7 @@ class SweepReport(NamedTuple):
     sentence: str
     exceeded: Sequence[Exceedance]
     sensitivities: Sequence[Sensitivity]
+    limits: Unwritten[Sequence[ReportTable]]
     paths: Unwritten[Sequence[Path]]
 
 
@@ -282,7 +284,7 @@ def write_sweep_report(folder: str | Path, out: str | Path | None = None) -> Swe
     Raises:
         InputError: the folder holds no sweep, or none of its runs has ended.
     """
-    from seatsim.report.sweep import report_sweep, state_importance
+    from seatsim.report.sweep import report_sweep, state_importance, tabulate_limits
     from seatsim.sweeps.parts import count_exceedances, read_rows, tabulate_quantiles
     from seatsim.sweeps.sensitivity import analyse_sensitivity, tabulate_sensitivities
 
@@ -299,7 +301,8 @@ def write_sweep_report(folder: str | Path, out: str | Path | None = None) -> Swe
     is_own = out.resolve() == folder.resolve()
     write = partial(write_each, contents)
     paths = print_reports(write_together(out, write)) if is_own else write_outputs(out, contents)
-    return SweepReport(" ".join(state_importance(found, rows)), exceeded, found.rows, paths)
+    sentence, limits = " ".join(state_importance(found, rows)), tabulate_limits(exceeded, rows)
+    return SweepReport(sentence, exceeded, found.rows, limits, paths)
 
 
 sweep_report = write_sweep_report
