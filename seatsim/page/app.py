@@ -29,7 +29,6 @@ from seatsim.report.rendering import digest_of, make_environment, read_asset
 from seatsim.scenario.loading import find_file
 from seatsim.schema.errors import InputError, SeatsimError
 from seatsim.schema.files import write_text
-from seatsim.schema.guarded import temporary_folder
 from seatsim.schema.yaml_text import dump
 
 if TYPE_CHECKING:
@@ -147,9 +146,7 @@ class _Page:
 
         path = _name_new(self._folder, str(values.get("name", "")))
         content = {**self._target.encode(values), "name": path.stem}
-        with temporary_folder() as drafts:
-            # What could not be read again is never saved.
-            single(write_text(Path(drafts) / path.name, dump(content)))
+        single(content)  # what could not be read again is never saved
         return {"saved": write_text(path, dump(content)).name}
 
 

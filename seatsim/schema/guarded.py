@@ -150,9 +150,9 @@ uncut = RLock()
 
 
 @contextmanager
-def temporary_folder(prefix: str = "seatsim-") -> Iterator[Path]:
+def temporary_folder() -> Iterator[Path]:
     """Give a temporary folder, which is removed at the end, also where the process is ended by a signal."""
-    with TemporaryDirectory(prefix=prefix, ignore_cleanup_errors=True) as name, noted(Path(name)) as folder:
+    with TemporaryDirectory(prefix="seatsim-", ignore_cleanup_errors=True) as name, noted(Path(name)) as folder:
         yield folder
 
 

@@ -25,8 +25,8 @@ from seatsim.scenario.numbers import list_doubts
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, list_sentences, raise_all
+from seatsim.schema.validation import is_finite_number
 from seatsim.schema.yaml_source import Source
-from seatsim.simulation.naming import is_number
 from seatsim.sweeps.definition import MOST_RUNS, Axis, SweepDefinition
 
 _Columns = Mapping[str, list[object]]
@@ -278,7 +278,7 @@ def _list_telling_runs(plan: Plan) -> Iterator[int]:
     numbers = {
         key: [float(str(value)) for value in values]
         for key, values in plan.columns.items()
-        if all(map(is_number, values))
+        if all(map(is_finite_number, values))
     }
     others = [values for key, values in plan.columns.items() if key not in numbers]
     combinations: dict[str, list[int]] = {}

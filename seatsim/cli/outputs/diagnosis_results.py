@@ -17,8 +17,6 @@ from seatsim.report.diagnosis import report_diagnosis, tabulate_diagnosis
 from seatsim.report.gap import report_gap, tabulate_gaps
 from seatsim.scenario.loading import single
 from seatsim.schema.fields import read_packaged
-from seatsim.schema.files import write_text
-from seatsim.schema.guarded import temporary_folder
 from seatsim.schema.yaml_text import dump
 
 if TYPE_CHECKING:
@@ -56,14 +54,13 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> list[Path]:
     Raises:
         InputError: a scenario that was found could not be loaded again, or the folder cannot be written.
     """
-    scenarios = {"augmented.yaml": dump(diagnosis.augmented, line_each=True)}
+    scenarios = {"augmented.yaml": diagnosis.augmented}
     if diagnosis.experiment is not None and diagnosis.experiment.scenario is not None:
-        scenarios["experiment.yaml"] = dump(diagnosis.experiment.scenario, line_each=True)
-    with temporary_folder() as drafts:
-        for name, text in scenarios.items():
-            single(write_text(Path(drafts) / name, text))
-    report = report_diagnosis(diagnosis)
-    return write_outputs(folder, {**scenarios, "report.html": report, "diagnosis.json": diagnosis})
+        scenarios["experiment.yaml"] = diagnosis.experiment.scenario
+    for content in scenarios.values():
+        single(content)
+    texts = {name: dump(content, line_each=True) for name, content in scenarios.items()}
+    return write_outputs(folder, {**texts, "report.html": report_diagnosis(diagnosis), "diagnosis.json": diagnosis})
 
 
 def _make_forecast_table(found: Forecast) -> Table:
