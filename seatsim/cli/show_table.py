@@ -41,16 +41,13 @@ def make_table(
     left: Collection[int] = (0,),
     caption: str | None = None,
 ) -> Table:
-    """Return a table for the terminal; `left` are the columns of names, and an empty row is a line."""
+    """Return a table for the terminal; `left` are the columns of names."""
     table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), title_justify="left", caption_justify="left")
     table.title, table.caption = escape(title), caption
     for k, heading in enumerate(headings):
         table.add_column(escape(heading), justify="left" if k in left else "right", vertical="bottom", no_wrap=True)
     for row in rows:
-        if row:
-            table.add_row(*row)
-        else:
-            table.add_section()
+        table.add_row(*row)
     return table
 
 

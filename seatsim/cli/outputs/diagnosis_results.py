@@ -6,17 +6,17 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rich.table import Table
-
 from seatsim.cli.outputs.writing import write_outputs
-from seatsim.cli.show_table import make_table, show_report_tables, show_table
+from seatsim.cli.show_table import show_report_tables
 from seatsim.cli.terminal import conclude, say, warn
 from seatsim.diagnosis.result import Diagnosis
 from seatsim.recordings.gap import Forecast, Gap
+from seatsim.report.blocks import Table, tabulate
 from seatsim.report.diagnosis import report_diagnosis, tabulate_diagnosis
 from seatsim.report.gap import report_gap, tabulate_gaps
 from seatsim.scenario.loading import single
 from seatsim.schema.fields import read_packaged
+from seatsim.schema.printing import format_percent
 from seatsim.schema.yaml_text import dump
 
 if TYPE_CHECKING:
@@ -26,10 +26,7 @@ if TYPE_CHECKING:
 
 def present_gap(found: Gap, scenario: str, recording: Path, folder: Path) -> None:
     """Print the gap of a replayed scenario; write `gap.json`, and `report.html` where outputs were measured."""
-    if isinstance(found, Forecast):
-        show_table(_make_forecast_table(found))
-    else:
-        show_report_tables(tabulate_gaps(found))
+    show_report_tables(_tabulate_forecast(found) if isinstance(found, Forecast) else tabulate_gaps(found))
     warn(found.notes)
     contents: dict[str, object] = {"gap.json": found}
     if found.channels:
@@ -63,36 +60,34 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> list[Path]:
     return write_outputs(folder, {**texts, "report.html": report_diagnosis(diagnosis), "diagnosis.json": diagnosis})
 
 
-def _make_forecast_table(found: Forecast) -> Table:
+def _tabulate_forecast(found: Forecast) -> list[Table]:
     """Return the gap to be expected before and after, beside the measured one where outputs are recorded."""
     predicted, measured = found.predicted, found.measured
     low, high = predicted.shrink_interval
     title = f"expected shrink {predicted.shrink:.2f}, 90 % interval {low:.2f} to {high:.2f}"
-    gaps = {name: list(expected) for name, expected in predicted.channels.items()}
-    gaps["overall"] = [predicted.before, predicted.after]
+    gaps = {"overall": [predicted.before, predicted.after]}
+    gaps |= {name: list(expected) for name, expected in predicted.channels.items()}
     if measured is not None:
         title += f"; measured {measured.shrink:.2f}"
         for name, row in gaps.items():
             row += [part.get(name, math.nan) for part in (measured.channels, found.channels)]
         gaps["overall"][2:] = [measured.before, found.overall]
     headings = ("channel", "expected before", "expected after", "measured before", "measured after")
-    rows = [(name, *(f"{value:.4f}" for value in row)) for name, row in gaps.items()]
-    return make_table(title, headings[: len(rows[0])], [*rows[:-1], (), rows[-1]])
+    rows = [(name.replace("_", " "), *map(format_percent, row)) for name, row in gaps.items()]
+    return tabulate(title, headings[: len(rows[0])], rows)
 
 
 _FAILURES_LISTED = 12
 """Failures in the table."""
 
 
-def make_score_tables(score: Score) -> list[Table]:
+def tabulate_score(score: Score) -> list[Table]:
     """Return the summary of a score and its failures as tables; score.json has more."""
     failures = [_describe(failure) for failure in score.failures[:_FAILURES_LISTED]]
     if (more := len(score.failures) - _FAILURES_LISTED) > 0:
         failures.append((f"and {more} more", *[""] * 6))
-    headings = ("case", "truth", "limit x", "missing", "verdict", "named", "where")
-    columns = ("what", "share", "count", "95 % interval")
-    summary = make_table(f"blind score, {score.cases} cases", columns, _summarise(score))
-    return [summary, make_table("failures", headings, failures)]
+    summary = tabulate(f"blind score, {score.cases} cases", "what, share, count, 95 % interval", _summarise(score))
+    return [*summary, *tabulate("failures", "case, truth, limit x, missing, verdict, named, where", failures)]
 
 
 def _cells(rate: Rate) -> tuple[str, str, str]:
@@ -111,7 +106,7 @@ def _summarise(score: Score) -> list[tuple[str, ...]]:
         cases = str(sum(score.untouched.values()))
         rows.append(("untouched carriers (not scored)", said, cases, ""))
     figures = {"calibration error (ECE)": f"{score.calibration_error:.4f}", "Brier": f"{score.brier:.4f}"}
-    rows += [(), *((name, figure, "", "") for name, figure in figures.items())]
+    rows += [(name, figure, "", "") for name, figure in figures.items()]
     for word, shrink in (("stated", score.shrink), ("predicted", score.shrink and score.shrink.predicted)):
         if shrink is not None:
             rows.append((f"shrink: |{word} - true|", f"{shrink.mean_difference:.3f}", str(len(shrink.cases)), ""))
