@@ -283,8 +283,8 @@ def synthesise(
     Options:
         prove_best: Prove that no permitted gain is better by 0.1 % (up to four gains).
     """
-    from seatsim.cli.outputs.simulated import make_design_table
-    from seatsim.cli.show_table import show_table
+    from seatsim.cli.outputs.simulated import tabulate_design
+    from seatsim.cli.show_table import show_report_tables
     from seatsim.provenance.statement import write_documented
     from seatsim.scenario.loading import single
     from seatsim.schema.yaml_source import Source
@@ -295,7 +295,7 @@ def synthesise(
         design = _synthesise(chosen, progress)
         design = design.prove(progress) if prove_best else design
         design = design.with_clipping(measure_clipping(chosen, design.gain))
-    show_table(make_design_table(design, chosen))
+    show_report_tables(tabulate_design(design, chosen))
     folder = out_folder or Path("out") / chosen.name
 
     def write(part: Path) -> list[Path]:

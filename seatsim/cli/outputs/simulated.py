@@ -20,6 +20,7 @@ from seatsim.cli.show_table import format_number, make_table
 from seatsim.metrics.table import SHORT
 from seatsim.provenance.statement import write_documented
 from seatsim.report.blocks import Table as ReportTable
+from seatsim.report.blocks import tabulate
 from seatsim.report.runs import report_runs
 from seatsim.rig.designs import Clipping, SynthesisedLaw, unit_of_gain
 from seatsim.scenario.scenario import Scenario, condition_of, group_by_condition, is_condition
@@ -156,12 +157,11 @@ def _labels(run: Run, keys: Sequence[str]) -> list[str]:
     return [escape(f"{value:g}" if isinstance(value, int | float) else str(value)) for value in values]
 
 
-def make_design_table(design: Design, scenario: Scenario) -> Table:
+def tabulate_design(design: Design, scenario: Scenario) -> list[ReportTable]:
     """Return a design as a table: gain, norm and what no controller can go below, certificate, margins, poles.
 
     The margins in the same row as the disk's are those of the scenario's own plant, coil and controller.
     """
-    table = Table(title="H-infinity static output feedback", title_justify="left", show_header=False, box=None)
     proof = design.certificate
     rows = {
         f"gain on {', '.join(design.measures)}": ", ".join(f"{value:.6g}" for value in design.gain.ravel())
@@ -184,9 +184,8 @@ def make_design_table(design: Design, scenario: Scenario) -> Table:
         rows["plants"] = f"{len(norms)}, of which {proven} certified; {span}"
     if not all(loop.norms_agree for loop in design.loops):
         rows["norms"] = "bisection and frequency grid differ by more than 1e-6: gamma may be too small"
-    for name, value in {**rows, **_check_loop(design, scenario)}.items():
-        table.add_row(name, value)
-    return table
+    rows |= _check_loop(design, scenario)
+    return tabulate("H-infinity static output feedback", "figure, value", rows.items(), 2)
 
 
 def _describe_disk_margin(margin: float) -> str:
