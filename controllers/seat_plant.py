@@ -31,12 +31,12 @@ from seatsim.schema.fields import param
 Coefficients = tuple[float, float, float]
 
 
-def pass_through(size: int) -> LinearSystem:
+def _pass_through(size: int) -> LinearSystem:
     """Return what passes `size` signals on as they are."""
     return LinearSystem(np.zeros((0, 0)), np.zeros((0, size)), np.zeros((size, 0)), np.eye(size))
 
 
-def connect_in_series(first: LinearSystem, second: LinearSystem) -> LinearSystem:
+def _connect_in_series(first: LinearSystem, second: LinearSystem) -> LinearSystem:
     """Return `first` followed by `second`; the states of `first` come first."""
     n, m = len(first.A), len(second.A)
     A = np.block([[first.A, np.zeros((n, m))], [second.B @ first.C, second.A]])
@@ -67,7 +67,7 @@ def frequency_weighting(weighting: str) -> LinearSystem:
     Raises:
         InputError: no weighting has this name.
     """
-    return reduce(connect_in_series, (second_order_section(*factor) for factor in sections(weighting)))
+    return reduce(_connect_in_series, (second_order_section(*factor) for factor in sections(weighting)))
 
 
 _ROUNDING = 1e-6
@@ -226,12 +226,12 @@ def build_generalised_plant(
         raise InputError("frame_acceleration: the wanted force acts on it at once; state the coil's lag under lag")
     seat = _seat(plant, measures)
     if lag is not None:
-        seat = connect_in_series(connect_in_parallel(pass_through(1), build_actuator(lag)), seat)
+        seat = _connect_in_series(connect_in_parallel(_pass_through(1), build_actuator(lag)), seat)
     if floor is not None:
-        seat = connect_in_series(connect_in_parallel(floor.as_system(), pass_through(1)), seat)
+        seat = _connect_in_series(connect_in_parallel(floor.as_system(), _pass_through(1)), seat)
     if weights.comfort != "none":
         weighting = frequency_weighting(weights.comfort)
-        seat = connect_in_series(seat, connect_in_parallel(pass_through(1), weighting, pass_through(len(measures))))
+        seat = _connect_in_series(seat, connect_in_parallel(_pass_through(1), weighting, _pass_through(len(measures))))
     scale = np.diag([weights.travel, weights.acceleration, *[1.0] * len(measures)])
     # No path is direct: what is measured and weighed follows the force through the lag, or the seat's states.
     system = LinearSystem(seat.A, seat.B * [1.0, force_factor], scale @ seat.C, np.zeros_like(seat.D))
@@ -254,8 +254,8 @@ def _seat(plant: Plant, measures: Sequence[Measure]) -> LinearSystem:
     if not any(measure.endswith("_velocity") for measure in measures):
         return seat
     leak = _first_order(-math.tau * Sensors().corner, 1.0)
-    behind = [leak if measure.endswith("_velocity") else pass_through(1) for measure in measures]
-    return connect_in_series(seat, connect_in_parallel(pass_through(2), *behind))
+    behind = [leak if measure.endswith("_velocity") else _pass_through(1) for measure in measures]
+    return _connect_in_series(seat, connect_in_parallel(_pass_through(2), *behind))
 
 
 def _first_order(a: float, b: float) -> LinearSystem:
@@ -268,4 +268,4 @@ def build_actuator(lag: ActuatorLag) -> LinearSystem:
     coil, d = _first_order(-lag.rate, lag.rate), lag.delay
     if d == 0:
         return coil
-    return connect_in_series(second_order_section((1.0, -d / 2, d * d / 12), (1.0, d / 2, d * d / 12)), coil)
+    return _connect_in_series(second_order_section((1.0, -d / 2, d * d / 12), (1.0, d / 2, d * d / 12)), coil)

@@ -50,7 +50,7 @@ _POOR, _GOOD = 0.1, 0.75
 _PROGRESS = 1e-7
 
 
-def polish(objective: NormObjective, entries: Array, deadline: float) -> Array:
+def _polish(objective: NormObjective, entries: Array, deadline: float) -> Array:
     """Return free entries whose norm is no higher than at `entries`; unstable ones come back as they are."""
     level = objective.norm(entries)
     if not 0 < level < np.inf:
@@ -145,7 +145,7 @@ _ARMIJO, _CURVATURE = 1e-4, 0.5
 _LINE_STEPS = 40
 
 
-class Iterate(NamedTuple):
+class _Iterate(NamedTuple):
     """A place with the function's value and gradient there."""
 
     x: Array
@@ -162,7 +162,7 @@ def minimise(
     patience: int = 20,
     progress: float = 1e-6,
     iterations: int = 1000,
-) -> Iterate:
+) -> _Iterate:
     """Descend from `start`, where `function` must be finite; the first steps are steepest in x / unit.
 
     Args:
@@ -178,7 +178,7 @@ def minimise(
     Returns:
         The lowest point found, which no step lowered or one of the limits stopped.
     """
-    here = Iterate(start, *function(start, np.inf))
+    here = _Iterate(start, *function(start, np.inf))
     inverse = first = np.diag(unit**2)
     history, fresh = [here.value], True
     for _ in range(iterations):
@@ -199,16 +199,16 @@ def minimise(
     return here
 
 
-def _line_search(function: Function, here: Iterate, direction: Array) -> Iterate | None:
+def _line_search(function: Function, here: _Iterate, direction: Array) -> _Iterate | None:
     """Find a point with sufficient decrease and a flatter slope; None where nothing lower is found."""
     slope = float(here.gradient @ direction)
     if not slope < 0:
         return None
     low, high, step = 0.0, np.inf, 1.0
-    lowest: Iterate | None = None
+    lowest: _Iterate | None = None
     for _ in range(_LINE_STEPS):
         x, ceiling = here.x + step * direction, here.value + _ARMIJO * step * slope
-        trial = Iterate(x, *function(x, ceiling))
+        trial = _Iterate(x, *function(x, ceiling))
         if not trial.value < ceiling:
             high = step
         else:
@@ -219,7 +219,7 @@ def _line_search(function: Function, here: Iterate, direction: Array) -> Iterate
     return lowest
 
 
-def _update(inverse: Array, here: Iterate, following: Iterate, fresh: bool) -> Array:
+def _update(inverse: Array, here: _Iterate, following: _Iterate, fresh: bool) -> Array:
     """BFGS update of the inverse Hessian; the first one also sets its scale."""
     s, y = following.x - here.x, following.gradient - here.gradient
     curvature = float(s @ y)
@@ -383,5 +383,5 @@ def _lower(objective: NormObjective, candidate: StabilisingGain, deadline: float
     unit = objective.sizes(candidate.entries)
     angles = objective.angles(candidate.entries)
     point = minimise(objective.log_norm, angles, unit, deadline, progress=_FINE)
-    entries = polish(objective, objective.entries(point.x), deadline)
+    entries = _polish(objective, objective.entries(point.x), deadline)
     return min(candidate, StabilisingGain(objective.norm(entries), entries), key=_gamma)

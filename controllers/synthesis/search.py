@@ -37,7 +37,7 @@ from seatsim.schema.errors import SynthesisError
 _SWEEPS = 30
 
 
-class ScaledPlant(NamedTuple):
+class _ScaledPlant(NamedTuple):
     """A plant in scaled coordinates, and the way back."""
 
     plant: GeneralisedPlant
@@ -54,7 +54,7 @@ class ScaledPlant(NamedTuple):
         return gain / (self.controls[:, None] * self.measured)
 
 
-def scale(plant: GeneralisedPlant, like: ScaledPlant | None = None) -> ScaledPlant:
+def scale(plant: GeneralisedPlant, like: _ScaledPlant | None = None) -> _ScaledPlant:
     """Balance states against each other, B1 against C1, time against the poles; unit columns in B2, unit rows in C2.
 
     Units of control, measurement and time are those of `like` where it is given.
@@ -73,7 +73,7 @@ def scale(plant: GeneralisedPlant, like: ScaledPlant | None = None) -> ScaledPla
     inputs, outputs = np.append(np.ones(nw), controls), np.append(np.ones(nz), measured)[:, None]
     flow, drive = A * states / states[:, None] / rate, B * inputs / states[:, None] / rate
     moved = LinearSystem(flow, drive, C * states * outputs, D * inputs * outputs)
-    return ScaledPlant(GeneralisedPlant.from_system(moved, nw, nz, plant.structure), controls, measured, rate)
+    return _ScaledPlant(GeneralisedPlant.from_system(moved, nw, nz, plant.structure), controls, measured, rate)
 
 
 def _input_output(plant: GeneralisedPlant, states: Array, rate: float) -> tuple[Array, Array]:
@@ -258,7 +258,7 @@ _RANK_TOLERANCE = 1e-10
 _FIXED_TOLERANCE = 1e-7
 
 
-def require_stabilisable(scaled: ScaledPlant) -> None:
+def require_stabilisable(scaled: _ScaledPlant) -> None:
     """Return quietly where no mode forbids stabilisation: the tests of Popov, Belevitch and Hautus.
 
     A mode s of A with Re s >= 0 stays where it is, whatever the gain, if rank [A - s I, B2] < n (u does not reach it)

@@ -43,7 +43,7 @@ _LARGEST_BODY = 100_000
 """Bytes of a request that are read."""
 
 
-class Guard:
+class _Guard:
     """Lets a request pass if its Host is loopback, its Origin none or the page itself, and it has the token.
 
     A foreign Host or Origin is answered by 403, so that no other site's page can reach this one (DNS rebinding, forged
@@ -96,7 +96,7 @@ def make_app(target: ScenarioView | RecordingView, folder: Path, token: str, por
     routes = [Route("/", page.show, methods=["GET"])]
     for path, compute in (("/view", page.view), ("/save", page.save)):
         routes.append(Route(path, partial(page.answer, compute), methods=["POST"]))
-    return Guard(Starlette(routes=routes), token, port)
+    return _Guard(Starlette(routes=routes), token, port)
 
 
 class _Page:

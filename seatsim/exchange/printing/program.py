@@ -122,7 +122,7 @@ def whole_as_int64(kind: types.Type) -> types.Type:
     return INTEGER if isinstance(kind, types.Integer) else kind
 
 
-class Declarations:
+class _Declarations:
     """The structs of a program, in the order in which C must see them."""
 
     def __init__(self) -> None:
@@ -151,7 +151,7 @@ class Declarations:
             body = "".join(f"    {self.name(item)} {field};\n" for field, item in fields if not is_empty(item))
             cls = getattr(kind, "instance_class", None)
             name = cls.__name__ if cls else "tuple"
-        self.names[kind] = free_name(identifier(name), self.names.values())
+        self.names[kind] = _free_name(identifier(name), self.names.values())
         self.text.append(f"typedef struct {{\n{body}}} {self.names[kind]};\n")
         return self.names[kind]
 
@@ -161,7 +161,7 @@ def is_row(kind: types.Type) -> bool:
     return isinstance(kind, types.UniTuple) and not isinstance(kind, types.BaseNamedTuple)
 
 
-def free_name(name: str, taken: Collection[str]) -> str:
+def _free_name(name: str, taken: Collection[str]) -> str:
     """Return the name, with a number where it is taken."""
     if name not in taken:
         return name
@@ -188,7 +188,7 @@ class Program:
 
     def __init__(self, translate: Callable[[Program, Callable[..., object], str, tuple[Signature, ...]], Printed]):
         self.translate = translate
-        self.types = Declarations()
+        self.types = _Declarations()
         self.functions: list[str] = []
         self.tables: list[str] = []
         self._printed: dict[tuple[object, tuple[Signature, ...]], Printed] = {}
@@ -200,7 +200,7 @@ class Program:
         """Return the printed function for arguments of these types; it is printed when it is first asked for."""
         key = (function, arguments)
         if key not in self._printed:
-            name = free_name(_function_name(function), self._names)
+            name = _free_name(_function_name(function), self._names)
             self._names.add(name)
             self._printed[key] = self.translate(self, function, name, arguments)
         return self._printed[key]
@@ -279,7 +279,7 @@ class Scope:
 
     def name(self, wanted: str) -> str:
         """Return a name for a variable that is free within the function."""
-        name = free_name(identifier(wanted), self._names)
+        name = _free_name(identifier(wanted), self._names)
         self._names.add(name)
         return name
 
