@@ -7,8 +7,8 @@ from pathlib import Path
 from seatsim.characterisation.rows import Row
 from seatsim.characterisation.sheet import PeakForce
 from seatsim.characterisation.tabulate import make_sheet
-from seatsim.scenario.damper import read_damper
 from seatsim.scenario.scenario import DamperChoice
+from seatsim.scenario.sections import read_damper
 from seatsim.schema.yaml_source import Source
 from seatsim.simulation.damper_bench import SineTest, sine_test
 

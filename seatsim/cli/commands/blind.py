@@ -80,8 +80,8 @@ def blind_score(
     """
     from seatsim.blind.score.score import score
     from seatsim.blind.sealed import unseal
-    from seatsim.cli.outputs.diagnosis_results import make_score_tables
-    from seatsim.cli.show_table import show_table
+    from seatsim.cli.outputs.diagnosis_results import tabulate_score
+    from seatsim.cli.show_table import show_report_tables
     from seatsim.schema.files import write_json
 
     # A wrong key is an error at once, not after hours of diagnoses.
@@ -90,7 +90,7 @@ def blind_score(
         _diagnose_all(folder, count)
     with count_progress("scoring") as count:
         found = score(folder, sealed, key, progress=count)
-    show_table(*make_score_tables(found))
+    show_report_tables(tabulate_score(found))
     path = write_json((out_folder or folder) / "score.json", found)
     wrote_one(path)
     answer(found, [path])
