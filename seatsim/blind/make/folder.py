@@ -12,6 +12,7 @@ from numpy.random import Generator
 
 from seatsim.blind.truth.excitation import colour_noise
 from seatsim.blind.truth.experiment import CHANNELS, Experiment, Readings, RunPlan
+from seatsim.schema.fields import read_packaged
 from seatsim.schema.files import write_together
 from seatsim.schema.yaml_text import dump
 
@@ -21,29 +22,17 @@ _GZIP = b"\x1f\x8b\x08" + bytes(6) + b"\xff"
 """Head of a gzip file without time and system."""
 _BLOCK = 0xFFFF
 """Most bytes of a stored block."""
+_SYMBOLS = read_packaged(Path(__file__).with_name("nominal.yaml"), dict[str, dict[str, str]])
+"""Symbols of the true rig by the names of the nominal's plant, and of those of each damper's parameters."""
 
 
 def nominal_scenario(experiment: Experiment) -> dict[str, object]:
     """Return the nominal scenario, which the owner assumes, under the contract's keys."""
-    n, bingham = experiment.nominal, experiment.is_bingham
-    letter = "fc" if bingham else "alpha"
-    names = ("f0", "v_ref") if bingham else ("k0", "x0", "f0", "A", "beta", "gamma")
-    parameters = {"c_a": n["c_a"], "c_b": n["c_b"], f"{letter}_a": n["y_a"], f"{letter}_b": n["y_b"]}
-    parameters |= {name: n[name] for name in names}
-    if not bingham:
-        parameters["n"] = int(n["n"])
-    symbols = {
-        "frame_mass": "ms",
-        "driver_mass": "m",
-        "suspension_stiffness": "kf",
-        "suspension_damping": "cf",
-        "cushion_stiffness": "kc",
-        "cushion_damping": "cc",
-        "damper_ratio": "damper_ratio",
-    }
+    n, model = experiment.nominal, "bingham" if experiment.is_bingham else "bouc_wen"
+    parameters = {name: n[symbol] for name, symbol in _SYMBOLS[model].items()}
     return {
-        "plant": {name: n[symbol] for name, symbol in symbols.items() if symbol in n},
-        "damper": {"model": "bingham" if bingham else "bouc_wen", "parameters": parameters},
+        "plant": {name: n[symbol] for name, symbol in _SYMBOLS["plant"].items() if symbol in n},
+        "damper": {"model": model, "parameters": parameters | ({} if experiment.is_bingham else {"n": int(n["n"])})},
         "actuator": {"rate": n["rate"], "max_current": n["i_max"]},
         "temperature": 20.0,
         "controller": {"law": "replay"},

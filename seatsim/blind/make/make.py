@@ -61,45 +61,30 @@ def make(
     progress: Progress | None = None,
     kinds: str | list[str] = "mixed",
     processes: int = 2,
-    key: str | None = None,
-    of: int | None = None,
+    name: str | None = None,
 ) -> str:
     """Write a set on simulated rigs; return the key.
 
     `kinds` is a preset (`mixed`, `varied`) or a kind (none, one, two, outside), or kinds that are gone through in turn.
-    The cases are the first ones `of` so many. The rest is that of `make_set`.
+    With a `name` it is a public set, or its first `cases`, and the name fixes everything, the key too: 60 cases of the
+    kinds `varied`, whose bytes are the same everywhere. Whoever makes it can read its labels, so that it compares
+    programs and proves nothing of one that was fitted to it. The rest is that of `make_set`.
 
     Raises:
-        InputError: fewer than one case, an unknown preset, a folder or file that is another set's.
+        InputError: fewer than one case, more than a public set has, an unknown preset, a folder or file that is another
+            set's.
     """
+    drawn, key = cases, None
+    if name is not None:
+        drawn, kinds, key = PUBLIC_CASES, _PUBLIC_KINDS, key_of(name)
+        seed = int.from_bytes(hashlib.sha256(name.encode()).digest())
+        if cases > PUBLIC_CASES:
+            raise InputError(f"--cases {cases}: a public set has {PUBLIC_CASES} cases; give another name for others")
 
     def order(seed: int) -> Sequence[CaseSpecification]:
-        return compose(of or cases, kinds, np.random.default_rng(np.random.SeedSequence(seed).spawn(1)[0]))
+        return compose(drawn, kinds, np.random.default_rng(np.random.SeedSequence(seed).spawn(1)[0]))
 
     return make_set(cases, seed, kinds, Path(out), Path(sealed), order, draw_files, progress, processes, key)
-
-
-def make_public(
-    name: str,
-    out: str | Path,
-    sealed: str | Path,
-    progress: Progress | None = None,
-    cases: int = PUBLIC_CASES,
-    processes: int = 2,
-) -> str:
-    """Write the public set with a name, or its first `cases`; return the key.
-
-    The name fixes everything, the key too: 60 cases of the kinds `varied`, whose bytes are the same everywhere. Whoever
-    makes the set can read its labels, so that it compares programs and proves nothing of one that was fitted to it. The
-    rest is that of `make_set`.
-
-    Raises:
-        InputError: not 1 to 60 cases, a folder or file that is another set's.
-    """
-    if cases > PUBLIC_CASES:
-        raise InputError(f"--cases {cases}: a public set has {PUBLIC_CASES} cases; give another name for others")
-    seed = int.from_bytes(hashlib.sha256(name.encode()).digest())
-    return make(cases, seed, out, sealed, progress, _PUBLIC_KINDS, processes, key_of(name), PUBLIC_CASES)
 
 
 def make_set(
