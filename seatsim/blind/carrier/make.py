@@ -13,11 +13,9 @@ import numpy as np
 from numpy.random import Generator
 
 from seatsim.blind.carrier import readings, recorded
-from seatsim.blind.carrier.damper import draw_damper_changes
 from seatsim.blind.carrier.recorded import Altered, Carrier, Change, Content, number, section
 from seatsim.blind.carrier.seat import draw_seat_changes
-from seatsim.blind.make.folder import encode_yaml
-from seatsim.blind.make.make import CaseFiles, make_set
+from seatsim.blind.make.make import CaseFiles, encode_yaml, make_set
 from seatsim.blind.make.materiality import MATERIAL_SHARE, refit_residuals, rms
 from seatsim.blind.sealed import Label
 from seatsim.recordings.recording import HEADER, Recording, load_recording
@@ -36,7 +34,7 @@ _CLOSE = 0.1
 """Relative difference of a size from the one drawn that is close enough."""
 _EVALUATIONS = 12
 _READINGS = (readings.draw_sensor_changes, readings.draw_skewed_logs, readings.draw_delays, readings.draw_limits)
-_DRAWERS = (draw_damper_changes, *_READINGS, draw_seat_changes)
+_DRAWERS = (readings.draw_damper_changes, *_READINGS, draw_seat_changes)
 UNTOUCHED = "untouched"
 """In place of an effect: the carrier as it was measured, which shows what is named without any effect put in."""
 _LEAST_RUNS = 3

@@ -75,7 +75,7 @@ _ANSWERS = {
     "gap": "recordings.gap.Gap recordings.gap.Forecast",
     "diagnose": "diagnosis.result.Diagnosis",
     "characterise": "characterisation.summary.Characterisation",
-    "identify": "identification.identify.Identification identification.model_benchmark.League",
+    "identify": "identification.identify.Identification identification.identify.League",
     "describe": "scenario.describe.Pages",
     "new": "cli.outputs.answers.NewAnswer",
     "check": "cli.check_files.CheckedFile",

@@ -14,8 +14,7 @@ from seatsim.cli.outputs.writing import name_pictures, write_each, write_outputs
 from seatsim.cli.show_table import format_number, make_table, show_report_tables, show_table
 from seatsim.cli.terminal import complain, conclude, say, show_progress, warn
 from seatsim.dampers.base import OWN
-from seatsim.identification.identify import Identification, identify
-from seatsim.identification.model_benchmark import League, benchmark_models
+from seatsim.identification.identify import Identification, League, benchmark_models, identify
 from seatsim.identification.settings import IdentificationSettings
 from seatsim.plots.bench.characterisation import plot_characterisation
 from seatsim.plots.bench.identification import plot_predictions

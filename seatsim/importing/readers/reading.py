@@ -62,8 +62,8 @@ FORMATS = (
     _Format("HDF5", "hdf5.read", (HDF5,), (".h5", ".hdf5", ".hdf")),
     _Format("MDF", "loggers.read_mdf", (b"MDF     ", b"UnFinMF "), (".mf4", ".mdf")),
     _Format("TDMS", "loggers.read_tdms", (b"TDSm",), (".tdms",)),
-    _Format("UFF", "time_histories.read_uff", (b"    -1",), (".uff", ".unv")),
-    _Format("RPC III", "time_histories.read_rpc", (b"FORMAT\0", b"FORMAT "), (".rpc", ".rsp", ".tim")),
+    _Format("UFF", "loggers.read_uff", (b"    -1",), (".uff", ".unv")),
+    _Format("RPC III", "loggers.read_rpc", (b"FORMAT\0", b"FORMAT "), (".rpc", ".rsp", ".tim")),
     _Format("CSV", "text.read", (), (".csv", ".tsv", ".txt", ".asc", ".dat")),
 )
 """Formats in the order in which they are tried."""
