@@ -137,10 +137,6 @@ _COARSE = 16
 """Rows of a cycle below which its peaks and areas are coarse."""
 _DISAGREE = 0.05
 """Difference of the energy over displacement from that over velocity from which on a note says so, relative."""
-_DRIFT = 0.1
-"""Change of the energy over the cycles from which on a note says so, relative to its mean."""
-_UNEVEN = 0.05
-"""Asymmetric part of the motion itself, RMS over that of the motion, from which on a note says so."""
 _WANDERS = 0.02
 """Change of the mean force over the cycles from which on a note says so, over half the range of the force."""
 _VARIES = 0.05
@@ -326,15 +322,6 @@ def _of_loops(loops: Sequence[SineTest]) -> list[str]:
     over_stroke = float(np.trapezoid(loop.force, loop.displacement))
     if abs(over_stroke - energy) > _DISAGREE * abs(energy):
         notes.append(f"velocity and displacement disagree: the area over displacement is {over_stroke:.3g} J")
-    moved = loop._replace(force=loop.displacement - np.mean(loop.displacement[:-1]))
-    uneven = ratio(rms(moved.asymmetric_part), rms(moved.force))
-    if uneven > _UNEVEN:
-        notes.append(f"the motion itself is asymmetric by {uneven:.0%}")
-    if len(loops) > 2:
-        energies = np.array([one.dissipated_energy for one in loops])
-        slope = np.polyfit(np.linspace(-0.5, 0.5, len(energies)), energies, 1)[0] / np.mean(energies)
-        if abs(slope) > _DRIFT:
-            notes.append(f"the energy changes by {slope:+.0%} over the cycles")
     return notes
 
 

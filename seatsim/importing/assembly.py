@@ -15,8 +15,7 @@ from seatsim.importing.alignment import HELD, Channel, describe_offset, estimate
 from seatsim.importing.doubts import doubt_channel, doubt_time
 from seatsim.importing.import_map import PRIMITIVE, AxisMap, ChannelMap, ImportMap
 from seatsim.importing.names import quantity_of
-from seatsim.importing.signals import LISTED, DataFile, Group, Signal
-from seatsim.importing.time_axis import Axis, check_is_history, find_clock, measured_axis
+from seatsim.importing.signals import LISTED, Axis, DataFile, Group, Signal, check_is_history, find_clock, measured_axis
 from seatsim.recordings.quality.issue import Issue, place_in_run
 from seatsim.recordings.quality.relations import doubt_relations
 from seatsim.recordings.recording import CHANNELS

@@ -9,7 +9,7 @@ from itertools import combinations, product
 import numpy as np
 
 from seatsim.importing.names import BY_UNIT, SI_UNITS
-from seatsim.importing.time_axis import Axis
+from seatsim.importing.signals import Axis
 from seatsim.recordings.quality import relations
 from seatsim.recordings.quality.channels import say_implausible
 from seatsim.recordings.quality.damage import MOST_ROWS, Doubter, doubt_dropouts, doubt_shape, plateaus

@@ -10,8 +10,7 @@ from seatsim.importing.assembly import Assembled, assemble, doubt_runs
 from seatsim.importing.import_map import FILE, ImportMap, Rig, check_files, read_map, write_map
 from seatsim.importing.matching import propose
 from seatsim.importing.readers.reading import read_file
-from seatsim.importing.signals import LISTED, DataFile
-from seatsim.importing.time_axis import find_clock
+from seatsim.importing.signals import LISTED, DataFile, find_clock
 from seatsim.provenance.statement import write_documented
 from seatsim.recordings.quality.examination import examine, merge_issues
 from seatsim.recordings.quality.issue import Issue

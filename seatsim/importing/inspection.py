@@ -14,8 +14,7 @@ from seatsim.importing.import_map import Rig
 from seatsim.importing.matching import Column, channel_of, read_columns
 from seatsim.importing.names import SI_UNITS, is_of, read_name, without_unit
 from seatsim.importing.readers.reading import read_file
-from seatsim.importing.signals import DataFile, Group, Signal
-from seatsim.importing.time_axis import Axis, Clock, find_clock, is_spectrum
+from seatsim.importing.signals import Axis, Clock, DataFile, Group, Signal, find_clock, is_spectrum
 from seatsim.recordings.quality.damage import noise_of
 from seatsim.recordings.quality.examination import examine, merge_issues
 from seatsim.recordings.quality.issue import Issue, place_in_run

@@ -30,8 +30,7 @@ from seatsim.importing.readers.header import (
 )
 from seatsim.importing.readers.reading import TextLayout, need
 from seatsim.importing.readers.tables import read_column
-from seatsim.importing.signals import DataFile, Group, Signal, find_rate, note_left_out
-from seatsim.importing.time_axis import measured_axis
+from seatsim.importing.signals import DataFile, Group, Signal, find_rate, measured_axis, note_left_out
 from seatsim.schema.bounds import TooMuchError, check_made
 from seatsim.schema.errors import InputError, gathered, raise_all
 from seatsim.schema.tables import parse_rows

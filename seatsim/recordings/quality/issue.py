@@ -1,11 +1,10 @@
 """Issues that an examination finds, and a run under examination: its table, and what its recording states of it."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Literal, NamedTuple, get_args
+from typing import Literal, NamedTuple
 
 import numpy as np
 
-from seatsim.recordings.header import Refusal
 from seatsim.recordings.recording import Recording
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
@@ -54,8 +53,6 @@ def settle_refusals(issues: Iterable[Issue], accepted: Sequence[str]) -> list[Is
 def _settle(error: Issue, accepted: Sequence[str]) -> Issue:
     if error.kind in accepted:
         return error._replace(severity="note", sentence=f"{error.sentence}; accepted by its owner")
-    if error.kind not in get_args(Refusal):
-        return error
     how = f"if it is right as it is, write accept: [{error.kind}] in recording.yaml"
     return error._replace(sentence=f"{error.sentence}; {how}")
 
