@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy  # loads `scipy.signal` where it is first used
 
-from seatsim.recordings.quality.issue import LATE, Issue, RunUnderTest, Severity, Table
+from seatsim.recordings.quality.issue import LATE, Issue, RunUnderTest, Severity, Table, doubt
 from seatsim.recordings.recording import BENCH_CHANNELS, MOTION, SEAT_CHANNELS
 from seatsim.recordings.replay import COMPARED, LEFT_OUT, replay_table
 from seatsim.schema.arrays import Array
@@ -63,8 +63,7 @@ def _copies(part: Table, rate: float, named: tuple[str, str, str], band: tuple[f
             text = f"{second}: is {gain:.3g} times {first} below {band[1]:g} Hz: {said}, or that of {first} is wrong"
             yield Issue("warning", kind_of(gain), text, second)
         elif unit == "A" and alike > _SURELY_ALIKE and gain > 1.0 + _FAR:
-            text = f"{second}: is {gain:.3g} times {first} below {band[1]:g} Hz; the scale of one of both is wrong"
-            yield Issue("warning", "scale", text, second)
+            yield doubt("scale_of_current", second, gain=gain, other=first, band=band[1])
 
 
 def kind_of(gain: float) -> str:
@@ -80,13 +79,11 @@ def _force(part: Table, rate: float) -> Iterator[Issue]:
     travel, force = part[name], part["damper_force"]
     largest, stroke = float(np.max(np.abs(force))), float(np.max(np.abs(travel)))
     if largest < _TINY_FORCE and stroke > _MOVED:
-        text = f"damper_force: is {largest:.3g} N at most over a stroke of {1e3 * stroke:.3g} mm; is it in kN?"
-        yield Issue("warning", "unit", text, "damper_force")
+        yield doubt("tiny_force", "damper_force", largest=largest, stroke=1e3 * stroke)
     speed = np.gradient(travel, 1.0 / rate)
     gain, alike = regress(speed, force, rate, 0.05)
     if alike > 0.3 and gain < 0.0:
-        text = "damper_force: does work on the motion instead of taking it out: its sign is swapped, or that of " + name
-        yield Issue("warning", "sign", text, "damper_force")
+        yield doubt("driving_force", "damper_force", other=name)
 
 
 def _motion(part: Table, rate: float) -> Iterator[Issue]:
@@ -147,9 +144,7 @@ def _scale(target: Array, relative: Array, rate: float) -> Iterator[Issue]:
         return
     gain = product / power
     if not 1.0 - _FAR < gain < 1.0 / (1.0 - _FAR):
-        text = f"its second derivative is {gain:.3g} times frame - floor acceleration: its scale is wrong by that"
-        other = f", or that of the accelerations, or the sample rate, which then is {rate / gain**0.5:.4g} Hz"
-        yield Issue("warning", "scale", f"suspension_displacement: {text}{other}", "suspension_displacement")
+        yield doubt("scale_of_travel", "suspension_displacement", gain=gain, rate=rate / gain**0.5)
 
 
 def band_passed(values: Array, rate: float, low: float, high: float) -> Array:
