@@ -7,7 +7,6 @@ from typing import TypeVar
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import NDArray
 from scipy import fft
 
 from seatsim.metrics.motion import as_pair, require_positive
@@ -75,15 +74,11 @@ def _average_bands(frequency: Array, power: Array) -> tuple[Array, Array]:
 
     Otherwise the many lines of the high decades would make a drawn line thick and noisy.
     """
-    inside = _is_resolved(frequency)
+    # above what a mean leaves
+    inside = frequency >= max(LOWEST, frequency[FIRST_LINE])
     band = np.floor(PER_OCTAVE * np.log2(frequency[inside] / LOWEST) + 1e-9).astype(int)
     _, index, count = np.unique(band, return_inverse=True, return_counts=True)
     return np.bincount(index, frequency[inside]) / count, np.bincount(index, power[inside]) / count
-
-
-def _is_resolved(frequency: Array) -> NDArray[np.bool_]:
-    """Return which lines are drawn: those above `LOWEST` and above what a mean leaves."""
-    return np.asarray(frequency >= max(LOWEST, frequency[FIRST_LINE]))
 
 
 def _segments(values: Array, length: int) -> Array:

@@ -105,11 +105,5 @@ class SeatTest(NamedTuple):
         """What the test is by."""
         return "ISO 7096:2000 with ISO 10326-1:2016"
 
-    @property
-    @written()
-    def recalled(self) -> str:
-        """Which figures were not read in the standard."""
-        return RECALLED
-
     def _repr_html_(self) -> str:
         return show_record(self, "source", "standard", "classes", "damping", "notes")

@@ -94,7 +94,7 @@ def check_noise(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
         if channel == "current_command" or stated == 0.0 or not 0.0 < seen.fourth < np.inf:
             continue
         repeated = _list_unrepeated(recording.runs, tables, channel)
-        all_of = _measure_unrepeated(repeated)
+        all_of = min((float(np.std(values)) for values in repeated), default=np.nan)
         is_too_small = seen.third > _NOISE_OFF * stated and seen.fourth > _WHITE * seen.third
         levels = (measure_level(values, runs[0].rate).fourth for values in repeated)
         reason = ""
@@ -130,11 +130,6 @@ def _list_unrepeated(entries: Mapping[str, RunEntry], tables: Mapping[str, Table
             rows = min(len(first), len(second))
             found.append((first[:rows] - second[:rows]) / np.sqrt(2.0))
     return found
-
-
-def _measure_unrepeated(unrepeated: Sequence[Array]) -> float:
-    """Return the RMS of what does not repeat itself, at all frequencies, NaN without repeats."""
-    return min((float(np.std(values)) for values in unrepeated), default=np.nan)
 
 
 def check_floor_sensor(run: RunUnderTest) -> Iterator[Issue]:
