@@ -58,9 +58,9 @@ def assess_agreement(measured: Array, predicted: Array) -> Agreement:
     return Agreement(1.0 - share, deviation, rmse, 100.0 * (1.0 - share**0.5))
 
 
-def mean_agreement(each: Sequence[Agreement]) -> Agreement:
-    """Return the mean of every figure over records, each of which has the same weight."""
-    return Agreement(*(float(np.mean(values)) for values in zip(*each, strict=True)))
+def mean_agreement(each: Sequence[Agreement]) -> Agreement | None:
+    """Return the mean of every figure over records, each of which has the same weight; None of none."""
+    return Agreement(*(float(np.mean(values)) for values in zip(*each, strict=True))) if each else None
 
 
 class Assessment(NamedTuple):

@@ -58,29 +58,16 @@ class Identification(NamedTuple):
     warm: Unwritten[bool]
     commanded: Unwritten[bool]
     notes: list[str]
+    confidence: str
+    """How far the model is proven, a word of `seatsim.dampers.base.CONFIDENCE`."""
+    train: assessment.Agreement | None
+    """Mean agreement over the fitted records."""
+    test: assessment.Agreement | None
+    """Mean agreement over the records that were held out, None where none were."""
 
     def mean(self, part: str) -> assessment.Agreement | None:
         """Return the mean agreement over the records of a part (train, test), None where it has none."""
-        each = [one.agreement for one in self.assessments if one.part == part]
-        return assessment.mean_agreement(each) if each else None
-
-    @property
-    @written()
-    def confidence(self) -> str:
-        """How far the model is proven, a word of `seatsim.dampers.base.CONFIDENCE`."""
-        return find_confidence(type(self.bench.damper))
-
-    @property
-    @written()
-    def train(self) -> assessment.Agreement | None:
-        """Mean agreement over the fitted records."""
-        return self.mean("train")
-
-    @property
-    @written()
-    def test(self) -> assessment.Agreement | None:
-        """Mean agreement over the records that were held out, None where none were."""
-        return self.mean("test")
+        return self.train if part == "train" else self.test
 
     @property
     def assessed(self) -> assessment.Agreement | None:
@@ -160,11 +147,13 @@ def identify(
         *_note_parameters(problem, vector, known),
         *assessment.note_limits(DAMPERS.specification_of(cls), parts.fitted, tests, origin),
     ]
+    train, test = ([one.agreement for one in assessments if one.part == part] for part in ("train", "test"))
     return Identification(
         model=model, bench=bench, origin=origin, assessments=assessments, information=known,
         seconds=time.perf_counter() - began, ns_per_step=_time_step(bench, problem.inputs),
         warm=problem.reference is not None, commanded=any(record.commanded for record in parts.fitted),
         notes=[*notes, *_note_divergence(assessments), *note_unused(n for each in records for n in each.unused)],
+        confidence=find_confidence(cls), train=assessment.mean_agreement(train), test=assessment.mean_agreement(test),
     )  # fmt: skip
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 from seatsim.excitations.iso7096 import SpectralClass
-from seatsim.schema.content import Form, show_record, written
+from seatsim.schema.content import Form, show_record
 
 ACCEPTANCE, DAMPING = "ISO 7096:2000, 5.5.1 and 6 (recalled)", "ISO 7096:2000, 5.5.2 and 6 (recalled)"
 """Clauses of the simulated input vibration test and of the damping test with their acceptance values."""
@@ -98,12 +98,8 @@ class SeatTest(NamedTuple):
     failures: Annotated[tuple[SeatFailure, ...], Form(key="failed")] = ()
     source: str = ""
     """Name of the scenario, or of the recording's folder."""
-
-    @property
-    @written()
-    def standard(self) -> str:
-        """What the test is by."""
-        return "ISO 7096:2000 with ISO 10326-1:2016"
+    standard: str = "ISO 7096:2000 with ISO 10326-1:2016"
+    """What the test is by."""
 
     def _repr_html_(self) -> str:
         return show_record(self, "source", "standard", "classes", "damping", "notes")
