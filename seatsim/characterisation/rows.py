@@ -208,29 +208,23 @@ _FIGURES: dict[str, Callable[[SineTest], float]] = {
 """Figures that every cycle has."""
 
 
-def _summarise_loops(
-    loops: Sequence[SineTest],
-    record: BenchRecord,
-    current: Array,
-    temperature: Array | float,
-    left_out: int,
-    notes: Sequence[str],
-    window: float,
-) -> Row:
-    """Return the row of a record: loops of equally many samples, current in A and temperature in degC of each."""
-    loop = _average_loops(loops)
-    warmth = np.broadcast_to(np.asarray(temperature, dtype=float), len(loops))
+def _summarise_loops(record: BenchRecord, steady: Sequence[_Cycle], loops: Sequence[SineTest], window: float) -> Row:
+    """Return the row of a record with steady cycles, which are loops of equally many samples too."""
+    loop, current = _average_loops(loops), _average_cycles(record.current, steady)
+    warmth = np.full(len(loops), math.nan)
+    if record.temperature is not None:
+        warmth = _average_cycles(record.temperature, steady)
     each = {name: np.array([figure(one) for one in loops]) for name, figure in _FIGURES.items()}
     mean = {name: float(np.mean(values)) for name, values in each.items()}
     ways = np.array([measure_forces(one, window) for one in loops])
     values = {"current": current, "temperature": warmth, **each, "force": 0.5 * (ways[:, 0] - ways[:, 1])}
     return Row(
-        record=record.name, file=record.file, cycles=len(loops), left_out=left_out,
+        record=record.name, file=record.file, cycles=len(loops), left_out=0,
         current=round(float(np.mean(current)), 6),
         temperature=float(np.mean(warmth)), temperature_range=float(np.ptp(warmth)),
         amplitude=0.5 * float(np.ptp(loop.displacement)), frequency=1.0 / float(loop.time[-1]),
         peak_speed=float(np.max(np.abs(loop.velocity))),
-        asymmetry=ratio(rms(loop.asymmetric_part[:-1]), rms(loop.force[:-1])), notes=tuple(notes), loop=loop,
+        asymmetry=ratio(rms(loop.asymmetric_part[:-1]), rms(loop.force[:-1])), notes=(), loop=loop,
         cycle_values={name: list(map(float, v)) for name, v in values.items()},
         energy_sd=float(np.std(each["energy"], ddof=1)) if len(loops) > 1 else math.nan, **mean,
     )  # fmt: skip
@@ -262,10 +256,8 @@ def summarise_record(record: BenchRecord, window: float = WINDOW) -> Row:
     notes += _of_sign(record)
     if min(cycle.length for cycle in steady) < _COARSE:
         notes.append(f"fewer than {_COARSE} rows a cycle: peaks and areas are coarse")
-    current = _average_cycles(record.current, steady)
-    warmth = math.nan if record.temperature is None else _average_cycles(record.temperature, steady)
-    left_out = len(found) - len(steady)
-    return _summarise_loops(loops, record, current, warmth, left_out, notes, window)
+    row = _summarise_loops(record, steady, loops, window)
+    return row._replace(left_out=len(found) - len(steady), notes=tuple(notes))
 
 
 def summarise_aperiodic_record(record: BenchRecord, found: Sequence[_Cycle]) -> Row:

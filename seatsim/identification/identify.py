@@ -247,28 +247,21 @@ def benchmark_models(
     models = names("damper") if _ALL in models else models
     split_records(records, settings)  # what cannot be held out is refused before the first fit
     _check_fixed(settings.fix, models)
-    return _rank_entries([_benchmark_model(records, model, settings, progress, keep) for model in models])
 
+    def enter(model: str) -> BenchmarkEntry:
+        cls = find_model(model)
+        known = numeric_fields(cls)
+        own = settings._replace(fix={name: value for name, value in settings.fix.items() if name in known})
+        try:
+            found = identify(records, model, own, lambda text: progress(f"{model}: {text}"))
+        except SeatsimError as error:
+            return BenchmarkEntry(model, math.nan, math.nan, 0, math.nan, math.nan, str(error), find_confidence(cls))
+        keep(found)
+        train, test = (mean.fit_percent if mean else math.nan for mean in (found.train, found.test))
+        figures = len(found.information.estimates), found.ns_per_step, found.seconds
+        return BenchmarkEntry(found.model, train, test, *figures, confidence=found.confidence)
 
-def _benchmark_model(
-    records: Sequence[BenchRecord],
-    model: str,
-    settings: IdentificationSettings,
-    progress: Progress,
-    keep: Callable[[Identification], object],
-) -> BenchmarkEntry:
-    """Identify one model, hand the result on and return its entry."""
-    cls = find_model(model)
-    known = numeric_fields(cls)
-    own = settings._replace(fix={name: value for name, value in settings.fix.items() if name in known})
-    try:
-        found = identify(records, model, own, lambda text: progress(f"{model}: {text}"))
-    except SeatsimError as error:
-        return BenchmarkEntry(model, math.nan, math.nan, 0, math.nan, math.nan, str(error), find_confidence(cls))
-    keep(found)
-    train, test = (mean.fit_percent if mean else math.nan for mean in (found.train, found.test))
-    figures = len(found.information.estimates), found.ns_per_step, found.seconds
-    return BenchmarkEntry(found.model, train, test, *figures, confidence=found.confidence)
+    return _rank_entries([enter(model) for model in models])
 
 
 def _rank_entries(entries: Sequence[BenchmarkEntry]) -> list[BenchmarkEntry]:
