@@ -55,11 +55,6 @@ class Weighting(NamedTuple):
     step: _UpwardStep | None = None
     K: float = 1.0
 
-    @property
-    def minimum_rate(self) -> float:
-        """Lowest sample rate in Hz: the band, which ends at the corner f2, must lie below half of it."""
-        return 2 * self.f2
-
 
 WEIGHTINGS = read_packaged(Path(__file__).with_name("weightings.yaml"), dict[str, Weighting])
 """All weightings by name."""
@@ -155,7 +150,7 @@ def weight(signal: ArrayLike, sample_rate: float, weighting: str = "Wk") -> Arra
     if not can_weight(sample_rate, weighting):
         raise InputError(
             f"sample_rate: is {sample_rate} Hz; weighting {weighting} reaches {constants.f2:.4g} Hz and needs "
-            f"{constants.minimum_rate:.4g} Hz or more"
+            f"{least_rate(weighting):.4g} Hz or more"
         )
     # The product of transforms is a circular convolution: zeros behind the record keep its end out of its start.
     size = fft.next_fast_len(x.size + math.ceil(_DECAY / constants.f1 * sample_rate), real=True)
@@ -164,8 +159,8 @@ def weight(signal: ArrayLike, sample_rate: float, weighting: str = "Wk") -> Arra
 
 
 def least_rate(weighting: str = "Wk") -> float:
-    """Return the lowest sample rate in Hz at which a record can be weighted."""
-    return _constants(weighting).minimum_rate
+    """Return the lowest sample rate in Hz: the band, which ends at the corner f2, must lie below half of it."""
+    return 2 * _constants(weighting).f2
 
 
 def can_weight(sample_rate: float, weighting: str = "Wk") -> bool:
