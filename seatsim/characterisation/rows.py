@@ -10,7 +10,7 @@ from typing import Annotated, NamedTuple, TypeVar
 
 import numpy as np
 
-from seatsim.characterisation.steps import LEAST_RANGE
+from seatsim.characterisation.steps import LEAST_RANGE, find_plateaus
 from seatsim.metrics.motion import ratio, rms
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.recordings.quality.damage import Doubter, doubt_dropouts, flat_tops, plateaus
@@ -246,7 +246,7 @@ def summarise_record(record: BenchRecord, window: float = WINDOW) -> Row:
     found = find_cycles(record.displacement)
     steady = select_steady_cycles(found)
     if not steady:
-        return summarise_aperiodic_record(record, found)
+        return _summarise_aperiodic_record(record, found)
     drift = _find_drift(record, steady)
     loops = _resample_loops(record, steady, drift)
     moved = drift * (steady[-1].first - steady[0].first) / record.rate
@@ -260,7 +260,7 @@ def summarise_record(record: BenchRecord, window: float = WINDOW) -> Row:
     return row._replace(left_out=len(found) - len(steady), notes=tuple(notes))
 
 
-def summarise_aperiodic_record(record: BenchRecord, found: Sequence[_Cycle]) -> Row:
+def _summarise_aperiodic_record(record: BenchRecord, found: Sequence[_Cycle]) -> Row:
     """Return the row of a record that is no steady cycle: peaks and mean of the force, and what the motion is."""
     warmth = record.temperature if record.temperature is not None else np.array([math.nan])
     return Row(
@@ -271,6 +271,25 @@ def summarise_aperiodic_record(record: BenchRecord, found: Sequence[_Cycle]) -> 
         offset=float(np.mean(record.force)),
         notes=(_motion(record, found), *_of_damage(record), *_of_current(record), *_of_sign(record)),
     )  # fmt: skip
+
+
+_AFTER_STEP = 0.2
+"""Seconds after a step of current from which on cycles are counted."""
+
+
+def summarise_stretches(record: BenchRecord, window: float) -> list[Row]:
+    """Return the row of a record, or one for each stretch with steady cycles over which its current rests."""
+    rests = find_plateaus(record.current, record.rate)
+    if len(rests) < 2:
+        return [summarise_record(record, window)]
+    skipped = round(_AFTER_STEP * record.rate)
+    parts = [(rest, record.part(rest.first + skipped, rest.last)) for rest in rests if rest.last > rest.first + skipped]
+    rows = [
+        summarise_record(part, window)._replace(record=f"{record.name}, {rest.first / record.rate:.1f} s")
+        for rest, part in parts
+    ]
+    cyclic = [row for row in rows if row.loop is not None]
+    return cyclic or [_summarise_aperiodic_record(record, find_cycles(record.displacement))]
 
 
 def _motion(record: BenchRecord, found: Sequence[_Cycle]) -> str:

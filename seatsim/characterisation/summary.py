@@ -8,17 +8,9 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
-from seatsim.characterisation.rows import (
-    WINDOW,
-    Row,
-    find_cycles,
-    group_rows,
-    has_same_motion,
-    summarise_aperiodic_record,
-    summarise_record,
-)
+from seatsim.characterisation.rows import WINDOW, Row, group_rows, has_same_motion, summarise_stretches
 from seatsim.characterisation.sheet import BenchSheet, PeakForce
-from seatsim.characterisation.steps import Response, find_plateaus, measure_responses
+from seatsim.characterisation.steps import Response, measure_responses
 from seatsim.characterisation.tabulate import make_sheet
 from seatsim.recordings.bench_tables import BenchRecord, map_bench, note_unused
 from seatsim.scenario.damper import read_damper
@@ -61,10 +53,6 @@ def _test_sine(choice: DamperChoice, row: Row) -> SineTest:
     cycles = max(3, math.ceil(_RUN_UP * row.frequency) + 1)
     test = sine_test(choice.record, row.amplitude, row.frequency, row.current, warm, choice.factors, cycles)
     return test._replace(time=test.time - test.time[0])
-
-
-_SETTLED = 0.2
-"""Seconds after a step of current from which on cycles are counted."""
 
 
 class Characterisation(NamedTuple):
@@ -137,24 +125,10 @@ def _examine(window: float, records: Iterable[BenchRecord]) -> tuple[list[Row], 
     """Return what some records show, without their samples: rows, responses, columns that are not used."""
     rows, responses, unused = list[Row](), list[Response](), list[str]()
     for record in records:
-        rows += _rows(record, window)
+        rows += summarise_stretches(record, window)
         responses += measure_responses(record)
         unused += record.unused
     return rows, responses, unused
-
-
-def _rows(record: BenchRecord, window: float) -> list[Row]:
-    rests = find_plateaus(record.current, record.rate)
-    if len(rests) < 2:
-        return [summarise_record(record, window)]
-    skipped = round(_SETTLED * record.rate)
-    parts = [(rest, record.part(rest.first + skipped, rest.last)) for rest in rests if rest.last > rest.first + skipped]
-    rows = [
-        summarise_record(part, window)._replace(record=f"{record.name}, {rest.first / record.rate:.1f} s")
-        for rest, part in parts
-    ]
-    cyclic = [row for row in rows if row.loop is not None]
-    return cyclic or [summarise_aperiodic_record(record, find_cycles(record.displacement))]
 
 
 def group_by_setting(rows: Sequence[Row]) -> list[list[Row]]:

@@ -16,14 +16,7 @@ import numpy as np
 from seatsim.dampers.base import DAMPERS, find_confidence
 from seatsim.identification import assessment
 from seatsim.identification.damper_record import find_model, numeric_fields
-from seatsim.identification.problem import (
-    BenchModel,
-    IdentificationProblem,
-    RecordInputs,
-    find_origin,
-    predict_force,
-    state_problem,
-)
+from seatsim.identification.problem import BenchModel, IdentificationProblem, find_origin, predict_force, state_problem
 from seatsim.identification.search import Progress, ignore_progress, search_parameters
 from seatsim.identification.settings import IdentificationSettings, split_records
 from seatsim.recordings.bench_tables import BenchRecord, load_bench, note_unused
@@ -150,7 +143,7 @@ def identify(
     train, test = ([one.agreement for one in assessments if one.part == part] for part in ("train", "test"))
     return Identification(
         model=model, bench=bench, origin=origin, assessments=assessments, information=known,
-        seconds=time.perf_counter() - began, ns_per_step=_time_step(bench, problem.inputs),
+        seconds=time.perf_counter() - began, ns_per_step=_time_step(bench, problem),
         warm=problem.reference is not None, commanded=any(record.commanded for record in parts.fitted),
         notes=[*notes, *_note_divergence(assessments), *note_unused(n for each in records for n in each.unused)],
         confidence=find_confidence(cls), train=assessment.mean_agreement(train), test=assessment.mean_agreement(test),
@@ -191,15 +184,15 @@ def _note_divergence(assessments: Sequence[assessment.Assessment]) -> Iterator[s
         yield f"the state runs away on {', '.join(diverged)}: the force counts as 0 N from there"
 
 
-def _time_step(bench: BenchModel, inputs: Sequence[RecordInputs]) -> float:
+def _time_step(bench: BenchModel, problem: IdentificationProblem) -> float:
     """Return the nanoseconds of a step of the simulation."""
     times = []
     for _ in range(_TIMED_RUNS):
         began = time.perf_counter()
-        for each in inputs:
+        for each in problem.inputs:
             predict_force(bench, each)
         times.append(time.perf_counter() - began)
-    return 1e9 * min(times) / sum(len(each.force) for each in inputs)
+    return 1e9 * min(times) / sum(len(each.force) for each in problem.inputs)
 
 
 _ALL = "all"

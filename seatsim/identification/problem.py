@@ -48,6 +48,10 @@ class BenchModel(NamedTuple):
     fall: float = 130.0
     offset_per_kelvin: float = 0.0
 
+    def predict(self, record: BenchRecord, origin: float) -> Array:
+        """Return the force in N at the rows of a record, shape (N,); `origin` is what counts as x = 0, in m."""
+        return predict_force(self, prepare_inputs(record, origin, True))
+
 
 class RecordInputs(NamedTuple):
     """A record as it drives the bench: samples every half step, shape (2 n + 1,), and the measured force at steps.
@@ -157,6 +161,11 @@ class IdentificationProblem(NamedTuple):
     reference: float | None
     tolerance: float = TOLERANCE
     factors: TemperatureFactors = TemperatureFactors()
+
+    @property
+    def start(self) -> BenchModel:
+        """The bench that the coordinates start from."""
+        return BenchModel(self.coordinates.start, TemperatureFactors(), COIL_RATE, COIL_RATE)
 
     @property
     def components(self) -> list[Component]:

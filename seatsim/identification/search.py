@@ -7,15 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.identification.damper_record import rescale_damper
-from seatsim.identification.problem import (
-    COIL_RATE,
-    MOST_PARTS_IN_SEARCH,
-    BenchModel,
-    IdentificationProblem,
-    compute_jacobian,
-    predict_force,
-)
-from seatsim.rig.temperature import TemperatureFactors
+from seatsim.identification.problem import MOST_PARTS_IN_SEARCH, IdentificationProblem, compute_jacobian, predict_force
 from seatsim.schema.arrays import Array
 
 Progress = Callable[[str], None]
@@ -67,7 +59,7 @@ def search_parameters(
 
 def default_vector(problem: IdentificationProblem) -> Array:
     """Return the vector of the record that the coordinates start from, shape (P,)."""
-    return problem.to_vector(BenchModel(problem.coordinates.start, TemperatureFactors(), COIL_RATE, COIL_RATE))
+    return problem.to_vector(problem.start)
 
 
 def descend_from_defaults(

@@ -17,15 +17,7 @@ from seatsim.metrics.comfort import (
     motion_sickness_dose,
     seat_transmission,
 )
-from seatsim.metrics.exposure import (
-    DIRECTIONS,
-    HOUR,
-    POINTS,
-    Direction,
-    Exposure,
-    assess_exposure,
-    point_of,
-)
+from seatsim.metrics.exposure import DIRECTIONS, HOUR, POINTS, Direction, Exposure, assess_exposure, point_of
 from seatsim.metrics.spine import SpinalLoad, assess_spine, join_spinal_doses, spinal_dose, spine_response
 from seatsim.metrics.weighting import weight
 from seatsim.recordings.quality.channels import say_implausible

@@ -69,7 +69,7 @@ class DampingRow(NamedTuple):
     resonance: float
     limit: float
     passed: Annotated[bool, Form(key="pass")]
-    clause: str
+    clause: str = DAMPING
 
 
 class SeatFailure(NamedTuple):

@@ -32,16 +32,7 @@ from seatsim.schema.registry import specification_of
 from seatsim.schema.text import join_names
 from seatsim.simulation.augment import augment_plant
 from seatsim.simulation.simulate import simulate
-from seatsim.standards.seat_rows import (
-    ACCEPTANCE,
-    DAMPING,
-    RECALLED,
-    DampingRow,
-    DampingTest,
-    SeatFailure,
-    SeatRow,
-    SeatTest,
-)
+from seatsim.standards.seat_rows import ACCEPTANCE, RECALLED, DampingRow, DampingTest, SeatFailure, SeatRow, SeatTest
 
 INERT_MASS = 75.0
 """Mass on the seat in the damping test in kg (ISO 10326-1:2016, 10.3)."""
@@ -361,7 +352,7 @@ def _state_damping_row(run: str, spectral_class: SpectralClass, found: DampingTe
     """Return the line of the damping test of a seat against the limit of a class."""
     limit = CLASSES[spectral_class].transmissibility
     passed = bool(found.transmissibility <= limit)
-    return DampingRow(run, spectral_class, found.transmissibility, found.resonance, limit, passed, DAMPING)
+    return DampingRow(run, spectral_class, found.transmissibility, found.resonance, limit, passed)
 
 
 def _doubt_runs(rows: Sequence[SeatRow]) -> list[str]:
