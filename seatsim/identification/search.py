@@ -35,11 +35,7 @@ def ignore_progress(text: str) -> None:
 
 
 def search_parameters(
-    problem: IdentificationProblem,
-    short: IdentificationProblem,
-    seed: int,
-    executor: Executor,
-    progress: Progress = ignore_progress,
+    problem: IdentificationProblem, short: IdentificationProblem, seed: int, executor: Executor, progress: Progress
 ) -> Array:
     """Return the best vector of a problem, shape (P,), found from `short` stretches of its records.
 
@@ -88,12 +84,7 @@ def _match_force(problem: IdentificationProblem, vector: Array) -> Array:
 
 
 def _search_globally(
-    problem: IdentificationProblem,
-    start: Array,
-    seed: int,
-    evaluations: int,
-    executor: Executor,
-    progress: Progress = ignore_progress,
+    problem: IdentificationProblem, start: Array, seed: int, evaluations: int, executor: Executor, progress: Progress
 ) -> Array:
     """Return the best vector, shape (P,), of a CMA-ES from `start` (Hansen 2016, arXiv:1604.00772)."""
     import cma

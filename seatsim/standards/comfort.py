@@ -219,9 +219,7 @@ def _load_spine(records: Sequence[AccelerationRecord], column: str, hours: float
 
 
 def _notes(
-    records: Sequence[AccelerationRecord],
-    named: Mapping[str, str],
-    axes: Mapping[str, AxisAssessment],
+    records: Sequence[AccelerationRecord], named: Mapping[str, str], axes: Mapping[str, AxisAssessment]
 ) -> Iterator[str]:
     yield from (note for record in records for note in record.notes)
     if len(records) > 1:
