@@ -45,9 +45,9 @@ def characterise(
         pattern: Groups current and temperature of file names.
         window: Part of the stroke over which forces are averaged.
     """
-    from seatsim.characterisation.model_tests import load_damper, model_peaks
     from seatsim.characterisation.sheet import check_limits
     from seatsim.characterisation.summary import characterise as characterise_records
+    from seatsim.characterisation.summary import load_damper, model_peaks
     from seatsim.cli.outputs.damper_results import present_characterisation
     from seatsim.recordings.bench_tables import NAMED
 

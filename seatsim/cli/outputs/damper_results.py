@@ -13,8 +13,7 @@ from seatsim.characterisation.summary import Characterisation
 from seatsim.cli.outputs.writing import name_pictures, write_each, write_outputs
 from seatsim.cli.show_table import show_report_tables
 from seatsim.cli.terminal import complain, conclude, say, show_progress, warn
-from seatsim.identification.identify import Identification, identify
-from seatsim.identification.model_benchmark import League, benchmark_models
+from seatsim.identification.identify import Identification, League, benchmark_models, identify
 from seatsim.identification.settings import IdentificationSettings
 from seatsim.plots.bench.characterisation import plot_characterisation
 from seatsim.plots.bench.identification import plot_predictions
