@@ -183,14 +183,11 @@ class NoiseWeights:
         return dataclasses.replace(self, force=amplitudes)
 
 
-def weigh_noise(problem: DiagnosisProblem) -> NoiseWeights:
-    """Return the weights for a recording: by all noise that is stated, and by what repeats differ by.
-
-    A material difference between repeats is no noise but the work of a random effect, which is then sought.
-    """
+def weigh_noise(problem: DiagnosisProblem, repeats: bool = True) -> NoiseWeights:
+    """Return the weights for a recording: by all noise that is stated, and, with `repeats`, what repeats differ by."""
     settings, stated = problem.settings.noise, problem.recording.header.model_error
     missed = settings.model_error if stated is None else stated
-    repeated = None if differ_materially(problem) else _measure_nonrepeatable(problem)
+    repeated = _measure_nonrepeatable(problem) if repeats else None
     found = {}
     for run in problem.runs:
         measured = problem.measured[run]
