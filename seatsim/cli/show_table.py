@@ -78,7 +78,7 @@ def show_report_tables(tables: Iterable[ReportTable]) -> None:
             rows[number] = [f"[bold]{cell}[/]" for cell in rows[number]]
         headings = [fill(text, _HEADING, break_long_words=False) for text in table.head]
         left = len(table.rows) - len(rows)
-        caption = f"{left} more rows in report.html" if left else None
+        caption = f"and {left} more rows" if left else None
         show_table(make_table(table.caption, headings, rows, range(table.words), caption))
 
 

@@ -39,19 +39,20 @@ P = ParamSpec("P")
 def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress) -> Solution:
     """Search for the causes; where a random signal may hide them, search beside it too.
 
-    What repeats differ by counts as noise. Where it is material a random effect may make it, which is sought first.
+    What repeats differ by counts as noise. Where it is material a random effect may make it, which is sought first, and
+    where nothing else is found it is itself the gap.
 
     Args:
         problem: a recording beside its nominal scenario.
         without: names of effects that are withheld from the library.
         progress: called with what is being done.
     """
-    if not problem.bench and differ_materially(problem):
-        found = _in_time(_search_causes, *pose_search(problem, without, progress, repeats=False), without)
-        if found and found.stochastic:
-            return found
-    task, objective = pose_search(problem, without, progress)
+    differ = differ_materially(problem)
+    task, objective = pose_search(problem, without, progress, repeats=not differ)
     first = _search_causes(task, objective, without)
+    if differ and not (first.stochastic or problem.deadline.is_past):
+        second = _search_causes(*pose_search(problem, without, progress), without)
+        first = first if second.decision.verdict == "none" else second
     # A random signal takes nothing off the gap, however right it is.
     if first.decision.verdict == "none" or first.stochastic:
         return first

@@ -58,10 +58,6 @@ class Identification(NamedTuple):
     test: assessment.Agreement | None
     """Mean agreement over the records that were held out, None where none were."""
 
-    def mean(self, part: str) -> assessment.Agreement | None:
-        """Return the mean agreement over the records of a part (train, test), None where it has none."""
-        return self.train if part == "train" else self.test
-
     @property
     def assessed(self) -> assessment.Agreement | None:
         """Mean agreement on the records that were held out, on the fitted ones where none were."""

@@ -165,7 +165,7 @@ class _Page:
 
         path = _name_new(self._folder, str(values.get("name", "")))
         content = {**self._target.encode(values), "name": path.stem}
-        single(content)  # what could not be read again is never saved
+        single(content)  # what cannot be loaded is never saved
         return {"saved": write_text(path, dump(content)).name}
 
 

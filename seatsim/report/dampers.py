@@ -37,7 +37,7 @@ def report_identification(found: Identification, figures: Figures, command: str)
     }
     loose, mean = [each.name for each in found.information.estimates if not each.identified], found.assessed
     advice = choose_advice(
-        hold_out=found.mean("test") is None,
+        hold_out=found.test is None,
         other_models=mean is not None and mean.fit_percent < _FAIR,
         undetermined=loose,
         copy=True,
@@ -53,7 +53,7 @@ def _say_fit(found: Identification) -> str:
         return f"{found.model} was fitted, but no record assesses it."
     word = "well" if mean.fit_percent >= GOOD else "usably" if mean.fit_percent >= _FAIR else "poorly"
     held_out, fitted = "that took no part in the fit", "it was fitted to; none was held out"
-    where = f"on records {held_out}" if found.mean("test") else f"on the records {fitted}"
+    where = f"on records {held_out}" if found.test else f"on the records {fitted}"
     return (
         f"{found.model} predicts the damper's force {word}: a fit of {format_number(mean.fit_percent)} %, an error of"
         f" {format_quantity(mean.rmse, 'N')} RMS, {where}."
@@ -64,7 +64,8 @@ def tabulate_fit(found: Identification) -> list[Table]:
     """Return the table of the agreement on each record, and of its means."""
     named = zip(name_records(found.assessments), found.assessments, strict=True)
     judged = [(name, PARTS[each.part], each.record.mean_current, each.agreement) for name, each in named]
-    means = [(f"mean, {words}", words, "", mean) for part, words in PARTS.items() if (mean := found.mean(part))]
+    parts = zip(PARTS.values(), (found.train, found.test), strict=True)
+    means = [(f"mean, {words}", words, "", mean) for words, mean in parts if mean]
     every = [*judged, *means]
     rows = [(*name, each.fit_percent, format_number(each.r2, 5), each.rmse, each.md) for *name, each in every]
     return show_table("fit", rows, 2, range(len(judged), len(rows)))

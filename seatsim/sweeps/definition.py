@@ -12,6 +12,7 @@ The values that one key takes are a list, a range, or a distribution that is dra
 
 from __future__ import annotations
 
+import csv
 import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -23,11 +24,10 @@ import numpy as np
 from seatsim.metrics.table import METRICS
 from seatsim.scenario.loading import find_file
 from seatsim.schema.arrays import Array
-from seatsim.schema.errors import InputError, permit, placed, read_each
+from seatsim.schema.errors import InputError, permit, read_each
 from seatsim.schema.fields import read_packaged
-from seatsim.schema.guarded import is_there
+from seatsim.schema.guarded import is_there, read_bytes
 from seatsim.schema.json_schema import Schema, head_schema, mapping_schema
-from seatsim.schema.tables import read_table
 from seatsim.schema.validation import check_keys, is_finite_number, mapping, read_number, read_whole
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import KeyPath, YamlError, parse_value
@@ -169,6 +169,8 @@ _SCHEMA = read_packaged(Path(__file__).with_name("schema.yaml"), dict[str, Any])
 _DESIGNS: list[str] = _SCHEMA["properties"]["design"]["enum"]
 MOST_RUNS = 10_000_000
 """Runs of a sweep: their numbers have this many digits, and more would be a slip of the keyboard."""
+_LARGEST_DESIGN = 2**30
+"""Bytes of a table of runs."""
 
 
 class _Table(NamedTuple):
@@ -283,11 +285,18 @@ def _read_table(source: Source) -> _Table | None:
     if not isinstance(stated, str):
         raise source.error(("table",), "design 'table' needs the path of a CSV file whose columns are keys")
     path = source.path.parent / stated
-    with placed(source.place(("table",))):
-        frame = read_table(path)
-    if frame.empty:
+    try:
+        text = read_bytes(path, _LARGEST_DESIGN, "a CSV file").decode("utf-8-sig")
+        rows = list(csv.reader(text.splitlines()))
+    except (UnicodeDecodeError, csv.Error, InputError) as error:
+        raise source.error(("table",), f"{path} cannot be read: {error}") from error
+    head, body = (rows[0], [row for row in rows[1:] if row]) if rows else ([], [])
+    if not head or not body or len(set(head)) < len(head):
         raise InputError(f"{path}: a design has a line of different keys, and below it a line for each point")
-    return _Table(path, {str(key): [_read_cell(str(cell)) for cell in frame[key].tolist()] for key in frame})
+    for number, row in enumerate(body, start=2):
+        if len(row) != len(head):
+            raise InputError(f"{path}, row {number}: has {len(row)} values; {len(head)} keys are named")
+    return _Table(path, {key: [_read_cell(row[k]) for row in body] for k, key in enumerate(head)})
 
 
 def _read_cell(text: str) -> object:

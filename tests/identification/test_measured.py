@@ -33,5 +33,5 @@ def test_every_bench_is_read(folder, shared):
 def test_a_bingham_damper_predicts_sines_that_were_held_out(shared):
     data = shared / "data"
     found = identify(data / "utfsm_mr_sine_raw", "bingham", IdentificationSettings(("*10mm_2Hz*", "*5mm_4Hz*")))
-    assert 74.0 < found.mean("train").fit_percent < 82.0 and 72.0 < found.mean("test").fit_percent < 80.0
+    assert 74.0 < found.train.fit_percent < 82.0 and 72.0 < found.test.fit_percent < 80.0
     assert 25.0 < found.bench.damper.f0 < 60.0, "the measured offset"

@@ -34,8 +34,8 @@ def test_a_damper_comes_back_within_5_percent(model, truth, conform):
         claim = f"identified {model} with 2 % noise: {name}"
         conform(claim, "the damper that made the records", estimate.value, value, tolerance=0.05 * abs(value))
         assert estimate.identified and abs(estimate.value - value) < 4.0 * estimate.std, name
-    assert found.mean("train").fit_percent == pytest.approx(98.0, abs=0.1), "2 % noise"
-    assert found.mean("test") is None and not found.warm and not found.commanded
+    assert found.train.fit_percent == pytest.approx(98.0, abs=0.1), "2 % noise"
+    assert found.test is None and not found.warm and not found.commanded
 
 
 def test_the_rates_of_a_coil_come_back_from_a_square_wave(conform):
@@ -46,7 +46,7 @@ def test_the_rates_of_a_coil_come_back_from_a_square_wave(conform):
     for name, value in (("actuator.rate", 200.0), ("actuator.rate_fall", 60.0)):
         claim = f"identified coil with 2 % noise: {name}, 1/s"
         conform(claim, "the coil that made the record", known[name].value, value, tolerance=0.05 * value)
-    assert found.mean("test").fit_percent > 97.5
+    assert found.test.fit_percent > 97.5
 
 
 def test_temperature_factors_come_back_and_may_be_ignored():
@@ -63,7 +63,7 @@ def test_temperature_factors_come_back_and_may_be_ignored():
     assert found.bench.factors.stiffness == 0.0, "this damper has none: what has no influence keeps its default"
     assert found.notes == ["the data do not identify temperature_factors.stiffness"]
     cold = identify(records, "bingham", Settings(ignore_temperature=True))
-    assert not cold.warm and cold.mean("train").fit_percent < 90.0
+    assert not cold.warm and cold.train.fit_percent < 90.0
 
 
 def test_one_current_leaves_its_influence_unknown_and_the_rest_known():
@@ -87,7 +87,7 @@ def test_a_gas_force_of_many_standard_deviations_is_found():
     records = [made(slow, 0.01, 0.2, noise=0.02, seconds=8.0), made(slow, 0.005, 0.5, noise=0.02, seconds=8.0, seed=2)]
     assert all(np.mean(record.force) > 100.0 * np.std(record.force) for record in records)
     found = identify(records, "bingham")
-    assert found.mean("train").fit_percent > 97.0
+    assert found.train.fit_percent > 97.0
     assert found.bench.damper.f0 == pytest.approx(4000.0, rel=1e-3)
 
 

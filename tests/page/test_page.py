@@ -91,9 +91,13 @@ def test_a_foreign_host_or_origin_is_refused(app):
     assert ask(app, "POST", "/view", json={}, headers={"origin": HOME}).status_code == 200
 
 
-def test_a_target_that_is_not_there_is_said(tmp_path):
+def test_a_target_that_is_not_there_or_has_a_fault_is_said(tmp_path):
     with pytest.raises(InputError, match="no such file"):
         open_target(tmp_path / "none.yaml")
+    faulty = Plain()
+    faulty.show = lambda _: open_target(tmp_path / "none.yaml")
+    answer = ask(make_app(faulty, tmp_path, TOKEN, PORT), "GET", "/")
+    assert answer.status_code == 422 and answer.headers["content-type"].startswith("text/plain")
 
 
 def test_large_requests_are_refused(app):

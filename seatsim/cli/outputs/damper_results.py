@@ -118,7 +118,7 @@ def compare_models(
     rows = []
     for each in places:
         fits, cost = (each.train_fit_percent, each.test_fit_percent), (each.ns_per_step, each.seconds)
-        rows.append((each.model, each.confidence, *fits, str(each.parameters), *cost))
+        rows.append((each.model, each.confidence, *fits, "–" if each.failed else str(each.parameters), *cost))
     head = "model, confidence, train [%], test [%], parameters, ns a step, s"
     show_report_tables(tabulate("Models, the best first", head, rows, 2))
     failed = [place for place in places if place.failed]

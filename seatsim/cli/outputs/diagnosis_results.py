@@ -49,7 +49,7 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> list[Path]:
     """Write `diagnosis.json`, `augmented.yaml`, `report.html`, and `experiment.yaml` where one is proposed.
 
     Raises:
-        InputError: a scenario that was found could not be loaded again, or the folder cannot be written.
+        InputError: a scenario that was found cannot be loaded, or the folder cannot be written.
     """
     scenarios = {"augmented.yaml": diagnosis.augmented}
     if diagnosis.experiment is not None and diagnosis.experiment.scenario is not None:

@@ -48,7 +48,8 @@ class Disturbance(NamedTuple):
         signals, shares = self.found.signals, list[float]()
         for first, second in problem.repeats:
             rows = min(len(signals[first]), len(signals[second]))
-            shares.append(float(np.corrcoef(signals[first][:rows], signals[second][:rows])[0, 1]) ** 2)
+            both = np.corrcoef(signals[first][:rows], signals[second][:rows])
+            shares.append(float(np.nan_to_num(both[0, 1])) ** 2)
         return float(np.mean(shares)) if shares else 0.0
 
 

@@ -25,7 +25,7 @@ from seatsim.schema.errors import InputError
 REAL, INTEGER, BOOLEAN, NOTHING = types.float64, types.int64, types.boolean, types.none
 Rank = IntEnum("Rank", "UNARY PRODUCT SUM COMPARISON LOGIC CHOICE")
 """Ranks of C's operators, from the one that binds most; 0 is a name, a literal or a call."""
-_TAKEN = Path(__file__).parents[1].joinpath("c", "taken.txt").read_text().split()
+_TAKEN = Path(__file__).parents[1].joinpath("c", "taken.txt").read_text(encoding="utf-8").split()
 """Words of C and of its library."""
 
 

@@ -58,7 +58,7 @@ def test_a_drift_is_sought_in_the_one_channel_that_stays_open(problem, gaps, cha
     assert find_bias_drift(objective, left(problem, *gaps, cycles=20)) is None
 
 
-def test_a_random_signal_is_not_shown_again_by_a_repeat(folder, problem):
+def test_the_share_of_a_signal_that_a_repeat_shows_again(folder, problem):
     repeated = pose(
         record(folder, runs={"first": 800, "again": 600}, channels=CHANNELS[:4], repeats={"again": "first"})
     )
