@@ -118,6 +118,16 @@ class DiscrepancySignal(NamedTuple):
     values: Array
     description: list[str]
 
+    @property
+    def words(self) -> str:
+        """What it is called, in a picture and in the report."""
+        quantity = self.quantity.replace("_", " ")
+        if self.block == "sensor":
+            return f"error of the {quantity.removeprefix('error of ')}'s sensor"
+        # No channel records a force on the frame from outside, which is counted among what the floor brings.
+        where = "on the frame" if (self.block, quantity) == ("floor", "force") else f"in the {self.block}"
+        return f"{quantity} that the simulation lacks {where}"
+
 
 class Collinearity(NamedTuple):
     """Effects, and how collinear their sensitivities are, shape (effects, effects), 0 to 1.

@@ -78,7 +78,9 @@ def plot_damping(found: SeatTest) -> dict[str, Figure]:
         classes.setdefault(row.limit, []).append(row.spectral_class)
     named = [f"limit of {join_names(dict.fromkeys(names))}" for names in classes.values()]
     limits = [Entry(name, style.DARK, dashes) for name, dashes in zip(named, cycle(style.DASHES), strict=False)]
-    note = "Sines from half to twice the resonance that is expected of the seat. The largest value keeps to the limit."
+    failed = dict.fromkeys(f"“{row.run}”" for row in found.damping_rows if not row.passed)
+    verdict = f"of {join_names(failed)} exceeds a limit" if failed else "of each line keeps to its limits"
+    note = f"Sines from half to twice the resonance that is expected of the seat. The largest value {verdict}."
     title = "Damping test: motion of the mass over that of the floor"
     figure, [[axes]] = style.make_page(title, note, Grid((2.6,)), [*looks, *limits])
     for look, test in zip(looks, found.damping.values(), strict=True):
