@@ -179,7 +179,7 @@ def make_page(title: str, note: str, grid: Grid, legend: Sequence[Entry] = ()) -
 def _break(text: str, letters: int) -> list[str]:
     """Return the lines of a cleaned text; names in quotation marks stay whole, as do a figure and its sign."""
     text = re.sub("“[^”]*”", lambda name: name[0].replace(" ", "\u00a0"), text)
-    return wrap(text.replace(" %", "\u00a0%").replace(" °", "\u00a0°"), letters)
+    return wrap(text.replace(" %", "\u00a0%").replace(" °", "\u00a0°"), letters, break_on_hyphens=False)
 
 
 def measure_head(title: int, note: int) -> float:
