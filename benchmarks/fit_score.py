@@ -32,6 +32,7 @@ from seatsim.blind.sealed import Label, unseal
 from seatsim.diagnosis import score
 from seatsim.diagnosis.decide import decide_verdict
 from seatsim.diagnosis.localise.disturbance import list_disturbances
+from seatsim.diagnosis.noise import differ_materially
 from seatsim.diagnosis.problem import pose_problem
 from seatsim.diagnosis.solution import search
 from seatsim.diagnosis.solve import adopt, pose_search, search_beside, search_by_gap
@@ -58,7 +59,7 @@ def list_hypotheses(case: Path) -> None:
     """Write all hypotheses on a case that its diagnosis weighs, none where it shows no gap."""
     with ThreadPoolExecutor() as pool, threadpool_limits(1):
         problem = pose_problem(load_recording(case), pool)
-        task, objective = pose_search(problem, (), lambda _: None)
+        task, objective = pose_search(problem, (), lambda _: None, repeats=not differ_materially(problem))
         first, found = search(task, objective), list[score.Hypothesis]()
         if first.decision.verdict != "none":
             searches = [score.Search(objective, first.selection)]

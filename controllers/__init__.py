@@ -4,7 +4,6 @@
     optimal          Riccati regulator, Kalman filter, predictive planning: theory that several laws share
     synthesis/       H-infinity static output feedback of any linear plant, with a certificate
     seat_plant       the seat as a plant for synthesis
-    linear_systems   linear systems, connected and sampled
 
 What belongs to the rig and is the same for every law (noise, delay, coil, inverse damper) stands in `seatsim`, which
 never imports this package: it finds laws through the entry point `laws`.

@@ -13,7 +13,6 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from pydantic import Field
 
-from controllers.linear_systems import compute_margins
 from controllers.seat_plant import (
     TRAVEL_AND_RATE,
     ActuatorLag,
@@ -21,6 +20,7 @@ from controllers.seat_plant import (
     ShapingFilter,
     Weights,
     build_generalised_plant,
+    compute_margins,
     fit_shaping_filter,
 )
 from controllers.synthesis import SEAT_TIME_BUDGET, ClosedLoop, Design, GeneralisedPlant, find_gain, synthesise, verify

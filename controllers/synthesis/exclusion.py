@@ -137,12 +137,12 @@ class BoxView:
         """Return the norm of a gain, infinite where it is unstable."""
         return hinf_norm(self.plant.close(self.gain(values[None])[0]))
 
-    def look(self, corners: Array, points: Complex) -> CornerView:
+    def look(self, corners: Array, points: Complex) -> _CornerView:
         """Return the view of the box with these corners, at the common points and some more."""
         poles = self.plant.close(self.gain(corners.mean(axis=0)[None])[0]).poles
         own = np.where(poles.real > 0, poles, 1j * poles.imag)[poles.imag >= 0]
         more = _respond(self.plant, np.append(own[np.abs(own) > self._slowest], points))
-        return CornerView(self, self.gain(corners), self._points.joined(more))
+        return _CornerView(self, self.gain(corners), self._points.joined(more))
 
     def prove_out_of_reach(self) -> OutOfReach | None:
         """Return the proof that no controller of any order is better than the level, from Parrott's theorem."""
@@ -170,7 +170,7 @@ class BoxView:
         return None
 
 
-class CornerView:
+class _CornerView:
     """The functions of a plant at the corners of a box."""
 
     def __init__(self, view: BoxView, K: Array, points: _Points) -> None:

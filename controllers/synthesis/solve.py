@@ -1,25 +1,64 @@
-"""From plants to a verified, certified design: scale, check, search, verify, certify, bound."""
+"""From plants to a verified, certified design: scale, check, search, verify, certify, bound.
+
+A seat's gain that was found before is kept beside the compiled runs, since a search takes seconds: under the sources of
+the synthesis and the matrices of its plants, so that a change of either is searched anew. Its norm and the proof of it
+are not kept: they are worked out whenever it is used.
+"""
 
 from __future__ import annotations
 
+import hashlib
+import json
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypedDict, Unpack, cast, overload
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from controllers.synthesis.design import Design, verify
-from controllers.synthesis.kept import find_kept
 from controllers.synthesis.norm import build_frequency_grid, frequency_response
 from controllers.synthesis.plant import MATRICES, GeneralisedPlant, LinearSystem
 from controllers.synthesis.search import Progress, TimeBudget, search
+from seatsim.compilation.cached import find_folder
 from seatsim.schema.arrays import Array
-from seatsim.schema.errors import InputError
+from seatsim.schema.errors import InputError, SeatsimError
+from seatsim.schema.files import write_whole
 
 if TYPE_CHECKING:
     import control
+
+_SOURCES = b"".join(file.read_bytes() for file in sorted(Path(__file__).parent.glob("*.py")))
+"""Sources of the synthesis, as they are when it is loaded."""
+
+
+def find_kept(plants: Sequence[GeneralisedPlant], find: Callable[[], Array]) -> Array:
+    """Return the gain (nu, ny) that `find` found for these plants before, or finds now.
+
+    A file that is damaged counts as none; where the cache cannot be written, nothing is kept.
+    """
+    folder = find_folder("gains")
+    if folder is None:
+        return find()
+    state = hashlib.sha256(_SOURCES)
+    for plant in plants:
+        for matrix in (*(getattr(plant, name) for name in MATRICES), plant.free):
+            state.update(repr(matrix.shape).encode() + matrix.tobytes())
+    file = folder / f"{state.hexdigest()}.json"
+    try:
+        kept = np.array(json.loads(file.read_bytes()), dtype=np.float64)
+        if kept.shape == plants[0].free.shape and np.isfinite(kept).all():
+            return kept
+    except (OSError, ValueError, TypeError):
+        pass
+    gain = find()
+    with suppress(SeatsimError):
+        write_whole(file, lambda part: part.write_text(json.dumps(gain.tolist())))
+    return gain
+
 
 _MAX_GAIN = 1e6
 """Largest magnitude of an entry of the gain where none is stated."""
@@ -27,44 +66,6 @@ _TIME_BUDGET = 60.0
 """Seconds of a search where none are stated."""
 SEAT_TIME_BUDGET = 900.0
 """Seconds in which the search for a seat's gain converges on a slow computer too, so that all find the same gain."""
-
-
-class _Options(TypedDict, total=False):
-    """What may be stated of a synthesis, whichever way its plant is given."""
-
-    max_gain: float
-    order: int
-    time_budget: float
-    seed: int
-    progress: Progress
-
-
-@overload
-def synthesise(
-    A: GeneralisedPlant | Sequence[GeneralisedPlant],
-    /,
-    **options: Unpack[_Options],
-) -> Design: ...
-@overload
-def synthesise(
-    A: control.StateSpace,
-    /,
-    *,
-    split: tuple[int, int],
-    **options: Unpack[_Options],
-) -> Design: ...
-@overload
-def synthesise(
-    A: ArrayLike,
-    B1: ArrayLike,
-    B2: ArrayLike,
-    C1: ArrayLike,
-    C2: ArrayLike,
-    D11: ArrayLike,
-    D12: ArrayLike,
-    D21: ArrayLike,
-    **options: Unpack[_Options],
-) -> Design: ...
 
 
 def synthesise(

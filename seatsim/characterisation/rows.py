@@ -1,13 +1,16 @@
-"""One row of the table of a characterisation: what a record's cycles, or a record without cycles, amount to."""
+"""Steady cycles of a record, as loops of equally many samples, and what they, or a record without cycles, amount to.
+
+That is one row of the table of a characterisation.
+"""
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import pairwise
 from typing import Annotated, NamedTuple, TypeVar
 
 import numpy as np
 
-from seatsim.characterisation import cycles
-from seatsim.characterisation.steps import LEAST_RANGE
+from seatsim.characterisation.steps import LEAST_RANGE, find_plateaus
 from seatsim.metrics.motion import ratio, rms
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.recordings.quality.damage import Doubter, doubt_dropouts, flat_tops, plateaus
@@ -15,15 +18,125 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.content import Form, IfAny, Unwritten
 from seatsim.simulation.damper_bench import SineTest
 
+_BAND = 0.2
+"""Half the width, over the amplitude, of the band about mid-stroke that a passage has to cross from side to side."""
+_STEADY = 0.03
+"""Largest difference of a steady cycle's amplitude and period from their median, relative."""
+_CENTRED = 0.05
+"""Largest distance of the middle of a steady cycle from the median of the middles, over the amplitude."""
+_LEAST_STEADY = 3
+"""Steady cycles that make a record cyclic; two where there are no others."""
+_SAMPLES = (64, 2000)
+"""Least and most samples of a resampled cycle."""
+
+
+class _Cycle(NamedTuple):
+    """One cycle of a record: its ends as rows (with fractions), amplitude and mid-stroke in m."""
+
+    first: float
+    last: float
+    amplitude: float
+    middle: float
+
+    @property
+    def rows(self) -> slice:
+        """The rows inside."""
+        return slice(int(np.ceil(self.first)), int(self.last) + 1)
+
+    @property
+    def length(self) -> float:
+        """Number of rows, with fractions."""
+        return self.last - self.first
+
+
+def find_cycles(displacement: Array) -> list[_Cycle]:
+    """Return the cycles of a displacement, shape (N,), from one upward passage of mid-stroke to the next.
+
+    Mid-stroke is halfway between the 1st and the 99th percentile. A passage leads from below a band about it to
+    above, so that noise makes none; its instant is where the straight line through its rows meets mid-stroke.
+    """
+    low, high = (float(q) for q in np.percentile(displacement, (1, 99)))
+    centre, amplitude = 0.5 * (low + high), 0.5 * (high - low)
+    if amplitude <= 0.0:
+        return []
+    above, below = displacement > centre + _BAND * amplitude, displacement < centre - _BAND * amplitude
+    side = above.astype(np.int8) - below
+    outside = np.flatnonzero(side)
+    upward = np.flatnonzero((side[outside][:-1] < 0) & (side[outside][1:] > 0))
+    instants = [_passage(displacement, outside[k], outside[k + 1], centre) for k in upward]
+    return [_cycle(displacement, a, b) for a, b in pairwise(instants)]
+
+
+def _passage(x: Array, first: int, last: int, centre: float) -> float:
+    part, middle = x[first : last + 1], 0.5 * (first + last)
+    rows = np.arange(first, last + 1) - middle
+    slope = float(rows @ part) / float(rows @ rows)
+    return float(np.clip(middle + (centre - np.mean(part)) / slope, first, last)) if slope > 0.0 else middle
+
+
+def _cycle(x: Array, first: float, last: float) -> _Cycle:
+    inside = x[int(first) : int(np.ceil(last)) + 1]
+    low, high = float(np.min(inside)), float(np.max(inside))
+    return _Cycle(first, last, 0.5 * (high - low), 0.5 * (high + low))
+
+
+def select_steady_cycles(cycles: Sequence[_Cycle]) -> list[_Cycle]:
+    """Return the cycles whose amplitude, period and mid-stroke agree with their medians: no ring-up, no ring-down.
+
+    Empty where they are fewer than half of all, or fewer than three (two, where these are all): such a record is not
+    cyclic.
+    """
+    if not cycles:
+        return []
+    table = np.array([(cycle.amplitude, cycle.length, cycle.middle) for cycle in cycles])
+    amplitude, length, middle = np.median(table, axis=0)
+    alike = np.abs(table[:, 0] - amplitude) <= _STEADY * amplitude
+    alike &= np.abs(table[:, 1] - length) <= _STEADY * length
+    alike &= np.abs(table[:, 2] - middle) <= _CENTRED * amplitude
+    steady = [cycle for cycle, kept in zip(cycles, alike, strict=True) if kept]
+    enough = len(steady) >= min(_LEAST_STEADY, max(2, len(cycles)))
+    return steady if enough and 2 * len(steady) >= len(cycles) else []
+
+
+def _resample_loops(record: BenchRecord, cycles: Sequence[_Cycle], drift: float) -> list[SineTest]:
+    """Return cycles of a record as loops of equally many samples, both ends included, by linear interpolation.
+
+    A sample is the mean of the rows that it stands for, and the slope `drift` in N/s of the zero (see `_find_drift`) is
+    taken from the force of each loop about its middle, so that the loop closes.
+    """
+    from scipy.ndimage import uniform_filter1d
+
+    least, most = _SAMPLES
+    length = float(np.median([cycle.length for cycle in cycles]))
+    samples = min(most, max(least, 2 * round(0.5 * length)))
+    rows = np.arange(len(record.force), dtype=float)
+    width = 2 * int(0.5 * length / samples) + 1
+    at = np.linspace([cycle.first for cycle in cycles], [cycle.last for cycle in cycles], samples + 1, axis=1)
+    time = (at - at[:, :1]) / record.rate
+    measured = (record.displacement, record.velocity, record.force)
+    x, v, force = (np.interp(at, rows, uniform_filter1d(y, width)) for y in measured)
+    force -= drift * (time - 0.5 * time[:, -1:])
+    return [SineTest(*parts) for parts in zip(time, x, v, force, strict=True)]
+
+
+def _find_drift(record: BenchRecord, cycles: Sequence[_Cycle]) -> float:
+    """Return the slope in N/s of the mean forces of cycles over time, 0 for a single cycle."""
+    if len(cycles) < 2:
+        return 0.0
+    middles = [0.5 * (cycle.first + cycle.last) / record.rate for cycle in cycles]
+    return float(np.polyfit(middles, [np.mean(record.force[cycle.rows]) for cycle in cycles], 1)[0])
+
+
+def _average_loops(loops: Sequence[SineTest]) -> SineTest:
+    """Return the mean of loops of equally many samples, phase by phase."""
+    return SineTest(*(np.mean([loop[part] for loop in loops], axis=0) for part in range(4)))
+
+
 _T = TypeVar("_T")
 _COARSE = 16
 """Rows of a cycle below which its peaks and areas are coarse."""
 _DISAGREE = 0.05
 """Difference of the energy over displacement from that over velocity from which on a note says so, relative."""
-_DRIFT = 0.1
-"""Change of the energy over the cycles from which on a note says so, relative to its mean."""
-_UNEVEN = 0.05
-"""Asymmetric part of the motion itself, RMS over that of the motion, from which on a note says so."""
 _WANDERS = 0.02
 """Change of the mean force over the cycles from which on a note says so, over half the range of the force."""
 _VARIES = 0.05
@@ -95,29 +208,23 @@ _FIGURES: dict[str, Callable[[SineTest], float]] = {
 """Figures that every cycle has."""
 
 
-def _summarise_loops(
-    loops: Sequence[SineTest],
-    record: BenchRecord,
-    current: Array,
-    temperature: Array | float,
-    left_out: int,
-    notes: Sequence[str],
-    window: float,
-) -> Row:
-    """Return the row of a record: loops of equally many samples, current in A and temperature in degC of each."""
-    loop = cycles.average_loops(loops)
-    warmth = np.broadcast_to(np.asarray(temperature, dtype=float), len(loops))
+def _summarise_loops(record: BenchRecord, steady: Sequence[_Cycle], loops: Sequence[SineTest], window: float) -> Row:
+    """Return the row of a record with steady cycles, which are loops of equally many samples too."""
+    loop, current = _average_loops(loops), _average_cycles(record.current, steady)
+    warmth = np.full(len(loops), math.nan)
+    if record.temperature is not None:
+        warmth = _average_cycles(record.temperature, steady)
     each = {name: np.array([figure(one) for one in loops]) for name, figure in _FIGURES.items()}
     mean = {name: float(np.mean(values)) for name, values in each.items()}
     ways = np.array([measure_forces(one, window) for one in loops])
     values = {"current": current, "temperature": warmth, **each, "force": 0.5 * (ways[:, 0] - ways[:, 1])}
     return Row(
-        record=record.name, file=record.file, cycles=len(loops), left_out=left_out,
+        record=record.name, file=record.file, cycles=len(loops), left_out=0,
         current=round(float(np.mean(current)), 6),
         temperature=float(np.mean(warmth)), temperature_range=float(np.ptp(warmth)),
         amplitude=0.5 * float(np.ptp(loop.displacement)), frequency=1.0 / float(loop.time[-1]),
         peak_speed=float(np.max(np.abs(loop.velocity))),
-        asymmetry=ratio(rms(loop.asymmetric_part[:-1]), rms(loop.force[:-1])), notes=tuple(notes), loop=loop,
+        asymmetry=ratio(rms(loop.asymmetric_part[:-1]), rms(loop.force[:-1])), notes=(), loop=loop,
         cycle_values={name: list(map(float, v)) for name, v in values.items()},
         energy_sd=float(np.std(each["energy"], ddof=1)) if len(loops) > 1 else math.nan, **mean,
     )  # fmt: skip
@@ -136,12 +243,12 @@ def summarise_record(record: BenchRecord, window: float = WINDOW) -> Row:
 
     `window` is the part of the stroke over which the force at the peak speed is averaged.
     """
-    found = cycles.find_cycles(record.displacement)
-    steady = cycles.select_steady_cycles(found)
+    found = find_cycles(record.displacement)
+    steady = select_steady_cycles(found)
     if not steady:
-        return summarise_aperiodic_record(record, found)
-    drift = cycles.find_drift(record, steady)
-    loops = cycles.resample_loops(record, steady, drift)
+        return _summarise_aperiodic_record(record, found)
+    drift = _find_drift(record, steady)
+    loops = _resample_loops(record, steady, drift)
     moved = drift * (steady[-1].first - steady[0].first) / record.rate
     notes = [*_of_damage(record), *_of_current(record), *_of_loops(loops)]
     if abs(moved) > _WANDERS * 0.5 * float(np.ptp(record.force)):
@@ -149,13 +256,11 @@ def summarise_record(record: BenchRecord, window: float = WINDOW) -> Row:
     notes += _of_sign(record)
     if min(cycle.length for cycle in steady) < _COARSE:
         notes.append(f"fewer than {_COARSE} rows a cycle: peaks and areas are coarse")
-    current = _average_cycles(record.current, steady)
-    warmth = math.nan if record.temperature is None else _average_cycles(record.temperature, steady)
-    left_out = len(found) - len(steady)
-    return _summarise_loops(loops, record, current, warmth, left_out, notes, window)
+    row = _summarise_loops(record, steady, loops, window)
+    return row._replace(left_out=len(found) - len(steady), notes=tuple(notes))
 
 
-def summarise_aperiodic_record(record: BenchRecord, found: Sequence[cycles.Cycle]) -> Row:
+def _summarise_aperiodic_record(record: BenchRecord, found: Sequence[_Cycle]) -> Row:
     """Return the row of a record that is no steady cycle: peaks and mean of the force, and what the motion is."""
     warmth = record.temperature if record.temperature is not None else np.array([math.nan])
     return Row(
@@ -168,7 +273,26 @@ def summarise_aperiodic_record(record: BenchRecord, found: Sequence[cycles.Cycle
     )  # fmt: skip
 
 
-def _motion(record: BenchRecord, found: Sequence[cycles.Cycle]) -> str:
+_AFTER_STEP = 0.2
+"""Seconds after a step of current from which on cycles are counted."""
+
+
+def summarise_stretches(record: BenchRecord, window: float) -> list[Row]:
+    """Return the row of a record, or one for each stretch with steady cycles over which its current rests."""
+    rests = find_plateaus(record.current, record.rate)
+    if len(rests) < 2:
+        return [summarise_record(record, window)]
+    skipped = round(_AFTER_STEP * record.rate)
+    parts = [(rest, record.part(rest.first + skipped, rest.last)) for rest in rests if rest.last > rest.first + skipped]
+    rows = [
+        summarise_record(part, window)._replace(record=f"{record.name}, {rest.first / record.rate:.1f} s")
+        for rest, part in parts
+    ]
+    cyclic = [row for row in rows if row.loop is not None]
+    return cyclic or [_summarise_aperiodic_record(record, find_cycles(record.displacement))]
+
+
+def _motion(record: BenchRecord, found: Sequence[_Cycle]) -> str:
     if len(found) < 2:
         return f"not cyclic: {len(found)} whole cycle{'' if len(found) == 1 else 's'} in {record.time[-1]:.3g} s"
     low, high = np.percentile([record.rate / cycle.length for cycle in found], (5, 95))
@@ -204,24 +328,15 @@ def _of_sign(record: BenchRecord) -> list[str]:
 
 def _of_loops(loops: Sequence[SineTest]) -> list[str]:
     notes = []
-    loop = cycles.average_loops(loops)
+    loop = _average_loops(loops)
     energy = loop.dissipated_energy
     over_stroke = float(np.trapezoid(loop.force, loop.displacement))
     if abs(over_stroke - energy) > _DISAGREE * abs(energy):
         notes.append(f"velocity and displacement disagree: the area over displacement is {over_stroke:.3g} J")
-    moved = loop._replace(force=loop.displacement - np.mean(loop.displacement[:-1]))
-    uneven = ratio(rms(moved.asymmetric_part), rms(moved.force))
-    if uneven > _UNEVEN:
-        notes.append(f"the motion itself is asymmetric by {uneven:.0%}")
-    if len(loops) > 2:
-        energies = np.array([one.dissipated_energy for one in loops])
-        slope = np.polyfit(np.linspace(-0.5, 0.5, len(energies)), energies, 1)[0] / np.mean(energies)
-        if abs(slope) > _DRIFT:
-            notes.append(f"the energy changes by {slope:+.0%} over the cycles")
     return notes
 
 
-def _average_cycles(values: Array, cycles: Sequence[cycles.Cycle]) -> Array:
+def _average_cycles(values: Array, cycles: Sequence[_Cycle]) -> Array:
     return np.array([float(np.mean(values[cycle.rows])) for cycle in cycles])
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Annotated, NamedTuple, get_args, get_type_hints
 
 from seatsim.schema.content import Form
-from seatsim.schema.fields import param
+from seatsim.schema.fields import param, read_packaged
 from seatsim.schema.validation import check_keys, mapping, read_number
 from seatsim.schema.yaml_source import Source
 
@@ -165,17 +165,7 @@ def list_tables(sheet: BenchSheet) -> dict[str, tuple[type, Sequence[object]]]:
 
 
 _TIMES = ("start", "t10", "t63", "t90", "settling", "recovery", "overshoot")
-_FIGURES = {
-    "rebound": ("peak_forces", "rebound"),
-    "compression": ("peak_forces", "compression"),
-    "spread": ("peak_forces", "spread"),
-    "gas_force": ("gas_force", "force"),
-    "friction": ("friction", "force"),
-    "dynamic_range": ("dynamic_range", "both"),
-    "hysteresis": ("hysteresis", "width"),
-    "energy": ("energy", "energy"),
-    "fade": ("fade", "per_kelvin"),
-}
+_FIGURES = read_packaged(Path(__file__).with_name("limited_figures.yaml"), dict[str, tuple[str, str]])
 """Table and column of each figure that may have a limit, beside the times of responses."""
 
 

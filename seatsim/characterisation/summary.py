@@ -1,29 +1,58 @@
-"""What a characterisation found."""
+"""What a characterisation found, and the tests that a bench made of a damper, made of a damper model."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
-from seatsim.characterisation.cycles import find_cycles
-from seatsim.characterisation.rows import (
-    WINDOW,
-    Row,
-    group_rows,
-    has_same_motion,
-    summarise_aperiodic_record,
-    summarise_record,
-)
-from seatsim.characterisation.sheet import BenchSheet
-from seatsim.characterisation.steps import Response, find_plateaus, measure_responses
+from seatsim.characterisation.rows import WINDOW, Row, group_rows, has_same_motion, summarise_stretches
+from seatsim.characterisation.sheet import BenchSheet, PeakForce
+from seatsim.characterisation.steps import Response, measure_responses
 from seatsim.characterisation.tabulate import make_sheet
 from seatsim.recordings.bench_tables import BenchRecord, map_bench, note_unused
+from seatsim.scenario.scenario import DamperChoice
+from seatsim.scenario.sections import read_damper
 from seatsim.schema.content import Form, Joined, Unwritten, show_record
+from seatsim.schema.yaml_source import Source
+from seatsim.simulation.damper_bench import SineTest, sine_test
 
-_SETTLED = 0.2
-"""Seconds after a step of current from which on cycles are counted."""
+_RUN_UP = 3.0
+"""Seconds a sine runs at least before its last cycle is taken: models forget their start in that time."""
+
+
+def load_damper(path: Path) -> DamperChoice:
+    """Return the damper of a file, `{model: NAME, parameters: {...}, temperature_factors: {...}}`.
+
+    It may stand under `damper`, as a scenario has it.
+
+    Raises:
+        InputError: the file is not as described.
+    """
+    source = Source(path)
+    if "damper" in source.data:
+        return read_damper(source.data["damper"], source, ("damper",))
+    return read_damper(source.data, source, ())
+
+
+def model_peaks(choice: DamperChoice, rows: Sequence[Row], window: float) -> list[PeakForce]:
+    """Return the peak forces of a model in the tests of measured rows, each at the temperature that the row states.
+
+    Raises:
+        RunError: the damper's state ran away in one of the tests.
+    """
+    modelled = [row._replace(loop=_test_sine(choice, row)) for row in rows if row.loop is not None]
+    return make_sheet(modelled, [], window).peak_forces
+
+
+def _test_sine(choice: DamperChoice, row: Row) -> SineTest:
+    """Return a cycle of a row's sine after which the model has forgotten its start."""
+    warm = row.temperature if math.isfinite(row.temperature) else choice.factors.reference
+    cycles = max(3, math.ceil(_RUN_UP * row.frequency) + 1)
+    test = sine_test(choice.record, row.amplitude, row.frequency, row.current, warm, choice.factors, cycles)
+    return test._replace(time=test.time - test.time[0])
 
 
 class Characterisation(NamedTuple):
@@ -96,24 +125,10 @@ def _examine(window: float, records: Iterable[BenchRecord]) -> tuple[list[Row], 
     """Return what some records show, without their samples: rows, responses, columns that are not used."""
     rows, responses, unused = list[Row](), list[Response](), list[str]()
     for record in records:
-        rows += _rows(record, window)
+        rows += summarise_stretches(record, window)
         responses += measure_responses(record)
         unused += record.unused
     return rows, responses, unused
-
-
-def _rows(record: BenchRecord, window: float) -> list[Row]:
-    rests = find_plateaus(record.current, record.rate)
-    if len(rests) < 2:
-        return [summarise_record(record, window)]
-    skipped = round(_SETTLED * record.rate)
-    parts = [(rest, record.part(rest.first + skipped, rest.last)) for rest in rests if rest.last > rest.first + skipped]
-    rows = [
-        summarise_record(part, window)._replace(record=f"{record.name}, {rest.first / record.rate:.1f} s")
-        for rest, part in parts
-    ]
-    cyclic = [row for row in rows if row.loop is not None]
-    return cyclic or [summarise_aperiodic_record(record, find_cycles(record.displacement))]
 
 
 def group_by_setting(rows: Sequence[Row]) -> list[list[Row]]:

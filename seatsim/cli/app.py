@@ -17,11 +17,18 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 from seatsim.cli.commands.blind import blind
-from seatsim.cli.commands.dampers import characterise, identify
 from seatsim.cli.commands.files import check, describe, new, reproduce, schema
-from seatsim.cli.commands.recordings import comfort, diagnose, gap, import_data, inspect_data, seat_test
-from seatsim.cli.commands.runs import compare, run, sweep, sweep_report
-from seatsim.cli.commands.scenarios import explore, export, synthesise
+from seatsim.cli.commands.recordings import (
+    characterise,
+    comfort,
+    diagnose,
+    gap,
+    identify,
+    import_data,
+    inspect_data,
+    seat_test,
+)
+from seatsim.cli.commands.runs import compare, explore, export, run, sweep, sweep_report, synthesise
 from seatsim.cli.options import with_options
 from seatsim.cli.terminal import answer_as_json, answer_error, fail, print_any_letter, refuse, say, warn
 from seatsim.compilation.messages import explain, is_compilation

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.characterisation.model_tests import load_damper
+from seatsim.characterisation.summary import load_damper
 from seatsim.compilation.messages import explain
 from seatsim.dampers.base import DAMPERS
 from seatsim.effects.base import EFFECTS, off

@@ -41,16 +41,13 @@ def make_table(
     left: Collection[int] = (0,),
     caption: str | None = None,
 ) -> Table:
-    """Return a table for the terminal; `left` are the columns of names, and an empty row is a line."""
+    """Return a table for the terminal; `left` are the columns of names."""
     table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), title_justify="left", caption_justify="left")
     table.title, table.caption = escape(title), caption
     for k, heading in enumerate(headings):
         table.add_column(escape(heading), justify="left" if k in left else "right", vertical="bottom", no_wrap=True)
     for row in rows:
-        if row:
-            table.add_row(*row)
-        else:
-            table.add_section()
+        table.add_row(*row)
     return table
 
 
@@ -87,7 +84,7 @@ def show_report_tables(tables: Iterable[ReportTable]) -> None:
 
 def _make_plain(table: Table) -> str:
     """Return a table as text: a line of headings, then a line for each row, two spaces between aligned columns."""
-    columns = [_pad(column, table.show_header) for column in table.columns]
+    columns = [_pad(column) for column in table.columns]
     lines = ["  ".join(cells).rstrip() for cells in zip(*columns, strict=True)]
     return "\n".join([*_lines(table.title), *lines, *_lines(table.caption)])
 
@@ -109,8 +106,8 @@ def _fit(table: Table) -> list[str]:
     return left_out
 
 
-def _pad(column: Column, with_heading: bool) -> list[str]:
-    cells = [_plain(cell) for cell in ([column.header] if with_heading else []) + list(column.cells)]
+def _pad(column: Column) -> list[str]:
+    cells = [_plain(cell) for cell in (column.header, *column.cells)]
     width = max(map(cell_len, cells), default=0)
     gaps = [" " * (width - cell_len(cell)) for cell in cells]
     at_right = column.justify == "right"

@@ -50,8 +50,7 @@ class DamperSpecification(NamedTuple):
     The ranges of speed [m/s], current [A] and temperature [degC] are those of the data behind it, without limit where
     they are not stated. complete: the model is a form without a parameter set of its own; a scenario states all of its
     parameters. confidence: a word of `CONFIDENCE`. fixed: fields that an identification does not fit, beside `law_end`:
-    they state the model's range, or no data tell them from the others. smooth: the rates are smooth functions of motion
-    and state, without switch or corner, so that an integrator keeps its order.
+    they state the model's range, or no data tell them from the others.
     """
 
     source: str
@@ -66,7 +65,6 @@ class DamperSpecification(NamedTuple):
     complete: bool = False
     confidence: Confidence = "published"
     fixed: tuple[str, ...] = ()
-    smooth: bool = False
 
 
 DAMPERS: Registry[Damper, DamperSpecification] = Registry("damper")
@@ -92,7 +90,6 @@ def damper(
     complete: bool = False,
     confidence: Confidence = "published",
     fixed: tuple[str, ...] = (),
-    smooth: bool = False,
     defaults: str = "",
 ) -> Callable[[_T], _T]:
     """Register a record class as the damper `model: name`; see `DamperSpecification` for the facts.
@@ -116,7 +113,7 @@ def damper(
                 )
         origin = "; ".join(filter(None, (source or split_source(inspect.getdoc(cls) or "")[1], defaults)))
         specification = DamperSpecification(
-            origin, initial, state, current_order, centred, *ranges, stated, complete, confidence, fixed, smooth
+            origin, initial, state, current_order, centred, *ranges, stated, complete, confidence, fixed
         )
         return DAMPERS.register(name, specification)(cls)
 

@@ -124,7 +124,6 @@ class Ellis(NamedTuple):
     state="V, volume in m^3 that the chambers give; Q, flow in m^3/s through the gap",
     confidence="reading",
     fixed=("A",),
-    smooth=True,
 )
 class HydroMechanical(NamedTuple):
     """Piston of area A between chambers of compliance C, joined by a gap with inertance L and resistance R.
@@ -183,9 +182,7 @@ _ORDERED_AT = 0.1
 """Steady velocity in m/s at which the order parameter is 1, chosen by us: the scale of the damper's speeds."""
 
 
-@utfsm_damper(
-    "phase_transition", initial=(0.0,), state="p, order parameter of the flow", confidence="reading", smooth=True
-)
+@utfsm_damper("phase_transition", initial=(0.0,), state="p, order parameter of the flow", confidence="reading")
 class PhaseTransition(NamedTuple):
     """Yield as a phase transition: the flow's order parameter relaxes in a Landau potential.
 

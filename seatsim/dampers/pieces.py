@@ -35,9 +35,9 @@ utfsm_damper = partial(damper, max_speed=0.13, max_current=1.0, temperatures=(20
 """`damper` for a model with such defaults: the data reach 0.13 m/s and 1 A, at 20 degC."""
 
 BRANCH_STATE = "w, the displacement in m about its recent mean, whose sign is the branch of the loop"
-branch_damper = partial(damper, initial=(0.0,), state=BRANCH_STATE, centred=True, smooth=True)
+branch_damper = partial(damper, initial=(0.0,), state=BRANCH_STATE, centred=True)
 """`damper` for a model whose only state is that of its branch (`branch`)."""
-utfsm_branch_damper = partial(utfsm_damper, initial=(0.0,), state=BRANCH_STATE, centred=True, smooth=True)
+utfsm_branch_damper = partial(utfsm_damper, initial=(0.0,), state=BRANCH_STATE, centred=True)
 """The same, with such defaults."""
 _BRANCH_WIDTH = 5e-4
 """Displacement in m over which a branch changes sign, tanh(w / 0.5 mm)."""

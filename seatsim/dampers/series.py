@@ -105,7 +105,6 @@ class GamotaFilisko(NamedTuple):
     initial=(0.0,),
     state="e, deflection in m of the Maxwell element's spring",
     confidence="recalled",
-    smooth=True,
 )
 class Bingmax(NamedTuple):
     """Maxwell element beside set-valued Coulomb friction.

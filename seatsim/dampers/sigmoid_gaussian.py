@@ -3,7 +3,8 @@
 import math
 from collections.abc import Callable
 from functools import cache
-from typing import Annotated, NamedTuple
+from pathlib import Path
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numba import types
@@ -12,31 +13,14 @@ from seatsim.compilation.jit import jit, specialise
 from seatsim.dampers import State, TemperatureScaling, param
 from seatsim.dampers.pieces import CurrentLaw, branch, branch_damper, branch_rate, cubic
 from seatsim.schema.arrays import Array
+from seatsim.schema.fields import read_packaged
 
 _Row = tuple[float, float, float, float, float]
 
-CURRENTS = np.array([0.0, 0.25, 0.5, 0.75, 1.0, 2.0])
-"""Test currents in A; the paper prints the third as 0.25 again."""
-_TABLES = np.array(
-    [
-        [  # table 1, test 1: 1 Hz, 4 mm; columns a [kN], b [kN], c [1/u], sigma [u] (printed as alpha), r [kN u]
-            [-0.24, -0.13, 6.00, 0.60, 0.07],
-            [0.05, -0.59, 6.43, 0.35, 0.15],
-            [0.32, -1.13, 5.60, 0.28, 0.32],
-            [0.52, -1.52, 5.11, 0.28, 0.45],
-            [0.60, -1.70, 5.20, 0.28, 0.51],
-            [0.87, -2.22, 4.83, 0.30, 0.65],
-        ],
-        [  # table 2, test 2: 2 Hz, 8 mm
-            [-0.22, -0.12, 4.75, 0.50, 0.04],
-            [0.03, -0.59, 5.56, 0.29, 0.15],
-            [0.32, -1.18, 4.40, 0.36, 0.30],
-            [0.53, -1.57, 3.85, 0.35, 0.45],
-            [0.74, -1.86, 5.64, 0.22, 0.45],
-            [1.00, -2.49, 3.06, 0.38, 0.72],
-        ],
-    ]
-)
+_STATED = read_packaged(Path(__file__).with_suffix(".yaml"), dict[str, Any])
+CURRENTS = np.array(_STATED["currents"])
+"""Test currents in A."""
+_TABLES = np.array(_STATED["tables"])
 """Tables 1 and 2 of the paper, shape (test, current, parameter), in kN and the velocity unit u."""
 
 

@@ -1,19 +1,17 @@
-"""Fits of effects together with the nuisance parameters: Gauss-Newton steps under bounds, and a pattern search.
+"""Fits of effects together with the nuisance parameters: Gauss-Newton steps under bounds.
 
 The sensitivities of the nuisance parameters hardly change as effects are added, but cost most of a linearisation. A fit
 therefore uses those that its caller passes in, and computes those of the effects anew at every step: carried along from
-step to step, they leave a stiff stop far from its minimum. Where the cost jumps, so that no sensitivity leads
-downwards, a pattern search descends in the parameters of one effect.
+step to step, they leave a stiff stop far from its minimum.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from itertools import product
 
 import numpy as np
 
-from seatsim.diagnosis.objective import PRIOR_STD, Evaluation, Linearisation, Objective, Parameters
+from seatsim.diagnosis.objective import PRIOR_STD, Evaluation, Linearisation, Objective
 from seatsim.diagnosis.problem import OutOfTimeError
 from seatsim.schema.arrays import Array
 
@@ -85,54 +83,6 @@ def solve_step(matrix: Array, right: Array, count: int, vector: Array, low: Arra
     # A component beyond its bound by rounding keeps an empty interval about its place.
     room = np.minimum(low - vector, 0.0) * size, np.maximum(high - vector, 0.0) * size
     return _minimise_bounded(scaled, right / size, *room) / size
-
-
-PATTERN_STEPS = (0.3, 0.15, 0.08, 0.04, 0.02)
-"""Steps of a pattern search, in natural sizes of a parameter: a larger first one would reach other minima."""
-_DECIMALS = 9
-"""Decimals, in natural sizes of the parameters, to which two points have to agree to be the same."""
-
-
-def search_pattern(objective: Objective, start: Evaluation) -> Evaluation:
-    """Return the evaluation that no step in the free parameters of the last effect improves any more.
-
-    All neighbours of the best point, a step away in one parameter or in two at once, are evaluated together; the best
-    of them is moved to if it costs less, or else the step becomes smaller (direct search: Kolda, Lewis and Torczon,
-    2003). A point that was evaluated before is not evaluated again, since it costs no less than the best.
-
-    Args:
-        objective: what is minimised.
-        start: evaluation of the rig at which the search starts.
-
-    Raises:
-        OutOfTimeError: the deadline of the problem is past.
-    """
-    best, directions = start, list_directions(len(start.parameters.terms[-1].free))
-    known = {_locate(start.parameters)}
-    for step in PATTERN_STEPS:
-        while True:
-            vector = best.parameters.vector
-            moves = np.tile(vector, (len(directions), 1))
-            moves[:, len(vector) - directions.shape[1] :] += step * directions
-            neighbours = {_locate(each): each for each in map(best.parameters.move_to, moves)}
-            untried = [neighbours[place] for place in neighbours if place not in known]
-            known.update(neighbours)
-            least = min([best, *objective.evaluate(untried)], key=lambda each: each.cost)
-            if least is best:
-                break
-            best = least
-    return best
-
-
-def _locate(parameters: Parameters) -> bytes:
-    """Return the key of a point: its vector without the rounding errors of the way that led there."""
-    return (np.round(parameters.vector, _DECIMALS) + 0.0).tobytes()
-
-
-def list_directions(count: int) -> Array:
-    """Return the directions along one parameter or the diagonals of two of `count`, shape (directions, count)."""
-    steps = product((-1.0, 0.0, 1.0), repeat=count)
-    return np.array([step for step in steps if np.count_nonzero(step) in (1, 2)])
 
 
 _PATIENCE = 3

@@ -183,14 +183,11 @@ class NoiseWeights:
         return dataclasses.replace(self, force=amplitudes)
 
 
-def weigh_noise(problem: DiagnosisProblem) -> NoiseWeights:
-    """Return the weights for a recording: by all noise that is stated, and by what repeats differ by.
-
-    A material difference between repeats is no noise but the work of a random effect, which is then sought.
-    """
+def weigh_noise(problem: DiagnosisProblem, repeats: bool = True) -> NoiseWeights:
+    """Return the weights for a recording: by all noise that is stated, and, with `repeats`, what repeats differ by."""
     settings, stated = problem.settings.noise, problem.recording.header.model_error
     missed = settings.model_error if stated is None else stated
-    repeated = None if differ_materially(problem) else _measure_nonrepeatable(problem)
+    repeated = _measure_nonrepeatable(problem) if repeats else None
     found = {}
     for run in problem.runs:
         measured = problem.measured[run]
@@ -278,7 +275,6 @@ def _list_nonrepeatable(problem: DiagnosisProblem) -> list[Array]:
 
     The difference of two repeats has twice its power.
     """
-    measured, entries = problem.measured, problem.recording.runs
-    pairs = [(entries[run].repeat_of or "", run) for run in problem.runs if entries[run].repeat_of in problem.runs]
+    measured, pairs = problem.measured, problem.repeats
     lengths = [min(measured[first].shape[1], measured[second].shape[1]) for first, second in pairs]
     return [(measured[a][:, :n] - measured[b][:, :n]) / np.sqrt(2.0) for (a, b), n in zip(pairs, lengths, strict=True)]

@@ -114,6 +114,12 @@ class DiagnosisProblem:
         """Steps of the simulation in the time of a row."""
         return round(1.0 / self.rate / self.scenario.solver.step)
 
+    @property
+    def repeats(self) -> list[tuple[str, str]]:
+        """Pairs of runs with the same excitation: the first, and its repeat."""
+        firsts = {run: self.recording.runs[run].repeat_of for run in self.runs}
+        return [(first, run) for run, first in firsts.items() if first in self.runs]
+
     @cached_property
     def noise(self) -> Array:
         """Stated noise of the compared channels, shape (channels,)."""

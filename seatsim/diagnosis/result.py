@@ -41,11 +41,6 @@ class Cause(NamedTuple):
     parameters: dict[str, Estimate | str]
     at_bound: bool = False
 
-    @property
-    def ends(self) -> list[str]:
-        """Names of the parameters that lie at an end of their range."""
-        return [name for name, found in self.parameters.items() if isinstance(found, Estimate) and found.at_bound]
-
 
 class Share(NamedTuple):
     """Share of the gap that lies in a block."""

@@ -129,6 +129,7 @@ def _describe_set(calibrated: Evaluation, search: Search, rig: Evaluation, gaps:
             "disturbance": 1.0,
             "disturbance_effects": float(len(effects)),
             "predicted": beside.found.shares["everything"],
+            "repeated": beside.measure_share_repeated(problem),
             "drift": float(beside.effect == BIAS_DRIFT),
         }
     material = frozenset(term.effect for term, moved in zip(parameters.terms, most, strict=False) if moved > 1.0)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.diagnosis.candidates import Candidate
-from seatsim.diagnosis.fit import fit, search_pattern
+from seatsim.diagnosis.fit import fit
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters, scale
 from seatsim.diagnosis.problem import OutOfTimeError
 from seatsim.diagnosis.screen import Sensitivities, measure_sensitivities, name_unstable, screen_candidates
@@ -186,8 +186,7 @@ def _restart_effect(
 ) -> list[Evaluation]:
     """Return fits of a set with one of its effects in its most promising forms, begun again from their best starts.
 
-    A start that falls steeply only after some steps was left behind before. Forms with the same free parameters as the
-    one that ends lowest also start there, where that is lower than their own end: their cost may jump between the two.
+    A start that falls steeply only after some steps was left behind before.
     """
     rig, settings = best.parameters.remove(term.effect), objective.settings.selection
     starts = [rig.add(each, np.array(each.start)) for each in candidates if each.replaces(term)]
@@ -196,12 +195,7 @@ def _restart_effect(
         forms.setdefault(start.parameters.terms[-1].structure, []).append(start)
     begun = [_begin_best(objective, several, nuisances) for several in forms.values()]
     ranked = sorted(begun, key=lambda each: each.cost)[: settings.finalists]
-    first, *others = sorted((fit(objective, each, nuisances) for each in ranked), key=lambda each: each.cost)
-    rig, free, values = first.parameters, first.parameters.terms[-1].free, first.parameters.values[-1]
-    alike = [each for each in others if each.parameters.terms[-1].free == free]
-    moved = objective.evaluate([rig.remove(term.effect).add(each.parameters.terms[-1], values) for each in alike])
-    better = [there for there, own in zip(moved, alike, strict=True) if there.cost < own.cost]
-    return [first, *others, *(fit(objective, search_pattern(objective, each), nuisances) for each in better)]
+    return [fit(objective, each, nuisances) for each in ranked]
 
 
 def _fit_twins(

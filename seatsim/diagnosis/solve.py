@@ -39,17 +39,19 @@ P = ParamSpec("P")
 def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress) -> Solution:
     """Search for the causes; where a random signal may hide them, search beside it too.
 
+    What repeats differ by counts as noise. Where it is material a random effect may make it, which is sought first.
+
     Args:
         problem: a recording beside its nominal scenario.
         without: names of effects that are withheld from the library.
         progress: called with what is being done.
     """
+    if not problem.bench and differ_materially(problem):
+        found = _in_time(_search_causes, *pose_search(problem, without, progress, repeats=False), without)
+        if found and found.stochastic:
+            return found
     task, objective = pose_search(problem, without, progress)
-    first = search(task, objective)
-    if first.decision.verdict == "unknown":
-        first = _in_time(_search_beyond_broadband, task, first) or first
-    if not problem.bench:
-        first = _in_time(_decide_beside_disturbance, task, first, without) or first
+    first = _search_causes(task, objective, without)
     # A random signal takes nothing off the gap, however right it is.
     if first.decision.verdict == "none" or first.stochastic:
         return first
@@ -58,13 +60,25 @@ def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress)
     return _in_time(_explain_by_gap, task, first) or _localise(task, _call_unknown(first))
 
 
-def pose_search(problem: DiagnosisProblem, without: Sequence[str], progress: Progress) -> tuple[SearchTask, Objective]:
-    """Return the first search of a problem: what is sought, and the weights by the noise and by what repeats show."""
+def _search_causes(task: SearchTask, objective: Objective, without: Sequence[str]) -> Solution:
+    """Return the solution under the weights of an objective, sought beside a broadband residual and a random signal."""
+    first = search(task, objective)
+    if first.decision.verdict == "unknown":
+        first = _in_time(_search_beyond_broadband, task, first) or first
+    if not objective.problem.bench:
+        first = _in_time(_decide_beside_disturbance, task, first, without) or first
+    return first
+
+
+def pose_search(
+    problem: DiagnosisProblem, without: Sequence[str], progress: Progress, repeats: bool = True
+) -> tuple[SearchTask, Objective]:
+    """Return the first search of a problem: what is sought, and the weights by noise, with or without `repeats`."""
     effects = [name for name in EFFECTS.names() if name not in without]
     task = SearchTask(list_candidates(problem, without), effects, progress)
     progress("weighing the channels")
-    objective = Objective(problem, weigh_noise(problem))
-    if not problem.bench and not differ_materially(problem):
+    objective = Objective(problem, weigh_noise(problem, repeats))
+    if repeats and not problem.bench:
         nominal = objective.unhurried.evaluate([Parameters(problem.nominal)])[0]
         if forces := estimate_nonrepeatable_force(objective, nominal):
             objective = Objective(problem, objective.weights.add(carry_force(problem, forces)))

@@ -20,8 +20,8 @@ import numba
 from numba import types
 
 from seatsim.effects.base import EFFECTS
-from seatsim.exchange.printing.values import field_names as c_names
-from seatsim.exchange.printing.values import is_empty, is_row
+from seatsim.exchange.printing.program import field_names as c_names
+from seatsim.exchange.printing.program import is_empty, is_row
 from seatsim.kernel.augmented import AugmentedDamper
 from seatsim.kernel.rig import Rig, SeatedBody
 from seatsim.schema.content import Form, Unwritten
@@ -38,8 +38,8 @@ class Block:
 
     name, summary: what it is called, and a sentence. parameters, inputs, rest: records of parameters, of inputs at the
     start and of the state at rest. step: s, in which it is advanced; `fixed_step` where every advance is one of these,
-    and other programs must ask for whole numbers of them. parts: classes whose methods are compiled in. hidden:
-    parameters that are not exposed, by the beginning of their name. notes: sentences about what is left out.
+    and other programs must ask for whole numbers of them. hidden: parameters that are not exposed, by the beginning
+    of their name. notes: sentences about what is left out.
     """
 
     name: str
@@ -52,7 +52,6 @@ class Block:
     advance: Callable[..., tuple[object, object]]
     step: float
     fixed_step: bool
-    parts: tuple[type, ...]
     hidden: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
 

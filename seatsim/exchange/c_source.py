@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
 from typing import SupportsFloat, SupportsInt
 
 import numba
@@ -9,23 +10,13 @@ from numba import types
 
 from seatsim.exchange.block import RATES, Block, Variable, list_variables
 from seatsim.exchange.printing.functions import print_function
-from seatsim.exchange.printing.program import Program
-from seatsim.exchange.printing.values import REAL, Signature, is_empty, is_row, number
+from seatsim.exchange.printing.program import REAL, Program, Signature, is_empty, is_row, number
+from seatsim.schema.fields import read_packaged
 
 _SAMPLES = 200
 """Samples of the test vector."""
-_SIZES = {
-    0.02: "displacement",
-    0.2: "velocity",
-    0.3: "frame_velocity driver_velocity floor_velocity",
-    0.5: "current command replayed_command",
-    1.5: "driver_acceleration",
-    2.0: "acceleration floor_acceleration frame_acceleration",
-    10.0: "temperature",
-    20.0: "frame_force driver_force",
-    300.0: "damper_force",
-}
-"""Size of the sines that the test vector feeds, in the unit of the input; an input that is not here stays as it is."""
+_SIZES = read_packaged(Path(__file__).with_name("test_vector.yaml"), dict[str, float])
+"""Size of the sines that the test vector feeds, in the unit of the input."""
 _KINDS = {bool: "BOOLEAN_VARIABLE", int: "INTEGER_VARIABLE", float: "REAL_VARIABLE"}
 
 
@@ -131,5 +122,5 @@ def _test_vector(
 
 def _signal(v: Variable, position: int, time: float) -> float:
     """Return a sine of a frequency and phase of its own about the value at the start."""
-    size = next((size for size, names in _SIZES.items() if v.name in names.split()), 0.0)
+    size = _SIZES.get(v.name, 0.0)
     return float(v.value) + size * math.sin(7.0 * time * (1.0 + 0.37 * position) + position)

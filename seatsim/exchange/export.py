@@ -8,7 +8,6 @@ import math
 import os
 import platform
 import re
-import shlex
 import shutil
 import subprocess
 import sys
@@ -233,8 +232,7 @@ def find_compiler() -> str:
     if found:
         return found
     if chosen:
-        problem = f"the variable CC names '{chosen[0]}', and there is no such program; name a C compiler, or none"
-        raise InputError(problem)
+        raise InputError(f"the variable CC names '{chosen[0]}', and there is no such program; name one that is there")
     raise InputError(
         "an FMU is compiled, and this machine has no C compiler: install gcc or clang (Debian: apt install gcc),"
         " or name one by CC; '--to c' needs none"
@@ -243,11 +241,7 @@ def find_compiler() -> str:
 
 def _read_choice() -> list[str]:
     """Return the words of the variable CC: a compiler, and flags that every use of it has."""
-    stated = os.environ.get("CC", "")
-    try:
-        return shlex.split(stated)
-    except ValueError as error:
-        raise InputError(f"the variable CC is {stated!r}: {error}; state a compiler and its flags") from error
+    return os.environ.get("CC", "").split()
 
 
 def _compile_library(source: Path, library: Path) -> None:

@@ -11,14 +11,7 @@ import numpy as np
 
 from seatsim.dampers.base import DamperSpecification
 from seatsim.identification.damper_record import Component
-from seatsim.identification.problem import (
-    BenchModel,
-    IdentificationProblem,
-    compute_jacobian,
-    predict_force,
-    prepare_inputs,
-    read_bench,
-)
+from seatsim.identification.problem import BenchModel, IdentificationProblem, compute_jacobian, read_bench
 from seatsim.identification.settings import Split
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.schema.arrays import Array
@@ -58,9 +51,9 @@ def assess_agreement(measured: Array, predicted: Array) -> Agreement:
     return Agreement(1.0 - share, deviation, rmse, 100.0 * (1.0 - share**0.5))
 
 
-def mean_agreement(each: Sequence[Agreement]) -> Agreement:
-    """Return the mean of every figure over records, each of which has the same weight."""
-    return Agreement(*(float(np.mean(values)) for values in zip(*each, strict=True)))
+def mean_agreement(each: Sequence[Agreement]) -> Agreement | None:
+    """Return the mean of every figure over records, each of which has the same weight; None of none."""
+    return Agreement(*(float(np.mean(values)) for values in zip(*each, strict=True))) if each else None
 
 
 class Assessment(NamedTuple):
@@ -93,13 +86,12 @@ def assess_fit(bench: BenchModel, parts: Split, origin: float) -> list[Assessmen
     """
     train, rest = [], []
     for record, fitted in zip(parts.train, parts.fitted, strict=True):
-        force = predict_force(bench, prepare_inputs(record, origin, True))
+        force = bench.predict(record, origin)
         rows = len(fitted.force)
         train.append(_assess(fitted, "train", force[:rows]))
         if rows < len(force):
             rest.append(_assess(record.part(rows, len(force)), "test", force[rows:]))
-    held_out = [(record, predict_force(bench, prepare_inputs(record, origin, True))) for record in parts.held_out]
-    return train + rest + [_assess(record, "test", force) for record, force in held_out]
+    return train + rest + [_assess(record, "test", bench.predict(record, origin)) for record in parts.held_out]
 
 
 def _assess(record: BenchRecord, part: str, force: Array) -> Assessment:

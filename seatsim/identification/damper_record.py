@@ -123,6 +123,21 @@ def rescale_damper(record: R, force: float, end: float) -> R:
     return record._replace(**changed)
 
 
+def _default_record(cls: type[DamperRecord], current: float) -> DamperRecord:
+    """Return a class at its defaults, with its laws stretched to a current in A."""
+    blank = [specification.name for specification in describe(cls) if specification.required]
+    if blank:
+        raise InputError(f"{cls.__name__}: a fit starts from defaults; give {', '.join(blank)} one")
+    return rescale_damper(cls(), 1.0, current)
+
+
+def start_record(
+    cls: type[DamperRecord], known: DamperRecord | None, current: float, fix: Mapping[str, float]
+) -> DamperRecord:
+    """Return the record from which a fit starts: a known one, or the defaults, some numbers as the user fixes them."""
+    return fix_parameters(known or _default_record(cls, current), fix)
+
+
 def fix_parameters(record: R, values: Mapping[str, float]) -> R:
     """Return a record with some numbers as the user fixes them.
 

@@ -1,8 +1,12 @@
-"""Identification of a damper model: split, search, refine, assess on what took no part in the fit."""
+"""Identification of a damper model: split, search, refine, assess on what took no part in the fit.
 
+Identifications of several models on the same records are ranked, the best prediction first.
+"""
+
+import math
 import time
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
@@ -11,21 +15,15 @@ import numpy as np
 
 from seatsim.dampers.base import DAMPERS, find_confidence
 from seatsim.identification import assessment
-from seatsim.identification.damper_record import find_model
-from seatsim.identification.problem import (
-    BenchModel,
-    IdentificationProblem,
-    RecordInputs,
-    find_origin,
-    predict_force,
-    state_problem,
-)
+from seatsim.identification.damper_record import find_model, numeric_fields
+from seatsim.identification.problem import BenchModel, IdentificationProblem, find_origin, predict_force, state_problem
 from seatsim.identification.search import Progress, ignore_progress, search_parameters
 from seatsim.identification.settings import IdentificationSettings, split_records
 from seatsim.recordings.bench_tables import BenchRecord, load_bench, note_unused
 from seatsim.schema.arrays import Array
 from seatsim.schema.content import Joined, Unwritten, plain, show_record, written
-from seatsim.schema.errors import RunError
+from seatsim.schema.errors import InputError, RunError, SeatsimError, nearest
+from seatsim.schema.registry import names
 
 _DEFAULTS = IdentificationSettings()
 _NO_BETTER_THAN_MEAN = 1.01
@@ -53,29 +51,16 @@ class Identification(NamedTuple):
     warm: Unwritten[bool]
     commanded: Unwritten[bool]
     notes: list[str]
+    confidence: str
+    """How far the model is proven, a word of `seatsim.dampers.base.CONFIDENCE`."""
+    train: assessment.Agreement | None
+    """Mean agreement over the fitted records."""
+    test: assessment.Agreement | None
+    """Mean agreement over the records that were held out, None where none were."""
 
     def mean(self, part: str) -> assessment.Agreement | None:
         """Return the mean agreement over the records of a part (train, test), None where it has none."""
-        each = [one.agreement for one in self.assessments if one.part == part]
-        return assessment.mean_agreement(each) if each else None
-
-    @property
-    @written()
-    def confidence(self) -> str:
-        """How far the model is proven, a word of `seatsim.dampers.base.CONFIDENCE`."""
-        return find_confidence(type(self.bench.damper))
-
-    @property
-    @written()
-    def train(self) -> assessment.Agreement | None:
-        """Mean agreement over the fitted records."""
-        return self.mean("train")
-
-    @property
-    @written()
-    def test(self) -> assessment.Agreement | None:
-        """Mean agreement over the records that were held out, None where none were."""
-        return self.mean("test")
+        return self.train if part == "train" else self.test
 
     @property
     def assessed(self) -> assessment.Agreement | None:
@@ -155,11 +140,13 @@ def identify(
         *_note_parameters(problem, vector, known),
         *assessment.note_limits(DAMPERS.specification_of(cls), parts.fitted, tests, origin),
     ]
+    train, test = ([one.agreement for one in assessments if one.part == part] for part in ("train", "test"))
     return Identification(
         model=model, bench=bench, origin=origin, assessments=assessments, information=known,
-        seconds=time.perf_counter() - began, ns_per_step=_time_step(bench, problem.inputs),
+        seconds=time.perf_counter() - began, ns_per_step=_time_step(bench, problem),
         warm=problem.reference is not None, commanded=any(record.commanded for record in parts.fitted),
         notes=[*notes, *_note_divergence(assessments), *note_unused(n for each in records for n in each.unused)],
+        confidence=find_confidence(cls), train=assessment.mean_agreement(train), test=assessment.mean_agreement(test),
     )  # fmt: skip
 
 
@@ -197,12 +184,94 @@ def _note_divergence(assessments: Sequence[assessment.Assessment]) -> Iterator[s
         yield f"the state runs away on {', '.join(diverged)}: the force counts as 0 N from there"
 
 
-def _time_step(bench: BenchModel, inputs: Sequence[RecordInputs]) -> float:
+def _time_step(bench: BenchModel, problem: IdentificationProblem) -> float:
     """Return the nanoseconds of a step of the simulation."""
     times = []
     for _ in range(_TIMED_RUNS):
         began = time.perf_counter()
-        for each in inputs:
+        for each in problem.inputs:
             predict_force(bench, each)
         times.append(time.perf_counter() - began)
-    return 1e9 * min(times) / sum(len(each.force) for each in inputs)
+    return 1e9 * min(times) / sum(len(each.force) for each in problem.inputs)
+
+
+_ALL = "all"
+"""Stands for every registered model."""
+
+
+class BenchmarkEntry(NamedTuple):
+    """A line of the benchmark: model, mean fit on training and held-out records, free parameters, cost of a step.
+
+    seconds: of the fit; failed: why there are no figures; confidence: a word of `seatsim.dampers.base.CONFIDENCE`.
+    Without held-out records `test_fit_percent` is NaN.
+    """
+
+    model: str
+    train_fit_percent: float
+    test_fit_percent: float
+    parameters: int
+    ns_per_step: float
+    seconds: float
+    failed: str = ""
+    confidence: str = ""
+
+
+class League(NamedTuple):
+    """Several models, the best first."""
+
+    league: list[BenchmarkEntry]
+
+
+def benchmark_models(
+    records: Sequence[BenchRecord],
+    models: Sequence[str],
+    settings: IdentificationSettings,
+    progress: Progress,
+    keep: Callable[[Identification], object],
+) -> list[BenchmarkEntry]:
+    """Identify several models and return their entries, the best first.
+
+    models: their names, or `all` for every registered one. keep: called with every identification. A model that fails
+    has an entry that says why.
+
+    Raises:
+        InputError: the settings do not fit the records, or name a parameter that no model has.
+    """
+    models = names("damper") if _ALL in models else models
+    split_records(records, settings)  # what cannot be held out is refused before the first fit
+    _check_fixed(settings.fix, models)
+
+    def enter(model: str) -> BenchmarkEntry:
+        cls = find_model(model)
+        known = numeric_fields(cls)
+        own = settings._replace(fix={name: value for name, value in settings.fix.items() if name in known})
+        try:
+            found = identify(records, model, own, lambda text: progress(f"{model}: {text}"))
+        except SeatsimError as error:
+            return BenchmarkEntry(model, math.nan, math.nan, 0, math.nan, math.nan, str(error), find_confidence(cls))
+        keep(found)
+        train, test = (mean.fit_percent if mean else math.nan for mean in (found.train, found.test))
+        figures = len(found.information.estimates), found.ns_per_step, found.seconds
+        return BenchmarkEntry(found.model, train, test, *figures, confidence=found.confidence)
+
+    return _rank_entries([enter(model) for model in models])
+
+
+def _rank_entries(entries: Sequence[BenchmarkEntry]) -> list[BenchmarkEntry]:
+    """Return entries, the best fit on held-out records first (on training ones where none is held out)."""
+    held_out = any(math.isfinite(entry.test_fit_percent) for entry in entries)
+
+    def merit(entry: BenchmarkEntry) -> float:
+        fit = entry.test_fit_percent if held_out else entry.train_fit_percent
+        return fit if math.isfinite(fit) else -math.inf
+
+    return sorted(entries, key=merit, reverse=True)
+
+
+def _check_fixed(fix: Mapping[str, float], models: Sequence[str]) -> None:
+    """Refuse a fixed parameter that no model has; those that have it not leave it out."""
+    known = sorted({name for model in models for name in numeric_fields(find_model(model))})
+    for name in fix:
+        if name not in known:
+            problem = f"--fix {name}: no model has this number{nearest(name, known)}; see seatsim describe MODEL"
+            raise InputError(problem)

@@ -9,14 +9,7 @@ import numpy as np
 
 from seatsim.compilation.cached import compiled
 from seatsim.dampers.base import DAMPERS
-from seatsim.identification.damper_record import (
-    Component,
-    Coordinates,
-    DamperRecord,
-    Scales,
-    fix_parameters,
-    rescale_damper,
-)
+from seatsim.identification.damper_record import Component, Coordinates, DamperRecord, Scales, start_record
 from seatsim.identification.settings import IdentificationSettings
 from seatsim.kernel.augmented import classes_of
 from seatsim.kernel.bench import MOST_PARTS, TOLERANCE, run_bench, simulate_current
@@ -25,7 +18,6 @@ from seatsim.rig.coil import Coil
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
-from seatsim.schema.fields import describe
 
 _FAST_ENOUGH = 400.0
 """Hz; at this rate and above every second row is the middle of a step."""
@@ -47,6 +39,10 @@ class BenchModel(NamedTuple):
     rise: float = 130.0
     fall: float = 130.0
     offset_per_kelvin: float = 0.0
+
+    def predict(self, record: BenchRecord, origin: float) -> Array:
+        """Return the force in N at the rows of a record, shape (N,); `origin` is what counts as x = 0, in m."""
+        return predict_force(self, prepare_inputs(record, origin, True))
 
 
 class RecordInputs(NamedTuple):
@@ -157,6 +153,11 @@ class IdentificationProblem(NamedTuple):
     reference: float | None
     tolerance: float = TOLERANCE
     factors: TemperatureFactors = TemperatureFactors()
+
+    @property
+    def start(self) -> BenchModel:
+        """The bench that the coordinates start from."""
+        return BenchModel(self.coordinates.start, TemperatureFactors(), COIL_RATE, COIL_RATE)
 
     @property
     def components(self) -> list[Component]:
@@ -308,21 +309,13 @@ def _choose_coordinates(
 ) -> Coordinates:
     """Return the free parameters, from defaults with their laws stretched to the largest current of the data."""
     scales = _measure_scales(records)
-    start = fix_parameters(known or _default_record(cls, scales.current or 1.0), settings.fix)
+    start = start_record(cls, known, scales.current or 1.0, settings.fix)
     fixed = (*DAMPERS.specification_of(cls).fixed, *settings.fix)
     coordinates = Coordinates(start, scales, fixed, _count_levels(records))
     if not coordinates.components:
         problem = f"--fix {', '.join(settings.fix)} leaves no parameter of {cls.__name__} to fit; leave one free"
         raise InputError(problem)
     return coordinates
-
-
-def _default_record(cls: type[DamperRecord], current: float) -> DamperRecord:
-    """Return a class at its defaults, with its laws stretched to a current in A."""
-    blank = [specification.name for specification in describe(cls) if specification.required]
-    if blank:
-        raise InputError(f"{cls.__name__}: a fit starts from defaults; give {', '.join(blank)} one")
-    return rescale_damper(cls(), 1.0, current)
 
 
 def _measure_scales(records: Sequence[BenchRecord]) -> Scales:

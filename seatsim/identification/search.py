@@ -7,15 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.identification.damper_record import rescale_damper
-from seatsim.identification.problem import (
-    COIL_RATE,
-    MOST_PARTS_IN_SEARCH,
-    BenchModel,
-    IdentificationProblem,
-    compute_jacobian,
-    predict_force,
-)
-from seatsim.rig.temperature import TemperatureFactors
+from seatsim.identification.problem import MOST_PARTS_IN_SEARCH, IdentificationProblem, compute_jacobian, predict_force
 from seatsim.schema.arrays import Array
 
 Progress = Callable[[str], None]
@@ -43,11 +35,7 @@ def ignore_progress(text: str) -> None:
 
 
 def search_parameters(
-    problem: IdentificationProblem,
-    short: IdentificationProblem,
-    seed: int,
-    executor: Executor,
-    progress: Progress = ignore_progress,
+    problem: IdentificationProblem, short: IdentificationProblem, seed: int, executor: Executor, progress: Progress
 ) -> Array:
     """Return the best vector of a problem, shape (P,), found from `short` stretches of its records.
 
@@ -67,7 +55,7 @@ def search_parameters(
 
 def default_vector(problem: IdentificationProblem) -> Array:
     """Return the vector of the record that the coordinates start from, shape (P,)."""
-    return problem.to_vector(BenchModel(problem.coordinates.start, TemperatureFactors(), COIL_RATE, COIL_RATE))
+    return problem.to_vector(problem.start)
 
 
 def descend_from_defaults(
@@ -96,12 +84,7 @@ def _match_force(problem: IdentificationProblem, vector: Array) -> Array:
 
 
 def _search_globally(
-    problem: IdentificationProblem,
-    start: Array,
-    seed: int,
-    evaluations: int,
-    executor: Executor,
-    progress: Progress = ignore_progress,
+    problem: IdentificationProblem, start: Array, seed: int, evaluations: int, executor: Executor, progress: Progress
 ) -> Array:
     """Return the best vector, shape (P,), of a CMA-ES from `start` (Hansen 2016, arXiv:1604.00772)."""
     import cma

@@ -9,11 +9,11 @@ from itertools import combinations, product
 import numpy as np
 
 from seatsim.importing.names import BY_UNIT, SI_UNITS
-from seatsim.importing.time_axis import Axis
+from seatsim.importing.signals import Axis
 from seatsim.recordings.quality import relations
 from seatsim.recordings.quality.channels import say_implausible
 from seatsim.recordings.quality.damage import MOST_ROWS, Doubter, doubt_dropouts, doubt_shape, plateaus
-from seatsim.recordings.quality.issue import Issue, Table
+from seatsim.recordings.quality.issue import Issue, Table, doubt
 from seatsim.schema.arrays import Array
 from seatsim.schema.units import STANDARD_GRAVITY
 
@@ -53,13 +53,12 @@ def doubt_channel(channel: str, raw: Array, rate: float | None, quantity: str | 
     missing = np.isnan(raw)
     if missing.any():
         rows = np.flatnonzero(missing)
-        text = f"{len(rows)} rows hold no number, the first at {doubter.at(int(rows[0]))}; fill: true interpolates them"
-        yield doubter.say("warning", "missing", text)
+        yield doubter.say("missing", rows=len(rows), first=doubter.at(int(rows[0])))
     values = raw[~missing] if missing.any() else raw
     if not len(values):
         return
     if np.ptp(values) == 0.0:
-        yield doubter.say("warning", "constant", f"is {values[0]:.6g} throughout; a dead sensor, or a stated value")
+        yield doubter.say("throughout", value=values[0])
         return
     if quantity == "acceleration":
         yield from _constant_part(doubter, values)
@@ -68,12 +67,11 @@ def doubt_channel(channel: str, raw: Array, rate: float | None, quantity: str | 
     elif quantity == "temperature":
         yield from _warming(doubter, values)
     if quantity in BY_UNIT and (text := say_implausible(values, SI_UNITS[quantity])):
-        yield doubter.say("warning", "unit", text)
+        yield doubter.say("implausible", said=text)
     lengths, starts = plateaus(values)
     if len(np.unique(values[starts[:_MOST_CHANGES]])) <= _FEW_LEVELS:
         if len(lengths) < 0.2 * len(values):
-            seen = f"has {len(np.unique(values[starts]))} levels and no noise"
-            yield doubter.say("note", "levels", f"{seen}; a command or a nominal value, not measured")
+            yield doubter.say("levels", count=len(np.unique(values[starts])))
         return
     for issue in doubt_shape(doubter, values, lengths):
         # A command is logged at the rate of its controller, and holds until the next.
@@ -86,30 +84,25 @@ def _warming(doubter: Doubter, values: Array) -> Iterator[Issue]:
     """Yield a temperature that begins warm, or changes faster than a damper does, in means over half a second."""
     first, rate = float(values[0]), doubter.rate
     if _HOT[0] < first < _HOT[1]:
-        text = f"begins at {first:.3g} degC; read as degF that is {(first - 32.0) / 1.8:.3g} degC: check its unit"
-        yield doubter.say("note", "unit", text)
+        yield doubter.say("maybe_degF", first=first, read=(first - 32.0) / 1.8)
     if rate is None:
         return
     rows = max(1, round(0.5 * rate))
     means = _windows(values, rows).mean(axis=1)
     fastest = float(np.max(np.abs(np.diff(means)), initial=0.0)) * rate / rows
     if fastest > _WARMING:
-        text = f"changes by up to {fastest:.2g} K/s, faster than a damper warms: a disturbed or a surface reading"
-        yield doubter.say("warning", "warming", text)
+        yield doubter.say("warming", fastest=fastest)
 
 
 def _constant_part(doubter: Doubter, values: Array) -> Iterator[Issue]:
     """Yield gravity, an offset, or the mean of one that gravity in g has."""
     mean = float(np.mean(values))
     if abs(abs(mean) / STANDARD_GRAVITY - 1.0) <= _NEAR:
-        text = f"its mean of {mean:.4g} m/s^2 is gravity ({abs(mean) - STANDARD_GRAVITY:+.2g} is offset or tilt); "
-        yield doubter.say("warning", "gravity", f"{text}remove_mean: true takes it out")
+        yield doubter.say("gravity", mean=mean, off=abs(mean) - STANDARD_GRAVITY)
     elif abs(abs(mean) - 1.0) <= _NEAR and float(np.std(values)) < 0.5:
-        text = f"its mean of {mean:.4g} is gravity in g, but m/s^2 is stated; state unit: g, and remove_mean: true"
-        yield doubter.say("warning", "unit", text)
+        yield doubter.say("gravity_in_g", mean=mean)
     elif abs(mean) > _OFFSET:
-        said = f"its mean is {mean:.4g} m/s^2, an offset; remove_mean: true takes it out"
-        yield doubter.say("warning", "offset", said)
+        yield doubter.say("offset", mean=mean)
 
 
 def _rest(doubter: Doubter, values: Array, quantity: str) -> Iterator[Issue]:
@@ -117,37 +110,29 @@ def _rest(doubter: Doubter, values: Array, quantity: str) -> Iterator[Issue]:
     low, high = np.quantile(values[:: max(1, len(values) // MOST_ROWS)], (0.01, 0.99))
     mean, swing = float(np.mean(values)), 0.5 * float(high - low)
     if swing > 0.0 and abs(mean) > (_ABSOLUTE if quantity == "elevation" else _OFF_CENTRE) * swing:
-        text = f"its mean is {mean:.4g} {SI_UNITS[quantity]}, {abs(mean) / swing:.0%} of its swing: {_ZERO[quantity]}"
-        yield doubter.say("note", "offset", text)
+        unit, cause = SI_UNITS[quantity], _ZERO[quantity]
+        yield doubter.say("off_zero", mean=mean, unit=unit, share=abs(mean) / swing, cause=cause)
     if quantity == "displacement" and values[0] == 0.0 and swing > 0.0:
-        yield doubter.say("note", "zeroed", "begins at exactly 0: counted from its start, its own zero is lost")
+        yield doubter.say("zeroed")
     if quantity != "elevation" and abs(mean) < _CENTRED * swing:
-        yield doubter.say("note", "centred", "its mean is zero: an offset was removed, and with it what it would show")
+        yield doubter.say("centred")
 
 
 def doubt_time(axis: Axis, channel: str) -> Iterator[Issue]:
     """Yield what is wrong with a column of time."""
-    found = {}
     if axis.backwards:
-        text = f"runs back {axis.backwards} times, the first at row {axis.breaks[0]}"
-        found["restart"] = text
+        yield doubt("restart", channel, times=axis.backwards, row=axis.breaks[0])
     if axis.repeated:
-        found["repeated"] = f"{axis.repeated} rows repeat the time before"
+        yield doubt("repeated", channel, rows=axis.repeated)
     if axis.lost:
         first = next(row for row in axis.breaks if axis.times[row] - axis.times[row - 1] > 0.0)
-        text = f"{axis.lost} rows are missing, the first at {axis.times[first - 1]:.6g} s"
-        found["gap"] = text
+        yield doubt("gap", channel, rows=axis.lost, first=axis.times[first - 1])
     if axis.resolution:
-        text = f"; the rate is estimated as {axis.rate:.6g} Hz: state it"
-        text = text if axis.is_even else ", and the rows are not even by them; state the rate"
-        steps = f"its stamps go in steps of {axis.resolution:.4g} s, about as coarse as the rows or coarser"
-        found["rounded"] = f"{steps}{text} by sample_rate in the map, or by --rate"
+        yield doubt("rounded" if axis.is_even else "rounded_uneven", channel, step=axis.resolution, rate=axis.rate)
     elif not axis.is_even:
-        found["uneven"] = f"rows are not evenly spaced; they are interpolated at {axis.rate:.5g} Hz"
+        yield doubt("uneven", channel, rate=axis.rate)
     if not _SLOWEST <= axis.rate <= _FASTEST:
-        text = f"rows are {1.0 / axis.rate:.4g} s apart, {axis.rate:.4g} Hz"
-        found["rate"] = f"{text}; is its unit another one, such as ms?"
-    yield from (Doubter(channel, None).say("warning", kind, text) for kind, text in found.items())
+        yield doubt("odd_rate", channel, apart=1.0 / axis.rate, rate=axis.rate)
 
 
 def doubt_pairs(
@@ -163,20 +148,18 @@ def doubt_pairs(
     for first, second in combinations(part, 2):
         same = quantities.get(first) == quantities.get(second)
         if np.array_equal(varying[first], varying[second]):
-            yield Issue("warning", "duplicate", f"{second}: holds the same values as {first}", second)
+            yield doubt("copy", second, other=first)
         elif rate and same and (first in commands) != (second in commands):
             rows, alike = relations.find_delay(part[second], part[first], round(0.2 * rate))
             if alike > _ALIKE and abs(rows) >= 2:
                 late, early = (second, first) if rows > 0 else (first, second)
-                text = f"follows {early} by {1e3 * abs(rows) / rate:.3g} ms (correlation {alike:.3f})"
-                yield Issue("note", "late", f"{late}: {text}", late)
+                yield doubt("follows", late, other=early, late=1e3 * abs(rows) / rate, alike=alike)
     # No data tell the sign and the size of commanded forces and motions of which nothing was measured.
     measured = {quantities.get(name) for name in channels if name not in commands}
     for name in channels:
         quantity = quantities.get(name)
         if name in commands and quantity in ("force", "velocity", "displacement") and quantity not in measured:
-            text = f"is a command by its name, and no {quantity} was measured: nothing here shows its sign or scale"
-            yield Issue("note", "command", f"{name}: {text}", name)
+            yield doubt("commanded_only", name, quantity=quantity)
     if rate:
         of = {each: {name: part[name] for name in part if quantities.get(name) == each} for each in BY_UNIT}
         yield from _derived(of["displacement"], of["velocity"], rate)
@@ -189,8 +172,7 @@ def _derived(displacements: Table, velocities: Table, rate: float) -> Iterator[I
         for name, travel in displacements.items():
             gain, alike = relations.regress(np.gradient(travel, 1.0 / rate), speed, rate)
             if alike > 0.98 and abs(gain - 1.0) < 0.1:
-                text = f"is the derivative of {name} (gain {gain:.3f}); computed from it, no sensor of its own"
-                yield Issue("note", "derived", f"{velocity}: {text}", velocity)
+                yield doubt("derived", velocity, other=name, gain=gain)
                 break
             if alike > 0.98 and (said := relations.read_gain(gain, "m/s")):
                 text = f"{velocity}: is {gain:.4g} times the derivative of {name}: {said}"
@@ -210,9 +192,7 @@ def _relaxed(displacements: Table, forces: Table, rate: float) -> Iterator[Issue
             quarter = rows // 4
             change = np.abs(np.mean(still[:, -quarter:], axis=1) - np.mean(still[:, :quarter], axis=1))
             if np.max(change, initial=0.0) > _RELAXED * np.ptp(values):
-                text = f"changes by up to {np.max(change):.3g} N in {_REST:g} s after {name} has come to rest"
-                said = f"{force}: {text}: it relaxes, its zero drifts, or its current changes"
-                yield Issue("note", "relaxation", said, force)
+                yield doubt("relaxation", force, change=np.max(change), rest=_REST, motion=name)
 
 
 def _windows(values: Array, rows: int) -> Array:

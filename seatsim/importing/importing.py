@@ -10,15 +10,14 @@ from seatsim.importing.assembly import Assembled, assemble, doubt_runs
 from seatsim.importing.import_map import FILE, ImportMap, Rig, check_files, read_map, write_map
 from seatsim.importing.matching import propose
 from seatsim.importing.readers.reading import read_file
-from seatsim.importing.signals import LISTED, DataFile
-from seatsim.importing.time_axis import find_clock
+from seatsim.importing.signals import LISTED, DataFile, find_clock
 from seatsim.provenance.statement import write_documented
 from seatsim.recordings.quality.examination import examine, merge_issues
 from seatsim.recordings.quality.issue import Issue
 from seatsim.recordings.recording import CHANNELS, CURRENTS, load_recording
 from seatsim.recordings.writer import state_header, state_nominal, write_files
 from seatsim.scenario.loading import load
-from seatsim.schema.content import Form, Unwritten, written
+from seatsim.schema.content import Form, Unwritten
 from seatsim.schema.errors import InputError
 from seatsim.schema.guarded import temporary_folder
 from seatsim.schema.text import name_some
@@ -38,31 +37,14 @@ class Import(NamedTuple):
     doubts: list[Issue]
     rate: Annotated[float, Form(key="sample_rate")]
     runs: tuple[str, ...]
-
-    @property
-    @written()
-    def rig(self) -> str:
-        """What was recorded: a seat, or a damper on its bench."""
-        return self.map.rig
-
-    @property
-    @written()
-    def channels(self) -> dict[str, dict[str, object]]:
-        """Where each channel was taken from, as `map.yaml` states it."""
-        entries = {name: entry._asdict().items() for name, entry in self.map.channels.items()}
-        return {name: {key: value for key, value in held if value is not None} for name, held in entries.items()}
-
-    @property
-    @written()
-    def align(self) -> Mapping[str, float]:
-        """How records of several clocks were brought together."""
-        return self.map.align
-
-    @property
-    @written("written")
-    def names(self) -> list[str]:
-        """Names of the files that were written."""
-        return [path.name for path in self.paths]
+    rig: str
+    """What was recorded: a seat, or a damper on its bench."""
+    channels: dict[str, dict[str, object]]
+    """Where each channel was taken from, as `map.yaml` states it."""
+    align: Mapping[str, float]
+    """How records of several clocks were brought together."""
+    names: Annotated[list[str], Form(key="written")]
+    """Names of the files that were written."""
 
 
 def import_files(
@@ -102,7 +84,12 @@ def import_files(
             doubts += examine(load_recording(place)).issues
     paths = _write_recording(folder, assembled, scenario)
     notes += assembled.notes
-    return Import(folder, assembled.map, stated is None, paths, notes, doubts, assembled.rate, tuple(assembled.runs))
+    used, entries = assembled.map, {name: entry._asdict().items() for name, entry in assembled.map.channels.items()}
+    channels = {name: {key: value for key, value in held if value is not None} for name, held in entries.items()}
+    runs, names = tuple(assembled.runs), [path.name for path in paths]
+    return Import(
+        folder, used, stated is None, paths, notes, doubts, assembled.rate, runs, used.rig, channels, used.align, names
+    )
 
 
 def _data_files(paths: Sequence[Path]) -> list[Path]:

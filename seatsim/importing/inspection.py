@@ -14,11 +14,10 @@ from seatsim.importing.import_map import Rig
 from seatsim.importing.matching import Column, channel_of, read_columns
 from seatsim.importing.names import SI_UNITS, is_of, read_name, without_unit
 from seatsim.importing.readers.reading import read_file
-from seatsim.importing.signals import DataFile, Group, Signal
-from seatsim.importing.time_axis import Axis, Clock, find_clock, is_spectrum
+from seatsim.importing.signals import Axis, Clock, DataFile, Group, Signal, find_clock, is_spectrum
 from seatsim.recordings.quality.damage import noise_of
 from seatsim.recordings.quality.examination import examine, merge_issues
-from seatsim.recordings.quality.issue import Issue, place_in_run
+from seatsim.recordings.quality.issue import Issue, doubt, place_in_run
 from seatsim.recordings.quality.relations import doubt_relations
 from seatsim.recordings.recording import BENCH_CHANNELS, CHANNELS, SEAT_CHANNELS, load_recording
 from seatsim.schema.arrays import Array
@@ -103,8 +102,7 @@ def _group(group: Group, rig: Rig) -> tuple[list[ChannelSummary], list[Issue]]:
 def _doubt_rows(group: Group, clock: Clock | None) -> Iterator[Issue]:
     """Yield what is wrong with the time of a group, or that its rows are not over time."""
     if is_spectrum(group):
-        text = f"{group.signals[0].name}: rows stand over it, not over time: a spectrum, of which no recording is made"
-        yield Issue("warning", "spectrum", text, group.signals[0].name)
+        yield doubt("spectrum", group.signals[0].name)
     if clock is None:
         return
     yield from (Issue("note", "time", said, clock.column) for said in clock.assumptions)

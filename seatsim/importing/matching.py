@@ -10,8 +10,7 @@ from typing import NamedTuple
 
 from seatsim.importing.import_map import AxisMap, ChannelMap, ImportMap, Rig
 from seatsim.importing.names import SI_UNITS, Meaning, is_of, read_name, without_unit
-from seatsim.importing.signals import LISTED, DataFile, Group, Signal
-from seatsim.importing.time_axis import check_is_history, find_clock, is_spectrum
+from seatsim.importing.signals import LISTED, DataFile, Group, Signal, check_is_history, find_clock, is_spectrum
 from seatsim.recordings.recording import ACCELEROMETERS, CHANNELS
 from seatsim.schema.text import name_some
 from seatsim.schema.units import USUAL

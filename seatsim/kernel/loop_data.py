@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -26,26 +27,9 @@ from seatsim.rig.state import (
 )
 from seatsim.rig.temperature import TemperatureFactors, Thermal
 from seatsim.schema.arrays import Array
+from seatsim.schema.fields import read_packaged
 
-UNITS = {
-    "floor_acceleration": "m/s^2",
-    "frame_acceleration": "m/s^2",
-    "driver_acceleration": "m/s^2",
-    "suspension_displacement": "m",
-    "suspension_velocity": "m/s",
-    "cushion_displacement": "m",
-    "cushion_velocity": "m/s",
-    "damper_force": "N",
-    "wanted_force": "N",
-    "force_served": "-",
-    "coil_current": "A",
-    "current_command": "A",
-    "damper_temperature": "degC",
-    "energy_floor": "J",
-    "energy_damper": "J",
-    "energy_suspension": "J",
-    "energy_cushion": "J",
-}
+UNITS = read_packaged(Path(__file__).with_name("channels.yaml"), dict[str, str])
 """Unit of every column of a history, in the order of the columns."""
 CHANNELS = tuple(UNITS)
 CURRENT_COMMAND = CHANNELS.index("current_command")

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import ArrayLike, NDArray
 from scipy import fft
 
 from seatsim.metrics.motion import as_pair, require_positive
@@ -75,15 +74,11 @@ def _average_bands(frequency: Array, power: Array) -> tuple[Array, Array]:
 
     Otherwise the many lines of the high decades would make a drawn line thick and noisy.
     """
-    inside = _is_resolved(frequency)
+    # above what a mean leaves
+    inside = frequency >= max(LOWEST, frequency[FIRST_LINE])
     band = np.floor(PER_OCTAVE * np.log2(frequency[inside] / LOWEST) + 1e-9).astype(int)
     _, index, count = np.unique(band, return_inverse=True, return_counts=True)
     return np.bincount(index, frequency[inside]) / count, np.bincount(index, power[inside]) / count
-
-
-def _is_resolved(frequency: Array) -> NDArray[np.bool_]:
-    """Return which lines are drawn: those above `LOWEST` and above what a mean leaves."""
-    return np.asarray(frequency >= max(LOWEST, frequency[FIRST_LINE]))
 
 
 def _segments(values: Array, length: int) -> Array:
@@ -105,45 +100,6 @@ _SHORTEST = 1.0
 _Spectrum = TypeVar("_Spectrum", Array, ComplexArray)
 
 
-class Transmissibility(NamedTuple):
-    """Estimate of the response of the driver's acceleration to the floor's, shape (F,) each."""
-
-    frequency: Array
-    """In Hz, from 0 to half the sample rate."""
-    response: ComplexArray
-    """H1(f), dimensionless; NaN where the floor does not move."""
-    coherence: Array
-    """gamma^2(f), 0 to 1: share of the driver's power that the floor explains; NaN where one is at rest."""
-    segments: int
-    """Number of half-overlapping segments that were averaged."""
-
-    @property
-    def gain(self) -> Array:
-        """|H1(f)|, the transmissibility, dimensionless, shape (F,)."""
-        return np.abs(self.response)
-
-
-def transmissibility(floor: ArrayLike, driver: ArrayLike, sample_rate: float) -> Transmissibility:
-    """Return H1 = S_fd / S_ff with the coherence |S_fd|^2 / (S_ff S_dd), by Welch's method.
-
-    Hann segments with their mean removed, half overlapping, as long as eight of them allow but 10 s at most.
-    Noise on the driver's signal does not bias H1, noise on the floor's makes it small. Trust it where the
-    coherence is high. Source: J. S. Bendat and A. G. Piersol, Random Data.
-
-    Args:
-        floor: acceleration of the floor in m/s^2, shape (N,).
-        driver: acceleration of the driver in m/s^2, same shape.
-        sample_rate: in Hz, above 0.
-
-    Raises:
-        InputError: the shapes differ, or the record is shorter than 4.5 s.
-    """
-    x, y = as_pair(floor, driver, ("floor", "driver"))
-    length = _segment(x.size, require_positive(sample_rate, "sample_rate"))
-    frequency, floor_psd, driver_psd, cross = _estimate_spectra(x, y, sample_rate, length)
-    return Transmissibility(frequency, *_divide_spectra(floor_psd, driver_psd, cross), 2 * x.size // length - 1)
-
-
 TRUSTED = 0.5
 """Least coherence of a transmissibility: below it most of the driver's motion is not the floor's."""
 _STRETCH = 3
@@ -153,19 +109,34 @@ POWER = 1e-3
 
 
 def trusted_gain(floor: Array, driver: Array, sample_rate: float, highest: float) -> tuple[Array, Array]:
-    """Return frequency in Hz and transmissibility, shape (F,) each, NaN where the limits above forbid it.
+    """Return frequency in Hz and transmissibility |H1|, shape (F,) each, NaN where the limits above forbid it.
+
+    H1 = S_fd / S_ff and the coherence |S_fd|^2 / (S_ff S_dd) are estimated by Welch's method: Hann segments with their
+    mean removed, half overlapping, as long as eight of them allow but 10 s at most. Noise on the driver's signal does
+    not bias H1, noise on the floor's makes it small. Source: J. S. Bendat and A. G. Piersol, Random Data.
 
     Spectra are averaged over the bands of a density, up to `highest` Hz, and the transmissibility ends for good where a
-    stretch of bands is not trusted: above it, chance makes islands of coherence. The other arguments, and errors, are
-    of `transmissibility`.
+    stretch of bands is not trusted: above it, chance makes islands of coherence.
+
+    Args:
+        floor: acceleration of the floor in m/s^2, shape (N,).
+        driver: acceleration of the driver in m/s^2, same shape.
+        sample_rate: in Hz, above 0.
+        highest: in Hz.
+
+    Raises:
+        InputError: the shapes differ, or the record is shorter than 4.5 s.
     """
     from scipy.ndimage import binary_opening
 
-    length = _segment(len(floor), sample_rate)
-    lines, first, second, cross = _estimate_spectra(floor, driver, sample_rate, length)
-    averaged = [_average_bands(lines, values) for values in (first, second, cross.real, cross.imag)]
+    x, y = as_pair(floor, driver, ("floor", "driver"))
+    length = _segment(x.size, require_positive(sample_rate, "sample_rate"))
+    lines, first = power_spectral_density(x, sample_rate, length)
+    second, cross = (cross_spectral_density(*pair, sample_rate, length)[1] for pair in ((y, y), (x, y)))
+    averaged = [_average_bands(lines, values) for values in (first, second.real, cross.real, cross.imag)]
     frequency, (floor_psd, driver_psd, real, imaginary) = averaged[0][0], (power for _, power in averaged)
-    response, coherence = _divide_spectra(floor_psd, driver_psd, real + 1j * imaginary)
+    joint = real + 1j * imaginary
+    response, coherence = _quotient(joint, floor_psd), _quotient(np.abs(joint) ** 2, floor_psd * driver_psd)
     inside = frequency <= highest
     is_strong = floor_psd >= POWER * np.max(floor_psd[inside], initial=1e-300)
     whole = np.ones(_STRETCH, bool)
@@ -174,18 +145,6 @@ def trusted_gain(floor: Array, driver: Array, sample_rate: float, highest: float
     if ends.size:
         known[ends[0] :] = False
     return frequency[inside], np.where(known, np.abs(response)[inside], np.nan)
-
-
-def _estimate_spectra(x: Array, y: Array, sample_rate: float, length: int) -> tuple[Array, Array, Array, ComplexArray]:
-    """Return frequencies, the power spectral densities of x and y, and the cross density, shape (F,) each."""
-    frequency, first = power_spectral_density(x, sample_rate, length)
-    second, cross = (cross_spectral_density(*pair, sample_rate, length)[1] for pair in ((y, y), (x, y)))
-    return frequency, first, second.real, cross
-
-
-def _divide_spectra(floor: Array, driver: Array, cross: ComplexArray) -> tuple[ComplexArray, Array]:
-    """Return response and coherence, NaN where there is no power."""
-    return _quotient(cross, floor), _quotient(np.abs(cross) ** 2, floor * driver)
 
 
 def _segment(samples: int, sample_rate: float) -> int:

@@ -81,11 +81,13 @@ class RunRecord:
 
 
 class _Figure(NamedTuple):
-    """A metric before there is a run: `compute` returns its value, or raises `MissingInput` where it lacks an input."""
+    """A metric before there is a run: how it is described, and the channel of which it is the RMS or the peak."""
 
     unit: str
     meaning: str
-    compute: Callable[[RunRecord], float]
+    short: str = ""
+    rms: str = ""
+    peak: str = ""
 
 
 def summarise(
@@ -115,18 +117,18 @@ def summarise(
     metrics = {}
     for name, specification in METRICS.items():
         try:
-            metrics[name] = Metric(specification.compute(run), specification.unit, specification.meaning)
+            metrics[name] = Metric(_compute(name, run), specification.unit, specification.meaning)
         except MissingInput:
             continue
     return metrics
 
 
-def _rms_of(channel: str) -> Callable[[RunRecord], float]:
-    return lambda run: motion.rms(run[channel])
-
-
-def _peak_of(channel: str) -> Callable[[RunRecord], float]:
-    return lambda run: motion.peak(run[channel])
+def _compute(name: str, run: RunRecord) -> float:
+    """Return the value of a metric, or raise `MissingInput` where it lacks an input."""
+    figure = METRICS[name]
+    if figure.rms:
+        return motion.rms(run[figure.rms])
+    return motion.peak(run[figure.peak]) if figure.peak else _COMPUTED[name](run)
 
 
 def _of_weighted(compute: Callable[[Array, float], float]) -> Callable[[RunRecord], float]:
@@ -177,39 +179,23 @@ COMFORT, UNWEIGHTED = "driver_acceleration_weighted", "driver_acceleration_rms"
 TRAVEL, SEAT = "suspension_displacement_rms", "seat_factor"
 """Metrics by which seats are compared."""
 _DRIVER = "driver_acceleration"
-METRICS: Mapping[str, _Figure] = {
-    "driver_acceleration_rms": _Figure("m/s^2", "RMS acceleration of the driver", _rms_of(_DRIVER)),
-    "driver_acceleration_peak": _Figure("m/s^2", "largest driver acceleration", _peak_of(_DRIVER)),
-    "driver_acceleration_weighted": _Figure(
-        "m/s^2", "RMS driver acceleration, Wk-weighted", _of_weighted(lambda x, _: motion.rms(x))
-    ),
-    "driver_vdv": _Figure("m/s^1.75", "vibration dose value of the driver, Wk-weighted", _of_weighted(vdv)),
-    "driver_mtvv": _Figure("m/s^2", "largest Wk-weighted RMS of the driver in any second", _of_weighted(mtvv)),
-    "driver_crest_factor": _Figure(
-        "-", "peak over RMS of the driver's Wk-weighted acceleration", _of_weighted(lambda x, _: crest_factor(x))
-    ),
-    "driver_jerk_rms": _Figure(
-        "m/s^3", "RMS jerk of the driver: differences of successive samples over the step", _jerk
-    ),
-    "seat_factor": _Figure("-", "Wk-weighted RMS of the driver over that of the floor (SEAT)", _seat_factor),
-    "frame_acceleration_rms": _Figure("m/s^2", "RMS acceleration of the frame", _rms_of("frame_acceleration")),
-    "frame_acceleration_peak": _Figure("m/s^2", "largest frame acceleration", _peak_of("frame_acceleration")),
-    "suspension_displacement_rms": _Figure("m", "RMS suspension travel", _rms_of("suspension_displacement")),
-    "suspension_displacement_peak": _Figure("m", "largest suspension travel", _peak_of("suspension_displacement")),
-    "end_stop_hits": _Figure("-", "separate excursions beyond the end stops", _end_stop_hits),
-    "force_tracking_error": _Figure("N", "RMS of wanted less delivered force", _tracking(share=False)),
-    "force_tracking_error_relative": _Figure("-", "the same over the RMS of the wanted force", _tracking(share=True)),
-    "force_served_share": _Figure("-", "share of time the wanted force could be delivered", _served_share),
-    "current_rms": _Figure("A", "RMS coil current", _rms_of("coil_current")),
-    "electrical_energy": _Figure("J", "heat of the coil", _electrical_energy),
-    "damper_energy": _Figure(
-        "J", "energy dissipated by the damper", lambda run: float(run["energy_damper"][-1] - run["energy_damper"][0])
-    ),
-    "energy_residual": _Figure("-", "energy unaccounted for over the largest energy", _energy_residual),
-    "temperature_final": _Figure(
-        "degC", "temperature of the damper at the end", lambda run: float(run["damper_temperature"][-1])
-    ),
+_COMPUTED: Mapping[str, Callable[[RunRecord], float]] = {
+    "driver_acceleration_weighted": _of_weighted(lambda x, _: motion.rms(x)),
+    "driver_vdv": _of_weighted(vdv),
+    "driver_mtvv": _of_weighted(mtvv),
+    "driver_crest_factor": _of_weighted(lambda x, _: crest_factor(x)),
+    "driver_jerk_rms": _jerk,
+    "seat_factor": _seat_factor,
+    "end_stop_hits": _end_stop_hits,
+    "force_tracking_error": _tracking(share=False),
+    "force_tracking_error_relative": _tracking(share=True),
+    "force_served_share": _served_share,
+    "electrical_energy": _electrical_energy,
+    "damper_energy": lambda run: float(run["energy_damper"][-1] - run["energy_damper"][0]),
+    "energy_residual": _energy_residual,
+    "temperature_final": lambda run: float(run["damper_temperature"][-1]),
 }
+METRICS: Mapping[str, _Figure] = read_packaged(Path(__file__).with_name("metrics.yaml"), dict[str, _Figure])
 """All metrics by name, in the order of the table."""
-SHORT = read_packaged(Path(__file__).with_name("short_names.yaml"), dict[str, str])
+SHORT = {name: figure.short for name, figure in METRICS.items() if figure.short}
 """What metrics are called where there is little room: in tables, pictures and sentences, on paper and on a screen."""

@@ -16,8 +16,8 @@ frequencies below the Nyquist one: at 500 Hz it is 14 % low at 80 Hz, and 6 % wi
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from functools import lru_cache
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -27,6 +27,7 @@ from scipy import fft
 from seatsim.metrics.motion import as_signal, require_finite, require_positive
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, permit
+from seatsim.schema.fields import read_packaged
 
 ComplexArray = NDArray[np.complex128]
 
@@ -54,26 +55,9 @@ class Weighting(NamedTuple):
     step: _UpwardStep | None = None
     K: float = 1.0
 
-    @property
-    def minimum_rate(self) -> float:
-        """Lowest sample rate in Hz: the band, which ends at the corner f2, must lie below half of it."""
-        return 2 * self.f2
 
-
-WEIGHTINGS: Mapping[str, Weighting] = {
-    "Wk": Weighting(0.4, 100.0, 12.5, 12.5, 0.63, _UpwardStep(2.37, 0.91, 3.35, 0.91)),
-    "Wd": Weighting(0.4, 100.0, 2.0, 2.0, 0.63),
-    "Wc": Weighting(0.4, 100.0, 8.0, 8.0, 0.63),
-    "We": Weighting(0.4, 100.0, 1.0, 1.0, 0.63),
-    "Wj": Weighting(0.4, 100.0, math.inf, math.inf, 1.0, _UpwardStep(3.75, 0.91, 5.32, 0.91)),
-    "Wf": Weighting(0.08, 0.63, math.inf, 0.25, 0.86, _UpwardStep(0.0625, 0.80, 0.10, 0.80)),
-    "Wb": Weighting(0.4, 100.0, 16.0, 16.0, 0.55, _UpwardStep(2.5, 0.9, 4.0, 0.95), 1.024),
-    "Wm": Weighting(10**-0.1, 100.0, 1 / (0.056 * math.pi), 1 / (0.056 * math.pi), 0.5),
-    "Wh": Weighting(10**0.8, 10**3.1, 50 / math.pi, 50 / math.pi, 0.64),
-}
-"""ISO 2631-1: Wk (vertical on the seat, all axes of the feet), Wd (horizontal on the seat, y and z of the back), Wc (x
-of the back), We (rotation), Wj (head of a recumbent person), Wf (motion sickness). ISO 2631-4: Wb (trains). ISO 2631-2:
-Wm (buildings). ISO 5349-1: Wh (hand and arm)."""
+WEIGHTINGS = read_packaged(Path(__file__).with_name("weightings.yaml"), dict[str, Weighting])
+"""All weightings by name."""
 
 
 class _SecondOrderSection(NamedTuple):
@@ -166,7 +150,7 @@ def weight(signal: ArrayLike, sample_rate: float, weighting: str = "Wk") -> Arra
     if not can_weight(sample_rate, weighting):
         raise InputError(
             f"sample_rate: is {sample_rate} Hz; weighting {weighting} reaches {constants.f2:.4g} Hz and needs "
-            f"{constants.minimum_rate:.4g} Hz or more"
+            f"{least_rate(weighting):.4g} Hz or more"
         )
     # The product of transforms is a circular convolution: zeros behind the record keep its end out of its start.
     size = fft.next_fast_len(x.size + math.ceil(_DECAY / constants.f1 * sample_rate), real=True)
@@ -175,8 +159,8 @@ def weight(signal: ArrayLike, sample_rate: float, weighting: str = "Wk") -> Arra
 
 
 def least_rate(weighting: str = "Wk") -> float:
-    """Return the lowest sample rate in Hz at which a record can be weighted."""
-    return _constants(weighting).minimum_rate
+    """Return the lowest sample rate in Hz: the band, which ends at the corner f2, must lie below half of it."""
+    return 2 * _constants(weighting).f2
 
 
 def can_weight(sample_rate: float, weighting: str = "Wk") -> bool:

@@ -10,7 +10,6 @@ import socket
 import threading
 import webbrowser
 from collections.abc import Callable, Mapping
-from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
 from threading import Lock, get_ident
@@ -31,7 +30,6 @@ from seatsim.report.rendering import digest_of, make_environment, read_asset
 from seatsim.scenario.loading import find_file
 from seatsim.schema.errors import InputError, RunError, SeatsimError
 from seatsim.schema.files import write_text
-from seatsim.schema.guarded import temporary_folder
 from seatsim.schema.yaml_text import dump
 
 if TYPE_CHECKING:
@@ -46,7 +44,7 @@ _LARGEST_BODY = 100_000
 """Bytes of a request that are read."""
 
 
-class Guard:
+class _Guard:
     """Lets a request pass if its Host is loopback, its Origin none or the page itself, and it has the token.
 
     A foreign Host or Origin is answered by 403, so that no other site's page can reach this one (DNS rebinding, forged
@@ -91,30 +89,25 @@ SCRIPTS = ("uPlot.iife.min.js", "charts.js", "page.js")
 STYLES = ("uPlot.min.css", "report.css", "page.css")
 HEADERS = {"X-Content-Type-Options": "nosniff", "Referrer-Policy": "no-referrer", "Cache-Control": "no-store"}
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._ -]{0,80}")
-_WAITING = "wait"
-"""In the address of the request that is answered when everything is loaded."""
 
 
-def make_app(target: Future[ScenarioView | RecordingView], folder: Path, token: str, port: int) -> ASGIApp:
-    """Return the page of a scenario or recording, which writes files of one folder alone.
-
-    Until its target is loaded, the page says so; every other request waits.
-    """
+def make_app(target: ScenarioView | RecordingView, folder: Path, token: str, port: int) -> ASGIApp:
+    """Return the page of a scenario or recording, which writes files of one folder alone."""
     page = _Page(target, folder)
     routes = [Route("/", page.show, methods=["GET"]), Route("/stop", page.stop, methods=["POST"])]
     for path, compute in (("/view", page.view), ("/save", page.save)):
         routes.append(Route(path, partial(page.answer, compute), methods=["POST"]))
-    return Guard(Starlette(routes=routes), token, port)
+    return _Guard(Starlette(routes=routes), token, port)
 
 
-class Stopped(BaseException):
+class _Stopped(BaseException):
     """Is raised in the thread that computes, wherever it is, as Ctrl-C is in a command."""
 
 
 class _Page:
     """Answers the requests of one target, one at a time."""
 
-    def __init__(self, target: Future[ScenarioView | RecordingView], folder: Path) -> None:
+    def __init__(self, target: ScenarioView | RecordingView, folder: Path) -> None:
         self._target, self._folder, self._lock = target, folder, Lock()
         self._thread: int | None = None
         script, style = read_asset(SCRIPTS), read_asset(STYLES)
@@ -124,24 +117,21 @@ class _Page:
         environment = make_environment().overlay(loader=jinja2.ChoiceLoader(loaders))
         self._page, self._parts = map(environment.get_template, ("page.html", "parts.html"))
         self._given = {"script": Markup(script), "style": Markup(style)}
-        self._loading = environment.get_template("loading.html").render(style=Markup(style))
 
     async def show(self, request: Request) -> Response:
-        """Return the page with what it shows at first, or one that asks for it and is replaced by it."""
-        if not self._target.done() and _WAITING not in request.query_params:
-            return HTMLResponse(self._loading, headers=self._headers | {"Refresh": f"0; url=/?{_WAITING}"})
+        """Return the page with what it shows at first."""
         try:
             view = await run_in_threadpool(self._compute, {})
         except SeatsimError as error:
             return PlainTextResponse(f"{error}\n", status_code=422, headers=self._headers)
-        text = self._page.render(target=self._target.result(), view=view, **self._given)
+        text = self._page.render(target=self._target, view=view, **self._given)
         return HTMLResponse(text, headers=self._headers)
 
     async def stop(self, _request: Request) -> Response:
         """End what is being computed, after the step of compiled code that it is in, once."""
         thread, self._thread = self._thread, None
         if thread is not None:
-            ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), ctypes.py_object(Stopped))
+            ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), ctypes.py_object(_Stopped))
         return JSONResponse({}, headers=self._headers)
 
     async def answer(self, compute: Callable[[Mapping[str, object]], object], request: Request) -> Response:
@@ -162,8 +152,8 @@ class _Page:
         with self._lock:
             self._thread = get_ident()
             try:
-                return self._target.result().show(values)
-            except Stopped:
+                return self._target.show(values)
+            except _Stopped:
                 raise RunError("stopped: what is shown belongs to the values before") from None
             finally:
                 self._thread = None
@@ -174,10 +164,8 @@ class _Page:
         from seatsim.scenario.loading import single
 
         path = _name_new(self._folder, str(values.get("name", "")))
-        content = {**self._target.result().encode(values), "name": path.stem}
-        with temporary_folder() as drafts:
-            # What could not be read again is never saved.
-            single(write_text(Path(drafts) / path.name, dump(content)))
+        content = {**self._target.encode(values), "name": path.stem}
+        single(content)  # what could not be read again is never saved
         return {"saved": write_text(path, dump(content)).name}
 
 
@@ -211,20 +199,11 @@ async def _read_values(request: Request) -> dict[str, object]:
 _HOST = "127.0.0.1"
 
 
-def find_target(path: Path) -> Path:
-    """Return the path of what the page is to show: the folder of a recording, a scenario, or an example of that name.
-
-    Raises:
-        InputError: it is neither.
-    """
-    return path if path.is_dir() else find_file(path)
-
-
 def open_target(path: Path) -> ScenarioView | RecordingView:
-    """Return what the page shows of a path that `find_target` found; the models are loaded here, not before.
+    """Return what the page shows of a recording's folder, a scenario or an example; its models are loaded here.
 
     Raises:
-        InputError: the file or the recording has a fault.
+        InputError: there is no such file, or it or the recording has a fault.
     """
     if path.is_dir():
         from seatsim.page.recording_view import RecordingView
@@ -232,21 +211,23 @@ def open_target(path: Path) -> ScenarioView | RecordingView:
         return RecordingView(path)
     from seatsim.page.scenario_view import ScenarioView
 
-    return ScenarioView(path)
+    return ScenarioView(find_file(path))
 
 
-def serve(path: Path, folder: Path, port: int, browser: bool, say: Callable[[str], None]) -> None:
-    """Serve the page until it is interrupted. Its target is loaded while the page is already answered.
+def serve(
+    target: ScenarioView | RecordingView, folder: Path, port: int, browser: bool, say: Callable[[str], None]
+) -> None:
+    """Serve the page until it is interrupted.
 
     Args:
-        path: what it shows, as `find_target` found it.
+        target: what it shows.
         folder: from which it reads, and into which it saves.
         port: of loopback; 0 takes a free one.
         browser: whether a browser is opened.
         say: is called with the address.
 
     Raises:
-        InputError: the port is taken, or the target has a fault.
+        InputError: the port is taken.
     """
     listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -257,13 +238,9 @@ def serve(path: Path, folder: Path, port: int, browser: bool, say: Callable[[str
     listener.listen()  # who asks before the server runs is kept waiting, and not refused
     taken, token = listener.getsockname()[1], secrets.token_urlsafe(24)
     address = f"http://{_HOST}:{taken}/?token={token}"
-    target = ThreadPoolExecutor(1).submit(open_target, path)
     app = make_app(target, folder.resolve(), token, taken)
     settings = uvicorn.Config(app, log_level="warning", access_log=False, server_header=False)
-    server = uvicorn.Server(settings)
-    target.add_done_callback(lambda loaded: setattr(server, "should_exit", loaded.exception() is not None))
     say(address)
     if browser:
         threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
-    server.run(sockets=[listener])
-    target.result()
+    uvicorn.Server(settings).run(sockets=[listener])

@@ -20,7 +20,7 @@ from pydantic import ValidationError
 import seatsim
 from seatsim.schema.content import IfAny
 from seatsim.schema.errors import InputError
-from seatsim.schema.fields import validated
+from seatsim.schema.fields import read_packaged, validated
 from seatsim.schema.files import write_json, write_together
 from seatsim.schema.guarded import expect, is_there, read_json, watch_reads
 from seatsim.schema.modules import import_named, shipped_packages, used_files
@@ -141,23 +141,7 @@ def read_manifest(folder: Path) -> Manifest:
     return found
 
 
-REPEATABLE: Mapping[str, frozenset[str]] = {
-    name: frozenset(options.split())
-    for name, options in {
-        "run": "--set",
-        "compare": "--set",
-        "synthesise": "--set --global",
-        "gap": "--predict",
-        "diagnose": "--without --budget --damper-forms --after",
-        "characterise": "--limits --beside --pattern --window",
-        "identify": "--model --test --test-fraction --fix --ignore-temperature --seed",
-        "import": "--map --nominal",
-        "comfort": "--channel --hours --run --rate --unit",
-        "seat-test": "--class --set",
-        "sweep": "",
-        "sweep-report": "",
-    }.items()
-}
+REPEATABLE = read_packaged(Path(__file__).with_name("repeatable.yaml"), dict[str, frozenset[str]])
 """Commands that can be run again, with the options on which their answer hangs: none writes, loads code or connects."""
 
 

@@ -19,14 +19,12 @@ class Text(NamedTuple):
     """A paragraph."""
 
     text: str
-    kind: str = "text"
 
 
 class Items(NamedTuple):
     """A list of sentences."""
 
     items: Sequence[str]
-    kind: str = "items"
 
 
 class Code(NamedTuple):
@@ -34,7 +32,6 @@ class Code(NamedTuple):
 
     text: str
     label: str = "Command"
-    kind: str = "code"
 
 
 class Table(NamedTuple):
@@ -49,7 +46,6 @@ class Table(NamedTuple):
     words: int = 1
     strong: Sequence[int] = ()
     folded: bool = False
-    kind: str = "table"
 
 
 class Line(NamedTuple):
@@ -69,14 +65,12 @@ class Signals(NamedTuple):
     lines: Sequence[Line]
     panels: Sequence[str]
     data: Mapping[str, object]
-    kind: str = "signals"
 
 
 class Pictures(NamedTuple):
     """Pictures beside or below each other, as the page has room."""
 
     pictures: Sequence[Inline]
-    kind: str = "pictures"
 
 
 Figures: TypeAlias = "Mapping[str, Figure]"

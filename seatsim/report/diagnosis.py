@@ -159,7 +159,8 @@ def _show_causes(diagnosis: Diagnosis) -> list[Table]:
         meaning = format_sentence(formatting.describe_effect(cause.effect)) or UNKNOWN
         shares = (format_percent(cause.probability), format_percent(cause.shrink))
         sizes = "; ".join(f"{name} {_format_estimate(value)}" for name, value in cause.parameters.items()) or UNKNOWN
-        rows.append((cause.effect, meaning, sizes, *shares))
+        name = cause.effect + " (own)" * (cause.effect not in read_words().effects)
+        rows.append((name, meaning, sizes, *shares))
     if rest := [each.probability for each in diagnosis.causes if each not in shown]:
         most = f"≤ {format_percent(max(rest))}".replace("≤ <", "<")
         rows.append((f"{len(rest)} other effect{'s' * (len(rest) > 1)}", UNKNOWN, UNKNOWN, most, UNKNOWN))
@@ -205,26 +206,37 @@ def _show_forms(diagnosis: Diagnosis) -> list[Table]:
     return show_table("forms", rows, 2, [0], own=diagnosis.alternatives[0].replaces) if rows else []
 
 
-def _show_gaps(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
-    """Return the gaps by channel, drawn and as a table, those of every run, and the refitted parameters."""
+def tabulate_diagnosis(diagnosis: Diagnosis) -> list[Table]:
+    """Return what a terminal shows of a diagnosis: gaps, likely causes, and other forms of the damper."""
+    causes = _show_causes(diagnosis) if diagnosis.verdict != "none" else []
+    return [*_tabulate_gaps(diagnosis), *causes, *_show_forms(diagnosis)]
+
+
+def _tabulate_gaps(diagnosis: Diagnosis) -> list[Table]:
+    """Return the gaps by channel on the runs held out, then, where there are several, those of every run."""
     gap, held = diagnosis.gap, ", ".join(diagnosis.held_out) or "all runs"
     # Without effects the gap after them is that of the refit.
     stages = {key: name for key, name in _STAGES.items() if key != "after" or diagnosis.selected}
     rows = [_make_row(gap, name, name.replace("_", " "), stages) for name in ("overall", *gap.before.channels)]
     head = ["channel", *stages.values(), "shrinks by"]
-    blocks: list[Block] = [Text(f"{_describe_shrink(diagnosis)} {EXPLAINED}".strip()), *show_pictures(figures, "gaps")]
-    blocks += tabulate(f"Gaps on {held}", head, rows, 1, [0])
+    tables = tabulate(f"Gaps on {held}", head, rows, 1, [0])
     if len(gap.by_run) > 1:
         rows = [_make_row(each, "overall", each.run, stages) for each in gap.by_run]
         strong = [k for k, each in enumerate(gap.by_run) if each.run in diagnosis.held_out]
-        blocks += tabulate("Gaps of every run, overall; held out in bold", ["run", *head[1:]], rows, 1, strong)
-    rows = []
+        tables += tabulate("Gaps of every run, overall; held out in bold", ["run", *head[1:]], rows, 1, strong)
+    return tables
+
+
+def _show_gaps(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
+    """Return the gaps, drawn and as tables, and the refitted parameters."""
+    lead, rows = Text(f"{_describe_shrink(diagnosis)} {EXPLAINED}".strip()), []
     ranked = sorted(diagnosis.parameters, key=lambda each: not each.at_bound)
     for each in ranked:
         nominal, low, high = map(formatting.format_setting, (each.nominal, *each.bound))
         name = f"{each.name}{' (at its bound)' * each.at_bound}"
         rows.append([name, format_unit(each.unit), nominal, format_number(each.value, 4), f"{low} to {high}"])
-    return [*blocks, *show_table("refit", rows, 2, [k for k, each in enumerate(ranked) if each.at_bound])]
+    refit = show_table("refit", rows, 2, [k for k, each in enumerate(ranked) if each.at_bound])
+    return [lead, *show_pictures(figures, "gaps"), *_tabulate_gaps(diagnosis), *refit]
 
 
 def _make_row(gaps: Gaps | RunGaps, channel: str, name: str, keys: Iterable[str]) -> list[str]:

@@ -36,7 +36,7 @@ def report_gap(name: str, found: Gap, command: str) -> Report:
     """
     figures, lines = plot_all_of_gap(found), {"measured": ("measured", MEASURED), "nominal": ("simulated", 1)}
     sections: dict[str, Sequence[Block]] = {
-        "gaps": _tabulate_gaps(found),
+        "gaps": tabulate_gaps(found),
         "signals": [*show_pictures(figures, "signal_"), pack_traces(list_traces(found), lines)],
         "agreement": _show_agreement(found),
     }
@@ -57,7 +57,7 @@ def _is_explained(found: Gap) -> bool:
     return found.overall <= max(_NEAR_NOISE * found.floor.overall, SMALLEST)
 
 
-def _tabulate_gaps(found: Gap) -> list[Table]:
+def tabulate_gaps(found: Gap) -> list[Table]:
     """Return the gaps over all runs, then, where there are several, those of each."""
     rows = [["overall", format_percent(found.overall), format_noise(found.floor.overall), UNKNOWN, UNKNOWN]]
     each_run, runs = list[list[str]](), list(found.replayed)

@@ -24,7 +24,7 @@ LISTED = 3
 """Conditions beside the worst of which a sentence names the best choice."""
 
 
-class Alternatives(NamedTuple):
+class _Alternatives(NamedTuple):
     """Runs under one condition that can be relied on, the most comfortable first, each with its name."""
 
     condition: str
@@ -38,7 +38,7 @@ class Alternatives(NamedTuple):
         return sum(_measure_comfort(run) <= (1 + SAME) * least for run in self.runs)
 
 
-def _list_alternatives(runs: Sequence[Run]) -> list[Alternatives]:
+def _list_alternatives(runs: Sequence[Run]) -> list[_Alternatives]:
     """Return the runs that can be relied on in groups of one condition each, the worst condition first.
 
     Where some have weighted figures, those without are left out: the two cannot be compared.
@@ -51,7 +51,7 @@ def _list_alternatives(runs: Sequence[Run]) -> list[Alternatives]:
         known = [pair for pair in named if COMFORT in pair[0].metrics or not is_weighted]
         known.sort(key=lambda pair: _measure_comfort(pair[0]))
         if known:
-            found.append(Alternatives(condition, *zip(*known, strict=True)))
+            found.append(_Alternatives(condition, *zip(*known, strict=True)))
     return sorted(found, key=lambda group: -_measure_comfort(group.runs[0]))
 
 
@@ -81,7 +81,7 @@ def _compare_figures(ratio: float) -> str:
     return _EQUAL if abs(ratio - 1) <= SAME else f"{format_percent(abs(1 - ratio))} {'less' if ratio < 1 else 'more'}"
 
 
-def _state_best(group: Alternatives) -> str:
+def _state_best(group: _Alternatives) -> str:
     """Return the comfort of the best run of a condition, and its distance from the best passive one in words.
 
     Where the best run is passive, the best controlled one stands beside it, and where all or none are passive the next
@@ -146,25 +146,22 @@ def count_times(hits: float) -> str:
     return "once" if hits == 1 else f"{hits:.0f} times"
 
 
-def _state_range(groups: Sequence[Alternatives]) -> list[str]:
+def _state_range(groups: Sequence[_Alternatives]) -> list[str]:
     """Return what runs come to of which no two share a condition, the worst first, so that none is called better."""
     worst, mildest = groups[0], groups[-1]
-    low, high = _measure_comfort(mildest.runs[0]), _measure_comfort(worst.runs[0])
-    ends = f"{format_quantity(low, 'm/s^2')} to {_state_comfort(worst.runs[0])}"
-    said = f"{ends}; the worst is “{_name_alone(worst)}”, the mildest “{_name_alone(mildest)}”."
-    if high <= (1 + SAME) * low:
-        said = f"the same, {_state_comfort(worst.runs[0])}."
-    said = f"Under {len(groups)} conditions the driver feels {said}"
+    low, high = format_quantity(_measure_comfort(mildest.runs[0]), "m/s^2"), _state_comfort(worst.runs[0])
+    named = f"the worst is “{_name_alone(worst)}”, the mildest “{_name_alone(mildest)}”"
+    said = f"Under {len(groups)} conditions the driver feels {low} to {high}; {named}."
     if len({choice_of(group.runs[0].scenario) for group in groups}) == 1:
         return [said]
     return [said, "No two runs share floor, temperature and driver, so that none is called better than another."]
 
 
-def _name_alone(group: Alternatives) -> str:
+def _name_alone(group: _Alternatives) -> str:
     return group.condition or group.names[0]
 
 
-def _state_one(group: Alternatives) -> str:
+def _state_one(group: _Alternatives) -> str:
     """Return which runs of one condition are the most comfortable, and by how much."""
     count, leaders = len(group.runs), group.leaders
     under = f"{group.condition}: " if group.condition else ""
@@ -176,7 +173,7 @@ def _state_one(group: Alternatives) -> str:
     return f"{under}{said}: the driver feels {_state_best(group)}."
 
 
-def _state_several(groups: Sequence[Alternatives]) -> list[str]:
+def _state_several(groups: Sequence[_Alternatives]) -> list[str]:
     """Return which choice is the best under all of several conditions, or which is under which."""
     worst, count = groups[0], len(groups)
     leading = [{choice_of(run.scenario) for run in group.runs[: group.leaders]} for group in groups]

@@ -27,10 +27,11 @@ _MOST_REASONS = 8
 def report_sweep(rows: SweepRows, found: Sensitivities, exceeded: Sequence[Exceedance]) -> Report:
     """Return the report of a sweep from its rows and the statistics on them."""
     figures, count = draw_figures(found, rows), rows.usable.seed.nunique()
+    limits = tabulate_limits(exceeded, rows)
     seeds = explain("seeds" if count > 1 else "one_seed", count=str(count))
     settings = [*seeds, Text(f"Identity of the sweep: {rows.manifest['identity']}")]
     sections: dict[str, Sequence[Block]] = {
-        "limits": _show_limits(exceeded, rows),
+        "limits": [*explain("drawn" if rows.is_random else "not_drawn"), *limits] if limits else [],
         "choices": tabulate_best(rows),
         "sensitivity": _show_sensitivity(found, rows),
         "pareto": show_pictures(figures, "comfort"),
@@ -69,20 +70,13 @@ def state_importance(found: Sensitivities, rows: SweepRows) -> list[str]:
 
 
 def advise_on_keys(found: Sequence[Sensitivity], rows: SweepRows) -> list[str]:
-    """Return what to do about the strongest choice, and where the strongest condition is the worst."""
+    """Return what to do about the strongest choice."""
     texts = []
     if (choice := choose_choice(found, rows)) is not None:
         share = f"of the choices it explains the most of the variance, {format_percent(choice.total)}"
         lead = f"{'Tighten the tolerance of' if choice.key in rows.drawn else 'Settle'} {choice.key} first"
         lead = f"Leave {choice.key} as it is, and the other varied choices" if choice.total < _MATTERS else lead
         texts.append(f"{lead}: {share}.")
-    if (condition := choose_key([row for row in found if is_condition(row.key)], rows)) is not None:
-        words = describe_column(condition.metric, rows.units).words
-        ends = ((condition.at_low, condition.low), (condition.at_high, condition.high))
-        worst, level = max(ends, key=lambda end: end[0])
-        at = f"{format_level(level)} {describe_column(condition.key, rows.units).unit}".removesuffix(" -")
-        mean = format_quantity(worst, rows.units[condition.metric])
-        texts.append(f"Judge every choice at {condition.key} {at}: there the mean {words} is largest, {mean}.")
     return texts
 
 
@@ -148,20 +142,17 @@ def _show_sensitivity(found: Sensitivities, rows: SweepRows) -> list[Block]:
     return blocks
 
 
-def _show_limits(exceeded: Sequence[Exceedance], rows: SweepRows) -> list[Block]:
-    if not exceeded:
-        return []
-    what, lead = ("probability", "drawn") if rows.is_random else ("share of the runs", "not_drawn")
-    lines = []
+def tabulate_limits(exceeded: Sequence[Exceedance], rows: SweepRows) -> list[Table]:
+    """Return how often each limit is exceeded, by group; nothing where no run has a limited metric."""
+    lines, what = [], "probability" if rows.is_random else "share of the runs"
     for row in exceeded[:MOST_LINES]:
         metric = describe_column(row.metric, rows.units).words
         limit = format_quantity(row.limit, rows.units[row.metric])
         share, low, high = map(format_percent, (row.share, row.low, row.high))
         counted = (f"{row.exceeding} of {row.runs}", share, f"{low} to {high}")
         lines.append((*map(format_level, row.group.values()), metric, limit, *counted))
-    groups = list(exceeded[0].group)
-    head = [*groups, "metric", "limit", "runs above", what, "95 % interval"]
-    return [*explain(lead), *tabulate("Runs above each limit", head, lines, len(groups) + 1)]
+    head = [*rows.texts, "metric", "limit", "runs above", what, "95 % interval"]
+    return tabulate("Runs above each limit", head, lines, len(rows.texts) + 1)
 
 
 def _show_states(rows: SweepRows) -> list[Table]:

@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, TypeVar, cast
 
+from seatsim.dampers.base import DAMPERS
 from seatsim.effects.base import EFFECTS
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import LAWS
@@ -19,12 +20,20 @@ from seatsim.rig.plant import Plant
 from seatsim.rig.sensors import Sensors
 from seatsim.rig.temperature import TemperatureFactors, Thermal
 from seatsim.scenario.checks import checks_schema, read_checks
-from seatsim.scenario.damper import damper_schema, read_damper, schema_of_models
-from seatsim.scenario.scenario import Control, Inverse, Solver, Start
+from seatsim.scenario.scenario import Control, DamperChoice, Inverse, Solver, Start
 from seatsim.schema import json_schema
-from seatsim.schema.errors import read_each
-from seatsim.schema.fields import param
-from seatsim.schema.json_schema import ANYTHING, BY_KEY, TEXT, Schema, mapping_schema, name_schema, record_schema
+from seatsim.schema.errors import InputError, gathered, raise_all, read_each
+from seatsim.schema.fields import field_names, param
+from seatsim.schema.json_schema import (
+    ANYTHING,
+    BY_KEY,
+    TEXT,
+    Schema,
+    cases_schema,
+    mapping_schema,
+    name_schema,
+    record_schema,
+)
 from seatsim.schema.registry import Record, Registry, find
 from seatsim.schema.text import explain_bad_name
 from seatsim.schema.validation import build, check_keys, chosen_class, is_finite_number, mapping, read_whole
@@ -33,6 +42,63 @@ from seatsim.schema.yaml_text import KeyPath
 
 if TYPE_CHECKING:
     from seatsim.excitations.base import Excitation
+
+_MODELS = "parameters_by_model"
+"""Name of what a JSON Schema states of the parameters of each damper model."""
+
+
+def read_damper(values: object, source: Source, keys: KeyPath, extra: tuple[str, ...] = ()) -> DamperChoice:
+    """Return the damper of `{model: NAME, parameters: {...}, temperature_factors: {...}}`.
+
+    The values stand under `keys` in the source and may have `extra` keys besides; factors default to the model's own.
+
+    Raises:
+        InputError: a key or the model is unknown, or a value is missing or not permitted.
+    """
+    stated, errors = mapping(values, source, keys), list[InputError]()
+    with gathered(errors):
+        check_keys(stated, ("model", "parameters", "temperature_factors", *extra), source, keys)
+    with gathered(errors):
+        cls = chosen_class(DAMPERS, stated, "model", source, keys)
+        specification = DAMPERS.specification_of(cls)
+        hint, required = "", tuple[str, ...]()
+        if specification.complete:
+            name, required = stated["model"], field_names(cls)
+            lists = f"seatsim describe {name} lists them"
+            hint = f"; the model '{name}' has no default values: state every parameter ({lists})"
+        record = build(cls, stated.get("parameters", {}), source, (*keys, "parameters"), required, hint)
+    factors = None
+    if "temperature_factors" in stated:
+        with gathered(errors):
+            where = (*keys, "temperature_factors")
+            factors = build(TemperatureFactors, stated["temperature_factors"], source, where)
+    raise_all(errors)
+    return DamperChoice(record, factors or specification.factors)
+
+
+def damper_schema(extra: Mapping[str, Schema] | None = None) -> Schema:
+    """Return the JSON Schema of a damper with `extra` keys besides.
+
+    It refers to `schema_of_models`, which the whole schema holds.
+    """
+    keys = {
+        "model": name_schema("damper"),
+        "parameters": BY_KEY,
+        "temperature_factors": record_schema(TemperatureFactors),
+    }
+    return mapping_schema(keys | dict(extra or {}), ("model",)) | {"allOf": [{"$ref": f"#/$defs/{_MODELS}"}]}
+
+
+def schema_of_models() -> Schema:
+    """Return the definition of the parameters of every damper model."""
+
+    def own(name: str) -> Schema:
+        record = DAMPERS.find(name)
+        required = field_names(record) if DAMPERS.specification_of(record).complete else None
+        return {"properties": {"parameters": record_schema(record, required)}}
+
+    return {"$defs": {_MODELS: cases_schema("damper", "model", own)}}
+
 
 _LARGEST_SEED = 2**63 - 1
 """The largest whole number that a column of a table holds."""

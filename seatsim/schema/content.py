@@ -20,7 +20,7 @@ from __future__ import annotations
 import dataclasses
 import html
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Sized
+from collections.abc import Callable, Mapping, Sized
 from functools import cache
 from pathlib import PurePath
 from typing import Annotated, NamedTuple, TypeGuard, TypeVar, get_args, get_origin, get_type_hints
@@ -140,36 +140,25 @@ def show_record(record: object, *keys: str) -> str:
     Keys of what lies deeper have dots; of the records in a list their single values are shown. Numbers are rounded to
     four digits.
     """
+    import pandas as pd
+
     content = to_content(record)
-    values = dict(_flatten({key: content[key] for key in keys or content}))
-    lists = {key: value for key, value in values.items() if isinstance(value, list)}
-    tables = {key: rows for key, value in lists.items() if (rows := [row for row in value if isinstance(row, dict)])}
-    single = [{"": key, " ": value} for key, value in values.items() if key not in tables]
-    return "".join([_show_table("", single), *(_show_table(key, rows) for key, rows in tables.items())])
-
-
-def _flatten(content: Mapping[str, object], above: str = "") -> Iterator[tuple[str, object]]:
-    for key, value in content.items():
-        if isinstance(value, dict):
-            yield from _flatten(value, f"{above}{key}.")
-        else:
-            yield f"{above}{key}", value
-
-
-def _show_table(name: str, rows: Sequence[Mapping[str, object]]) -> str:
-    shown = [{key: cell for key, cell in row.items() if not isinstance(cell, dict)} for row in rows]
-    columns = list(dict.fromkeys(key for row in shown for key in row))
-    lines = [_row("th", columns)] if name else []
-    lines += [_row("td", (row.get(key) for key in columns)) for row in shown[: _SHOWN if name else None]]
-    heading = f"<p>{html.escape(name)}</p>" if name else ""
-    return f"{heading}<table>{''.join(lines)}</table>"
-
-
-def _row(tag: str, cells: Iterable[object]) -> str:
-    return f"<tr>{''.join(f'<{tag}>{html.escape(_say(cell))}</{tag}>' for cell in cells)}</tr>"
+    # Of objects: a whole number is not to become a float beside one that is absent.
+    flat = pd.json_normalize({key: content[key] for key in keys or content}).astype(object).iloc[0]
+    is_table = flat.map(lambda value: isinstance(value, list) and any(isinstance(row, dict) for row in value))
+    values = flat[~is_table].map(_say).to_frame()
+    with pd.option_context("display.max_colwidth", None):
+        shown = [values.to_html(header=False, border=0)]
+        for key, rows in flat[is_table].items():
+            single = [{name: cell for name, cell in row.items() if not isinstance(cell, dict)} for row in rows[:_SHOWN]]
+            table = pd.DataFrame(single, dtype=object).map(_say).to_html(index=False, border=0)
+            shown.append(f"<p>{html.escape(str(key))}</p>{table}")
+    return "".join(shown)
 
 
 def _say(value: object) -> str:
     if isinstance(value, list):
         return ", ".join(map(_say, value))
-    return "" if value is None else f"{value:.4g}" if isinstance(value, float) else str(value)
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return ""
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -1,7 +1,6 @@
 """Files that are written whole or not at all: single ones, and all that a command writes together.
 
-What is not yet whole lies beside its place under a name that begins with `.` and ends in `.part`. What a killed process
-has left is removed when something is written there a day later.
+What is not yet whole lies beside its place under a name that begins with `.` and has `.part` in its end.
 """
 
 from __future__ import annotations
@@ -9,20 +8,14 @@ from __future__ import annotations
 import gzip
 import json
 import os
-import re
 import secrets
 import shutil
-import time
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from seatsim.schema.content import plain
 from seatsim.schema.errors import InputError, OutputError
 from seatsim.schema.guarded import check_links_on, check_no_link, noted, uncut
-
-_PART = re.compile(r"\..+\.[0-9a-f]{16}\.part(\..*)?")
-_ABANDONED = 86_400.0
-"""Seconds without a change after which what is half-written counts as left."""
 
 
 def write_whole(path: Path, write: Callable[[Path], object], lasting: bool = False) -> Path:
@@ -42,7 +35,7 @@ def write_whole(path: Path, write: Callable[[Path], object], lasting: bool = Fal
             if lasting:
                 with part.open("rb") as file:
                     os.fsync(file.fileno())
-            with uncut():
+            with uncut:
                 part.replace(path)
         except OSError as error:
             raise OutputError(f"{path}: cannot be written: {error.strerror or error}; nothing of it is left") from error
@@ -73,12 +66,11 @@ def write_together(folder: Path, write: Callable[[Path], Iterable[Path]]) -> lis
     _check_place(folder, is_folder=True)
     # Within a folder that is there: the one above it may not be writable.
     above = folder if folder.is_dir() else folder.parent
-    remove_left(above)
     with noted(_name_part(above / os.path.basename(os.path.abspath(folder)))) as part:
         try:
             part.mkdir()
             names = [path.relative_to(part) for path in write(part)]
-            with uncut():
+            with uncut:
                 _put_in_place(part, folder, names)
         except OSError as error:
             raise OutputError(f"{folder}: cannot be written: {error.strerror or error}; it is as it was") from error
@@ -171,23 +163,6 @@ def _name_part(path: Path) -> Path:
     """Return the place of what is not yet whole; its ending is kept for those who write by ending."""
     # A name may have 255 bytes.
     return path.with_name(f".{path.name[:50]}.{secrets.token_hex(8)}.part{path.suffix[:10]}")
-
-
-def remove_left(folder: Path) -> None:
-    """Remove from a folder what has been left there half-written: whoever still writes has changed it within a day."""
-    for each in folder.iterdir() if folder.is_dir() else ():
-        if _PART.fullmatch(each.name) and _is_abandoned(each):
-            if each.is_dir():
-                shutil.rmtree(each, ignore_errors=True)
-            else:
-                each.unlink(missing_ok=True)
-
-
-def _is_abandoned(part: Path) -> bool:
-    try:
-        return time.time() - part.lstat().st_mtime > _ABANDONED
-    except OSError:  # it was put in place meanwhile
-        return False
 
 
 def write_text(path: Path, text: str, lasting: bool = False) -> Path:

@@ -145,13 +145,14 @@ def open_in_place(path: Path) -> TextIO:
 
 
 _noted: set[Path] = set()
-_uncut = RLock()
+uncut = RLock()
+"""Held while something is carried to its end, for which the end of the process waits."""
 
 
 @contextmanager
-def temporary_folder(prefix: str = "seatsim-") -> Iterator[Path]:
+def temporary_folder() -> Iterator[Path]:
     """Give a temporary folder, which is removed at the end, also where the process is ended by a signal."""
-    with TemporaryDirectory(prefix=prefix, ignore_cleanup_errors=True) as name, noted(Path(name)) as folder:
+    with TemporaryDirectory(prefix="seatsim-", ignore_cleanup_errors=True) as name, noted(Path(name)) as folder:
         yield folder
 
 
@@ -165,19 +166,12 @@ def noted(path: Path) -> Iterator[Path]:
         _noted.discard(path)
 
 
-@contextmanager
-def uncut() -> Iterator[None]:
-    """Carry something to its end, for which the end of the process waits."""
-    with _uncut:
-        yield
-
-
 def remove_leftovers(patience: float) -> None:
     """Remove what is noted, once nothing is under way that must not be cut; it is waited for no longer than this.
 
     Called by whoever ends the process at once. The lock is kept, so that nothing begins after this.
     """
-    _uncut.acquire(timeout=patience)
+    uncut.acquire(timeout=patience)
     for path in list(_noted):
         if path.is_dir():
             shutil.rmtree(path, ignore_errors=True)

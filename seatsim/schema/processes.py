@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import signal
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from multiprocessing import active_children, get_context, parent_process
 from pathlib import Path
@@ -64,13 +64,10 @@ def run_jobs(
         return results
     with open_pool(min(processes, len(jobs))) as pool:
         futures = [pool.submit(function, *job) for job in jobs]
-        waiting = set(futures)
-        while waiting:
-            done, waiting = wait(waiting, return_when=FIRST_COMPLETED)
-            for future in done:
-                future.result()
+        for done, future in enumerate(as_completed(futures), 1):
+            future.result()
             if progress:
-                progress(len(jobs) - len(waiting), len(jobs))
+                progress(done, len(jobs))
         return [future.result() for future in futures]
 
 

@@ -26,10 +26,9 @@ from seatsim.schema.content import Form, Joined, written
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import specification_of
 from seatsim.simulation.augment import augment_plant
-from seatsim.simulation.design import design_law, record_floors, settle_travel
 from seatsim.simulation.result import Run
 from seatsim.simulation.runs import run_one
-from seatsim.simulation.simulate import measure_peak_travel, sample_period, simulate
+from seatsim.simulation.simulate import design_law, record_floors, sample_period, settle_travel, simulate
 
 _RELEASE = Start(displacement=0.02)
 """Where the suspension is released to see whether the controlled seat comes to rest."""
@@ -165,7 +164,7 @@ def _sampled_loop(scenario: Scenario) -> SampledLoop | str:
     if plant is None or control is None:
         return "a damper bench has no loop"
     period = sample_period(scenario.solver.step, control)
-    law = design_law(scenario, plant, control, period, measure_peak_travel)
+    law = design_law(scenario, plant, control, period)
     if not isinstance(law, ForceLaw):
         return f"law {LAWS.name_of(type(control.law))} wants a current, not a force, and has no linear loop"
     initial = specification_of(type(control.law)).initial
@@ -183,7 +182,7 @@ def describe_designs(scenarios: Iterable[Scenario]) -> list[str]:
         control, plant = scenario.control, scenario.plant
         if control is None or plant is None:
             continue
-        law = settle_travel(scenario, control, measure_peak_travel)
+        law = settle_travel(scenario, control)
         if isinstance(law, SynthesisedLaw):
             text = law.describe(plant, scenario.coil, partial(record_floors, scenario, control))
             loop = f"{text}; sampled loop {describe_sampled_loop(scenario)}" if text else ""

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from typing import TypeGuard
 
 from seatsim.scenario.numbers import find_unit
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.printing import LONGEST, format_unit, shorten
+from seatsim.schema.validation import is_finite_number
 from seatsim.simulation.result import Run
 
 DOUBTFUL = "not verified, and never the best: a warning says why."
@@ -56,11 +56,6 @@ def make_title(runs: Sequence[Run]) -> str:
     return shorten(", ".join(dict.fromkeys(run.scenario.name for run in runs)), 64)
 
 
-def is_number(value: object) -> TypeGuard[float]:
-    """Tell whether a swept value is a number; true and false are not, though Python counts them as integers."""
-    return isinstance(value, int | float) and not isinstance(value, bool)
-
-
 def label_axis(scenario: Scenario, key: str) -> str:
     """Return the label of an axis over the swept key, with its unit."""
     return f"{name_key(key)} [{format_unit(find_unit(scenario, key)) or '-'}]"
@@ -79,7 +74,7 @@ def describe_swept(scenario: Scenario, key: str, value: object) -> str:
     if isinstance(value, str):
         # The last word tells enough of a key whose value is a name: class EM2.
         return f"{name_key(key).rpartition(' ')[2]} {value}"
-    text = f"{value:g}" if is_number(value) else str(value)
+    text = f"{value:g}" if is_finite_number(value) else str(value)
     unit = format_unit(find_unit(scenario, key)).removesuffix("-")
     return f"{text} {unit}" if key == "temperature" else f"{name_key(key)} {text} {unit}".strip()
 
@@ -94,6 +89,6 @@ def find_swept_number(runs: Sequence[Run]) -> str:
     counts = {"": 1}
     for key in runs[0].scenario.label:
         values = [run.scenario.label.get(key) for run in runs]
-        if all(map(is_number, values)):
+        if all(map(is_finite_number, values)):
             counts[key] = len(set(values))
     return max(counts, key=lambda key: counts[key])

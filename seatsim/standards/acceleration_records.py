@@ -12,8 +12,7 @@ from seatsim.importing.doubts import doubt_time
 from seatsim.importing.matching import Column, read_columns
 from seatsim.importing.names import is_of, read_name, unit_of_name, without_unit
 from seatsim.importing.readers.reading import read_file
-from seatsim.importing.signals import DataFile, Group, Signal
-from seatsim.importing.time_axis import Clock, check_is_history, find_clock
+from seatsim.importing.signals import Clock, DataFile, Group, Signal, check_is_history, find_clock
 from seatsim.metrics.exposure import DIRECTIONS
 from seatsim.recordings.recording import HEADER, load_recording
 from seatsim.schema.arrays import Array

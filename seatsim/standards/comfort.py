@@ -17,20 +17,12 @@ from seatsim.metrics.comfort import (
     motion_sickness_dose,
     seat_transmission,
 )
-from seatsim.metrics.exposure import (
-    DIRECTIONS,
-    HOUR,
-    POINTS,
-    Direction,
-    Exposure,
-    assess_exposure,
-    point_of,
-)
+from seatsim.metrics.exposure import DIRECTIONS, HOUR, POINTS, Direction, Exposure, assess_exposure, point_of
 from seatsim.metrics.spine import SpinalLoad, assess_spine, join_spinal_doses, spinal_dose, spine_response
 from seatsim.metrics.weighting import weight
 from seatsim.recordings.quality.channels import say_implausible
 from seatsim.schema.arrays import Array
-from seatsim.schema.content import Form, Joined, Unwritten, show_record, written
+from seatsim.schema.content import Form, Joined, Unwritten, show_record
 from seatsim.schema.errors import InputError, permit, placed
 from seatsim.schema.units import STANDARD_GRAVITY
 from seatsim.standards.acceleration_records import AccelerationRecord, choose_axes, load_accelerations
@@ -64,12 +56,8 @@ class AxisAssessment(NamedTuple):
     """Why the basic method does not suffice (`seatsim.metrics.comfort.find_shocks`)."""
     removed: Annotated[float, Form(key="removed_mean")]
     """Mean that was taken out of the record before weighting, in its unit: an offset of the sensor, or gravity."""
-
-    @property
-    @written()
-    def method(self) -> str:
-        """`basic` (a_w) or `additional` (MTVV and VDV beside it; ISO 2631-1:1997, 6.3)."""
-        return "additional" if self.shocks else "basic"
+    method: str
+    """`basic` (a_w) or `additional` (MTVV and VDV beside it; ISO 2631-1:1997, 6.3)."""
 
 
 class MotionSickness(NamedTuple):
@@ -85,7 +73,8 @@ class Comfort(NamedTuple):
     `duration` in s is what was recorded, `sample_rate` is in Hz.
     """
 
-    source: Unwritten[str]
+    name: Annotated[str, Form(key="source")]
+    """Name of the file, or of the recording's folder."""
     runs: tuple[str, ...]
     duration: float
     sample_rate: float
@@ -102,12 +91,6 @@ class Comfort(NamedTuple):
     notes: tuple[str, ...]
     stretches: Unwritten[Mapping[str, Sequence[Stretch]]]
     """What was assessed, by axis."""
-
-    @property
-    @written("source")
-    def name(self) -> str:
-        """Name of the file, or of the recording's folder."""
-        return Path(self.source).name
 
     def _repr_html_(self) -> str:
         return show_record(self)
@@ -154,7 +137,7 @@ def comfort(
     joined = {axis: found.dose for axis, found in axes.items()}
     seats = {axis: (doses[axis], doses[base]) for base, axis in _FLOOR.items() if {base, axis} <= {*named}}
     return Comfort(
-        source=str(source),
+        name=Path(source).name,
         runs=tuple(record.name for record in records),
         duration=next(iter(joined.values())).duration,
         sample_rate=records[0].sample_rate,
@@ -213,7 +196,8 @@ def _assess(
 ) -> AxisAssessment:
     joined = join_doses(doses)
     means = [float(np.mean(record.values(column, along.unit))) for record in records]
-    return AxisAssessment(column, along, joined, tuple(find_shocks(joined)), max(means, key=abs))
+    shocks = tuple(find_shocks(joined))
+    return AxisAssessment(column, along, joined, shocks, max(means, key=abs), "additional" if shocks else "basic")
 
 
 def _motion_sickness(records: Sequence[AccelerationRecord], column: str) -> MotionSickness:
@@ -235,9 +219,7 @@ def _load_spine(records: Sequence[AccelerationRecord], column: str, hours: float
 
 
 def _notes(
-    records: Sequence[AccelerationRecord],
-    named: Mapping[str, str],
-    axes: Mapping[str, AxisAssessment],
+    records: Sequence[AccelerationRecord], named: Mapping[str, str], axes: Mapping[str, AxisAssessment]
 ) -> Iterator[str]:
     yield from (note for record in records for note in record.notes)
     if len(records) > 1:

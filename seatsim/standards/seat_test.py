@@ -17,10 +17,10 @@ import numpy as np
 from seatsim.effects.seat import Mass
 from seatsim.excitations.iso7096 import CLASSES, Iso7096, SpectralClass, acceleration_density
 from seatsim.excitations.periodic import SteppedSine
-from seatsim.metrics.comfort import RUNS, dose
+from seatsim.metrics.comfort import RUNS, SPREAD, Dose, dose, seat_transmission
 from seatsim.metrics.motion import end_stop_hits, rms
 from seatsim.metrics.spectra import power_spectral_density
-from seatsim.metrics.weighting import weight
+from seatsim.metrics.weighting import frequency_response, weight
 from seatsim.recordings.recording import HEADER, Recording, load_recording
 from seatsim.rig.drivers import SINGLE_MASS, Driver
 from seatsim.rig.plant import Plant, natural_frequencies
@@ -32,20 +32,7 @@ from seatsim.schema.registry import specification_of
 from seatsim.schema.text import join_names
 from seatsim.simulation.augment import augment_plant
 from seatsim.simulation.simulate import simulate
-from seatsim.standards.seat_rows import (
-    PERSONS,
-    RECALLED,
-    SEATED_SHARE,
-    UNKNOWN_EDITION,
-    DampingTest,
-    SeatFailure,
-    SeatTest,
-    Trial,
-    doubt_runs,
-    state_damping_row,
-    state_row,
-    weighted_input,
-)
+from seatsim.standards.seat_rows import ACCEPTANCE, RECALLED, DampingRow, DampingTest, SeatFailure, SeatRow, SeatTest
 
 INERT_MASS = 75.0
 """Mass on the seat in the damping test in kg (ISO 10326-1:2016, 10.3)."""
@@ -60,8 +47,27 @@ _INERT = "inert mass"
 _DURATION = 60.0
 """s; length of each run that is evaluated."""
 
+_UNKNOWN_EDITION = (
+    "ISO 7096:2020, 5.5.3, has a damping test of its own for active and semi-active suspensions, which is not known"
+    " here: the damping test is that for passive ones, with the law at work"
+)
+_PERSONS = {"light": 55.0, "heavy": 98.0}
+"""Mass of the two test persons in kg: 52 to 55 and 98 to 103 are permitted."""
+
+SEATED_SHARE = 0.736
+"""Share of a person's mass that rests on the seat, the feet on the floor (Boileau and Rakheja 1998; recalled)."""
+
+
+class _Trial(NamedTuple):
+    """One simulated run: doses at driver and floor, hits of the end stops (None where none are stated)."""
+
+    driver: Dose
+    floor: Dose
+    hits: int | None
+
+
 _Progress = Callable[[int, int], None]
-_Result = TypeVar("_Result", Trial, DampingTest)
+_Result = TypeVar("_Result", _Trial, DampingTest)
 
 
 def seat_test(
@@ -132,7 +138,7 @@ def _assess_recorded_seat(recording: Recording, classes: Sequence[SpectralClass]
     if plant is None or any(name not in recording.channels for name in _NEEDED):
         problem = f"{recording.folder / HEADER}: the test of a seat needs the channels {join_names(_NEEDED[::-1])}"
         raise InputError(problem)
-    groups: dict[tuple[SpectralClass, str], list[Trial]] = {}
+    groups: dict[tuple[SpectralClass, str], list[_Trial]] = {}
     notes = [RECALLED, "the damping test needs tones under an inert mass, and is left out"]
     failures: list[SeatFailure] = []
     for run in recording.runs:
@@ -143,8 +149,8 @@ def _assess_recorded_seat(recording: Recording, classes: Sequence[SpectralClass]
             failures.append(SeatFailure(run, None, None, str(error)))
             continue
         mass = recording.runs[run].set.get("plant.driver_mass", plant.driver_mass) / SEATED_SHARE
-        person = min(PERSONS, key=lambda name: abs(PERSONS[name] - mass))
-        if off > _FARTHEST or abs(PERSONS[person] - mass) > _PERSON_TOLERANCE:
+        person = min(_PERSONS, key=lambda name: abs(_PERSONS[name] - mass))
+        if off > _FARTHEST or abs(_PERSONS[person] - mass) > _PERSON_TOLERANCE:
             text = f"run {run} is left out: nearest is {found}, off by {1e2 * off:.0f} %; a person of {mass:.0f} kg"
             notes.append(text)
             continue
@@ -158,8 +164,8 @@ def _assess_recorded_seat(recording: Recording, classes: Sequence[SpectralClass]
         reasons = [*notes[2:], *(failure.reason for failure in failures)]
         raise InputError(f"{recording.folder}: no run is of a class of ISO 7096; " + "; ".join(reasons))
     name = recording.folder.resolve().name
-    rows = tuple(state_row(name, *key, trials) for key, trials in sorted(groups.items()))
-    return SeatTest(rows, (), {}, (*notes, *doubt_runs(rows)), tuple(failures))
+    rows = tuple(_state_row(name, *key, trials) for key, trials in sorted(groups.items()))
+    return SeatTest(rows, (), {}, (*notes, *_doubt_runs(rows)), tuple(failures))
 
 
 def _nearest_class(floor: Array, rate: float, classes: Sequence[SpectralClass]) -> tuple[SpectralClass, float]:
@@ -180,11 +186,11 @@ def _nearest_class(floor: Array, rate: float, classes: Sequence[SpectralClass]) 
     return found, distances[found]
 
 
-def _evaluate(signals: Mapping[str, Array], rate: float, stops: tuple[float, float] | None) -> Trial:
+def _evaluate(signals: Mapping[str, Array], rate: float, stops: tuple[float, float] | None) -> _Trial:
     """Return the doses of a run at a rate in Hz, without its beginning, and its hits of the end stops."""
     settled = round(_SETTLE * rate)
     driver, floor = (dose(weight(signals[name], rate)[settled:], rate) for name in _NEEDED)
-    return Trial(driver, floor, end_stop_hits(signals[_TRAVEL], stops) if stops else None)
+    return _Trial(driver, floor, end_stop_hits(signals[_TRAVEL], stops) if stops else None)
 
 
 def _assess_simulated_seats(
@@ -210,7 +216,7 @@ def _assess_simulated_seats(
             (title, each, person): [pool.submit(_run_trial, seat, each, person, seed) for seed in range(RUNS)]
             for title, seat in seats.items()
             for each in classes
-            for person in PERSONS
+            for person in _PERSONS
         }
         damping = {title: pool.submit(_run_damping_test, seat.scenario, seat.plant) for title, seat in seats.items()}
         every: list[Future[Any]] = [*(future for futures in trials.values() for future in futures), *damping.values()]
@@ -220,16 +226,16 @@ def _assess_simulated_seats(
     results = {key: _finished(runs, (*key,), failures) for key, runs in trials.items()}
     ended = {title: _finished([future], (title, None, _INERT), failures) for title, future in damping.items()}
     tested = {title: found[0] for title, found in ended.items() if found}
-    rows = tuple(state_row(*key, found, len(found) == RUNS) for key, found in results.items() if found)
+    rows = tuple(_state_row(*key, found, len(found) == RUNS) for key, found in results.items() if found)
     if not rows and not tested:
         raise RunError(failures[0].reason)
     return SeatTest(
         rows=rows,
         damping_rows=tuple(
-            state_damping_row(title, each, found) for title, found in tested.items() for each in classes
+            _state_damping_row(title, each, found) for title, found in tested.items() for each in classes
         ),
         damping=tested,
-        notes=(*_notes(seats), *doubt_runs(rows)),
+        notes=(*_notes(seats), *_doubt_runs(rows)),
         failures=tuple(dict.fromkeys(failures)),
     )
 
@@ -263,8 +269,8 @@ def _seat_of(scenario: Scenario) -> _Seat:
     return _Seat(dataclasses.replace(scenario, effects=effects), augment_plant(effects, scenario.plant))
 
 
-def _run_trial(seat: _Seat, spectral_class: SpectralClass, person: str, seed: int) -> Trial:
-    change = SEATED_SHARE * PERSONS[person] - seat.plant.driver_mass
+def _run_trial(seat: _Seat, spectral_class: SpectralClass, person: str, seed: int) -> _Trial:
+    change = SEATED_SHARE * _PERSONS[person] - seat.plant.driver_mass
     excitation, effects = Iso7096(spectral_class, _SETTLE + _DURATION), (*seat.scenario.effects, Mass(change))
     history = simulate(dataclasses.replace(seat.scenario, excitation=excitation, seed=seed, effects=effects))
     signals = {name: history[name] for name in (*_NEEDED, _TRAVEL)}
@@ -273,7 +279,7 @@ def _run_trial(seat: _Seat, spectral_class: SpectralClass, person: str, seed: in
 
 def _notes(seats: Mapping[str, _Seat]) -> Iterator[str]:
     yield RECALLED
-    yield UNKNOWN_EDITION
+    yield _UNKNOWN_EDITION
     without = [title for title, seat in seats.items() if seat.plant.end_stops is None]
     if without:
         yield f"no end stops are stated for {join_names(without)}, and none are checked; state plant.travel"
@@ -308,3 +314,55 @@ def _run_damping_test(scenario: Scenario, plant: Plant) -> DampingTest:
         ratios.append(rms(seat) / rms(floor))
     largest = int(np.argmax(ratios))
     return DampingTest(tones[largest], ratios[largest], stroke, tones, tuple(ratios))
+
+
+def _state_row(
+    run: str, spectral_class: SpectralClass, person: str, trials: Sequence[_Trial], is_whole: bool = True
+) -> SeatRow:
+    """Return the line of a class and driver from its runs, at least one; it is only passed where it `is_whole`."""
+    found = seat_transmission([trial.driver for trial in trials], [trial.floor for trial in trials])
+    limit = CLASSES[spectral_class].seat
+    hits = [trial.hits for trial in trials if trial.hits is not None]
+    return SeatRow(
+        run=run,
+        spectral_class=spectral_class,
+        person=person,
+        mass=_PERSONS[person],
+        mass_on_seat=SEATED_SHARE * _PERSONS[person],
+        seat=found.rms,
+        limit=limit,
+        passed=bool(found.rms <= limit) and is_whole,
+        clause=ACCEPTANCE,
+        platform=sum(trial.floor.rms for trial in trials) / len(trials),
+        corrected=found.rms * weighted_input(spectral_class),
+        spread=found.spread,
+        within_spread=found.within_spread,
+        end_stop_hits=sum(hits) if hits else None,
+    )
+
+
+def weighted_input(spectral_class: SpectralClass) -> float:
+    """Return the Wk-weighted RMS acceleration of a class in m/s^2, sqrt(integral G |Wk|^2 df)."""
+    frequency = np.linspace(0.0, 20.0, 20001)
+    power = acceleration_density(frequency, spectral_class) * np.abs(frequency_response(frequency)) ** 2
+    return float(np.sqrt(np.trapezoid(power, frequency)))
+
+
+def _state_damping_row(run: str, spectral_class: SpectralClass, found: DampingTest) -> DampingRow:
+    """Return the line of the damping test of a seat against the limit of a class."""
+    limit = CLASSES[spectral_class].transmissibility
+    passed = bool(found.transmissibility <= limit)
+    return DampingRow(run, spectral_class, found.transmissibility, found.resonance, limit, passed)
+
+
+def _doubt_runs(rows: Sequence[SeatRow]) -> list[str]:
+    """Return a sentence on the lines whose runs are too few, or too far apart, for a result."""
+    few = [_name(row) for row in rows if row.within_spread is None]
+    apart = [_name(row) for row in rows if row.within_spread is False]
+    found = [f"fewer than three runs of {join_names(few)}"] if few else []
+    found += [f"runs of {join_names(apart)} differ from their mean by more than {SPREAD:.0%}"] if apart else []
+    return [f"{sentence}: ISO 10326-1, 10.2.1, asks for three within {SPREAD:.0%}" for sentence in found]
+
+
+def _name(row: SeatRow) -> str:
+    return f"{row.run}, {row.spectral_class}, {row.mass:g} kg"

@@ -12,21 +12,22 @@ The values that one key takes are a list, a range, or a distribution that is dra
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from seatsim.metrics.table import METRICS
 from seatsim.scenario.loading import find_file
 from seatsim.schema.arrays import Array
-from seatsim.schema.errors import InputError, permit, read_each
-from seatsim.schema.guarded import is_there, read_bytes
-from seatsim.schema.json_schema import BY_KEY, TEXT, Schema, head_schema, mapping_schema
+from seatsim.schema.errors import InputError, permit, placed, read_each
+from seatsim.schema.fields import read_packaged
+from seatsim.schema.guarded import is_there
+from seatsim.schema.json_schema import Schema, head_schema, mapping_schema
+from seatsim.schema.tables import read_table
 from seatsim.schema.validation import check_keys, is_finite_number, mapping, read_number, read_whole
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import KeyPath, YamlError, parse_value
@@ -164,29 +165,10 @@ def _log(value: float) -> float:
     return math.log(value) if value > 0 else -math.inf
 
 
-def _axis_schema() -> Schema:
-    """Return the JSON Schema of the values of a key."""
-    number: Schema = {"type": "number"}
-    pair: Schema = {"type": "array", "items": number, "minItems": 2, "maxItems": 2}
-    ends = {"low": number, "high": number}
-    steps: Schema = {"from": number, "to": number, "steps": {"type": "integer", "minimum": 2, "maximum": _MOST_STEPS}}
-    choice: Schema = {"type": "object", "additionalProperties": number}
-    forms = [
-        mapping_schema(steps, steps),
-        mapping_schema({"uniform": pair}, ("uniform",)),
-        mapping_schema({"normal": pair, **ends}, ("normal",)),
-        mapping_schema({"lognormal": pair, **ends}, ("lognormal",)),
-        mapping_schema({"choice": choice}, ("choice",)),
-    ]
-    return {"anyOf": [{"type": "array", "minItems": 1}, *forms]}
-
-
-_DESIGNS = ("cross", "zip", "lhs", "sobol", "table")
-_KEYS = ("scenario", "seed", "design", "runs", "replicates", "vary", "table", "limits")
+_SCHEMA = read_packaged(Path(__file__).with_name("schema.yaml"), dict[str, Any])
+_DESIGNS: list[str] = _SCHEMA["properties"]["design"]["enum"]
 MOST_RUNS = 10_000_000
 """Runs of a sweep: their numbers have this many digits, and more would be a slip of the keyboard."""
-_LARGEST_DESIGN = 2**30
-"""Bytes of a table of runs."""
 
 
 class _Table(NamedTuple):
@@ -227,7 +209,7 @@ def read_definition(path: Path) -> SweepDefinition:
     if "scenario" not in source.data and {"plant", "damper"} & set(source.data):
         raise InputError(f"{path}: is a scenario; a sweep is a file that names one under scenario, and what varies")
     readers: Mapping[str, Callable[[], object]] = {
-        "source": lambda: check_keys(source.data, _KEYS, source, ()),
+        "source": lambda: check_keys(source.data, _SCHEMA["properties"], source, ()),
         "scenario": lambda: _read_scenario(source),
         "seed": lambda: _read_whole(source, "seed", least=0) or 0,
         "design": lambda: _read_design(source),
@@ -301,18 +283,11 @@ def _read_table(source: Source) -> _Table | None:
     if not isinstance(stated, str):
         raise source.error(("table",), "design 'table' needs the path of a CSV file whose columns are keys")
     path = source.path.parent / stated
-    try:
-        text = read_bytes(path, _LARGEST_DESIGN, "a CSV file").decode("utf-8-sig")
-        rows = list(csv.reader(text.splitlines()))
-    except (UnicodeDecodeError, csv.Error, InputError) as error:
-        raise source.error(("table",), f"{path} cannot be read: {error}") from error
-    head, body = (rows[0], [row for row in rows[1:] if row]) if rows else ([], [])
-    if not head or not body or len(set(head)) < len(head):
+    with placed(source.place(("table",))):
+        frame = read_table(path)
+    if frame.empty:
         raise InputError(f"{path}: a design has a line of different keys, and below it a line for each point")
-    for number, row in enumerate(body, start=2):
-        if len(row) != len(head):
-            raise InputError(f"{path}, row {number}: has {len(row)} values; {len(head)} keys are named")
-    return _Table(path, {key: [_read_cell(row[k]) for row in body] for k, key in enumerate(head)})
+    return _Table(path, {str(key): [_read_cell(str(cell)) for cell in frame[key].tolist()] for key in frame})
 
 
 def _read_cell(text: str) -> object:
@@ -325,15 +300,5 @@ def _read_cell(text: str) -> object:
 
 def sweep_schema() -> Schema:
     """Return the JSON Schema of a sweep."""
-    whole: Schema = {"type": "integer", "minimum": 1}
-    keys = {
-        "scenario": {"anyOf": [TEXT, BY_KEY]},
-        "seed": {"type": "integer", "minimum": 0, "description": "every draw of the design derives from it"},
-        "design": {"enum": list(_DESIGNS)},
-        "runs": {**whole, "description": "points of lhs and sobol; draws of cross and zip"},
-        "replicates": {**whole, "description": "runs of each point with other seeds of the scenario"},
-        "vary": {"type": "object", "additionalProperties": _axis_schema()},
-        "table": {**TEXT, "description": "CSV file whose columns are keys, for design table"},
-        "limits": mapping_schema({name: {"type": "number", "unit": m.unit} for name, m in METRICS.items()}),
-    }
-    return head_schema("seatsim sweep", mapping_schema(keys, ("scenario",)))
+    limits = mapping_schema({name: {"type": "number", "unit": metric.unit} for name, metric in METRICS.items()})
+    return head_schema("seatsim sweep", _SCHEMA | {"properties": _SCHEMA["properties"] | {"limits": limits}})

@@ -26,10 +26,8 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, RunError, SeatsimError
 from seatsim.simulation.augment import acts_on_signals
 from seatsim.simulation.result import History
-from seatsim.simulation.runs import measure_run
 from seatsim.simulation.simulate import initial_states, is_whole, read_history, set_up
-from seatsim.simulation.validity import list_reasons
-from seatsim.sweeps.engines import LocalEngine, Outcome, Work, floor_of, outcome_of
+from seatsim.sweeps.engines import LocalEngine, Outcome, Work, assess_run, floor_of
 from seatsim.sweeps.plan import Plan
 
 _MakeFloor = Callable[[Scenario], Floor | None]
@@ -224,9 +222,7 @@ def _simulate_on_device(plan: Plan, runs: Sequence[int]) -> list[Outcome]:
         for place, history in simulate_on_device(scenarios, floor_of):
             number, scenario = read[place]
             with suppress(SeatsimError):
-                metrics = measure_run(scenario, history)
-                reason = "; ".join(list_reasons(scenario, history, metrics))
-                outcomes.append(outcome_of(number, scenario.seed, metrics, reason))
+                outcomes.append(assess_run(number, scenario, history))
     except Exception as error:  # numba and the driver have many errors of their own
         raise RunError(
             f"the CUDA device failed ({type(error).__name__}: {error}); what has ended is kept: go on with --resume and"

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable, Generator, Mapping, Sequence
+from collections.abc import Generator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
@@ -22,11 +22,11 @@ from threadpoolctl import threadpool_limits
 
 from seatsim.compilation.messages import explain
 from seatsim.excitations.base import Excitation, Floor
-from seatsim.metrics.table import METRICS, Metric
+from seatsim.metrics.table import METRICS
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import RunError, SeatsimError
 from seatsim.schema.processes import open_pool
-from seatsim.simulation.result import Run
+from seatsim.simulation.result import History, Run
 from seatsim.simulation.runs import measure_run, write_histories
 from seatsim.simulation.simulate import simulate
 from seatsim.simulation.validity import list_reasons
@@ -52,33 +52,34 @@ class Outcome(NamedTuple):
     metrics: tuple[float | None, ...]
 
 
-def simulate_run(number: int, make_scenario: Callable[[], Scenario], histories: Path | None) -> Outcome:
-    """Simulate one run and return its outcome; nothing that goes wrong in it ends the sweep.
+def simulate_one(plan: Plan, run: int, number: int, histories: Path | None) -> Outcome:
+    """Simulate run `run` of a plan, which has this `number` in the sweep; nothing that goes wrong ends the sweep.
 
     `histories` is a folder in which the channels are kept, or None.
     """
     seed = 0
     try:
-        scenario = make_scenario()
+        scenario = plan.scenario(run)
         seed = scenario.seed
         # What grows beyond all numbers is said by the state of the run, once.
         with np.errstate(over="ignore", invalid="ignore"):
             history = simulate(scenario, floor_of(scenario))
-            metrics = measure_run(scenario, history)
+            outcome = assess_run(number, scenario, history)
         if histories is not None:
-            write_histories([Run(scenario, history, metrics)], histories / f"run-{number:07d}.parquet")
-        reason = "; ".join(list_reasons(scenario, history, metrics))
+            write_histories([Run(scenario, history, {})], histories / f"run-{number:07d}.parquet")
     except SeatsimError as error:
         return Outcome(number, FAILED, str(error), seed, (None,) * len(METRICS))
     except Exception as error:  # a model of the user's own may raise anything, and the other runs go on
         return Outcome(number, FAILED, explain(error), seed, (None,) * len(METRICS))
-    return outcome_of(number, seed, metrics, reason)
+    return outcome
 
 
-def outcome_of(number: int, seed: int, metrics: Mapping[str, Metric], reason: str) -> Outcome:
-    """Return the outcome of a run that reached its end; `reason` is why its figures are unverified, mostly empty."""
+def assess_run(number: int, scenario: Scenario, history: History) -> Outcome:
+    """Return the outcome of a run that reached its end."""
+    metrics = measure_run(scenario, history)
+    reason = "; ".join(list_reasons(scenario, history, metrics))
     figures = tuple(metrics[name].value if name in metrics else None for name in METRICS)
-    return Outcome(number, UNVERIFIED if reason else DONE, reason, seed, figures)
+    return Outcome(number, UNVERIFIED if reason else DONE, reason, scenario.seed, figures)
 
 
 def floor_of(scenario: Scenario) -> Floor | None:
@@ -86,14 +87,12 @@ def floor_of(scenario: Scenario) -> Floor | None:
     if scenario.excitation is None:
         return None
     with scenario.placed("excitation"):
-        cls = type(scenario.excitation)
-        kind = f"{cls.__module__}.{cls.__qualname__}"
-        return _make_floor(kind, scenario.excitation, scenario.solver.step, scenario.seed)
+        return _make_floor(scenario.excitation, scenario.solver.step, scenario.seed)
 
 
-@lru_cache(maxsize=FLOORS_KEPT)
-def _make_floor(kind: str, excitation: Excitation, step: float, seed: int) -> Floor:
-    # Its class is part of the key, as records of two classes with the same values are equal.
+# By type, as records of two classes with the same values are equal.
+@lru_cache(maxsize=FLOORS_KEPT, typed=True)
+def _make_floor(excitation: Excitation, step: float, seed: int) -> Floor:
     return excitation.floor(step, seed)
 
 
@@ -116,11 +115,6 @@ class Engine(Protocol):
 
         Where the iterator is closed, as on an interrupt, nothing of it keeps the process from ending.
         """
-
-
-def simulate_one(plan: Plan, run: int, number: int, histories: Path | None) -> Outcome:
-    """Simulate run `run` of a plan, which has this `number` in the sweep."""
-    return simulate_run(number, lambda: plan.scenario(run), histories)
 
 
 _BATCH, _LONGEST_BATCH = 20, 0.2

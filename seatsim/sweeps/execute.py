@@ -36,11 +36,6 @@ class Share(NamedTuple):
     number: int
     of: int
 
-    @property
-    def text(self) -> str:
-        """The share as an option states it."""
-        return f"{self.number}/{self.of}"
-
 
 def read_share(text: str) -> Share:
     """Return the share that an option states as `K/N`.
@@ -76,16 +71,14 @@ class _PreparedSweep(NamedTuple):
     doubts: list[str]
 
 
-def prepare(path: Path, foresee: Callable[[int], None] = lambda runs: None) -> _PreparedSweep:
+def prepare(path: Path) -> _PreparedSweep:
     """Read a sweep file, resolve its design and check its values; nothing runs.
-
-    `foresee` is called with the number of runs before the design is resolved.
 
     Raises:
         InputError: anything in it is wrong, or a draw is not permitted.
     """
     definition = read_definition(path)
-    plan = make_plan(definition, foresee)
+    plan = make_plan(definition)
     return _PreparedSweep(definition, plan, check_plan(plan))
 
 
@@ -128,9 +121,7 @@ def execute(
         InputError: the folder is held by another process, holds another sweep, or `resume` is not set.
     """
     definition, plan = prepared.definition, prepared.plan
-    with hold_folder(folder, share.text if share else ""):
-        if share is None:
-            parts.remove_unfinished(folder)
+    with hold_folder(folder, f"{share.number}-of-{share.of}" if share else ""):
         identity = identify_sweep(definition, plan)
         # The first of several shares makes the manifest, which the others then find.
         with hold_file(folder / ".lock-manifest", wait=True):
@@ -146,7 +137,7 @@ def execute(
             if left := sum(map(len, rows.missing())):
                 raise RunError(f"{folder}: the engine ended without {left} of its runs; go on with --resume")
         finally:
-            with uncut(), hold_file(folder / ".lock-manifest", wait=True):
+            with uncut, hold_file(folder / ".lock-manifest", wait=True):
                 rows.flush()
                 found = list(parts.read_states(folder, plan.runs))
                 counts = count_states((state for _, state, _ in found), plan.runs)

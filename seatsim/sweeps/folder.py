@@ -100,7 +100,7 @@ def _shown(value: object) -> str:
 
 @contextmanager
 def hold_folder(folder: Path, share: str = "") -> Iterator[None]:
-    """Hold the folder of a sweep; commands for different shares of its runs, such as `2/8`, hold it together.
+    """Hold the folder of a sweep; commands for different shares of its runs, such as `2-of-8`, hold it together.
 
     The system releases the locks (flock) when the process ends, however that happens. The files stay.
 
@@ -115,7 +115,7 @@ def hold_folder(folder: Path, share: str = "") -> Iterator[None]:
         with hold_file(folder / ".lock"):
             yield
         return
-    with hold_file(folder / ".lock", alone=False), hold_file(folder / f".lock-{share.replace('/', '-of-')}"):
+    with hold_file(folder / ".lock", alone=False), hold_file(folder / f".lock-{share}"):
         yield
 
 

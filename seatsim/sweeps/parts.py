@@ -21,7 +21,7 @@ from seatsim.metrics.table import COMFORT, METRICS
 from seatsim.scenario.scenario import is_condition
 from seatsim.schema.arrays import open_parquet, store_numbers, store_texts
 from seatsim.schema.errors import InputError
-from seatsim.schema.files import remove_left, write_whole
+from seatsim.schema.files import write_whole
 from seatsim.sweeps.definition import DISTRIBUTIONS
 from seatsim.sweeps.engines import DONE, Outcome
 from seatsim.sweeps.folder import read_manifest
@@ -49,12 +49,6 @@ def runs_of(part: int, runs: int) -> range:
 def _part_path(folder: Path, part: int) -> Path:
     """Return the file of a part."""
     return folder / "runs" / f"part-{part:06d}.parquet"
-
-
-def remove_unfinished(folder: Path) -> None:
-    """Remove what a process that was killed had not finished writing; nobody else may be writing."""
-    for path in (folder, folder / "runs", folder / "histories"):
-        remove_left(path)
 
 
 def read_outcomes(folder: Path, part: int) -> list[Outcome]:

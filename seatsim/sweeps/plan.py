@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -25,8 +25,8 @@ from seatsim.scenario.numbers import list_doubts
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, list_sentences, raise_all
+from seatsim.schema.validation import is_finite_number
 from seatsim.schema.yaml_source import Source
-from seatsim.simulation.naming import is_number
 from seatsim.sweeps.definition import MOST_RUNS, Axis, SweepDefinition
 
 _Columns = Mapping[str, list[object]]
@@ -209,11 +209,10 @@ class Selection(NamedTuple):
     runs: tuple[tuple[int, int], ...]
 
 
-def make_plan(definition: SweepDefinition, foresee: Callable[[int], None] = lambda runs: None) -> Plan:
+def make_plan(definition: SweepDefinition) -> Plan:
     """Return the runs of a sweep: the points of its design, for each variant of its scenario and each replicate.
 
-    A varied key takes the place of the scenario's own sweep of it. `foresee` is called with the number of runs before
-    any of them is made.
+    A varied key takes the place of the scenario's own sweep of it.
 
     Raises:
         InputError: there are too many, the design cannot be resolved, or a varied key is one that the scenario varies
@@ -232,7 +231,6 @@ def make_plan(definition: SweepDefinition, foresee: Callable[[int], None] = lamb
             f"makes {runs} runs ({shown}); permitted: at most {MOST_RUNS}. Vary fewer"
             " keys, or draw 'runs' points with design: sobol",
         )
-    foresee(runs)
     columns = _resolve_design(definition)
     for key in columns:
         if key in bases[0].label:
@@ -280,7 +278,7 @@ def _list_telling_runs(plan: Plan) -> Iterator[int]:
     numbers = {
         key: [float(str(value)) for value in values]
         for key, values in plan.columns.items()
-        if all(map(is_number, values))
+        if all(map(is_finite_number, values))
     }
     others = [values for key, values in plan.columns.items() if key not in numbers]
     combinations: dict[str, list[int]] = {}

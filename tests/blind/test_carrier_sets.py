@@ -11,7 +11,6 @@ from seatsim.blind.carrier.recorded import read_carrier
 from seatsim.blind.score.score import score_verdicts
 from seatsim.blind.score.verdicts import Verdict
 from seatsim.blind.sealed import EFFECTS, unseal
-from seatsim.cli.outputs.diagnosis_results import make_score_tables
 from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
 
@@ -64,4 +63,3 @@ def test_a_score_counts_wrong_names_and_sizes_and_leaves_the_untouched_out():
     assert found.untouched == {"driver.mass": 1}
     assert [(s.parameter, s.true, s.found) for s in found.found_sizes] == [("time", 0.01, 0.012)]
     assert json.dumps(to_content(found))
-    assert "sizes of effects that were found" in [str(table.title) for table in make_score_tables(found)]

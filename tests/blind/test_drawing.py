@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from seatsim.blind.make import cases, folder, materiality
+from seatsim.blind.make import cases, make, materiality
 from seatsim.blind.make.materiality import ToleranceRefit
 from seatsim.blind.truth.faults import Changes, SensorFault
 
@@ -55,21 +55,21 @@ def test_a_change_inside_the_tolerance_is_explained_and_one_beyond_it_is_not():
 
 def test_a_recording_holds_what_its_header_states():
     experiment, _, _ = small_experiment()
-    quiet = {name: np.linspace(0.0, 1.0, 20_000) for name in folder.CHANNELS}
-    noisy = folder.add_noise(experiment, quiet, np.random.default_rng(0))
+    quiet = {name: np.linspace(0.0, 1.0, 20_000) for name in make.CHANNELS}
+    noisy = make.add_noise(experiment, quiet, np.random.default_rng(0))
     for name, noise in experiment.noise.items():
         assert np.std(noisy[name] - quiet[name]) == pytest.approx(noise, rel=0.03)
     np.testing.assert_array_equal(noisy["current_command"], quiet["current_command"])
-    files = folder.encode_recording(experiment, [quiet], np.random.default_rng(0), [0])
+    files = make.encode_recording(experiment, [quiet], np.random.default_rng(0), [0])
     assert sorted(files) == ["nominal.yaml", "recording.yaml", "run-a.csv.gz"]
     table = pd.read_csv(io.BytesIO(gzip.decompress(files["run-a.csv.gz"])))
-    assert list(table.columns) == ["time", *folder.CHANNELS]
+    assert list(table.columns) == ["time", *make.CHANNELS]
     np.testing.assert_allclose(table["time"], np.arange(20_000) / 500.0)
     np.testing.assert_allclose(table["coil_current"], noisy["coil_current"], atol=6e-5)
     np.testing.assert_allclose(table["suspension_displacement"], noisy["suspension_displacement"], atol=6e-7)
-    header = folder.recording_header(experiment, experiment.runs[:1])
+    header = make.recording_header(experiment, experiment.runs[:1])
     assert header["channels"]["damper_force"] == {"unit": "N", "noise_rms": experiment.noise["damper_force"]}
     assert header["channels"]["current_command"] == {"unit": "A"}
-    nominal = folder.nominal_scenario(experiment)
+    nominal = make.nominal_scenario(experiment)
     assert nominal["plant"]["suspension_stiffness"] == 4600.0 and nominal["actuator"]["rate"] == 130.0
     assert nominal["damper"]["parameters"]["alpha_b"] == 620.0 and nominal["damper"]["model"] == "bouc_wen"

@@ -5,7 +5,7 @@ import gzip
 import pytest
 
 from seatsim import load_recording
-from seatsim.blind.make.make import make, make_public
+from seatsim.blind.make.make import make
 from seatsim.blind.sealed import EFFECTS, unseal
 from seatsim.schema.errors import InputError
 
@@ -78,7 +78,7 @@ def test_wrong_keys_and_changed_files_are_refused(whole, tmp_path):
 
 def test_a_public_set_is_the_same_bytes_whoever_makes_it_and_its_name_fixes_what_its_key_opens(tmp_path):
     def publish(name, place):
-        return make_public(name, tmp_path / place / "set", tmp_path / f"{place}.sealed", None, 1, 1)
+        return make(1, None, tmp_path / place / "set", tmp_path / f"{place}.sealed", processes=1, name=name)
 
     keys = [publish("a name", place) for place in "ab"]
     assert keys[0] == keys[1]
@@ -86,17 +86,15 @@ def test_a_public_set_is_the_same_bytes_whoever_makes_it_and_its_name_fixes_what
     assert (tmp_path / "a.sealed").read_bytes() == (tmp_path / "b.sealed").read_bytes()
     opened = unseal(tmp_path / "a.sealed", keys[0], tmp_path / "a" / "set")
     assert opened.made["kinds"] == "varied" and opened.made["cases"] == 1
-    label = opened.labels["case-0001"]
-    assert all(value == float(f"{value:.9g}") for value in label["rig"].values())
-    assert load_recording(tmp_path / "a" / "set" / "case-0001").header.sample_rate == label["sample_rate"]
-    assert label["rig"]["damper_ratio"] <= 1.0 and label["order"]["varied"]
+    assert all(value == float(f"{value:.9g}") for value in opened.labels["case-0001"]["severities"])
+    assert load_recording(tmp_path / "a" / "set" / "case-0001").nominal.plant.damper_ratio <= 1.0
     key = publish("other", "c")
     assert files_of(tmp_path / "a") != files_of(tmp_path / "c")
     with pytest.raises(InputError, match="the key does not open it"):
         unseal(tmp_path / "c.sealed", keys[0])
     assert unseal(tmp_path / "c.sealed", key).labels
     with pytest.raises(InputError, match="a public set has 60 cases"):
-        make_public("a name", tmp_path / "d", tmp_path / "d.sealed", cases=61)
+        make(61, None, tmp_path / "d", tmp_path / "d.sealed", name="a name")
 
 
 @pytest.mark.parametrize(

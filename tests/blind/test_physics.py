@@ -3,13 +3,13 @@
 import numpy as np
 from scipy.signal import lsim
 
-from seatsim.blind.make.draw_experiment import COIL, PLANT
+from seatsim.blind.make.draw_experiment import RIGS
 from seatsim.blind.truth.rig import EXCITATION_RATE, INTEGRATION_STEP, SAMPLE_RATE, Inputs, simulate
 from seatsim.blind.truth.state import parameter_record
 
 
 def test_a_linear_rig_moves_as_its_transfer_function():
-    linear = PLANT | COIL | {"is_bingham": 1.0, "v_ref": 1.0, "c_a": 400.0}
+    linear = RIGS.plant | RIGS.coil | {"is_bingham": 1.0, "v_ref": 1.0, "c_a": 400.0}
     rows = round(2.0 * SAMPLE_RATE)
     rng = np.random.default_rng(0)
     samples = round(2.0 * EXCITATION_RATE) + 1
@@ -17,7 +17,7 @@ def test_a_linear_rig_moves_as_its_transfer_function():
     floor = np.convolve(rng.standard_normal(samples), np.ones(40) / 40.0, "same")
     force = 30.0 * np.sin(2.0 * np.pi * 3.0 * time)
     motion = simulate(parameter_record(linear), Inputs(floor, EXCITATION_RATE, force, np.zeros(6), np.zeros(rows)))
-    ms, m, kf, cf, kc, cc = PLANT.values()
+    ms, m, kf, cf, kc, cc = RIGS.plant.values()
     c = cf + 400.0
     frame = [-kf / ms, -c / ms, kc / ms, cc / ms]
     driver = [0.0, 0.0, -kc / m, -cc / m]

@@ -10,7 +10,7 @@ import pytest
 from seatsim.blind.carrier.make import draw_changes
 from seatsim.blind.carrier.recorded import encode_carrier, read_carrier
 from seatsim.blind.make.cases import CaseSpecification, compose, draw_case
-from seatsim.blind.make.folder import nominal_scenario, recording_header
+from seatsim.blind.make.make import nominal_scenario, recording_header
 from seatsim.blind.sealed import EFFECTS
 from seatsim.blind.truth.rig import EXCITATION_RATE
 

@@ -8,7 +8,7 @@ from scipy.signal import welch
 
 import seatsim
 from seatsim.blind.make import draw_experiment
-from seatsim.blind.make.folder import encode_recording, recording_header, write_folder
+from seatsim.blind.make.make import encode_recording, recording_header, write_folder
 from seatsim.blind.truth.excitation import NoiseColour, colour_noise, coloured_noise
 from seatsim.blind.truth.experiment import CHANNELS, read_channels, simulate_run
 from seatsim.blind.truth.faults import Changes

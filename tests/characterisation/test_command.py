@@ -5,7 +5,7 @@ import json
 import pytest
 from typer.testing import CliRunner
 
-from seatsim.characterisation.model_tests import load_damper
+from seatsim.characterisation.summary import load_damper
 from seatsim.cli.app import app
 from seatsim.schema.errors import InputError
 

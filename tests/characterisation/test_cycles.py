@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.characterisation.cycles import find_cycles, select_steady_cycles
-from seatsim.characterisation.rows import summarise_record
+from seatsim.characterisation.rows import find_cycles, select_steady_cycles, summarise_record
 from seatsim.characterisation.summary import characterise
 from seatsim.dampers.bingham import Bingham
 

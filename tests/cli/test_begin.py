@@ -14,10 +14,10 @@ PATIENCE = 900.0
 STUCK = """
 import _imp
 import time
-from seatsim.cli import interrupts
+from seatsim.cli import begin
 from seatsim.schema.guarded import temporary_folder
-interrupts.GRACE = 0.2
-interrupts.watch_signals()
+begin.GRACE = 0.2
+begin.watch_signals()
 with temporary_folder() as folder:
     (folder / "file").write_text("unpacked")
     while True:
@@ -77,16 +77,3 @@ def test_a_command_says_that_it_was_interrupted(number, command, tmp_path):
         process.kill()
     assert process.returncode == 128 + number and said.endswith(b"error: interrupted\n")
     assert not any(path.name.endswith(".part") for path in tmp_path.rglob("*"))
-
-
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("arguments", [[], ["--json"]])
-def test_a_signal_before_signals_are_watched_is_answered_with_a_word(number, arguments):
-    code = "import sys; from seatsim.cli import begin; sys.modules['seatsim.cli.interrupts'] = Now(); begin.begin()"
-    stop = f"import os; os.kill(os.getpid(), {int(number)})"
-    now = f"class Now:\n    end = None\n    @staticmethod\n    def watch_signals():\n        {stop}"
-    program = f"{now}\n{code}"
-    process = start(["-c", program, *arguments])
-    said, error = process.communicate(timeout=PATIENCE)
-    assert process.returncode == 128 + number and error == b"error: interrupted\n"
-    assert said == (b'{"error": "interrupted"}\n' if arguments else b"")

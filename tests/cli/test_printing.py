@@ -27,7 +27,8 @@ def browser(tmp_path, monkeypatch):
         path.write_text(BROWSER % line)
         path.chmod(0o755)
 
-    monkeypatch.setattr(printing, "_BROWSERS", (str(path),))
+    (tmp_path / "browsers.yaml").write_text(f"- {path}")
+    monkeypatch.setattr(printing, "_BROWSERS", tmp_path / "browsers.yaml")
     yield install
     printing.choose_printer(False)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from controllers.linear_systems import connect_in_parallel, frequency_weighting, second_order_section
+from controllers.seat_plant import connect_in_parallel, frequency_weighting, second_order_section
 from controllers.synthesis.norm import frequency_response
 from controllers.synthesis.plant import LinearSystem
 from seatsim.metrics import weighting

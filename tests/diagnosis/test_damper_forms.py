@@ -8,7 +8,6 @@ import pytest
 from ruamel.yaml import YAML
 
 import seatsim
-from seatsim.cli.outputs.diagnosis_results import make_tables
 from seatsim.diagnosis.alternatives import are_forms_due, compare_damper_forms, describe_forms, describe_obstacle
 from seatsim.diagnosis.result import DamperForm, GapFigures, Gaps
 from seatsim.effects.base import EFFECTS
@@ -17,7 +16,7 @@ from seatsim.effects.sensor import Gain
 from seatsim.excitations.recording import interpolate_floor
 from seatsim.recordings.gap import measure_gap
 from seatsim.recordings.recording import BENCH_CHANNELS, SEAT_CHANNELS
-from seatsim.report.diagnosis import report_diagnosis
+from seatsim.report.diagnosis import report_diagnosis, tabulate_diagnosis
 from seatsim.report.rendering import render_report
 from seatsim.scenario.loading import single
 from seatsim.schema.content import to_content
@@ -199,7 +198,7 @@ def test_a_diagnosis_lists_the_forms_that_were_tried(wrong_form):
     assert best.model == "bouc_wen" and best.shrink > 0.5
     assert content["alternatives"][0]["shrink"] == best.shrink
     assert set(content["alternatives"][0]["parameters"]) == set(TRUE)
-    assert [table.title for table in make_tables(found)][-1] == "other forms of the damper than bingham"
+    assert tabulate_diagnosis(found)[-1].caption.startswith("Other models of the damper in the place of bingham")
     page = render_report(report_diagnosis(found))
     assert "Other forms of the damper" in page and '<th scope="row">bouc_wen</th>' in page
 

@@ -17,7 +17,7 @@ from seatsim.exchange.blocks.damper import damper_block
 from seatsim.exchange.blocks.rig_motion import rig_block
 from seatsim.exchange.c_source import print_c, print_model
 from seatsim.exchange.export import find_compiler, identifier, make_files, write_mat
-from seatsim.exchange.printing.values import NotPrintableError
+from seatsim.exchange.printing.program import NotPrintableError
 from seatsim.rig.plant import control_system
 from seatsim.scenario.loading import load
 from seatsim.schema.errors import InputError

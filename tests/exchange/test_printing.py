@@ -13,8 +13,7 @@ from seatsim.compilation.jit import jit
 from seatsim.exchange.c_source import fill
 from seatsim.exchange.export import find_compiler
 from seatsim.exchange.printing.functions import print_function
-from seatsim.exchange.printing.program import Program
-from seatsim.exchange.printing.values import NotPrintableError, Signature
+from seatsim.exchange.printing.program import NotPrintableError, Program, Signature
 
 TABLE = np.array([[1.0, 2.5], [0.1, 1e-9]])
 

@@ -8,12 +8,11 @@ import pytest
 from ruamel.yaml import YAML
 from typer.testing import CliRunner
 
-from seatsim.characterisation.model_tests import load_damper
+from seatsim.characterisation.summary import load_damper
 from seatsim.cli.app import app
 from seatsim.cli.outputs.damper_results import write_identification
-from seatsim.identification import model_benchmark as module
-from seatsim.identification.identify import identify
-from seatsim.identification.model_benchmark import benchmark_models
+from seatsim.identification import identify as module
+from seatsim.identification.identify import benchmark_models, identify
 from seatsim.identification.search import ignore_progress
 from seatsim.identification.settings import IdentificationSettings as Settings
 from seatsim.scenario.loading import single

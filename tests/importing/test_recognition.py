@@ -6,8 +6,7 @@ import pytest
 from seatsim.importing.matching import channel_of, propose, read_columns
 from seatsim.importing.names import read_name
 from seatsim.importing.readers.reading import read_file
-from seatsim.importing.signals import DataFile, Group, Signal
-from seatsim.importing.time_axis import find_clock
+from seatsim.importing.signals import DataFile, Group, Signal, find_clock
 
 from ..text import beside, parse
 

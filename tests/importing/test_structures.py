@@ -10,7 +10,7 @@ import pytest
 from scipy.io import loadmat, savemat
 
 from seatsim.importing.importing import import_files
-from seatsim.importing.readers.mat_elements import read_values
+from seatsim.importing.readers.matlab import read_values
 from seatsim.importing.readers.reading import TextLayout, read_file
 from seatsim.schema.errors import InputError
 

@@ -7,7 +7,7 @@ import pytest
 
 from seatsim.importing.importing import import_files
 from seatsim.importing.readers.reading import read_file
-from seatsim.importing.time_axis import find_clock
+from seatsim.importing.signals import find_clock
 from seatsim.schema.errors import InputError
 from seatsim.standards.comfort import comfort
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatsim.importing.importing import import_files
-from seatsim.importing.time_axis import measured_axis
+from seatsim.importing.signals import measured_axis
 from seatsim.schema.errors import InputError
 
 from .helpers import kinds, write_csv

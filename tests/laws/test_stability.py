@@ -6,8 +6,8 @@ from scipy.linalg import expm
 from scipy.signal import cont2discrete
 
 from controllers.laws.quadratic import EstimateFeedback, SwitchedFeedback
-from controllers.linear_systems import compute_margins
 from controllers.optimal import Noise, QuadraticWeights, design_kalman_filter
+from controllers.seat_plant import compute_margins
 from controllers.synthesis.plant import LinearSystem
 from seatsim.rig.control import prepare_law
 from seatsim.rig.plant import state_space

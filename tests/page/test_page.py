@@ -1,14 +1,14 @@
 """The local page: who may ask, what may be read, what is shown of values, what is saved."""
 
 import asyncio
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import httpx
 import numpy as np
 import pytest
 
-from seatsim.page.app import find_target, make_app, open_target
+from seatsim.page.app import make_app, open_target
 from seatsim.page.scenario_view import Choice, Slider, View, read_number
 from seatsim.report.blocks import Table
 from seatsim.report.packing import Panel, pack_signals
@@ -46,16 +46,9 @@ class Endless(Plain):
         return super().show(request)
 
 
-def loaded(target):
-    """Return a target that is loaded."""
-    future = Future()
-    future.set_result(target)
-    return future
-
-
 @pytest.fixture
 def app(tmp_path):
-    return make_app(loaded(Plain()), tmp_path, TOKEN, PORT)
+    return make_app(Plain(), tmp_path, TOKEN, PORT)
 
 
 def ask(app, method, path, token=TOKEN, base=HOME, **options):
@@ -71,7 +64,7 @@ def ask(app, method, path, token=TOKEN, base=HOME, **options):
 
 
 def test_a_page_keeps_its_cookie_when_another_port_is_opened(app, tmp_path):
-    other = make_app(loaded(Plain()), tmp_path, "other-token", PORT + 1)
+    other = make_app(Plain(), tmp_path, "other-token", PORT + 1)
     pages = ((app, TOKEN, HOME), (other, "other-token", f"http://127.0.0.1:{PORT + 1}"))
     opened = [ask(page, "GET", f"/?token={token}", token="", base=base) for page, token, base in pages]
     jar = "; ".join(answer.headers["set-cookie"].partition(";")[0] for answer in opened)
@@ -98,23 +91,9 @@ def test_a_foreign_host_or_origin_is_refused(app):
     assert ask(app, "POST", "/view", json={}, headers={"origin": HOME}).status_code == 200
 
 
-def test_the_page_is_answered_while_its_target_loads(tmp_path):
-    target = Future()
-    app = make_app(target, tmp_path, TOKEN, PORT)
-    first = ask(app, "GET", "/")
-    assert first.status_code == 200 and "are loading" in first.text and "<script" not in first.text
-    target.set_result(Plain())
-    address = first.headers["refresh"].partition("url=")[2]
-    assert "80 kg" in ask(app, "GET", address).text
-
-
-def test_a_target_with_a_fault_is_said(tmp_path):
-    target = Future()
-    target.set_exception(InputError("quickstart.yaml: no such key <b>"))
-    answer = ask(make_app(target, tmp_path, TOKEN, PORT), "GET", "/")
-    assert answer.status_code == 422 and answer.headers["content-type"].startswith("text/plain")
+def test_a_target_that_is_not_there_is_said(tmp_path):
     with pytest.raises(InputError, match="no such file"):
-        find_target(tmp_path / "none.yaml")
+        open_target(tmp_path / "none.yaml")
 
 
 def test_large_requests_are_refused(app):
@@ -132,7 +111,7 @@ def test_values_are_shown_and_wrong_ones_are_said(app):
 
 
 def test_what_takes_long_is_stopped_and_the_page_goes_on(tmp_path):
-    app = make_app(loaded(Endless()), tmp_path, TOKEN, PORT)
+    app = make_app(Endless(), tmp_path, TOKEN, PORT)
     with ThreadPoolExecutor(1) as pool:
         endless = pool.submit(ask, app, "POST", "/view", json={"mass": 95.0})
         while not endless.done():
@@ -153,7 +132,7 @@ def test_a_scenario_is_saved_once_under_a_plain_name(tmp_path, app):
 @pytest.fixture(scope="module")
 def road():
     """The page's view of a scenario, which keeps nothing of what is asked."""
-    return open_target(find_target(Path("road-b")))
+    return open_target(Path("road-b"))
 
 
 @pytest.fixture(scope="module")
@@ -182,7 +161,7 @@ def test_the_numbers_of_the_law_at_work_can_be_moved(road):
 
 def test_a_temperature_without_effect_has_no_slider(road):
     assert [slider.name for slider in road.sliders] == ["mass"]
-    names = [slider.name for slider in open_target(find_target(Path("temperature-sweep"))).sliders]
+    names = [slider.name for slider in open_target(Path("temperature-sweep")).sliders]
     assert names == ["mass", "temperature"]
 
 

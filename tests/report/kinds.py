@@ -119,7 +119,7 @@ def sweep():
 
 def seat_test():
     rows = [
-        SeatRow("seat", name, "light", 55.0, seat, 0.7, seat < 0.7, "5.3.2", 1.2, 1.2 * seat, 0.02, True, hits)
+        SeatRow("seat", name, "light", 55.0, 40.5, seat, 0.7, seat < 0.7, "5.3.2", 1.2, 1.2 * seat, 0.02, True, hits)
         for name, seat, hits in (("EM5", 0.81, 3), ("EM6", 0.6, 0))
     ]
     test = DampingTest(1.7, 2.0, 0.03, (1.0, 1.5, 2.0), (1.2, 1.9, 1.6))

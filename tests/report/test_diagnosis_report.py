@@ -79,7 +79,7 @@ def test_refitted_parameters_stand_between_their_bounds_and_are_flagged_there(pa
 
 def test_every_run_is_drawn_and_the_held_out_one_is_named(pages):
     blocks = [block for section in report_diagnosis(pages["known"][0]).sections for block in section.blocks]
-    block = next(each for each in blocks if each.kind == "signals" and each.identity == "signals-time")
+    block = next(each for each in blocks if type(each).__name__ == "Signals" and each.identity == "signals-time")
     assert list(block.runs) == ["run-c (held out)", "run-a", "run-b"]
     assert len(block.data["panels"]) == 5 and all(len(panel["runs"]) == 3 for panel in block.data["panels"])
 

@@ -2,7 +2,6 @@
 
 import math
 import os
-import time
 from pathlib import Path
 from typing import NamedTuple
 
@@ -10,7 +9,7 @@ import numpy as np
 import pytest
 
 from seatsim.schema.errors import InputError, OutputError, SeatsimError
-from seatsim.schema.files import check_folder, plain, remove_left, write_text, write_together, write_whole
+from seatsim.schema.files import check_folder, plain, write_text, write_together, write_whole
 
 
 class Point(NamedTuple):
@@ -83,18 +82,6 @@ def test_where_one_cannot_be_put_in_place_all_stay_as_they_were(tmp_path):
         write_together(folder, write_two)
     assert contents(folder) == {"a.txt": "old"}
     assert list(tmp_path.iterdir()) == [folder]
-
-
-def test_what_a_killed_process_has_left_is_removed_and_what_another_writes_is_not(tmp_path):
-    names = (".set.0123456789abcdef.part", ".kept.part", ".b.txt.0123456789abcdef.part.txt")
-    left, kept, recent = (tmp_path / name for name in names)
-    left.mkdir()
-    for part, age in ((left / "a.txt", 0), (left, 2 * 86_400), (kept, 2 * 86_400), (recent, 3_600)):
-        part.touch()
-        os.utime(part, (time.time() - age,) * 2)
-    write_together(tmp_path / "set", write_two)
-    assert sorted(path.name for path in tmp_path.iterdir()) == sorted([recent.name, kept.name, "set"])
-    remove_left(tmp_path / "absent")
 
 
 @pytest.mark.parametrize("name", ["a\0b", "x" * 300])

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from seatsim.cli.outputs.run_tables import make_comparison_table
+from seatsim.cli.outputs.simulated import make_comparison_table
 from seatsim.metrics.table import Metric
 from seatsim.scenario.loading import single
 from seatsim.schema.registry import specification_of

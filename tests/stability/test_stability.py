@@ -9,8 +9,7 @@ from numpy.polynomial import Polynomial
 
 import seatsim
 from controllers.laws.static_output_feedback import OutputFeedback
-from controllers.linear_systems import compute_margins
-from controllers.seat_plant import ActuatorLag, Weights, build_generalised_plant
+from controllers.seat_plant import ActuatorLag, Weights, build_generalised_plant, compute_margins
 from controllers.synthesis.plant import LinearSystem
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant, state_space

@@ -13,8 +13,7 @@ from seatsim.recordings.writer import save_recording
 from seatsim.rig.plant import control_system
 from seatsim.schema.errors import InputError, RunError
 from seatsim.simulation.simulate import simulate
-from seatsim.standards.seat_rows import SEATED_SHARE, weighted_input
-from seatsim.standards.seat_test import INERT_MASS
+from seatsim.standards.seat_test import INERT_MASS, SEATED_SHARE, weighted_input
 
 from ..answers import check_answer
 from ..text import beside

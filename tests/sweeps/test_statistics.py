@@ -69,9 +69,8 @@ def test_a_condition_is_never_advised_on_as_a_choice():
     frame = pd.DataFrame({"excitation.speed": speed, "controller.damping": damping, COMFORT: comfort})
     for drawn in ((), ("excitation.speed", "controller.damping")):
         rows = rows_of(frame, ("excitation.speed", "controller.damping"), drawn)
-        choice, condition = advise_on_keys(analyse_sensitivity(rows).of(COMFORT), rows)
+        (choice,) = advise_on_keys(analyse_sensitivity(rows).of(COMFORT), rows)
         assert "controller.damping" in choice and "excitation.speed" not in choice
-        assert condition.startswith("Judge every choice at excitation.speed 20:")
     (table,) = tabulate_best(rows_of(frame, ("excitation.speed", "controller.damping")))
     assert [row[:2] for row in table.rows] == [["20", "4"], ["10", "2"], ["5", "1"]]
     assert tabulate_best(rows) == []

@@ -13,11 +13,9 @@ import numpy as np
 from numpy.random import Generator
 
 from seatsim.blind.carrier import readings, recorded
-from seatsim.blind.carrier.damper import draw_damper_changes
 from seatsim.blind.carrier.recorded import Altered, Carrier, Change, Content, number, section
 from seatsim.blind.carrier.seat import draw_seat_changes
-from seatsim.blind.make.folder import encode_yaml
-from seatsim.blind.make.make import CaseFiles, make_set
+from seatsim.blind.make.make import CaseFiles, encode_yaml, make_set
 from seatsim.blind.make.materiality import MATERIAL_SHARE, refit_residuals, rms
 from seatsim.blind.sealed import Label
 from seatsim.recordings.recording import HEADER, Recording, load_recording
@@ -36,7 +34,7 @@ _CLOSE = 0.1
 """Relative difference of a size from the one drawn that is close enough."""
 _EVALUATIONS = 12
 _READINGS = (readings.draw_sensor_changes, readings.draw_skewed_logs, readings.draw_delays, readings.draw_limits)
-_DRAWERS = (draw_damper_changes, *_READINGS, draw_seat_changes)
+_DRAWERS = (readings.draw_damper_changes, *_READINGS, draw_seat_changes)
 UNTOUCHED = "untouched"
 """In place of an effect: the carrier as it was measured, which shows what is named without any effect put in."""
 _LEAST_RUNS = 3
@@ -142,7 +140,7 @@ def _varied_nominals(carrier: Carrier) -> list[Content]:
     return varied
 
 
-class DrawnCase(NamedTuple):
+class _DrawnCase(NamedTuple):
     """A carrier with an effect in it, and what is true of that."""
 
     change: Change
@@ -166,7 +164,7 @@ def _choose_runs(carrier: Carrier, rng: Generator) -> Carrier:
     return carrier._replace(tables={names[k]: carrier.tables[names[k]] for k in kept})
 
 
-def draw_amount(ruler: Ruler, change: Change, size: float) -> DrawnCase | None:
+def draw_amount(ruler: Ruler, change: Change, size: float) -> _DrawnCase | None:
     """Return the change at the amount at which it has a size, None where no amount that it permits has about that."""
     low, high = 0.0, change.largest
     for _ in range(_EVALUATIONS):
@@ -177,7 +175,7 @@ def draw_amount(ruler: Ruler, change: Change, size: float) -> DrawnCase | None:
             break
         low, high = (middle, high) if found < size else (low, middle)
     fits = 1.0 - 2.0 * _CLOSE < found / size < 1.0 + 4.0 * _CLOSE and ruler.stands_out(altered.carrier)
-    return DrawnCase(change, altered, found) if fits else None
+    return _DrawnCase(change, altered, found) if fits else None
 
 
 def make_on_carrier(
@@ -225,7 +223,7 @@ def _draw_files(source: Path, wanted: str, rng: Generator) -> CaseFiles:
     return CaseFiles(shown, recorded.encode_carrier(told, withheld) if withheld else {}, label(drawn))
 
 
-def _draw_case(carrier: Carrier, wanted: str, rng: Generator) -> DrawnCase:
+def _draw_case(carrier: Carrier, wanted: str, rng: Generator) -> _DrawnCase:
     """Return the wanted effect at a drawn size, or another where the carrier allows no such size of it.
 
     Raises:
@@ -242,7 +240,7 @@ def _draw_case(carrier: Carrier, wanted: str, rng: Generator) -> DrawnCase:
     raise InputError(f"no effect can be put in at {size:.2f} std; record other channels, or identify the nominal anew")
 
 
-def label(drawn: DrawnCase | None) -> Label:
+def label(drawn: _DrawnCase | None) -> Label:
     """Return what is true of a case."""
     if drawn is None:
         return {"kind": "untouched", "effects": [], "blocks": []}

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.random import Generator
 from scipy.signal import lfilter, savgol_filter
 
-from seatsim.blind.make.folder import encode_table, encode_yaml
+from seatsim.blind.make.make import encode_table, encode_yaml
 from seatsim.blind.make.materiality import LEFT_OUT
 from seatsim.recordings.recording import HEADER, load_recording
 from seatsim.schema.arrays import Array

@@ -208,33 +208,24 @@ class _DrawnFault(NamedTuple):
 class _Case(NamedTuple):
     """A drawn case: the rig, what is wrong with it, what its channels show without noise; the last run is unseen."""
 
-    specification: CaseSpecification
+    kind: Kind
     experiment: Experiment
     faults: tuple[_DrawnFault, ...]
     readings: list[Readings]
-    collinearity: float
 
     def label(self) -> Label:
         """Return the label: kind, effects, blocks, and all that was drawn."""
         return {
-            "kind": self.specification.kind,
+            "kind": self.kind,
             "effects": [f.scenario.effect for f in self.faults if not f.scenario.outside],
             "blocks": [f.scenario.block for f in self.faults],
             "forms": [f.scenario.name for f in self.faults],
             "severities": [f.severity for f in self.faults],
             "materialities": [f.materiality for f in self.faults],
-            "net_materialities": [f.net for f in self.faults],
             "shapes": [f.shape for f in self.faults],
             "faulty_channels": [s.channel for f in self.faults for s in f.changes.sensor_faults],
-            "overlap": self.collinearity,
-            "nominal": "bingham" if self.experiment.is_bingham else "bouc_wen",
             "missing": [name for name in CHANNELS if name not in self.experiment.channels],
-            "temperatures": [run.temperature for run in self.experiment.runs],
             "background": sum(force.rms for force in self.experiment.background),
-            "sample_rate": self.experiment.sample_rate,
-            "tolerance": self.experiment.tolerance,
-            "rig": dict(self.experiment.nominal),
-            "order": self.specification._asdict(),
         }
 
 
@@ -253,7 +244,7 @@ def draw_case(specification: CaseSpecification, rng: Generator) -> _Case:
     for _ in range(_EXCHANGES):
         for _ in range(_ATTEMPTS):
             faults = _draw_faults(scenarios, rig, rng)
-            case = None if faults is None else _settle(specification, faults, rig)
+            case = None if faults is None else _settle(specification.kind, faults, rig)
             if case is not None:
                 return case
             scenarios = _draw_scenarios(specification, rng)
@@ -293,7 +284,7 @@ def _draw_faults(scenarios: Sequence[FaultScenario], rig: FaultlessRig, rng: Gen
     return faults
 
 
-def _settle(specification: CaseSpecification, faults: list[_DrawnFault], rig: FaultlessRig) -> _Case | None:
+def _settle(kind: Kind, faults: list[_DrawnFault], rig: FaultlessRig) -> _Case | None:
     """Close the loop with the faults in it; raise what is no longer material beside the others, or give up."""
     experiment = rig.experiment
     runs = range(len(experiment.runs))
@@ -306,11 +297,10 @@ def _settle(specification: CaseSpecification, faults: list[_DrawnFault], rig: Fa
         measured = _measure(faults, commanded, rig)
         if measured is None:
             return None
-        faults, alike = measured
-        if all(fault.net >= _MATERIAL for fault in faults):
+        if all(fault.net >= _MATERIAL for fault in measured):
             readings = [read_channels(experiment, total, k, motion) for k, motion in enumerate(motions)]
-            return _Case(specification, experiment, tuple(faults), readings, alike)
-        faults = [_raise(fault, rig.context) for fault in faults]
+            return _Case(kind, experiment, tuple(measured), readings)
+        faults = [_raise(fault, rig.context) for fault in measured]
     return None
 
 
@@ -318,12 +308,10 @@ def _sum_of_changes(faults: Sequence[_DrawnFault]) -> Changes:
     return sum((fault.changes for fault in faults), Changes())
 
 
-def _measure(
-    faults: Sequence[_DrawnFault], runs: CommandedRuns, rig: FaultlessRig
-) -> tuple[list[_DrawnFault], float] | None:
-    """Return the faults with their materiality beside the others, and their collinearity; None where one is no case.
+def _measure(faults: Sequence[_DrawnFault], runs: CommandedRuns, rig: FaultlessRig) -> list[_DrawnFault] | None:
+    """Return the faults with their materiality beside the others.
 
-    That is where the rig is unstable, or where two faults can hardly be distinguished.
+    None where the rig is unstable, or where two faults can hardly be distinguished.
     """
     sized, responses = [], []
     for k, fault in enumerate(faults):
@@ -333,9 +321,8 @@ def _measure(
         sized.append(fault._replace(materiality=size, net=net))
         responses.append(response)
     alike = collinearity(*responses) if len(responses) == 2 else 0.0
-    if alike > _LARGEST_COLLINEARITY or not all(np.isfinite(fault.materiality) for fault in sized):
-        return None
-    return sized, alike
+    is_case = alike <= _LARGEST_COLLINEARITY and all(np.isfinite(fault.materiality) for fault in sized)
+    return sized if is_case else None
 
 
 def _raise(fault: _DrawnFault, context: Context) -> _DrawnFault:

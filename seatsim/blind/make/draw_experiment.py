@@ -6,6 +6,8 @@ noise, floor, tolerance, background force.
 
 import math
 from collections.abc import Collection, Mapping
+from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.random import Generator
@@ -16,6 +18,7 @@ from seatsim.blind.truth.experiment import CHANNELS, Experiment, RunPlan, simula
 from seatsim.blind.truth.faults import Changes, FrameForce
 from seatsim.blind.truth.rig import SAMPLE_RATE
 from seatsim.schema.arrays import Array
+from seatsim.schema.fields import read_packaged
 
 SECONDS = 24.0
 """Of a recorded run: about 30 periods of the suspension, as a drive over one stretch of road gives."""
@@ -28,12 +31,20 @@ _SCHEDULED = np.array([coil.SCHEDULE, 0.0, 0.0, 0.0, 0.0, 0.0])
 """The law of runs whose current is stepped."""
 _STARTS, _HOT = (20.0, 30.0, 45.0, 60.0), (55.0, 75.0)
 """Temperatures of the damper at which runs start, to within 2 K, and the range of the one that is hot, degC."""
-PLANT = {"ms": 20.0, "m": 80.0, "kf": 4600.0, "cf": 150.0, "kc": 60000.0, "cc": 1500.0}
-COIL = {"rate": 130.0, "i_max": 1.0}
-_FORCES = {"c_a": 250.0, "c_b": 350.0, "y_a": 45.0, "y_b": 620.0}
-BINGHAM = {"is_bingham": 1.0, **_FORCES, "f0": 0.0, "v_ref": 0.004}
-_HYSTERESIS = {"A": 2000.0, "beta": 1000.0, "gamma": 1000.0, "n": 2.0}
-BOUC_WEN = {"is_bingham": 0.0, **_FORCES, "k0": 0.0, "x0": 0.0, "f0": 0.0, **_HYSTERESIS}
+
+
+class _Rigs(NamedTuple):
+    """Nominal parameters of the plain rig, how dampers warm up, and kinds of seats, as `rigs.yaml` explains them."""
+
+    plant: dict[str, float]
+    coil: dict[str, float]
+    bingham: dict[str, float]
+    bouc_wen: dict[str, float]
+    heat: dict[str, tuple[float, float]]
+    seats: list[list[tuple[float, float]]]
+
+
+RIGS = read_packaged(Path(__file__).with_name("rigs.yaml"), _Rigs)
 
 
 def _scatter_parameters(nominal: Mapping[str, float], rng: Generator, width: float = _SCATTER) -> dict[str, float]:
@@ -51,7 +62,7 @@ def _scatter_parameters(nominal: Mapping[str, float], rng: Generator, width: flo
 
 def draw_experiment(rng: Generator, bingham: bool, channels: tuple[str, ...]) -> Experiment:
     """Draw a rig and its protocol."""
-    nominal = PLANT | (BINGHAM if bingham else BOUC_WEN) | COIL
+    nominal = RIGS.plant | (RIGS.bingham if bingham else RIGS.bouc_wen) | RIGS.coil
     true = _scatter_parameters(nominal, rng) | _draw_heat(rng)
     level = rng.uniform(0.85, 1.2)
     # noise is stated to three digits, and drawn as stated
@@ -67,14 +78,7 @@ def noise_of(channels: Collection[str]) -> dict[str, float]:
 def _draw_heat(rng: Generator) -> dict[str, float]:
     """Draw how the damper warms up, which its thermometer shows whether or not it fades; names of `RigParameters`."""
     own = rng.spawn(1)[0]  # so that all else that is drawn is as it would be without
-    ranges = {
-        "fluid_heat": (25.0, 90.0),
-        "housing_heat": (120.0, 400.0),
-        "thermometer_time": (1.0, 5.0),
-        "fluid_to_housing": (1.5, 4.0),
-        "housing_to_air": (0.4, 1.5),
-    }
-    return {name: own.uniform(low, high) for name, (low, high) in ranges.items()}
+    return {name: own.uniform(low, high) for name, (low, high) in RIGS.heat.items()}
 
 
 def _draw_temperatures(rng: Generator, count: int) -> list[float]:
@@ -140,20 +144,13 @@ _LEAST_VISCOUS = 250.0
 """N s/m; below it a damper in a mount with play is stiffer than the steps of the truth resolve."""
 
 
-_SEATS = (
-    ((14.0, 28.0), (1.2, 2.2), (1.0, 1.0)),  # car seat on a suspension
-    ((28.0, 60.0), (1.0, 1.6), (0.4, 0.8)),  # truck seat on a scissor
-    ((22.0, 45.0), (1.1, 2.0), (0.8, 1.0)),  # tractor seat
-)
-"""Ranges of kinds of seats: mass of the frame, kg; resonance of frame and driver on the suspension, Hz; stroke of the
-damper per suspension displacement."""
 _DRIVER = (50.0, 110.0)
 """kg."""
 _CUSHION_RESONANCE, _CUSHION_DAMPING = (3.5, 6.5), (0.12, 0.4)
 """Hz, and damping ratio, of the driver on the cushion."""
 _SUSPENSION_DAMPING = (0.03, 0.15)
 """Damping ratio of the suspension without its damper."""
-_STANDARD_MASS = PLANT["ms"] + PLANT["m"]
+_STANDARD_MASS = RIGS.plant["ms"] + RIGS.plant["m"]
 """kg, to which the standard damper fits."""
 
 
@@ -178,7 +175,7 @@ def _log_uniform(rng: Generator, low: float, high: float) -> float:
 
 def _draw_nominal(rng: Generator, bingham: bool) -> dict[str, float]:
     """Draw the parameters of seat, damper and coil, rounded to three digits as an owner states them."""
-    frame, resonance, ratios = _SEATS[int(rng.integers(len(_SEATS)))]
+    frame, resonance, ratios = RIGS.seats[int(rng.integers(len(RIGS.seats)))]
     ms, m = rng.uniform(*frame), rng.uniform(*_DRIVER)
     # springs and dampings follow from natural frequencies and damping ratios
     w, cushion = (2.0 * math.pi * rng.uniform(*band) for band in (resonance, _CUSHION_RESONANCE))
@@ -187,7 +184,7 @@ def _draw_nominal(rng: Generator, bingham: bool) -> dict[str, float]:
     plant = {"ms": ms, "m": m, **suspension, **seated}
     ratio = round(rng.uniform(*ratios), 2)
     damper = _draw_damper(rng, plant, ratio, bingham)
-    driver = {"rate": _log_uniform(rng, 60.0, 250.0), "i_max": COIL["i_max"]}
+    driver = {"rate": _log_uniform(rng, 60.0, 250.0), "i_max": RIGS.coil["i_max"]}
     rounded = {name: float(f"{value:.3g}") for name, value in (plant | damper | driver).items()}
     return rounded | {"damper_ratio": ratio}
 
@@ -201,7 +198,7 @@ def _draw_damper(rng: Generator, plant: dict[str, float], ratio: float, bingham:
     size = (plant["ms"] + plant["m"]) / _STANDARD_MASS / ratio
     powers = {"c_a": 2.0, "c_b": 2.0, "y_a": 1.0, "y_b": 1.0}
     damper = {
-        name: BOUC_WEN[name] * size / ratio ** (power - 1.0) * _log_uniform(rng, 1.0 / 1.5, 1.5)
+        name: RIGS.bouc_wen[name] * size / ratio ** (power - 1.0) * _log_uniform(rng, 1.0 / 1.5, 1.5)
         for name, power in powers.items()
     }
     damper["c_a"] = max(damper["c_a"], _LEAST_VISCOUS)

@@ -126,7 +126,7 @@ _NAMED = 3
 """Causes of a wrong verdict that are listed."""
 
 
-class ScoredCase(NamedTuple):
+class _ScoredCase(NamedTuple):
     """A case with its label and what a diagnosis said of it."""
 
     name: str
@@ -243,7 +243,7 @@ def score_verdicts(
     labels: Mapping[str, Label], verdicts: Mapping[str, Verdict], shrink: ShrinkScore | None = None
 ) -> Score:
     """Return the score of verdicts by case against labels by case."""
-    every = [ScoredCase(name, label, verdicts[name]) for name, label in labels.items()]
+    every = [_ScoredCase(name, label, verdicts[name]) for name, label in labels.items()]
     cases = [case for case in every if case.label["kind"] != "untouched"]
     kinds = {kind: [case for case in cases if case.label["kind"] == kind] for kind in (*KINDS, "carried")}
     known = kinds["one"] + kinds["carried"]
@@ -278,7 +278,7 @@ def score_verdicts(
     )
 
 
-def _marginals(cases: Sequence[ScoredCase]) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+def _marginals(cases: Sequence[_ScoredCase]) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """Return every stated probability and whether that effect is at work; cases that state none take no part."""
     stating = [(case.verdict.probabilities, case.label["effects"]) for case in cases]
     told = [(stated, true) for stated, true in stating if stated is not None]
@@ -286,19 +286,19 @@ def _marginals(cases: Sequence[ScoredCase]) -> tuple[NDArray[np.float64], NDArra
     return stated, np.array([effect in true for _, true in told for effect in EFFECTS], dtype=bool)
 
 
-def _rate_among_first(cases: Sequence[ScoredCase], count: int) -> Rate:
+def _rate_among_first(cases: Sequence[_ScoredCase], count: int) -> Rate:
     """Return how often a true effect is among the first so many causes."""
     return count_true([not set(case.label["effects"]).isdisjoint(case.verdict.causes[:count]) for case in cases])
 
 
-def _recall_and_precision(cases: Sequence[ScoredCase]) -> tuple[Rate, Rate]:
+def _recall_and_precision(cases: Sequence[_ScoredCase]) -> tuple[Rate, Rate]:
     """Return, over all effects, how many true ones are selected, and how many selected ones are true."""
     both = [(set(case.verdict.selected), set(case.label["effects"])) for case in cases]
     hits = sum(len(selected & true) for selected, true in both)
     return Rate(hits, sum(len(true) for _, true in both)), Rate(hits, sum(len(selected) for selected, _ in both))
 
 
-def _confusion(cases: Iterable[ScoredCase]) -> dict[str, dict[str, int]]:
+def _confusion(cases: Iterable[_ScoredCase]) -> dict[str, dict[str, int]]:
     """Return how often each name was given, most often first, by what is true."""
     counts: dict[str, Counter[str]] = {}
     for case in cases:
@@ -306,14 +306,14 @@ def _confusion(cases: Iterable[ScoredCase]) -> dict[str, dict[str, int]]:
     return {row: dict(counts[row].most_common()) for row in sorted(counts)}
 
 
-def _count_named(cases: Iterable[ScoredCase]) -> dict[str, int]:
+def _count_named(cases: Iterable[_ScoredCase]) -> dict[str, int]:
     """Return how often each effect stands first among those selected, most often first, else the verdict."""
     said = [case.verdict for case in cases]
     first = (next((name for name in each.causes if name in each.selected), each.verdict) for each in said)
     return dict(Counter(first).most_common())
 
 
-def _compare_sizes(cases: Iterable[ScoredCase]) -> list[FoundSize]:
+def _compare_sizes(cases: Iterable[_ScoredCase]) -> list[FoundSize]:
     """Return true and estimated parameters of the same name, of the cases in which the effect is selected."""
     found = []
     for case in cases:
@@ -330,7 +330,7 @@ def _true_name(label: Label) -> str:
     return f"outside ({label['blocks'][0]})" if kind == "outside" else kind
 
 
-def _describe_failure(case: ScoredCase) -> Failure:
+def _describe_failure(case: _ScoredCase) -> Failure:
     """Return what is true of a case whose verdict is wrong, and what was said."""
     label, verdict = case.label, case.verdict
     known = label.get("forms", []), label.get("materialities", []), label.get("missing", [])

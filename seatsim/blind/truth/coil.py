@@ -68,13 +68,13 @@ def target_current(command: float, time: float, h: float, y: Array, memory: Arra
     if p.limit > 0.0:
         ceiling = max(p.limit - p.limit_sag * y[state.SAG], _LOWEST_LIMIT)
         target = target / (1.0 + (target / ceiling) ** p.limit_power) ** (1.0 / p.limit_power)
-    if p.dropout_interval > 0.0 and drops_out(time, h, memory, p):
+    if p.dropout_interval > 0.0 and _drops_out(time, h, memory, p):
         return 0.0
     return target
 
 
 @compiled
-def drops_out(time: float, h: float, memory: Array, p: RigParameters) -> bool:
+def _drops_out(time: float, h: float, memory: Array, p: RigParameters) -> bool:
     """Tell whether the driver is off in this step; dropouts begin at random, `dropout_interval` apart on average.
 
     Where one may begin does not depend on the step, so that a coarse simulation and the recorded one have the same.

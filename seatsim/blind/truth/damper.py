@@ -84,7 +84,7 @@ def _yield_force(y: Array, memory: Array, z: float, p: RigParameters) -> float:
 
 
 @compiled
-def main_force(y: Array, memory: Array, x: float, v: float, p: RigParameters) -> float:
+def _main_force(y: Array, memory: Array, x: float, v: float, p: RigParameters) -> float:
     """Return the force of fluid and field before seal and gas, N."""
     z = _yield_variable(y, v, p)
     force = _viscous_damping(y, v, p) * v + p.k0 * (x - p.x0) + _yield_force(y, memory, z, p) * z + p.f0
@@ -136,7 +136,7 @@ def seal_force(y: Array, rates: Array, v: float, force: float, p: RigParameters)
 @compiled
 def update_cavity(y: Array, memory: Array, x: float, v: float, h: float, p: RigParameters) -> None:
     """Carry the open stroke of the cavity over one step: it opens in extension and closes in compression."""
-    force = main_force(y, memory, x, v, p)
+    force = _main_force(y, memory, x, v, p)
     if v > 0.0 and force >= p.cavitation_force:
         memory[state.CAVITY_VOLUME] += p.cavitation_fill * v * h * (1.0 - p.cavitation_force / force)
     elif v < 0.0:
@@ -155,7 +155,7 @@ def _mount_force(u: float, p: RigParameters) -> float:
 
 
 @compiled
-def piston_speed(y: Array, memory: Array, x: float, wanted: float, p: RigParameters) -> float:
+def _piston_speed(y: Array, memory: Array, x: float, wanted: float, p: RigParameters) -> float:
     """Return the speed at which the damper bears the force `wanted`, m/s.
 
     Newton from the last solution; where that does not settle in a few steps, false position (Illinois), which cannot
@@ -163,26 +163,26 @@ def piston_speed(y: Array, memory: Array, x: float, wanted: float, p: RigParamet
     """
     guess: float = memory[state.V_PISTON]
     for _ in range(_NEWTON_STEPS):
-        f = main_force(y, memory, x, guess, p) - wanted
+        f = _main_force(y, memory, x, guess, p) - wanted
         if abs(f) < _CLOSE_ENOUGH:
             memory[state.V_PISTON] = guess
             return guess
         # multiplied by 1 / _DIFFERENCE
-        slope = (main_force(y, memory, x, guess + _DIFFERENCE, p) - wanted - f) * 1e4
+        slope = (_main_force(y, memory, x, guess + _DIFFERENCE, p) - wanted - f) * 1e4
         guess -= min(max(f / max(slope, _LEAST_SLOPE), -_LARGEST_CHANGE), _LARGEST_CHANGE)
-    guess = bracketed_speed(y, memory, x, wanted, guess, p)
+    guess = _bracketed_speed(y, memory, x, wanted, guess, p)
     memory[state.V_PISTON] = guess
     return guess
 
 
 @compiled
-def bracketed_speed(y: Array, memory: Array, x: float, wanted: float, guess: float, p: RigParameters) -> float:
+def _bracketed_speed(y: Array, memory: Array, x: float, wanted: float, guess: float, p: RigParameters) -> float:
     """Return the same by false position from a guess, halving the residual of the end that stays (Illinois)."""
     low, high = -_FASTEST_PISTON, _FASTEST_PISTON
-    f_low = main_force(y, memory, x, low, p) - wanted
-    f_high = main_force(y, memory, x, high, p) - wanted
+    f_low = _main_force(y, memory, x, low, p) - wanted
+    f_high = _main_force(y, memory, x, high, p) - wanted
     for _ in range(_BRACKET_STEPS):
-        f = main_force(y, memory, x, guess, p) - wanted
+        f = _main_force(y, memory, x, guess, p) - wanted
         if abs(f) < _CLOSE_ENOUGH:
             break
         if f > 0.0:
@@ -209,12 +209,12 @@ def damper_force(y: Array, rates: Array, memory: Array, x: float, speed: float, 
     v = 0.0 if resting else speed
     if loose:
         force = _mount_force(stretch, p)
-        v = piston_speed(y, memory, x, force, p)
+        v = _piston_speed(y, memory, x, force, p)
     if turning or loose:
         rates[state.MOUNT] = speed - v
     _write_yield_rates(y, rates, v, p)
     if not (loose or resting):
-        force = main_force(y, memory, x, v, p)
+        force = _main_force(y, memory, x, v, p)
     coil.write_magnetisation_rate(y, rates, p)
     if p.seal_force != 0.0:
         force += seal_force(y, rates, v, force, p)

@@ -1,6 +1,7 @@
 """One rig under test and its protocol: what a run is, with or without faults, and what its channels read."""
 
 from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +12,7 @@ from seatsim.blind.truth.faults import NEIGHBOUR, Changes, FrameForce, SensorFau
 from seatsim.blind.truth.rig import EXCITATION_RATE, INTEGRATION_STEP, SAMPLE_RATE, Inputs, RigMotion, simulate
 from seatsim.blind.truth.state import parameter_record
 from seatsim.schema.arrays import Array
+from seatsim.schema.fields import read_packaged
 
 Readings = dict[str, Array]
 """What each channel reads in a run, shape (rows,) each."""
@@ -118,18 +120,8 @@ class _Channel(NamedTuple):
     digits: int = 4
 
 
-CHANNELS = {
-    "floor_acceleration": _Channel("m/s^2", 0.01),
-    "frame_acceleration": _Channel("m/s^2", 0.03),
-    "driver_acceleration": _Channel("m/s^2", 0.015),
-    "suspension_displacement": _Channel("m", 5e-5, 6),
-    "damper_force": _Channel("N", 2.5, 1),
-    "current_command": _Channel("A"),
-    "coil_current": _Channel("A", 0.003),
-    "damper_temperature": _Channel("degC", 0.1, 2),
-}
-"""In the contract's order, with the noise of common accelerometers, a laser, a load cell, a shunt, a thermocouple; the
-digits are a tenth of the noise or less."""
+CHANNELS = read_packaged(Path(__file__).with_name("channels.yaml"), dict[str, _Channel])
+"""In the contract's order."""
 
 
 class RunPlan(NamedTuple):

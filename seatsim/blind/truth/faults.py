@@ -25,14 +25,7 @@ _ForceKind = Literal["coloured", "hum", "knock"]
 _Misreading = Literal["gain", "gain_bent", "bias", "wander", "lag_second", "lag_average"]
 """Of the contract's effects, beside a log that is skewed; others are outside the library."""
 _SensorFaultKind = Literal[_Misreading, "skew", "quantise", "clip", "backlash", "crosstalk"]
-NEIGHBOUR = {
-    "frame_acceleration": "driver_acceleration",
-    "driver_acceleration": "frame_acceleration",
-    "suspension_displacement": "frame_acceleration",
-    "damper_force": "suspension_displacement",
-    "coil_current": "damper_force",
-    "floor_acceleration": "frame_acceleration",
-}
+NEIGHBOUR = read_packaged(Path(__file__).with_name("neighbours.yaml"), dict[str, str])
 """The channel that couples into each, where channels are not kept apart."""
 _FAULTY_CHANNELS = tuple(NEIGHBOUR)
 """Channels that a sensor fault can sit on, where they are recorded."""

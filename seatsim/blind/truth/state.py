@@ -42,44 +42,30 @@ def parameter_record(values: Mapping[str, float]) -> np.void:
     return record
 
 
-(
-    X,  # m
-    V,  # m/s, x'
-    Y,  # m
-    W,  # m/s, y'
-    CURRENT,  # A, in the winding
-    CURRENT_2,  # second state of the coil (A, or A/s for a ringing regulator)
-    Z,  # hysteretic variable of Bouc-Wen
-    FRICTION,  # linkage friction over its sliding force
-    SEAL,  # seal friction over its sliding force
-    T_FLUID,  # degC
-    T_HOUSING,  # degC
-    T_THERMOMETER,  # degC
-    BODY,  # m, inner body against the seat
-    BODY_V,  # m/s
-    BODY2,  # m, second inner body
-    BODY2_V,  # m/s
-    ZENER,  # m, spring of the memory foam
-    COVER,  # friction of the cover over its sliding force
-    BUSHING,  # m, spring of the Maxwell bushing
-    CREEP,  # m, crept part of the spring's deflection
-    BASE,  # m, base against the floor
-    BASE_V,  # m/s
-    PREYIELD,  # late yield variable, or late speed in m/s
-    MAGNETISATION,  # A, slow part of the field
-    SAG,  # A, mean current that makes the supply sag
-    MOUNT,  # m, stretch of the damper's mount
-) = range(26)
+X, V, Y, W = range(4)
+"""m and m/s: x, x', y and y'."""
+CURRENT, CURRENT_2, Z, FRICTION, SEAL = range(4, 9)
+"""A in the winding; second state of the coil (A, or A/s for a ringing regulator); hysteretic variable of Bouc-Wen;
+linkage friction and seal friction over their sliding forces."""
+T_FLUID, T_HOUSING, T_THERMOMETER = range(9, 12)
+"""degC."""
+BODY, BODY_V, BODY2, BODY2_V = range(12, 16)
+"""m and m/s: an inner body against the seat, and a second one."""
+ZENER, COVER, BUSHING, CREEP = range(16, 20)
+"""m of the spring of the memory foam; friction of the cover over its sliding force; m of the spring of the Maxwell
+bushing, and crept part of the spring's deflection."""
+BASE, BASE_V = range(20, 22)
+"""m and m/s: base against the floor."""
+PREYIELD, MAGNETISATION, SAG, MOUNT = range(22, 26)
+"""Late yield variable, or late speed in m/s; A, slow part of the field; A, mean current that makes the supply sag; m,
+stretch of the damper's mount."""
 STATES = 26
 
-(
-    CAVITY_VOLUME,  # m of stroke that the cavity has opened
-    RELAYS_MEAN,  # A, mean of the hysteresis relays
-    DROPOUT_LEFT,  # s, that the present dropout goes on
-    V_FRAME,  # m/s, absolute, as a controller would integrate it
-    V_DRIVER,  # m/s, absolute
-    V_PISTON,  # m/s, last solution of the damper in series with its mount
-) = range(6)
+CAVITY_VOLUME, RELAYS_MEAN, DROPOUT_LEFT = range(3)
+"""m of stroke that the cavity has opened; A, mean of the hysteresis relays; s, that the present dropout goes on."""
+V_FRAME, V_DRIVER, V_PISTON = range(3, 6)
+"""m/s: absolute of frame and driver, as a controller would integrate them; last solution of the damper in series with
+its mount."""
 MEMORIES = 6
 RELAYS = 40
 """Relays of the discrete Preisach model; with 40 the steps of the field (1/40 of its range) are below the noise."""

@@ -40,7 +40,7 @@ def blind_make(
         carrier: A measured recording into which the effects are put instead.
     """
     from seatsim.blind.carrier.make import make_on_carrier
-    from seatsim.blind.make.make import PUBLIC_CASES, make, make_public
+    from seatsim.blind.make.make import PUBLIC_CASES, make
     from seatsim.cli.outputs.answers import BlindMakeAnswer
 
     if carrier is not None and kinds != "mixed":
@@ -51,12 +51,10 @@ def blind_make(
         raise InputError("state how many recordings by --cases, such as --cases 20, or a public set by --set NAME")
     cases = cases or PUBLIC_CASES
     with count_progress("making recordings") as count:
-        if public is not None:
-            key = make_public(public, out_folder, sealed, count, cases)
-        elif carrier is not None:
+        if carrier is not None:
             key = make_on_carrier(carrier, cases, seed, out_folder, sealed, count)
         else:
-            key = make(cases, seed, out_folder, sealed, count, kinds)
+            key = make(cases, seed, out_folder, sealed, count, kinds, name=public)
     out.print(f"written: {cases} recordings in {out_folder}, labels sealed in {sealed}", markup=False, highlight=False)
     say(f"key (shown once): {key}")
     answer(BlindMakeAnswer(cases, out_folder, sealed, key))
@@ -80,8 +78,8 @@ def blind_score(
     """
     from seatsim.blind.score.score import score
     from seatsim.blind.sealed import unseal
-    from seatsim.cli.outputs.diagnosis_results import make_score_tables
-    from seatsim.cli.show_table import show_table
+    from seatsim.cli.outputs.diagnosis_results import tabulate_score
+    from seatsim.cli.show_table import show_report_tables
     from seatsim.schema.files import write_json
 
     # A wrong key is an error at once, not after hours of diagnoses.
@@ -90,7 +88,7 @@ def blind_score(
         _diagnose_all(folder, count)
     with count_progress("scoring") as count:
         found = score(folder, sealed, key, progress=count)
-    show_table(*make_score_tables(found))
+    show_report_tables(tabulate_score(found))
     path = write_json((out_folder or folder) / "score.json", found)
     wrote_one(path)
     answer(found, [path])

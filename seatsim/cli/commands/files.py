@@ -15,19 +15,11 @@ from seatsim.cli.options import check_out, complete, complete_kind
 from seatsim.cli.terminal import answer, complain, refuse, say, show_progress, warn, wrote_one
 from seatsim.schema.errors import InputError, permit
 
-_NEXT = {
-    "scenario": "seatsim run {file}",
-    "recording": "seatsim check {file}, then seatsim diagnose {file}",
-    "damper": "seatsim describe {name} --with {file} --picture loops.png, then model: {name} in a scenario",
-    "controller": "law: {name} in a scenario, then seatsim run SCENARIO --with {file}",
-    "effect": "effect: suspension.{name} in a scenario, then seatsim run SCENARIO --with {file}",
-    "excitation": "kind: {name} in a scenario, then seatsim run SCENARIO --with {file}",
-}
-"""What can be done with a new file."""
+_NEW = ("scenario", "recording", "damper", "controller", "effect", "excitation")
 
 
 def new(
-    kind: Annotated[str, typer.Argument(autocompletion=complete(*_NEXT))], name: Annotated[str, typer.Argument()]
+    kind: Annotated[str, typer.Argument(autocompletion=complete(*_NEW))], name: Annotated[str, typer.Argument()]
 ) -> None:
     """Write a commented file that works as it stands, to be changed.
 
@@ -37,11 +29,13 @@ def new(
     """
     from seatsim.cli.new_files import write_new
     from seatsim.cli.outputs.answers import NewAnswer
+    from seatsim.schema.fields import read_packaged
 
     paths = write_new(kind, Path(name))
     say(f"written: {', '.join(map(str, paths))}")
     file = name if kind == "recording" else paths[0]
-    say(f"next: {_NEXT[kind].format(name=Path(name).stem, file=file)}")
+    following = read_packaged(Path(__file__).parents[1] / "templates" / "next.yaml", dict[str, str])
+    say(f"next: {following[kind].format(name=Path(name).stem, file=file)}")
     answer(NewAnswer(kind), paths)
 
 

@@ -1,4 +1,4 @@
-"""The commands that simulate scenarios, one by one or in sweeps: run, compare, sweep, sweep-report."""
+"""The commands on scenarios, alone or in sweeps: run, compare, sweep, sweep-report, synthesise, export, explore."""
 
 from __future__ import annotations
 
@@ -12,12 +12,25 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from seatsim.cli.options import Out, OwnCode, Scenarios, Settings, check_out, scenario_settings
-from seatsim.cli.terminal import answer, complain, conclude, count_progress, say, show_progress, warn, wrote, wrote_one
-from seatsim.schema.errors import InputError, SeatsimError
+from seatsim.cli.options import OneScenario, Out, OwnCode, Scenarios, Settings, check_out, complete, scenario_settings
+from seatsim.cli.terminal import (
+    announce,
+    answer,
+    complain,
+    conclude,
+    count_progress,
+    say,
+    show_progress,
+    warn,
+    wrote,
+    wrote_one,
+)
+from seatsim.schema.errors import InputError, SeatsimError, nearest
 from seatsim.schema.guarded import uncut
 
 if TYPE_CHECKING:
+    from controllers.synthesis import Design
+    from seatsim.cli.terminal import Report
     from seatsim.scenario.scenario import Scenario
     from seatsim.simulation.result import Result, Run
 
@@ -48,7 +61,7 @@ def _execute(files: Sequence[Sequence[str]], folders: Sequence[Path | None], set
         failures += failed
         if runs := [each for each in of_group if not isinstance(each, SeatsimError)]:
             # What an interrupt left done is kept before the process ends.
-            with uncut() if interrupted else nullcontext():
+            with uncut if interrupted else nullcontext():
                 table, written = _present(runs, failed, folder, interrupted)
             tables.append(table)
             paths += written
@@ -110,8 +123,7 @@ def _title(scenarios: Sequence[Scenario]) -> str:
 
 def _present(runs: list[Run], failures: list[str], folder: Path, interrupted: bool) -> tuple[Result, list[Path]]:
     """Print the table of some runs and the warnings; return their result and its files."""
-    from seatsim.cli.outputs.run_tables import make_comparison_table, make_overall_table
-    from seatsim.cli.outputs.simulated import write_interrupted, write_result
+    from seatsim.cli.outputs.simulated import make_comparison_table, make_overall_table, write_interrupted, write_result
     from seatsim.cli.show_table import show_table
     from seatsim.simulation.checks import describe_designs
     from seatsim.simulation.result import Result
@@ -130,11 +142,7 @@ def _present(runs: list[Run], failures: list[str], folder: Path, interrupted: bo
 
 _FAILURES_SHOWN = 5
 """Failed runs whose reasons are printed; the others stand in the rows."""
-_EXCEEDED_SHOWN = 12
-"""Limits by group that are printed; the page has more."""
 _DOUBTS_SHOWN = 5
-_MANY_RUNS = 100_000
-"""Runs from which on their number is said at once, since checking them takes seconds."""
 _SweepFile = Annotated[Path, typer.Argument(help="A sweep file: a scenario, and what is varied.", show_default=False)]
 
 
@@ -168,7 +176,7 @@ def sweep(
 
     folder = out_folder or Path("out") / file.stem
     part = read_share(share) if share else None
-    prepared = prepare(file, _foresee)
+    prepared = prepare(file)
     warn(prepared.doubts[:_DOUBTS_SHOWN], "warning")
     if slurm is not None:
         path = write_slurm(slurm, file, folder, prepared.plan, keep == "histories", own_code or [])
@@ -197,11 +205,6 @@ def sweep(
         raise typer.Exit(1)
 
 
-def _foresee(runs: int) -> None:
-    if runs >= _MANY_RUNS:
-        say(f"{runs} runs; all of their values are checked before the first run begins")
-
-
 def sweep_report(
     folder: Annotated[Path, typer.Argument(show_default=False)],
     out_folder: Annotated[
@@ -215,16 +218,135 @@ def sweep_report(
         out_folder: Folder for the files.
     """
     from seatsim.cli.outputs.simulated import write_sweep_report
-    from seatsim.metrics.table import SHORT
+    from seatsim.cli.show_table import show_report_tables
 
     with show_progress():
         report = write_sweep_report(folder, out_folder)
     say(report.sentence)
-    for row in report.exceeded[:_EXCEEDED_SHOWN]:
-        who = "".join(f"{value}: " for value in row.group.values())
-        unit = f" {row.unit}".removesuffix(" -")
-        say(
-            f"{who}{SHORT.get(row.metric, row.metric)} above {row.limit:g}{unit}: {row.exceeding} of {row.runs} runs,"
-            f" {100 * row.share:.3g} % ({100 * row.low:.3g} to {100 * row.high:.3g} %)"
-        )
+    show_report_tables(report.limits)
     conclude(report, out_folder or folder, report.paths)
+
+
+_PAGE_EXTRA = 'the page needs an extra; install it with: pip install "seatsim[page]"'
+
+
+def export(
+    scenario: OneScenario,
+    form: Annotated[str, typer.Option("--to", autocompletion=complete("fmu2", "fmu3", "c", "mat"))],
+    what: Annotated[str, typer.Option("--what", autocompletion=complete("rig", "damper", "controller"))],
+    out: Annotated[Path, typer.Option("--out", metavar="FILE")],
+    variant: Annotated[str | None, typer.Option("--variant", metavar="NAME", show_default="the first")] = None,
+    settings: Settings = None,
+) -> None:
+    """Write a scenario's rig, damper or controller for other programs: as an FMU, as C, or as a MAT file.
+
+    Options:
+        form: fmu2, fmu3, c or mat.
+        what: rig, damper or controller.
+        out: The file to be written.
+        variant: The variant of the scenario.
+    """
+    from seatsim.exchange.block import ExportedBlock, list_variables
+    from seatsim.exchange.export import export as write
+    from seatsim.scenario.loading import load
+
+    run = _choose(scenario, load(scenario, scenario_settings(settings)), variant)
+    with show_progress() as progress:
+        progress(f"exporting {what}")
+        block = write(run, form, what, out)
+    warn(block.notes)
+    wrote_one(out)
+    answer(ExportedBlock(block.name, block.step, list_variables(block), block.notes), [out])
+
+
+def _choose(name: str, runs: Sequence[Scenario], variant: str | None) -> Scenario:
+    """Return the first run of a variant, or of all, and say so where there are others."""
+    known = list(dict.fromkeys(run.label["variant"] for run in runs if "variant" in run.label))
+    if variant is not None and variant not in known:
+        names = f"its variants: {'; '.join(known)}" if known else "it has no variants"
+        raise InputError(f"--variant {variant}: {name} has no such variant{nearest(variant, known)}; {names}")
+    chosen = [run for run in runs if variant is None or run.label["variant"] == variant]
+    if len(chosen) > 1:
+        others = f"; --variant takes another one: {'; '.join(known)}" if variant is None and known else ""
+        warn([f"{name} holds {len(chosen)} runs; the first is exported: {chosen[0].title}{others}"])
+    return chosen[0]
+
+
+def synthesise(
+    scenario: OneScenario,
+    out_folder: Out = None,
+    prove_best: Annotated[bool, typer.Option("--global")] = False,
+    settings: Settings = None,
+) -> None:
+    """Synthesise the H-infinity static output feedback of a scenario's plant and weights.
+
+    Options:
+        prove_best: Prove that no permitted gain is better by 0.1 % (up to four gains).
+    """
+    from seatsim.cli.outputs.simulated import tabulate_design
+    from seatsim.cli.show_table import show_report_tables
+    from seatsim.provenance.statement import write_documented
+    from seatsim.scenario.loading import single
+    from seatsim.schema.yaml_source import Source
+    from seatsim.simulation.checks import measure_clipping
+
+    chosen = single(scenario, scenario_settings(settings))
+    with show_progress() as progress:
+        design = _synthesise(chosen, progress)
+        design = design.prove(progress) if prove_best else design
+        design = design.with_clipping(measure_clipping(chosen, design.gain))
+    show_report_tables(tabulate_design(design, chosen))
+    folder = out_folder or Path("out") / chosen.name
+
+    def write(part: Path) -> list[Path]:
+        design.save(part / "design.yaml")
+        if design.proof is not None:
+            design.proof.save(part / "global.json")
+        return sorted(part.iterdir())
+
+    paths = write_documented(folder, write, chosen.seed)
+    wrote(folder, paths)
+    answer(Source(folder / "design.yaml").data, paths)
+
+
+def _synthesise(scenario: Scenario, progress: Report) -> Design:
+    """Return the design of a law that has a synthesis, for the plant of a scenario."""
+    from seatsim.rig.designs import SynthesisedLaw
+    from seatsim.schema.registry import name_of
+    from seatsim.simulation.simulate import record_floors, settle_travel
+
+    with scenario.placed("controller"):
+        if scenario.plant is None or scenario.control is None:
+            raise InputError("a damper bench has no controller to synthesise")
+        law = settle_travel(scenario, scenario.control)
+        if not isinstance(law, SynthesisedLaw):
+            name = name_of("law", type(law))
+            raise InputError(f"law '{name}' is not synthesised; use 'law: static_output_feedback' with 'weights'")
+        control = scenario.control
+        return law.synthesis(scenario.plant, lambda: record_floors(scenario, control), progress)
+
+
+def explore(
+    target: Annotated[str, typer.Argument(metavar="[SCENARIO|RECORDING]")] = "quickstart",
+    port: Annotated[int, typer.Option("--port", min=0, max=65535, show_default="a free one")] = 0,
+    no_browser: Annotated[bool, typer.Option("--no-browser")] = False,
+) -> None:
+    """Open a page on this machine: move driver, temperature, road and controller, or effects, and see what follows.
+
+    Options:
+        target: A scenario, an example, or a recording's folder.
+        port: Port of loopback.
+        no_browser: Print the address and open no browser.
+    """
+    try:
+        from seatsim.page.app import open_target, serve
+    except ModuleNotFoundError as error:
+        if error.name is None or error.name.partition(".")[0] not in ("starlette", "uvicorn"):
+            raise
+        raise InputError(_PAGE_EXTRA) from error
+    path = Path(target)
+    folder = path if path.is_dir() else path.parent if path.exists() else Path()
+    with show_progress() as progress:
+        progress("loading the models")
+        opened = open_target(path)
+    serve(opened, folder, port, not no_browser, announce)

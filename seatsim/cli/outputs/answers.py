@@ -15,8 +15,8 @@ from typing import NamedTuple
 from seatsim.recordings.header import Header, RunEntry
 from seatsim.recordings.recording import ChannelEntry, VoltageGain
 from seatsim.rig.coil import Coil
-from seatsim.scenario.damper import damper_schema, schema_of_models
-from seatsim.scenario.sections import scenario_schema
+from seatsim.scenario.sections import damper_schema, scenario_schema, schema_of_models
+from seatsim.schema.fields import read_packaged
 from seatsim.schema.json_schema import BY_KEY, TEXT, Schema, head_schema, mapping_schema, properties_of, record_schema
 from seatsim.sweeps.definition import sweep_schema
 
@@ -66,31 +66,8 @@ class SynthesisAnswer(NamedTuple):
     lower_bound: float
 
 
-_ANSWERS = {
-    "run": "cli.outputs.simulated.RunAnswer",
-    "compare": "cli.outputs.simulated.RunAnswer",
-    "sweep": "sweeps.execute.SweepResult cli.outputs.answers.SlurmAnswer",
-    "sweep-report": "cli.outputs.simulated.SweepReport",
-    "synthesise": "cli.outputs.answers.SynthesisAnswer",
-    "gap": "recordings.gap.Gap recordings.gap.Forecast",
-    "diagnose": "diagnosis.result.Diagnosis",
-    "characterise": "characterisation.summary.Characterisation",
-    "identify": "identification.identify.Identification identification.model_benchmark.League",
-    "describe": "scenario.describe.Pages",
-    "new": "cli.outputs.answers.NewAnswer",
-    "check": "cli.check_files.CheckedFile",
-    "import": "importing.importing.Import",
-    "inspect": "importing.inspection.Inspection",
-    "comfort": "standards.comfort.Comfort",
-    "seat-test": "standards.seat_rows.SeatTest",
-    "export": "exchange.block.ExportedBlock",
-    "blind-make": "cli.outputs.answers.BlindMakeAnswer",
-    "blind-score": "blind.score.score.Score",
-    "explore": "cli.outputs.answers.ExploreAnswer",
-    "reproduce": "provenance.reproduce.Reproduction",
-    "error": "cli.outputs.answers.ErrorAnswer",
-}
-"""Records that each command prints, by its name; `error` is what any of them prints where it fails."""
+_ANSWERS = read_packaged(Path(__file__).with_suffix(".yaml"), dict[str, str])
+"""Records that each command prints, by its name."""
 
 
 def list_answers() -> Mapping[str, object]:

@@ -1,4 +1,4 @@
-"""What `seatsim characterise` and `seatsim identify` print and write."""
+"""What `seatsim characterise`, `identify`, `comfort` and `seat-test` print and write."""
 
 from __future__ import annotations
 
@@ -11,18 +11,46 @@ import typer
 from seatsim.characterisation.sheet import list_tables
 from seatsim.characterisation.summary import Characterisation
 from seatsim.cli.outputs.writing import name_pictures, write_each, write_outputs
-from seatsim.cli.show_table import format_number, make_table, show_report_tables, show_table
+from seatsim.cli.show_table import show_report_tables
 from seatsim.cli.terminal import complain, conclude, say, show_progress, warn
-from seatsim.dampers.base import OWN
-from seatsim.identification.identify import Identification, identify
-from seatsim.identification.model_benchmark import League, benchmark_models
+from seatsim.identification.identify import Identification, League, benchmark_models, identify
 from seatsim.identification.settings import IdentificationSettings
 from seatsim.plots.bench.characterisation import plot_characterisation
 from seatsim.plots.bench.identification import plot_predictions
+from seatsim.plots.bench.vibration import plot_vibration
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.report import dampers as report
+from seatsim.report import standards
+from seatsim.report.blocks import tabulate
 from seatsim.schema.files import write_together
 from seatsim.schema.yaml_text import dump
+from seatsim.standards.comfort import Comfort
+from seatsim.standards.seat_rows import SeatTest
+
+
+def present_comfort(found: Comfort, source: Path, folder: Path) -> None:
+    """Print the figures of a vibration; write `comfort.json`, `report.html` and the pictures."""
+    show_report_tables([*standards.tabulate_axes(found), *standards.tabulate_seat(found)])
+    for sentence in standards.list_comfort_sentences(found):
+        say(sentence)
+    warn(found.notes)
+    figures = plot_vibration(found)
+    report = standards.report_comfort(found, figures, f"seatsim comfort {source.name}")
+    contents = {"comfort.json": found, "report.html": report, **name_pictures(figures)}
+    conclude(found, folder, write_outputs(folder, contents))
+
+
+def present_seat_test(found: SeatTest, source: Path, folder: Path) -> None:
+    """Print the lines of a seat test and which came to no result; write `seat_test.json` and `report.html`."""
+    show_report_tables([*standards.tabulate_classes(found.rows), *standards.tabulate_damping(found.damping_rows)])
+    say(standards.say_seat_test(found))
+    for each in found.failures:
+        complain(f"failed: {', '.join(filter(None, (each.run, each.spectral_class, each.person)))}: {each.reason}")
+    warn(found.notes)
+    command = f"seatsim seat-test {source.name}"
+    report = standards.report_seat_test(found, source.resolve().stem, command)
+    conclude(found, folder, write_outputs(folder, {"seat_test.json": found, "report.html": report}))
+
 
 _TIMES = ("seconds", "ns_per_step")
 """What a fit and a step took, which differs each time."""
@@ -88,13 +116,11 @@ def compare_models(
     with show_progress() as progress:
         places = benchmark_models(records, models, settings, progress, keep)
     rows = []
-    for place in places:
-        fits = [format_number(fit, ".1f") for fit in (place.train_fit_percent, place.test_fit_percent)]
-        rest = [format_number(value, ".0f") for value in (place.ns_per_step, place.seconds)]
-        count = "-" if place.failed else str(place.parameters)
-        rows.append((f"{place.model} ({OWN})" if place.confidence == OWN else place.model, *fits, count, *rest))
-    headings = ("model", "train [%]", "test [%]", "parameters", "ns a step", "s")
-    show_table(make_table("league", headings, rows))
+    for each in places:
+        fits, cost = (each.train_fit_percent, each.test_fit_percent), (each.ns_per_step, each.seconds)
+        rows.append((each.model, each.confidence, *fits, str(each.parameters), *cost))
+    head = "model, confidence, train [%], test [%], parameters, ns a step, s"
+    show_report_tables(tabulate("Models, the best first", head, rows, 2))
     failed = [place for place in places if place.failed]
     for place in failed:
         complain(f"failed: {place.failed}")

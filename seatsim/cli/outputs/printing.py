@@ -14,14 +14,7 @@ from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.files import write_whole
 from seatsim.schema.guarded import temporary_folder
 
-_NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome", "msedge", "microsoft-edge")
-_BROWSERS = (
-    *_NAMES,
-    "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
-    r"C:\Program Files\Google\Chrome\Application\chrome.exe",
-    r"C:\Program Files (x86)\Microsoft\Edge\Application\msedge.exe",
-)
-"""Browsers that print without a window, by name or by where their installers put them."""
+_BROWSERS = Path(__file__).with_name("browsers.yaml")
 _LONGEST = 120.0
 """s after which a browser that has not printed is given up."""
 _Printer = Callable[[Path, Path], object]
@@ -50,7 +43,9 @@ def print_reports(paths: Sequence[Path]) -> list[Path]:
 
 
 def _find_printer() -> _Printer:
-    browser = next(filter(None, map(shutil.which, _BROWSERS)), None)
+    from seatsim.schema.fields import read_packaged
+
+    browser = next(filter(None, map(shutil.which, read_packaged(_BROWSERS, list[str]))), None)
     if browser is not None:
         return partial(_print_by_browser, browser)
     try:

@@ -43,6 +43,14 @@ class Disturbance(NamedTuple):
         traces = np.concatenate([self.traces[run] for run in problem.runs], axis=1)
         return np.asarray(np.sqrt(np.mean(traces**2, axis=1)) / problem.spread)
 
+    def measure_share_repeated(self, problem: DiagnosisProblem) -> float:
+        """Return the share of the signal's variance (R2) that repeats of a run show again, 0 where none is repeated."""
+        signals, shares = self.found.signals, list[float]()
+        for first, second in problem.repeats:
+            rows = min(len(signals[first]), len(signals[second]))
+            shares.append(float(np.corrcoef(signals[first][:rows], signals[second][:rows])[0, 1]) ** 2)
+        return float(np.mean(shares)) if shares else 0.0
+
 
 def list_disturbances(objective: Objective, selection: Selection) -> list[Disturbance]:
     """Return what may hide the effects: the random signal beside the best sets, and a drift of the calibrated rig.

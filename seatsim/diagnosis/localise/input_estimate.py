@@ -245,9 +245,8 @@ def estimate_nonrepeatable_force(objective: Objective, evaluation: Evaluation) -
     repeat has a floor and a command of its own, which a real rig does not repeat exactly.
     """
     problem = objective.problem
-    for run, entry in problem.recording.runs.items():
-        first = evaluation.residuals.get(entry.repeat_of or "", np.zeros(0))
-        second = evaluation.residuals[run]
+    for original, run in problem.repeats:
+        first, second = evaluation.residuals[original], evaluation.residuals[run]
         if first.shape == second.shape:
             rig = Reconstruction(objective, evaluation.parameters, run, PORTS["suspension"])
             response = rig.measure_response(np.zeros(rig.samples), problem.measured[run] - second)

@@ -163,6 +163,5 @@ def controller_block(scenario: Scenario) -> Block:
         notes.append("the inverse follows the state of its damper from readings of motion and current")
     name = f"{scenario.name} controller"
     said = f"control law {type(control.law).__name__}, with inverse damper and clip"
-    parts, texts = (type(setup.law), type(model.damper), type(setup.sensors)), (tuple(hidden), tuple(notes))
-    inputs = ControllerInputs()
-    return Block(name, said, parameters, inputs, rest, start, observe, advance, period, True, parts, *texts)
+    inputs, texts = ControllerInputs(), (tuple(hidden), tuple(notes))
+    return Block(name, said, parameters, inputs, rest, start, observe, advance, period, True, *texts)

@@ -6,7 +6,6 @@ from typing import Annotated, NamedTuple
 from seatsim.compilation.jit import jit
 from seatsim.dampers.base import DAMPERS
 from seatsim.exchange.block import Block
-from seatsim.kernel.augmented import classes_of
 from seatsim.kernel.bench import MOST_PARTS, TOLERANCE, Course, advance_state
 from seatsim.kernel.generic import DamperModel, scaling_at
 from seatsim.kernel.inverse import total_force
@@ -135,5 +134,5 @@ def damper_block(scenario: Scenario) -> Block:
     if isinstance(stated, Thermal):
         notes.append("the damper does not warm up by itself; its temperature is an input")
     title, said, rest = f"{scenario.name} damper", f"MR damper with its coil: {name}", DamperState(0.0, z, 1)
-    parts, texts = tuple(classes_of(damper)), (("coil.delay", "coil.resistance"), tuple(notes))
-    return Block(title, said, parameters, inputs, rest, start, observe, advance, step, False, parts, *texts)
+    texts = ("coil.delay", "coil.resistance"), tuple(notes)
+    return Block(title, said, parameters, inputs, rest, start, observe, advance, step, False, *texts)

@@ -14,7 +14,6 @@ from seatsim.compilation.jit import jit
 from seatsim.effects.base import acts_on
 from seatsim.exchange.block import Block
 from seatsim.kernel import generic
-from seatsim.kernel.augmented import classes_of
 from seatsim.kernel.generic import InverseModel, advance_filters, follow_state, model_scaling, read, scaling_at, update
 from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.loop import ROUNDING, command_current, measure, warm_up
@@ -297,8 +296,6 @@ def rig_block(scenario: Scenario) -> Block:
     parameters = RigParameters(*rig, *control_parts, heated, *timing)
     temperature = setup.thermal.start if isinstance(scenario.temperature, Thermal) else scenario.temperature
     inputs = RigInputs(temperature=float(temperature))
-    variable = setup.law, setup.inverse_model.damper, setup.sensors
-    parts = (*classes_of(setup.rig.damper), *map(type, setup.rig.effects), *map(type, variable))
     hidden = ["coil.delay", "sensors", "self_heating", "tolerance", "step", "sample_every"]
     hidden += ["temperature"] if heated else ["thermal", "coil.resistance"]
     hidden += [] if control.sensors else ["displacement_noise", "frame_noise", "driver_noise", "floor_noise"]
@@ -306,7 +303,7 @@ def rig_block(scenario: Scenario) -> Block:
     name, said = f"{scenario.name} rig", "suspension seat with driver, MR damper, coil and control law"
     rest, step = _rest(scenario, control, parameters, inputs, initial, late), setup.timing.step
     texts = tuple(hidden), tuple(_left_out(scenario))
-    return Block(name, said, parameters, inputs, rest, start, observe, advance, step, True, parts, *texts)
+    return Block(name, said, parameters, inputs, rest, start, observe, advance, step, True, *texts)
 
 
 def _rest(scenario: Scenario, control: Control, p: RigParameters, u: RigInputs, initial: State, late: int) -> RigState:

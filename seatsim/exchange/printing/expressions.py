@@ -7,13 +7,28 @@ import math
 import operator
 from collections.abc import Callable, Mapping
 from types import FunctionType, ModuleType
+from typing import Any
 
 import numpy as np
 from numba import types
 
 from seatsim.compilation.jit import GENERIC
-from seatsim.exchange.printing.program import Scope, build_tuple, element, part, source_of
-from seatsim.exchange.printing.values import BOOLEAN, INTEGER, REAL, Rank, Signature, Value, is_known, is_tuple, number
+from seatsim.exchange.printing.program import (
+    BOOLEAN,
+    INTEGER,
+    REAL,
+    Rank,
+    Scope,
+    Signature,
+    Value,
+    build_tuple,
+    element,
+    is_known,
+    is_tuple,
+    number,
+    part,
+    source_of,
+)
 
 _ARITHMETIC: dict[type[ast.operator], tuple[str, Callable[[float, float], float]]] = {
     ast.Add: ("+", operator.add),
@@ -48,7 +63,7 @@ def print_expression(node: ast.expr, scope: Scope) -> Value:  # noqa: PLR0911 - 
         case ast.Constant(value=bool() | int() | float() as value):
             return number(value)
         case ast.Name(id=name):
-            return scope.variables[name] if name in scope.variables else _known(scope.look_up(name), node, scope)
+            return scope.variables[name] if name in scope.variables else _known(scope.look_up(name), scope)
         case ast.Attribute():
             return _print_attribute(node, scope)
         case ast.Tuple(elts=items):
@@ -56,9 +71,9 @@ def print_expression(node: ast.expr, scope: Scope) -> Value:  # noqa: PLR0911 - 
         case ast.BinOp(left=left, op=ast.Pow(), right=right):
             return _print_power(print_expression(left, scope), print_expression(right, scope), scope)
         case ast.BinOp(left=left, op=op, right=right):
-            return arithmetic(op, print_expression(left, scope), print_expression(right, scope), node, scope)
+            return arithmetic(op, print_expression(left, scope), print_expression(right, scope), scope)
         case ast.UnaryOp(op=op, operand=operand):
-            return _print_unary(op, print_expression(operand, scope), node, scope)
+            return _print_unary(op, print_expression(operand, scope))
         case ast.Compare():
             return _print_comparison(node, scope)
         case ast.BoolOp():
@@ -69,7 +84,7 @@ def print_expression(node: ast.expr, scope: Scope) -> Value:  # noqa: PLR0911 - 
             return _print_subscript(node, scope)
         case ast.Call():
             return _print_call(node, scope)
-    raise scope.refuse(node, "only numbers, tuples and records, arithmetic, comparisons and calls have a counterpart")
+    raise TypeError(type(node))
 
 
 def _print_items(nodes: list[ast.expr], scope: Scope) -> list[Value]:
@@ -84,47 +99,41 @@ def _print_items(nodes: list[ast.expr], scope: Scope) -> list[Value]:
     return values
 
 
-def _known(thing: object, node: ast.expr, scope: Scope) -> Value:
+def _known(thing: object, scope: Scope) -> Value:
     """Return what a global name or an attribute of a module stands for."""
     if isinstance(thing, bool | int | float):
         return number(thing)
     if isinstance(thing, np.ndarray):
         return scope.program.table(thing)
     if isinstance(thing, tuple):
-        values = [_known(item, node, scope) for item in thing]
+        values = [_known(item, scope) for item in thing]
         return build_tuple(scope, values, type(thing) if hasattr(thing, "_fields") else None)
     if callable(thing) or isinstance(thing, ModuleType):
         return Value("", None, thing)
-    raise scope.refuse(node, "a name must stand for a number, a tuple or array of numbers, a function or a module")
+    raise TypeError(type(thing))
 
 
 def _print_attribute(node: ast.Attribute, scope: Scope) -> Value:
     owner = print_expression(node.value, scope)
     if owner.type is None:
-        return _known(getattr(owner.known, node.attr, None), node, scope)
-    if not isinstance(owner.type, types.BaseNamedTuple):
-        raise scope.refuse(node, "only records and modules have attributes")
+        return _known(getattr(owner.known, node.attr), scope)
     if node.attr in owner.type.fields:
         return element(scope, owner, owner.type.fields.index(node.attr))
-    method = getattr(owner.type.instance_class, node.attr, None)
-    if method is None:
-        raise scope.refuse(node, f"{owner.type.instance_class.__name__} has no such field or method")
-    return Value("", None, (method, owner))
+    return Value("", None, (getattr(owner.type.instance_class, node.attr), owner))
 
 
-def arithmetic(op: ast.operator, left: Value, right: Value, node: ast.AST, scope: Scope) -> Value:
+def arithmetic(op: ast.operator, left: Value, right: Value, scope: Scope) -> Value:
     """Return the result of an operation on two numbers; two tuples are joined by +."""
     if is_tuple(left.type) and is_tuple(right.type) and isinstance(op, ast.Add):
         items = [element(scope, side, k) for side in map(scope.keep, (left, right)) for k in range(len(side.type))]
         return build_tuple(scope, items)
-    if type(op) not in _ARITHMETIC or not all(map(_is_number, (left, right))):
-        raise scope.refuse(node, "this operation has no counterpart for these types")
+    _require_numbers(left, right)
     sign, compute = _ARITHMETIC[type(op)]
     whole = not isinstance(op, ast.Div) and REAL not in {left.type, right.type}
     if is_known(left, right) and not (right.known == 0 and sign in "/%"):
         return number(compute(left.known, right.known))
     if sign in "/%" and isinstance(op, ast.FloorDiv | ast.Mod) and not whole:
-        raise scope.refuse(node, "// and % are for whole numbers only")
+        raise TypeError("// and % are for whole numbers only")
     rank = Rank.SUM if sign in "+-" else Rank.PRODUCT
     if not whole:
         left, right = left.as_real(), right.as_real()
@@ -134,6 +143,11 @@ def arithmetic(op: ast.operator, left: Value, right: Value, node: ast.AST, scope
 
 def _is_number(value: Value) -> bool:
     return value.type in {REAL, BOOLEAN} or isinstance(value.type, types.Integer)
+
+
+def _require_numbers(*values: Value) -> None:
+    if not all(map(_is_number, values)):
+        raise TypeError("no numbers")
 
 
 def _print_power(base: Value, exponent: Value, scope: Scope) -> Value:
@@ -147,12 +161,13 @@ def _print_power(base: Value, exponent: Value, scope: Scope) -> Value:
     return Value(f"r_pow({base.code}, {exponent.code})", REAL, plain=False)
 
 
-def _print_unary(op: ast.unaryop, value: Value, node: ast.AST, scope: Scope) -> Value:
+def _print_unary(op: ast.unaryop, value: Value) -> Value:
     if isinstance(op, ast.Not):
         opposite = Value(f"!{value.within(0)}", BOOLEAN, plain=False, rank=Rank.UNARY)
         return number(not value.known) if is_known(value) else opposite
-    if not isinstance(op, ast.USub) or not _is_number(value):
-        raise scope.refuse(node, "this operation has no counterpart")
+    _require_numbers(value)
+    if not isinstance(op, ast.USub):
+        raise TypeError(type(op))
     if is_known(value):
         return number(-value.known)
     return Value(f"-{value.within(0)}", value.type, plain=False, rank=Rank.UNARY)
@@ -160,8 +175,7 @@ def _print_unary(op: ast.unaryop, value: Value, node: ast.AST, scope: Scope) -> 
 
 def _print_comparison(node: ast.Compare, scope: Scope) -> Value:
     values = [print_expression(item, scope) for item in (node.left, *node.comparators)]
-    if any(type(op) not in _COMPARED for op in node.ops) or not all(map(_is_number, values)):
-        raise scope.refuse(node, "only numbers are compared")
+    _require_numbers(*values)
     if is_known(*values):
         pairs = zip(node.ops, values, values[1:], strict=False)
         return number(all(_COMPARED[type(op)][1](a.known, b.known) for op, a, b in pairs))
@@ -195,7 +209,7 @@ def _print_choice(node: ast.IfExp, scope: Scope) -> Value:
         return print_expression(node.body if condition.known else node.orelse, scope)
     yes, no = print_expression(node.body, scope), print_expression(node.orelse, scope)
     if yes.type != no.type and not (_is_number(yes) and _is_number(no)):
-        raise scope.refuse(node, f"both branches must have one type, not {yes.type} and {no.type}")
+        raise TypeError(f"{yes.type} and {no.type}")
     if yes.is_empty:
         return yes
     if REAL in (yes.type, no.type):
@@ -209,13 +223,11 @@ def _print_subscript(node: ast.Subscript, scope: Scope) -> Value:
     if isinstance(owner.type, types.Array):
         items = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
         return _array_element(owner, [print_expression(item, scope) for item in items], scope)
-    if not is_tuple(owner.type):
-        raise scope.refuse(node, "only tuples and arrays have elements")
     if isinstance(node.slice, ast.Slice):
         ends = [print_expression(end, scope).known if end else None for end in (node.slice.lower, node.slice.upper)]
         return part(scope, owner, slice(*ends))
     index = print_expression(node.slice, scope)
-    return element(scope, owner, int(index.known) if is_known(index) else index, node)
+    return element(scope, owner, int(index.known) if is_known(index) else index)
 
 
 def _array_element(owner: Value, indices: list[Value], scope: Scope) -> Value:
@@ -238,8 +250,6 @@ def _print_call(node: ast.Call, scope: Scope) -> Value:
     """Return the value of a call: of `math` and built-in functions, of records and methods, of printed functions."""
     callee, given = print_expression(node.func, scope), _print_items(node.args, scope)
     named = {str(each.arg): print_expression(each.value, scope) for each in node.keywords}
-    if callee.type is not None or callee.known is None:
-        raise scope.refuse(node, "what is called must be a function, a class of records or a method")
     thing = callee.known
     if isinstance(thing, tuple):
         thing, owner = thing
@@ -249,40 +259,28 @@ def _print_call(node: ast.Call, scope: Scope) -> Value:
             return build_tuple(scope, items, owner.type.instance_class)
         given = [owner, *given]
     if isinstance(thing, type) and issubclass(thing, tuple) and hasattr(thing, "_fields"):
-        return build_tuple(scope, _bind(thing, given, named, node, scope), thing)
+        return build_tuple(scope, _bind(thing, given, named), thing)
     module = getattr(thing, "__module__", "")
     if module == "math" or thing in (abs, min, max, len, float, np.empty):
-        return _print_library(thing.__name__, given, node, scope)
+        return _print_library(thing.__name__, given, scope)
     thing = getattr(thing, "py_func", thing)
     if thing in GENERIC:
-        given = _bind(thing, given, named, node, scope) if named else given
+        given = _bind(thing, given, named) if named else given
         thing = scope.program.form(thing, tuple(value.type for value in given))
         named = {}
-        if thing is None:
-            raise scope.refuse(node, "the function has no form for these types")
     if not isinstance(thing, FunctionType):
-        raise scope.refuse(node, f"{getattr(thing, '__name__', thing)} has no counterpart in C")
-    return _print_own(thing, _bind(thing, given, named, node, scope), scope)
+        raise TypeError(type(thing))
+    return _print_own(thing, _bind(thing, given, named), scope)
 
 
-def _bind(
-    function: Callable[..., object], given: list[Value], named: Mapping[str, Value], node: ast.Call, scope: Scope
-) -> list[Value]:
+def _bind(function: Callable[..., object], given: list[Value], named: Mapping[str, Value]) -> list[Value]:
     """Return the arguments of a call in the order of the parameters, with defaults."""
     bound = inspect.signature(function).bind(*given, **named)
     bound.apply_defaults()
-    values: list[object] = []
+    values: list[Any] = []
     for value in bound.arguments.values():
         values += value if isinstance(value, tuple) and not isinstance(value, Value) else [value]
-    return [value if isinstance(value, Value) else _default(value, node, scope) for value in values]
-
-
-def _default(value: object, node: ast.Call, scope: Scope) -> Value:
-    if isinstance(value, bool | int | float):
-        return number(value)
-    if value == ():
-        return Value("", types.Tuple(()))
-    raise scope.refuse(node, "defaults of arguments must be numbers")
+    return [value if isinstance(value, Value) else number(value) for value in values]
 
 
 def _print_own(function: FunctionType, values: list[Value], scope: Scope) -> Value:
@@ -305,7 +303,7 @@ def _print_own(function: FunctionType, values: list[Value], scope: Scope) -> Val
     return Value(f"{printed.name}({listed})", printed.result, plain=False)
 
 
-def _print_library(name: str, values: list[Value], node: ast.Call, scope: Scope) -> Value:
+def _print_library(name: str, values: list[Value], scope: Scope) -> Value:
     """Return the call of a built-in function or one of `math`."""
     whole = all(value.type != REAL for value in values)
     if name == "len":
@@ -313,8 +311,6 @@ def _print_library(name: str, values: list[Value], node: ast.Call, scope: Scope)
         return number(len(only.type) if is_tuple(only.type) else only.shape[0])
     if name == "empty":
         shape = values[0].known if isinstance(values[0].known, tuple) else (values[0].known,)
-        if not all(isinstance(length, int) for length in shape):
-            raise scope.refuse(node, "the shape of an array must be constant")
         code = scope.name("scratch")
         scope.write(f"real {code}[{math.prod(shape)}];")
         return Value(code, types.Array(REAL, len(shape), "C"), shape=shape)
@@ -329,8 +325,6 @@ def _print_library(name: str, values: list[Value], node: ast.Call, scope: Scope)
         return first
     if name == "float":
         return values[0].as_real()
-    if name not in _IN_C:
-        raise scope.refuse(node, f"'{name}' has no counterpart in C")
     word, kind = ("abs", INTEGER) if name == "abs" and whole else _IN_C[name]
     listed = ", ".join(value.code for value in values)
     return Value(f"{word}({listed})", kind, plain=False, rank=Rank.UNARY if kind == INTEGER else 0)

@@ -8,17 +8,27 @@ from collections.abc import Callable
 from numba import types
 
 from seatsim.exchange.printing.expressions import arithmetic, print_expression
-from seatsim.exchange.printing.program import Printed, Program, Scope, element, origin, source_of
-from seatsim.exchange.printing.values import (
+from seatsim.exchange.printing.program import (
     NOTHING,
     REAL,
     NotPrintableError,
+    Printed,
+    Program,
+    Scope,
     Signature,
     Value,
+    element,
     is_empty,
     is_known,
     is_tuple,
+    origin,
+    source_of,
     whole_as_int64,
+)
+
+_PERMITTED = (
+    "permitted are numbers, tuples and records, arithmetic (// and % of whole numbers), comparisons of numbers,"
+    " calls of math, of records and of such functions, assignments, conditions, and loops over range(n) or range(m, n)"
 )
 
 
@@ -100,7 +110,7 @@ def _common_type(scope: Scope, definition: ast.FunctionDef) -> types.Type:
     if len(kinds) > 1 and not any(map(is_tuple, kinds)):
         return REAL
     if len(kinds) > 1:
-        raise scope.refuse(definition, f"it returns several types: {', '.join(map(str, kinds))}")
+        raise scope.refuse(definition, _PERMITTED)
     return kinds[0]
 
 
@@ -115,7 +125,18 @@ def _print_body(body: list[ast.stmt], scope: Scope) -> bool:
 
 
 def _print_statement(node: ast.stmt, scope: Scope) -> bool:
-    """Print one statement; return whether nothing after it is reached."""
+    """Print one statement; return whether nothing after it is reached.
+
+    Raises:
+        NotPrintableError: it holds what C, or this printer, has not: its names and types are looked up in vain.
+    """
+    try:
+        return _try_statement(node, scope)
+    except (AttributeError, LookupError, TypeError, ValueError) as error:
+        raise scope.refuse(node, _PERMITTED) from error
+
+
+def _try_statement(node: ast.stmt, scope: Scope) -> bool:
     match node:
         case ast.Expr(value=ast.Constant()) | ast.Pass():
             return False
@@ -127,7 +148,7 @@ def _print_statement(node: ast.stmt, scope: Scope) -> bool:
             _assign(target, value, scope)
         case ast.AugAssign(target=target, op=op, value=value):
             before = print_expression(_as_read(target), scope)
-            _store(target, arithmetic(op, before, print_expression(value, scope), node, scope), scope)
+            _store(target, arithmetic(op, before, print_expression(value, scope), scope), scope)
         case ast.If():
             return _print_if(node, scope)
         case ast.For():
@@ -138,7 +159,7 @@ def _print_statement(node: ast.stmt, scope: Scope) -> bool:
             scope.write(f"{ast.unparse(node)};")
             return True
         case _:
-            raise scope.refuse(node, "this statement has no counterpart in C")
+            raise TypeError(type(node))
     return False
 
 
@@ -182,7 +203,7 @@ def _store(target: ast.expr, value: Value, scope: Scope) -> None:
             place = print_expression(_as_read(target), scope)
             scope.write(f"{place.code} = {value.code};")
         case _:
-            raise scope.refuse(target, "only variables and elements of arrays are assigned")
+            raise TypeError(type(target))
 
 
 def _as_read(target: ast.expr) -> ast.expr:
@@ -224,19 +245,17 @@ def _print_block(body: list[ast.stmt], scope: Scope) -> bool:
 def _print_for(node: ast.For, scope: Scope) -> None:
     match node:
         case ast.For(target=ast.Name(id=name), iter=ast.Call(func=ast.Name(id="range"), args=ends), orelse=[]):
-            values = [print_expression(end, scope) for end in ends]
+            *starts, last = (print_expression(end, scope) for end in ends)
         case _:
-            raise scope.refuse(node.iter, "a loop runs over range(n) or range(m, n)")
-    if len(values) > 2:
-        raise scope.refuse(node.iter, "a loop runs over range(n) or range(m, n)")
+            raise TypeError(type(node.iter))
     counter = scope.name("k" if name == "_" else name)
     # Python reads the ends once: one that the loop changes is held.
     changed = {
         n.id for part in node.body for n in ast.walk(part) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)
     }
     read = {n.id for n in ast.walk(ends[-1]) if isinstance(n, ast.Name)}
-    end = scope.keep(_copied(values[-1]) if changed & read else values[-1]).code
-    start = values[0].code if len(values) == 2 else "0"
+    end = scope.keep(_copied(last) if changed & read else last).code
+    [start] = [each.code for each in starts] or ["0"]
     scope.variables[name] = Value(counter, types.int64)
     scope.write(f"for (int {counter} = {start}; {counter} < {end}; {counter}++) {{")
     _print_block(node.body, scope)
@@ -247,7 +266,7 @@ def _print_while(node: ast.While, scope: Scope) -> None:
     lines = len(scope.lines)
     condition = print_expression(node.test, scope)
     if node.orelse or len(scope.lines) > lines:
-        raise scope.refuse(node.test, "the condition of a loop must be a single expression")
+        raise TypeError("the condition of a loop is more than a single expression")
     scope.write(f"while ({condition.code}) {{")
     _print_block(node.body, scope)
     scope.write("}")

@@ -1,21 +1,172 @@
-"""A program in C that grows by the functions that are asked for, and the body of one while it is printed."""
+"""A program in C that grows by the functions that are asked for, and the body of one while it is printed.
+
+Its values are C expressions with the types that numba gives them, and what is known of them beforehand.
+"""
 
 from __future__ import annotations
 
 import ast
 import builtins
 import inspect
+import math
 import textwrap
-from collections.abc import Callable
-from typing import NamedTuple, TypeVar
+from collections.abc import Callable, Collection
+from enum import IntEnum
+from pathlib import Path
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numba import types
 
 from seatsim.compilation.jit import GENERIC
-from seatsim.exchange.printing import values
-from seatsim.exchange.printing.values import NotPrintableError, Signature, Value
 from seatsim.schema.arrays import Array
+from seatsim.schema.errors import InputError
+
+REAL, INTEGER, BOOLEAN, NOTHING = types.float64, types.int64, types.boolean, types.none
+Rank = IntEnum("Rank", "UNARY PRODUCT SUM COMPARISON LOGIC CHOICE")
+"""Ranks of C's operators, from the one that binds most; 0 is a name, a literal or a call."""
+_TAKEN = Path(__file__).parents[1].joinpath("c", "taken.txt").read_text().split()
+"""Words of C and of its library."""
+
+
+UNKNOWN = object()
+"""What is only known when the code runs."""
+
+
+class NotPrintableError(InputError):
+    """A function uses what has no counterpart in the printed C."""
+
+
+class Value(NamedTuple):
+    """A value: C expression, type, what it is if that is known, and whether repeating the expression costs nothing.
+
+    `shape` is that of an array, `rank` that of the outermost operator (see `Rank`). A value without
+    type is a Python object that exists while the code is printed only: a module, a function, a class.
+    """
+
+    code: str
+    type: types.Type  # or None
+    known: Any = UNKNOWN  # a number, a tuple, a function, a class or a module
+    plain: bool = True
+    shape: tuple[int, ...] = ()
+    rank: int = 0
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether the value holds no number, so that it has no counterpart in C."""
+        return is_empty(self.type)
+
+    def within(self, most: int) -> str:
+        """Return the expression, in brackets where its outermost operator has a rank above `most`."""
+        return f"({self.code})" if self.rank > most else self.code
+
+    def as_real(self) -> Value:
+        """Return a number as a real one, by a cast where it is a whole one that is known only when the code runs."""
+        if self.type == REAL:
+            return self
+        if is_known(self):
+            return number(float(self.known))
+        return Value(f"(real){self.within(Rank.UNARY)}", REAL, plain=False, rank=Rank.UNARY)
+
+
+class Signature(NamedTuple):
+    """Type of an argument, with the shape of an array."""
+
+    type: types.Type
+    shape: tuple[int, ...] = ()
+
+
+def is_known(*values: Value) -> bool:
+    """Whether all values are known beforehand."""
+    return all(value.known is not UNKNOWN for value in values)
+
+
+def number(value: float | bool) -> Value:
+    """Return a number as a literal."""
+    if isinstance(value, bool):
+        return Value(str(int(value)), BOOLEAN, value)
+    if isinstance(value, int):
+        return Value(str(value), INTEGER, value, rank=0 if value >= 0 else Rank.UNARY)
+    value = float(value)
+    if math.isnan(value):
+        return Value("R_NAN", REAL, value)
+    if math.isinf(value):
+        return Value("R_INFINITY", REAL, value) if value > 0 else Value("-R_INFINITY", REAL, value, rank=Rank.UNARY)
+    negative = math.copysign(1.0, value) < 0.0
+    return Value(f"-R({-value!r})", REAL, value, rank=Rank.UNARY) if negative else Value(f"R({value!r})", REAL, value)
+
+
+def is_tuple(kind: object) -> bool:
+    """Whether a type is that of a tuple or record."""
+    return isinstance(kind, types.BaseTuple)
+
+
+def is_empty(kind: types.Type) -> bool:
+    """Whether a type holds no number, so that it has no counterpart in C."""
+    return kind is NOTHING or (is_tuple(kind) and all(map(is_empty, kind)))
+
+
+def field_names(kind: types.Type) -> tuple[str, ...]:
+    """Return the C names of a record's fields, or of a tuple of several types."""
+    cls = getattr(kind, "instance_class", None)
+    return tuple(map(identifier, cls._fields)) if cls else tuple(f"item{k}" for k in range(len(kind)))
+
+
+def identifier(name: str) -> str:
+    """Return a name that C permits and that is not taken by its library."""
+    return f"{name}_" if name in _TAKEN else name
+
+
+def whole_as_int64(kind: types.Type) -> types.Type:
+    """Return the type of a variable: one type serves all whole numbers."""
+    return INTEGER if isinstance(kind, types.Integer) else kind
+
+
+class _Declarations:
+    """The structs of a program, in the order in which C must see them."""
+
+    def __init__(self) -> None:
+        self.names: dict[types.Type, str] = {}
+        self.text: list[str] = []
+
+    def name(self, kind: types.Type) -> str:
+        """Return the C name of a type, declared before if it is a struct."""
+        if kind == REAL:
+            return "real"
+        if isinstance(kind, types.Array):
+            return "real *" if kind.mutable else "const real *"
+        if kind == BOOLEAN or isinstance(kind, types.Integer):
+            return "int"
+        if kind is NOTHING or is_empty(kind):
+            return "void"
+        if not is_tuple(kind):
+            raise NotPrintableError(f"a value of type {kind} has no counterpart in C")
+        if kind in self.names:
+            return self.names[kind]
+        items = tuple(kind)
+        if is_row(kind):
+            name, body = f"{self.name(items[0])}_{len(items)}", f"    {self.name(items[0])} at[{len(items)}];\n"
+        else:
+            fields = zip(field_names(kind), items, strict=True)
+            body = "".join(f"    {self.name(item)} {field};\n" for field, item in fields if not is_empty(item))
+            cls = getattr(kind, "instance_class", None)
+            name = cls.__name__ if cls else "tuple"
+        self.names[kind] = _free_name(identifier(name), self.names.values())
+        self.text.append(f"typedef struct {{\n{body}}} {self.names[kind]};\n")
+        return self.names[kind]
+
+
+def is_row(kind: types.Type) -> bool:
+    """Whether a tuple is an array in C: elements of one type, without names of their own."""
+    return isinstance(kind, types.UniTuple) and not isinstance(kind, types.BaseNamedTuple)
+
+
+def _free_name(name: str, taken: Collection[str]) -> str:
+    """Return the name, with a number where it is taken."""
+    if name not in taken:
+        return name
+    return next(f"{name}_{k}" for k in range(2, len(taken) + 3) if f"{name}_{k}" not in taken)
+
 
 _N = TypeVar("_N", bound=ast.AST)
 
@@ -37,7 +188,7 @@ class Program:
 
     def __init__(self, translate: Callable[[Program, Callable[..., object], str, tuple[Signature, ...]], Printed]):
         self.translate = translate
-        self.types = values.Declarations()
+        self.types = _Declarations()
         self.functions: list[str] = []
         self.tables: list[str] = []
         self._printed: dict[tuple[object, tuple[Signature, ...]], Printed] = {}
@@ -49,7 +200,7 @@ class Program:
         """Return the printed function for arguments of these types; it is printed when it is first asked for."""
         key = (function, arguments)
         if key not in self._printed:
-            name = values.free_name(_function_name(function), self._names)
+            name = _free_name(_function_name(function), self._names)
             self._names.add(name)
             self._printed[key] = self.translate(self, function, name, arguments)
         return self._printed[key]
@@ -67,11 +218,9 @@ class Program:
         key = flat.tobytes()
         if key not in self._table_names:
             name = self._table_names[key] = f"table_{len(self._table_names) + 1}"
-            numbers = textwrap.fill(", ".join(values.number(float(v)).code for v in flat.ravel()), 110)
+            numbers = textwrap.fill(", ".join(number(float(v)).code for v in flat.ravel()), 110)
             self.tables.append(f"static const real {name}[{flat.size}] = {{\n{textwrap.indent(numbers, '    ')}\n}};\n")
-        return Value(
-            self._table_names[key], types.Array(values.REAL, flat.ndim, "C", readonly=True), array, True, flat.shape
-        )
+        return Value(self._table_names[key], types.Array(REAL, flat.ndim, "C", readonly=True), array, True, flat.shape)
 
     def source(self) -> str:
         """Return the text of structs, tables and functions."""
@@ -130,20 +279,20 @@ class Scope:
 
     def name(self, wanted: str) -> str:
         """Return a name for a variable that is free within the function."""
-        name = values.free_name(values.identifier(wanted), self._names)
+        name = _free_name(identifier(wanted), self._names)
         self._names.add(name)
         return name
 
     def assign(self, name: str, value: Value) -> None:
         """Assign a value to the variable that Python calls `name`."""
         before = self.variables.get(name)
-        known = value.known if self.assigned.get(name, 0) <= 1 else values.UNKNOWN
-        if value.type is None or value.is_empty or known is not values.UNKNOWN or value.shape:
+        known = value.known if self.assigned.get(name, 0) <= 1 else UNKNOWN
+        if value.type is None or value.is_empty or known is not UNKNOWN or value.shape:
             # Nothing to compute: the value itself stands for the variable.
             self.variables[name] = value
             return
-        kind = values.whole_as_int64(value.type)
-        if before is None or before.type != kind or before.known is not values.UNKNOWN:
+        kind = whole_as_int64(value.type)
+        if before is None or before.type != kind or before.known is not UNKNOWN:
             self._declare(name, kind, value.code)
         else:
             self.write(f"{before.code} = {value.code};")
@@ -170,41 +319,37 @@ class Scope:
         code = self.function.__code__
         if name in code.co_freevars:
             return (self.function.__closure__ or ())[code.co_freevars.index(name)].cell_contents
-        found = self.function.__globals__.get(name, values.UNKNOWN)
-        return getattr(builtins, name, values.UNKNOWN) if found is values.UNKNOWN else found
+        found = self.function.__globals__.get(name, UNKNOWN)
+        return getattr(builtins, name, UNKNOWN) if found is UNKNOWN else found
 
 
 def build_tuple(scope: Scope, items: list[Value], cls: type | None = None) -> Value:
     """Return a tuple, or a record of a class, of these elements."""
-    kind = types.BaseTuple.from_types(tuple(values.whole_as_int64(item.type) for item in items), cls)
-    known = tuple(item.known for item in items) if items and values.is_known(*items) else values.UNKNOWN
-    if values.is_empty(kind):
+    kind = types.BaseTuple.from_types(tuple(whole_as_int64(item.type) for item in items), cls)
+    known = tuple(item.known for item in items) if items and is_known(*items) else UNKNOWN
+    if is_empty(kind):
         return Value("", kind)
     listed = ", ".join(item.code for item in items if not item.is_empty)
     name = scope.program.types.name(kind)
-    return Value(f"({name}){{{{{listed}}}}}" if values.is_row(kind) else f"({name}){{{listed}}}", kind, known, False)
+    return Value(f"({name}){{{{{listed}}}}}" if is_row(kind) else f"({name}){{{listed}}}", kind, known, False)
 
 
-def element(scope: Scope, owner: Value, index: int | Value, node: ast.AST | None = None) -> Value:
+def element(scope: Scope, owner: Value, index: int | Value) -> Value:
     """Return one element of a tuple, by its position or, where all have one type, by a number known later."""
     if isinstance(index, Value):
-        if not values.is_row(owner.type):
-            raise scope.refuse(node or ast.Pass(), "the position in a tuple of several types must be a constant")
+        if not is_row(owner.type):
+            raise TypeError("the position in a tuple of several types must be a constant")
         return Value(f"{scope.keep(owner).code}.at[{index.code}]", owner.type.dtype)
     index %= len(owner.type)
     kind = tuple(owner.type)[index]
-    if isinstance(owner.known, tuple):
-        found = owner.known[index]
-        if not isinstance(found, tuple):
-            return values.number(found)
-        pairs = zip(found, kind, strict=True)
-        return build_tuple(scope, [values.number(float(v) if k == values.REAL else v) for v, k in pairs])
-    if values.is_empty(kind):
+    if isinstance(owner.known, tuple) and not isinstance(owner.known[index], tuple):
+        return number(owner.known[index])
+    if is_empty(kind):
         return Value("", kind)
     held = scope.keep(owner)
-    if values.is_row(owner.type):
+    if is_row(owner.type):
         return Value(f"{held.code}.at[{index}]", kind)
-    return Value(f"{held.code}.{values.field_names(owner.type)[index]}", kind)
+    return Value(f"{held.code}.{field_names(owner.type)[index]}", kind)
 
 
 def part(scope: Scope, owner: Value, span: slice) -> Value:

@@ -40,7 +40,7 @@ BLANKS = re.compile(r'"[^"]*"|[^\s"]+')
 _OTHER_UNITS = """m/s2 m/s² mm/s2 °c c k f hz - sec in lb kg bar pa deg rad ° 1/s rpm w %"""
 _LISTED_UNITS = {unit.lower() for units in USUAL.values() for unit in units} | set(_OTHER_UNITS.split())
 _LEADING_ZERO = re.compile(r"0\d+")
-COMMENT = re.compile(r"^\s*(?:#+|%+|//+|!+)\s*")
+_COMMENT = re.compile(r"^\s*(?:#+|%+|//+|!+)\s*")
 """What begins a remark; names may stand in one."""
 _SCORED = 50
 """Last lines by which delimiter and decimal sign are chosen."""
@@ -112,7 +112,7 @@ def _find_body(kinds: Sequence[Sequence[Kind]]) -> tuple[int, int]:
     return best
 
 
-def find_first_row(rows: Sequence[Sequence[Kind]], place: str) -> int:
+def _find_first_row(rows: Sequence[Sequence[Kind]], place: str) -> int:
     """Return the first row of the table; `rows` say of each cell what it holds.
 
     The table is the longest stretch of equally wide rows with numbers. A row belongs to it where the first column of
@@ -176,7 +176,7 @@ _LEFT_OUT = ("", "comment", "comments", "remark", "remarks", "kommentar", "bemer
 """Last names of a line, in lower case, that may have no cells in the rows: LabVIEW writes `Comment`."""
 
 
-def split_header(rows: Sequence[Sequence[str]], columns: int) -> list[tuple[str, str]]:
+def _split_header(rows: Sequence[Sequence[str]], columns: int) -> list[tuple[str, str]]:
     """Return name and unit of each column as the rows above the numbers say them; rows of another width are titles.
 
     Of the rows of texts that fill most columns one may hold units; of the others the one that says most holds the
@@ -196,10 +196,10 @@ def _may_be_names(row: Sequence[str]) -> bool:
     """Say whether a row holds texts in most columns, and no number; numbers that count columns are names, too."""
     filled = [cell for cell in row if cell.strip()]
     holds_numbers = any(_PLAIN.kind(cell) for cell in filled)
-    return len(filled) >= max(1, 0.6 * len(row)) and (not holds_numbers or count_columns(row))
+    return len(filled) >= max(1, 0.6 * len(row)) and (not holds_numbers or _count_columns(row))
 
 
-def count_columns(row: Sequence[str]) -> bool:
+def _count_columns(row: Sequence[str]) -> bool:
     """Say whether a row has a text or nothing in front, and then numbers that count from 0 or 1."""
     numbers = [cell.strip() for cell in row[1:]]
     counts = [[str(number) for number in range(begin, begin + len(numbers))] for begin in (0, 1)]
@@ -239,7 +239,7 @@ def _name_and_unit(cell: str, index: int) -> tuple[str, str]:
     return text or f"column {index + 1}", ""
 
 
-class Rows(NamedTuple):
+class _Rows(NamedTuple):
     """The first rows of a table: the line of the first one, and by row its cells and what they hold."""
 
     line: str
@@ -257,7 +257,7 @@ class Rows(NamedTuple):
         return max((index + 1 for row in self.kinds for index, kind in enumerate(row) if kind is not None), default=0)
 
 
-def fit_names(path: Path, above: Sequence[str], rows: Rows, dialect: Dialect, is_stated: bool) -> list[list[str]]:
+def _fit_names(path: Path, above: Sequence[str], rows: _Rows, dialect: Dialect, is_stated: bool) -> list[list[str]]:
     """Return the cells of each line above the numbers; `is_stated` says that the map counts these lines.
 
     A mark of a remark is none of the names. Names that are parted by another delimiter than the numbers are understood
@@ -290,9 +290,9 @@ def _names(line: str, cells: Sequence[str], dialect: Dialect) -> bool:
     return dialect.delimiter != " " or any(read_name(cell)[:2] != (None, None) for cell in cells)
 
 
-def _fit(line: str, rows: Rows, dialect: Dialect) -> list[str]:
+def _fit(line: str, rows: _Rows, dialect: Dialect) -> list[str]:
     """Return the cells of a line, as many as there are columns where it can be parted so."""
-    mark = COMMENT if dialect.delimiter == ";" else _COMMENT_OR_SEMICOLON
+    mark = _COMMENT if dialect.delimiter == ";" else _COMMENT_OR_SEMICOLON
     text = mark.sub("", line)
     is_remark = text != line.lstrip()
     for words in (text, _LABEL.sub("", text)):
@@ -322,3 +322,35 @@ def _ways(text: str, dialect: Dialect, is_remark: bool) -> Iterator[Callable[[st
     if is_remark or delimiter == " " or all(read_name(word) != Meaning(None) for word in text.split()):
         yield lambda text: [cell.strip('"') for cell in BLANKS.findall(text)]
         yield lambda text: re.split(r"\s{2,}|\t", text.strip())
+
+
+class Head(NamedTuple):
+    """The beginning of a table: how it is written, and the lines above its numbers with what they say."""
+
+    dialect: Dialect
+    columns: list[tuple[str, str]]
+    above: list[str]
+
+
+def list_used(lines: Sequence[str]) -> list[int]:
+    """Return which lines hold something, and no remark."""
+    return [index for index, line in enumerate(lines) if line.strip() and not _COMMENT.match(line)]
+
+
+def read_head(path: Path, lines: Sequence[str], dialect: Dialect, header: int | None) -> Head:
+    """Return what stands above the rows, which begin below `header` lines where that is stated."""
+    used = list_used(lines)
+    rows = [dialect.split(lines[index]) for index in used]
+    kinds = dialect.kinds(rows)
+    if header is None:
+        first = _find_first_row(kinds, str(path))
+        first += first == 0 and len(rows) > 1 and _count_columns(rows[0])
+    else:
+        first, count = sum(index < header for index in used), used[-1] + 1
+        if header >= count:
+            said = f"csv.header {header} counts those above the first row of numbers"
+            raise InputError(f"{path}: has {count} lines; {said}")
+    above = used[first] if header is None else header
+    table = _Rows(lines[used[first]], rows[first:], kinds[first:])
+    names = _fit_names(path, lines[:above], table, dialect, header is not None)
+    return Head(dialect, _split_header(names, len(rows[first])), list(lines[:above]))

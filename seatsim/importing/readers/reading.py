@@ -15,6 +15,7 @@ import numpy as np
 from seatsim.importing.signals import DataFile, Group, Signal
 from seatsim.schema.bounds import TooMuchError, check_made
 from seatsim.schema.errors import InputError
+from seatsim.schema.fields import read_packaged
 from seatsim.schema.guarded import is_there, nearest_beside, read_bytes
 from seatsim.schema.tables import LARGEST_FILE, UNPACKING_ERRORS, unpack
 from seatsim.schema.text import make_printable
@@ -45,29 +46,17 @@ class TextLayout(NamedTuple):
 
 
 class _Format(NamedTuple):
-    """A format: the function that reads it, with its module, how its files begin, and how they may end."""
+    """A format: the function that reads it, with its module, a pattern of how its files begin, and how they may end."""
 
     name: str
     reader: str
-    begins: tuple[bytes, ...]
-    endings: tuple[str, ...]
+    begins: str | None = None
+    endings: tuple[str, ...] = ()
 
 
-FORMATS = (
-    _Format("Parquet", "tables.read_arrow", (b"PAR1",), (".parquet", ".pq")),
-    _Format("Feather", "tables.read_arrow", (b"ARROW1",), (".feather", ".arrow")),
-    _Format("XLSX", "text.read_xlsx", (), (".xlsx", ".xlsm")),
-    _Format("MAT v7.3", "matlab.read", (b"MATLAB 7.3 MAT-file",), ()),
-    _Format("MAT v5", "matlab.read", (b"MATLAB 5.0 MAT-file",), (".mat",)),
-    _Format("HDF5", "hdf5.read", (HDF5,), (".h5", ".hdf5", ".hdf")),
-    _Format("MDF", "loggers.read_mdf", (b"MDF     ", b"UnFinMF "), (".mf4", ".mdf")),
-    _Format("TDMS", "loggers.read_tdms", (b"TDSm",), (".tdms",)),
-    _Format("UFF", "time_histories.read_uff", (b"    -1",), (".uff", ".unv")),
-    _Format("RPC III", "time_histories.read_rpc", (b"FORMAT\0", b"FORMAT "), (".rpc", ".rsp", ".tim")),
-    _Format("CSV", "text.read", (), (".csv", ".tsv", ".txt", ".asc", ".dat")),
-)
+_FORMATS = read_packaged(Path(__file__).with_name("formats.yaml"), tuple[_Format, ...])
 """Formats in the order in which they are tried."""
-_KNOWN = ", ".join(each.name for each in FORMATS)
+_KNOWN = ", ".join(each.name for each in _FORMATS)
 _OLD_EXCEL = b"\xd0\xcf\x11\xe0"
 _MARKUP = {
     re.compile(rb"\s*[{\[]\s*(?:[\[{\"}\]]|-?\d)"): "a JSON file",
@@ -130,7 +119,7 @@ def _content(path: Path) -> bytes:
 
 
 def _recognise(path: Path, content: bytes) -> _Format:
-    head, names = content[:_SNIFFED], {each.name: each for each in FORMATS}
+    head, names = content[:_SNIFFED], {each.name: each for each in _FORMATS}
     if head.startswith(_OLD_EXCEL):
         raise InputError(f"{path}: is an Excel file of the old kind (.xls): save it as .xlsx; permitted: {_KNOWN}")
     for pattern, what in _MARKUP.items():
@@ -141,10 +130,10 @@ def _recognise(path: Path, content: bytes) -> _Format:
         return names["XLSX"]
     if head[USER_BLOCK:].startswith(HDF5):
         return names["MAT v7.3" if head.startswith(b"MATLAB") else "HDF5"]
-    for each in FORMATS:
-        if head.startswith(each.begins):
+    for each in _FORMATS:
+        if each.begins is not None and re.match(each.begins, head.decode("latin-1")):
             return each
-    ending = next((each for each in FORMATS if path.name.lower().endswith(each.endings)), None)
+    ending = next((each for each in _FORMATS if path.name.lower().endswith(each.endings)), None)
     if ending is not None and ending.name != "CSV":
         version = ", of version 4 (save it by -v7)" if ending.name == "MAT v5" else ""
         raise InputError(f"{path}: does not begin as {ending.name} does; it is damaged{version}, or has a wrong ending")

@@ -11,27 +11,15 @@ import re
 from collections.abc import Iterable, Sequence
 from itertools import pairwise, takewhile
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 import numpy as np
 
 from seatsim.importing.names import read_name
-from seatsim.importing.readers.header import (
-    BLANKS,
-    COMMENT,
-    MISSING,
-    Dialect,
-    Rows,
-    count_columns,
-    find_first_row,
-    fit_names,
-    quote,
-    split_header,
-)
+from seatsim.importing.readers.header import BLANKS, MISSING, Dialect, Head, list_used, quote, read_head
 from seatsim.importing.readers.reading import TextLayout, need
 from seatsim.importing.readers.tables import read_column
-from seatsim.importing.signals import DataFile, Group, Signal, find_rate, note_left_out
-from seatsim.importing.time_axis import measured_axis
+from seatsim.importing.signals import DataFile, Group, Signal, find_rate, measured_axis, note_left_out
 from seatsim.schema.bounds import TooMuchError, check_made
 from seatsim.schema.errors import InputError, gathered, raise_all
 from seatsim.schema.tables import parse_rows
@@ -50,14 +38,6 @@ _BYTES_OF_CELL = 64
 """Bytes that a cell takes in memory as Python holds it."""
 
 
-class _Head(NamedTuple):
-    """The beginning of a table: how it is written, and the lines above its numbers with what they say."""
-
-    dialect: Dialect
-    columns: list[tuple[str, str]]
-    above: list[str]
-
-
 def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     """Return the columns of a text table, in a group for each column of time that has others behind it.
 
@@ -67,15 +47,15 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     """
     content = _as_utf8(content, layout.encoding)
     lines = _sample(content)
-    dialect = Dialect.find([lines[index] for index in _list_used(lines)], layout.delimiter, layout.decimal)
+    dialect = Dialect.find([lines[index] for index in list_used(lines)], layout.delimiter, layout.decimal)
     if dialect is None:
         is_stated = layout.delimiter or layout.decimal
         reason = "csv.delimiter and csv.decimal are wrong" if is_stated else "csv.delimiter has to be stated in a map"
         raise InputError(f"{path}: holds no row of numbers; it is no table, or {reason}")
-    return _read_table(path, content, _read_head(path, lines, dialect, layout.header))
+    return _read_table(path, content, read_head(path, lines, dialect, layout.header))
 
 
-def _read_table(path: Path, content: bytes, head: _Head) -> DataFile:
+def _read_table(path: Path, content: bytes, head: Head) -> DataFile:
     body, notes = _clean(_without_lines(content, len(head.above)), head)
     columns, (delimiter, decimal) = [str(index) for index in range(len(head.columns))], head.dialect
     table, bad = parse_rows(body, path, columns, delimiter=delimiter, decimal=decimal, missing=MISSING)
@@ -107,30 +87,6 @@ def _encoding(content: bytes) -> str:
     return "utf-8"
 
 
-def _list_used(lines: Sequence[str]) -> list[int]:
-    """Return which lines hold something, and no remark."""
-    return [index for index, line in enumerate(lines) if line.strip() and not COMMENT.match(line)]
-
-
-def _read_head(path: Path, lines: Sequence[str], dialect: Dialect, header: int | None) -> _Head:
-    """Return what stands above the rows, which begin below `header` lines where that is stated."""
-    used = _list_used(lines)
-    rows = [dialect.split(lines[index]) for index in used]
-    kinds = dialect.kinds(rows)
-    if header is None:
-        first = find_first_row(kinds, str(path))
-        first += first == 0 and len(rows) > 1 and count_columns(rows[0])
-    else:
-        first, count = sum(index < header for index in used), used[-1] + 1
-        if header >= count:
-            said = f"csv.header {header} counts those above the first row of numbers"
-            raise InputError(f"{path}: has {count} lines; {said}")
-    above = used[first] if header is None else header
-    table = Rows(lines[used[first]], rows[first:], kinds[first:])
-    names = fit_names(path, lines[:above], table, dialect, header is not None)
-    return _Head(dialect, split_header(names, len(rows[first])), list(lines[:above]))
-
-
 def _sample(content: bytes) -> list[str]:
     """Return the first lines of a table; one that the sample cuts is left out, and a name over several stands in one.
 
@@ -151,7 +107,7 @@ def _without_lines(content: bytes, count: int) -> bytes:
     return content[sum(map(len, content[:_SAMPLE].splitlines(keepends=True)[:count])) :]
 
 
-def _clean(body: bytes, head: _Head) -> tuple[bytes, list[str]]:
+def _clean(body: bytes, head: Head) -> tuple[bytes, list[str]]:
     """Return rows as pyarrow reads them, without names among them, and a sentence on those."""
     for sign in ("\u2212", "\u2013"):
         body = body.replace(sign.encode(), b"-")
@@ -204,7 +160,7 @@ def _find(lines: Sequence[str], text: str) -> int:
     return lines.index(plain) + 1 if plain in lines else len(lines)
 
 
-def _signals(table: pa.Table, head: _Head, notes: list[str]) -> list[Signal]:
+def _signals(table: pa.Table, head: Head, notes: list[str]) -> list[Signal]:
     """Return the columns of numbers; a column of dates is added to the times of day behind it. The others are noted."""
     signals, left_out, days = [], [], None
     for (name, unit), column in zip(head.columns, table.columns, strict=True):
@@ -302,4 +258,4 @@ def _as_csv(rows: Iterable[Sequence[object]]) -> bytes:
 
 def _read_cells(place: Path, content: bytes, layout: TextLayout) -> DataFile:
     """Return the columns of a table that was written with commas and decimal points, as `read` does."""
-    return _read_table(place, content, _read_head(place, _sample(content), Dialect(",", "."), layout.header))
+    return _read_table(place, content, read_head(place, _sample(content), Dialect(",", "."), layout.header))

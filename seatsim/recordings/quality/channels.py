@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from seatsim.recordings.quality import damage
-from seatsim.recordings.quality.issue import Issue, RunUnderTest, is_at_rest, place_in_run
+from seatsim.recordings.quality.issue import Issue, RunUnderTest, Severity, is_at_rest, place_in_run
 from seatsim.recordings.recording import ACCELEROMETERS, MOTION
 from seatsim.schema.arrays import Array
 from seatsim.schema.fields import read_packaged
@@ -56,33 +56,26 @@ def _constant(run: RunUnderTest, channel: str) -> Iterator[Issue]:
     values, noise = run.table[channel], run.noise(channel)
     # Friction and play may hold a travel, a coil its current: nothing lets an acceleration rest.
     if channel in ACCELEROMETERS and np.ptp(values) == 0.0:
-        text = f"is {values[0]:g} throughout; the sensor is dead: repair it or remove the channel"
-        yield run.issue("error", "constant", text, channel)
+        yield run.issue("dead", channel, value=values[0])
     elif (channel in MOTION or noise > 0.0) and np.ptp(values) == 0.0:
-        text = f"is {values[0]:g} throughout; what it measures rests, or the sensor is dead: it cannot be assessed"
-        yield run.issue("warning", "constant", text, channel)
+        yield run.issue("at_rest", channel, value=values[0])
     elif channel in MOTION and run.is_still(channel) and channel != run.driver:
-        text = f"shows hardly more than its noise of {noise:g}; it cannot be assessed"
-        yield run.issue("warning", "silent", text, channel)
+        yield run.issue("silent", channel, noise=noise)
 
 
 def _current(run: RunUnderTest, channel: str, gain: float) -> Iterator[Issue]:
     """Report a current, or a voltage that commands one, outside the range of the coil."""
     values, most = gain * run.table[channel], run.nominal.coil.max_current
-    unit = run.recording.channels[channel].unit
     low, high = float(np.min(values)), float(np.max(values))
-    seen = f"ranges from {low:.3g} to {high:.3g} A"
     if max(-low, high) > 30.0 * most:
-        text = f"{seen} where max_current is {most:g} A; is it in m{unit}? convert it to {unit}"
-        yield run.issue("error", "unit", text, channel)
+        unit = run.recording.channels[channel].unit
+        yield run.issue("current_in_mA", channel, low=low, high=high, most=most, unit=unit)
     elif -low > max(0.25 * most, 2.0 * high):
         # A sensor's zero may be off, that of a command not: only its command tells the sign of a current for sure.
         is_sure = channel != "coil_current" or run.opposes_command
-        text = "its sign is swapped: turn it" if is_sure else "its sign is swapped, or its zero is off: check both"
-        yield run.issue("error" if is_sure else "warning", "sign", f"{seen}; {text}", channel)
+        yield run.issue("current_swapped" if is_sure else "current_off_or_swapped", channel, low=low, high=high)
     elif -low > 0.25 * most or high > 1.3 * most:
-        text = f"{seen}, outside 0 to {most:g} A; check its zero and its scale"
-        yield run.issue("warning", "range", text, channel)
+        yield run.issue("current_range", channel, low=low, high=high, most=most)
 
 
 def check_shapes(run: RunUnderTest) -> Iterator[Issue]:
@@ -96,10 +89,9 @@ def check_shapes(run: RunUnderTest) -> Iterator[Issue]:
             continue
         is_sure = channel in MOTION and damage.is_fine(run, channel)
         for extreme, rows in damage.flat_tops(values):
-            is_error = is_sure and rows > _CLIPPED * len(values)
-            text = f"{rows} rows stand at its extreme {extreme:.4g}"
-            cause = "it is clipped: widen its range" if is_sure else "it rests there, or is clipped: look at its range"
-            yield run.issue("error" if is_error else "warning", "clipped", f"{text}; {cause}", channel)
+            severity: Severity | None = "error" if is_sure and rows > _CLIPPED * len(values) else None
+            name = "clipped_sensor" if is_sure else "rests_at_extreme"
+            yield run.issue(name, channel, severity, rows=rows, extreme=extreme)
         if run.noise(channel) > damage.quantum(values):
             yield from _held(run, channel, is_sure)
 
@@ -108,7 +100,7 @@ def check_sizes(run: RunUnderTest) -> Iterator[Issue]:
     """Report motions and temperatures that no seat reaches; only a comparison tells of which unit they are."""
     for channel in (*MOTION, "damper_temperature"):
         if channel in run.table and (text := say_implausible(run.table[channel], run.recording.channels[channel].unit)):
-            yield run.issue("error", "unit", f"{text}; correct its unit", channel)
+            yield run.issue("impossible", channel, said=text)
 
 
 def check_damage(run: RunUnderTest) -> Iterator[Issue]:
@@ -126,11 +118,9 @@ def _held(run: RunUnderTest, channel: str, is_sure: bool) -> Iterator[Issue]:
     longest, usual = int(np.argmax(lengths)), int(np.median(lengths))
     rows = slice(starts[longest], starts[longest] + lengths[longest])
     if is_sure and lengths[longest] > max(_STUCK * run.rate, 20) and _moves_beside(run, channel, rows):
-        text = f"is stuck from {rows.start / run.rate:.3g} to {rows.stop / run.rate:.3g} s"
-        yield run.issue("error", "stuck", f"{text}; cut the run there or repair the sensor", channel)
+        yield run.issue("stuck", channel, first=rows.start / run.rate, last=rows.stop / run.rate)
     elif usual >= 2 and np.mean(lengths == usual) > damage.REGULAR:
-        text = f"holds each value for {usual} rows; its own rate is lower: interpolate it"
-        yield run.issue("warning", "held", text, channel)
+        yield run.issue("held_channel", channel, rows=usual)
 
 
 def _moves_beside(run: RunUnderTest, channel: str, rows: slice) -> bool:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.recordings.quality.issue import Issue, RunUnderTest, Severity
+from seatsim.recordings.quality.issue import Issue, RunUnderTest, doubt
 from seatsim.recordings.recording import COMMANDS
 from seatsim.schema.arrays import Array
 
@@ -121,9 +121,9 @@ class Doubter(NamedTuple):
     channel: str
     rate: float | None
 
-    def say(self, severity: Severity, kind: str, text: str) -> Issue:
-        """Return a doubt."""
-        return Issue(severity, kind, f"{self.channel}: {text}", self.channel)
+    def say(self, name: str, **figures: object) -> Issue:
+        """Return a doubt: a finding with its figures."""
+        return doubt(name, self.channel, **figures)
 
     def at(self, row: int) -> str:
         """Return where a row is."""
@@ -133,7 +133,7 @@ class Doubter(NamedTuple):
 def doubt_shape(doubter: Doubter, values: Array, lengths: NDArray[np.int_]) -> Iterator[Issue]:
     """Yield clipping, spikes, held values and the floor of a channel that varies."""
     for extreme, rows in flat_tops(values):
-        yield doubter.say("warning", "clipped", f"{rows} rows stand at its extreme {extreme:.5g}; it is clipped")
+        yield doubter.say("clipped", rows=rows, extreme=extreme)
     # A command may jump from row to row, and no sensor measures it: it has neither spikes nor noise.
     is_command = doubter.channel in COMMANDS
     if not is_command:
@@ -143,7 +143,7 @@ def doubt_shape(doubter: Doubter, values: Array, lengths: NDArray[np.int_]) -> I
     level, step = measure_level(values[:MOST_ROWS], doubter.rate), _find_resolution(values[:MOST_ROWS])
     usual = float(np.median(lengths[:MOST_ROWS]))
     if usual >= 2.0 and np.mean(lengths == usual) > REGULAR:
-        yield doubter.say("warning", "held", f"holds each value for {usual:.0f} rows; its own rate is lower")
+        yield doubter.say("held", rows=usual)
     if np.isfinite(level.fourth):
         yield from _floor(doubter, level, step, 0.5 * float(np.ptp(values)))
 
@@ -162,8 +162,7 @@ def doubt_dropouts(
     if found:
         first, rows = int(starts[found[0]]), int(np.sum(lengths[found]))
         places = f"{rows} rows in {len(found)} places" if len(found) > 1 else f"{rows} rows"
-        text = f"stands still at {values[first]:.5g} for {places}, from {doubter.at(first)} on; a dropout"
-        yield doubter.say("warning", "dropout", text)
+        yield doubter.say("dropout", value=values[first], places=places, first=doubter.at(first))
 
 
 def _jump(jumps: Array, row: int) -> float:
@@ -176,8 +175,7 @@ def doubt_spikes(doubter: Doubter, values: Array, least: float = NOTABLE) -> Ite
     rows = rows[np.abs(values[rows] - 0.5 * (values[rows - 1] + values[rows + 1])) > least * np.std(values)]
     if len(rows):
         size = float(np.max(np.abs(values[rows] - 0.5 * (values[rows - 1] + values[rows + 1]))))
-        text = f"{len(rows)} spikes of up to {size:.3g}, the first at {doubter.at(int(rows[0]))}"
-        yield doubter.say("warning", "spikes", text)
+        yield doubter.say("spikes", count=len(rows), size=size, first=doubter.at(int(rows[0])))
 
 
 def find_spikes(values: Array, factor: float = _SPIKE) -> NDArray[np.int_]:
@@ -206,11 +204,9 @@ def _stands_alone(values: Array, bend: Array, row: int) -> bool:
 def _floor(doubter: Doubter, level: Level, step: float, swing: float) -> Iterator[Issue]:
     """Yield that the floor at high frequencies is none of a sensor: it falls, or is that of the resolution."""
     if level.fourth < _COARSE * step:
-        text = f"shows no noise beyond its resolution of {step:.2g}: it was smoothed, or is coarser than its noise"
-        yield doubter.say("note", "resolution", text)
+        yield doubter.say("resolution", step=step)
     elif level.fourth < max(_SMOOTH * level.third, SILENT * swing):
-        text = "has hardly any noise at high frequencies: filtered, smoothed or computed, it shows no sensor's noise"
-        yield doubter.say("note", "smooth", text)
+        yield doubter.say("smooth")
 
 
 def _find_resolution(values: Array) -> float:

@@ -11,9 +11,8 @@ from itertools import chain
 from typing import NamedTuple
 
 from seatsim.recordings.quality.channels import check_damage, check_ranges, check_shapes, check_sizes
-from seatsim.recordings.quality.consistency import check_consistency, check_exchanged_currents
 from seatsim.recordings.quality.issue import Issue, RunUnderTest, place_in_run, select_errors, settle_refusals
-from seatsim.recordings.quality.relations import doubt_relations
+from seatsim.recordings.quality.relations import check_consistency, check_exchanged_currents, doubt_relations
 from seatsim.recordings.quality.runs import check_all_runs, check_clock, check_rows
 from seatsim.recordings.quality.sensors import check_floor_sensor, without_gravity
 from seatsim.recordings.recording import Recording

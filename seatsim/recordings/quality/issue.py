@@ -1,14 +1,15 @@
 """Issues that an examination finds, and a run under examination: its table, and what its recording states of it."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Literal, NamedTuple, get_args
+from pathlib import Path
+from typing import Literal, NamedTuple
 
 import numpy as np
 
-from seatsim.recordings.header import Refusal
 from seatsim.recordings.recording import Recording
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
+from seatsim.schema.fields import read_packaged
 
 Table = Mapping[str, Array]
 
@@ -35,10 +36,35 @@ class Issue(NamedTuple):
     run: str | None = None
 
 
-def issue_in_all_runs(severity: Severity, kind: str, text: str, channel: str | None = None) -> Issue:
-    """Return an issue of all runs together, or of one channel in all of them."""
-    place = f"all runs, {channel}" if channel else "all runs"
-    return Issue(severity, kind, f"{place}: {text}", channel)
+class _Finding(NamedTuple):
+    """What a check says where it finds something: `text` has places for figures."""
+
+    severity: Severity
+    kind: str
+    text: str
+
+
+_FINDINGS = read_packaged(Path(__file__).with_name("findings.yaml"), dict[str, _Finding])
+"""Findings of all checks by name."""
+
+
+def _state(name: str, scope: str, channel: str | None, severity: Severity | None, **figures: object) -> Issue:
+    """Return a finding with its figures: of a channel, of a scope such as a run, or of both."""
+    usual, kind, text = _FINDINGS[name]
+    place = ", ".join(filter(None, (scope, channel)))
+    return Issue(severity or usual, kind, f"{place}: {text.format(**figures)}", channel)
+
+
+def doubt(name: str, channel: str, **figures: object) -> Issue:
+    """Return a finding of a channel alone."""
+    return _state(name, "", channel, None, **figures)
+
+
+def issue_in_all_runs(
+    name: str, channel: str | None = None, severity: Severity | None = None, **figures: object
+) -> Issue:
+    """Return a finding of all runs together, or of one channel in all of them."""
+    return _state(name, "all runs", channel, severity, **figures)
 
 
 def place_in_run(run: str, issues: Iterable[Issue]) -> list[Issue]:
@@ -54,8 +80,6 @@ def settle_refusals(issues: Iterable[Issue], accepted: Sequence[str]) -> list[Is
 def _settle(error: Issue, accepted: Sequence[str]) -> Issue:
     if error.kind in accepted:
         return error._replace(severity="note", sentence=f"{error.sentence}; accepted by its owner")
-    if error.kind not in get_args(Refusal):
-        return error
     how = f"if it is right as it is, write accept: [{error.kind}] in recording.yaml"
     return error._replace(sentence=f"{error.sentence}; {how}")
 
@@ -108,7 +132,8 @@ class RunUnderTest(NamedTuple):
         """Say whether a channel shows hardly more than its noise."""
         return is_at_rest(self.table[channel], self.noise(channel))
 
-    def issue(self, severity: Severity, kind: str, text: str, channel: str | None = None) -> Issue:
-        """Return an issue of this run, or of one channel of it."""
-        place = f"{self.name}, {channel}" if channel else self.name
-        return Issue(severity, kind, f"{place}: {text}", channel, self.name)
+    def issue(
+        self, name: str, channel: str | None = None, severity: Severity | None = None, **figures: object
+    ) -> Issue:
+        """Return a finding of this run, or of one channel of it."""
+        return _state(name, self.name, channel, severity, **figures)._replace(run=self.name)

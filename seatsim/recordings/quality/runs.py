@@ -42,10 +42,8 @@ def check_rows(run: RunUnderTest) -> Iterator[Issue]:
     if travel in run.table:
         steps = find_spikes(np.diff(run.table[travel]), _STEP)
         if len(steps):
-            text = f"steps at {steps[0] / run.rate:.4g} s (row {steps[0] + 1}), where no inertia lets it"
             more = f", and in {len(steps) - 1} more places" * (len(steps) > 1)
-            text += f"; rows were lost there{more}: cut the run there, or record anew"
-            yield run.issue("warning", "lost", text, travel)
+            yield run.issue("steps_of_travel", travel, first=steps[0] / run.rate, row=steps[0] + 1, more=more)
 
 
 def _doubled(run: RunUnderTest) -> Iterator[Issue]:
@@ -54,8 +52,7 @@ def _doubled(run: RunUnderTest) -> Iterator[Issue]:
     again = find_repeated_rows(np.array([values for values in run.table.values() if np.ptp(values) > 0.0]))
     if len(again):
         severity: Severity = "warning" if len(again) / run.rate <= LATE else "error"
-        text = f"{len(again)} rows hold in every channel what a row before holds, the first is row {again[0] + 1}"
-        yield run.issue(severity, "doubled", f"{text}; they were written twice: remove them")
+        yield run.issue("doubled", None, severity, rows=len(again), first=again[0] + 1)
 
 
 def find_repeated_rows(channels: Array) -> NDArray[np.intp]:
@@ -94,20 +91,16 @@ def _check_stated(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
         and stated.get("law") == "replay"
         and "current" not in stated
     ):
-        text = "neither current_command nor coil_current is recorded, and the nominal scenario states no current"
-        text += "; 0 A is taken: write controller.current"
-        yield issue_in_all_runs("warning", "current", text, "current_command")
+        yield issue_in_all_runs("no_current", "current_command")
     command = [run.table["current_command"] for run in runs if "current_command" in run.table]
     flowing = [run.table["coil_current"] for run in runs if "coil_current" in run.table]
     if command and not any(map(np.any, command)) and any(np.ptp(each) > 0.0 for each in flowing):
-        text = "is 0 throughout while coil_current changes; log the command, or remove the channel"
-        yield issue_in_all_runs("warning", "current", text, "current_command")
+        yield issue_in_all_runs("no_command", "current_command")
     channel = next((name for name in MOTION if name in recording.channels), "")
     seen = measure_level(runs[0].table[channel], runs[0].rate).fourth if channel else 0.0
     is_noisy = _NOISY * np.std(runs[0].table[channel]) < seen < np.inf if channel else False
     if is_noisy and not any(entry.noise_rms for entry in recording.channels.values()):
-        text = "no noise_rms is stated, of this channel or any other"
-        yield issue_in_all_runs("note", "noise", f"{text}; thresholds hang on it: state that of each sensor", channel)
+        yield issue_in_all_runs("no_noise_stated", channel)
 
 
 def check_clock(run: RunUnderTest) -> Iterator[Issue]:
@@ -123,16 +116,13 @@ def check_clock(run: RunUnderTest) -> Iterator[Issue]:
     mean = float(np.mean(steps[is_even])) if is_even.any() else 0.0
     typical = float(np.median(steps))
     if not _SLOWEST <= run.rate <= _FASTEST:
-        apart = f"rows are {interval:.5g} s apart, {run.rate:.5g} Hz, which no logger of a seat has"
-        yield run.issue("error", "rate", f"{apart}; is the time in ms? state its unit and import again", "time")
+        yield run.issue("no_logger", "time", apart=interval, rate=run.rate)
     elif not (abs(typical - 1.0) <= 0.3 and abs(mean - 1.0) <= 0.005):
-        apart = f"rows are {typical * interval:.5g} s apart where sample_rate {run.rate:g} means {interval:.5g} s"
-        yield run.issue("error", "rate", f"{apart}; resample the run or correct the rate", "time")
+        yield run.issue("other_rate", "time", apart=typical * interval, rate=run.rate, stated=interval)
     elif jumps.size:
         lost = float(np.sum(np.abs(steps[jumps] - 1.0))) * interval
-        first = f"{jumps.size} jumps, the first at {time[jumps[0]]:.3f} s (line {jumps[0] + 3})"
-        text = f"{first}; rows are missing: fill them or cut the run there"
-        yield run.issue("warning" if lost <= LATE else "error", "jump", text, "time")
+        severity: Severity = "warning" if lost <= LATE else "error"
+        yield run.issue("jumps", "time", severity, count=jumps.size, first=time[jumps[0]], line=jumps[0] + 3)
 
 
 def check_all_runs(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
@@ -145,23 +135,20 @@ def _length(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     seconds = [run.rows / run.rate - LEFT_OUT for run in runs]
     for run, left in zip(runs, seconds, strict=True):
         if left * run.rate < LEAST_ROWS:
-            text = f"lasts {left + LEFT_OUT:.3g} s and its first second is left out; remove or record anew"
-            yield run.issue("error", "short", text)
+            yield run.issue("short_run", seconds=left + LEFT_OUT)
     total = sum(seconds)
     if total < _SHORT:
-        text = f"{total:.3g} s remain to compare, at least {_SHORT:g} s are wanted; record more"
-        yield issue_in_all_runs("warning" if total >= _SHORTEST else "error", "short", text)
+        severity: Severity = "warning" if total >= _SHORTEST else "error"
+        yield issue_in_all_runs("short", None, severity, seconds=total, least=_SHORT)
     if len(runs) == 1:
-        text = "is the only run, so that no other excitation checks the verdict; record a second run"
-        yield runs[0].issue("warning", "single", text)
+        yield runs[0].issue("single")
 
 
 def _duplicates(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     for first, second in itertools.combinations(runs, 2):
         rows = min(first.rows, second.rows)
         if np.mean([np.mean(first.table[c][:rows] == second.table[c][:rows]) for c in first.table]) > 0.9:
-            text = f"holds the same rows as {first.name}, so that it checks nothing; remove one of them"
-            yield second.issue("error", "duplicate", text)
+            yield second.issue("same_run", other=first.name)
 
 
 def _repeats(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
@@ -173,8 +160,7 @@ def _repeats(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
             first, second = (filter_band(each, each.table[each.driver]) for each in (run, other))
             rows = min(len(first), len(second))
             if find_delay(first[:rows], second[:rows], round(run.rate))[1] <= 0.8:
-                text = f"is no repeat of {other.name}, their excitations differ; remove repeat_of"
-                yield run.issue("error", "repeat", text)
+                yield run.issue("no_repeat", other=other.name)
 
 
 def _at_rest(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
@@ -183,10 +169,9 @@ def _at_rest(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     for run in still:
         moving = [channel for channel in MOTION if channel in run.table and not run.is_still(channel)]
         if moving:
-            text = f"does not move while {moving[0]} does; check its cable and its scale"
-            yield run.issue("error", "still", text, run.driver)
+            yield run.issue("driver_still", run.driver, other=moving[0])
         else:
-            yield run.issue(resting, "still", "nothing moves by more than three times its stated noise; remove the run")
+            yield run.issue("all_still", None, resting)
 
 
 def _fahrenheit(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
@@ -195,5 +180,4 @@ def _fahrenheit(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     stated = nominal.start if isinstance(nominal, Thermal) else nominal
     low = min((float(np.min(run.table[channel])) for run in runs if channel in run.table), default=stated)
     if abs(low - stated) > 20.0 and abs((low - 32.0) / 1.8 - stated) < 2.5:
-        text = f"is never below {low:.3g} degC where the nominal scenario states {stated:g} degC"
-        yield issue_in_all_runs("warning", "unit", f"{text}; if it is in degF, convert it", channel)
+        yield issue_in_all_runs("degF", channel, low=low, stated=stated)

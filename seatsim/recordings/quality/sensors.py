@@ -74,19 +74,15 @@ def without_gravity(recording: Recording) -> Recording:
 def check_constants(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     """Say which accelerometers read gravity, which was taken out, and which channels have an offset."""
     for channel, mean in runs[0].recording.removed.items():
-        text = f"its mean of {mean:.4g} m/s^2 is gravity, which is taken out; the gap and the diagnosis are without it"
-        yield issue_in_all_runs("note", "gravity", text, channel)
+        yield issue_in_all_runs("gravity_removed", channel, mean=mean)
     for channel in (name for name in (*ACCELEROMETERS, *_ABOUT_ZERO) if name in runs[0].table):
         values, unit = np.concatenate([run.table[channel] for run in runs]), runs[0].recording.channels[channel].unit
         low, high = np.quantile(values, (0.01, 0.99))
         mean, swing = float(np.mean(values)), 0.5 * float(high - low)
-        text = f"its mean is {mean:.3g} {unit}"
         if channel in ACCELEROMETERS and abs(mean) > _OFFSET:
-            said = f"{text}, an offset: a seat that stays where it is has no mean acceleration"
-            yield issue_in_all_runs("note", "offset", said, channel)
+            yield issue_in_all_runs("accelerometer_offset", channel, mean=mean, unit=unit)
         elif channel not in ACCELEROMETERS and abs(mean) > _DISPLACED * swing > 0.0:
-            said = f"{text}, {abs(mean) / swing:.0%} of its swing; check the sensor's zero"
-            yield issue_in_all_runs("note", "offset", said, channel)
+            yield issue_in_all_runs("zero_off", channel, mean=mean, unit=unit, share=abs(mean) / swing)
 
 
 def check_noise(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
@@ -98,8 +94,7 @@ def check_noise(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
         if channel == "current_command" or stated == 0.0 or not 0.0 < seen.fourth < np.inf:
             continue
         repeated = _list_unrepeated(recording.runs, tables, channel)
-        all_of = _measure_unrepeated(repeated)
-        text = f"noise_rms is stated as {stated:g}, but about {seen.fourth:.2g} is seen"
+        all_of = min((float(np.std(values)) for values in repeated), default=np.nan)
         is_too_small = seen.third > _NOISE_OFF * stated and seen.fourth > _WHITE * seen.third
         levels = (measure_level(values, runs[0].rate).fourth for values in repeated)
         reason = ""
@@ -108,11 +103,11 @@ def check_noise(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
         elif is_too_small and any(level < _REPEATS * seen.fourth for level in levels):
             reason = "comes again when the excitation is repeated"
         if reason:
-            yield issue_in_all_runs("note", "noise", f"{text}, which {reason}: it is no noise of the sensor", channel)
-        elif is_too_small or all_of < stated / _NOISE_OFF:
-            repeats = f"noise_rms is stated as {stated:g}, but repeats differ by {all_of:.2g} only"
-            said = f"{text if is_too_small else repeats}; correct it, all thresholds hang on it"
-            yield issue_in_all_runs("warning", "noise", said, channel)
+            yield issue_in_all_runs("noise_of_motion", channel, stated=stated, seen=seen.fourth, reason=reason)
+        elif is_too_small:
+            yield issue_in_all_runs("more_noise", channel, stated=stated, seen=seen.fourth)
+        elif all_of < stated / _NOISE_OFF:
+            yield issue_in_all_runs("less_noise", channel, stated=stated, seen=all_of)
         elif seen.fourth < stated / _NOISE_OFF and not all_of >= stated / _NOISE_OFF:
             yield _less_is_seen(runs, channel, seen, stated)
 
@@ -122,11 +117,8 @@ def _less_is_seen(runs: Sequence[RunUnderTest], channel: str, seen: Level, state
     values = np.concatenate([run.table[channel] for run in runs])
     least = max(SILENT * 0.5 * float(np.ptp(values)), quantum(values) / 12**0.5)
     if seen.fourth < max(least, _WHITE * seen.third):
-        text = f"of the stated noise_rms {stated:g} next to nothing is left at high frequencies: it was filtered"
-        return issue_in_all_runs("note", "noise", f"{text}, and what is left below them cannot be seen", channel)
-    text = f"noise_rms is stated as {stated:g}, but about {seen.fourth:.2g} is seen at high frequencies"
-    advice = "correct it if the noise is white, keep it if a filter took the rest; a repeated run shows all of it"
-    return issue_in_all_runs("warning", "noise", f"{text}; {advice}", channel)
+        return issue_in_all_runs("filtered", channel, stated=stated)
+    return issue_in_all_runs("less_at_high_frequencies", channel, stated=stated, seen=seen.fourth)
 
 
 def _list_unrepeated(entries: Mapping[str, RunEntry], tables: Mapping[str, Table], channel: str) -> list[Array]:
@@ -140,16 +132,11 @@ def _list_unrepeated(entries: Mapping[str, RunEntry], tables: Mapping[str, Table
     return found
 
 
-def _measure_unrepeated(unrepeated: Sequence[Array]) -> float:
-    """Return the RMS of what does not repeat itself, at all frequencies, NaN without repeats."""
-    return min((float(np.std(values)) for values in unrepeated), default=np.nan)
-
-
 def check_floor_sensor(run: RunUnderTest) -> Iterator[Issue]:
     """Report an accelerometer of the floor that stands still while the floor moves."""
     if FLOOR in run.table:
-        for kind, text in _faults(run.table[FLOOR], run.noise(FLOOR), run.rate):
-            yield run.issue("warning", kind, text, FLOOR)
+        for name, extreme in _faults(run.table[FLOOR], run.noise(FLOOR), run.rate):
+            yield run.issue(name, FLOOR, extreme=extreme)
 
 
 def follows_floor(recording: Recording) -> bool:
@@ -158,15 +145,14 @@ def follows_floor(recording: Recording) -> bool:
     return not any(_faults(recording.table(run)[FLOOR], noise, rate) for run in recording.runs)
 
 
-def _faults(values: Array, noise: float, rate: float) -> list[tuple[str, str]]:
-    """Return kind and text of the issues of a record; nothing where the floor is at rest."""
+def _faults(values: Array, noise: float, rate: float) -> list[tuple[str, float]]:
+    """Return the findings of a record, each with the extreme that it is at; nothing where the floor is at rest."""
     noise = max(noise, _LEAST)
     if is_at_rest(values, noise):
         return []
     if _stillness(values, noise, max(_FEWEST, round(_WINDOW * rate))) > _STILL:
-        return [("steps", "stands still at values other than zero, as a sensor does that has steps or play; repair it")]
-    limits = _limits(values, noise)
-    return [("limit", f"stands still about its extreme {at:.4g}; it is clipped: widen its range") for at in limits]
+        return [("steps", np.nan)]
+    return [("limit", extreme) for extreme in _limits(values, noise)]
 
 
 def _limits(values: Array, noise: float) -> list[float]:

@@ -5,8 +5,7 @@ import csv
 import pytest
 
 from controllers import synthesise
-from controllers.synthesis.scaling import scale
-from controllers.synthesis.search import require_stabilisable
+from controllers.synthesis.search import require_stabilisable, scale
 from seatsim.schema.errors import SynthesisError
 
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from controllers.synthesis.kept import find_kept
 from controllers.synthesis.plant import GeneralisedPlant
+from controllers.synthesis.solve import find_kept
 
 GAIN = np.array([[-4056.484836105918, 1 / 3]])
 

@@ -8,7 +8,7 @@ import pytest
 from controllers.synthesis.lmi import find_single_step_gain
 from controllers.synthesis.norm import hinf_norm
 from controllers.synthesis.plant import GeneralisedPlant
-from controllers.synthesis.scaling import scale
+from controllers.synthesis.search import scale
 
 
 def later():

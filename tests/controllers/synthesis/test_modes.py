@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from controllers.synthesis.plant import GeneralisedPlant
-from controllers.synthesis.scaling import scale
-from controllers.synthesis.search import require_stabilisable
+from controllers.synthesis.search import require_stabilisable, scale
 from seatsim.schema.errors import SynthesisError
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from controllers.synthesis.objective import NormObjective
 from controllers.synthesis.plant import GeneralisedPlant
-from controllers.synthesis.scaling import scale
+from controllers.synthesis.search import scale
 
 
 def objective_of(*plants, limit=50.0):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from controllers.synthesis.norm import hinf_norm
-from controllers.synthesis.scaling import scale
+from controllers.synthesis.search import scale
 
 GAIN = np.array([[967.0, 2339.0]])
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from seatsim.diagnosis.fit import PATTERN_STEPS, fit, list_directions, search_pattern, solve_step
+from seatsim.diagnosis.fit import fit, solve_step
 from seatsim.diagnosis.objective import PRIOR_STD
 from seatsim.diagnosis.settings import DiagnosisSettings
 
@@ -17,7 +17,6 @@ from .toy import (
     offer,
     offer_two,
     place,
-    pose_tones,
     stack,
     weigh_stated,
 )
@@ -107,24 +106,3 @@ def test_a_component_beyond_its_bound_by_rounding_stays_where_it_is():
     beyond = np.array([-1.0 - 1e-10, 1.0 + 1e-10])
     step = solve_step(matrix, right, 0, beyond, -np.ones(2), np.ones(2))
     np.testing.assert_array_equal(step, 0.0)
-
-
-def test_a_pattern_search_ends_within_its_smallest_step_of_the_minimum_and_evaluates_no_point_twice():
-    objective = pose_tones({"a.one": (0.3, 0.1)}, (0.01, 0.01), {"run": 200}, ["a.one"])
-    # The true amount is 1.
-    start = objective.evaluate([place(objective.problem, (offer("a.one"), 0.3))])[0]
-    found = search_pattern(objective, start)
-    # The simulation of the start is the first of them.
-    amounts = [round(effect.amount, 9) for _, _, (effect,) in objective.problem.calls]
-    assert len(amounts) == len(set(amounts)) > 5
-    smallest = PATTERN_STEPS[-1] * float(offer("a.one").scale[0])
-    assert found.parameters.values[-1][0] == pytest.approx(1.0, abs=smallest)
-    assert found.cost < start.cost and np.array_equal(found.parameters.deviations, start.parameters.deviations)
-    assert search_pattern(objective, found) is found
-
-
-@pytest.mark.parametrize(("count", "directions"), [(1, 2), (2, 8), (3, 18)])
-def test_a_pattern_search_goes_along_one_parameter_or_two(count, directions):
-    found = list_directions(count)
-    assert found.shape == (directions, count) and len({tuple(each) for each in found}) == directions
-    assert np.all(np.isin(np.count_nonzero(found, axis=1), (1, 2)))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatsim.diagnosis.localise.discrepancy import Discrepancy
-from seatsim.diagnosis.localise.disturbance import BIAS_DRIFT, add_strength, find_bias_drift
+from seatsim.diagnosis.localise.disturbance import BIAS_DRIFT, Disturbance, add_strength, find_bias_drift
 from seatsim.diagnosis.objective import Evaluation
 from seatsim.diagnosis.result import Cause, Estimate
 
@@ -56,6 +56,19 @@ def test_a_drift_is_sought_in_the_one_channel_that_stays_open(problem, gaps, cha
         assert np.array_equal(drift.traces[run][k], evaluation.residuals[run][k])
         assert not np.any(np.delete(drift.traces[run], k, axis=0))
     assert find_bias_drift(objective, left(problem, *gaps, cycles=20)) is None
+
+
+def test_a_random_signal_is_not_shown_again_by_a_repeat(folder, problem):
+    repeated = pose(
+        record(folder, runs={"first": 800, "again": 600}, channels=CHANNELS[:4], repeats={"again": "first"})
+    )
+    first, other = np.random.default_rng(5).standard_normal((2, 800))
+    signals = {"first": first, "again": 1.0 + 2.0 * first[:600], "second": other[:600]}
+    found = Disturbance(BIAS_DRIFT, Discrepancy("sensor", "error", "N", signals, {}), {}, {})
+    assert found.measure_share_repeated(repeated) == pytest.approx(1.0)
+    assert found.measure_share_repeated(problem) == 0.0
+    signals["again"] = other[:600]
+    assert found.measure_share_repeated(repeated) < 0.02
 
 
 def test_a_cause_has_the_strength_of_its_signal_and_the_channel_that_errs():

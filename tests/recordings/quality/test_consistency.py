@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from seatsim.recordings.quality.consistency import check_consistency, check_exchanged_currents
 from seatsim.recordings.quality.issue import RunUnderTest
+from seatsim.recordings.quality.relations import check_consistency, check_exchanged_currents
 from seatsim.recordings.recording import load_recording
 
 
