@@ -103,6 +103,17 @@ class Trace:
     after: Array
 
 
+def name_signal(block: str, quantity: str, words: str) -> str:
+    """Return what an unexplained signal in a block is called: that of a sensor its error, else words on what and where.
+
+    A force from outside on the frame, which no channel records, is counted among what comes by the floor.
+    """
+    shown = quantity.replace("_", " ")
+    if block == "sensor":
+        return f"error of the {shown.removeprefix('error of ')}'s sensor"
+    return words.format(shown, "on the frame" if (block, quantity) == ("floor", "force") else f"in the {block}")
+
+
 class DiscrepancySignal(NamedTuple):
     """An unexplained signal on the held-out run, shape (N,) as `time` in s, with sentences on it."""
 
@@ -112,6 +123,11 @@ class DiscrepancySignal(NamedTuple):
     time: Array
     values: Array
     description: list[str]
+
+    @property
+    def words(self) -> str:
+        """What it is called, in a picture and in the report."""
+        return name_signal(self.block, self.quantity, "{} that the simulation lacks {}")
 
 
 class Collinearity(NamedTuple):

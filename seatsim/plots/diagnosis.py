@@ -47,8 +47,8 @@ _REFITTED, AUGMENTED = Entry("refitted", COLOURS[2], width=1.0), Entry("with eff
 _SIMULATED = Entry("simulated", COLOURS[1], width=1.0)
 NOISE = Entry("sensor noise", "black", ":", width=1.3)
 _BAND = Entry(f"±{_SHADED:g} RMS of the noise", style.AREA, width=8)
-_POSITIVE = {"suspension": "lifts the frame", "cushion": "pushes driver and frame apart", "driver": "lifts the driver"}
-"""What a force does to the seat that is positive and lacks in a block other than the damper."""
+_POSITIVE = {"cushion": "pushes driver and frame apart", "driver": "lifts the driver", "sensor": "shows too much"}
+"""What a signal that lacks in a block does where it is positive; in others than these and the damper a force lifts."""
 GRID = Grid((1.5, 1.0, 1.3), left=1.04, gap=(0.0, 0.5))
 _Looks: TypeAlias = dict[str, Entry]
 """Looks of simulations that are compared with a measurement, by their names in a trace."""
@@ -94,8 +94,9 @@ def _plot_gaps(diagnosis: Diagnosis) -> Figure | None:
     if len(names) == 1 or not seen:
         return None
     shown = [name.replace("_", " ") for name in names]
-    note = "RMS of measured less simulated over the spread of the signal, of held-out runs; further left is better."
-    grid = Grid((0.27 * len(names) + 0.1,), left=style.measure_names(shown), right=0.5)
+    which, left = "held-out" if diagnosis.held_out else "all", style.measure_names(shown)
+    note = f"RMS of measured less simulated over the spread of the signal, of {which} runs; further left is better."
+    grid = Grid((0.27 * len(names) + 0.1,), left=left, right=0.5)
     figure, [[axes]] = style.make_page("Gap of each channel, before and after", note, grid, looks)
     axes.set(ylim=(len(names) - 0.4, -0.6), yticks=range(len(names)), yticklabels=shown, xlabel="gap [%]")
     style.scale_log(axes, "x", min(seen) / 1.4, max(seen) * 1.4)
@@ -130,13 +131,13 @@ def _plot_maps(diagnosis: Diagnosis) -> Figure | None:
     left = (trace.measured - trace.nominal, trace.measured - trace.after)
     cells = [shown.factor * residuals.map_rms(x, y, signal, borders) for signal in left]
     known = np.concatenate([each[np.isfinite(each)] for each in cells])
-    if not known.size or not known.max() > 0:
+    if np.max(known, initial=0.0) <= 0:
         return None
     title = f"Error of the {shown.words} over {across.words} and {up.words}"
     note = f"RMS of measured less simulated on {trace.run}; cells of fewer than {residuals.FEWEST} samples stay empty."
     low, high = max(float(known.min()), float(known.max()) / 100), float(known.max())
     note += f" The darkest cells: {format_number(low)} {shown.unit} or less." if known.min() < low else ""
-    figure, [panels] = style.make_page(title, note, Grid((2.2,), 2, right=0.95, top=0.3, gap=(0.15, 0.0)))
+    figure, [panels] = style.make_page(title, note, Grid((2.2,), 2, right=0.95, top=0.3, gap=(0.45, 0.0)))
     norm = LogNorm(low, high)
     for axes, name, values in zip(panels, ("nominal", find_last(diagnosis).label), cells, strict=True):
         mesh = axes.pcolormesh(*borders, values, norm=norm, cmap=colormaps["viridis"], rasterized=True)
@@ -157,11 +158,11 @@ def _plot_discrepancy(diagnosis: Diagnosis) -> Figure | None:
     known = {name: values for name, values in diagnosis.evidence.motion.items() if len(values) == len(found.values)}
     motion = {name: values for name, values in known.items() if name in UNITS and residuals.varies(values)}
     grid = Grid((1.6,) * (1 + len(motion) // 2), columns=2, gap=(0.75, 0.6))
-    title = f"{shown.words[:1].upper()}{shown.words[1:]} that the simulation lacks in the {found.block}"
     run = diagnosis.evidence.traces[0].run if diagnosis.evidence.traces else "the held-out run"
-    note = f"On {run}, over time, then over what moves or changes. "
-    note += SIGNS if found.block == "damper" else f"Positive: {_POSITIVE.get(found.block, 'more than is simulated')}."
-    page = style.make_page(title, note, grid)
+    note = f"On {run}, over time{', then over what moves or changes' * bool(motion)}. "
+    positive = _POSITIVE.get(found.block, "lifts the frame" if found.unit == "N" else "more than is simulated")
+    note += SIGNS if found.block == "damper" else f"Positive: {positive}."
+    page = style.make_page(f"{found.words[:1].upper()}{found.words[1:]}", note, grid)
     first, *panels = page.list_panels(1 + len(motion))
     style.draw_line(first, *thin_line(found.time, shown.factor * found.values), Entry("", COLOURS[6], width=1.0))
     first.set(xlabel="time [s]", ylabel=fill(shown.axis, LETTERS))

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from seatsim.dampers.base import DAMPERS
 from seatsim.plots import style
 from seatsim.plots.style import Entry, Grid, clean_text
+from seatsim.scenario.describe import name_model
 from seatsim.simulation.damper_bench import SineTest, sine_test
 
 SIGNS = "Positive: extension, and the force that opposes it."
@@ -65,4 +66,4 @@ def plot_model(name: str) -> Figure:
     cycles = max(3, math.ceil(_SETTLING * frequency) + 1)
     loops = [(f"{i:g} A", sine_test(cls(), _AMPLITUDE, frequency, i, 20.0, known.factors, cycles)) for i in currents]
     title = f"sine of {1e3 * _AMPLITUDE:g} mm at {frequency:g} Hz, 20 °C"
-    return plot_families(name, "", [Family(title, "current", loops)])
+    return plot_families(name_model(name), "", [Family(title, "current", loops)])

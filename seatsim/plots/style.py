@@ -51,6 +51,8 @@ AREA = "0.91"
 """Grey of areas, such as a band of noise; a wide line of a legend names one."""
 _WIDER, _WIDEST, _APART, _PALE = 2.0, 6.0, 0.8, 0.45
 """Of lines on each other: points by which each is wider than the next, at most in all, at least; their opacity."""
+_MUCH, _ENOUGH = 1 / 3, 10
+"""Share of two lines, of that many points at least, on each other from which on a note says so; one hides the other."""
 _NUMBER, _FEW = 0.6, 3
 """Width in inches of a number along an axis, such as -0.025, with the space to the next; how many are few."""
 _TICK = (0.4, 0.2)
@@ -177,7 +179,7 @@ def make_page(title: str, note: str, grid: Grid, legend: Sequence[Entry] = ()) -
 def _break(text: str, letters: int) -> list[str]:
     """Return the lines of a cleaned text; names in quotation marks stay whole, as do a figure and its sign."""
     text = re.sub("“[^”]*”", lambda name: name[0].replace(" ", "\u00a0"), text)
-    return wrap(text.replace(" %", "\u00a0%").replace(" °", "\u00a0°"), letters)
+    return wrap(text.replace(" %", "\u00a0%").replace(" °", "\u00a0°"), letters, break_on_hyphens=False)
 
 
 def measure_head(title: int, note: int) -> float:
@@ -217,20 +219,23 @@ def name_coincident(figure: Figure) -> Figure:
     named = [{n: line for line in axes.lines if (n := str(line.get_label())) and n[0] != "_"} for axes in figure.axes]
     found, sentences = dict[tuple[str, ...], list[Axes]](), list[str]()
     for axes, lines in zip(figure.axes, named, strict=True):
-        groups: dict[str, list[str]] = {}
-        for name, line in lines.items():
-            is_seen = bool(np.any(np.asarray(line.get_ydata(), float) >= axes.get_ylim()[0]))
-            alike = (first for first in groups if first and _lie_on_each_other(lines[first], line))
-            groups.setdefault(next(alike, name) if is_seen else "", []).append(name)
-        for first, group in groups.items():
-            if len(group) > 1 or not first:
-                words = "{} coincide{}." if first else "Nothing of {} lies within the scales{}."
-                found.setdefault((words, *group), []).append(axes)
+        listed = list[list[str]]()
+        for least, said in ((1.0, "{} coincide{}."), (_MUCH, "{} coincide over much of their length{}.")):
+            groups: dict[str, list[str]] = {}
+            for name, line in lines.items():
+                is_seen = bool(np.any(np.asarray(line.get_ydata(), float) >= axes.get_ylim()[0]))
+                alike = (first for first in groups if first and _measure_overlap(lines[first], line) >= least)
+                groups.setdefault(next(alike, name) if is_seen else "", []).append(name)
+            for first, group in groups.items():
+                if (len(group) > 1 or not first) and group not in listed:
+                    key = (said if first else "Nothing of {} lies within the scales{}.", *group)
+                    found.setdefault(key, []).append(axes)
+            listed += groups.values()
     for (words, *group), panels in found.items():
         is_shared = len(panels) == sum(set(group) <= set(lines) for lines in named)
         where = "" if is_shared else f" ({', '.join(dict.fromkeys(map(_name_panel, panels)))})"
         sentences.append(words.format(name_some([f"“{name.strip()}”" for name in group]), where))
-        if is_shared and "coincide" in words:
+        if is_shared and "coincide{}" in words:
             _nest_lines(figure, group)
     _lengthen_note(figure, " ".join(sentences))
     return figure
@@ -260,15 +265,23 @@ def _nest_lines(figure: Figure, group: Sequence[str]) -> None:
         line.set_alpha(_PALE if rank else 1.0)
 
 
-def _lie_on_each_other(one: Line2D, other: Line2D) -> bool:
-    """Return whether each point of a line is as near to one of another, of as many points, as the wider one is wide."""
+def _measure_overlap(one: Line2D, other: Line2D) -> float:
+    """Return which share of the points of a line is as near to one of another as the wider one is wide.
+
+    Both have as many points. Of lines that differ in width, or that have few points, both are seen unless all are near.
+    """
     first, second = (line.get_transform().transform(line.get_xydata()) * 72 / line.figure.dpi for line in (one, other))
-    known = np.isfinite(first)
-    if first.shape != second.shape or len(first) < 2 or np.any(known != np.isfinite(second)):
-        return False
+    if first.shape != second.shape or len(first) < 2:
+        return 0.0
+    known = np.isfinite(first).all(axis=1), np.isfinite(second).all(axis=1)
     # A thinned line has the least and the largest value of an interval in either order.
     apart = np.fmin.reduce([np.max(np.abs(first - np.roll(second, k, axis=0)), axis=1) for k in (-1, 0, 1)])
-    return bool(np.max(apart[known.all(axis=1)], initial=0.0) <= max(one.get_linewidth(), other.get_linewidth()))
+    widths = one.get_linewidth(), other.get_linewidth()
+    near = apart[known[0] & known[1]] <= max(widths)
+    if bool(np.all(near)) and np.array_equal(*known):
+        return 1.0
+    is_hidden = abs(widths[0] - widths[1]) < 0.5 * _APART and len(near) >= _ENOUGH
+    return 0.99 * float(np.mean(near)) if is_hidden else 0.0
 
 
 def _lengthen_note(figure: Figure, sentence: str) -> None:
@@ -303,7 +316,7 @@ def scale_log(axes: Axes, which: Literal["x", "y"], low: float, high: float) -> 
     is_plain = low > 2e-4 and high < 5e4
     # Powers of ten with a factor read badly: they stand where decades alone would be too few.
     room = np.log10(high / low) / (most if is_plain else 0.5 * most)
-    finest = ((1, 1.5, 2, 3, 5, 7),) if high < 10 * low else ()
+    finest = ((1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8), (1, 1.5, 2, 3, 5, 7)) if high < 10 * low else ()
     subs = next((subs for subs in (*finest, (1, 2, 5), (1, 3)) if room * len(subs) <= 1), (1,))
     axis.set_major_locator(LogLocator(subs=subs, numticks=most))
     axis.set_major_formatter("{x:g}" if is_plain else _write_power)

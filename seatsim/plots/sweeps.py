@@ -61,7 +61,7 @@ def plot_comfort(rows: SweepRows, order: Sequence[str]) -> Figure | None:
     said = "" if colour in (None, "variant") else f" The colours are values of the {name_key(colour)}."
     columns = min(2, len(parts))
     grid = Grid((3.2 if columns == 1 else 2.0,) * -(-len(parts) // columns), columns, top=0.3, gap=(0.7, 0.85))
-    note = f"Lower left is better.{style.OWN_SCALES * (len(parts) > 1)}{said}"
+    note = f"Under the same conditions, lower left is better.{style.OWN_SCALES * (len(parts) > 1)}{said}"
     # Runs under different conditions, as with drivers of another mass, are no rivals.
     has_front = not any(is_condition(key) for key in order if key != road)
     page = style.make_page("Comfort against travel", note, grid, [*looks, *[_FRONT] * has_front])

@@ -18,6 +18,7 @@ from seatsim.report.blocks import Block, Code, Figures, Report, Table, Text, sho
 from seatsim.report.composing import compose
 from seatsim.report.formatting import choose_advice, format_quantity, read_words, show_table
 from seatsim.report.packing import MEASURED, Panel, pack_signals
+from seatsim.scenario.describe import name_model
 from seatsim.schema.content import list_written
 from seatsim.schema.fields import head_columns
 from seatsim.schema.printing import format_number, format_unit
@@ -42,7 +43,7 @@ def report_identification(found: Identification, figures: Figures, command: str)
         undetermined=loose,
         copy=True,
     )
-    about = f"Identification: {found.model}"
+    about = f"Identification: {name_model(found.model)}"
     return compose("identification", about, [_say_fit(found)], advice, sections, found.notes, command)
 
 
@@ -89,8 +90,7 @@ def tabulate_parameters(found: Identification) -> list[Table]:
     for each in estimates:
         figures = (format_number(each.value, 5), format_number(1.96 * each.std, 2))
         rows.append((each.name + " (not determined)" * (not each.identified), format_unit(each.unit), *figures))
-    strong = [k for k, each in enumerate(estimates) if not each.identified]
-    return show_table("parameters", rows, 2, strong)
+    return show_table("parameters", rows, 2, [k for k, each in enumerate(estimates) if not each.identified])
 
 
 MOST_ROWS = 60

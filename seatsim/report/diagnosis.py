@@ -279,7 +279,7 @@ def show_discrepancy(diagnosis: Diagnosis, figures: Figures) -> list[Block]:
     found = diagnosis.evidence.discrepancy
     if found is None or len(found.values) < 2:
         return []
-    lead = formatting.explain("missing", quantity=found.quantity, block=found.block)
+    lead = formatting.explain("missing", words=found.words)
     return [*lead, Items(list(map(format_sentence, found.description))), *show_pictures(figures, "discrepancy")]
 
 

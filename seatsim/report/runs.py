@@ -52,7 +52,7 @@ def report_runs(
     if len(runs) == 1:
         about, said = f"Simulated run: {title}", [describe_run(runs[0])]
     # What the answer leaves out: figures that cannot be relied on, and runs that failed.
-    doubtful = [f"“{name}”" for name, run in zip(label_runs(runs), runs, strict=True) if run.unverified]
+    doubtful = [f"“{name[:-2]}”" for name, run in zip(label_runs(runs), runs, strict=True) if run.unverified]
     gaps = [f"The figures of {name_some(doubtful)} cannot be relied on; the notes say why."] if doubtful else []
     if failures:
         others = f", and {len(failures) - 1} others" if len(failures) > 1 else ""
@@ -128,7 +128,7 @@ def _tabulate_figures(runs: Sequence[Run]) -> list[Table]:
         values = ((metric, each.factor * run.read_metric(metric)) for metric, each in shown.items())
         # End stops are counted.
         texts = (f"{x:.0f}" if metric == HITS and np.isfinite(x) else format_number(x) for metric, x in values)
-        rows.append((f"{name}{' *' * bool(run.unverified)}", *texts))
+        rows.append((name, *texts))
     best, several = find_best(runs), len({condition_of(run.scenario) for run in runs}) > 1
     bold = f" In bold: the most comfortable{' of each condition' * several}." if best else ""
     mark = f" {UNVERIFIED}" if any(run.unverified for run in runs) else ""

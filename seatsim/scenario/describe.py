@@ -45,6 +45,11 @@ def describe(name: str = "") -> str:
     return _format_page(find_page(name)) if name else _format_list(list_pages())
 
 
+def name_model(name: str) -> str:
+    """Return what a damper model is called in words, without what stands behind a colon; the name of an unknown one."""
+    return find_page(name).title.partition(": ")[0] if name in registry.names("damper") else name
+
+
 def list_pages() -> list[Page]:
     """Return what is known of every name, by kind."""
     named = [_make_page(name, kind) for kind in KINDS for name in registry.names(kind)]

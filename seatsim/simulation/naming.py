@@ -10,17 +10,21 @@ from seatsim.schema.printing import LONGEST, format_unit, shorten
 from seatsim.schema.validation import is_finite_number
 from seatsim.simulation.result import Run
 
+DOUBTFUL = "not verified, and never the best: a warning says why."
+"""What a star behind the name of a run says."""
+
 
 def label_runs(runs: Sequence[Run], without: Collection[str] = ()) -> list[str]:
     """Return what sets each run apart from the others: variant and swept values, less those of some keys.
 
-    Of runs of one scenario its name is left out; names that are alike are numbered.
+    Of runs of one scenario its name is left out; names that are alike are numbered. Behind that of a run whose figures
+    cannot be relied on stands a star.
     """
     several = len({run.scenario.name for run in runs}) > 1
     names = [shorten(_describe(run.scenario, several, without), LONGEST) for run in runs]
     return [
-        f"{name} ({names[: k + 1].count(name)})" if not without and names.count(name) > 1 else name
-        for k, name in enumerate(names)
+        f"{name}{f' ({names[: k + 1].count(name)})' if not without and names.count(name) > 1 else ''}{_star(run)}"
+        for k, (name, run) in enumerate(zip(names, runs, strict=True))
     ]
 
 
@@ -32,13 +36,23 @@ def distinguish_runs(group: Sequence[Run], runs: Sequence[Run]) -> tuple[str, li
     first = group[0].scenario
     shared = [describe_swept(first, key, first.label[key]) for key in keys]
     heading = ", ".join([first.name] * (several and same) + shared)
-    return shorten(heading, 52), [shorten(_describe(run.scenario, not same, keys), 52) for run in group]
+    names = [f"{shorten(_describe(run.scenario, not same, keys), 52)}{_star(run)}" for run in group]
+    return shorten(heading, 52), names
+
+
+def explain_stars(runs: Sequence[Run]) -> str:
+    """Return a sentence on the stars behind the names of runs, where there are some."""
+    return f" * {DOUBTFUL}" * any(run.unverified for run in runs)
+
+
+def _star(run: Run) -> str:
+    return " *" * bool(run.unverified)
 
 
 def make_title(runs: Sequence[Run]) -> str:
     """Return the name of one run with what sets it apart, or the names of the scenarios of several."""
     if len(runs) == 1:
-        return shorten(_describe(runs[0].scenario, True), 64)
+        return f"{shorten(_describe(runs[0].scenario, True), 64)}{_star(runs[0])}"
     return shorten(", ".join(dict.fromkeys(run.scenario.name for run in runs)), 64)
 
 

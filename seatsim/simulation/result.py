@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.kernel.loop_data import UNITS as LOOP_UNITS
-from seatsim.metrics.table import Metric
+from seatsim.metrics.table import COMFORT, UNWEIGHTED, Metric
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
 from seatsim.schema.content import Unwritten, written
@@ -124,6 +124,17 @@ class Run:
     def __getitem__(self, name: str) -> Channel:
         """Return a channel with its unit, such as `driver_acceleration`."""
         return Channel(self.history[name], name, UNITS[name])
+
+
+def rank_runs(runs: Sequence[Run]) -> list[Run]:
+    """Return the runs whose figures can be relied on, the most comfortable first; none where fewer than two can.
+
+    They are ranked by the weighted acceleration of the driver, or without weighting where not all have a weighted one.
+    """
+    known = [run for run in runs if not run.unverified]
+    is_weighted = all(np.isfinite(run.read_metric(COMFORT)) for run in known)
+    known.sort(key=lambda run: run.read_metric(COMFORT if is_weighted else UNWEIGHTED))
+    return known if len(known) > 1 else []
 
 
 @dataclass(frozen=True)

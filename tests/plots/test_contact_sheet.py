@@ -54,7 +54,7 @@ def draw_seat_test():
 OTHERS = {
     **{f"diagnosis, {name}": lambda make=make: plot_diagnosis(make()) for name, make in diagnoses.CASES.items()},
     "gap": draw_gap, "bench": lambda: plot_characterisation(characterise("scenarios/data/bench")),
-    "identification": lambda: {"loops": plot_predictions(kinds.identification(["test", "test"]))},
+    "identification": lambda: {"loops": plot_predictions(kinds.identification(["test", "test"], 2e5))},
     "seat test": draw_seat_test, "study": lambda: draw_figures(analyse_sensitivity(kinds.sweep()), kinds.sweep()),
     "comfort": lambda: plot_vibration(kinds.working_day()),
     "sensor": lambda: plot_diagnosis(diagnoses.unknown(lacking=("sensor", "error of frame_acceleration", "m/s^2"))),
@@ -81,18 +81,24 @@ def test_everything_is_legible_and_inside_the_page(figures):
 
 
 def test_no_two_texts_collide(figures):
-    """Labels of ticks, of axes and titles, of all panels together."""
+    """Labels of ticks, of axes and titles, of all panels together, and labels of ticks moved to the ends of an axis."""
     for name, figure in figures.items():
-        texts = list(figure.texts)
+        texts, moved = list(figure.texts), []
         for axes in figure.axes:
             texts += [axes.xaxis.label, axes.yaxis.label, axes._left_title]
             for axis in (axes.xaxis, axes.yaxis):
                 low, high = sorted(axis.get_view_interval())
                 ticks = axis.get_major_ticks()
-                texts += [tick.label1 for tick in ticks if low <= tick.get_loc() <= high and tick.label1.get_visible()]
+                labels = [tick.label1 for tick in ticks if low <= tick.get_loc() <= high and tick.label1.get_visible()]
+                texts += labels
+                if axis is axes.xaxis and labels:
+                    first, last = (labels[k].get_window_extent() for k in (0, -1))
+                    left, right = axes.bbox.x0 - first.width / 2, axes.bbox.x1 + last.width / 2
+                    moved.append(first.from_extents(left, first.y0, right, first.y1))
         boxes = [(text, text.get_window_extent()) for text in texts if text.get_text().strip() and text.get_visible()]
         for (text, box), (other, second) in combinations(boxes, 2):
             assert not box.padded(-1).overlaps(second.padded(-1)), (name, text, other)
+        assert not any(one.overlaps(two) for one, two in combinations(moved, 2)), name
 
 
 def test_every_axis_that_is_numbered_has_a_unit_and_lines_have_a_legend(figures):
@@ -103,6 +109,10 @@ def test_every_axis_that_is_numbered_has_a_unit_and_lines_have_a_legend(figures)
             assert not numbered or axis.get_label_text().endswith("]"), (name, texts)
         if any(len(axes.lines) > 2 for axes in figure.axes) and "run" not in name:
             assert figure.legends or any(axes.get_legend() for axes in figure.axes), name
+        for legend in figure.legends:
+            samples = dict(zip((text.get_text() for text in legend.get_texts()), legend.legend_handles, strict=True))
+            drawn = [(line, samples.get(line.get_label(), line)) for axes in figure.axes for line in axes.lines]
+            assert all((a.get_color(), a.get_alpha()) == (b.get_color(), b.get_alpha()) for a, b in drawn), name
 
 
 def test_a_picture_inside_a_page_is_a_drawing_of_its_own(figures):

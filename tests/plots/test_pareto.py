@@ -1,7 +1,7 @@
 """Comfort against travel: its panels, its names, its floor."""
 
 import dataclasses
-from itertools import product
+from itertools import combinations, product
 
 import numpy as np
 import pytest
@@ -27,8 +27,13 @@ def runs(made_up):
 
 
 def test_panels_are_titled_and_points_named_by_what_sets_them_apart(runs):
-    figure = plot_pareto(runs(["soft", "hard"], (20.0, 80.0)))
+    drawn = runs(["soft", "hard"], (20.0, 80.0))
+    figure = plot_pareto([dataclasses.replace(drawn[0], unverified=("a reason",)), *drawn[1:]])
     assert [axes.get_title(loc="left") for axes in figure.axes] == ["20 °C", "80 °C"]
-    named = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert sorted(name.partition("  ")[2] for name in named if name[1] == " ") == ["hard", "soft"]
-    assert {text.get_text() for text in figure.axes[0].texts} == {"A", "B"}
+    assert [[text.get_text() for text in axes.texts] for axes in figure.axes] == [["soft *", "hard"], ["soft", "hard"]]
+    assert "* not verified" in figure.texts[1].get_text()
+    # Of many points no two lines to their names cross, and no axis of an RMS begins below zero.
+    [axes] = plot_pareto(runs([f"law {k}" for k in range(25)])).axes
+    paths = axes.collections[-1].get_paths()
+    assert not any(one.intersects_path(other, filled=False) for one, other in combinations(paths, 2))
+    assert min(*axes.get_xlim(), *axes.get_ylim()) >= 0

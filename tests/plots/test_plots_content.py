@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from seatsim.effects.base import EFFECTS
+from seatsim.plots.bench.vibration import plot_damping
 from seatsim.plots.runs import looks, signals
 from seatsim.plots.runs.comparison import plot_comparison
 from seatsim.plots.runs.dampers import plot_force_velocity
@@ -13,6 +14,8 @@ from seatsim.plots.runs.signals import CLOSE_UP
 from seatsim.plots.thinning import BINS, thin_line
 from seatsim.scenario.loading import load
 from seatsim.simulation.result import History
+
+from ..report import kinds
 
 
 def texts(figure):
@@ -76,10 +79,12 @@ def test_of_many_runs_the_close_up_has_those_at_the_ends_and_counts_those_left_o
     figure = plot_time_histories(runs)
     assert legend(figure)[:3] == ["law 0", "law 1", "law 2"]
     said = " ".join(texts(figure)[1].split())
-    assert "Shown: “law 0” (least comfortable), “law 1” (best passive) and “law 2” (most comfortable)." in said
-    assert "Left out: 2 of 5 runs." in said
+    assert "of 5 runs: “law 0” (least comfortable), “law 1” (best passive) and “law 2” (most comfortable)." in said
     widths = [line.get_linewidth() for line in figure.axes[0].lines[:3]]
     assert widths == sorted(widths, reverse=True)
+    for doubtful, names in (([2], "“law 3” (most comfortable)"), (range(5), "“law 1 *” and “law 2 *”. * not verified")):
+        shown = [replace(run, unverified=("a reason",) * (k in doubtful)) for k, run in enumerate(runs)]
+        assert names in " ".join(texts(plot_time_histories(shown))[1].split())
 
 
 def test_the_density_of_white_noise_is_flat(made_up):
@@ -123,3 +128,10 @@ def test_a_sweep_is_compared_over_its_number(made_up):
     assert [*figure.axes[0].lines[0].get_xdata()] == [*figure.axes[0].get_xticks()] == [20.0, 50.0, 80.0]
     travel = 1e3 * runs[0].metrics["suspension_displacement_rms"].value
     assert figure.axes[2].lines[0].get_ydata()[2] == pytest.approx(travel)
+
+
+def test_a_damping_test_says_whether_a_seat_keeps_to_its_limits():
+    found = kinds.seat_test()
+    for passed, said in ((True, "The largest value of each line keeps to its limits."), (False, "of “seat” exceeds")):
+        rows = [row._replace(passed=passed) for row in found.damping_rows]
+        assert said in " ".join(texts(plot_damping(found._replace(damping_rows=rows))["damping"])[1].split())

@@ -73,12 +73,12 @@ def gap(size, floor=0.02, **runs):
     return Gap(size, *figures, ("a note",), replayed=runs)
 
 
-def identification(parts):
+def identification(parts, size=500.0):
     rng = np.random.default_rng(1)
     x = 0.01 * np.sin(np.arange(900) / 30)
-    force = 500 * np.gradient(x) * 500
+    force = size * np.gradient(x) * 500
     record = BenchRecord("sine, 1 A", "sine.csv", 500.0, x, np.gradient(x) * 500, force, np.ones(900), False, None)
-    agreement, noise = Agreement(0.99, 0.02, 5.0, 93.2), rng.standard_normal((len(parts), 900))
+    agreement, noise = Agreement(0.99, 0.02, 5.0, 93.2), 0.002 * size * rng.standard_normal((len(parts), 900))
     records = [record._replace(folder=f"rig-{k}") for k in range(len(parts))]
     judged = [Assessment(*each, agreement) for each in zip(records, parts, force + noise, strict=True)]
     known = [ParameterEstimate("c_a", 500.0, 2.0, "N s/m", True), ParameterEstimate("k0", 3.0, 30.0, "N/m", False)]

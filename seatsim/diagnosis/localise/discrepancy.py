@@ -15,7 +15,7 @@ from scipy.signal import decimate, lfilter
 from seatsim.diagnosis.localise.localisation import FaultHypothesis
 from seatsim.diagnosis.objective import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
-from seatsim.diagnosis.result import DiscrepancySignal
+from seatsim.diagnosis.result import DiscrepancySignal, name_signal
 from seatsim.diagnosis.settings.examining import LocalisationSettings
 from seatsim.schema.arrays import Array
 
@@ -163,7 +163,8 @@ def is_bias_drift(settings: LocalisationSettings, found: Discrepancy, rate: floa
 
 def describe_in_words(found: Discrepancy) -> list[str]:
     """Return sentences on an unexplained signal."""
-    sentences = [f"The unexplained {found.quantity} in the {found.block} has an RMS of {found.rms:.3g} {found.unit}."]
+    name = name_signal(found.block, found.quantity, "unexplained {} {}")
+    sentences = [f"The {name} has an RMS of {found.rms:.3g} {found.unit}."]
     families = {family: share for family, share in found.shares.items() if family != "everything"}
     best = max(families, key=lambda family: families[family])
     if families[best] < _WORTH_NAMING:

@@ -15,6 +15,7 @@ from seatsim.plots import style
 from seatsim.plots.loops import SIGNS
 from seatsim.plots.style import MEASURED, Entry, Grid, clean_text
 from seatsim.plots.thinning import spread_evenly
+from seatsim.scenario.describe import name_model
 from seatsim.schema.text import shorten_paths
 
 MOST = 6
@@ -48,11 +49,11 @@ def plot_predictions(found: Identification) -> Figure:
     Held-out records come before fitted ones.
     """
     chosen = select_records(found.assessments)
-    grid = Grid(heights=(1.9,) * len(chosen), columns=3, right=0.7, top=0.3, gap=(0.2, 0.8))
+    grid = Grid(heights=(1.9,) * len(chosen), columns=3, right=0.95, top=0.3, gap=(0.3, 0.8))
     note, mean = f"{len(chosen)} of {len(found.assessments)} records", found.assessed
     note += f"; mean fit {mean.fit_percent:.1f} %{' of held-out records' * bool(found.mean('test'))}" if mean else ""
     note += f", without the first {START:g} s. {_FIT} {SIGNS}"
-    title, legend = f"{found.model}: measured and predicted force", (MEASURED, _PREDICTED, _DIFFERENCE)
+    title, legend = f"{name_model(found.model)}: measured and predicted force", (MEASURED, _PREDICTED, _DIFFERENCE)
     page = style.make_page(title, note, grid, legend)
     for panels, judged, name in zip(page.rows, chosen, name_records(chosen), strict=True):
         title = f"{name} ({PARTS[judged.part]}), fit {judged.agreement.fit_percent:.1f} %"

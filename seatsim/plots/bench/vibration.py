@@ -38,8 +38,10 @@ def _plot_running_rms(found: Comfort, axes: Sequence[str]) -> Figure:
     """Return the running RMS of each axis, a panel for each stretch."""
     highest = [found.axes[axis].dose.mtvv for axis in axes]
     looks = style.make_entries([f"{axis}, MTVV {value:.3g} m/s²" for axis, value in zip(axes, highest, strict=True)])
-    chosen = spread_evenly(range(len(found.stretches[axes[0]])), MOST)
-    page = style.make_page("Vibration over time", _RUNNING, Grid((1.5,) * len(chosen), top=0.3), looks)
+    count = len(found.stretches[axes[0]])
+    chosen = spread_evenly(range(count), MOST)
+    note = f"{_RUNNING}{f' {MOST} of {count} stretches are shown.' * (count > MOST)}"
+    page = style.make_page("Vibration over time", note, Grid((1.5,) * len(chosen), top=0.3), looks)
     for panel, k in zip(page.list_panels(), chosen, strict=True):
         for axis, look in zip(axes, looks, strict=True):
             part = found.stretches[axis][k]
@@ -59,7 +61,8 @@ def _plot_spectra(found: Comfort, axes: Sequence[str]) -> Figure:
         signals = [part.acceleration for part in stretches], [part.weighted for part in stretches]
         densities.append([estimate_density(1.0 / stretches[0].sample_rate, each) for each in signals])
     first, grid = find_first(densities[0]), Grid((1.7,) * len(chosen), top=0.3)
-    page = style.make_page("Vibration over frequency", state_method(first), grid, looks)
+    note = f"{state_method(first)}{f' {MOST} of {len(axes)} axes are shown.' * (len(axes) > MOST)}"
+    page = style.make_page("Vibration over frequency", note, grid, looks)
     for panel, axis, drawn in zip(page.list_panels(), chosen, densities, strict=True):
         style.scale_frequency_axis(panel, first, HIGHEST)
         panel.set_ylabel("power density\n[(m/s²)²/Hz]")
@@ -78,7 +81,9 @@ def plot_damping(found: SeatTest) -> dict[str, Figure]:
         classes.setdefault(row.limit, []).append(row.spectral_class)
     named = [f"limit of {join_names(dict.fromkeys(names))}" for names in classes.values()]
     limits = [Entry(name, style.DARK, dashes) for name, dashes in zip(named, cycle(style.DASHES), strict=False)]
-    note = "Sines from half to twice the resonance that is expected of the seat. The largest value keeps to the limit."
+    failed = dict.fromkeys(f"“{row.run}”" for row in found.damping_rows if not row.passed)
+    verdict = f"of {join_names(failed)} exceeds a limit" if failed else "of each line keeps to its limits"
+    note = f"Sines from half to twice the resonance that is expected of the seat. The largest value {verdict}."
     title = "Damping test: motion of the mass over that of the floor"
     figure, [[axes]] = style.make_page(title, note, Grid((2.6,)), [*looks, *limits])
     for look, test in zip(looks, found.damping.values(), strict=True):

@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from string import ascii_uppercase
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from scipy.optimize import isotonic_regression
+from scipy.optimize import isotonic_regression, linear_sum_assignment
+from scipy.spatial.distance import cdist
 
 from seatsim.metrics.table import COMFORT, SEAT, TRAVEL, UNWEIGHTED
 from seatsim.plots import style
 from seatsim.plots.runs.looks import MOST as MOST_LINES
-from seatsim.plots.runs.looks import choose_looks, explain_grey
+from seatsim.plots.runs.looks import choose_looks
 from seatsim.plots.style import DARK, GREY, Entry, Grid, clean_text, describe_metric
 from seatsim.scenario.scenario import condition_of
 from seatsim.schema.arrays import Array
+from seatsim.schema.text import name_some
 from seatsim.simulation import naming
 from seatsim.simulation.result import Run
 
@@ -30,7 +32,7 @@ NEAR = 1.6
 """How far above the greatest acceleration the floor's is still drawn, as a ratio."""
 MOST_PANELS = 12
 _SIDES = (3.3, 2.1)
-"""Height in inches of a panel that is alone, and of one among others."""
+"""Height in inches of a panel that is alone, and of one among others, at least."""
 
 
 class Panel(NamedTuple):
@@ -57,35 +59,26 @@ class Panel(NamedTuple):
 def plot_pareto(runs: Sequence[Run]) -> Figure:
     """Return weighted acceleration over travel, a panel for each condition.
 
-    Conditions of one run share a panel. Beside a panel that is alone stand the names of its points, beside others their
-    letters, which the legend names in the order of the runs. A line says where the driver feels as much as the floor
-    moves.
+    Conditions of one run share a panel. Beside a panel stand the names of its points. A line says where the driver
+    feels as much as the floor moves.
     """
     found, looks = _make_panels(runs) or [Panel("", [], [])], choose_looks(runs)
-    shown, columns = found[:MOST_PANELS], min(2, len(found))
-    named = {name: run for panel in shown for name, run in zip(panel.names, panel.runs, strict=True)}
-    points = {
-        name: Entry(name if columns == 1 else f"{_letter(k)}  {name}", looks[id(run)].colour, "none", mark="o")
-        for k, (name, run) in enumerate(named.items())
-    }
-    legend = list(points.values()) * (columns > 1)
-    legend += [FLOOR] * any(panel.runs and np.isfinite(panel.floor) for panel in shown)
+    shown = found[:MOST_PANELS]
+    no_floor = [f"“{panel.title}”" for panel in shown if not (panel.runs and np.isfinite(panel.floor))]
+    legend = [FLOOR] * (len(no_floor) < len(shown))
     note = "Over the whole run; on the same floor, lower left is better."
-    note += style.OWN_SCALES * (len(shown) > 1) + explain_grey(looks)
+    note += style.OWN_SCALES * (len(shown) > 1) + naming.explain_stars([run for panel in shown for run in panel.runs])
+    note += " Grey: runs without a line in the other pictures." * any(look.colour == GREY for look in looks.values())
+    if no_floor and legend:
+        note += f" No line SEAT = 1 in {name_some(no_floor)}: it lies above the scale, or the floors differ."
     note += f" {len(shown)} of {len(found)} conditions are shown." if len(shown) < len(found) else ""
-    height = max(_SIDES[columns - 1], _APART * max(len(panel.runs) for panel in shown))
-    right = 0.45 if columns > 1 else style.measure_names(list(points)) + 0.1
-    grid = Grid((height,) * -(-len(shown) // columns), columns, right=right, top=0.3, gap=(1.0, 0.85))
+    heights = [max(_SIDES[len(shown) > 1], _APART * len(panel.runs)) for panel in shown]
+    right = style.measure_names([name for panel in shown for name in panel.names]) + 0.1
+    grid = Grid(heights, right=right, top=0.3, gap=(0.0, 0.85))
     page = style.make_page(f"Comfort and travel: {naming.make_title(runs)}", note, grid, legend)
     for axes, panel in zip(page.list_panels(len(shown)), shown, strict=True):
-        _draw_panel(axes, panel, points)
+        _draw_panel(axes, panel, [looks[id(run)].colour for run in panel.runs])
     return page.figure
-
-
-def _letter(number: int) -> str:
-    """Return A to Z, then A1 to Z1: a number could be taken for that in a name."""
-    again, place = divmod(number, len(ascii_uppercase))
-    return ascii_uppercase[place] + str(again or "")
 
 
 def _make_panels(runs: Sequence[Run]) -> list[Panel]:
@@ -104,10 +97,10 @@ def _pad(values: Array) -> tuple[float, float]:
     low, high = float(np.min(values)), float(np.max(values))
     # At least a tenth of the values: runs that hardly differ are not spread over the whole panel.
     margin = max(0.12 * (high - low), 0.05 * abs(high)) or 1.0
-    return low - margin, high + margin
+    return max(low - margin, min(0.0, low)), high + margin
 
 
-def _draw_panel(axes: Axes, panel: Panel, looks: Mapping[str, Entry]) -> None:
+def _draw_panel(axes: Axes, panel: Panel, colours: Sequence[str]) -> None:
     if not panel.runs:
         return style.explain_empty(axes, "no run with a weighted acceleration: that needs 200 samples a second")
     travel, comfort = panel.points.T
@@ -116,29 +109,29 @@ def _draw_panel(axes: Axes, panel: Panel, looks: Mapping[str, Entry]) -> None:
         axes.axhline(panel.floor, color=FLOOR.colour, linestyle=FLOOR.dashes, linewidth=FLOOR.width, zorder=2)
     axes.set(xlim=_pad(travel), xlabel=describe_metric(TRAVEL).axis)
     axes.set(ylim=_pad(comfort), ylabel=describe_metric(COMFORT).axis)
-    # Of a letter and a name the letter.
-    texts = [looks[name].label.partition("  ")[0] for name in panel.names]
     # A point that a later one covers is larger, so that it is a ring about it.
     places = axes.transData.transform(panel.points)
     above = [np.sum(np.hypot(*(places[k + 1 :] - place).T) < _COVERED) for k, place in enumerate(places)]
-    sizes, colours = (_SIZE + _WIDER * np.array(above)) ** 2, [looks[name].colour for name in panel.names]
-    axes.scatter(travel, panel.points[:, 1], s=sizes, color=colours, edgecolors="1.0", linewidths=0.5, zorder=4)
-    _name_points(axes, panel.points, texts)
+    sizes = (_SIZE + _WIDER * np.array(above)) ** 2
+    axes.scatter(travel, panel.points[:, 1], sizes, colours, edgecolors="1.0", linewidths=0.5, zorder=4, clip_on=False)
+    _name_points(axes, panel.points, panel.names, colours)
     style.set_title(axes, panel.title)
 
 
-def _name_points(axes: Axes, points: Array, texts: Sequence[str]) -> None:
-    """Write names in a column beside a panel, in the order of their points, each at a line that ends in its point."""
-    order = np.argsort(points[:, 1], kind="stable")
+def _name_points(axes: Axes, points: Array, texts: Sequence[str], colours: Sequence[str]) -> None:
+    """Write names in a column beside a panel, each at a line that ends in its point; no two of these lines cross."""
     lines = _APART * axes.figure.dpi / axes.bbox.height * np.arange(len(texts))
-    level = axes.transAxes.inverted().transform(axes.transData.transform(points))[order, 1]
+    inside = axes.transAxes.inverted().transform(axes.transData.transform(points))
     # The nearest places, in the sense of least squares, that are a line apart.
-    places = np.clip(isotonic_regression(level - lines).x, 0.0, 1.0 - lines[-1]) + lines
-    for k, height in zip(order, places, strict=True):
-        axes.annotate(
-            clean_text(texts[k], 32), points[k], (1.04, height), textcoords="axes fraction", va="center",
-            fontsize=style.FONT, arrowprops={"arrowstyle": "-", "color": GREY, "linewidth": 0.7, "relpos": (0.0, 0.5)},
-        )  # fmt: skip
+    heights = np.clip(isotonic_regression(np.sort(inside[:, 1]) - lines).x, 0.0, 1.0 - lines[-1]) + lines
+    ends = np.column_stack([np.full(len(lines), 1.02), heights])
+    # Of all lines from points to places, those that are shortest together do not cross.
+    ends = ends[linear_sum_assignment(cdist(inside * axes.bbox.size, ends * axes.bbox.size))[1]]
+    for text, end in zip(texts, ends, strict=True):
+        axes.text(1.05, end[1], clean_text(text, 32), transform=axes.transAxes, va="center", fontsize=style.FONT)
+    paths = np.stack([inside, ends, ends + np.array([0.02, 0.0])], axis=1)
+    drawn = LineCollection(list(paths), colors=colours, linewidths=0.8, transform=axes.transAxes, clip_on=False)
+    axes.add_collection(drawn, autolim=False).set_zorder(3)
 
 
 COMPARED = (UNWEIGHTED, COMFORT, TRAVEL, SEAT)
@@ -147,21 +140,25 @@ COMPARED = (UNWEIGHTED, COMFORT, TRAVEL, SEAT)
 def plot_comparison(runs: Sequence[Run]) -> Figure | None:
     """Return lines over the number that is swept, one line for each variant; none where no number is."""
     key, series = naming.find_swept_number(runs), dict[str, list[Run]]()
-    for name, run in zip(naming.label_runs(runs, without=[key]), runs, strict=True):
-        series.setdefault(name, []).append(run)
+    named = zip(naming.label_runs(runs, without=[key]), runs, strict=True)
+    for name, run in sorted(named, key=lambda pair: float(pair[1].scenario.label.get(key, 0.0))):
+        series.setdefault(name.removesuffix(" *"), []).append(run)
     if not key or len(series) > MOST_LINES:
         return None
     looks_of, title = choose_looks(runs), f"Comparison: {naming.make_title(runs)}"
     looks = [looks_of[id(group[0])]._replace(label=name) for name, group in series.items()]
     axis = naming.label_axis(next(iter(series.values()))[0].scenario, key)
     note, grid = "Over the whole run; on the same floor, the smaller the better.", Grid((1.8, 1.8), 2, left=0.85)
+    note += f" Hollow: {naming.DOUBTFUL}" * any(run.unverified for run in runs)
     page = style.make_page(title, note, grid._replace(gap=(0.9, 0.65)), looks[1:] and looks)
     for axes, metric in zip(page.list_panels(), COMPARED, strict=True):
         shown = describe_metric(metric)
         for look, group in zip(looks, series.values(), strict=True):
-            points = [(float(run.scenario.label[key]), shown.factor * run.read_metric(metric)) for run in group]
-            places, values = zip(*sorted(points, key=lambda point: point[0]), strict=True)
+            places = [float(run.scenario.label[key]) for run in group]
+            values = [shown.factor * run.read_metric(metric) for run in group]
             style.draw_line(axes, places, values, look._replace(width=1.6, mark="o"))
+            inner = ["white" if run.unverified else "none" for run in group]
+            axes.scatter(places, values, 12, color=inner, linewidths=0, zorder=3)
         axes.set(xlabel=axis, ylabel=f"{shown.words} [{shown.unit}]", ylim=(0, 1.05 * axes.get_ylim()[1]))
         style.number_places(axes, places)
     return style.name_coincident(page.figure)

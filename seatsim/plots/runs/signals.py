@@ -7,7 +7,6 @@ from itertools import cycle
 from textwrap import fill
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from seatsim.metrics.spectra import PER_OCTAVE, POWER, TRUSTED, estimate_density, trusted_gain
@@ -31,8 +30,6 @@ LETTERS = 13
 """Letters of a line of a label beside a panel that is this low."""
 NEAR = 0.2
 """Share of an end stop's distance that the motion must reach for the stop to be drawn; else it would look flat."""
-_RESTLESS, _PALE = 2.5, 0.3
-"""Length of a line over the median of a panel's lines from which on it is drawn pale behind them, and its opacity."""
 CHANNELS = ("driver_acceleration", "suspension_displacement", "damper_force", "coil_current")
 _TARGETS = {"damper_force": "wanted_force", "coil_current": "current_command"}
 """Channels that others should follow."""
@@ -54,22 +51,21 @@ NOTE = (
 def plot_time_histories(shown: Shown) -> Figure:
     """Return driver acceleration, suspension displacement, damper force and current in one window.
 
-    It is that with the largest RMS of the first run's driver acceleration, within all runs. What was wanted and
-    commanded is drawn for a single run only; of many runs those at the ends are drawn.
+    It is that with the largest RMS of the driver's acceleration in the first run that moves, within all runs. What was
+    wanted and commanded is drawn for a single run only; of many runs those at the ends are drawn.
     """
-    single, first = len(shown.runs) == 1, shown.runs[0].history
-    shown = choose_extremes(shown)
-    common = float(min(run.history["time"][-1] for run in shown.runs))
-    window = find_loudest(first["driver_acceleration"][first["time"] <= common], first.step, CLOSE_UP, RASTER)
-    note = f"{window}, where the driver's RMS acceleration is largest{' in the first run' * (not single)}."
-    if window.end >= common:
+    single, shown = len(shown.runs) == 1, choose_extremes(shown)
+    k = int(np.argmax([np.any(run.history["driver_acceleration"]) for run in shown.runs]))
+    first, name, ends = shown.runs[k].history, shown.looks[k].label, [run.history["time"][-1] for run in shown.runs]
+    window = find_loudest(first["driver_acceleration"][first["time"] <= min(ends)], first.step, CLOSE_UP, RASTER)
+    note = f"{window}, where the driver's RMS acceleration is largest{f' in “{name}”' * (not single)}."
+    if window.start == 0.0 and window.end >= max(ends):
         note = "The whole run."
     if not np.any(first["driver_acceleration"]):
-        window, note = Window(0.0, min(common, CLOSE_UP)), "At rest."
-    limits = _find_limits(shown.runs)
+        window, note = Window(0.0, min(*ends, CLOSE_UP)), "At rest."
     # A law that states a current wants no force.
     target = _TARGET if np.isfinite(first["wanted_force"]).any() else _TARGET._replace(label="commanded current")
-    looks = [RUN] if single else _lay_upon_each_other(shown.looks)
+    limits, looks = _find_limits(shown.runs), [RUN] if single else _lay_upon_each_other(shown.looks)
     legend = [*looks, *[target] * single, *[LIMIT] * bool(limits)]
     grid = Grid((1.3,) * len(CHANNELS), left=1.12, gap=(0.0, 0.3))
     page = style.make_page(f"Time histories: {shown.title}", note + shown.omission, grid, legend)
@@ -77,7 +73,9 @@ def plot_time_histories(shown: Shown) -> Figure:
         lines = [(run, channel, look) for run, look in zip(shown.runs, looks, strict=True)]
         if single and channel in _TARGETS and np.isfinite(first[_TARGETS[channel]]).any():
             lines.insert(0, (shown.runs[0], _TARGETS[channel], target))
-        _draw_lines(axes, lines, window)
+        for run, name, look in lines:
+            part, factor = window.part(run.history.step), describe_channel(name, UNITS[name]).factor
+            style.draw_line(axes, *thin_line(run.history["time"][part], factor * run.history[name][part]), look)
         for limit in limits if channel == "suspension_displacement" else ():
             axes.axhline(1e3 * limit, color=LIMIT.colour, linestyle=":", linewidth=LIMIT.width)
         axes.set(xlim=window, ylabel=fill(describe_channel(channel, UNITS[channel]).axis, LETTERS))
@@ -91,19 +89,6 @@ def _lay_upon_each_other(looks: Sequence[Entry]) -> list[Entry]:
     """Return looks of which the thin upper ones leave the wide lower ones to be seen."""
     ways = spread_evenly(_UPON_EACH_OTHER, len(looks))
     return [look._replace(dashes="-", width=way[0], alpha=way[1]) for look, way in zip(looks, ways, strict=True)]
-
-
-def _draw_lines(axes: Axes, lines: Sequence[tuple[Run, str, Entry]], window: Window) -> None:
-    """Draw channels of runs within a window; one that chatters lies pale behind the others."""
-    drawn = []
-    for run, channel, look in lines:
-        part = window.part(run.history.step)
-        values = describe_channel(channel, UNITS[channel]).factor * run.history[channel][part]
-        drawn.append(style.draw_line(axes, *thin_line(run.history["time"][part], values), look))
-    lengths = [float(np.nansum(np.abs(np.diff(line.get_ydata())))) for line in drawn]
-    for line, length in zip(drawn, lengths, strict=True):
-        if length > _RESTLESS * float(np.median(lengths)) > 0.0:
-            line.set(alpha=_PALE, zorder=1.9)
 
 
 def _find_limits(runs: Sequence[Run]) -> list[float]:
@@ -156,7 +141,9 @@ def plot_transmissibility(shown: Shown) -> Figure:
     axes.set_yscale("log")
     for (frequency, gain, _), look in zip(gains, looks, strict=True):
         style.draw_line(axes, frequency, gain, look)
-    style.scale_log(axes, "y", min(0.5, float(known.min())) / 1.2, max(1.0, float(known.max())) * 1.2)
+    # A peak lies below a number of the axis, from which it is read.
+    top = next((tick for tick in (1, 2, 5, 10, 20, 50) if tick >= known.max()), float(known.max()))
+    style.scale_log(axes, "y", min(0.5, float(known.min())) / 1.2, 1.1 * top)
     return style.name_coincident(figure)
 
 
