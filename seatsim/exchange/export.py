@@ -35,7 +35,11 @@ from seatsim.schema.registry import Record
 
 _LONGEST_NAME = 31
 """Letters that a name in a MAT file may have."""
-BLOCKS: dict[str, Callable[[Scenario], Block]] = {"rig": rig_block, "damper": damper_block, "controller": controller_block}
+BLOCKS: dict[str, Callable[[Scenario], Block]] = {
+    "rig": rig_block,
+    "damper": damper_block,
+    "controller": controller_block,
+}
 """What can be exported."""
 
 

@@ -85,7 +85,7 @@ def identification(parts, size=500.0):
     return SimpleNamespace(
         model="bouc_wen", bench=SimpleNamespace(damper=None), assessments=judged,
         information=Information(known, 100.0), notes=[], assessed=judged[0].agreement,
-        mean=lambda part: agreement if part in parts else None,
+        **{part: agreement if part in parts else None for part in ("train", "test")},
     )  # fmt: skip
 
 

@@ -26,11 +26,15 @@ def compiled(scenario, law):
     return prepare_law(law, scenario.plant, scenario.coil, 0.005, floors)
 
 
+FIND = simulate._find_weight.__wrapped__
+"""Without what it keeps, which would be of other peaks."""
+
+
 def settle_falling(monkeypatch, peak, settings=LIMIT):
     """Settle the weight where the peak falls as it rises, from a value in m at the least weight."""
     fall = lambda run: peak * run.control.law.weights.travel**-0.1  # noqa: E731
     monkeypatch.setattr(simulate, "measure_peak_travel", fall)
-    monkeypatch.setattr(simulate, "_find_weight", simulate._find_weight.__wrapped__)  # what it keeps is of other peaks
+    monkeypatch.setattr(simulate, "_find_weight", FIND)
     return settle(settings)[1].weights.travel
 
 

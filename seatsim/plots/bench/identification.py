@@ -51,7 +51,7 @@ def plot_predictions(found: Identification) -> Figure:
     chosen = select_records(found.assessments)
     grid = Grid(heights=(1.9,) * len(chosen), columns=3, right=0.95, top=0.3, gap=(0.3, 0.8))
     note, mean = f"{len(chosen)} of {len(found.assessments)} records", found.assessed
-    note += f"; mean fit {mean.fit_percent:.1f} %{' of held-out records' * bool(found.mean('test'))}" if mean else ""
+    note += f"; mean fit {mean.fit_percent:.1f} %{' of held-out records' * bool(found.test)}" if mean else ""
     note += f", without the first {START:g} s. {_FIT} {SIGNS}"
     title, legend = f"{name_model(found.model)}: measured and predicted force", (MEASURED, _PREDICTED, _DIFFERENCE)
     page = style.make_page(title, note, grid, legend)
