@@ -51,7 +51,7 @@ AREA = "0.91"
 """Grey of areas, such as a band of noise; a wide line of a legend names one."""
 _WIDER, _WIDEST, _APART, _PALE = 2.0, 6.0, 0.8, 0.45
 """Of lines on each other: points by which each is wider than the next, at most in all, at least; their opacity."""
-_MUCH, _ENOUGH = 1 / 3, 10
+_MUCH, _ENOUGH = 1 / 2, 10
 """Share of two lines, of that many points at least, on each other from which on a note says so; one hides the other."""
 _NUMBER, _FEW = 0.6, 3
 """Width in inches of a number along an axis, such as -0.025, with the space to the next; how many are few."""
@@ -220,7 +220,7 @@ def name_coincident(figure: Figure) -> Figure:
     found, sentences = dict[tuple[str, ...], list[Axes]](), list[str]()
     for axes, lines in zip(figure.axes, named, strict=True):
         listed = list[list[str]]()
-        for least, said in ((1.0, "{} coincide{}."), (_MUCH, "{} coincide over much of their length{}.")):
+        for least, said in ((1.0, "{} coincide{}."), (_MUCH, "{} coincide over half of their length or more{}.")):
             groups: dict[str, list[str]] = {}
             for name, line in lines.items():
                 is_seen = bool(np.any(np.asarray(line.get_ydata(), float) >= axes.get_ylim()[0]))

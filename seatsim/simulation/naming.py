@@ -10,9 +10,6 @@ from seatsim.schema.printing import LONGEST, format_unit, shorten
 from seatsim.schema.validation import is_finite_number
 from seatsim.simulation.result import Run
 
-DOUBTFUL = "not verified, and never the best: a warning says why."
-"""What a star behind the name of a run says."""
-
 
 def label_runs(runs: Sequence[Run], without: Collection[str] = ()) -> list[str]:
     """Return what sets each run apart from the others: variant and swept values, less those of some keys.
@@ -40,9 +37,10 @@ def distinguish_runs(group: Sequence[Run], runs: Sequence[Run]) -> tuple[str, li
     return shorten(heading, 52), names
 
 
-def explain_stars(runs: Sequence[Run]) -> str:
-    """Return a sentence on the stars behind the names of runs, where there are some."""
-    return f" * {DOUBTFUL}" * any(run.unverified for run in runs)
+def explain_doubt(runs: Sequence[Run], sign: str = "*") -> str:
+    """Return a sentence on what a sign of the runs says whose figures cannot be relied on, where there are some."""
+    reasons = dict.fromkeys(reason.rpartition(": ")[2] for run in runs for reason in run.unverified)
+    return f" {sign} not verified: {'; '.join(reasons).replace('_', ' ')}." if reasons else ""
 
 
 def _star(run: Run) -> str:
@@ -73,7 +71,8 @@ def describe_swept(scenario: Scenario, key: str, value: object) -> str:
         return str(value)
     if isinstance(value, str):
         # The last word tells enough of a key whose value is a name: class EM2.
-        return f"{name_key(key).rpartition(' ')[2]} {value}"
+        word = name_key(key).rpartition(" ")[2]
+        return value if value.startswith(word) else f"{word} {value}"
     text = f"{value:g}" if is_finite_number(value) else str(value)
     unit = format_unit(find_unit(scenario, key)).removesuffix("-")
     return f"{text} {unit}" if key == "temperature" else f"{name_key(key)} {text} {unit}".strip()

@@ -39,9 +39,9 @@ def test_lines_that_coincide_are_named_in_the_note_and_both_are_seen():
     grown = figure.get_figheight()
     assert grown == height + style.LINE
     np.testing.assert_allclose([axes.get_position().height * grown for axes in figure.axes], before)
-    right.lines[1].set_ydata(np.where(x < 0.5, x, x + 0.1))
+    right.lines[1].set_ydata(np.where(x < 0.6, x, x + 0.1))
     right.lines[0].set(linewidth=1.0)
-    assert "much" in style.name_coincident(figure).texts[1].get_text()
+    assert "half of their length" in style.name_coincident(figure).texts[1].get_text()
     right.lines[1].set_ydata(x + 0.1)
     left.lines[2].set_ydata(x - 9.0)
     left.set_title("first", loc="left")

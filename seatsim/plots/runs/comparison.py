@@ -67,10 +67,10 @@ def plot_pareto(runs: Sequence[Run]) -> Figure:
     no_floor = [f"“{panel.title}”" for panel in shown if not (panel.runs and np.isfinite(panel.floor))]
     legend = [FLOOR] * (len(no_floor) < len(shown))
     note = "Over the whole run; on the same floor, lower left is better."
-    note += style.OWN_SCALES * (len(shown) > 1) + naming.explain_stars([run for panel in shown for run in panel.runs])
+    note += style.OWN_SCALES * (len(shown) > 1) + naming.explain_doubt([run for panel in shown for run in panel.runs])
     note += " Grey: runs without a line in the other pictures." * any(look.colour == GREY for look in looks.values())
     if no_floor and legend:
-        note += f" No line SEAT = 1 in {name_some(no_floor)}: it lies above the scale, or the floors differ."
+        note += f" SEAT = 1 is drawn where it is within the scale and the same for all: not in {name_some(no_floor)}."
     note += f" {len(shown)} of {len(found)} conditions are shown." if len(shown) < len(found) else ""
     heights = [max(_SIDES[len(shown) > 1], _APART * len(panel.runs)) for panel in shown]
     right = style.measure_names([name for panel in shown for name in panel.names]) + 0.1
@@ -149,7 +149,7 @@ def plot_comparison(runs: Sequence[Run]) -> Figure | None:
     looks = [looks_of[id(group[0])]._replace(label=name) for name, group in series.items()]
     axis = naming.label_axis(next(iter(series.values()))[0].scenario, key)
     note, grid = "Over the whole run; on the same floor, the smaller the better.", Grid((1.8, 1.8), 2, left=0.85)
-    note += f" Hollow: {naming.DOUBTFUL}" * any(run.unverified for run in runs)
+    note += naming.explain_doubt(runs, "Hollow:")
     page = style.make_page(title, note, grid._replace(gap=(0.9, 0.65)), looks[1:] and looks)
     for axes, metric in zip(page.list_panels(), COMPARED, strict=True):
         shown = describe_metric(metric)

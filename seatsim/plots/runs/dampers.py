@@ -53,7 +53,7 @@ def plot_force_velocity(runs: Sequence[Run]) -> Figure:
     areas = Entry("the damper gives energy back", style.AREA, width=8)
     note = f"Sine tests: amplitude {1e3 * amplitude:.3g} mm, {FREQUENCY:g} Hz. {SIGNS}"
     note += f" One of {len(runs)} runs: the one whose current varies the most." * (len(runs) > 1 and changes)
-    note += "".join(f" * not verified: {reason.rpartition(': ')[2]}." for reason in run.unverified)
+    note += naming.explain_doubt([run])
     title = f"Damper at work: {naming.make_title([run])}"
     figure, [[axes]] = style.make_page(title, note, Grid((3.3,), right=1.0), [sample, *looks, areas])
     for look, test in zip(looks, tests, strict=True):

@@ -51,7 +51,7 @@ def show_runs(runs: Sequence[Run]) -> list[Shown]:
         shown, names, among, omission = _select_shown(part)
         scenario = part[0].scenario.name if len(parts) > 1 else ""
         own = [looks[id(run)]._replace(label=name) for run, name in zip(shown, names, strict=True)]
-        omission += naming.explain_stars(shown)
+        omission += naming.explain_doubt(shown)
         found.append(Shown(scenario, naming.make_title(part), shown, own, omission, among))
     return found
 
@@ -71,7 +71,7 @@ def choose_extremes(shown: Shown) -> Shown:
         for run, look in pairs:
             own = [role for each, role in roles if each == id(run)]
             drawn.append(f"“{look.label}”{f' ({join_names(own)})' if own else ''}")
-        omission = f" Shown of {shown.among}: {join_names(drawn)}.{naming.explain_stars([run for run, _ in pairs])}"
+        omission = f" Shown of {shown.among}: {join_names(drawn)}.{naming.explain_doubt([run for run, _ in pairs])}"
     return shown._replace(runs=[run for run, _ in pairs], looks=[look for _, look in pairs], omission=omission)
 
 

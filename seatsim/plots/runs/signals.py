@@ -141,9 +141,10 @@ def plot_transmissibility(shown: Shown) -> Figure:
     axes.set_yscale("log")
     for (frequency, gain, _), look in zip(gains, looks, strict=True):
         style.draw_line(axes, frequency, gain, look)
-    # A peak lies below a number of the axis, from which it is read.
+    # A curve lies between numbers of the axis, from which it is read.
     top = next((tick for tick in (1, 2, 5, 10, 20, 50) if tick >= known.max()), float(known.max()))
-    style.scale_log(axes, "y", min(0.5, float(known.min())) / 1.2, 1.1 * top)
+    low = next((tick for tick in (0.5, 0.2, 0.1, 0.05, 0.02) if tick <= known.min()), float(known.min()))
+    style.scale_log(axes, "y", low / 1.2, 1.1 * top)
     return style.name_coincident(figure)
 
 
