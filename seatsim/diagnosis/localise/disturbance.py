@@ -24,6 +24,8 @@ from seatsim.diagnosis.spectra import Spectra, measure_power
 from seatsim.schema.arrays import Array
 
 _FORCE_FROM_OUTSIDE, BIAS_DRIFT = "floor.unmeasured_input", "sensor.bias"
+_TINY = 1e-30
+"""Least power, so that nothing is divided by the zero of a silent signal."""
 
 
 class Disturbance(NamedTuple):
@@ -45,11 +47,11 @@ class Disturbance(NamedTuple):
 
     def measure_share_repeated(self, problem: DiagnosisProblem) -> float:
         """Return the share of the signal's variance (R2) that repeats of a run show again, 0 where none is repeated."""
-        signals, shares = self.found.signals, list[float]()
-        for first, second in problem.repeats:
-            rows = min(len(signals[first]), len(signals[second]))
-            both = np.corrcoef(signals[first][:rows], signals[second][:rows])
-            shares.append(float(np.nan_to_num(both[0, 1])) ** 2)
+        shares = list[float]()
+        for runs in problem.repeats:
+            rows = min(len(self.found.signals[run]) for run in runs)
+            first, second = (self.found.signals[run][:rows] - np.mean(self.found.signals[run][:rows]) for run in runs)
+            shares.append(float(first @ second) ** 2 / max(float(first @ first) * float(second @ second), _TINY))
         return float(np.mean(shares)) if shares else 0.0
 
 
