@@ -19,7 +19,7 @@ from seatsim.scenario.scenario import condition_of
 from seatsim.schema.arrays import Array
 from seatsim.schema.printing import describe_channel, format_number, format_unit
 from seatsim.schema.text import name_some
-from seatsim.simulation.naming import label_runs
+from seatsim.simulation.naming import label_runs, name_runs
 from seatsim.simulation.result import UNITS, Run
 
 HITS = "end_stop_hits"
@@ -52,7 +52,7 @@ def report_runs(
     if len(runs) == 1:
         about, said = f"Simulated run: {title}", [describe_run(runs[0])]
     # What the answer leaves out: figures that cannot be relied on, and runs that failed.
-    doubtful = [f"“{name[:-2]}”" for name, run in zip(label_runs(runs), runs, strict=True) if run.unverified]
+    doubtful = [f"“{name}”" for name, run in zip(name_runs(runs), runs, strict=True) if run.unverified]
     gaps = [f"The figures of {name_some(doubtful)} cannot be relied on; the notes say why."] if doubtful else []
     if failures:
         others = f", and {len(failures) - 1} others" if len(failures) > 1 else ""
@@ -69,7 +69,7 @@ def report_runs(
 
 def _advise_on_runs(runs: Sequence[Run]) -> list[str]:
     """Return what to do next, each in a sentence or two; the worst run comes first, and others are counted."""
-    named = [(f"“{name}”", run) for name, run in zip(label_runs(runs), runs, strict=True) if not run.unverified]
+    named = [(f"“{name}”", run) for name, run in zip(name_runs(runs), runs, strict=True) if not run.unverified]
     hitting, amplifying = _rank_above(named, HITS, 0.0), _rank_above(named, SEAT, 1.0 + SAME)
     counts = [f"{name} ({count_times(run.read_metric(HITS))})" for name, run in hitting]
     listed = [f"{name} (SEAT factor {format_number(run.read_metric(SEAT))})" for name, run in amplifying]

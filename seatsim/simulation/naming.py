@@ -12,16 +12,20 @@ from seatsim.simulation.result import Run
 
 
 def label_runs(runs: Sequence[Run], without: Collection[str] = ()) -> list[str]:
+    """Return the names of runs, with a star behind that of a run whose figures cannot be relied on."""
+    return [f"{name}{_star(run)}" for name, run in zip(name_runs(runs, without), runs, strict=True)]
+
+
+def name_runs(runs: Sequence[Run], without: Collection[str] = ()) -> list[str]:
     """Return what sets each run apart from the others: variant and swept values, less those of some keys.
 
-    Of runs of one scenario its name is left out; names that are alike are numbered. Behind that of a run whose figures
-    cannot be relied on stands a star.
+    Of runs of one scenario its name is left out; names that are alike are numbered.
     """
     several = len({run.scenario.name for run in runs}) > 1
     names = [shorten(_describe(run.scenario, several, without), LONGEST) for run in runs]
     return [
-        f"{name}{f' ({names[: k + 1].count(name)})' if not without and names.count(name) > 1 else ''}{_star(run)}"
-        for k, (name, run) in enumerate(zip(names, runs, strict=True))
+        f"{name}{f' ({names[: k + 1].count(name)})' if not without and names.count(name) > 1 else ''}"
+        for k, name in enumerate(names)
     ]
 
 

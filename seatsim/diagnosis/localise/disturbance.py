@@ -24,8 +24,6 @@ from seatsim.diagnosis.spectra import Spectra, measure_power
 from seatsim.schema.arrays import Array
 
 _FORCE_FROM_OUTSIDE, BIAS_DRIFT = "floor.unmeasured_input", "sensor.bias"
-_TINY = 1e-30
-"""Least power, so that nothing is divided by the zero of a silent signal."""
 
 
 class Disturbance(NamedTuple):
@@ -51,7 +49,8 @@ class Disturbance(NamedTuple):
         for runs in problem.repeats:
             rows = min(len(self.found.signals[run]) for run in runs)
             first, second = (self.found.signals[run][:rows] - np.mean(self.found.signals[run][:rows]) for run in runs)
-            shares.append(float(first @ second) ** 2 / max(float(first @ first) * float(second @ second), _TINY))
+            powers = float(first @ first) * float(second @ second)
+            shares.append(float(first @ second) ** 2 / powers if powers else 0.0)
         return float(np.mean(shares)) if shares else 0.0
 
 

@@ -140,9 +140,9 @@ COMPARED = (UNWEIGHTED, COMFORT, TRAVEL, SEAT)
 def plot_comparison(runs: Sequence[Run]) -> Figure | None:
     """Return lines over the number that is swept, one line for each variant; none where no number is."""
     key, series = naming.find_swept_number(runs), dict[str, list[Run]]()
-    named = zip(naming.label_runs(runs, without=[key]), runs, strict=True)
+    named = zip(naming.name_runs(runs, without=[key]), runs, strict=True)
     for name, run in sorted(named, key=lambda pair: float(pair[1].scenario.label.get(key, 0.0))):
-        series.setdefault(name.removesuffix(" *"), []).append(run)
+        series.setdefault(name, []).append(run)
     if not key or len(series) > MOST_LINES:
         return None
     looks_of, title = choose_looks(runs), f"Comparison: {naming.make_title(runs)}"

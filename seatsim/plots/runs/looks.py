@@ -90,11 +90,8 @@ def choose_looks(runs: Sequence[Run]) -> dict[int, Entry]:
     for run in [*(run for part in drawn for run in part), *runs]:
         own = members.setdefault(families[id(run)], [])
         own += [names[id(run)]] * (names[id(run)] not in own)
-    pictures, palette = (
-        [{families[id(run)] for run in part} for part in drawn],
-        make_entries(COLOURS * len(DASHES)),
-    )
-    looks, found = dict[str, Entry](), dict[tuple[str, str], Entry]()
+    pictures = [{families[id(run)] for run in part} for part in drawn]
+    palette, looks, found = make_entries(COLOURS * len(DASHES)), dict[str, Entry](), dict[tuple[str, str], Entry]()
     for family, own in members.items():
         # In no picture two families share a colour needlessly.
         beside = [looks[each] for group in pictures if family in group for each in group if each in looks]
