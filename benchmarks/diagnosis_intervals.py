@@ -113,7 +113,7 @@ def make_recording(folder: Path, rng: np.random.Generator, effect: str) -> tuple
         inputs = recorded_inputs(blank, table, 0.001)
         assert isinstance(inputs, SeatInputs)
         pushed = inputs._replace(forces=Forces(force * draw_force(rng, len(inputs.floor.acceleration))))
-        outputs = respond(truth, pushed, carry_all_effects=True)
+        outputs = respond(truth, pushed)
         every = {**table, **{name: outputs[name] for name in CHANNELS if name in outputs}}
         tables[run] = {name: values + channels[name].noise_rms * rng.standard_normal(len(values))
                        for name, values in every.items()}  # fmt: skip

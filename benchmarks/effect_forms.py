@@ -111,7 +111,7 @@ def record_case(case: FormCase, out: Path) -> None:
         step, recorded = run.history.step, {name: run.history[name] for name in SEAT_CHANNELS}
         inputs = SeatInputs(interpolate_floor(recorded, 2, step / 2), step)
         scenario = dataclasses.replace(run.scenario, control=Control(Replay(), None, None), effects=(case.record,))
-        outputs = respond(scenario, inputs, carry_all_effects=True)
+        outputs = respond(scenario, inputs)
         runs.append(dataclasses.replace(run, history=History(step, {**run.history.channels, **outputs})))
     save_recording(Result(runs), out / case.folder, list(SEAT_CHANNELS), noise=NOISE)
 

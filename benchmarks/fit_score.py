@@ -63,7 +63,8 @@ def list_hypotheses(case: Path) -> None:
         first, found = search(task, objective), list[score.Hypothesis]()
         if first.decision.verdict != "none":
             searches = [score.Search(objective, first.selection)]
-            found_beside = list_disturbances(objective, first.selection)
+            chosen = None if first.decision.verdict == "unknown" else first.decision.chosen
+            found_beside = list_disturbances(objective, first.selection, chosen)
             searches += [search_beside(task, objective, first.selection, each) for each in found_beside]
             if decide_verdict(searches, task.effects).verdict == "unknown":
                 by_gap = search_by_gap(task, objective, first.selection)

@@ -7,14 +7,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.diagnosis.objective import AT_BOUND, Evaluation, Linearisation, Objective, Parameters
+from seatsim.diagnosis.objective import AT_BOUND, Evaluation, Linearisation, Objective
 from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
 from seatsim.diagnosis.result import Cause, ComfortFigure, Estimate, Trace
 from seatsim.diagnosis.solution import Solution
 from seatsim.diagnosis.uncertainty import estimate_standard_deviations
 from seatsim.diagnosis.validate import ReplayedRun
 from seatsim.metrics.motion import rms
-from seatsim.recordings.replay import LEFT_OUT
 from seatsim.schema.arrays import Array
 from seatsim.schema.fields import describe
 
@@ -87,28 +86,17 @@ def _estimate_parameters(
     return found
 
 
-def trace_run(problem: DiagnosisProblem, rigs: Sequence[Parameters], run: str) -> list[Trace]:
-    """Return the compared channels of a held-out run, measured and simulated with three rigs."""
-    simulated = [problem.simulated(run, rig.deviations, rig.effects) for rig in rigs]
-    measured = problem.measured[run]
-    time = (problem.skip + np.arange(measured.shape[1])) / problem.rate
-    return [
-        Trace(run, name, problem.recording.channels[name].unit, float(problem.noise[k]), time, measured[k],
-              *(outputs[k] for outputs in simulated))
-        for k, name in enumerate(problem.channels)
-    ]  # fmt: skip
-
-
-def trace_replayed(problem: DiagnosisProblem, runs: Sequence[ReplayedRun]) -> list[Trace]:
-    """Return the compared channels of runs that were replayed with nominal, calibrated and augmented rig."""
-    noise = dict(zip(problem.channels, problem.noise.tolist(), strict=True))
-    return [
-        Trace(
-            run.name, name, problem.recording.channels[name].unit, noise[name],
-            LEFT_OUT + np.arange(len(values)) / problem.rate, values, *(each[name] for each in run.simulated),
-        )
-        for run in runs for name, values in run.measured.items() if name in noise
-    ]  # fmt: skip
+def list_traces(problem: DiagnosisProblem, runs: Sequence[ReplayedRun]) -> list[Trace]:
+    """Return the compared rows and channels of runs, each beside those of nominal, calibrated and augmented rig."""
+    noise, traces = dict(zip(problem.channels, problem.noise.tolist(), strict=True)), []
+    for run in runs:
+        samples = problem.measured[run.name].shape[1]
+        time = (problem.skip + np.arange(samples)) / problem.rate
+        for name in problem.channels:
+            several = [each[name][:samples] for each in (run.measured, *run.simulated)]
+            unit = problem.recording.channels[name].unit
+            traces.append(Trace(run.name, name, unit, noise[name], time, *several))
+    return traces
 
 
 def trace_motion(problem: DiagnosisProblem, run: str) -> dict[str, Array]:

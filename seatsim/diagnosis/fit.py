@@ -1,8 +1,9 @@
 """Fits of effects together with the nuisance parameters: Gauss-Newton steps under bounds.
 
 The sensitivities of the nuisance parameters hardly change as effects are added, but cost most of a linearisation. A fit
-therefore uses those that its caller passes in, and computes those of the effects anew at every step: carried along from
-step to step, they leave a stiff stop far from its minimum.
+therefore uses those that its caller passes in. Those of the effects are carried from step to step, corrected by what
+the last step did, and computed anew where they lead no further: merely kept, they leave a stiff stop far from its
+minimum.
 """
 
 from __future__ import annotations
@@ -17,6 +18,10 @@ from seatsim.schema.arrays import Array
 
 _BACKTRACKING = (1.0, 0.4, 0.12)
 """Fractions of a step that are tried in turn."""
+_SETTLED = 0.01
+"""Share of the cost that a step must take off to be followed by another."""
+_FAITHFUL = 0.1
+"""Largest share of the power of a change that sensitivities may miss to be carried on."""
 
 
 def fit(
@@ -24,29 +29,47 @@ def fit(
     start: Evaluation,
     nuisances: Linearisation,
     steps: int | None = None,
-    settled: float | None = None,
+    settled: float = _SETTLED,
 ) -> Evaluation:
     """Return the evaluation at the end of a fit from `start`, with the given sensitivities of the nuisances.
 
-    Most steps, and the share of its cost by which one must lower it to be followed by another, are those of the
-    settings where absent. At the deadline it is the best so far.
+    It takes at most so many steps, those of the settings where absent, and ends where one by sensitivities measured at
+    its beginning lowers the cost by less than the share `settled`. At the deadline it is the best so far.
     """
-    evaluation, settings = start, objective.settings.fit
-    settled = settings.settled if settled is None else settled
-    for _ in range(settings.most_steps if steps is None else steps):
-        before, rig = evaluation.cost, evaluation.parameters
+    evaluation, carried = start, dict[str, Array]()
+    for _ in range(objective.settings.fit.most_steps if steps is None else steps):
+        before = evaluation
         try:
-            step = find_step(evaluation, nuisances, objective.linearise_effects(evaluation).jacobian)
+            own = carried or objective.linearise_effects(before).jacobian
+            rig, step = before.parameters, find_step(before, nuisances, own)
             tries = (objective.evaluate([rig.move_to(rig.vector + part * step)])[0] for part in _BACKTRACKING)
-            evaluation = next((tried for tried in tries if tried.cost < before), evaluation)
+            evaluation = next((tried for tried in tries if tried.cost < before.cost), before)
         except OutOfTimeError:
             break
-        if evaluation.cost > (1.0 - settled) * before:
+        is_lower = evaluation.cost <= (1.0 - settled) * before.cost
+        if not (is_lower or carried):
             break
+        carried = _carry(own, nuisances, before, evaluation) if is_lower else {}
     return evaluation
 
 
-def refit_on(objective: Objective, rig: Linearisation, settled: float | None = None) -> Evaluation:
+def _carry(own: Mapping[str, Array], nuisances: Linearisation, old: Evaluation, new: Evaluation) -> dict[str, Array]:
+    """Return the sensitivities to the effects' parameters at the end of a step, from those at its beginning.
+
+    Of all that say what the step did, they are the nearest (Broyden's update), so that no rig is simulated for them.
+    None are returned where those at its beginning told little of what it did.
+    """
+    shared, step = np.split(new.parameters.vector - old.parameters.vector, [len(old.parameters.deviations)])
+    done = {run: (old.whitened[run] - new.whitened[run]).ravel() for run in own}
+    missed = {run: change - shared @ nuisances.jacobian[run] - step @ own[run] for run, change in done.items()}
+    power, wrong = (sum(float(each @ each) for each in changes.values()) for changes in (done, missed))
+    size = float(step @ step)
+    if not size or wrong > _FAITHFUL * power:
+        return {}
+    return {run: jacobian + np.outer(step / size, missed[run]) for run, jacobian in own.items()}
+
+
+def refit_on(objective: Objective, rig: Linearisation, settled: float = _SETTLED) -> Evaluation:
     """Return the evaluation at the end of a fit on the runs of an objective, from a rig linearised over more runs."""
     return fit(objective, objective.weigh_again(rig.evaluation), rig, settled=settled)
 

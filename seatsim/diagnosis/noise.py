@@ -31,6 +31,8 @@ from seatsim.schema.arrays import Array
 from seatsim.simulation.inputs import BenchInputs, Forces, RigInputs, SeatInputs
 from seatsim.simulation.respond import fit_motion
 
+_LEVEL = 0.1
+"""Share of the gap that counts as noise under uniform weights, by which what is left to explain is measured."""
 _TINY = 1e-30
 """Least size of a weighted amplitude, so that nothing is divided by zero."""
 
@@ -220,10 +222,10 @@ def weigh_gap(problem: DiagnosisProblem, residuals: Mapping[str, Array]) -> Nois
     excitation share the errors of the form, which a law with more parameters may fit.
     """
     settings, errors = problem.settings.cross_validation, normalise_rms_errors(problem, residuals)
-    level = settings.noise_level * np.sqrt(np.mean(errors**2)) * problem.spread
+    level = _LEVEL * np.sqrt(np.mean(errors**2)) * problem.spread
     power = {run: level[:, None] ** 2 * values.shape[1] for run, values in problem.measured.items()}
     compared = 2 * sum(each.size for each in weigh_uniformly(problem, power).power.values())
-    weights = weigh_uniformly(problem, power, settings.noise_level**2 * settings.independent / compared)
+    weights = weigh_uniformly(problem, power, _LEVEL**2 * settings.independent / compared)
     return dataclasses.replace(weights, parameter_cost=math.log(settings.independent) / settings.independent)
 
 

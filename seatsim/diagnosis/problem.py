@@ -15,7 +15,7 @@ import numpy as np
 from scipy.fft import prev_fast_len
 
 from seatsim.diagnosis.settings import DiagnosisSettings
-from seatsim.effects.base import ON_DAMPER, ON_SEAT, acts_on, replace_effects
+from seatsim.effects.base import replace_effects
 from seatsim.recordings.nuisance import Nuisance, list_varied, vary
 from seatsim.recordings.quality.coverage import shows_falling_current
 from seatsim.recordings.quality.sensors import without_gravity
@@ -56,8 +56,6 @@ _REACHED = {"m": ("suspension_displacement",), "A": ("coil_current", "current_co
 """Channels that tell how far the rig went towards a limit, by its unit: the first that was recorded does."""
 _ONLY_READ = tuple(name for name in SEAT_OUTPUTS if name != "coil_current")
 """Channels that nothing is simulated from: an error of their sensor leaves the motion of the rig as it is."""
-_IN_LOOP = (*ON_DAMPER, *ON_SEAT, "factors")
-"""Hooks of effects that change what the time loop is compiled for."""
 _MOST_MOTIONS = 48
 """Motions that are kept, some megabytes each, for candidates and difference steps that share them."""
 
@@ -161,21 +159,13 @@ class DiagnosisProblem:
         """
         seats = {run: self.seat_inputs(run) for run in self.inputs}
         acting = {run: Forces(self.spread_over_steps(seat, forces[run])) for run, seat in seats.items()}
-        return self._drive(acting, traces)
-
-    def _drive(self, forces: Mapping[str, Forces], traces: Mapping[str, Array]) -> DiagnosisProblem:
-        """Return the problem of a seat on whose frame other forces act."""
-        driven = {run: self.seat_inputs(run)._replace(forces=force) for run, force in forces.items()}
+        driven = {run: seat._replace(forces=acting[run]) for run, seat in seats.items()}
         return dataclasses.replace(self, inputs=dict(driven), traces=traces, motions={})
 
     def spread_over_steps(self, inputs: SeatInputs, signal: Array) -> Array:
         """Return a signal of the rows that are compared on the simulation's steps, linear between rows, 0 outside."""
         rows = np.arange(len(inputs.floor.acceleration)) / self.parts
         return np.interp(rows, self.skip + np.arange(len(signal)), signal, left=0.0, right=0.0)
-
-    def as_recorded(self) -> DiagnosisProblem:
-        """Return the problem without forces about which it was linearised."""
-        return self._drive(dict.fromkeys(self.inputs, Forces()), {}) if self.traces else self
 
     def augmented(self, deviations: Array, effects: Sequence[Record], nominal: Scenario | None = None) -> Scenario:
         """Return the nominal scenario with other parameters, and effects, which replace its own of the same kind.
@@ -198,7 +188,7 @@ class DiagnosisProblem:
         `inputs` drive the rig instead of the recorded ones.
         """
         scenario = self.scenario_of(run, deviations, effects)
-        outputs = _respond(scenario, inputs) if inputs else self._replay(run, deviations, scenario)
+        outputs = respond(scenario, inputs) if inputs else self._replay(run, deviations, scenario)
         end = self.skip + self.measured[run].shape[1]
         simulated = np.array([outputs[name][self.skip : end] for name in self.channels])
         return simulated - self.traces[run] if run in self.traces and inputs is None else simulated
@@ -212,7 +202,7 @@ class DiagnosisProblem:
         key = run, self.parameters, deviations.tobytes(), repr(others)
         outputs = self.motions.get(key) if wrong else None
         if outputs is None:
-            outputs = _respond(dataclasses.replace(scenario, effects=others), self.inputs[run])
+            outputs = respond(dataclasses.replace(scenario, effects=others), self.inputs[run])
         if wrong:
             if len(self.motions) >= _MOST_MOTIONS:
                 self.motions.clear()
@@ -232,14 +222,6 @@ class DiagnosisProblem:
         jobs = [(run, *rig) for rig in rigs for run in self.runs]
         answers = self.pool.map(lambda job: self._residuals(*job), jobs)
         return [dict(zip(self.runs, islice(answers, len(self.runs)), strict=True)) for _ in rigs]
-
-
-def _respond(scenario: Scenario, inputs: RigInputs) -> dict[str, Array]:
-    """Return what the sensors say, by one of two compiled loops: without effects or, twice as slow, with all of them.
-
-    Thousands of candidates are simulated, so that none can have a loop of its own.
-    """
-    return respond(scenario, inputs, carry_all_effects=any(acts_on(type(each), _IN_LOOP) for each in scenario.effects))
 
 
 def pose_problem(recording: Recording, pool: Executor, settings: DiagnosisSettings | None = None) -> DiagnosisProblem:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Hashable, Sequence
 from contextlib import suppress
@@ -27,10 +28,12 @@ A limit acts by what exceeds it, so that fits from fewer places end in a wrong m
 
 _LEAST_FACTOR = 1e-3
 """Factor on a start below which the data do not show the candidate at all."""
+_SCREENED, _FEWEST = 0.5, 2
+"""Share of the runs, and least number, in which starts are simulated for the screening, which only ranks them."""
 
 
 class Sensitivities(NamedTuple):
-    """Candidates and what each size of theirs changes alone, at its start, in the whitened outputs.
+    """Candidates and what each size of theirs changes alone, at its start, in the whitened outputs of some runs.
 
     `changes[run]` has one entry for each size, shape (sizes of all candidates, ...); those of a candidate follow each
     other, in the order of the candidates.
@@ -69,26 +72,38 @@ def measure_sensitivities(
 ) -> Sensitivities:
     """Return the changes of the calibrated rig by each candidate at its start; unstable ones are dropped.
 
-    At the deadline they are those of the candidates so far.
+    They are those in the runs that show most of the gap. At the deadline they are those of the candidates so far.
     """
     kept, filled = list[Candidate](), 0
-    count = sum(candidate.sizes for candidate in candidates)
-    changes = {run: np.empty((count, *base.shape)) for run, base in calibrated.whitened.items()}
+    count, runs = sum(candidate.sizes for candidate in candidates), _choose_runs(objective, calibrated)
+    part, changes = objective.on_runs(runs), {run: np.empty((count, *calibrated.whitened[run].shape)) for run in runs}
     with suppress(OutOfTimeError):
         for first in range(0, len(candidates), AT_ONCE):
-            part = candidates[first : first + AT_ONCE]
-            starts = [calibrated.parameters.add(each, values) for each in part for values in each.alone]
-            evaluations = iter(objective.evaluate(starts))
-            for candidate in part:
+            several = candidates[first : first + AT_ONCE]
+            starts = [calibrated.parameters.add(each, values) for each in several for values in each.alone]
+            evaluations = iter(part.evaluate(starts))
+            for candidate in several:
                 moved = list(islice(evaluations, candidate.sizes))
                 if not all(np.isfinite(each.cost) for each in moved):
                     continue
                 for each in moved:
-                    for run, base in calibrated.whitened.items():
-                        np.subtract(base, each.whitened[run], out=changes[run][filled])
+                    for run in runs:
+                        np.subtract(calibrated.whitened[run], each.whitened[run], out=changes[run][filled])
                     filled += 1
                 kept.append(candidate)
     return Sensitivities(kept, {run: values[:filled] for run, values in changes.items()})
+
+
+def _choose_runs(objective: Objective, calibrated: Evaluation) -> list[str]:
+    """Return the runs that leave most beyond noise, in their order; what repeats one of them says no more."""
+    problem = objective.problem
+    repeated = {run for _, run in problem.repeats}
+    left = {
+        run: float(np.sum(each**2)) - calibrated.independent * each.size for run, each in calibrated.whitened.items()
+    }
+    ranked = sorted(problem.runs, key=lambda run: (run in repeated, -left[run]))
+    kept = ranked[: max(_FEWEST, math.ceil(_SCREENED * len(ranked)))]
+    return [run for run in problem.runs if run in kept]
 
 
 def name_unstable(candidates: Sequence[Candidate], kept: Sequence[Candidate]) -> tuple[str, ...]:
@@ -134,23 +149,26 @@ def screen_candidates(
 def _predict(
     objective: Objective, base: Evaluation, offered: Sensitivities, nuisances: Linearisation
 ) -> dict[int, _Prediction]:
-    """Return the predicted cost of the best multiple of each candidate, for a rig that is linear in all parameters.
+    """Return the prediction for the best multiple of each candidate, for a rig that is linear in all parameters.
 
-    Candidates are known by their place among those offered; those of the effects of the base are left out.
+    The screened runs stand for all. Candidates are known by their place among those offered; those of the effects of
+    the base are left out.
     """
     others = [k for k, each in enumerate(offered.candidates) if each.effect not in base.parameters.names]
-    own, entries = objective.linearise_effects(base), offered.entries
+    part = objective.on_runs(list(offered.changes))
+    screened = part.weigh_again(base)
+    own, entries, whole = part.linearise_effects(screened), offered.entries, base.rows / screened.rows
     matrix, right, mixed, slopes = (np.sum(parts, axis=0) for parts in zip(*(
-        _multiply(np.vstack([nuisances.jacobian[run], own.jacobian[run]]), offered.changes[run], residuals.ravel())
-        for run, residuals in base.whitened.items()
+        _multiply(np.vstack([nuisances.jacobian[run], own.jacobian[run]]), changes, base.whitened[run].ravel())
+        for run, changes in offered.changes.items()
     ), strict=True))  # fmt: skip
     found = {}
     for k in others:
         changes = [each[entries[k]].reshape(offered.candidates[k].sizes, -1) for each in offered.changes.values()]
         squares = np.sum([each @ each.T for each in changes], axis=0)
-        whole = np.block([[matrix, mixed[entries[k]].T], [mixed[entries[k]], squares]])
-        slope = np.append(right, slopes[entries[k]])
-        found[k] = _predict_one(base, offered.candidates[k], whole, slope)
+        normal = whole * np.block([[matrix, mixed[entries[k]].T], [mixed[entries[k]], squares]])
+        slope = whole * np.append(right, slopes[entries[k]])
+        found[k] = _predict_one(base, offered.candidates[k], normal, slope)
     return found
 
 

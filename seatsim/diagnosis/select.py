@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from itertools import chain
+from itertools import chain, islice
 from typing import NamedTuple
 
 import numpy as np
@@ -91,7 +91,7 @@ def select_effects(
     objective: Objective,
     candidates: Sequence[Candidate],
     progress: Callable[[str], object],
-    largest: int | None = None,
+    largest: int = 3,
     rig: LinearisedRig | None = None,
 ) -> Selection:
     """Fit the nuisance parameters alone, then single effects, then larger sets as long as the cost falls enough.
@@ -100,11 +100,10 @@ def select_effects(
         objective: what is minimised.
         candidates: effects with the starts of their fits.
         progress: called with what is being done.
-        largest: most effects of a set; that of the settings where absent.
+        largest: most effects of a set; more take time, and explain anything.
         rig: the rig with its sensitivities to the candidates, where they are known.
     """
     settings = objective.settings.selection
-    largest = settings.largest_set if largest is None else largest
     rig = _linearise_rig(objective, candidates) if rig is None else rig
     nuisances, sensitivities = rig.nuisances, rig.sensitivities
     sets: list[list[Evaluation]] = [[rig.calibrated]]
@@ -119,7 +118,7 @@ def select_effects(
             sets.append(larger)
             if larger[0].excess > settings.nothing_left:
                 joined = [(base, base.parameters.terms[-1]) for base in larger[: settings.beam // size]]
-                again = [_restart_effect(objective, *each, candidates, nuisances) for each in joined]
+                again = [_fit_other_forms(objective, *each, candidates, nuisances) for each in joined]
                 larger[:] = _best_of_each_set([*larger, *chain.from_iterable(again)])
             larger[:] = _best_of_each_set([*larger, *_fit_twins(objective, larger[0], candidates, nuisances)])
             if not _gains(objective, sets):
@@ -160,7 +159,6 @@ def _extend(
     starts = list[Evaluation]()
     for base in bases:
         taken = base.parameters.names
-        count = settings.further_shortlist if taken else settings.first_shortlist
         # A first effect of a gap is always tried; others only where a linear model predicts that they help.
         if taken:
             bound = base.rows * (1.0 + bases[0].excess)
@@ -168,34 +166,35 @@ def _extend(
             bound = base.cost - objective.settings.decision.least_lowered * base.rows
         else:
             bound = float("inf")
-        starts += screen_candidates(objective, base, sensitivities, nuisances, bound, count)
-    # Forms of one effect start alike, so that only the best of them is begun.
-    ranked, most, finalists = _best_of_each_set(starts), settings.further_shortlist, settings.finalists
-    begun = [fit(objective, start, nuisances, settings.begun_steps) for start in ranked[:most]]
-    ranked = _best_of_each_set(begun + ranked[most:])
-    finished = [fit(objective, evaluation, nuisances) for evaluation in ranked[:finalists]]
-    return _best_of_each_set(finished + ranked[finalists:])
+        starts += screen_candidates(objective, base, sensitivities, nuisances, bound, settings.shortlist)
+    # Forms of one effect start alike, so that only the best of them is fitted.
+    ranked, finalists = _best_of_each_set(starts), settings.finalists
+    return _best_of_each_set([*(fit(objective, each, nuisances) for each in ranked[:finalists]), *ranked[finalists:]])
 
 
-def _restart_effect(
+def _fit_other_forms(
     objective: Objective,
     best: Evaluation,
     term: Candidate,
     candidates: Sequence[Candidate],
     nuisances: Linearisation,
 ) -> list[Evaluation]:
-    """Return fits of a set with one of its effects in its most promising forms, begun again from their best starts.
+    """Return fits of a set with one of its effects in each of its other forms.
 
-    A start that falls steeply only after some steps was left behind before.
+    Each begins where it costs least: at one of its own starts, or where the fit so far ends in the parameters that both
+    forms have.
     """
-    rig, settings = best.parameters.remove(term.effect), objective.settings.selection
-    starts = [rig.add(each, np.array(each.start)) for each in candidates if each.replaces(term)]
-    forms: dict[Hashable, list[Evaluation]] = {}
-    for start in sorted(objective.evaluate(starts), key=lambda each: each.cost):
-        forms.setdefault(start.parameters.terms[-1].structure, []).append(start)
-    begun = [_begin_best(objective, several, nuisances) for several in forms.values()]
-    ranked = sorted(begun, key=lambda each: each.cost)[: settings.finalists]
-    return [fit(objective, each, nuisances) for each in ranked]
+    rig, place = best.parameters.remove(term.effect), best.parameters.terms.index(term)
+    fitted = dict(zip(term.free, best.parameters.values[place].tolist(), strict=True))
+    starts: dict[Hashable, dict[tuple[float, ...], Parameters]] = {}
+    for each in candidates:
+        if each.replaces(term) and each.structure != term.structure:
+            carried = [fitted.get(name, start) for name, start in zip(each.free, each.start, strict=True)]
+            for values in (each.start, tuple(np.clip(carried, each.low, each.high).tolist())):
+                starts.setdefault(each.structure, {})[values] = rig.add(each, np.array(values))
+    evaluations = iter(objective.evaluate([start for form in starts.values() for start in form.values()]))
+    nearest = [min(islice(evaluations, len(form)), key=lambda each: each.cost) for form in starts.values()]
+    return _fit_stable(objective, nearest, nuisances)
 
 
 def _fit_twins(
@@ -207,14 +206,12 @@ def _fit_twins(
         same = {each.effect: each for each in candidates if (each.free, each.fixed) == (term.free, term.fixed)}
         others = [each for name, each in same.items() if name not in rig.names]
         starts += [rig.remove(term.effect).add(each, np.clip(values, each.low, each.high)) for each in others]
-    return [fit(objective, each, nuisances) for each in objective.evaluate(starts)]
+    return _fit_stable(objective, objective.evaluate(starts), nuisances)
 
 
-def _begin_best(objective: Objective, starts: Sequence[Evaluation], nuisances: Linearisation) -> Evaluation:
-    """Return the fit that fell lowest in its first steps from some starts, the best first."""
-    settings = objective.settings.selection
-    begun = [fit(objective, each, nuisances, settings.begun_steps) for each in starts[: settings.finalists]]
-    return min(begun, key=lambda each: each.cost)
+def _fit_stable(objective: Objective, starts: Sequence[Evaluation], nuisances: Linearisation) -> list[Evaluation]:
+    """Return the fits from the starts that can be simulated."""
+    return [fit(objective, each, nuisances) for each in starts if np.isfinite(each.cost)]
 
 
 def _best_of_each_set(evaluations: Sequence[Evaluation]) -> list[Evaluation]:

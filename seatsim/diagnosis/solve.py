@@ -13,7 +13,7 @@ from seatsim.diagnosis.cross_validate import select_by_cross_validation
 from seatsim.diagnosis.decide import decide_verdict
 from seatsim.diagnosis.fit import refit_on
 from seatsim.diagnosis.localise.discrepancy import describe_discrepancy
-from seatsim.diagnosis.localise.disturbance import Disturbance, find_bias_drift, list_disturbances, put_beside
+from seatsim.diagnosis.localise.disturbance import Disturbance, list_disturbances, put_beside
 from seatsim.diagnosis.localise.input_estimate import estimate_nonrepeatable_force
 from seatsim.diagnosis.localise.localisation import localise_remainder, share_gap
 from seatsim.diagnosis.movement import measure_gap_taken
@@ -34,6 +34,8 @@ from seatsim.diagnosis.solution import (
 from seatsim.effects.base import EFFECTS
 
 P = ParamSpec("P")
+_LARGEST_BY_GAP = 2
+"""Most effects of a set that is sought under uniform weights."""
 
 
 def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress) -> Solution:
@@ -138,10 +140,9 @@ def _explain_by_gap(task: SearchTask, first: Solution) -> Solution:
 def search_by_gap(task: SearchTask, objective: Objective, known: Selection) -> Search:
     """Return a search under uniform weights, by which all of the gap counts, from a rig that is known by others."""
     task.progress("weighing the gap alone")
-    problem, largest = objective.problem, objective.settings.selection.largest_uniform_set
-    uniform = Objective(problem, weigh_gap(problem, known.calibrated.residuals))
+    uniform = Objective(objective.problem, weigh_gap(objective.problem, known.calibrated.residuals))
     rig = known.weigh_again(objective, uniform)
-    return Search(uniform, select_effects(uniform, task.candidates, task.progress, largest, rig))
+    return Search(uniform, select_effects(uniform, task.candidates, task.progress, _LARGEST_BY_GAP, rig))
 
 
 def adopt(objective: Objective, known: Selection, others: Selection) -> Selection:
@@ -193,19 +194,13 @@ def _localise(task: SearchTask, solution: Solution) -> Solution:
 
 
 def _decide_beside_disturbance(task: SearchTask, first: Solution, without: Sequence[str]) -> Solution:
-    """Return the solution of the searches without a disturbance and beside each that a rig leaves.
-
-    Of a set that explains the gap only a drift of a sensor may be left; of others, whatever such a signal may be.
-    """
-    objective, selection, verdict = first.objective, first.selection, first.decision.verdict
-    if verdict == "none":
+    """Return the solution decided on the sets found so far and on those beside each disturbance that they may leave."""
+    objective, selection, decision = first.objective, first.selection, first.decision
+    if decision.verdict == "none":
         return first
-    if verdict == "unknown":
-        task.progress("asking whether a disturbance hides the effects")
-        found = list_disturbances(objective, selection)
-    else:
-        drift = find_bias_drift(objective, first.decision.chosen)
-        found = [drift] if drift else []
+    task.progress("asking whether a disturbance hides the effects")
+    chosen = None if decision.verdict == "unknown" else decision.chosen
+    found = list_disturbances(objective, selection, chosen)
     beside = [search_beside(task, objective, selection, each) for each in found if each.effect not in without]
     return _decide(task, first._replace(beside=beside)) if beside else first
 

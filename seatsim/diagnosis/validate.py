@@ -163,8 +163,8 @@ def _bootstrap_shrink(
 class Validation:
     """A solution on a run held out of its fits: the rigs fitted without the run, and the gaps that they leave on it.
 
-    `rigs` are the parameters of the nominal, the calibrated and the augmented rig, `scenarios` their three scenarios,
-    with which `runs` holds every run replayed.
+    `scenarios` are those of the nominal, the calibrated and the augmented rig, with which `runs` holds every run
+    replayed.
     `found` is the rig of the solution, fitted to all runs, with its sensitivities to the nuisance parameters.
     """
 
@@ -173,7 +173,6 @@ class Validation:
     run: str
     calibrated: Evaluation
     augmented: Evaluation
-    rigs: tuple[Parameters, Parameters, Parameters]
     scenarios: Sequence[Scenario]
     runs: Sequence[ReplayedRun]
     gaps: Gaps
@@ -218,7 +217,7 @@ def validate_on_held_out(solution: Solution) -> Validation:
         taken = share_removable(objective.on_runs([run]), gaps.before.overall, gaps.after.overall)
         if taken < problem.settings.decision.least_taken:
             solution = solution._replace(decision=call_unknown(problem.settings.decision, decision))
-    return Validation(solution, found, run, calibrated, augmented, rigs, scenarios, runs, gaps)
+    return Validation(solution, found, run, calibrated, augmented, scenarios, runs, gaps)
 
 
 def _name_raised_gap(gaps: Gaps, held_out: str) -> str:

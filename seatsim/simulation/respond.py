@@ -37,7 +37,7 @@ FINER = 16
 """Parts of a row by which a log may be shifted, an even number: a sixteenth of 5 ms is far below any coil's lag."""
 
 
-def _simulate_bench(scenario: Scenario, inputs: BenchInputs, carry_all_effects: bool = False) -> dict[str, Array]:
+def _simulate_bench(scenario: Scenario, inputs: BenchInputs) -> dict[str, Array]:
     """Return the simulated `damper_force` and `coil_current` of a bench at the rows of its inputs, shape (N,) each.
 
     Displacement follows a quintic spline smoothed to within its stated noise, velocity its derivative or, where it is
@@ -64,7 +64,7 @@ def _simulate_bench(scenario: Scenario, inputs: BenchInputs, carry_all_effects: 
     if true.velocity is not None:
         velocity = CubicSpline(rows, true.velocity)(fine)
     current = _coil_current(scenario, true, rows, fine)
-    damper, state = augment_damper(scenario.damper.record, select_in_loop(effects, carry_all_effects or None)[0])
+    damper, state = augment_damper(scenario.damper.record, select_in_loop(effects)[0])
     temperature = augment_temperature(effects, 0.5 * interval, _temperature(scenario, true, rows, fine))
     factors = augment_factors(effects, scenario.damper.factors)
     force = bench_force(damper, position, velocity, current, temperature, interval, factors, state)
@@ -141,22 +141,20 @@ SEAT_OUTPUTS = ("frame_acceleration", "driver_acceleration", "suspension_displac
 """What the sensors of a seat say, in the order in which they are reported; those of a bench say the last two."""
 
 
-def respond(scenario: Scenario, inputs: RigInputs, carry_all_effects: bool = False) -> dict[str, Array]:
+def respond(scenario: Scenario, inputs: RigInputs) -> dict[str, Array]:
     """Return what the sensors of a rig say, by channel, shape (rows,) each in SI units.
 
     The rig starts at rest at x = 0, wherever `scenario.start` puts it, because that is how a recording starts. On a
-    seat the step of the simulation is that of the inputs. With `carry_all_effects` the compiled time loop carries every
-    registered effect, off where the scenario does not choose it: what tries many effects one after another then shares
-    one compiled loop, and the numbers are those without.
+    seat the step of the simulation is that of the inputs.
 
     Raises:
         InputError: the scenario does not fit the inputs, or has an effect that a bench has no part for.
         RunError: the solution grew beyond all bounds.
     """
     if isinstance(inputs, BenchInputs):
-        return _simulate_bench(scenario, inputs, carry_all_effects)
+        return _simulate_bench(scenario, inputs)
     solver = scenario.solver._replace(step=inputs.floor.step)
     at_rest = dataclasses.replace(scenario, solver=solver, start=Start())
-    history = simulate(at_rest, inputs.floor, inputs.forces, carry_all_effects or None)
+    history = simulate(at_rest, inputs.floor, inputs.forces)
     steps = round(inputs.interval / inputs.floor.step)
     return read_sensors(scenario.effects, inputs.interval, {name: history[name][::steps] for name in SEAT_OUTPUTS})

@@ -180,7 +180,7 @@ def _respond(problem: DiagnosisProblem, candidate: CandidateExperiment, rig: Par
     scenario = change_numbers(augmented, candidate.set, list_numbers(problem.scenario))
     floor, interval = candidate.floor, 1.0 / problem.rate
     if not problem.bench:
-        return respond(scenario, SeatInputs(floor, interval), carry_all_effects=True)
+        return respond(scenario, SeatInputs(floor, interval))
     every = slice(None, None, round(interval / floor.step))
     driving = floor.command, floor.coil_current, floor.temperature
     command, current, temperature = (None if values is None else values[every] for values in driving)
@@ -189,7 +189,7 @@ def _respond(problem: DiagnosisProblem, candidate: CandidateExperiment, rig: Par
         interval, floor.displacement[every], noise, current_command=command, coil_current=current,
         damper_temperature=temperature,
     )  # fmt: skip
-    return respond(scenario, inputs, carry_all_effects=True)
+    return respond(scenario, inputs)
 
 
 def _measure_reach(problem: DiagnosisProblem, candidate: CandidateExperiment, rig: Parameters) -> float:

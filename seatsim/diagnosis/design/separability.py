@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.diagnosis.objective import PRIOR_STD
+from seatsim.diagnosis.objective import PRIOR_STD, Objective
 from seatsim.diagnosis.result import Collinearity
 from seatsim.diagnosis.select import Selection
 from seatsim.schema.arrays import Array
@@ -93,27 +93,27 @@ def measure_separability(
     return float(np.sqrt(max(min(gains), 0.0)))
 
 
-def measure_collinearity(selection: Selection, names: Sequence[str]) -> Collinearity:
+def measure_collinearity(objective: Objective, selection: Selection, names: Sequence[str]) -> Collinearity:
     """Return the effects that can act on this rig, and how collinear they are.
 
     Each change is that of the outputs when one effect is added to the calibrated rig: as it was fitted alone, or else
-    as its first candidate was screened.
+    as its first candidate starts.
 
     Args:
-        selection: the fitted sets of one effect, and the sensitivities to the candidates.
+        objective: over all runs.
+        selection: the fitted sets of one effect, and the candidates.
         names: effects to compare.
     """
-    offered, changes, origin = selection.sensitivities, dict[str, Array](), selection.calibrated.stacked
-    for candidate, entry in zip(offered.candidates, offered.entries, strict=True):
-        if candidate.effect in names and candidate.effect not in changes:
-            changes[candidate.effect] = np.concatenate([each[entry.start].ravel() for each in offered.changes.values()])
-    for name, single in selection.singles.items():
-        if name in names:
-            changes[name] = origin - single.stacked
-    known = [name for name in dict.fromkeys(names) if name in changes]
+    rig, singles = selection.calibrated, selection.singles
+    firsts = {each.effect: each for each in reversed(selection.sensitivities.candidates)}
+    starts = [
+        rig.parameters.add(firsts[name], firsts[name].alone[0]) for name in names if name in {*firsts} - {*singles}
+    ]
+    added = singles | {each.parameters.terms[0].effect: each for each in objective.evaluate(starts)}
+    known = [name for name in dict.fromkeys(names) if name in added and np.isfinite(added[name].cost)]
+    changes = np.array([rig.stacked - added[name].stacked for name in known]).reshape(len(known), rig.stacked.size)
     sensitivities = selection.nuisances.stacked
-    stacked = np.array([changes[name] for name in known]).reshape(len(known), origin.size)
-    left = project(stacked, sensitivities, np.full(len(sensitivities), PRIOR_STD))
+    left = project(changes, sensitivities, np.full(len(sensitivities), PRIOR_STD))
     matrix = np.abs(measure_cosines(left))
     np.fill_diagonal(matrix, 1.0)
     return Collinearity(known, matrix)

@@ -1,14 +1,14 @@
 """Effects that are a random signal: a force from outside, or the drift of a sensor's zero, beside what else is wrong.
 
-Their signal differs from run to run, so that no fit finds it. It is estimated in what the best sets of effects leave,
-and the search for effects goes on beside it. A drift counts as noise of the channels. A force is taken out: the rig is
+Their signal differs from run to run, so that no fit finds it. It is estimated in what a set of effects leaves, and the
+search for effects goes on beside it. A drift counts as noise of the channels. A force is taken out: the rig is
 linearised about the force that was estimated, and what a force can do to the channels at a frequency, all of them
 together, weighs as little as its power says; what it cannot do keeps its full weight.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -54,31 +54,37 @@ class Disturbance(NamedTuple):
         return float(np.mean(shares)) if shares else 0.0
 
 
-def list_disturbances(objective: Objective, selection: Selection) -> list[Disturbance]:
-    """Return what may hide the effects: the random signal beside the best sets, and a drift of the calibrated rig.
+def list_disturbances(objective: Objective, selection: Selection, chosen: Evaluation | None) -> list[Disturbance]:
+    """Return what may hide further effects beside the chosen set, or where none is chosen beside the best of any size.
 
-    Where both are drifts it is the one beside the best sets.
+    It is a random signal, sought beside a chosen set only where that leaves more than noise, and a drift of the chosen
+    or the calibrated rig; of two drifts the former.
     """
-    found = find_bias_drift(objective, selection.calibrated), _find_disturbance(objective, selection)
+    rigs = [sets[0] for sets in selection.sets]
+    if chosen is not None:
+        rigs = [chosen] if chosen.excess > objective.settings.localisation.above_noise else []
+    found = find_bias_drift(objective, chosen or selection.calibrated), _find_disturbance(objective, selection, rigs)
     return list({each.effect: each for each in found if each}.values())
 
 
-def _find_disturbance(objective: Objective, selection: Selection) -> Disturbance | None:
-    """Return the random signal beside which one of the best sets leaves least, None where it is no such effect.
+def _find_disturbance(objective: Objective, selection: Selection, rigs: Sequence[Evaluation]) -> Disturbance | None:
+    """Return the random signal beside which one of some rigs leaves least, None where it is no such effect.
 
     A disturbance shows only about a rig with the effects beside it, and they are found only where the disturbance is
-    expected. Sets are therefore judged by what they leave beyond a disturbance, not by all that they leave.
+    expected. Rigs are therefore judged by what they leave beyond a disturbance, not by all that they leave.
     """
     slight = objective.settings.localisation.slight * selection.calibrated.excess
     tried = []
-    for sets in selection.sets:
-        hypotheses = evaluate_hypotheses(objective, selection.linearise(sets[0]), ["suspension"])
-        if BIAS_DRIFT in sets[0].parameters.names:
+    for rig in rigs:
+        hypotheses = evaluate_hypotheses(objective, selection.linearise(rig), ["suspension"])
+        if BIAS_DRIFT in rig.parameters.names:
             # An offset of a sensor has taken a part of its drift.
             hypotheses.pop("sensor")
         block, likeliest = min(hypotheses.items(), key=lambda pair: pair[1].negative_log_evidence)
-        charged = likeliest.negative_log_evidence + slight * len(sets[0].parameters.terms)
-        tried.append((charged, sets[0], block, likeliest))
+        charged = likeliest.negative_log_evidence + slight * len(rig.parameters.terms)
+        tried.append((charged, rig, block, likeliest))
+    if not tried:
+        return None
     _, rig, block, likeliest = min(tried, key=lambda each: each[0])
     problem = objective.problem
     found = describe_discrepancy(problem, rig.parameters, block, likeliest)

@@ -107,7 +107,7 @@ class Reconstruction:
         inputs = self.problem.seat_inputs(self.run)
         scenario = self.problem.scenario_of(self.run, self.parameters.deviations, self.parameters.effects)
         every_step = inputs._replace(interval=inputs.floor.step)
-        return respond(scenario, every_step, carry_all_effects=True)["coil_current"]
+        return respond(scenario, every_step)["coil_current"]
 
     @property
     def samples(self) -> int:

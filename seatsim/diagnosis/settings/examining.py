@@ -13,7 +13,7 @@ class LocalisationSettings(NamedTuple):
     Trades off: higher: shares of blocks are similar; lower: a confident wrong block.
     Chosen: on simulated rigs."""
     above_noise: float = 1.0
-    """Reduced chi-square less 1 from which an unknown input may take the place of effects.
+    """Reduced chi-square less 1 from which an unknown input may stand beside known effects, or take their place.
     Trades off: lower: noise passes for an input, which gives up effects that runs left out support.
     Chosen: as much as noise itself leaves."""
     largest_input: float = 10.0
@@ -40,7 +40,7 @@ class LocalisationSettings(NamedTuple):
 class DesignSettings(NamedTuple):
     """What can be distinguished, now and by a further experiment."""
 
-    separated: float = 30.0
+    separated: float = 15.0
     """Least separability, in noise units, of an experiment that is proposed.
     Trades off: lower: experiments that do not decide; higher: none is proposed.
     Chosen: on simulated rigs."""

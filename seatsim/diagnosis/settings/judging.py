@@ -43,10 +43,6 @@ class DecisionSettings(NamedTuple):
 class CrossValidationSettings(NamedTuple):
     """Selection by the gap of runs left out, where no set explains the gap."""
 
-    noise_level: float = 0.1
-    """Share of the gap that counts as noise under uniform weights.
-    Trades off: only scales the cost.
-    Chosen: by convention."""
     independent: float = 40.0
     """How many of the numbers of a gap count as independent.
     Trades off: higher: effects are stated that take little of the gap, and parameters within their tolerance cost

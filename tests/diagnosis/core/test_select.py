@@ -89,7 +89,7 @@ def test_an_effect_is_in_a_set_once_and_the_best_structure_of_it_is_kept():
 
 
 def test_an_effect_of_the_same_form_is_fitted_as_closely_in_the_place_of_the_best():
-    objective = pose({"true.one": 1.4, "true.two": -0.6}, first_shortlist=1, further_shortlist=1)
+    objective = pose({"true.one": 1.4, "true.two": -0.6}, shortlist=1)
     twins = [
         offer(name, signal, start=0.3) for signal in ("true.one", "true.two") for name in (signal, f"{signal}.twin")
     ]
@@ -101,18 +101,17 @@ def test_an_effect_of_the_same_form_is_fitted_as_closely_in_the_place_of_the_bes
 
 
 def test_forms_of_one_effect_leave_another_its_place():
-    # Both forms of the decoy start at less cost than the effect itself, and two fits are begun.
+    # Both forms of the decoy start at less cost than the effect itself, and two sets are fitted.
     parts = {"true.one": 0.8, "decoy.0": 0.6}
-    few = {"further_shortlist": 2, "begun_steps": 9, "finalists": 1}
-    objective = pose({"true.one": 1.4}, {"decoy.x": parts, "decoy.y": parts}, **few)
+    objective = pose({"true.one": 1.4}, {"decoy.x": parts, "decoy.y": parts}, finalists=2)
     forms = [offer("decoy.x", "decoy.x", 0.3), offer("decoy.x", "decoy.y", 0.3)]
     found = select_effects(objective, [*forms, offer("true.one", "true.one", 0.03, cls=Cubed)], lambda _: None, 1)
     assert names_of(found.sets[1])[0] == {"true.one"}
 
 
-def test_the_best_effect_is_begun_again_in_its_other_forms():
-    # The cube gains little in its first steps, so that the form that only imitates the effect is ahead of it.
-    objective = pose({"true.one": 1.4}, {"decoy.x": {"true.one": 0.8, "decoy.0": 0.6}}, begun_steps=0, finalists=2)
+def test_the_best_effect_is_fitted_in_its_other_forms():
+    # The cube gains little at its start, so that the form that only imitates the effect is ahead of it.
+    objective = pose({"true.one": 1.4}, {"decoy.x": {"true.one": 0.8, "decoy.0": 0.6}})
     forms = [offer("true.one", "decoy.x", 0.3), offer("true.one", "true.one", 0.03, cls=Cubed)]
     found = select_effects(objective, forms, lambda _: None, 1)
     (amount,) = found.sets[1][0].parameters.values[0]

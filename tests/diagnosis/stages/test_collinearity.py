@@ -17,12 +17,12 @@ def make_objective(folder, nuisances=2, truth=()):
 
 
 def compare(objective, names, fitted, offered=()):
-    """Return the collinearity of effects, from single ones as they were fitted and from screened candidates."""
+    """Return the collinearity of effects, from single ones as they were fitted and from candidates."""
     calibrated, *singles = objective.evaluate([place(objective.problem, *each) for each in ((), *fitted)])
     nuisances = objective.linearise_nuisances(calibrated)
     sensitivities = measure_sensitivities(objective, calibrated, offered)
     selection = Selection(calibrated, ((calibrated,), tuple(singles)), nuisances, sensitivities=sensitivities)
-    return measure_collinearity(selection, names)
+    return measure_collinearity(objective, selection, names)
 
 
 def leave(objective, signal, nuisances=("mass", "stiffness")):
@@ -46,7 +46,7 @@ def test_fitted_effects_are_as_collinear_as_what_nuisances_leave_of_their_signal
     assert np.allclose(matrix, [[cosine(a, b) for b in left] for a in left], atol=1e-6)
 
 
-def test_an_effect_that_was_not_fitted_is_taken_as_its_first_candidate_was_screened(folder):
+def test_an_effect_that_was_not_fitted_is_taken_as_its_first_candidate_starts(folder):
     objective = make_objective(folder)
     offered = [offer("a", "one"), offer("b", "three"), offer("b", "one")]
     names, matrix = compare(objective, ["b", "a"], [[(offer("a", "two"), 1.0)]], offered)

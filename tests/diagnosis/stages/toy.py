@@ -118,7 +118,7 @@ def respond_to_taps(cause, samples):
     return np.array([size * (a + b * late) for size, (a, b) in zip(SIZES, TAPS[cause], strict=True)])
 
 
-def respond_linearly(scenario, inputs, carry_all_effects=False):
+def respond_linearly(scenario, inputs):
     """Answer as `seatsim.simulation.respond.respond` does, by the sum of all causes."""
     steps = round(inputs.interval / inputs.floor.step)
     floor = inputs.floor.acceleration[::steps]

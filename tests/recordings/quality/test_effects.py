@@ -46,7 +46,7 @@ def with_effect(recording, name, values):
     interval, tables = 1.0 / recording.header.sample_rate, {}
     for run in recording.runs:
         table, generator = recording.table(run), np.random.default_rng(3)
-        outputs = respond(rig, recorded_inputs(recording, table, rig.solver.step), carry_all_effects=True)
+        outputs = respond(rig, recorded_inputs(recording, table, rig.solver.step))
         driving = {} if "current_command" in table else {"coil_current": table["coil_current"]}
         read = read_sensors(on_sensor, interval, {c: ({**table, **outputs} | driving)[c] for c in table})
         noise = {c: e.noise_rms * (c in outputs and c not in driving) for c, e in recording.channels.items()}
