@@ -31,11 +31,10 @@ from threadpoolctl import threadpool_limits
 from seatsim.blind.sealed import Label, unseal
 from seatsim.diagnosis import score
 from seatsim.diagnosis.decide import decide_verdict
-from seatsim.diagnosis.localise.disturbance import list_disturbances
 from seatsim.diagnosis.noise import differ_materially
 from seatsim.diagnosis.problem import pose_problem
 from seatsim.diagnosis.solution import search
-from seatsim.diagnosis.solve import adopt, pose_search, search_beside, search_by_gap
+from seatsim.diagnosis.solve import adopt, pose_search, search_beside_disturbances, search_by_gap
 from seatsim.recordings.recording import load_recording
 from seatsim.schema.arrays import Array
 from seatsim.schema.files import write_json, write_text
@@ -62,10 +61,7 @@ def list_hypotheses(case: Path) -> None:
         task, objective = pose_search(problem, (), lambda _: None, repeats=not differ_materially(problem))
         first, found = search(task, objective), list[score.Hypothesis]()
         if first.decision.verdict != "none":
-            searches = [score.Search(objective, first.selection)]
-            chosen = None if first.decision.verdict == "unknown" else first.decision.chosen
-            found_beside = list_disturbances(objective, first.selection, chosen)
-            searches += [search_beside(task, objective, first.selection, each) for each in found_beside]
+            searches = [score.Search(objective, first.selection), *search_beside_disturbances(task, first)]
             if decide_verdict(searches, task.effects).verdict == "unknown":
                 by_gap = search_by_gap(task, objective, first.selection)
                 searches[0] = score.Search(objective, adopt(objective, first.selection, by_gap.selection))

@@ -86,7 +86,7 @@ def _estimate_parameters(
     return found
 
 
-def list_traces(problem: DiagnosisProblem, runs: Sequence[ReplayedRun]) -> list[Trace]:
+def trace_replayed(problem: DiagnosisProblem, runs: Sequence[ReplayedRun]) -> list[Trace]:
     """Return the compared rows and channels of runs, each beside those of nominal, calibrated and augmented rig."""
     noise, traces = dict(zip(problem.channels, problem.noise.tolist(), strict=True)), []
     for run in runs:

@@ -14,6 +14,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import islice
 from typing import TypeVar
 
 import numpy as np
@@ -219,6 +220,11 @@ class Objective:
             residuals = self.problem.residuals([(each.deviations, each.effects) for each in part])
             evaluations += self.problem.pool.map(self.weigh, part, residuals)
         return evaluations
+
+    def evaluate_best(self, groups: Sequence[Sequence[Parameters]]) -> list[Evaluation]:
+        """Simulate groups of rigs at once, and return the rig of each group that costs least."""
+        evaluations = iter(self.evaluate([each for group in groups for each in group]))
+        return [min(islice(evaluations, len(group)), key=lambda each: each.cost) for group in groups]
 
     def weigh(self, parameters: Parameters, residuals: dict[str, Array]) -> Evaluation:
         """Return the evaluation of a rig whose residuals are known."""

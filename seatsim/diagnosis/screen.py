@@ -136,8 +136,7 @@ def screen_candidates(
             best_starts.setdefault(offered.candidates[k].structure, k)
     shortlist = list(best_starts.values())[:count]
     several = [_starts_around(base.parameters, offered.candidates[k], predicted[k]) for k in shortlist]
-    evaluations = iter(objective.evaluate([parameters for starts in several for parameters in starts]))
-    best = [min(islice(evaluations, len(starts)), key=lambda each: each.cost) for starts in several]
+    best = objective.evaluate_best(several)
     # Where the prediction fails, a fit begins at the candidate's own start.
     failed = [k for k, each in enumerate(best) if each.cost >= base.cost]
     own = [(offered.candidates[shortlist[k]], np.array(offered.candidates[shortlist[k]].start)) for k in failed]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from itertools import chain, islice
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -192,9 +192,7 @@ def _fit_other_forms(
             carried = [fitted.get(name, start) for name, start in zip(each.free, each.start, strict=True)]
             for values in (each.start, tuple(np.clip(carried, each.low, each.high).tolist())):
                 starts.setdefault(each.structure, {})[values] = rig.add(each, np.array(values))
-    evaluations = iter(objective.evaluate([start for form in starts.values() for start in form.values()]))
-    nearest = [min(islice(evaluations, len(form)), key=lambda each: each.cost) for form in starts.values()]
-    return _fit_stable(objective, nearest, nuisances)
+    return _fit_stable(objective, objective.evaluate_best([[*form.values()] for form in starts.values()]), nuisances)
 
 
 def _fit_twins(

@@ -195,14 +195,16 @@ def _localise(task: SearchTask, solution: Solution) -> Solution:
 
 def _decide_beside_disturbance(task: SearchTask, first: Solution, without: Sequence[str]) -> Solution:
     """Return the solution decided on the sets found so far and on those beside each disturbance that they may leave."""
-    objective, selection, decision = first.objective, first.selection, first.decision
-    if decision.verdict == "none":
-        return first
-    task.progress("asking whether a disturbance hides the effects")
-    chosen = None if decision.verdict == "unknown" else decision.chosen
-    found = list_disturbances(objective, selection, chosen)
-    beside = [search_beside(task, objective, selection, each) for each in found if each.effect not in without]
+    beside = [] if first.decision.verdict == "none" else search_beside_disturbances(task, first, without)
     return _decide(task, first._replace(beside=beside)) if beside else first
+
+
+def search_beside_disturbances(task: SearchTask, first: Solution, without: Sequence[str] = ()) -> list[Search]:
+    """Return a search beside each disturbance that the sets of a solution may leave, but for effects `without`."""
+    task.progress("asking whether a disturbance hides the effects")
+    chosen = None if first.decision.verdict == "unknown" else first.decision.chosen
+    found = list_disturbances(first.objective, first.selection, chosen)
+    return [_search_beside(task, first, each) for each in found if each.effect not in without]
 
 
 def _decide(task: SearchTask, solution: Solution) -> Solution:
@@ -217,11 +219,11 @@ def _decide(task: SearchTask, solution: Solution) -> Solution:
     return Solution(objective, selection, decision, where, disturbance.found, disturbance.effect)
 
 
-def search_beside(task: SearchTask, objective: Objective, selection: Selection, disturbance: Disturbance) -> Search:
-    """Return the search beside a disturbance that was found in what a selection leaves."""
+def _search_beside(task: SearchTask, first: Solution, disturbance: Disturbance) -> Search:
+    """Return the search beside a disturbance that was found in what a solution leaves."""
     task.progress(f"searching beside {disturbance.effect}")
-    beside = put_beside(objective, disturbance)
+    beside = put_beside(first.objective, disturbance)
     others = [each for each in task.candidates if each.effect != disturbance.effect]
-    rig = selection.weigh_again(objective, beside)
+    rig = first.selection.weigh_again(first.objective, beside)
     rig = rig._replace(sensitivities=rig.sensitivities.without(disturbance.effect))
     return Search(beside, select_effects(beside, others, task.progress, rig=rig), disturbance)

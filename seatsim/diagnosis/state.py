@@ -12,7 +12,7 @@ from seatsim.diagnosis.decide import Decision
 from seatsim.diagnosis.design.experiment import propose_experiment
 from seatsim.diagnosis.design.isolability import describe_missing_sensors, find_isolable_groups
 from seatsim.diagnosis.design.separability import measure_collinearity
-from seatsim.diagnosis.estimates import compare_comfort, estimate_causes, list_traces, trace_motion
+from seatsim.diagnosis.estimates import compare_comfort, estimate_causes, trace_motion, trace_replayed
 from seatsim.diagnosis.localise.discrepancy import show_discrepancy
 from seatsim.diagnosis.localise.disturbance import add_strength
 from seatsim.diagnosis.objective import Linearisation, Objective
@@ -105,7 +105,7 @@ def _collect_evidence(validation: Validation, causes: Sequence[Cause]) -> Eviden
     """Return the content of the report's figures, on the held-out run."""
     solution, run = validation.solution, validation.run
     problem, found = solution.objective.problem, solution.discrepancy
-    traces = list_traces(problem, validation.runs)
+    traces = trace_replayed(problem, validation.runs)
     held_out, others = ([each for each in traces if (each.run == run) is is_it] for is_it in (True, False))
     shown = None if found is None else show_discrepancy(problem, found, run)
     relevant = [c.effect for c in causes[:_MOST_LISTED] if c.probability > _LEAST_PROBABILITY]
