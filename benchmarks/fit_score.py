@@ -41,7 +41,7 @@ from seatsim.schema.files import write_json, write_text
 from seatsim.schema.processes import run_jobs
 from seatsim.schema.yaml_text import dump
 
-RIDGE, SURE, PARTS = 10.0, 0.9, 5
+RIDGE, SURE, PARTS = 5.0, 0.9, 5
 HYPOTHESES = "hypotheses.json"
 NAMES = list(score.WEIGHTS)
 

@@ -94,9 +94,14 @@ class Candidate(NamedTuple):
         """The key that is equal for candidates that differ only in where their fit starts."""
         return self.effect, self.free, tuple(self.fixed.items())
 
-    def replaces(self, other: Candidate) -> bool:
-        """Whether this is the same effect in any form, on the same channel if it acts on one."""
-        return self.effect == other.effect and self.fixed.get("channel") == other.fixed.get("channel")
+    def is_other_form(self, other: Candidate) -> bool:
+        """Whether this is the same effect in another form, on the same channel if it acts on one."""
+        same = self.effect == other.effect and self.fixed.get("channel") == other.fixed.get("channel")
+        return same and self.structure != other.structure
+
+    def is_twin(self, other: Candidate) -> bool:
+        """Whether this is another effect with the same parameters."""
+        return self.effect != other.effect and (self.free, self.fixed) == (other.free, other.fixed)
 
     @property
     def block(self) -> str:

@@ -16,6 +16,8 @@ from seatsim.diagnosis.objective import PRIOR_STD, Evaluation, Linearisation, Ob
 from seatsim.diagnosis.problem import OutOfTimeError
 from seatsim.schema.arrays import Array
 
+_MOST_STEPS = 10
+"""Most steps of a fit: with more of them hard fits end nearer their minimum, and take longer."""
 _BACKTRACKING = (1.0, 0.4, 0.12)
 """Fractions of a step that are tried in turn."""
 _SETTLED = 0.01
@@ -28,16 +30,16 @@ def fit(
     objective: Objective,
     start: Evaluation,
     nuisances: Linearisation,
-    steps: int | None = None,
+    steps: int = _MOST_STEPS,
     settled: float = _SETTLED,
 ) -> Evaluation:
     """Return the evaluation at the end of a fit from `start`, with the given sensitivities of the nuisances.
 
-    It takes at most so many steps, those of the settings where absent, and ends where one by sensitivities measured at
+    It takes at most so many steps, and ends where one by sensitivities measured at
     its beginning lowers the cost by less than the share `settled`. At the deadline it is the best so far.
     """
     evaluation, carried = start, dict[str, Array]()
-    for _ in range(objective.settings.fit.most_steps if steps is None else steps):
+    for _ in range(steps):
         before = evaluation
         try:
             own = carried or objective.linearise_effects(before).jacobian

@@ -12,7 +12,7 @@ from seatsim.schema.arrays import Array
 
 _COLOUR = 0.5
 """Excess that the colour of a sensor's noise may leave of a channel; its stated RMS is taken as that of white noise."""
-_LEAST_REMOVABLE = 0.01
+LEAST_REMOVABLE = 0.01
 """Removable gap, in standard deviations, below which its share is not asked for, since it is that of a small number."""
 
 
@@ -86,7 +86,7 @@ def share_removable(objective: Objective, before: float, after: float) -> float:
     problem = objective.problem
     left = np.sqrt(np.mean([expect_power(objective, run)[0] / problem.spread**2 for run in problem.runs]))
     removable = float(before - left)
-    return (before - after) / removable if removable > _LEAST_REMOVABLE else 1.0
+    return (before - after) / removable if removable > LEAST_REMOVABLE else 1.0
 
 
 def expect_power(objective: Objective, run: str) -> tuple[Array, Array]:

@@ -33,6 +33,10 @@ from seatsim.simulation.respond import fit_motion
 
 _LEVEL = 0.1
 """Share of the gap that counts as noise under uniform weights, by which what is left to explain is measured."""
+_REPLICATES, _LEAST_POWER = 3, 1e-6
+"""Simulations with newly drawn noise of the inputs per run, and the least noise power, as a share of a channel's
+variance, without which a noiseless channel would dominate all others.
+"""
 _TINY = 1e-30
 """Least size of a weighted amplitude, so that nothing is divided by zero."""
 
@@ -63,11 +67,11 @@ def _carry(problem: DiagnosisProblem, run: str, draw: Callable[[np.random.Genera
     """Return the power spectrum by which the outputs change under inputs that are drawn, (channels, frequencies)."""
     # The same draws for every recording: equal input gives equal output.
     rng = np.random.default_rng(0)
-    drawn = [draw(rng) for _ in range(problem.settings.noise.replicates)]
+    drawn = [draw(rng) for _ in range(_REPLICATES)]
     clean = problem.simulated(run, problem.nominal, ())
     replicates = problem.pool.map(lambda noisy: problem.simulated(run, problem.nominal, (), noisy), drawn)
     power = np.mean([np.abs(np.fft.rfft(noisy - clean, axis=1)) ** 2 for noisy in replicates], axis=0)
-    return smooth_spectrum(power, problem.settings.noise.smoothing)
+    return smooth_spectrum(power)
 
 
 def _draw_bench(problem: DiagnosisProblem, inputs: BenchInputs, rng: np.random.Generator) -> BenchInputs:
@@ -201,8 +205,8 @@ def weigh_noise(problem: DiagnosisProblem, repeats: bool = True) -> NoiseWeights
                 power, np.array([np.interp(frequency, repeated[0], row) for row in repeated[1]]) * samples
             )
         signal = np.abs(np.fft.rfft(measured - measured.mean(axis=1, keepdims=True), axis=1)) ** 2
-        total = power + missed**2 * smooth_spectrum(signal, settings.smoothing)
-        total = np.maximum(total, settings.least_power * problem.spread[:, None] ** 2 * samples)
+        total = power + missed**2 * smooth_spectrum(signal)
+        total = np.maximum(total, _LEAST_POWER * problem.spread[:, None] ** 2 * samples)
         found[run] = total[:, : _count_compared(problem, samples)]
     return NoiseWeights(found)
 
@@ -229,22 +233,6 @@ def weigh_gap(problem: DiagnosisProblem, residuals: Mapping[str, Array]) -> Nois
     return dataclasses.replace(weights, parameter_cost=math.log(settings.independent) / settings.independent)
 
 
-def measure_broadband(problem: DiagnosisProblem, residuals: Mapping[str, Array]) -> dict[str, Array]:
-    """Return by run the white power, shape (channels, 1), of residuals that exceed the stated noise above all compared.
-
-    A force that switches rapidly between two values is sampled as white noise, which no model predicts.
-    """
-    settings, found = problem.settings.noise, {}
-    for run, values in residuals.items():
-        frequency = np.fft.rfftfreq(values.shape[1], 1.0 / problem.rate)
-        power = np.abs(np.fft.rfft(values, axis=1)[:, frequency > settings.highest_frequency]) ** 2
-        # The median of an exponential distribution, which powers of white noise follow, is its mean times log 2.
-        level = np.median(power, axis=1) / np.log(2.0) if power.size else np.zeros(len(values))
-        stated = problem.noise**2 * values.shape[1]
-        found[run] = np.where(level > settings.broadband_excess * stated, level - stated, 0.0)[:, None]
-    return found
-
-
 def _count_compared(problem: DiagnosisProblem, samples: int) -> int:
     """Return how many frequencies of a run are compared: those below the highest one and below half the rate."""
     frequency = np.fft.rfftfreq(samples, 1.0 / problem.rate)
@@ -256,7 +244,7 @@ def _measure_nonrepeatable(problem: DiagnosisProblem) -> tuple[Array, Array] | N
     found = []
     for signal in _list_nonrepeatable(problem):
         samples = signal.shape[1]
-        power = smooth_spectrum(np.abs(np.fft.rfft(signal, axis=1)) ** 2, problem.settings.noise.smoothing)
+        power = smooth_spectrum(np.abs(np.fft.rfft(signal, axis=1)) ** 2)
         found.append((np.arange(samples // 2 + 1) * problem.rate / samples, power / samples))
     if not found:
         return None

@@ -106,15 +106,17 @@ class Parameters:
         ends = np.cumsum([len(self.deviations), *(len(term.free) for term in self.terms)])
         return np.split(components, ends)[1:-1]
 
-    def shift(self, component: int, step: float) -> tuple[Parameters, float]:
+    def shift(self, component: int) -> tuple[Parameters, float]:
         """Return the parameters with one component moved by a difference step, downwards near the upper bound."""
         vector, (_, high) = self.vector, self.limits
-        signed = step if vector[component] + step <= high[component] else -step
+        signed = _STEP if vector[component] + _STEP <= high[component] else -_STEP
         moved = vector.copy()
         moved[component] += signed
         return self.move_to(moved), signed
 
 
+_STEP = 0.02
+"""Step of the finite differences, in natural sizes: a longer one sees curvature, a shorter one rounding."""
 PRIOR_STD = 0.58
 """Standard deviation of a nuisance parameter, as a share of its tolerance: 1/sqrt(3), of a uniform distribution."""
 AT_BOUND = 0.98
@@ -250,7 +252,7 @@ class Objective:
 
         A rig that cannot be simulated a difference step away has a sensitivity of 0: the fit leaves that component.
         """
-        shifts = [evaluation.parameters.shift(k, self.settings.fit.difference_step) for k in components]
+        shifts = [evaluation.parameters.shift(k) for k in components]
         moved = self.evaluate([parameters for parameters, _ in shifts])
         jacobian = {}
         for run, base in evaluation.whitened.items():

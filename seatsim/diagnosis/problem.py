@@ -257,7 +257,7 @@ def pose_problem(recording: Recording, pool: Executor, settings: DiagnosisSettin
         for unit, names in telling.items()
         if names
     }
-    parameters = list_varied(recording.header, scenario, settings.fit.fitted_tolerance)
+    parameters = list_varied(recording.header, scenario, settings.selection.fitted_tolerance)
     return DiagnosisProblem(
         recording, scenario, tuple(tables), tuple(loud), measured, inputs, parameters, settings, pool,
         current_falls=shows_falling_current(recording), reached=reached,

@@ -89,25 +89,24 @@ def list_hypotheses(searches: Sequence[Search]) -> list[Hypothesis]:
     All are compared with the calibrated rig of the first search, which has no disturbance.
     """
     first, *_ = searches
-    count, calibrated = first.objective.settings.selection.finalists, first.selection.calibrated
-    gaps = [_measure_gaps(search) for search in searches]
+    count, gaps = first.objective.settings.selection.finalists, [_measure_gaps(search) for search in searches]
     hypotheses = [
-        _describe_set(calibrated, search, rig, own, gaps[0])
+        _describe_set(first, search, rig, own, gaps[0])
         for search, own in zip(searches, gaps, strict=True)
         for rig in search.selection.list_finalists(count)
         if search.disturbance or rig.parameters.terms
     ]
-    prior = first.objective.measure_prior(calibrated.parameters)
+    prior = first.objective.measure_prior(first.selection.calibrated.parameters)
     return [*hypotheses, Hypothesis({"unknown": 1.0, "prior": prior})]
 
 
-def _describe_set(calibrated: Evaluation, search: Search, rig: Evaluation, gaps: _Gaps, alone: _Gaps) -> Hypothesis:
-    """Return a fitted set of effects with its features; `gaps` are of its search, `alone` of one without disturbance.
+def _describe_set(first: Search, search: Search, rig: Evaluation, gaps: _Gaps, alone: _Gaps) -> Hypothesis:
+    """Return a fitted set of effects with its features; `gaps` are of its search, `alone` of the first.
 
     A random signal takes any gap, however right it is, so that effects beside one have credit for what they take alone.
     """
     objective, parameters, names = search.objective, rig.parameters, rig.parameters.names
-    problem, beside = objective.problem, search.disturbance
+    problem, beside, calibrated = objective.problem, search.disturbance, first.selection.calibrated
     worst = max([0.0, *measure_shares_left(problem, calibrated, rig)])
     smaller = [gap for others, gap in gaps.items() if others < names]
     nothing = alone[frozenset()]
@@ -125,10 +124,13 @@ def _describe_set(calibrated: Evaluation, search: Search, rig: Evaluation, gaps:
         "sensors": float(sum(effect.startswith("sensor.") for effect in effects)),
     }
     if beside:
+        same = [each.excess for sets in first.selection.sets for each in sets if each.parameters.names == names]
         features |= {
             "disturbance": 1.0,
+            "open": math.log((min(same, default=calibrated.excess) + _LITTLE) / (calibrated.excess + _LITTLE)),
             "disturbance_effects": float(len(effects)),
             "predicted": beside.found.shares["everything"],
+            "following": beside.found.following,
             "repeated": beside.measure_share_repeated(problem),
             "drift": float(beside.effect == BIAS_DRIFT),
         }

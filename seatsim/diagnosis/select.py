@@ -116,11 +116,9 @@ def select_effects(
             if not larger:
                 break
             sets.append(larger)
-            if larger[0].excess > settings.nothing_left:
-                joined = [(base, base.parameters.terms[-1]) for base in larger[: settings.beam // size]]
-                again = [_fit_other_forms(objective, *each, candidates, nuisances) for each in joined]
-                larger[:] = _best_of_each_set([*larger, *chain.from_iterable(again)])
-            larger[:] = _best_of_each_set([*larger, *_fit_twins(objective, larger[0], candidates, nuisances)])
+            bases = larger[: settings.beam // size]
+            changed = [_fit_variants(objective, each, candidates, nuisances) for each in bases]
+            larger[:] = _best_of_each_set([*larger, *chain.from_iterable(changed)])
             if not _gains(objective, sets):
                 break
     fitted = tuple(tuple(each) for each in sets)
@@ -172,44 +170,26 @@ def _extend(
     return _best_of_each_set([*(fit(objective, each, nuisances) for each in ranked[:finalists]), *ranked[finalists:]])
 
 
-def _fit_other_forms(
-    objective: Objective,
-    best: Evaluation,
-    term: Candidate,
-    candidates: Sequence[Candidate],
-    nuisances: Linearisation,
-) -> list[Evaluation]:
-    """Return fits of a set with one of its effects in each of its other forms.
-
-    Each begins where it costs least: at one of its own starts, or where the fit so far ends in the parameters that both
-    forms have.
-    """
-    rig, place = best.parameters.remove(term.effect), best.parameters.terms.index(term)
-    fitted = dict(zip(term.free, best.parameters.values[place].tolist(), strict=True))
-    starts: dict[Hashable, dict[tuple[float, ...], Parameters]] = {}
-    for each in candidates:
-        if each.replaces(term) and each.structure != term.structure:
-            carried = [fitted.get(name, start) for name, start in zip(each.free, each.start, strict=True)]
-            for values in (each.start, tuple(np.clip(carried, each.low, each.high).tolist())):
-                starts.setdefault(each.structure, {})[values] = rig.add(each, np.array(values))
-    return _fit_stable(objective, objective.evaluate_best([[*form.values()] for form in starts.values()]), nuisances)
-
-
-def _fit_twins(
+def _fit_variants(
     objective: Objective, best: Evaluation, candidates: Sequence[Candidate], nuisances: Linearisation
 ) -> list[Evaluation]:
-    """Return fits in which one effect of the best set is another of the same form, as friction elsewhere in the rig."""
-    rig, starts = best.parameters, list[Parameters]()
+    """Return fits of a set in which one effect has another form, or is another of the same, as friction elsewhere.
+
+    Another form is of no use to a set that leaves nothing. Each begins where it costs least: at one of its own starts,
+    or where the fit so far ends in the parameters that both have.
+    """
+    rig, is_open = best.parameters, best.excess > objective.settings.selection.nothing_left
+    starts: dict[Hashable, dict[tuple[float, ...], Parameters]] = {}
     for term, values in zip(rig.terms, rig.values, strict=True):
-        same = {each.effect: each for each in candidates if (each.free, each.fixed) == (term.free, term.fixed)}
-        others = [each for name, each in same.items() if name not in rig.names]
-        starts += [rig.remove(term.effect).add(each, np.clip(values, each.low, each.high)) for each in others]
-    return _fit_stable(objective, objective.evaluate(starts), nuisances)
-
-
-def _fit_stable(objective: Objective, starts: Sequence[Evaluation], nuisances: Linearisation) -> list[Evaluation]:
-    """Return the fits from the starts that can be simulated."""
-    return [fit(objective, each, nuisances) for each in starts if np.isfinite(each.cost)]
+        fitted, others = dict(zip(term.free, values.tolist(), strict=True)), rig.remove(term.effect)
+        for each in candidates:
+            is_elsewhere = each.is_twin(term) and each.effect not in rig.names
+            if is_elsewhere or (is_open and each.is_other_form(term)):
+                carried = [fitted.get(name, start) for name, start in zip(each.free, each.start, strict=True)]
+                for own in (each.start, tuple(np.clip(carried, each.low, each.high).tolist())):
+                    starts.setdefault((term.effect, each.structure), {})[own] = others.add(each, np.array(own))
+    begun = objective.evaluate_best([[*form.values()] for form in starts.values()])
+    return [fit(objective, each, nuisances) for each in begun if np.isfinite(each.cost)]
 
 
 def _best_of_each_set(evaluations: Sequence[Evaluation]) -> list[Evaluation]:

@@ -9,42 +9,38 @@ from seatsim.schema.arrays import Array
 
 Spectra = NDArray[np.complex128]
 
-_FEWEST_BINS = 4
-"""Least half-width of the average in bins, so that the lowest frequencies are averaged at all."""
+_HALF_WIDTH, _FEWEST_BINS = 0.15, 4
+"""Half-width of an average, relative to its frequency, and the least one in bins, so that all are averages.
+
+A wider one smears narrow resonances; a narrower one leaves the weights themselves random.
+"""
 _TINY = 1e-30
 """Least power, so that nothing is divided by the zero of a silent channel."""
 
 
-def smooth_spectrum(power: Array, half_width: float) -> Array:
-    """Return a power spectrum, shape (channels, frequencies), averaged over a constant relative band.
-
-    Args:
-        power: powers from frequency 0 on.
-        half_width: half-width of the band, relative to its frequency.
-    """
+def smooth_spectrum(power: Array) -> Array:
+    """Return a power spectrum from frequency 0 on, shape (channels, frequencies), averaged over a relative band."""
     count = power.shape[1]
     cumulated = np.concatenate([np.zeros((len(power), 1)), np.cumsum(power, axis=1)], axis=1)
     index = np.arange(count)
-    half = np.maximum(_FEWEST_BINS, (half_width * index).astype(int))
+    half = np.maximum(_FEWEST_BINS, (_HALF_WIDTH * index).astype(int))
     low, high = np.maximum(0, index - half), np.minimum(count, index + half + 1)
     return np.asarray((cumulated[:, high] - cumulated[:, low]) / (high - low))
 
 
-def measure_power(spectrum: Spectra, half_width: float) -> Array:
+def measure_power(spectrum: Spectra) -> Array:
     """Return the smoothed power of a spectrum, shape (frequencies,), never zero."""
-    return np.asarray(smooth_spectrum(np.abs(spectrum[None]) ** 2, half_width)[0] + _TINY)
+    return np.asarray(smooth_spectrum(np.abs(spectrum[None]) ** 2)[0] + _TINY)
 
 
-def estimate_response(outputs: Spectra, cause: Spectra, half_width: float) -> Spectra:
+def estimate_response(outputs: Spectra, cause: Spectra) -> Spectra:
     """Return the best linear approximation of the frequency response from a cause to outputs.
 
     `H = smoothed(Y X*) / smoothed(|X|^2)`, the H1 estimate; shape (channels, frequencies).
     """
     crossed = outputs * cause.conj()
-    power = smooth_spectrum(np.abs(cause[None]) ** 2, half_width)
-    return np.asarray(
-        (smooth_spectrum(crossed.real, half_width) + 1j * smooth_spectrum(crossed.imag, half_width)) / power
-    )
+    power = smooth_spectrum(np.abs(cause[None]) ** 2)
+    return np.asarray((smooth_spectrum(crossed.real) + 1j * smooth_spectrum(crossed.imag)) / power)
 
 
 def as_complex(whitened: Array) -> Spectra:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from seatsim.diagnosis.candidates import Candidate, list_candidates
-from seatsim.diagnosis.objective import Parameters
+from seatsim.diagnosis.fit import fit
+from seatsim.diagnosis.noise import weigh_uniformly
+from seatsim.diagnosis.objective import Objective, Parameters
 from seatsim.diagnosis.problem import pose_problem
 from seatsim.diagnosis.result import Trace
 from seatsim.metrics.motion import rms
@@ -19,8 +21,6 @@ from seatsim.recordings.recording import load_recording
 from seatsim.schema.arrays import Array
 
 PROCESSES = 2
-_DIFFERENCE = 1e-2
-"""Step of a difference in a fit, relative."""
 
 
 class Trial:
@@ -35,7 +35,8 @@ class Trial:
         """
         recording = load_recording(folder)
         refuse(examine(recording))
-        self.problem = pose_problem(recording, ThreadPoolExecutor(PROCESSES))
+        posed = pose_problem(recording, ThreadPoolExecutor(PROCESSES))
+        self.problem = dataclasses.replace(posed, parameters=())
         self.candidates: dict[str, Candidate] = {}
         for candidate in list_candidates(self.problem):
             self.candidates.setdefault(name_candidate(candidate), candidate)
@@ -53,20 +54,11 @@ class Trial:
         return {run: job.result() for run, job in jobs.items()}
 
     def fit(self, start: Parameters) -> Parameters:
-        """Return the parameters of the effects with which the squared gap is least, found by least squares."""
-        low, high = start.limits
-        own = slice(len(start.deviations), None)
-
-        def move_to(vector: Array) -> Parameters:
-            return start.move_to(np.concatenate([start.deviations, vector]))
-
-        def subtract(vector: Array) -> Array:
-            simulated, problem = self.simulate(move_to(vector)), self.problem
-            left = [(problem.measured[run] - simulated[run]) / problem.spread[:, None] for run in problem.runs]
-            return np.concatenate(left, axis=None)
-
-        bounds = (low[own], high[own])
-        return move_to(least_squares(subtract, start.vector[own], bounds=bounds, diff_step=[_DIFFERENCE]).x)
+        """Return the parameters of the effects with which the squared gap is least."""
+        power = self.problem.spread[:, None] ** 2
+        objective = Objective(self.problem, weigh_uniformly(self.problem, dict.fromkeys(self.problem.runs, power)))
+        begin = objective.evaluate([start])[0]
+        return fit(objective, begin, objective.linearise_nuisances(begin)).parameters
 
     def measure(self, simulated: Mapping[str, Array]) -> Array:
         """Return the gap of each channel over all runs, shape (channels,)."""

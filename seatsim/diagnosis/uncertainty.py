@@ -23,7 +23,7 @@ from seatsim.recordings.model_error import band_edges, band_powers, band_widths
 from seatsim.schema.arrays import Array
 
 BLOCK_LENGTH = 1.0
-"""s; length of the blocks of time of a bootstrap: several periods of the seat's resonance, and many in a run."""
+"""s; length of blocks of time, as of a bootstrap: several periods of the seat's resonance, and many in a run."""
 
 
 def estimate_standard_deviations(objective: Objective, evaluation: Evaluation, nuisances: Linearisation) -> Array:

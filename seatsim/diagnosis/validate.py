@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.diagnosis.fit import refit_on
 from seatsim.diagnosis.movement import measure_movements, share_removable
@@ -31,39 +30,21 @@ _PERCENTILES = 5.0, 95.0
 """Ends of the interval of the shrink, in %."""
 
 
-def choose_held_out_run(problem: DiagnosisProblem, chosen: Evaluation, shrink: Array) -> str:
-    """Return the run to hold out: one that the effects move about as much as others, at a quantile of shrink.
+def choose_held_out_run(problem: DiagnosisProblem, nominal: Evaluation, chosen: Evaluation) -> str:
+    """Return the run to hold out: that whose gap shrinks most nearly as much as that of all runs together.
 
-    The gap of a new excitation shrinks less than that of the runs in which the effect was found, hence a low quantile.
+    A run that has more than the permitted share of what some effect moves in all runs is not held out, since the fit
+    needs it; where every run has, it is the one with the least.
     """
-    if not chosen.parameters.terms or len(problem.runs) < 2:
-        return problem.runs[-1]
-    spared, least = _spare_runs(problem, chosen)
-    moved = spared & (least > problem.settings.validation.least_share)
-    suitable = sorted(np.flatnonzero(moved if moved.any() else spared), key=lambda k: shrink[k])
-    return problem.runs[suitable[int(problem.settings.validation.quantile * (len(suitable) - 1))]]
-
-
-def choose_typical_run(problem: DiagnosisProblem, nominal: Evaluation, chosen: Evaluation) -> str:
-    """Return the run to hold out whose gap shrinks most nearly as much as that of all runs together."""
     if not chosen.parameters.terms or len(problem.runs) < 2:
         return problem.runs[-1]
     after, before = (normalise_rms_errors(problem, each.residuals) for each in (chosen, nominal))
     overall = 1.0 - float(np.linalg.norm(after) / np.linalg.norm(before))
-    spared, _ = _spare_runs(problem, chosen)
-    return problem.runs[min(np.flatnonzero(spared), key=lambda k: abs(1.0 - after[k] / before[k] - overall))]
-
-
-def _spare_runs(problem: DiagnosisProblem, chosen: Evaluation) -> tuple[NDArray[np.bool_], Array]:
-    """Return which runs a fit can do without, and each run's least share of what an effect moves in all, (runs,) each.
-
-    Where every run has more than the permitted share of some effect, the one with the least is held out.
-    """
     moves = [measure_movements(problem.on_runs([run]), chosen) for run in problem.runs]
     powers = np.array([[float(np.mean(move**2)) for move in of_run] for of_run in moves])
-    share = powers / np.maximum(np.sum(powers, axis=0), 1e-12)
-    largest = share.max(axis=1)
-    return largest < max(problem.settings.validation.most_share, 1.001 * largest.min()), share.min(axis=1)
+    largest = np.max(powers / np.maximum(np.sum(powers, axis=0), 1e-12), axis=1)
+    spared = largest < max(problem.settings.validation.most_share, 1.001 * largest.min())
+    return problem.runs[min(np.flatnonzero(spared), key=lambda k: abs(1.0 - after[k] / before[k] - overall))]
 
 
 def refit_without(
@@ -187,13 +168,7 @@ def validate_on_held_out(solution: Solution) -> Validation:
     """Return a solution assessed on a held-out run; effects that fail there beside an unknown cause are dropped."""
     objective, decision, selection = solution.objective, solution.decision, solution.selection
     problem, chosen = objective.problem, decision.chosen
-    after, before = (normalise_rms_errors(problem, each.residuals) for each in (chosen, selection.nominal))
-    shrink = 1.0 - after / before
-    if decision.verdict == "unknown":
-        # Runs differ in how much of the gap is the unknown cause's own.
-        run = choose_typical_run(problem, selection.nominal, chosen)
-    else:
-        run = choose_held_out_run(problem, chosen, shrink)
+    run = choose_held_out_run(problem, selection.nominal, chosen)
     found = objective.linearise_nuisances(chosen) if chosen.parameters.terms else selection.nuisances
     calibrated, augmented = refit_without(objective, selection.nuisances, found, run)
     if decision.verdict == "unknown" and not chosen.parameters.terms:
@@ -207,7 +182,8 @@ def validate_on_held_out(solution: Solution) -> Validation:
             raise
         return validate_on_held_out(_give_up(solution, f"cannot be simulated as fitted without {run}"))
     # A single run has no spread: its standard deviation with n - 1 degrees of freedom would be NaN.
-    spread = float(np.std(shrink, ddof=min(1, len(shrink) - 1)))
+    after, before = (normalise_rms_errors(problem, each.residuals) for each in (chosen, selection.nominal))
+    spread = float(np.std(after / before, ddof=min(1, len(before) - 1)))
     gaps = measure_gaps(problem, next(each for each in runs if each.name == run), spread)
     gaps = dataclasses.replace(gaps, by_run=list_gaps(problem, runs))
     raised = _name_raised_gap(gaps, run)

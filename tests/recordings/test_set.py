@@ -90,7 +90,7 @@ def test_a_fit_simulates_each_run_as_it_was_set(heavier):
     masses = {run: problem.scenario_of(run, deviations, ()).plant.driver_mass for run in problem.runs}
     assert masses == pytest.approx({"run-1": 84.0, "run-2": 95.0 * 1.05})
     tolerances = {each.key: each.tolerance / each.nominal for each in problem.parameters if each.nominal}
-    assert tolerances["plant.frame_mass"] == pytest.approx(problem.settings.fit.fitted_tolerance)
+    assert tolerances["plant.frame_mass"] == pytest.approx(problem.settings.selection.fitted_tolerance)
     assert tolerances["plant.driver_mass"] == pytest.approx(0.1)
 
 

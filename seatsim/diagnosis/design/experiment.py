@@ -223,9 +223,9 @@ def _assess(
         known: what the recording at hand tells of the members.
         candidate: the experiment.
     """
-    problem, step, (_, rig, *members) = objective.problem, objective.settings.fit.difference_step, rigs
-    shifts = [[rig.shift(k, step) for k in rig.nuisance_components]]
-    shifts += [[member.shift(k, step) for k in member.effect_components] for member in members]
+    problem, (_, rig, *members) = objective.problem, rigs
+    shifts = [[rig.shift(k) for k in rig.nuisance_components]]
+    shifts += [[member.shift(k) for k in member.effect_components] for member in members]
     moved = [*rigs, *(parameters for found in shifts for parameters, _ in found)]
     outputs = list(problem.pool.map(lambda each: _simulate(problem, candidate, each), moved))
     weights = _weigh(problem, candidate, outputs[1])

@@ -17,6 +17,7 @@ from seatsim.diagnosis.objective import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import DiscrepancySignal, name_signal
 from seatsim.diagnosis.settings.examining import LocalisationSettings
+from seatsim.diagnosis.uncertainty import BLOCK_LENGTH
 from seatsim.schema.arrays import Array
 
 _RATE = 100.0
@@ -25,6 +26,8 @@ _LAGS = 10
 """Past samples of the motion that a linear filter may use; more overfit."""
 _MEMORIES = (0.05, 0.2, 0.5, 1.0, 2.0, 5.0)
 """Time constants over which motion is remembered, as by a creeping spring [s]."""
+_LEAST_POWER = 1e-12
+"""Least power whose logarithm is taken, as of a rig that rests."""
 _RIDGE, _LEAST_RIDGE = 1e-3, 1e-9
 """Ridge, relative to the regressors' power, and the least one: they may all rest, as a current that never flows."""
 _SLOW_SLIP, _FAST_SLIP = 0.03, 0.005
@@ -48,6 +51,35 @@ def explain_signal(problem: DiagnosisProblem, parameters: Parameters, signals: M
     everything = {run: np.concatenate(list(each.values())) for run, each in regressors.items()}
     shares["everything"] = max(predict_share(everything, target), *shares.values())
     return shares
+
+
+def measure_following(problem: DiagnosisProblem, parameters: Parameters, signals: Mapping[str, Array]) -> float:
+    """Return the share of the changes of a signal's strength in a run (adjusted R2) that those of the motion explain.
+
+    What a wrong law leaves grows with the motion, however little of it any regressor predicts; a force of its own does
+    not know the motion. Strengths are logarithms of the power in blocks of a second: of the signal, of the simulated
+    velocity and of the floor. Runs are compared with themselves alone, since a cause of its own may differ from run to
+    run.
+    """
+    strengths = []
+    for run in problem.runs:
+        families = _list_regressors(problem, parameters, run)
+        motion = [families[name][0] for name in ("velocity", "floor motion") if name in families]
+        of_run = np.array([_measure_strength(problem, each) for each in (_decimate(problem, signals[run]), *motion)])
+        strengths.append(of_run - of_run.mean(axis=1, keepdims=True))
+    signal, *motions = np.hstack(strengths)
+    error = signal - np.linalg.lstsq(np.transpose(motions), signal)[0] @ motions
+    free = len(signal) - len(problem.runs)
+    if free <= len(motions):
+        return 0.0
+    return max(0.0, 1.0 - float(error @ error) / float(signal @ signal) * free / (free - len(motions)))
+
+
+def _measure_strength(problem: DiagnosisProblem, values: Array) -> Array:
+    """Return the logarithm of the power of a signal at the regression's rate, block by block."""
+    rows = round(BLOCK_LENGTH * problem.rate / _find_factor(problem))
+    blocks = values[: len(values) // rows * rows].reshape(-1, rows)
+    return np.asarray(np.log(np.var(blocks, axis=1) + _LEAST_POWER))
 
 
 def predict_share(regressors: Mapping[str, Array], target: Mapping[str, Array]) -> float:
@@ -81,8 +113,12 @@ def _regress(regressors: Array, target: Array) -> Array:
 
 
 def _decimate(problem: DiagnosisProblem, values: Array) -> Array:
-    factor = max(1, round(problem.rate / _RATE))
+    factor = _find_factor(problem)
     return np.asarray(decimate(values, factor, ftype="fir")) if factor > 1 else values
+
+
+def _find_factor(problem: DiagnosisProblem) -> int:
+    return max(1, round(problem.rate / _RATE))
 
 
 def _list_regressors(problem: DiagnosisProblem, parameters: Parameters, run: str) -> dict[str, Array]:
@@ -124,7 +160,8 @@ def _remember(values: Array, time: float) -> Array:
 class Discrepancy(NamedTuple):
     """An unexplained signal by run, and the shares of its variance that families of regressors predict.
 
-    `channel` is the one whose error it is; empty for a force, an acceleration or a current.
+    `channel` is the one whose error it is; empty for a force, an acceleration or a current. `following` is the share of
+    the changes of its strength that those of the motion explain.
     """
 
     block: str
@@ -133,6 +170,7 @@ class Discrepancy(NamedTuple):
     signals: dict[str, Array]
     shares: dict[str, float]
     channel: str = ""
+    following: float = 0.0
 
     @property
     def rms(self) -> float:
@@ -144,8 +182,9 @@ def describe_discrepancy(
     problem: DiagnosisProblem, parameters: Parameters, block: str, hypothesis: FaultHypothesis
 ) -> Discrepancy:
     """Return the unexplained signal in a block of the seat and what predicts it."""
-    shares = explain_signal(problem, parameters, hypothesis.signals)
-    return Discrepancy(block, hypothesis.quantity, hypothesis.unit, hypothesis.signals, shares, hypothesis.channel)
+    signals, about = hypothesis.signals, (problem, parameters, hypothesis.signals)
+    shares, following = explain_signal(*about), measure_following(*about)
+    return Discrepancy(block, hypothesis.quantity, hypothesis.unit, signals, shares, hypothesis.channel, following)
 
 
 def is_bias_drift(settings: LocalisationSettings, found: Discrepancy, rate: float, noise: float) -> bool:

@@ -9,34 +9,50 @@ together, weighs as little as its power says; what it cannot do keeps its full w
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from seatsim.diagnosis.localise.discrepancy import Discrepancy, describe_discrepancy, is_bias_drift
+from seatsim.diagnosis.localise.input_estimate import InputEstimate, as_signal, estimate_error
 from seatsim.diagnosis.localise.localisation import FaultHypothesis, evaluate_hypotheses
 from seatsim.diagnosis.movement import measure_remainders
+from seatsim.diagnosis.noise import NoiseWeights
 from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import Cause, Estimate
 from seatsim.diagnosis.select import Selection
-from seatsim.diagnosis.spectra import Spectra, measure_power
+from seatsim.diagnosis.spectra import Spectra
 from seatsim.schema.arrays import Array
 
 _FORCE_FROM_OUTSIDE, BIAS_DRIFT = "floor.unmeasured_input", "sensor.bias"
 
 
-class Disturbance(NamedTuple):
-    """A random signal with the effect that it is, and what it leaves in the channels, shape (channels, samples) by run.
-
-    `amplitudes[run]`, shape (channels, frequencies), is the frequency response of the channels to the signal times the
-    root of its power.
-    """
+@dataclass(frozen=True)
+class Disturbance:
+    """A random signal with the effect that it is, and what it was found by, by run, under some weights."""
 
     effect: str
     found: Discrepancy
-    traces: Mapping[str, Array]
-    amplitudes: Mapping[str, Spectra]
+    estimates: Mapping[str, InputEstimate]
+    weights: NoiseWeights
+
+    @cached_property
+    def amplitudes(self) -> dict[str, Spectra]:
+        """Frequency response of the channels to the signal times the root of its power, (channels, frequencies)."""
+        return {run: self._respond(run, np.sqrt(each.power)) for run, each in self.estimates.items()}
+
+    @cached_property
+    def traces(self) -> dict[str, Array]:
+        """What the signal leaves in the channels by run, shape (channels, samples)."""
+        signals = {run: each.signal for run, each in self.estimates.items()}
+        return {run: as_signal(self._respond(run, np.fft.rfft(x)), len(x)) for run, x in signals.items()}
+
+    def _respond(self, run: str, spectrum: Spectra | Array) -> Spectra:
+        """Return the spectra that the channels have from one of the signal, at the frequencies that are compared."""
+        response = self.estimates[run].response / self.weights.weights[run]
+        return np.asarray(response * spectrum[: response.shape[1]])
 
     def measure_movements(self, problem: DiagnosisProblem) -> Array:
         """Return by how much it moves each channel, in the channel's standard deviations, shape (channels,)."""
@@ -90,25 +106,12 @@ def _find_disturbance(objective: Objective, selection: Selection, rigs: Sequence
     found = describe_discrepancy(problem, rig.parameters, block, likeliest)
     if block == "suspension":
         found = found._replace(block="floor")
-        return _disturb(objective, _FORCE_FROM_OUTSIDE, found, likeliest)
+        return Disturbance(_FORCE_FROM_OUTSIDE, found, likeliest.estimates, objective.weights)
     # An input that was reconstructed, as the floor's motion, does not hold the noise of its sensor.
     noise = float(problem.noise[problem.channels.index(found.channel)]) if found.channel in problem.channels else 0.0
     if is_bias_drift(problem.settings.localisation, found, problem.rate, noise):
-        return _disturb(objective, BIAS_DRIFT, found, likeliest)
+        return Disturbance(BIAS_DRIFT, found, likeliest.estimates, objective.weights)
     return None
-
-
-def _disturb(objective: Objective, effect: str, found: Discrepancy, cause: FaultHypothesis) -> Disturbance:
-    """Return an input that explains what a rig leaves as a disturbance, with what it leaves in the channels."""
-    traces, amplitudes = {}, {}
-    for run, estimate in cause.estimates.items():
-        response = estimate.response / objective.weights.weights[run]
-        spectrum = np.fft.rfft(estimate.signal)
-        passed = np.zeros((len(response), len(spectrum)), dtype=complex)
-        passed[:, : response.shape[1]] = response * spectrum[: response.shape[1]]
-        traces[run] = np.fft.irfft(passed, len(estimate.signal))
-        amplitudes[run] = response * np.sqrt(estimate.power)
-    return Disturbance(effect, found, traces, amplitudes)
 
 
 def find_bias_drift(objective: Objective, evaluation: Evaluation) -> Disturbance | None:
@@ -124,18 +127,13 @@ def find_bias_drift(objective: Objective, evaluation: Evaluation) -> Disturbance
     is_alone = not np.any(others > gaps[k] / settings.localisation.drift_alone)
     if gaps[k] < settings.decision.material or not is_alone or name == "suspension_displacement":
         return None
-    signals = {run: values[k] for run, values in evaluation.residuals.items()}
-    error = FaultHypothesis(0.0, f"error of {name}", problem.recording.channels[name].unit, signals, name)
+    estimates = {run: estimate_error(objective, evaluation, run, k) for run in problem.runs}
+    signals = {run: each.signal for run, each in estimates.items()}
+    error = FaultHypothesis(0.0, f"error of {name}", problem.recording.channels[name].unit, signals, name, estimates)
     found = describe_discrepancy(problem, evaluation.parameters, "sensor", error)
     if not is_bias_drift(settings.localisation, found, problem.rate, float(problem.noise[k])):
         return None
-    row = np.arange(len(problem.channels))[:, None] == k
-    smoothing, bins = settings.noise.smoothing, objective.weights.bins
-    amplitudes = {
-        run: row * np.sqrt(measure_power(np.fft.rfft(signal)[: bins[run]], smoothing))
-        for run, signal in signals.items()
-    }
-    return Disturbance(BIAS_DRIFT, found, {run: row * signal for run, signal in signals.items()}, amplitudes)
+    return Disturbance(BIAS_DRIFT, found, estimates, objective.weights)
 
 
 def put_beside(objective: Objective, disturbance: Disturbance) -> Objective:

@@ -149,8 +149,7 @@ class Reconstruction:
     def plausible_power(self) -> Array:
         """Return the power of plausible signals, shape (frequencies,)."""
         probe = np.fft.rfft(self.draw_probe(_PLAUSIBLE_CORNER, 1))[: self.objective.weights.bins[self.run]]
-        settings = self.problem.settings
-        return settings.localisation.largest_input**2 * measure_power(probe, settings.noise.smoothing)
+        return self.problem.settings.localisation.largest_input**2 * measure_power(probe)
 
     def measure_response(self, signal: Array, outputs: Array, seed: int = 1) -> Spectra:
         """Return the frequency response of the whitened channels to the signal, shape (channels, frequencies).
@@ -159,7 +158,7 @@ class Reconstruction:
         """
         probe = self.draw_probe(_PROBE_CORNER, seed)
         change = np.fft.rfft(self.simulate_with(signal + probe) - outputs)
-        response = estimate_response(change, np.fft.rfft(probe), self.problem.settings.noise.smoothing)
+        response = estimate_response(change, np.fft.rfft(probe))
         weights = self.objective.weights.weights[self.run]
         return np.asarray(weights * response[:, : weights.shape[1]])
 
@@ -175,6 +174,18 @@ class InputEstimate(NamedTuple):
     response: Spectra
     power: Array
     signal: Array
+
+
+def match_input(response: Spectra, whitened: Array, power: Array) -> Spectra:
+    """Return the spectrum of the input of a plausible power that explains whitened residuals best, (frequencies,)."""
+    matched = np.sum(response.conj() * as_complex(whitened), axis=0)
+    return np.asarray(matched / (np.sum(np.abs(response) ** 2, axis=0) + 2.0 / power))
+
+
+def as_signal(spectrum: Spectra, samples: int) -> Array:
+    """Return the signal of so many samples whose spectrum, shape (..., frequencies), is 0 above those given."""
+    # A transform back takes the frequencies that are missing as 0, and scales by the samples that it gives.
+    return np.asarray(np.fft.irfft(spectrum, samples))
 
 
 def estimate_input(
@@ -194,20 +205,17 @@ def estimate_input(
         before = best.cost
         if stale:
             response = rig.measure_response(best.signal, best.outputs, seed)
-            size = np.sum(np.abs(response) ** 2, axis=0)
-        step = np.zeros(rig.samples // 2 + 1, dtype=complex)
-        matched = np.sum(response.conj() * as_complex(best.residuals), axis=0)
-        step[:bins] = permitted * matched / (size + 2.0 / plausible)
-        tries = (rig.attempt(best.signal + part * np.fft.irfft(step, rig.samples)) for part in _BACKTRACKING)
+        step = as_signal(permitted * match_input(response, best.residuals, plausible), rig.samples)
+        tries = (rig.attempt(best.signal + part * step) for part in _BACKTRACKING)
         best = next((tried for tried in tries if tried.cost < before), best)
         stale = best.cost > (1.0 - _SETTLED) * before
         fruitless = fruitless + 1 if stale else 0
         if fruitless == _FRUITLESS or best.cost < best.residuals.size:
             break
     spectrum = np.fft.rfft(best.signal)
-    power = measure_power(spectrum[:bins], objective.settings.noise.smoothing)
+    power = measure_power(spectrum[:bins])
     explained = response * spectrum[:bins]
-    spectrum[:bins] *= wiener_share(size * power)
+    spectrum[:bins] *= wiener_share(np.sum(np.abs(response) ** 2, axis=0) * power)
     whole = best.residuals + np.concatenate([explained.real, explained.imag], axis=1)
     return InputEstimate(whole, response, power, np.fft.irfft(spectrum, rig.samples))
 
@@ -215,21 +223,19 @@ def estimate_input(
 def estimate_current(objective: Objective, evaluation: Evaluation, run: str) -> InputEstimate:
     """Return the logged current less the simulated one, as the estimate of an input."""
     k, samples = objective.problem.channels.index("coil_current"), objective.problem.measured[run].shape[1]
-    weights, bins = objective.weights.weights[run], objective.weights.bins[run]
-    smoothing = objective.settings.noise.smoothing
-    error, spectrum = as_complex(evaluation.whitened[run])[k], np.zeros(samples // 2 + 1, dtype=complex)
-    spectrum[:bins] = error / weights[k] * wiener_share(measure_power(error, smoothing))
-    signal = np.fft.irfft(spectrum, samples)
+    weights = objective.weights.weights[run]
+    error = as_complex(evaluation.whitened[run])[k]
+    signal = as_signal(error / weights[k] * wiener_share(measure_power(error)), samples)
     rig = Reconstruction(objective, evaluation.parameters, run, Port(current=1.0))
     residuals = rig.attempt(signal).residuals
     residuals[k] = evaluation.whitened[run][k]
-    return InputEstimate(residuals, respond_to_error(weights, k), measure_power(error / weights[k], smoothing), signal)
+    return InputEstimate(residuals, respond_to_error(weights, k), measure_power(error / weights[k]), signal)
 
 
 def estimate_error(objective: Objective, evaluation: Evaluation, run: str, k: int) -> InputEstimate:
     """Return the error of the sensor of channel `k` that would explain its residuals."""
     weights, residuals = objective.weights.weights[run], evaluation.whitened[run]
-    power = measure_power(as_complex(residuals)[k] / weights[k], objective.settings.noise.smoothing)
+    power = measure_power(as_complex(residuals)[k] / weights[k])
     return InputEstimate(residuals, respond_to_error(weights, k), power, evaluation.residuals[run][k])
 
 
@@ -250,11 +256,9 @@ def estimate_nonrepeatable_force(objective: Objective, evaluation: Evaluation) -
         if first.shape == second.shape:
             rig = Reconstruction(objective, evaluation.parameters, run, PORTS["suspension"])
             response = rig.measure_response(np.zeros(rig.samples), problem.measured[run] - second)
-            residuals = as_complex(objective.weights((first - second) / np.sqrt(2.0), run))
-            size = np.sum(np.abs(response) ** 2, axis=0)
-            spectrum = np.sum(response.conj() * residuals, axis=0) / (size + 2.0 / rig.plausible_power())
-            power = measure_power(spectrum, objective.settings.noise.smoothing)
-            spectrum *= _REGAINED * wiener_share(size * power)
-            force = np.fft.irfft(spectrum, rig.samples)
+            differing = objective.weights((first - second) / np.sqrt(2.0), run)
+            spectrum = match_input(response, differing, rig.plausible_power())
+            share = wiener_share(np.sum(np.abs(response) ** 2, axis=0) * measure_power(spectrum))
+            force = as_signal(_REGAINED * share * spectrum, rig.samples)
             return {name: np.resize(force, values.shape[1]) for name, values in problem.measured.items()}
     return None

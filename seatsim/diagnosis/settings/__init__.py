@@ -13,14 +13,13 @@ from typing import NamedTuple
 
 from seatsim.diagnosis.settings.examining import DamperFormSettings, DesignSettings, LocalisationSettings
 from seatsim.diagnosis.settings.judging import CrossValidationSettings, DecisionSettings, ValidationSettings
-from seatsim.diagnosis.settings.searching import FitSettings, NoiseSettings, SelectionSettings
+from seatsim.diagnosis.settings.searching import NoiseSettings, SelectionSettings
 
 
 class DiagnosisSettings(NamedTuple):
-    """The thresholds of every stage; `settings._replace(fit=settings.fit._replace(most_steps=3))` changes one."""
+    """The thresholds of every stage; `settings._replace(noise=settings.noise._replace(model_error=0.1))` sets one."""
 
     noise: NoiseSettings = NoiseSettings()
-    fit: FitSettings = FitSettings()
     selection: SelectionSettings = SelectionSettings()
     decision: DecisionSettings = DecisionSettings()
     cross_validation: CrossValidationSettings = CrossValidationSettings()

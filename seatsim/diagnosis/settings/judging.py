@@ -79,14 +79,6 @@ class ValidationSettings(NamedTuple):
     """Largest share of what an effect moves in all runs that the held-out run may have.
     Trades off: higher: the fit loses the run that shows the effect.
     Chosen: on simulated rigs."""
-    least_share: float = 0.05
-    """Least share of it that the held-out run must have.
-    Trades off: lower: a run that the effect does not touch checks nothing.
-    Chosen: on simulated rigs."""
-    quantile: float = 0.25
-    """Quantile of the shrink over the suitable runs at which the held-out run lies.
-    Trades off: higher: a stated shrink that other excitations do not reach.
-    Chosen: least bias of the stated shrink on sealed rigs."""
     by_chance: float = 2.0
     """Standard deviations of the power of noise by which a residual must exceed it to show an error of the form.
     Trades off: higher: intervals that do not cover under a wrong form; lower: too wide ones under a right form.

@@ -1,4 +1,4 @@
-"""Settings of the noise model, of the fits, and of the search for effects."""
+"""Settings of the noise model and of the search for effects."""
 
 from __future__ import annotations
 
@@ -16,49 +16,16 @@ class NoiseSettings(NamedTuple):
     """Share of a channel's local amplitude spectrum that a right model may miss.
     Trades off: higher: small effects stay unseen; lower: the form of the nominal model is taken for an effect.
     Chosen: on simulated rigs."""
-    smoothing: float = 0.15
-    """Half-width, relative to the frequency, over which spectra are averaged.
-    Trades off: wider: narrow resonances are smeared; narrower: the weights themselves are random.
-    Chosen: by convention."""
-    replicates: int = 3
-    """Simulations with newly drawn input noise per run.
-    Trades off: more: smoother spectra of the carried noise; fewer: less time.
-    Chosen: numerically."""
-    least_power: float = 1e-6
-    """Least noise power, as a share of a channel's variance.
-    Trades off: a lower one lets noiseless channels dominate all others.
-    Chosen: numerically."""
-    broadband_excess: float = 2.0
-    """Factor on the stated noise power above `highest_frequency` from which a residual is broadband.
-    Trades off: lower: understated sensor noise is taken for a broadband residual.
-    Chosen: on simulated rigs."""
-    broadband_share: float = 0.5
-    """Share of what the best set leaves from which a broadband residual is added to the noise.
-    Trades off: lower: real effects are counted as noise; higher: a broadband residual makes a verdict unknown.
-    Chosen: on simulated rigs."""
-
-
-class FitSettings(NamedTuple):
-    """Gauss-Newton fits of nuisance parameters and effects."""
-
-    difference_step: float = 0.02
-    """Step of the finite differences, in natural sizes of a parameter.
-    Trades off: larger: curvature enters; smaller: switching dampers make differences rough.
-    Chosen: numerically."""
-    most_steps: int = 10
-    """Most Gauss-Newton steps of a fit.
-    Trades off: more: hard fits end nearer their minimum, and take longer.
-    Chosen: numerically."""
-    fitted_tolerance: float = 0.5
-    """Tolerance of parameters that a recording states as `fitted`.
-    Trades off: higher: effects vanish in parameters; lower: what a fit has absorbed of an effect cannot be given
-    back.
-    Chosen: a viscous coefficient fitted in place of a missing friction came out twice as large."""
 
 
 class SelectionSettings(NamedTuple):
     """Subset selection: screening by linear models, fits of single effects, then of larger sets."""
 
+    fitted_tolerance: float = 0.5
+    """Tolerance of parameters that a recording states as `fitted`.
+    Trades off: higher: effects vanish in parameters; lower: what a fit has absorbed of an effect cannot be given
+    back.
+    Chosen: a viscous coefficient fitted in place of a missing friction came out twice as large."""
     shortlist: int = 8
     """Candidates beside a set that are simulated after the screening.
     Trades off: fewer: an effect that a linear model underrates is missed; more: time.

@@ -9,6 +9,7 @@ import pytest
 from seatsim.diagnosis.decide import decide_verdict
 from seatsim.diagnosis.localise.discrepancy import Discrepancy
 from seatsim.diagnosis.localise.disturbance import Disturbance
+from seatsim.diagnosis.localise.input_estimate import InputEstimate
 from seatsim.diagnosis.score import WEIGHTS, Search, list_hypotheses, weigh_hypotheses
 from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.solution import give_up_effects, weigh_effects
@@ -118,9 +119,12 @@ def test_a_search_beside_a_disturbance_adds_its_sets_and_the_disturbance_alone(r
     nuisances = rig.linearise_nuisances(calibrated)
     signals = {run: np.sin(np.arange(count)) for run, count in RUNS.items()}
     found = Discrepancy("floor", "force", "N", signals, {"everything": 0.2})
-    traces = {run: np.outer((0.4, 0.0), values) for run, values in signals.items()}
+    estimates = {
+        run: InputEstimate(values, rig.weights.weights[run] * np.array([[0.4], [0.0]]), np.ones(1), values)
+        for run, values in signals.items()
+    }
     selection = Selection(calibrated, ((one,), (both_,)), nuisances)
-    beside = Search(rig, selection, Disturbance("z.other", found, traces, {}))
+    beside = Search(rig, selection, Disturbance("z.other", found, estimates, rig.weights))
     first = Search(rig, selected(rig, 10.0, [({"b.two": 1.0}, 6.0)]))
     alone, disturbed, with_effects, unknown = list_hypotheses([first, beside])
     assert [each.names for each in (alone, disturbed, with_effects, unknown)] == [
@@ -128,6 +132,9 @@ def test_a_search_beside_a_disturbance_adds_its_sets_and_the_disturbance_alone(r
     ]  # fmt: skip
     assert {*alone.features, *with_effects.features, *unknown.features} == set(WEIGHTS)
     assert "predicted" not in alone.features and with_effects.features["predicted"] == 0.2
+    # What the same effects leave without it; a set that was not fitted alone leaves all.
+    assert disturbed.features["open"] == pytest.approx(math.log(6.02 / 10.02), abs=1e-3)
+    assert with_effects.features["open"] == 0.0
     # Beside a disturbance an effect has credit for what it takes alone, a set that was not fitted alone for nothing.
     assert (disturbed.features["gap"], with_effects.features["gap"]) == (alone.features["gap"], 0.0)
     decision = decide_verdict([first, beside], EFFECTS)

@@ -82,7 +82,7 @@ def test_noise_of_a_recorded_velocity_is_carried(tmp_path):
 
 def test_the_weights_of_a_bench_count_it(tmp_path):
     problem = pose(tmp_path)
-    settings = problem.settings._replace(noise=problem.settings.noise._replace(model_error=0.0, least_power=0.0))
+    settings = problem.settings._replace(noise=problem.settings.noise._replace(model_error=0.0))
     weights = weigh_noise(dataclasses.replace(problem, settings=settings)).weights["a"]
     samples = problem.measured["a"].shape[1]
     power = 2.0 / weights**2

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.localise.discrepancy import Discrepancy, describe_in_words, is_bias_drift
+from seatsim.diagnosis.localise.discrepancy import Discrepancy, describe_in_words, is_bias_drift, measure_following
 from seatsim.diagnosis.settings.examining import LocalisationSettings
 
-from .toy import RATE
+from .toy import CHANNELS, RATE, SKIP, place, pose, record
 
 SETTINGS = LocalisationSettings()
 
@@ -41,6 +41,25 @@ def tone(frequency, rms=1.0, samples=2000):
 )
 def test_what_is_slow_and_a_sensors_is_the_drift_of_its_zero(signals, block, drifts):
     assert is_bias_drift(SETTINGS, found(signals, block=block), RATE, 0.0) is drifts
+
+
+def test_a_signal_of_its_own_does_not_swell_with_the_motion_as_what_a_wrong_law_leaves_does(folder):
+    rng = np.random.default_rng(7)
+    swells = {
+        run: np.exp(np.sin(np.arange(SKIP + rows) / 150.0)) for run, rows in {"first": 4000, "second": 3000}.items()
+    }
+    floors = {run: rng.standard_normal(len(swell)) * swell for run, swell in swells.items()}
+    problem = pose(record(folder, runs=floors, channels=CHANNELS[:4]))
+    rig, wrong, own = place(problem), {}, {}
+    for run, values in problem.measured.items():
+        # Noise has no phase that a regressor could predict; a factor that differs by run is no sign of the motion.
+        noise, swell = rng.standard_normal(values.shape[1]), swells[run][SKIP : SKIP + values.shape[1]]
+        wrong[run], own[run] = noise * swell, noise * rng.uniform(1.0, 9.0)
+    assert measure_following(problem, rig, wrong) > 0.5
+    assert measure_following(problem, rig, own) < 0.1
+    # A second has no changes of strength.
+    short = pose(record(folder, runs={"only": 220}, channels=CHANNELS[:4]))
+    assert measure_following(short, place(short), {"only": rng.standard_normal(220)}) == 0.0
 
 
 def test_words_name_what_predicts_it_best_and_the_next_two():

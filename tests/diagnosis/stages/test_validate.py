@@ -8,7 +8,7 @@ import pytest
 from seatsim.diagnosis import validate
 from seatsim.diagnosis.objective import Evaluation, Parameters
 from seatsim.diagnosis.settings import DiagnosisSettings
-from seatsim.diagnosis.validate import choose_held_out_run, choose_typical_run, measure_gaps, refit_without, replay_runs
+from seatsim.diagnosis.validate import choose_held_out_run, measure_gaps, refit_without, replay_runs
 from seatsim.effects.sensor import Gain
 from seatsim.scenario.loading import single
 
@@ -37,41 +37,6 @@ class Moved:
         return gone + dict(self.left).get(run, 0.0)
 
 
-def choose(shares, shrink, effects=("one",), **changed):
-    """Return the run chosen, from the share of what each effect moves in each run, and the shrink."""
-    runs = tuple(f"run {k}" for k in range(len(shrink)))
-    moves = {run: {e: np.sqrt(shares[e][k]) for e in shares} for k, run in enumerate(runs)}
-    settings = DiagnosisSettings()
-    settings = settings._replace(validation=settings.validation._replace(**changed))
-    problem = Moved(moves, runs, settings)
-    rig = Parameters(np.zeros(0))
-    for effect in effects:
-        rig = rig.add(offer(f"x.{effect}", effect), np.array([1.0]))
-    still = {run: np.zeros((1, 4)) for run in runs}
-    return choose_held_out_run(problem, Evaluation(rig, still, {}, 0.0), np.array(shrink))
-
-
-@pytest.mark.parametrize(
-    ("shares", "shrink", "chosen"),
-    [
-        # All suitable: the run at the lower quarter of shrink.
-        ([0.2, 0.2, 0.2, 0.2, 0.2], [0.5, 0.1, 0.9, 0.3, 0.7], "run 3"),
-        ([2.0, 2.0, 2.0, 2.0, 2.0], [0.5, 0.1, 0.9, 0.3, 0.7], "run 3"),
-        ([0.25, 0.25, 0.25, 0.25], [0.5, 0.6, 0.9, 0.7], "run 0"),
-        # A run that alone shows the effect stays in the fit, though it shrinks least.
-        ([0.61, 0.2, 0.19], [0.1, 0.5, 0.4], "run 2"),
-        ([0.59, 0.2, 0.21], [0.1, 0.5, 0.4], "run 0"),
-        # A run that the effect does not move checks nothing.
-        ([0.04, 0.5, 0.46], [0.1, 0.5, 0.6], "run 1"),
-        ([0.06, 0.5, 0.44], [0.1, 0.5, 0.6], "run 0"),
-        # Where one run has nearly all, the others check little, but are held out.
-        ([0.98, 0.01, 0.01], [0.1, 0.6, 0.5], "run 2"),
-    ],
-)
-def test_the_held_out_run_by_the_shares_of_one_effect(shares, shrink, chosen):
-    assert choose({"one": shares}, shrink) == chosen
-
-
 @pytest.mark.parametrize(
     ("shares", "after", "chosen"),
     [
@@ -79,20 +44,24 @@ def test_the_held_out_run_by_the_shares_of_one_effect(shares, shrink, chosen):
         ([0.4, 0.3, 0.3], [0.1, 0.495, 0.7], "run 1"),
         # A run that the fit needs is not held out, however typical it is.
         ([0.1, 0.7, 0.2], [0.1, 0.495, 0.7], "run 2"),
+        ([0.21, 0.59, 0.2], [0.1, 0.495, 0.7], "run 1"),
+        # Where one run has nearly all, the others check little, but are held out.
+        ([0.01, 0.98, 0.01], [0.1, 0.495, 0.7], "run 2"),
+        # Without an effect, or with one run, the last is.
+        ([0.4, 0.3, 0.3], None, "run 2"),
+        ([1.0], [0.1], "run 0"),
     ],
 )
-def test_the_typical_run_shrinks_as_all_runs_together(shares, after, chosen):
-    runs = ("run 0", "run 1", "run 2")
+def test_the_run_held_out_shrinks_as_all_runs_together(shares, after, chosen):
+    runs = tuple(f"run {k}" for k in range(len(shares)))
     moves = {run: {"one": np.sqrt(share)} for run, share in zip(runs, shares, strict=True)}
-    problem = Moved(moves, runs, DiagnosisSettings(), tuple(zip(runs, after, strict=True)))
-    rig = Parameters(np.zeros(0)).add(offer("x.one", "one"), np.array([1.0]))
-    residuals = [dict(zip(runs, np.multiply.outer(each, np.ones((1, 4))), strict=True)) for each in ([1.0] * 3, after)]
-    assert choose_typical_run(problem, *(Evaluation(rig, of_rig, {}, 0.0) for of_rig in residuals)) == chosen
-
-
-def test_without_effects_or_other_runs_the_last_is_held_out():
-    assert choose({"one": [0.2] * 3}, [0.5, 0.1, 0.9], ()) == "run 2"
-    assert choose({"one": [1.0]}, [0.5]) == "run 0"
+    left = after or [1.0] * len(runs)
+    problem = Moved(moves, runs, DiagnosisSettings(), tuple(zip(runs, left, strict=True)))
+    rig = Parameters(np.zeros(0))
+    rig = rig.add(offer("x.one", "one"), np.array([1.0])) if after else rig
+    before = [1.0] * len(runs)
+    residuals = [dict(zip(runs, np.multiply.outer(each, np.ones((1, 4))), strict=True)) for each in (before, left)]
+    assert choose_held_out_run(problem, *(Evaluation(rig, of_rig, {}, 0.0) for of_rig in residuals)) == chosen
 
 
 def test_a_rig_is_fitted_without_the_run(folder):
