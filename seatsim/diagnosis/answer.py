@@ -18,9 +18,9 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.text import join_names
 
 _BETWEEN_EXCITATIONS, _QUANTILE = 0.03, 1.645
-"""Standard deviation by which the share differs between excitations beyond that between runs, and a normal 95 %.
+"""Standard deviation by which the share differs between excitations beyond that between runs; normal 95 % quantile.
 
-With it the intervals from the other runs of 54 simulated rigs held 90 % of the shares of a run.
+On 54 simulated rigs the intervals from two or three other runs held 90 % of the shares of a run.
 """
 
 
@@ -50,27 +50,26 @@ def write_answer(diagnosis: Diagnosis) -> str:
 
 def _taken(gap: Gaps) -> str:
     """Return a clause on how much of the gap the effects and the refitted parameters take off, here and elsewhere."""
-    figures, share = f"{gap.before.overall:.3f} to {gap.after.overall:.3f}, {_noise(gap)}", _share_taken(gap)
+    figures, share = f"{gap.before.overall:.3f} to {gap.after.overall:.3f}, {_noise(gap)}", share_taken(gap)
     if not share > 0.0:
         return f"that takes nothing off the gap of the run held out ({figures})"
     return f"that takes {share:.0%} of the gap that can be removed ({figures}, in standard deviations){_elsewhere(gap)}"
 
 
-def _share_taken(gap: Gaps | RunGaps) -> float:
-    """Return the share that is taken of a gap less that of noise; 0 where there is hardly any, or it grows."""
+def share_taken(gap: Gaps | RunGaps) -> float:
+    """Return the share that is taken of a gap less that of noise; 0 where noise alone makes it, or it grows."""
     removable = gap.before.overall - gap.floor.overall
-    taken = gap.before.overall - gap.after.overall
-    return max(0.0, min(taken / removable, 1.0)) if removable > LEAST_REMOVABLE else 0.0
+    return max(0.0, min((gap.before.overall - gap.after.overall) / removable, 1.0)) if removable > 0.0 else 0.0
 
 
 def _elsewhere(gap: Gaps) -> str:
-    """Return a clause on the share to be expected under another excitation, by how runs differ; empty for one run."""
-    shares = [_share_taken(run) for run in gap.by_run]
+    """Return a clause on the share to be expected under another excitation, by how runs with a gap to remove differ."""
+    shares = [share_taken(run) for run in gap.by_run if run.before.overall - run.floor.overall > LEAST_REMOVABLE]
     if len(shares) < 2:
         return ""
     half = _QUANTILE * math.hypot(float(np.std(shares, ddof=1)), _BETWEEN_EXCITATIONS)
     low, high = np.clip(float(np.median(shares)) + np.array([-half, half]), 0.0, 1.0)
-    return f", and {low:.0%} to {high:.0%} of it are to be expected under another excitation"
+    return f"; under another excitation {low:.0%} to {high:.0%} are expected"
 
 
 def _noise(gap: Gaps) -> str:

@@ -233,6 +233,22 @@ def weigh_gap(problem: DiagnosisProblem, residuals: Mapping[str, Array]) -> Nois
     return dataclasses.replace(weights, parameter_cost=math.log(settings.independent) / settings.independent)
 
 
+def measure_broadband(problem: DiagnosisProblem, residuals: Mapping[str, Array]) -> dict[str, Array]:
+    """Return by run the white power, shape (channels, 1), of residuals that exceed the stated noise above all compared.
+
+    A force that switches rapidly between two values is sampled as white noise, which no model predicts.
+    """
+    settings, found = problem.settings.noise, {}
+    for run, values in residuals.items():
+        frequency = np.fft.rfftfreq(values.shape[1], 1.0 / problem.rate)
+        power = np.abs(np.fft.rfft(values, axis=1)[:, frequency > settings.highest_frequency]) ** 2
+        # The median of an exponential distribution, which powers of white noise follow, is its mean times log 2.
+        level = np.median(power, axis=1) / np.log(2.0) if power.size else np.zeros(len(values))
+        stated = problem.noise**2 * values.shape[1]
+        found[run] = np.where(level > settings.broadband_excess * stated, level - stated, 0.0)[:, None]
+    return found
+
+
 def _count_compared(problem: DiagnosisProblem, samples: int) -> int:
     """Return how many frequencies of a run are compared: those below the highest one and below half the rate."""
     frequency = np.fft.rfftfreq(samples, 1.0 / problem.rate)

@@ -173,7 +173,7 @@ def _extend(
 def _fit_variants(
     objective: Objective, best: Evaluation, candidates: Sequence[Candidate], nuisances: Linearisation
 ) -> list[Evaluation]:
-    """Return fits of a set in which one effect has another form, or is another of the same, as friction elsewhere.
+    """Return fits of a set with another form of one effect, or with its form elsewhere, as friction in another part.
 
     Another form is of no use to a set that leaves nothing. Each begins where it costs least: at one of its own starts,
     or where the fit so far ends in the parameters that both have.

@@ -6,6 +6,8 @@ import dataclasses
 from collections.abc import Callable, Sequence
 from typing import ParamSpec
 
+import numpy as np
+
 from seatsim.diagnosis.candidates import list_candidates
 from seatsim.diagnosis.cross_validate import select_by_cross_validation
 from seatsim.diagnosis.decide import decide_verdict
@@ -15,7 +17,7 @@ from seatsim.diagnosis.localise.disturbance import Disturbance, list_disturbance
 from seatsim.diagnosis.localise.input_estimate import estimate_nonrepeatable_force
 from seatsim.diagnosis.localise.localisation import localise_remainder, share_gap
 from seatsim.diagnosis.movement import measure_gap_taken
-from seatsim.diagnosis.noise import carry_force, differ_materially, weigh_gap, weigh_noise
+from seatsim.diagnosis.noise import carry_force, differ_materially, measure_broadband, weigh_gap, weigh_noise
 from seatsim.diagnosis.objective import Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, OutOfTimeError
 from seatsim.diagnosis.result import Share
@@ -62,8 +64,10 @@ def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress)
 
 
 def _search_causes(task: SearchTask, objective: Objective, without: Sequence[str]) -> Solution:
-    """Return the solution under the weights of an objective, sought beside a random signal too."""
+    """Return the solution under the weights of an objective, sought beside a broadband residual and a random signal."""
     first = search(task, objective)
+    if first.decision.verdict == "unknown":
+        first = _in_time(_search_beyond_broadband, task, first) or first
     if not objective.problem.bench:
         first = _in_time(_decide_beside_disturbance, task, first, without) or first
     return first
@@ -102,6 +106,19 @@ def _is_explained(solution: Solution) -> bool:
         return False
     taken = [measure_gap_taken(objective, rig, decision.chosen) for rig in (selection.nominal, selection.calibrated)]
     return min(taken) >= objective.settings.decision.least_taken
+
+
+def _search_beyond_broadband(task: SearchTask, first: Solution) -> Solution:
+    """Search again with the broadband residual added to the noise, where most of the remainder is broadband."""
+    problem, best = first.objective.problem, first.selection.sets[-1][0]
+    errors, weights = measure_broadband(problem, best.residuals), first.objective.weights.weights
+    broadband = sum(float(np.sum(power * weights[run] ** 2)) for run, power in errors.items())
+    if broadband < problem.settings.noise.broadband_share * best.excess * best.rows:
+        return first
+    task.progress("counting a broadband residual as noise")
+    louder = Objective(problem, first.objective.weights.add(errors))
+    second = search(task, louder, first.selection.weigh_again(first.objective, louder))
+    return second if second.decision.verdict in ("known", "ambiguous") else first
 
 
 def _explain_by_gap(task: SearchTask, first: Solution) -> Solution:

@@ -21,6 +21,8 @@ from seatsim.recordings.recording import load_recording
 from seatsim.schema.arrays import Array
 
 PROCESSES = 2
+_SETTLED = 1e-4
+"""A fit ends where a step lowers the squared gap by less than this share."""
 
 
 class Trial:
@@ -54,11 +56,12 @@ class Trial:
         return {run: job.result() for run, job in jobs.items()}
 
     def fit(self, start: Parameters) -> Parameters:
-        """Return the parameters of the effects with which the squared gap is least."""
-        power = self.problem.spread[:, None] ** 2
-        objective = Objective(self.problem, weigh_uniformly(self.problem, dict.fromkeys(self.problem.runs, power)))
+        """Return the parameters of the effects with which the squared gap at the frequencies compared is least."""
+        problem = self.problem
+        power = {run: problem.spread[:, None] ** 2 * values.shape[1] for run, values in problem.measured.items()}
+        objective = Objective(problem, weigh_uniformly(problem, power))
         begin = objective.evaluate([start])[0]
-        return fit(objective, begin, objective.linearise_nuisances(begin)).parameters
+        return fit(objective, begin, objective.linearise_nuisances(begin), settled=_SETTLED).parameters
 
     def measure(self, simulated: Mapping[str, Array]) -> Array:
         """Return the gap of each channel over all runs, shape (channels,)."""

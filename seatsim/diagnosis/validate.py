@@ -34,7 +34,7 @@ def choose_held_out_run(problem: DiagnosisProblem, nominal: Evaluation, chosen: 
     """Return the run to hold out: that whose gap shrinks most nearly as much as that of all runs together.
 
     A run that has more than the permitted share of what some effect moves in all runs is not held out, since the fit
-    needs it; where every run has, it is the one with the least.
+    needs it; where every run has more, the run with the smallest share is held out.
     """
     if not chosen.parameters.terms or len(problem.runs) < 2:
         return problem.runs[-1]

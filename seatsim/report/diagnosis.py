@@ -9,6 +9,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
+from seatsim.diagnosis.answer import share_taken
 from seatsim.diagnosis.residuals import drop_start
 from seatsim.diagnosis.result import Cause, Diagnosis, Estimate, Gaps, RunGaps
 from seatsim.plots.diagnosis import find_last, plot_diagnosis
@@ -103,11 +104,9 @@ def _select(diagnosis: Diagnosis) -> list[Cause]:
 
 def _say_share(diagnosis: Diagnosis) -> str:
     """Return how much of the gap that can be removed is gone, on the run held out."""
-    gap = diagnosis.gap
-    removable = gap.before.overall - gap.floor.overall
-    if not removable > 0 or gap.after.overall >= gap.before.overall:
+    gap, share = diagnosis.gap, share_taken(diagnosis.gap)
+    if not share > 0.0:
         return "That takes nothing off the gap of the run held out."
-    share = min(1.0, (gap.before.overall - gap.after.overall) / removable)
     subject = "That explains" if len(diagnosis.selected) == 1 else "Together that explains"
     if diagnosis.verdict == "unknown":
         return f"{subject} {format_percent(share)} of the gap; no known effect explains the rest."

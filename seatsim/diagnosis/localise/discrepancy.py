@@ -36,11 +36,14 @@ _WORTH_NAMING = 0.1
 """R2 from which a family of regressors is named in the report."""
 
 
-def explain_signal(problem: DiagnosisProblem, parameters: Parameters, signals: Mapping[str, Array]) -> dict[str, float]:
-    """Return the share of a signal's variance (R2 on runs left out) that each family of regressors predicts.
+def explain_signal(
+    problem: DiagnosisProblem, parameters: Parameters, signals: Mapping[str, Array]
+) -> tuple[dict[str, float], float]:
+    """Return the share of a signal that each family of regressors predicts, and how far it follows the motion.
 
-    It is the variance about the mean of each run: an offset is no more a sign of the motion than a mean current is.
-    `everything` stands for all families together; a family alone may predict better, since it overfits less.
+    A share is of the variance about the mean of each run (R2 on runs left out): an offset is no more a sign of the
+    motion than a mean current is. `everything` stands for all families together; a family alone may predict better,
+    since it overfits less.
     """
     regressors = {run: _list_regressors(problem, parameters, run) for run in problem.runs}
     target = {run: _decimate(problem, signals[run] - np.mean(signals[run])) for run in problem.runs}
@@ -50,36 +53,31 @@ def explain_signal(problem: DiagnosisProblem, parameters: Parameters, signals: M
     }
     everything = {run: np.concatenate(list(each.values())) for run, each in regressors.items()}
     shares["everything"] = max(predict_share(everything, target), *shares.values())
-    return shares
+    rows = round(BLOCK_LENGTH * problem.rate / _find_factor(problem))
+    return shares, _measure_following(regressors, target, rows)
 
 
-def measure_following(problem: DiagnosisProblem, parameters: Parameters, signals: Mapping[str, Array]) -> float:
+def _measure_following(regressors: Mapping[str, Mapping[str, Array]], target: Mapping[str, Array], rows: int) -> float:
     """Return the share of the changes of a signal's strength in a run (adjusted R2) that those of the motion explain.
 
-    What a wrong law leaves grows with the motion, however little of it any regressor predicts; a force of its own does
-    not know the motion. Strengths are logarithms of the power in blocks of a second: of the signal, of the simulated
-    velocity and of the floor. Runs are compared with themselves alone, since a cause of its own may differ from run to
-    run.
+    What a wrong law leaves swells and fades with the motion, however little of it any regressor predicts; a force of
+    its own does not know the motion. Strengths are logarithms of the power in blocks of so many rows: of the signal, of
+    the simulated velocity and of the floor. Runs are compared with themselves alone, since a cause of its own may
+    differ from run to run.
     """
     strengths = []
-    for run in problem.runs:
-        families = _list_regressors(problem, parameters, run)
+    for run, families in regressors.items():
         motion = [families[name][0] for name in ("velocity", "floor motion") if name in families]
-        of_run = np.array([_measure_strength(problem, each) for each in (_decimate(problem, signals[run]), *motion)])
-        strengths.append(of_run - of_run.mean(axis=1, keepdims=True))
-    signal, *motions = np.hstack(strengths)
-    error = signal - np.linalg.lstsq(np.transpose(motions), signal)[0] @ motions
-    free = len(signal) - len(problem.runs)
-    if free <= len(motions):
+        blocks = [each[: len(each) // rows * rows].reshape(-1, rows) for each in (target[run], *motion)]
+        of_run = np.log(np.var(blocks, axis=2) + _LEAST_POWER)
+        strengths += [of_run - of_run.mean(axis=1, keepdims=True)] if of_run.size else []
+    changes = np.hstack(strengths) if strengths else np.zeros((1, 0))
+    signal, motions = changes[0], changes[1:]
+    free, power = len(signal) - len(strengths), float(signal @ signal)
+    if free <= len(motions) or power == 0.0:
         return 0.0
-    return max(0.0, 1.0 - float(error @ error) / float(signal @ signal) * free / (free - len(motions)))
-
-
-def _measure_strength(problem: DiagnosisProblem, values: Array) -> Array:
-    """Return the logarithm of the power of a signal at the regression's rate, block by block."""
-    rows = round(BLOCK_LENGTH * problem.rate / _find_factor(problem))
-    blocks = values[: len(values) // rows * rows].reshape(-1, rows)
-    return np.asarray(np.log(np.var(blocks, axis=1) + _LEAST_POWER))
+    error = signal - np.linalg.lstsq(motions.T, signal, rcond=None)[0] @ motions
+    return max(0.0, 1.0 - float(error @ error) / power * free / (free - len(motions)))
 
 
 def predict_share(regressors: Mapping[str, Array], target: Mapping[str, Array]) -> float:
@@ -182,8 +180,8 @@ def describe_discrepancy(
     problem: DiagnosisProblem, parameters: Parameters, block: str, hypothesis: FaultHypothesis
 ) -> Discrepancy:
     """Return the unexplained signal in a block of the seat and what predicts it."""
-    signals, about = hypothesis.signals, (problem, parameters, hypothesis.signals)
-    shares, following = explain_signal(*about), measure_following(*about)
+    signals = hypothesis.signals
+    shares, following = explain_signal(problem, parameters, signals)
     return Discrepancy(block, hypothesis.quantity, hypothesis.unit, signals, shares, hypothesis.channel, following)
 
 

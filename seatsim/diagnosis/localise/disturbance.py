@@ -31,7 +31,7 @@ _FORCE_FROM_OUTSIDE, BIAS_DRIFT = "floor.unmeasured_input", "sensor.bias"
 
 @dataclass(frozen=True)
 class Disturbance:
-    """A random signal with the effect that it is, and what it was found by, by run, under some weights."""
+    """A random signal with the effect that it is, its estimate in each run, and the weights of that estimate."""
 
     effect: str
     found: Discrepancy

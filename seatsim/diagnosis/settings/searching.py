@@ -16,6 +16,14 @@ class NoiseSettings(NamedTuple):
     """Share of a channel's local amplitude spectrum that a right model may miss.
     Trades off: higher: small effects stay unseen; lower: the form of the nominal model is taken for an effect.
     Chosen: on simulated rigs."""
+    broadband_excess: float = 2.0
+    """Factor on the stated noise power above `highest_frequency` from which a residual is broadband.
+    Trades off: higher: where noise is not stated, or too low, the verdict is unknown.
+    Chosen: on simulated rigs."""
+    broadband_share: float = 0.5
+    """Share of what the best set leaves from which a broadband residual is added to the noise.
+    Trades off: lower: real effects are counted as noise; higher: a broadband residual makes a verdict unknown.
+    Chosen: on simulated rigs."""
 
 
 class SelectionSettings(NamedTuple):

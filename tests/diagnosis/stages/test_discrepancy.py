@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.localise.discrepancy import Discrepancy, describe_in_words, is_bias_drift, measure_following
+from seatsim.diagnosis.localise.discrepancy import Discrepancy, describe_in_words, explain_signal, is_bias_drift
 from seatsim.diagnosis.settings.examining import LocalisationSettings
 
 from .toy import CHANNELS, RATE, SKIP, place, pose, record
@@ -55,11 +55,13 @@ def test_a_signal_of_its_own_does_not_swell_with_the_motion_as_what_a_wrong_law_
         # Noise has no phase that a regressor could predict; a factor that differs by run is no sign of the motion.
         noise, swell = rng.standard_normal(values.shape[1]), swells[run][SKIP : SKIP + values.shape[1]]
         wrong[run], own[run] = noise * swell, noise * rng.uniform(1.0, 9.0)
-    assert measure_following(problem, rig, wrong) > 0.5
-    assert measure_following(problem, rig, own) < 0.1
-    # A second has no changes of strength.
-    short = pose(record(folder, runs={"only": 220}, channels=CHANNELS[:4]))
-    assert measure_following(short, place(short), {"only": rng.standard_normal(220)}) == 0.0
+    assert explain_signal(problem, rig, wrong)[1] > 0.5
+    assert explain_signal(problem, rig, own)[1] < 0.1
+    # A second has no changes of strength, nor has less, or what is not there.
+    for rows, size in ((220, 1.0), (120, 1.0), (3000, 0.0)):
+        other = pose(record(folder, runs={"only": rows}, channels=CHANNELS[:4]))
+        signals = {"only": size * rng.standard_normal(other.measured["only"].shape[1])}
+        assert explain_signal(other, place(other), signals)[1] == 0.0
 
 
 def test_words_name_what_predicts_it_best_and_the_next_two():

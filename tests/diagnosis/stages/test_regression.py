@@ -78,7 +78,7 @@ def of_motion(problem, make):
     ],
 )
 def test_a_force_that_the_rig_makes_is_predicted_by_its_family(problem, make, family):
-    found = explain_signal(problem, place(problem), of_motion(problem, make))
+    found, _ = explain_signal(problem, place(problem), of_motion(problem, make))
     assert max(FAMILIES, key=lambda each: found[each]) == family
     # Averages of rows blur what bends within a row.
     assert found[family] > 0.3 and found["everything"] >= found[family]
@@ -87,7 +87,7 @@ def test_a_force_that_the_rig_makes_is_predicted_by_its_family(problem, make, fa
 def test_an_offset_is_no_sign_of_the_motion(problem):
     rng = np.random.default_rng(3)
     signals = {run: 2.0 + 0.1 * rng.standard_normal(values.shape[1]) for run, values in problem.measured.items()}
-    assert explain_signal(problem, place(problem), signals)["everything"] < 0.1
+    assert explain_signal(problem, place(problem), signals)[0]["everything"] < 0.1
 
 
 def test_a_single_run_is_predicted_by_halves():

@@ -97,7 +97,7 @@ TRUTHS = {
         (Mass(30.0),), "unknown", HEAVY, "cushion", pushed(40.0, "cushion"), runs=MIDDLE),
     "a force in the damper": Row((), "unknown", {}, "damper", pushed(40.0, "damper"), runs=MIDDLE),
     "a drift": Row((), "known", {}, "sensor", drift, "sensor.bias", runs=LONG),
-    "a sensor noisier than stated beside a driver": Row((Mass(30.0),), "unknown", HEAVY, "sensor", hiss, highest=50.0),
+    "a broadband error beside a driver": Row((Mass(30.0),), "known", HEAVY, "driver", hiss, highest=50.0),
     "a driver outside its tolerance": Row((Mass(20.0),), "unknown", {}, "sensor", nuisances=2, without=("driver.mass",),
                                           noted="at the bound of their tolerance: plant.driver_mass 80 (fitted 88)"),
 }  # fmt: skip
