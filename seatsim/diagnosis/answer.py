@@ -7,9 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from seatsim.diagnosis.movement import LEAST_REMOVABLE
 from seatsim.diagnosis.objective import AT_BOUND, Parameters
-from seatsim.diagnosis.problem import DiagnosisProblem
+from seatsim.diagnosis.problem import LEAST_REMOVABLE, DiagnosisProblem
 from seatsim.diagnosis.result import CalibratedParameter, Cause, Diagnosis, Estimate, Gaps, RunGaps
 from seatsim.effects.base import EFFECTS, same_place
 from seatsim.recordings.nuisance import SECTIONS, Nuisance

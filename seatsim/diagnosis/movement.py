@@ -7,13 +7,11 @@ from collections.abc import Iterable
 import numpy as np
 
 from seatsim.diagnosis.objective import Evaluation, Objective
-from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
+from seatsim.diagnosis.problem import LEAST_REMOVABLE, DiagnosisProblem, normalise_rms_errors
 from seatsim.schema.arrays import Array
 
 _COLOUR = 0.5
 """Excess that the colour of a sensor's noise may leave of a channel; its stated RMS is taken as that of white noise."""
-LEAST_REMOVABLE = 0.01
-"""Removable gap, in standard deviations, below which its share is not asked for, since it is that of a small number."""
 
 
 def measure_movements(problem: DiagnosisProblem, evaluation: Evaluation) -> list[Array]:

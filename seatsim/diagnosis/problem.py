@@ -56,6 +56,8 @@ _REACHED = {"m": ("suspension_displacement",), "A": ("coil_current", "current_co
 """Channels that tell how far the rig went towards a limit, by its unit: the first that was recorded does."""
 _ONLY_READ = tuple(name for name in SEAT_OUTPUTS if name != "coil_current")
 """Channels that nothing is simulated from: an error of their sensor leaves the motion of the rig as it is."""
+LEAST_REMOVABLE = 0.01
+"""Removable gap, in standard deviations, below which its share is not asked for, since it is that of a small number."""
 _MOST_MOTIONS = 48
 """Motions that are kept, some megabytes each, for candidates and difference steps that share them."""
 
