@@ -175,7 +175,7 @@ def _fit_variants(
 ) -> list[Evaluation]:
     """Return fits of a set with another form of one effect, or with its form elsewhere, as friction in another part.
 
-    Another form is of no use to a set that leaves nothing. Each begins where it costs least: at one of its own starts,
+    Another form is tried of the effect that was added last, where the set leaves something. Each begins where it costs least: at one of its own starts,
     or where the fit so far ends in the parameters that both have.
     """
     rig, is_open = best.parameters, best.excess > objective.settings.selection.nothing_left
@@ -184,7 +184,7 @@ def _fit_variants(
         fitted, others = dict(zip(term.free, values.tolist(), strict=True)), rig.remove(term.effect)
         for each in candidates:
             is_elsewhere = each.is_twin(term) and each.effect not in rig.names
-            if is_elsewhere or (is_open and each.is_other_form(term)):
+            if is_elsewhere or (is_open and term is rig.terms[-1] and each.is_other_form(term)):
                 carried = [fitted.get(name, start) for name, start in zip(each.free, each.start, strict=True)]
                 for own in (each.start, tuple(np.clip(carried, each.low, each.high).tolist())):
                     starts.setdefault((term.effect, each.structure), {})[own] = others.add(each, np.array(own))
