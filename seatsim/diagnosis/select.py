@@ -175,8 +175,8 @@ def _fit_variants(
 ) -> list[Evaluation]:
     """Return fits of a set with another form of one effect, or with its form elsewhere, as friction in another part.
 
-    Another form is tried of the effect that was added last, where the set leaves something. Each begins where it costs least: at one of its own starts,
-    or where the fit so far ends in the parameters that both have.
+    Another form is tried of the effect that was added last, where the set leaves something. Each begins where it costs
+    least: at one of its own starts, or where the fit so far ends in the parameters that both have.
     """
     rig, is_open = best.parameters, best.excess > objective.settings.selection.nothing_left
     starts: dict[Hashable, dict[tuple[float, ...], Parameters]] = {}
