@@ -81,5 +81,4 @@ def write_verdict(out: Path, method: Diagnoser) -> None:
 
 def weigh_stated_noise(problem: DiagnosisProblem) -> NoiseWeights:
     """Return weights from the stated noise alone, the same at every frequency that is compared."""
-    noise = np.maximum(problem.noise, LEAST_NOISE * problem.spread)[:, None]
-    return weigh_uniformly(problem, {run: noise**2 * values.shape[1] for run, values in problem.measured.items()})
+    return weigh_uniformly(problem, np.maximum(problem.noise, LEAST_NOISE * problem.spread) ** 2)

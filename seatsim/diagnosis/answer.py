@@ -12,12 +12,13 @@ from seatsim.diagnosis.problem import LEAST_REMOVABLE, DiagnosisProblem
 from seatsim.diagnosis.result import CalibratedParameter, Cause, Diagnosis, Estimate, Gaps, RunGaps
 from seatsim.effects.base import EFFECTS, same_place
 from seatsim.recordings.nuisance import SECTIONS, Nuisance
+from seatsim.recordings.prediction import QUANTILE
 from seatsim.scenario.sections import FILES
 from seatsim.schema.arrays import Array
 from seatsim.schema.text import join_names
 
-_BETWEEN_EXCITATIONS, _QUANTILE = 0.03, 1.645
-"""Standard deviation by which the share differs between excitations beyond that between runs; normal 95 % quantile.
+_BETWEEN_EXCITATIONS = 0.03
+"""Standard deviation by which the share differs between excitations beyond that between runs.
 
 On 54 simulated rigs the intervals from two or three other runs held 90 % of the shares of a run.
 """
@@ -66,7 +67,7 @@ def _elsewhere(gap: Gaps) -> str:
     shares = [share_taken(run) for run in gap.by_run if run.before.overall - run.floor.overall > LEAST_REMOVABLE]
     if len(shares) < 2:
         return ""
-    half = _QUANTILE * math.hypot(float(np.std(shares, ddof=1)), _BETWEEN_EXCITATIONS)
+    half = QUANTILE * math.hypot(float(np.std(shares, ddof=1)), _BETWEEN_EXCITATIONS)
     low, high = np.clip(float(np.median(shares)) + np.array([-half, half]), 0.0, 1.0)
     return f"; under another excitation {low:.0%} to {high:.0%} are expected"
 

@@ -35,8 +35,8 @@ def fit(
 ) -> Evaluation:
     """Return the evaluation at the end of a fit from `start`, with the given sensitivities of the nuisances.
 
-    It takes at most so many steps, and ends where one by sensitivities measured at
-    its beginning lowers the cost by less than the share `settled`. At the deadline it is the best so far.
+    It takes at most so many steps, and ends where one by sensitivities measured at its beginning lowers the cost by
+    less than the share `settled`. At the deadline it is the best so far.
     """
     evaluation, carried = start, dict[str, Array]()
     for _ in range(steps):

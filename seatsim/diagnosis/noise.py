@@ -211,10 +211,11 @@ def weigh_noise(problem: DiagnosisProblem, repeats: bool = True) -> NoiseWeights
     return NoiseWeights(found)
 
 
-def weigh_uniformly(problem: DiagnosisProblem, power: Mapping[str, Array], independent: float = 1.0) -> NoiseWeights:
-    """Return weights that are the same at all frequencies, from white power by run, shape (channels, 1)."""
-    counts = {run: _count_compared(problem, problem.measured[run].shape[1]) for run in problem.runs}
-    return NoiseWeights({run: np.tile(power[run], count) for run, count in counts.items()}, independent)
+def weigh_uniformly(problem: DiagnosisProblem, variance: Array, independent: float = 1.0) -> NoiseWeights:
+    """Return weights that are the same at all frequencies, from the variance of white noise, shape (channels,)."""
+    samples = {run: problem.measured[run].shape[1] for run in problem.runs}
+    power = {run: np.tile(variance[:, None] * n, _count_compared(problem, n)) for run, n in samples.items()}
+    return NoiseWeights(power, independent)
 
 
 def weigh_gap(problem: DiagnosisProblem, residuals: Mapping[str, Array]) -> NoiseWeights:
@@ -226,10 +227,9 @@ def weigh_gap(problem: DiagnosisProblem, residuals: Mapping[str, Array]) -> Nois
     excitation share the errors of the form, which a law with more parameters may fit.
     """
     settings, errors = problem.settings.cross_validation, normalise_rms_errors(problem, residuals)
-    level = _LEVEL * np.sqrt(np.mean(errors**2)) * problem.spread
-    power = {run: level[:, None] ** 2 * values.shape[1] for run, values in problem.measured.items()}
-    compared = 2 * sum(each.size for each in weigh_uniformly(problem, power).power.values())
-    weights = weigh_uniformly(problem, power, _LEVEL**2 * settings.independent / compared)
+    variance = (_LEVEL * np.sqrt(np.mean(errors**2)) * problem.spread) ** 2
+    compared = 2 * sum(each.size for each in weigh_uniformly(problem, variance).power.values())
+    weights = weigh_uniformly(problem, variance, _LEVEL**2 * settings.independent / compared)
     return dataclasses.replace(weights, parameter_cost=math.log(settings.independent) / settings.independent)
 
 

@@ -57,9 +57,7 @@ class Trial:
 
     def fit(self, start: Parameters) -> Parameters:
         """Return the parameters of the effects with which the squared gap at the frequencies compared is least."""
-        problem = self.problem
-        power = {run: problem.spread[:, None] ** 2 * values.shape[1] for run, values in problem.measured.items()}
-        objective = Objective(problem, weigh_uniformly(problem, power))
+        objective = Objective(self.problem, weigh_uniformly(self.problem, self.problem.spread**2))
         begin = objective.evaluate([start])[0]
         return fit(objective, begin, objective.linearise_nuisances(begin), settled=_SETTLED).parameters
 

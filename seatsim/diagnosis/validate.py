@@ -39,12 +39,12 @@ def choose_held_out_run(problem: DiagnosisProblem, nominal: Evaluation, chosen: 
     if not chosen.parameters.terms or len(problem.runs) < 2:
         return problem.runs[-1]
     after, before = (normalise_rms_errors(problem, each.residuals) for each in (chosen, nominal))
-    overall = 1.0 - float(np.linalg.norm(after) / np.linalg.norm(before))
     moves = [measure_movements(problem.on_runs([run]), chosen) for run in problem.runs]
     powers = np.array([[float(np.mean(move**2)) for move in of_run] for of_run in moves])
     largest = np.max(powers / np.maximum(np.sum(powers, axis=0), 1e-12), axis=1)
     spared = largest < max(problem.settings.validation.most_share, 1.001 * largest.min())
-    return problem.runs[min(np.flatnonzero(spared), key=lambda k: abs(1.0 - after[k] / before[k] - overall))]
+    apart = np.abs(after / before - np.linalg.norm(after) / np.linalg.norm(before))
+    return problem.runs[min(np.flatnonzero(spared), key=lambda k: apart[k])]
 
 
 def refit_without(

@@ -35,7 +35,7 @@ _RATIO_STD = 0.05
 """Standard deviation of the logarithm of the share of the gap that is left, whatever is missed; on sealed rigs."""
 _ONE_RUN_STD = 0.3
 """The same where a single run was diagnosed, so that its spread from run to run is not known."""
-_QUANTILE = 1.645
+QUANTILE = 1.645
 """Of the normal distribution, at the ends of a 90 % interval."""
 
 
@@ -142,9 +142,9 @@ def _combine(error: ModelError, rigs: SimulatedRigs, place: str) -> Prediction:
         raise InputError(f"{place}: no channel of the diagnosis is to stand above its noise with these inputs")
     mean = np.mean(list(parts.values()), axis=0)
     changes, floor, doubt = (float(value) for value in mean[:3])
-    rest, width = _mean_square(mean[3:]), _QUANTILE * _spread(mean[3:])
-    gaps, share = _roots(changes, floor, rest), np.exp(_QUANTILE * _RATIO_STD * (changes > 0.0))
-    least = share * _left(_roots(changes, floor, rest * np.exp(2.0 * width) + _QUANTILE**2 * doubt))
+    rest, width = _mean_square(mean[3:]), QUANTILE * _spread(mean[3:])
+    gaps, share = _roots(changes, floor, rest), np.exp(QUANTILE * _RATIO_STD * (changes > 0.0))
+    least = share * _left(_roots(changes, floor, rest * np.exp(2.0 * width) + QUANTILE**2 * doubt))
     most = _left(_roots(changes, floor, rest * np.exp(-2.0 * width))) / share
     channels = {name: Expected(*_roots(part[0], part[1], _mean_square(part[3:]))) for name, part in parts.items()}
     return Prediction(*gaps, 1.0 - _left(gaps), (1.0 - least, 1.0 - most), channels)

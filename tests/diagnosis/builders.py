@@ -20,8 +20,7 @@ class SerialExecutor(Executor):
 
 def weigh_stated(problem):
     """Return an objective that weighs by the stated white noise alone."""
-    power = {run: problem.noise[:, None] ** 2 * values.shape[1] for run, values in problem.measured.items()}
-    return Objective(problem, weigh_uniformly(problem, power))
+    return Objective(problem, weigh_uniformly(problem, problem.noise**2))
 
 
 def place(problem, *terms, deviations=None):

@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from seatsim.diagnosis.localise.discrepancy import Discrepancy, describe_discrepancy, is_bias_drift
-from seatsim.diagnosis.localise.input_estimate import InputEstimate, as_signal, estimate_error
+from seatsim.diagnosis.localise.input_estimate import InputEstimate, estimate_error
 from seatsim.diagnosis.localise.localisation import FaultHypothesis, evaluate_hypotheses
 from seatsim.diagnosis.movement import measure_remainders
 from seatsim.diagnosis.noise import NoiseWeights
@@ -47,7 +47,7 @@ class Disturbance:
     def traces(self) -> dict[str, Array]:
         """What the signal leaves in the channels by run, shape (channels, samples)."""
         signals = {run: each.signal for run, each in self.estimates.items()}
-        return {run: as_signal(self._respond(run, np.fft.rfft(x)), len(x)) for run, x in signals.items()}
+        return {run: np.fft.irfft(self._respond(run, np.fft.rfft(x)), len(x)) for run, x in signals.items()}
 
     def _respond(self, run: str, spectrum: Spectra | Array) -> Spectra:
         """Return the spectra that the channels have from one of the signal, at the frequencies that are compared."""

@@ -177,15 +177,12 @@ class InputEstimate(NamedTuple):
 
 
 def match_input(response: Spectra, whitened: Array, power: Array) -> Spectra:
-    """Return the spectrum of the input of a plausible power that explains whitened residuals best, (frequencies,)."""
+    """Return the spectrum of the input of a plausible power that explains whitened residuals best, (frequencies,).
+
+    It ends at the highest frequency that is compared; a transform back takes what is above as 0.
+    """
     matched = np.sum(response.conj() * as_complex(whitened), axis=0)
     return np.asarray(matched / (np.sum(np.abs(response) ** 2, axis=0) + 2.0 / power))
-
-
-def as_signal(spectrum: Spectra, samples: int) -> Array:
-    """Return the signal of so many samples whose spectrum, shape (..., frequencies), is 0 above those given."""
-    # A transform back takes the frequencies that are missing as 0, and scales by the samples that it gives.
-    return np.asarray(np.fft.irfft(spectrum, samples))
 
 
 def estimate_input(
@@ -205,7 +202,7 @@ def estimate_input(
         before = best.cost
         if stale:
             response = rig.measure_response(best.signal, best.outputs, seed)
-        step = as_signal(permitted * match_input(response, best.residuals, plausible), rig.samples)
+        step = np.fft.irfft(permitted * match_input(response, best.residuals, plausible), rig.samples)
         tries = (rig.attempt(best.signal + part * step) for part in _BACKTRACKING)
         best = next((tried for tried in tries if tried.cost < before), best)
         stale = best.cost > (1.0 - _SETTLED) * before
@@ -225,7 +222,7 @@ def estimate_current(objective: Objective, evaluation: Evaluation, run: str) -> 
     k, samples = objective.problem.channels.index("coil_current"), objective.problem.measured[run].shape[1]
     weights = objective.weights.weights[run]
     error = as_complex(evaluation.whitened[run])[k]
-    signal = as_signal(error / weights[k] * wiener_share(measure_power(error)), samples)
+    signal = np.fft.irfft(error / weights[k] * wiener_share(measure_power(error)), samples)
     rig = Reconstruction(objective, evaluation.parameters, run, Port(current=1.0))
     residuals = rig.attempt(signal).residuals
     residuals[k] = evaluation.whitened[run][k]
@@ -259,6 +256,6 @@ def estimate_nonrepeatable_force(objective: Objective, evaluation: Evaluation) -
             differing = objective.weights((first - second) / np.sqrt(2.0), run)
             spectrum = match_input(response, differing, rig.plausible_power())
             share = wiener_share(np.sum(np.abs(response) ** 2, axis=0) * measure_power(spectrum))
-            force = as_signal(_REGAINED * share * spectrum, rig.samples)
+            force = np.fft.irfft(_REGAINED * share * spectrum, rig.samples)
             return {name: np.resize(force, values.shape[1]) for name, values in problem.measured.items()}
     return None

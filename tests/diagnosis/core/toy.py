@@ -11,7 +11,7 @@ import numpy as np
 
 from seatsim.dampers.bingham import Bingham
 from seatsim.diagnosis.candidates import Candidate
-from seatsim.diagnosis.noise import weigh_uniformly
+from seatsim.diagnosis.noise import NoiseWeights, weigh_uniformly
 from seatsim.diagnosis.objective import PRIOR_STD, Objective
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.settings import DiagnosisSettings
@@ -208,7 +208,8 @@ def pose_tones(sizes, noise, runs, planted=None):
         signals[run] = own | {"nominal": tone(samples, 20, rest), "nuisance 0": tone(samples, 30, (1.0, 1.0))}
     measured = {run: sum(own[name] for name in ["nominal", *planted]) for run, own in signals.items()}
     problem = make_problem(signals, measured, nuisances=1, noise=noise)
-    return Objective(problem, weigh_uniformly(problem, {run: np.ones((2, 1)) for run in runs}))
+    compared = weigh_uniformly(problem, np.ones(2)).power
+    return Objective(problem, NoiseWeights({run: np.ones_like(each) for run, each in compared.items()}))
 
 
 def whiten(objective, name):
