@@ -1,9 +1,10 @@
 """Sealed cases on records of real rigs, and what finds the effect: `python benchmarks/measured_carriers.py --out DIR`.
 
 Out of `../shared/data` are written carriers with their best nominals (`carrier_nominals`), and on each of them cases of
-`seatsim blind make --carrier`: an effect put into the measured signals. They
-are diagnosed by seatsim and, where `--methods` names them, by the baselines (`diagnosis_baselines`) and a joint
-fit (`joint_fit`). A call broken off goes on where it stopped. Counted are, by carrier and by effect:
+`seatsim blind make --carrier`: an effect put into the measured signals (`cases/NAME`, with its sealed labels and key in
+`cases/NAME.sealed` and `.key`). They are diagnosed by seatsim and, where `--methods` names them, by the baselines
+(`diagnosis_baselines`) and a joint fit (`joint_fit`). A call broken off goes on where it stopped. Counted are, by
+carrier and by effect:
 
 first   the effect is the likeliest cause (under whatever verdict but `none`)
 pair    a group of two indistinguishable effects holds it
@@ -47,7 +48,7 @@ def make_sets(data: Path, out: Path, only: Sequence[str] | None, cases: int, see
     labels: Labels = {}
     for index, carrier in enumerate(carriers):
         folder = out / "cases" / carrier.name
-        sealed, note = (out / f"{carrier.name}.{end}" for end in ("sealed", "key"))
+        sealed, note = (folder.with_name(f"{carrier.name}.{end}") for end in ("sealed", "key"))
         if not note.is_file():
             key = make_on_carrier(carrier, cases, seed + index, folder, sealed, show_progress, jobs)
             note.write_text(key)

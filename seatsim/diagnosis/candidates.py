@@ -30,8 +30,7 @@ class Candidate(NamedTuple):
     """An effect with some of its parameters free: where a fit starts, and between which bounds.
 
     `nominal` is the first free parameter in the nominal scenario: 0 unless the effect is one of that scenario's own,
-    which the candidate then replaces. The first `sizes` free parameters are sizes, the others the effect's shape. A
-    structure that is a limit of the effect's first one, as set-valued friction is, has chosen `held` of its shape too.
+    which the candidate then replaces. The first `sizes` free parameters are sizes, the others the effect's shape.
     """
 
     effect: str
@@ -43,12 +42,6 @@ class Candidate(NamedTuple):
     high: tuple[float, ...]
     nominal: float = 0.0
     sizes: int = 1
-    held: int = 0
-
-    @property
-    def further(self) -> int:
-        """How many parameters the structure chooses beyond the effect's size."""
-        return len(self.free) - 1 + self.held
 
     @property
     def scale(self) -> Array:
@@ -214,8 +207,7 @@ def _candidate(name: str, cls: type[Record], form: Form, place: _Fixed, reach: f
     ]
     low, high = zip(*ranges, strict=True)
     start = tuple(form.free.values())
-    held = max(0, len(specification.forms[0].free) - len(form.free))
-    return Candidate(name, cls, fixed, tuple(form.free), start, low, high, sizes=form.sizes, held=held)
+    return Candidate(name, cls, fixed, tuple(form.free), start, low, high, sizes=form.sizes)
 
 
 def _bound(cls: type[Record], field: str, value: float, reach: float | None) -> tuple[float, float]:

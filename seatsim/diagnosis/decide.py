@@ -16,10 +16,11 @@ import numpy as np
 
 from seatsim.diagnosis.fit import fit
 from seatsim.diagnosis.movement import group_equivalent, is_material, measure_remainders
-from seatsim.diagnosis.objective import Evaluation
+from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.score import Hypothesis, Search, list_hypotheses, weigh_hypotheses
 from seatsim.diagnosis.select import Selection
+from seatsim.diagnosis.settings.judging import DecisionSettings
 
 Verdict = Literal["none", "known", "ambiguous", "unknown"]
 
@@ -50,14 +51,13 @@ def decide_verdict(searches: Sequence[Search], effects: Sequence[str]) -> Decisi
     hypotheses = list_hypotheses(searches)
     *weights, unknown = weigh_hypotheses(hypotheses).tolist()
     answers = _merge_same(list(zip(hypotheses, weights, strict=False)))
-    probabilities = {name: sum(weight for each, weight in answers if name in each.names) for name in effects}
+    probabilities = _sum_by_effect(answers, effects)
     if not answers:
         return Decision("unknown", selection.calibrated, [], probabilities, 0.0, unknown)
-    chosen, likeliest = max(answers, key=lambda pair: pair[1])
-    others = [(each, weight) for each, weight in answers if each is not chosen and weight > settings.further_name]
-    groups = group_equivalent(chosen.names, [each.names for each, _ in others if each.search is chosen.search])
+    chosen, likeliest = answers[0]
+    groups = _group_rivals(settings, answers)
     named = chosen.names.union(*groups)
-    beside = [weight for each, weight in others if each.names <= named]
+    beside = [weight for each, weight in answers[1:] if weight > settings.further_name and each.names <= named]
     right = likeliest + sum(beside)
     verdict: Verdict = "ambiguous" if groups else "known"
     if unknown > right - settings.further_name * len(beside) - settings.wrong_name * (1.0 - right):
@@ -66,13 +66,58 @@ def decide_verdict(searches: Sequence[Search], effects: Sequence[str]) -> Decisi
     return Decision(verdict, rig, groups, probabilities, 0.0, unknown, chosen.search)
 
 
-def _merge_same(weighed: Sequence[tuple[Hypothesis, float]]) -> list[tuple[Hypothesis, float]]:
-    """Return one hypothesis for the same effects, as an offset of a sensor and its drift: the likeliest."""
+def decide_beside_unknown(objective: Objective, decision: Decision, search: Search) -> Decision:
+    """Return the decision `unknown` with the likeliest set of a search under uniform weights beside the unknown cause.
+
+    `objective` has the weights by noise.
+    """
+    hypotheses = list_hypotheses([search], objective)
+    answers = _merge_same(list(zip(hypotheses, weigh_hypotheses(hypotheses, True).tolist(), strict=True)))
+    chosen = _fit_named(answers[0][0]) or search.selection.calibrated
+    groups = _group_rivals(objective.settings.decision, answers)
+    probabilities = _sum_by_effect(answers, list(decision.probabilities))
+    stated = dataclasses.replace(decision, chosen=chosen, groups=groups, probabilities=probabilities)
+    return call_unknown(objective.settings.decision, stated)
+
+
+def call_unknown(settings: DecisionSettings, decision: Decision) -> Decision:
+    """Return a decision whose effects stay, but take too little of the gap to be its causes alone."""
+    return dataclasses.replace(decision, verdict="unknown", unknown=max(decision.unknown, settings.unknown_if_unknown))
+
+
+def give_up_effects(problem: DiagnosisProblem, decision: Decision, calibrated: Evaluation) -> Decision:
+    """Return the decision without its effects: `unknown`, or `none` where the calibrated rig leaves no material gap."""
+    settings, given_up = problem.settings.decision, decision.chosen.parameters.names
+    probabilities = {name: 0.0 if name in given_up else value for name, value in decision.probabilities.items()}
+    left = dataclasses.replace(decision, chosen=calibrated, groups=[], probabilities=probabilities)
+    if np.any(measure_remainders(problem, calibrated) >= settings.material):
+        return call_unknown(settings, left)
+    return dataclasses.replace(left, verdict="none", none=settings.none_if_none)
+
+
+_Answers = Sequence[tuple[Hypothesis, float]]
+"""Hypotheses with their probabilities, the likeliest first."""
+
+
+def _sum_by_effect(answers: _Answers, effects: Sequence[str]) -> dict[str, float]:
+    """Return the probability of each effect: the sum over the sets with it."""
+    return {name: sum(weight for each, weight in answers if name in each.names) for name in effects}
+
+
+def _group_rivals(settings: DecisionSettings, answers: _Answers) -> list[list[str]]:
+    """Return groups of effects that the likeliest sets of one search do not tell apart."""
+    (chosen, _), *others = answers
+    rivals = [each.names for each, weight in others if weight > settings.further_name and each.search is chosen.search]
+    return group_equivalent(chosen.names, rivals)
+
+
+def _merge_same(weighed: _Answers) -> list[tuple[Hypothesis, float]]:
+    """Return one hypothesis, the likeliest, for the same effects, as an offset of a sensor and its drift."""
     merged: dict[frozenset[str], tuple[Hypothesis, float]] = {}
     for each, weight in sorted(weighed, key=lambda pair: pair[1]):
         _, before = merged.get(each.names, (each, 0.0))
         merged[each.names] = each, before + weight
-    return list(merged.values())
+    return sorted(merged.values(), key=lambda pair: -pair[1])
 
 
 def _fit_named(hypothesis: Hypothesis) -> Evaluation | None:

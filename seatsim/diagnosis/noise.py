@@ -16,7 +16,6 @@ as the record was, so that what is carried is the noise of the smoothed path, no
 from __future__ import annotations
 
 import dataclasses
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -124,13 +123,11 @@ class NoiseWeights:
     shape (channels, frequencies). Numbers are whitened by the symmetric root of the covariance, so that what the force
     cannot have done keeps its full weight.
 
-    `independent` is the share of these numbers that count as independent of each other, `parameter_cost` the logarithm
-    of the factor by which a further parameter of an effect has to lower the cost.
+    `independent` is the share of these numbers that count as independent of each other.
     """
 
     power: dict[str, Array]
     independent: float = 1.0
-    parameter_cost: float = 0.0
     force: Mapping[str, Spectra] = field(default_factory=dict)
 
     @cached_property
@@ -222,15 +219,12 @@ def weigh_gap(problem: DiagnosisProblem, residuals: Mapping[str, Array]) -> Nois
     """Return weights that are the same at all frequencies, from the power of the given residuals over all runs.
 
     What a rig leaves whose form is wrong is no noise: its numbers depend on each other, so that few of them count as
-    independent. A parameter inside its tolerance then weighs as much as what it takes off the gap, and a further
-    parameter of an effect costs, by Schwarz's criterion for n independent numbers, the factor n^(1/n): runs of like
-    excitation share the errors of the form, which a law with more parameters may fit.
+    independent. A parameter inside its tolerance then weighs as much as what it takes off the gap.
     """
-    settings, errors = problem.settings.cross_validation, normalise_rms_errors(problem, residuals)
+    independent, errors = problem.settings.noise.independent, normalise_rms_errors(problem, residuals)
     variance = (_LEVEL * np.sqrt(np.mean(errors**2)) * problem.spread) ** 2
     compared = 2 * sum(each.size for each in weigh_uniformly(problem, variance).power.values())
-    weights = weigh_uniformly(problem, variance, _LEVEL**2 * settings.independent / compared)
-    return dataclasses.replace(weights, parameter_cost=math.log(settings.independent) / settings.independent)
+    return weigh_uniformly(problem, variance, _LEVEL**2 * independent / compared)
 
 
 def measure_broadband(problem: DiagnosisProblem, residuals: Mapping[str, Array]) -> dict[str, Array]:

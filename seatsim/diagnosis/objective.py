@@ -10,7 +10,6 @@ over the deviations of the nuisance parameters and the free parameters of the ef
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -47,11 +46,6 @@ class Parameters:
     def names(self) -> frozenset[str]:
         """Names of the effects."""
         return frozenset(term.effect for term in self.terms)
-
-    @property
-    def further(self) -> int:
-        """How many parameters the structures of the effects choose beyond their sizes."""
-        return sum(term.further for term in self.terms)
 
     @property
     def vector(self) -> Array:
@@ -127,17 +121,13 @@ AT_ONCE = 16
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Parameters, residuals by run of shape (channels, samples), whitened residuals, and the cost with the prior.
-
-    `charge` is the factor on the cost by which structures with further parameters are ranked behind simpler ones.
-    """
+    """Parameters, residuals by run of shape (channels, samples), whitened residuals, and the cost with the prior."""
 
     parameters: Parameters
     residuals: dict[str, Array]
     whitened: dict[str, Array]
     cost: float
     independent: float = 1.0
-    charge: float = 1.0
 
     @property
     def rows(self) -> float:
@@ -148,11 +138,6 @@ class Evaluation:
     def stacked(self) -> Array:
         """The whitened numbers of all runs as one vector."""
         return np.concatenate([values.ravel() for values in self.whitened.values()])
-
-    @property
-    def charged(self) -> float:
-        """The cost with the charge for further parameters, by which sets of effects are compared."""
-        return self.cost * self.charge
 
     @property
     def excess(self) -> float:
@@ -235,9 +220,8 @@ class Objective:
             run: self.weights(values if finite else np.zeros_like(values), run) for run, values in residuals.items()
         }
         cost = sum(float(np.sum(values**2)) for values in whitened.values()) if finite else np.inf
-        charge = math.exp(self.weights.parameter_cost * parameters.further)
         cost += self.measure_prior(parameters)
-        return Evaluation(parameters, residuals, whitened, cost, self.weights.independent, charge)
+        return Evaluation(parameters, residuals, whitened, cost, self.weights.independent)
 
     def weigh_again(self, evaluation: Evaluation) -> Evaluation:
         """Return an evaluation over more runs, or under other weights, on the runs of this objective."""

@@ -36,16 +36,18 @@ _LEAST_MOVEMENT = 0.01
 
 
 class Weight(NamedTuple):
-    """What a feature of a hypothesis means, and the weight that was fitted for it."""
+    """What a feature of a hypothesis means, and the weights fitted for it: of a cause, and beside an unknown one."""
 
     means: str
-    weight: float
+    weight: float = 0.0
+    beside_unknown: float = 0.0
 
 
 class _Fit(NamedTuple):
-    """To how many cases with a gap the weights were fitted, and the weight of each feature by its name."""
+    """Weights by the name of their feature, and to how many cases of each kind they were fitted."""
 
     cases: int
+    cases_beside_unknown: int
     features: dict[str, Weight]
 
 
@@ -53,8 +55,8 @@ _Gaps = Mapping[frozenset[str], float]
 """Gap of every set of a search by the names of its effects."""
 FILE = Path(__file__).with_name("score.yaml")
 """What `benchmarks/fit_score.py` wrote."""
-CASES, WEIGHTS = read_packaged(FILE, _Fit)
-"""To how many cases the weights were fitted, and each by the name of its feature."""
+*COUNTS, WEIGHTS = read_packaged(FILE, _Fit)
+"""To how many cases the weights of each kind were fitted, and the weights by the name of their feature."""
 
 
 class Search(NamedTuple):
@@ -83,13 +85,15 @@ class Hypothesis(NamedTuple):
     names: frozenset[str] = frozenset()
 
 
-def list_hypotheses(searches: Sequence[Search]) -> list[Hypothesis]:
-    """Return the best sets of each size of some searches, and an unknown cause last.
+def list_hypotheses(searches: Sequence[Search], noise: Objective | None = None) -> list[Hypothesis]:
+    """Return the best sets of each size of some searches, and an unknown cause alone, which is the last.
 
-    All are compared with the calibrated rig of the first search, which has no disturbance.
+    All are compared with the calibrated rig of the first search, which has no disturbance. `noise` has the weights that
+    say what a right rig leaves, where those of the searches do not.
     """
     first, *_ = searches
-    count, gaps = first.objective.settings.selection.finalists, [_measure_gaps(search) for search in searches]
+    count = first.objective.settings.selection.finalists
+    gaps = [_measure_gaps(noise or search.objective, search.selection) for search in searches]
     hypotheses = [
         _describe_set(first, search, rig, own, gaps[0])
         for search, own in zip(searches, gaps, strict=True)
@@ -97,7 +101,7 @@ def list_hypotheses(searches: Sequence[Search]) -> list[Hypothesis]:
         if search.disturbance or rig.parameters.terms
     ]
     prior = first.objective.measure_prior(first.selection.calibrated.parameters)
-    return [*hypotheses, Hypothesis({"unknown": 1.0, "prior": prior})]
+    return [*hypotheses, Hypothesis({"unknown": 1.0, "unknown_prior": prior})]
 
 
 def _describe_set(first: Search, search: Search, rig: Evaluation, gaps: _Gaps, alone: _Gaps) -> Hypothesis:
@@ -138,9 +142,9 @@ def _describe_set(first: Search, search: Search, rig: Evaluation, gaps: _Gaps, a
     return Hypothesis(features, rig, search, (material or names) | search.effect)
 
 
-def _measure_gaps(search: Search) -> _Gaps:
-    """Return the gap of every set of a search by the names of its effects."""
-    return {rig.parameters.names: _measure_gap(search.objective, rig) for sets in search.selection.sets for rig in sets}
+def _measure_gaps(objective: Objective, selection: Selection) -> _Gaps:
+    """Return the gap of every fitted set by the names of its effects."""
+    return {rig.parameters.names: _measure_gap(objective, rig) for sets in selection.sets for rig in sets}
 
 
 def _measure_gap(objective: Objective, rig: Evaluation) -> float:
@@ -156,7 +160,8 @@ def _measure_gap(objective: Objective, rig: Evaluation) -> float:
     return float(np.linalg.norm(np.sqrt(np.maximum(power - expected - chance, 0.0)) / problem.spread)) + _LITTLE
 
 
-def weigh_hypotheses(hypotheses: Sequence[Hypothesis]) -> Array:
-    """Return the probabilities of hypotheses, shape (hypotheses,)."""
-    weighted = ([WEIGHTS[name].weight * value for name, value in each.features.items()] for each in hypotheses)
+def weigh_hypotheses(hypotheses: Sequence[Hypothesis], beside_unknown: bool = False) -> Array:
+    """Return the probabilities of hypotheses, shape (hypotheses,), on the cause or on what stands beside an unknown."""
+    weights = {name: each.beside_unknown if beside_unknown else each.weight for name, each in WEIGHTS.items()}
+    weighted = ([weights[name] * value for name, value in each.features.items()] for each in hypotheses)
     return np.asarray(softmax([sum(each) for each in weighted]))

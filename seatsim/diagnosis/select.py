@@ -195,6 +195,6 @@ def _fit_variants(
 def _best_of_each_set(evaluations: Sequence[Evaluation]) -> list[Evaluation]:
     """Return the best evaluation of each set of effects, the best first."""
     best: dict[frozenset[str], Evaluation] = {}
-    for evaluation in sorted(evaluations, key=lambda evaluation: evaluation.charged):
+    for evaluation in sorted(evaluations, key=lambda evaluation: evaluation.cost):
         best.setdefault(evaluation.parameters.names, evaluation)
     return list(best.values())

@@ -9,8 +9,7 @@ from typing import ParamSpec
 import numpy as np
 
 from seatsim.diagnosis.candidates import list_candidates
-from seatsim.diagnosis.cross_validate import select_by_cross_validation
-from seatsim.diagnosis.decide import decide_verdict
+from seatsim.diagnosis.decide import call_unknown, decide_beside_unknown, decide_verdict
 from seatsim.diagnosis.fit import refit_on
 from seatsim.diagnosis.localise.discrepancy import describe_discrepancy
 from seatsim.diagnosis.localise.disturbance import Disturbance, list_disturbances, put_beside
@@ -23,14 +22,7 @@ from seatsim.diagnosis.problem import DiagnosisProblem, OutOfTimeError
 from seatsim.diagnosis.result import Share
 from seatsim.diagnosis.score import Search
 from seatsim.diagnosis.select import Selection, select_effects
-from seatsim.diagnosis.solution import (
-    Progress,
-    SearchTask,
-    Solution,
-    call_unknown,
-    decide_beside_unknown,
-    search,
-)
+from seatsim.diagnosis.solution import Progress, SearchTask, Solution, search
 from seatsim.effects.base import EFFECTS
 
 P = ParamSpec("P")
@@ -58,7 +50,7 @@ def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress)
     # A random signal takes nothing off the gap, however right it is.
     if first.decision.verdict == "none" or first.stochastic:
         return first
-    if _is_explained(first):
+    if is_explained(first):
         return _localise(task, first)
     return _in_time(_explain_by_gap, task, first) or _localise(task, _call_unknown(first))
 
@@ -96,7 +88,7 @@ def _in_time(stage: Callable[P, Solution], *arguments: P.args, **named: P.kwargs
         return None
 
 
-def _is_explained(solution: Solution) -> bool:
+def is_explained(solution: Solution) -> bool:
     """Whether the chosen set is known, and takes enough of the gap, nominal and calibrated, to be its causes.
 
     Weights by noise value what an effect improves where signals are weak, which may be next to nothing of the gap.
@@ -125,14 +117,14 @@ def _explain_by_gap(task: SearchTask, first: Solution) -> Solution:
     """Return the solution with the sets that a search under uniform weights proposes, or the remainder beside one.
 
     Where weak signals weigh most a fit may end far from the set that takes all of the gap, so that what is found under
-    uniform weights is fitted and judged under those of the noise. Where it does not explain the gap either, the effects
-    that cross-validation supports are stated beside the unexplained remainder.
+    uniform weights is fitted and judged under those of the noise. Where it does not explain the gap either, its
+    likeliest effects are stated beside the unexplained remainder.
     """
     uniform = search_by_gap(task, first.objective, first.selection)
     second = _decide(task, first._replace(selection=adopt(first.objective, first.selection, uniform.selection)))
     if second.stochastic:
         return second
-    if _is_explained(second):
+    if is_explained(second):
         return _localise(task, second)
     return _state_beside_unknown(task, _call_unknown(second), uniform)
 
@@ -157,17 +149,14 @@ def _call_unknown(solution: Solution) -> Solution:
 
 
 def _state_beside_unknown(task: SearchTask, first: Solution, search: Search) -> Solution:
-    """Return the unexplained remainder with the effects that cross-validation supports under uniform weights."""
-    settings, (uniform, selection, _) = first.objective.settings.decision, search
-    chosen, equivalent, tried = select_by_cross_validation(uniform, selection)
-    refitted = refit_on(first.objective, first.selection.linearise(chosen))
-    decision = decide_beside_unknown(settings, first.decision, refitted, equivalent, tried)
-    localised = _localise(task, first._replace(decision=decision))
-    if localised.decision is not decision:
+    """Return the unexplained remainder with the effects of a search under uniform weights that stand beside it."""
+    decision = decide_beside_unknown(first.objective, first.decision, search)
+    refitted = refit_on(first.objective, first.selection.linearise(decision.chosen))
+    localised = _localise(task, first._replace(decision=dataclasses.replace(decision, chosen=refitted)))
+    if localised.decision.chosen is not refitted:
         return localised
-    # The effects are stated as fitted under uniform weights, since those fits were cross-validated.
-    stated = dataclasses.replace(decision, chosen=chosen)
-    return localised._replace(objective=uniform, selection=selection, decision=stated)
+    # The effects are stated as fitted under uniform weights, by which they were found to take the gap.
+    return localised._replace(objective=search.objective, selection=search.selection, decision=decision)
 
 
 def _localise(task: SearchTask, solution: Solution) -> Solution:
@@ -189,7 +178,8 @@ def _localise(task: SearchTask, solution: Solution) -> Solution:
     remainder, rig = localise_remainder(objective, selection.nuisances, selection.linearise(decision.chosen))
     found = describe_discrepancy(problem, rig.parameters, remainder.block, remainder.likeliest)
     if rig is not decision.chosen:
-        decision = decide_beside_unknown(objective.settings.decision, decision, rig)
+        none_of_them = dict.fromkeys(decision.probabilities, 0.0)
+        decision = dataclasses.replace(decision, chosen=rig, groups=[], probabilities=none_of_them)
     return solution._replace(decision=decision, where=share_gap(objective, rig, remainder), discrepancy=found)
 
 

@@ -8,12 +8,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from seatsim.diagnosis.decide import call_unknown, give_up_effects
 from seatsim.diagnosis.fit import refit_on
 from seatsim.diagnosis.movement import measure_movements, share_removable
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
 from seatsim.diagnosis.result import Gaps, RunGaps
-from seatsim.diagnosis.solution import Solution, call_unknown, give_up_effects
+from seatsim.diagnosis.solution import Solution
 from seatsim.diagnosis.uncertainty import BLOCK_LENGTH
 from seatsim.recordings.gap import GapFigures, Signals, compare_signals, loud_channels
 from seatsim.recordings.model_error import ModelError, measure_model_error

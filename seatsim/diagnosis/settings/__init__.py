@@ -12,7 +12,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from seatsim.diagnosis.settings.examining import DamperFormSettings, DesignSettings, LocalisationSettings
-from seatsim.diagnosis.settings.judging import CrossValidationSettings, DecisionSettings, ValidationSettings
+from seatsim.diagnosis.settings.judging import DecisionSettings, ValidationSettings
 from seatsim.diagnosis.settings.searching import NoiseSettings, SelectionSettings
 
 
@@ -22,7 +22,6 @@ class DiagnosisSettings(NamedTuple):
     noise: NoiseSettings = NoiseSettings()
     selection: SelectionSettings = SelectionSettings()
     decision: DecisionSettings = DecisionSettings()
-    cross_validation: CrossValidationSettings = CrossValidationSettings()
     validation: ValidationSettings = ValidationSettings()
     localisation: LocalisationSettings = LocalisationSettings()
     design: DesignSettings = DesignSettings()

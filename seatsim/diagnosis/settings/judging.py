@@ -1,4 +1,4 @@
-"""Settings of the decision, of cross-validation, and of the validation on a held-out run."""
+"""Settings of the decision, and of the validation on a held-out run."""
 
 from __future__ import annotations
 
@@ -38,34 +38,6 @@ class DecisionSettings(NamedTuple):
     """Share that a known set takes off the part of the gap that a right model would take off.
     Trades off: lower: confident wrong verdicts.
     Chosen: the recording's contract."""
-
-
-class CrossValidationSettings(NamedTuple):
-    """Selection by the gap of runs left out, where no set explains the gap."""
-
-    independent: float = 40.0
-    """How many of the numbers of a gap count as independent.
-    Trades off: higher: effects are stated that take little of the gap, and parameters within their tolerance cost
-    little.
-    Chosen: on measured rigs."""
-    equivalent: float = 3.0
-    """Ratio of the evidences of two sets below which they help as much.
-    Trades off: higher: larger groups, and more often one effect in place of two others.
-    Chosen: a Bayes factor below 3 is not worth more than a bare mention (Kass and Raftery, 1995)."""
-    prior: float = 0.05
-    """Prior odds of one further effect in a set.
-    Trades off: higher: larger sets are likelier.
-    Chosen: on measured rigs."""
-    prior_of_sensor: float = 0.01
-    """Prior odds of a sensor that errs.
-    Trades off: higher: a sensor is blamed where a change of the rig does as much.
-    Chosen: sensors are calibrated, while dampers and cushions age; on measured rigs, where forms are wrong
-    anyway."""
-
-    @property
-    def power(self) -> float:
-        """Exponent of the mean square that a set leaves in its evidence."""
-        return 0.5 * self.independent
 
 
 class ValidationSettings(NamedTuple):

@@ -16,6 +16,10 @@ class NoiseSettings(NamedTuple):
     """Share of a channel's local amplitude spectrum that a right model may miss.
     Trades off: higher: small effects stay unseen; lower: the form of the nominal model is taken for an effect.
     Chosen: on simulated rigs."""
+    independent: float = 40.0
+    """How many of the numbers of a gap count as independent where it is weighed uniformly.
+    Trades off: higher: parameters within their tolerance cost little beside what they take off the gap.
+    Chosen: on measured rigs."""
     broadband_excess: float = 2.0
     """Factor on the stated noise power above `highest_frequency` from which a residual is broadband.
     Trades off: higher: where noise is not stated, or too low, the verdict is unknown.

@@ -6,13 +6,13 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.decide import decide_verdict
+from seatsim.diagnosis.decide import Decision, decide_beside_unknown, decide_verdict, give_up_effects
 from seatsim.diagnosis.localise.discrepancy import Discrepancy
 from seatsim.diagnosis.localise.disturbance import Disturbance
 from seatsim.diagnosis.localise.input_estimate import InputEstimate
+from seatsim.diagnosis.noise import weigh_gap
 from seatsim.diagnosis.score import WEIGHTS, Search, list_hypotheses, weigh_hypotheses
 from seatsim.diagnosis.select import Selection
-from seatsim.diagnosis.solution import give_up_effects, weigh_effects
 
 from .toy import offer, place, pose_tones
 
@@ -97,7 +97,7 @@ def test_features_are_figures_of_the_fits(rig):
     assert pair.features["gap_gain"] == pytest.approx(left[2] - left[1], abs=0.05)
     assert pair.features["parameters"] == 2.0
     # An unknown cause has the refitted parameters of the rig without effects.
-    assert unknown.features == {"unknown": 1.0, "prior": 0.0}
+    assert unknown.features == {"unknown": 1.0, "unknown_prior": 0.0}
     assert {*single.features, *unknown.features} < set(WEIGHTS)
 
 
@@ -194,9 +194,39 @@ def test_what_is_left_once_the_effects_were_given_up(rig, left, verdict):
     assert all(found.probabilities[name] == 0.0 for name in both())
 
 
-def test_the_weight_of_an_effect_is_that_of_the_sets_that_hold_it():
-    names = ["sensor.gain", "rig.one"]
-    sets = [(frozenset(), 0.0), (frozenset({"sensor.gain"}), math.log(0.5)), (frozenset(names), math.log(0.2))]
-    assert weigh_effects(sets, names) == pytest.approx({"sensor.gain": 0.7 / 1.7, "rig.one": 0.2 / 1.7})
-    # Without any set nothing is known of any effect.
-    assert weigh_effects([], names) == dict.fromkeys(names, 0.0)
+BESIDE = {"a.one": (0.3, 0.3), "b.two": (0.02, 0.02), "z.other": (0.3, 0.3)}
+
+
+def decide_beside(planted, *sets):
+    """Return the decision on amounts by effect, in sets by size, where `z.other`, which is not offered, stays open."""
+    noise = pose_tones(BESIDE, (0.001, 0.001), RUNS, planted)
+    calibrated = noise.evaluate([place(noise.problem)])[0]
+    uniform = dataclasses.replace(noise, weights=weigh_gap(noise.problem, calibrated.residuals))
+    search = Search(uniform, selected(uniform, uniform.weigh_again(calibrated), *sets))
+    unknown = Decision("unknown", calibrated, [], dict.fromkeys(BESIDE, 0.0), 0.0, 0.4)
+    hypotheses = list_hypotheses([search], noise)
+    return decide_beside_unknown(noise, unknown, search), hypotheses, weigh_hypotheses(hypotheses, True)
+
+
+def test_beside_an_unknown_cause_the_effect_is_stated_that_takes_most_of_the_gap():
+    small, large = ({"b.two": 1.0}, 9.0), ({"a.one": 1.0}, 5.0)
+    found, hypotheses, weights = decide_beside([*BESIDE], [large, small], [({"a.one": 1.0, "b.two": 1.0}, 4.9)])
+    assert (found.verdict, found.chosen.parameters.names, found.groups) == ("unknown", {"a.one"}, [])
+    assert found.unknown == 0.55
+    # Half of the power of the gap is that of the effect, the rest that of what is unknown.
+    assert hypotheses[0].features["gap"] == pytest.approx(-0.5 * math.log(2.0), abs=0.03)
+    scores = [sum(WEIGHTS[name].beside_unknown * value for name, value in each.features.items()) for each in hypotheses]
+    np.testing.assert_allclose(weights, np.exp(scores) / np.sum(np.exp(scores)))
+    expected = {"a.one": weights[0] + weights[2], "b.two": weights[1], "z.other": 0.0}
+    assert found.probabilities == pytest.approx(expected)
+
+
+def test_beside_an_unknown_cause_nothing_is_stated_that_takes_little():
+    found, _, weights = decide_beside(["z.other"], [({"b.two": 1.0}, 9.0)])
+    assert found.chosen.parameters.names == set()
+    assert found.probabilities["b.two"] == pytest.approx(weights[0])
+
+
+def test_effects_beside_an_unknown_cause_that_take_as_much_are_named_together():
+    found, _, _ = decide_beside([*BESIDE], [({"a.one": 1.0}, 5.0), ({"a.one.twin": 1.0}, 5.0)])
+    assert found.groups == [["a.one", "a.one.twin"]]

@@ -1,11 +1,7 @@
 """Costs against sums over all numbers, and Jacobians against the rig's own linear map and central differences."""
 
-import dataclasses
-
 import numpy as np
 import pytest
-
-from seatsim.diagnosis.noise import weigh_gap
 
 from .toy import Cubed, Edge, add_up, draw_signals, make_problem, offer, offer_two, place, weigh_stated, whiten
 
@@ -62,14 +58,3 @@ def test_a_rig_that_cannot_be_simulated_a_step_away_has_no_sensitivity(objective
     assert np.isfinite(evaluation.cost)
     for jacobian in objective.linearise_effects(evaluation).jacobian.values():
         np.testing.assert_array_equal(jacobian, 0.0)
-
-
-def test_weights_by_the_gap_charge_every_further_parameter_by_schwarz(objective, rig, evaluation):
-    assert (rig.further, evaluation.charged) == (1, evaluation.cost)
-    by_gap = dataclasses.replace(objective, weights=weigh_gap(objective.problem, evaluation.residuals))
-    found = by_gap.evaluate([rig])[0]
-    # exp(-n / 2 log cost) falls by n^(1/2) for n = 40 independent numbers.
-    assert (found.charged / found.cost) ** -20 == pytest.approx(40.0**-0.5)
-    # A rig with two more is charged twice as much, in logarithms.
-    twice = by_gap.evaluate([rig.add(offer_two("b.two", (1.0, 1.0), (0.0, 0.0), (2.0, 2.0)), np.zeros(2))])[0]
-    assert (twice.charged / twice.cost) ** -20 == pytest.approx(40.0**-1.0)
