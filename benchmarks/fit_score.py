@@ -46,7 +46,7 @@ from seatsim.schema.yaml_text import dump
 RIDGE, HELD, SURE, PARTS, TINY = 5.0, 0.1, 0.9, 5, 1e-9
 FEATURES = {
     "weight": list(score.WEIGHTS),
-    "beside_unknown": ["gap", "gap_gain", "prior", "parameters", "sensors", "unknown"],
+    "beside_unknown": ["gap", "prior", "parameters", "sensors", "unknown"],
 }
 """Features that have a weight of each kind: of the causes, and of what stands beside an unknown one.
 
