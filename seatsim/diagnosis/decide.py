@@ -54,10 +54,11 @@ def decide_verdict(searches: Sequence[Search], effects: Sequence[str]) -> Decisi
     probabilities = _sum_by_effect(answers, effects)
     if not answers:
         return Decision("unknown", selection.calibrated, [], probabilities, 0.0, unknown)
-    chosen, likeliest = answers[0]
-    groups = _group_rivals(settings, answers)
+    (chosen, likeliest), *others = answers
+    others = [(each, weight) for each, weight in others if weight > settings.further_name]
+    groups = group_equivalent(chosen.names, [each.names for each, _ in others if each.search is chosen.search])
     named = chosen.names.union(*groups)
-    beside = [weight for each, weight in answers[1:] if weight > settings.further_name and each.names <= named]
+    beside = [weight for each, weight in others if each.names <= named]
     right = likeliest + sum(beside)
     verdict: Verdict = "ambiguous" if groups else "known"
     if unknown > right - settings.further_name * len(beside) - settings.wrong_name * (1.0 - right):
@@ -67,17 +68,16 @@ def decide_verdict(searches: Sequence[Search], effects: Sequence[str]) -> Decisi
 
 
 def decide_beside_unknown(objective: Objective, decision: Decision, search: Search) -> Decision:
-    """Return the decision `unknown` with the likeliest set of a search under uniform weights beside the unknown cause.
+    """Return the decision `unknown` with effects beside the unknown cause, found by a search under uniform weights.
 
     `objective` has the weights by noise.
     """
-    hypotheses = list_hypotheses([search], objective)
+    settings, hypotheses = objective.settings.decision, list_hypotheses([search], objective)
     answers = _merge_same(list(zip(hypotheses, weigh_hypotheses(hypotheses, True).tolist(), strict=True)))
-    chosen = _fit_named(answers[0][0]) or search.selection.calibrated
-    groups = _group_rivals(objective.settings.decision, answers)
+    chosen, groups = _choose_likely(settings, answers)
+    rig = _fit_named(chosen) or search.selection.calibrated
     probabilities = _sum_by_effect(answers, list(decision.probabilities))
-    stated = dataclasses.replace(decision, chosen=chosen, groups=groups, probabilities=probabilities)
-    return call_unknown(objective.settings.decision, stated)
+    return call_unknown(settings, dataclasses.replace(decision, chosen=rig, groups=groups, probabilities=probabilities))
 
 
 def call_unknown(settings: DecisionSettings, decision: Decision) -> Decision:
@@ -104,11 +104,31 @@ def _sum_by_effect(answers: _Answers, effects: Sequence[str]) -> dict[str, float
     return {name: sum(weight for each, weight in answers if name in each.names) for name in effects}
 
 
-def _group_rivals(settings: DecisionSettings, answers: _Answers) -> list[list[str]]:
-    """Return groups of effects that the likeliest sets of one search do not tell apart."""
-    (chosen, _), *others = answers
-    rivals = [each.names for each, weight in others if weight > settings.further_name and each.search is chosen.search]
-    return group_equivalent(chosen.names, rivals)
+def _choose_likely(settings: DecisionSettings, answers: _Answers) -> tuple[Hypothesis, list[list[str]]]:
+    """Return the set whose effects are worth most beside an unknown cause, and pairs of effects.
+
+    An effect of probability p that is stated is worth p, less its cost where it is not at work; one that is not stated
+    is worth 1 - p. Its likeliest stand-in in less likely sets is named with it where that adds enough to p.
+    """
+    weights = [(each.names, weight) for each, weight in answers]
+
+    def sum_over(names: Sequence[str]) -> float:
+        return sum(weight for others, weight in weights if not others.isdisjoint(names))
+
+    def pair(name: str, stand_ins: Sequence[str]) -> Sequence[str]:
+        both = [name, *stand_ins[:1]]
+        return both if sum_over(both) - sum_over([name]) > settings.further_name else [name]
+
+    found = []
+    for rank, (each, _) in enumerate(answers):
+        alike = group_equivalent(each.names, [names for names, _ in weights[rank + 1 :]])
+        stand_ins = {name: others for name, *others in alike}
+        named = [pair(name, stand_ins.get(name, ())) for name in sorted(each.names)]
+        worth = sum(1.0 - (2.0 + settings.wrong_name) * (1.0 - sum_over(names)) for names in named)
+        # Of two sets that stand in for each other the one with the likelier effects is stated.
+        found.append((worth, sum_over([*each.names]), each, [[*names] for names in named if len(names) > 1]))
+    *_, chosen, groups = max(found, key=lambda each: each[:2])
+    return chosen, groups
 
 
 def _merge_same(weighed: _Answers) -> list[tuple[Hypothesis, float]]:
