@@ -230,3 +230,9 @@ def test_beside_an_unknown_cause_nothing_is_stated_that_takes_little():
 def test_effects_beside_an_unknown_cause_that_take_as_much_are_named_together():
     found, _, _ = decide_beside([*BESIDE], [({"a.one": 1.0}, 5.0), ({"a.one.twin": 1.0}, 5.0)])
     assert found.groups == [["a.one", "a.one.twin"]]
+
+
+def test_two_that_stand_in_for_each_other_are_stated_though_neither_alone_is_likelier_than_nothing():
+    found, _, weights = decide_beside([*BESIDE], [({"a.one": 0.1}, 9.0), ({"a.one.twin": 0.1}, 9.0)])
+    assert max(weights[:2]) < weights[2] < sum(weights[:2])
+    assert (found.chosen.parameters.names, found.groups) == ({"a.one"}, [["a.one", "a.one.twin"]])
