@@ -35,13 +35,12 @@ from seatsim.diagnosis.noise import weigh_noise
 from seatsim.diagnosis.objective import Objective
 from seatsim.diagnosis.problem import DiagnosisProblem, pose_problem
 from seatsim.diagnosis.select import select_effects
-from seatsim.diagnosis.settings.judging import DecisionSettings
 from seatsim.recordings.recording import load_recording
 from seatsim.schema.files import write_json
 from seatsim.schema.processes import run_jobs
 from seatsim.schema.registry import names
 
-IMITATED = 1.0 - DecisionSettings().explained
+IMITATED = 0.88
 """Share of the whitened gap of a replicate from which an effect explains another."""
 
 

@@ -25,9 +25,9 @@ from scipy.fft import rfft
 from scipy.interpolate import LSQUnivariateSpline
 
 from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
-from seatsim.diagnosis.spectra import Spectra, as_complex, randomise_phases, smooth_spectrum
+from seatsim.diagnosis.spectra import Spectra, as_complex, smooth_spectrum
 from seatsim.schema.arrays import Array
-from seatsim.simulation.inputs import BenchInputs, Forces, RigInputs, SeatInputs
+from seatsim.simulation.inputs import BenchInputs, RigInputs, SeatInputs
 from seatsim.simulation.respond import fit_motion
 
 _LEVEL = 0.1
@@ -46,20 +46,6 @@ def carry_input_noise(problem: DiagnosisProblem, run: str) -> Array:
     if isinstance(inputs, BenchInputs):
         return _carry(problem, run, lambda rng: _draw_bench(problem, inputs, rng))
     return _carry(problem, run, lambda rng: _draw_floor(problem, inputs, rng))
-
-
-def carry_force(problem: DiagnosisProblem, forces: Mapping[str, Array]) -> dict[str, Array]:
-    """Return by run the power spectrum that a random force on a seat's frame causes, shape (channels, frequencies).
-
-    `forces[run]` is a signal of it in N, shape (samples,).
-    """
-
-    def carry(run: str, force: Array) -> Array:
-        inputs = problem.inputs[run]
-        assert isinstance(inputs, SeatInputs)
-        return _carry(problem, run, lambda rng: inputs._replace(forces=_draw_force(problem, inputs, force, rng)))
-
-    return {run: carry(run, forces[run]) for run in problem.runs}
 
 
 def _carry(problem: DiagnosisProblem, run: str, draw: Callable[[np.random.Generator], RigInputs]) -> Array:
@@ -105,13 +91,6 @@ def _draw_floor(problem: DiagnosisProblem, inputs: SeatInputs, rng: np.random.Ge
     if floor.command is None and floor.coil_current is not None:
         noisy = noisy._replace(coil_current=floor.coil_current + noise("coil_current"))
     return inputs._replace(floor=noisy)
-
-
-def _draw_force(problem: DiagnosisProblem, inputs: SeatInputs, force: Array, rng: np.random.Generator) -> Forces:
-    """Return a random force on the frame with the spectrum of the one given, on the simulation's steps."""
-    every = np.arange(len(inputs.floor.acceleration))
-    rows = every[:: problem.parts]
-    return Forces(np.interp(every, rows[: len(force)], randomise_phases(force, rng), right=0.0))
 
 
 @dataclass(frozen=True)

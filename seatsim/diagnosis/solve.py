@@ -12,12 +12,11 @@ from seatsim.diagnosis.candidates import list_candidates
 from seatsim.diagnosis.decide import call_unknown, decide_beside_unknown, decide_verdict
 from seatsim.diagnosis.fit import refit_on
 from seatsim.diagnosis.localise.discrepancy import describe_discrepancy
-from seatsim.diagnosis.localise.disturbance import Disturbance, list_disturbances, put_beside
-from seatsim.diagnosis.localise.input_estimate import estimate_nonrepeatable_force
+from seatsim.diagnosis.localise.disturbance import Disturbance, find_disturbance, put_beside
 from seatsim.diagnosis.localise.localisation import localise_remainder, share_gap
 from seatsim.diagnosis.movement import measure_gap_taken
-from seatsim.diagnosis.noise import carry_force, differ_materially, measure_broadband, weigh_gap, weigh_noise
-from seatsim.diagnosis.objective import Objective, Parameters
+from seatsim.diagnosis.noise import differ_materially, measure_broadband, weigh_gap, weigh_noise
+from seatsim.diagnosis.objective import Objective
 from seatsim.diagnosis.problem import DiagnosisProblem, OutOfTimeError
 from seatsim.diagnosis.result import Share
 from seatsim.diagnosis.score import Search
@@ -72,12 +71,7 @@ def pose_search(
     effects = [name for name in EFFECTS.names() if name not in without]
     task = SearchTask(list_candidates(problem, without), effects, progress)
     progress("weighing the channels")
-    objective = Objective(problem, weigh_noise(problem, repeats))
-    if repeats and not problem.bench:
-        nominal = objective.unhurried.evaluate([Parameters(problem.nominal)])[0]
-        if forces := estimate_nonrepeatable_force(objective, nominal):
-            objective = Objective(problem, objective.weights.add(carry_force(problem, forces)))
-    return task, objective
+    return task, Objective(problem, weigh_noise(problem, repeats))
 
 
 def _in_time(stage: Callable[P, Solution], *arguments: P.args, **named: P.kwargs) -> Solution | None:
@@ -153,8 +147,6 @@ def _state_beside_unknown(task: SearchTask, first: Solution, search: Search) -> 
     decision = decide_beside_unknown(first.objective, first.decision, search)
     refitted = refit_on(first.objective, first.selection.linearise(decision.chosen))
     localised = _localise(task, first._replace(decision=dataclasses.replace(decision, chosen=refitted)))
-    if localised.decision.chosen is not refitted:
-        return localised
     # The effects are stated as fitted under uniform weights, by which they were found to take the gap.
     return localised._replace(objective=search.objective, selection=search.selection, decision=decision)
 
@@ -175,12 +167,9 @@ def _localise(task: SearchTask, solution: Solution) -> Solution:
         return solution._replace(where=[Share("damper", 1.0)])
     task.progress("asking which block could hold the remainder")
     selection = solution.selection
-    remainder, rig = localise_remainder(objective, selection.nuisances, selection.linearise(decision.chosen))
-    found = describe_discrepancy(problem, rig.parameters, remainder.block, remainder.likeliest)
-    if rig is not decision.chosen:
-        none_of_them = dict.fromkeys(decision.probabilities, 0.0)
-        decision = dataclasses.replace(decision, chosen=rig, groups=[], probabilities=none_of_them)
-    return solution._replace(decision=decision, where=share_gap(objective, rig, remainder), discrepancy=found)
+    remainder = localise_remainder(objective, selection.linearise(decision.chosen))
+    found = describe_discrepancy(problem, decision.chosen.parameters, remainder.block, remainder.likeliest)
+    return solution._replace(where=share_gap(objective, decision.chosen, remainder), discrepancy=found)
 
 
 def _decide_beside_disturbance(task: SearchTask, first: Solution, without: Sequence[str]) -> Solution:
@@ -193,8 +182,8 @@ def search_beside_disturbances(task: SearchTask, first: Solution, without: Seque
     """Return a search beside each disturbance that the sets of a solution may leave, but for effects `without`."""
     task.progress("asking whether a disturbance hides the effects")
     chosen = None if first.decision.verdict == "unknown" else first.decision.chosen
-    found = list_disturbances(first.objective, first.selection, chosen)
-    return [_search_beside(task, first, each) for each in found if each.effect not in without]
+    found = find_disturbance(first.objective, first.selection, chosen)
+    return [] if found is None or found.effect in without else [_search_beside(task, first, found)]
 
 
 def _decide(task: SearchTask, solution: Solution) -> Solution:

@@ -52,9 +52,3 @@ def as_complex(whitened: Array) -> Spectra:
 def wiener_share(power: Array) -> Array:
     """Return Wiener's filter for a whitened power spectrum; noise has the power 2, of real and imaginary part."""
     return np.maximum(0.0, 1.0 - 2.0 / power)
-
-
-def randomise_phases(signal: Array, rng: np.random.Generator) -> Array:
-    """Return a signal with the same spectrum and random phases, shape as `signal`."""
-    spectrum = np.fft.rfft(signal)
-    return np.fft.irfft(np.abs(spectrum) * np.exp(2j * np.pi * rng.random(len(spectrum))), len(signal))

@@ -8,16 +8,15 @@ together, weighs as little as its power says; what it cannot do keeps its full w
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from seatsim.diagnosis.localise.discrepancy import Discrepancy, describe_discrepancy, is_bias_drift
-from seatsim.diagnosis.localise.input_estimate import InputEstimate, estimate_error
-from seatsim.diagnosis.localise.localisation import FaultHypothesis, evaluate_hypotheses
-from seatsim.diagnosis.movement import measure_remainders
+from seatsim.diagnosis.localise.input_estimate import InputEstimate
+from seatsim.diagnosis.localise.localisation import evaluate_hypotheses
 from seatsim.diagnosis.noise import NoiseWeights
 from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.problem import DiagnosisProblem
@@ -70,25 +69,16 @@ class Disturbance:
         return float(np.mean(shares)) if shares else 0.0
 
 
-def list_disturbances(objective: Objective, selection: Selection, chosen: Evaluation | None) -> list[Disturbance]:
-    """Return what may hide further effects beside the chosen set, or where none is chosen beside the best of any size.
+def find_disturbance(objective: Objective, selection: Selection, chosen: Evaluation | None) -> Disturbance | None:
+    """Return the random signal that may hide further effects, None where what is left is no such effect.
 
-    It is a random signal, sought beside a chosen set only where that leaves more than noise, and a drift of the chosen
-    or the calibrated rig; of two drifts the former.
+    It is sought beside the chosen set where that leaves more than noise, or without one beside the best of each size. A
+    disturbance shows only about a rig with the effects beside it, and they are found only where the disturbance is
+    expected. Rigs are therefore judged by what they leave beyond a disturbance, not by all that they leave.
     """
     rigs = [sets[0] for sets in selection.sets]
     if chosen is not None:
         rigs = [chosen] if chosen.excess > objective.settings.localisation.above_noise else []
-    found = find_bias_drift(objective, chosen or selection.calibrated), _find_disturbance(objective, selection, rigs)
-    return list({each.effect: each for each in found if each}.values())
-
-
-def _find_disturbance(objective: Objective, selection: Selection, rigs: Sequence[Evaluation]) -> Disturbance | None:
-    """Return the random signal beside which one of some rigs leaves least, None where it is no such effect.
-
-    A disturbance shows only about a rig with the effects beside it, and they are found only where the disturbance is
-    expected. Rigs are therefore judged by what they leave beyond a disturbance, not by all that they leave.
-    """
     slight = objective.settings.localisation.slight * selection.calibrated.excess
     tried = []
     for rig in rigs:
@@ -112,28 +102,6 @@ def _find_disturbance(objective: Objective, selection: Selection, rigs: Sequence
     if is_bias_drift(problem.settings.localisation, found, problem.rate, noise):
         return Disturbance(BIAS_DRIFT, found, likeliest.estimates, objective.weights)
     return None
-
-
-def find_bias_drift(objective: Objective, evaluation: Evaluation) -> Disturbance | None:
-    """Return the remainder of the one channel with a material gap as a drift of its sensor, None where it is none.
-
-    The travel is excluded: a slow force on the rig would move it, and creep moves it alone.
-    """
-    problem = objective.problem
-    settings = problem.settings
-    gaps = measure_remainders(problem, evaluation)
-    k = int(np.argmax(gaps))
-    name, others = problem.channels[k], np.delete(gaps, k)
-    is_alone = not np.any(others > gaps[k] / settings.localisation.drift_alone)
-    if gaps[k] < settings.decision.material or not is_alone or name == "suspension_displacement":
-        return None
-    estimates = {run: estimate_error(objective, evaluation, run, k) for run in problem.runs}
-    signals = {run: each.signal for run, each in estimates.items()}
-    error = FaultHypothesis(0.0, f"error of {name}", problem.recording.channels[name].unit, signals, name, estimates)
-    found = describe_discrepancy(problem, evaluation.parameters, "sensor", error)
-    if not is_bias_drift(settings.localisation, found, problem.rate, float(problem.noise[k])):
-        return None
-    return Disturbance(BIAS_DRIFT, found, estimates, objective.weights)
 
 
 def put_beside(objective: Objective, disturbance: Disturbance) -> Objective:

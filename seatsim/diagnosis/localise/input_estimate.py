@@ -71,8 +71,6 @@ _FRUITLESS = 2
 """Fruitless corrections in a row after which the estimate ends: one may be due to a misleading probe."""
 _BACKTRACKING = (1.0, 0.4, 0.15, 0.05)
 """Fractions of a correction that are tried in turn."""
-_REGAINED = 1.2
-"""Factor on a random force that was estimated, for what its filter takes: found on simulated rigs."""
 
 
 class _Attempt(NamedTuple):
@@ -239,23 +237,3 @@ def estimate_error(objective: Objective, evaluation: Evaluation, run: str, k: in
 def respond_to_error(weights: Array, k: int) -> Spectra:
     """Return the response of the whitened channels to a unit error of channel `k`, shape (channels, frequencies)."""
     return np.asarray(np.eye(len(weights))[:, k : k + 1] * weights, dtype=complex)
-
-
-def estimate_nonrepeatable_force(objective: Objective, evaluation: Evaluation) -> dict[str, Array] | None:
-    """Return a random force on the frame by run, shape (samples,), by which repeated runs differ; None without repeats.
-
-    The residuals of two repeats differ by twice the power of the non-repeatable disturbance. Residuals, because each
-    repeat has a floor and a command of its own, which a real rig does not repeat exactly.
-    """
-    problem = objective.problem
-    for original, run in problem.repeats:
-        first, second = evaluation.residuals[original], evaluation.residuals[run]
-        if first.shape == second.shape:
-            rig = Reconstruction(objective, evaluation.parameters, run, PORTS["suspension"])
-            response = rig.measure_response(np.zeros(rig.samples), problem.measured[run] - second)
-            differing = objective.weights((first - second) / np.sqrt(2.0), run)
-            spectrum = match_input(response, differing, rig.plausible_power())
-            share = wiener_share(np.sum(np.abs(response) ** 2, axis=0) * measure_power(spectrum))
-            force = np.fft.irfft(_REGAINED * share * spectrum, rig.samples)
-            return {name: np.resize(force, values.shape[1]) for name, values in problem.measured.items()}
-    return None

@@ -173,31 +173,8 @@ def share_gap(
     return [Share(block, size / total) for block, size in ranked if size > 0.0]
 
 
-def localise_remainder(
-    objective: Objective, calibrated: Linearisation, found: Linearisation
-) -> tuple[Remainder, Evaluation]:
-    """Return what is unexplained, and the rig that lacks it: the calibrated one where a single block explains the gap.
-
-    Effects that were chosen but do not explain the gap are dropped for one unknown input that explains it, unless that
-    leaves more than one beside them. Where the form of the rig is wrong everywhere no such input explains it, and where
-    the gap is less than noise and disturbance nothing shows that there is one.
-    """
-    settings, beside = objective.settings, _weigh_blocks(objective, found)
-    chosen, before = found.evaluation, calibrated.evaluation.excess
-    if not chosen.parameters.terms or before < settings.localisation.above_noise:
-        return beside, chosen
-    alone = _weigh_blocks(objective, calibrated)
-    # An error of the very sensor that an effect names is that effect in a more general form.
-    if alone.likeliest.channel in [term.fixed.get("channel") for term in chosen.parameters.terms]:
-        return beside, chosen
-    little, slight = settings.decision.explained * before, settings.localisation.slight * before
-    if alone.likeliest.negative_log_evidence < min(little, beside.likeliest.negative_log_evidence + slight):
-        return alone, calibrated.evaluation
-    return beside, chosen
-
-
-def _weigh_blocks(objective: Objective, nuisances: Linearisation) -> Remainder:
-    """Return the blocks that could hold what a rig leaves, with its sensitivities to the nuisance parameters.
+def localise_remainder(objective: Objective, nuisances: Linearisation) -> Remainder:
+    """Return the blocks that could hold what a rig leaves, from its sensitivities to the nuisance parameters.
 
     A slow force on the driver acts like one on the frame, since both move together. Where both explain nearly the same,
     the force is assigned to the frame.

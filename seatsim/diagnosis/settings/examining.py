@@ -13,16 +13,16 @@ class LocalisationSettings(NamedTuple):
     Trades off: higher: shares of blocks are similar; lower: a confident wrong block.
     Chosen: on simulated rigs."""
     above_noise: float = 1.0
-    """Reduced chi-square less 1 from which an unknown input may stand beside known effects, or take their place.
-    Trades off: lower: noise passes for an input, which gives up effects that runs left out support.
+    """Reduced chi-square less 1 from which a random signal is sought beside known effects.
+    Trades off: lower: noise passes for a signal; higher: a random force beside an effect stays unseen.
     Chosen: as much as noise itself leaves."""
     largest_input: float = 10.0
     """Factor from the probing input, which is a tenth of the floor's motion, to the largest plausible one.
     Trades off: larger: every block explains everything; smaller: strong causes are not reached.
     Chosen: on simulated rigs."""
     slight: float = 0.02
-    """Share of the gap by which effects that do not explain it must help an unknown input to be kept.
-    Trades off: higher: effects beside an unknown cause are given up.
+    """Share of the gap by which each effect must help a random signal to explain it.
+    Trades off: higher: effects beside a random signal are given up for it.
     Chosen: on simulated rigs."""
     slow_frequency: float = 0.5
     """Frequency below which the zero of a sensor drifts, and no floor moves so much that it matters [Hz].
@@ -30,10 +30,6 @@ class LocalisationSettings(NamedTuple):
     Chosen: on simulated rigs."""
     slow_share: float = 0.9
     """Least share of its power that a bias drift has below that frequency.
-    Chosen: on simulated rigs."""
-    drift_alone: float = 2.0
-    """Factor by which the gap left in a channel exceeds those of all others where its zero drifts.
-    Trades off: lower: an error of the model is taken for drift.
     Chosen: on simulated rigs."""
 
 

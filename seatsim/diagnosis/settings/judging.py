@@ -23,10 +23,6 @@ class DecisionSettings(NamedTuple):
     none_if_none: float = 0.93
     """Probability of `none` where nothing material is left; the rest is shared by all effects and `unknown`.
     Chosen: of 47 such recordings of simulated rigs, 44 were faultless."""
-    explained: float = 0.12
-    """Share of the calibrated excess up to which one unknown input explains it, so that effects are given up for it.
-    Trades off: lower: effects stay beside an unknown input that explains all; higher: right effects are given up.
-    Chosen: right explanations leave up to 0.06 (one 0.14), wrong ones 0.15 to 1, on simulated and sealed rigs."""
     least_lowered: float = 0.02
     """Cost by which a material effect lowers it, per number compared, for a gap within the expected noise.
     Trades off: lower: false alarms; higher: effects at a few frequencies stay hidden in the noise of all.

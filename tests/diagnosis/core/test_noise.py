@@ -5,10 +5,10 @@ import dataclasses
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.noise import NoiseWeights, carry_force, weigh_noise
+from seatsim.diagnosis.noise import NoiseWeights, weigh_noise
 from seatsim.diagnosis.spectra import smooth_spectrum
 
-from .noisy import RUNS, draw, mean_squares, pose
+from .noisy import draw, mean_squares, pose
 from .toy import NOISE, RATE
 
 
@@ -47,17 +47,6 @@ def test_a_small_share_of_the_signal_counts_as_noise():
     signal = smooth_spectrum(np.abs(np.fft.rfft(measured - measured.mean(axis=1, keepdims=True))) ** 2)
     expected = NOISE[:, None] ** 2 * 300 + 0.1**2 * signal
     np.testing.assert_allclose(2.0 / weigh_noise(problem).weights["first"] ** 2, expected[:, :150], rtol=1e-9)
-
-
-def test_a_random_force_counts_with_its_spectrum_wherever_it_comes_from(more_replicates):
-    problem = pose({"model_error": 0.0}, force_gain=(0.0, 0.3))
-    rng = np.random.default_rng(3)
-    forces = {run: 2.0 * rng.standard_normal(count + 201) for run, count in RUNS.items()}
-    found = weigh_noise(problem).add(carry_force(problem, forces))
-    level = np.mean(2.0 / found.weights["second"] ** 2, axis=1) / 2400
-    np.testing.assert_allclose(level, NOISE**2 + np.array([0.0, 0.6]) ** 2, rtol=0.05)
-    without = weigh_noise(problem)
-    np.testing.assert_array_equal(found.weights["second"][0], without.weights["second"][0])
 
 
 @pytest.mark.parametrize("counts", [True, False])

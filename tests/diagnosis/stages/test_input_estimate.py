@@ -11,7 +11,6 @@ from seatsim.diagnosis.localise.input_estimate import (
     Reconstruction,
     estimate_current,
     estimate_input,
-    estimate_nonrepeatable_force,
     respond_to_error,
 )
 
@@ -63,40 +62,3 @@ def test_a_current_is_what_was_logged_beyond_that_of_the_simulated_coil(folder):
     rig = Reconstruction(objective, place(objective.problem), "first", Port(current=1.0))
     assert np.allclose(found.residuals[:4], rig.attempt(found.signal).residuals[:4])
     assert np.array_equal(found.residuals[4], nominal.whitened["first"][4])
-
-
-def test_what_a_repeat_answers_to_a_floor_of_its_own_is_no_disturbance(folder):
-    own = np.random.default_rng(5).standard_normal(SKIP + SAMPLES)
-    runs = {"first": own + np.random.default_rng(6).standard_normal(len(own)), "again": own}
-    recording = record(folder, runs=runs, channels=CHANNELS[:3], noise=LOUD, repeats={"again": "first"})
-    objective = weigh_stated(pose(recording))
-    nominal = evaluate_nominal(objective)
-    assert np.std(objective.problem.measured["first"] - objective.problem.measured["again"]) > 0.5
-    assert np.std(estimate_nonrepeatable_force(objective, nominal)["again"]) < 0.01
-
-
-def test_without_repeats_of_the_same_length_there_is_no_such_force(folder):
-    objective = make_objective(folder)
-    nominal = evaluate_nominal(objective)
-    assert estimate_nonrepeatable_force(objective, nominal) is None
-    unequal = make_objective(folder, repeats={"second": "first"})
-    assert estimate_nonrepeatable_force(unequal, nominal) is None
-
-
-def repeat(folder, forces, noise=LOUD):
-    """Return an objective with a run, its repeat and a third run, and the nominal rig; forces act on the frame."""
-    floor = np.random.default_rng(4).standard_normal(SKIP + SAMPLES)
-    runs = {"first": floor, "other": 250, "again": floor}
-    recording = record(folder, runs=runs, channels=CHANNELS[:3], noise=noise, repeats={"again": "first"})
-    objective = weigh_stated(pose(recording))
-    objective = plant(objective, PORTS["suspension"], forces)
-    return objective, evaluate_nominal(objective)
-
-
-def test_a_force_by_which_a_run_and_its_repeat_differ_is_half_of_the_difference_in_power(folder):
-    forces = {"first": slow_signal(SAMPLES, 5.0, 1), "again": slow_signal(SAMPLES, 5.0, 2)}
-    found = estimate_nonrepeatable_force(*repeat(folder, forces))["first"]
-    expected = (forces["first"] - forces["again"]) / np.sqrt(2.0)
-    assert np.corrcoef(found, expected)[0, 1] > 0.99
-    # What the filter takes off is given back by the factor `regained` of 1.2.
-    assert 1.0 < np.std(found) / np.std(expected) < 1.3
