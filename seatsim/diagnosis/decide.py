@@ -108,7 +108,7 @@ def _choose_likely(settings: DecisionSettings, answers: _Answers) -> tuple[Hypot
     """Return the set whose effects are worth most beside an unknown cause, and pairs of effects.
 
     An effect of probability p that is stated is worth p, less its cost where it is not at work; one that is not stated
-    is worth 1 - p. Its likeliest stand-in in less likely sets is named with it where that adds enough to p.
+    is worth 1 - p. One that could stand in its place, and is no likelier, is named with it where that adds enough to p.
     """
     weights = [(each.names, weight) for each, weight in answers]
 
@@ -116,12 +116,13 @@ def _choose_likely(settings: DecisionSettings, answers: _Answers) -> tuple[Hypot
         return sum(weight for others, weight in weights if not others.isdisjoint(names))
 
     def pair(name: str, stand_ins: Sequence[str]) -> Sequence[str]:
-        both = [name, *stand_ins[:1]]
-        return both if sum_over(both) - sum_over([name]) > settings.further_name else [name]
+        alone = sum_over([name])
+        both = [name, *[other for other in stand_ins if sum_over([other]) <= alone][:1]]
+        return both if sum_over(both) - alone > settings.further_name else [name]
 
     found = []
-    for rank, (each, _) in enumerate(answers):
-        alike = group_equivalent(each.names, [names for names, _ in weights[rank + 1 :]])
+    for each, _ in answers:
+        alike = group_equivalent(each.names, [names for names, _ in weights if names != each.names])
         stand_ins = {name: others for name, *others in alike}
         named = [pair(name, stand_ins.get(name, ())) for name in sorted(each.names)]
         worth = sum(1.0 - (2.0 + settings.wrong_name) * (1.0 - sum_over(names)) for names in named)
