@@ -94,7 +94,7 @@ TRUTHS = {
     "a force from outside beside a driver": Row(
         (Mass(30.0),), "known", HEAVY, "floor", pushed(20.0, "suspension"), "floor.unmeasured_input", runs=LONG),
     "a force in the cushion beside a driver": Row(
-        (Mass(30.0),), "unknown", HEAVY, "cushion", pushed(40.0, "cushion"), runs=MIDDLE),
+        (Mass(30.0),), "unknown", HEAVY, "cushion", pushed(20.0, "cushion"), runs=MIDDLE),
     "a force in the damper": Row((), "unknown", {}, "damper", pushed(40.0, "damper"), runs=MIDDLE),
     "a drift": Row((), "known", {}, "sensor", drift, "sensor.bias", runs=LONG),
     "a broadband error beside a driver": Row((Mass(30.0),), "known", HEAVY, "driver", hiss, highest=50.0),
@@ -140,7 +140,8 @@ def test_what_is_hidden_is_found_with_its_size_and_its_block(solved, name):
     for effect, (field, true) in row.sizes.items():
         # A mass is taken in part by its own tolerance, of 8 kg, as its prior has it.
         assert causes[effect].parameters[field].value == pytest.approx(true, rel=0.03)
-        assert causes[effect].probability > (0.45 if row.group else 0.8)
+        # Beside an unknown cause an effect is stated that is likelier at work than not.
+        assert causes[effect].probability > (0.45 if row.group else 0.55 if row.verdict == "unknown" else 0.8)
     assert any(row.noted in note for note in found.notes) and found.notes[0] == "a note"
 
 
