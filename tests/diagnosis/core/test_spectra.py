@@ -1,4 +1,4 @@
-"""Smoothed spectra against plain loops, Wiener's filter against its formula, and signals of random phases."""
+"""Smoothed spectra against plain loops, and Wiener's filter against its formula."""
 
 import numpy as np
 
