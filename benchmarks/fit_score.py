@@ -109,7 +109,7 @@ def fit_weights(cases: Labelled, kind: str) -> Array:
     # A feature that no case of this kind has keeps its weight.
     spread = np.std(np.concatenate([case.features for case in cases]), axis=0) + TINY
     scaled = [case.features / spread for case in cases]
-    ridge = RIDGE + HELD * dict(zip(FEATURES, score.COUNTS, strict=True))[kind]
+    ridge = RIDGE + HELD * score.CASES[kind]
     before = np.array([getattr(score.WEIGHTS[name], kind) for name in FEATURES[kind]]) * spread
 
     def cost(weights: Array) -> tuple[float, Array]:
@@ -160,8 +160,8 @@ def main() -> None:
         print(cross_validate(cases[kind], kind))
         for name, weight in zip(names, fit_weights(cases[kind], kind).round(3).tolist(), strict=True):
             features[name][kind] = weight
-    counts = [before + len(cases[kind]) for before, kind in zip(score.COUNTS, FEATURES, strict=True)]
-    write_text(score.FILE, dump({"cases": counts[0], "cases_beside_unknown": counts[1], "features": features}))
+    counts = {kind: before + len(cases[kind]) for kind, before in score.CASES.items()}
+    write_text(score.FILE, dump({"cases": counts, "features": features}))
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ right, takes its cost off, and so does a set that is wrong.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Literal
 
 import numpy as np
@@ -23,6 +23,8 @@ from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.settings.judging import DecisionSettings
 
 Verdict = Literal["none", "known", "ambiguous", "unknown"]
+_Answers = Sequence[tuple[Hypothesis, float]]
+"""Hypotheses with their probabilities, the likeliest first."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -76,7 +78,7 @@ def decide_beside_unknown(objective: Objective, decision: Decision, search: Sear
     answers = _merge_same(list(zip(hypotheses, weigh_hypotheses(hypotheses, True).tolist(), strict=True)))
     chosen, groups = _choose_likely(settings, answers)
     rig = _fit_named(chosen) or search.selection.calibrated
-    probabilities = _sum_by_effect(answers, list(decision.probabilities))
+    probabilities = _sum_by_effect(answers, decision.probabilities)
     return call_unknown(settings, dataclasses.replace(decision, chosen=rig, groups=groups, probabilities=probabilities))
 
 
@@ -95,11 +97,7 @@ def give_up_effects(problem: DiagnosisProblem, decision: Decision, calibrated: E
     return dataclasses.replace(left, verdict="none", none=settings.none_if_none)
 
 
-_Answers = Sequence[tuple[Hypothesis, float]]
-"""Hypotheses with their probabilities, the likeliest first."""
-
-
-def _sum_by_effect(answers: _Answers, effects: Sequence[str]) -> dict[str, float]:
+def _sum_by_effect(answers: _Answers, effects: Iterable[str]) -> dict[str, float]:
     """Return the probability of each effect: the sum over the sets with it."""
     return {name: sum(weight for each, weight in answers if name in each.names) for name in effects}
 
@@ -108,7 +106,8 @@ def _choose_likely(settings: DecisionSettings, answers: _Answers) -> tuple[Hypot
     """Return the set whose effects are worth most beside an unknown cause, and pairs of effects.
 
     An effect of probability p that is stated is worth p, less its cost where it is not at work; one that is not stated
-    is worth 1 - p. One that could stand in its place, and is no likelier, is named with it where that adds enough to p.
+    is worth 1 - p. An effect that could stand in the place of a stated one, and is no likelier, is named with it where
+    that adds enough to p.
     """
     weights = [(each.names, weight) for each, weight in answers]
 

@@ -26,24 +26,18 @@ _FAITHFUL = 0.1
 """Largest share of the power of a change that sensitivities may miss to be carried on."""
 
 
-def fit(
-    objective: Objective,
-    start: Evaluation,
-    nuisances: Linearisation,
-    steps: int = _MOST_STEPS,
-    settled: float = _SETTLED,
-) -> Evaluation:
+def fit(objective: Objective, start: Evaluation, nuisances: Linearisation, settled: float = _SETTLED) -> Evaluation:
     """Return the evaluation at the end of a fit from `start`, with the given sensitivities of the nuisances.
 
-    It takes at most so many steps, and ends where one by sensitivities measured at its beginning lowers the cost by
-    less than the share `settled`. At the deadline it is the best so far.
+    It ends where a step by sensitivities measured at its beginning lowers the cost by less than the share `settled`, or
+    after `_MOST_STEPS`. At the deadline it is the best so far.
     """
     evaluation, carried = start, dict[str, Array]()
-    for _ in range(steps):
+    for _ in range(_MOST_STEPS):
         before = evaluation
         try:
             own = carried or objective.linearise_effects(before).jacobian
-            rig, step = before.parameters, find_step(before, nuisances, own)
+            rig, step = before.parameters, _find_step(before, nuisances, own)
             tries = (objective.evaluate([rig.move_to(rig.vector + part * step)])[0] for part in _BACKTRACKING)
             evaluation = next((tried for tried in tries if tried.cost < before.cost), before)
         except OutOfTimeError:
@@ -76,7 +70,7 @@ def refit_on(objective: Objective, rig: Linearisation, settled: float = _SETTLED
     return fit(objective, objective.weigh_again(rig.evaluation), rig, settled=settled)
 
 
-def find_step(evaluation: Evaluation, nuisances: Linearisation, own: Mapping[str, Array]) -> Array:
+def _find_step(evaluation: Evaluation, nuisances: Linearisation, own: Mapping[str, Array]) -> Array:
     """Return the Gauss-Newton step of the vector under its bounds, over the runs of `own`.
 
     `own` holds the sensitivities to the effects' free parameters by run.

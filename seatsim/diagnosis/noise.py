@@ -16,7 +16,7 @@ as the record was, so that what is carried is the noise of the smoothed path, no
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -27,7 +27,7 @@ from scipy.interpolate import LSQUnivariateSpline
 from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
 from seatsim.diagnosis.spectra import Spectra, as_complex, smooth_spectrum
 from seatsim.schema.arrays import Array
-from seatsim.simulation.inputs import BenchInputs, RigInputs, SeatInputs
+from seatsim.simulation.inputs import BenchInputs, SeatInputs
 from seatsim.simulation.respond import fit_motion
 
 _LEVEL = 0.1
@@ -42,17 +42,12 @@ _TINY = 1e-30
 
 def carry_input_noise(problem: DiagnosisProblem, run: str) -> Array:
     """Return the power spectrum that noise of a run's inputs causes in its outputs, shape (channels, frequencies)."""
-    inputs = problem.inputs[run]
-    if isinstance(inputs, BenchInputs):
-        return _carry(problem, run, lambda rng: _draw_bench(problem, inputs, rng))
-    return _carry(problem, run, lambda rng: _draw_floor(problem, inputs, rng))
-
-
-def _carry(problem: DiagnosisProblem, run: str, draw: Callable[[np.random.Generator], RigInputs]) -> Array:
-    """Return the power spectrum by which the outputs change under inputs that are drawn, (channels, frequencies)."""
     # The same draws for every recording: equal input gives equal output.
-    rng = np.random.default_rng(0)
-    drawn = [draw(rng) for _ in range(_REPLICATES)]
+    inputs, rng = problem.inputs[run], np.random.default_rng(0)
+    drawn = [
+        _draw_bench(problem, inputs, rng) if isinstance(inputs, BenchInputs) else _draw_floor(problem, inputs, rng)
+        for _ in range(_REPLICATES)
+    ]
     clean = problem.simulated(run, problem.nominal, ())
     replicates = problem.pool.map(lambda noisy: problem.simulated(run, problem.nominal, (), noisy), drawn)
     power = np.mean([np.abs(np.fft.rfft(noisy - clean, axis=1)) ** 2 for noisy in replicates], axis=0)

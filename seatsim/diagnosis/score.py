@@ -46,8 +46,7 @@ class Weight(NamedTuple):
 class _Fit(NamedTuple):
     """Weights by the name of their feature, and to how many cases of each kind they were fitted."""
 
-    cases: int
-    cases_beside_unknown: int
+    cases: dict[str, int]
     features: dict[str, Weight]
 
 
@@ -55,7 +54,7 @@ _Gaps = Mapping[frozenset[str], float]
 """Gap of every set of a search by the names of its effects."""
 FILE = Path(__file__).with_name("score.yaml")
 """What `benchmarks/fit_score.py` wrote."""
-*COUNTS, WEIGHTS = read_packaged(FILE, _Fit)
+CASES, WEIGHTS = read_packaged(FILE, _Fit)
 """To how many cases the weights of each kind were fitted, and the weights by the name of their feature."""
 
 

@@ -179,7 +179,7 @@ def _decide_beside_disturbance(task: SearchTask, first: Solution, without: Seque
 
 
 def search_beside_disturbances(task: SearchTask, first: Solution, without: Sequence[str] = ()) -> list[Search]:
-    """Return a search beside each disturbance that the sets of a solution may leave, but for effects `without`."""
+    """Return the search beside the disturbance that the sets of a solution may leave; none if it is one `without`."""
     task.progress("asking whether a disturbance hides the effects")
     chosen = None if first.decision.verdict == "unknown" else first.decision.chosen
     found = find_disturbance(first.objective, first.selection, chosen)

@@ -149,7 +149,7 @@ class Reconstruction:
         probe = np.fft.rfft(self.draw_probe(_PLAUSIBLE_CORNER, 1))[: self.objective.weights.bins[self.run]]
         return self.problem.settings.localisation.largest_input**2 * measure_power(probe)
 
-    def measure_response(self, signal: Array, outputs: Array, seed: int = 1) -> Spectra:
+    def measure_response(self, signal: Array, outputs: Array, seed: int) -> Spectra:
         """Return the frequency response of the whitened channels to the signal, shape (channels, frequencies).
 
         The response is taken about a signal and its outputs, by adding a small random signal.
@@ -174,7 +174,7 @@ class InputEstimate(NamedTuple):
     signal: Array
 
 
-def match_input(response: Spectra, whitened: Array, power: Array) -> Spectra:
+def _match_input(response: Spectra, whitened: Array, power: Array) -> Spectra:
     """Return the spectrum of the input of a plausible power that explains whitened residuals best, (frequencies,).
 
     It ends at the highest frequency that is compared; a transform back takes what is above as 0.
@@ -200,7 +200,7 @@ def estimate_input(
         before = best.cost
         if stale:
             response = rig.measure_response(best.signal, best.outputs, seed)
-        step = np.fft.irfft(permitted * match_input(response, best.residuals, plausible), rig.samples)
+        step = np.fft.irfft(permitted * _match_input(response, best.residuals, plausible), rig.samples)
         tries = (rig.attempt(best.signal + part * step) for part in _BACKTRACKING)
         best = next((tried for tried in tries if tried.cost < before), best)
         stale = best.cost > (1.0 - _SETTLED) * before

@@ -74,11 +74,17 @@ def test_a_fit_keeps_the_bounds_and_is_the_best_within_them():
     assert values[0] == 1.0 and values[4] == 0.7
 
 
-def test_more_steps_never_cost_more_and_end_at_the_minimum():
+def test_more_steps_never_cost_more_and_end_at_the_minimum(monkeypatch):
     # The cube of an amount acts, so that a whole step goes far too far.
     objective = pose({"b.two": 8.0})
     start, nuisances = starting(objective, (offer("b.two", low=0.0, high=20.0, cls=Cubed), 0.5))
-    ends = [fit(objective, start, nuisances, steps) for steps in range(7)]
+
+    def fit_in(steps):
+        with monkeypatch.context() as patch:
+            patch.setattr("seatsim.diagnosis.fit._MOST_STEPS", steps)
+            return fit(objective, start, nuisances)
+
+    ends = [fit_in(steps) for steps in range(7)]
     costs = [end.cost for end in ends]
     assert costs == sorted(costs, reverse=True) and costs[1] > costs[2] > costs[3]
     assert ends[6].parameters.values[0][0] == pytest.approx(2.0, rel=0.01)
@@ -88,7 +94,7 @@ def test_more_steps_never_cost_more_and_end_at_the_minimum():
 def test_a_rig_that_leaves_all_bounds_is_no_better_than_the_start():
     objective = pose({"b.two": 1.2})
     start, nuisances = starting(objective, (offer("b.two", start=2.0, cls=Edge), 2.0))
-    assert fit(objective, start, nuisances, steps=2).cost == np.inf
+    assert fit(objective, start, nuisances).cost == np.inf
 
 
 def test_a_component_beyond_its_bound_by_rounding_stays_where_it_is():

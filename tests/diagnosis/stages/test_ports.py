@@ -82,7 +82,7 @@ def weighted(objective, run, response):
 def test_the_response_of_a_filter_is_measured_but_for_its_ends(objective):
     rig = build(objective, PORTS["floor"], "second")
     expected = weighted(objective, "second", respond_to_taps("floor", rig.samples))
-    found = rig.measure_response(np.zeros(rig.samples), objective.problem.simulated("second", np.zeros(2), ()))
+    found = rig.measure_response(np.zeros(rig.samples), objective.problem.simulated("second", np.zeros(2), ()), 1)
     # Averages over bands smear the phase of the delay a little, and the first sample has no past.
     assert np.max(np.abs(found - expected)) < 0.15 * np.max(np.abs(expected))
     assert np.linalg.norm(found - expected) < 0.07 * np.linalg.norm(expected)
