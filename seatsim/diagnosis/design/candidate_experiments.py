@@ -13,6 +13,7 @@ from scipy.optimize import minimize
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.excitations.base import EXCITATIONS as REGISTERED
 from seatsim.excitations.base import Floor
+from seatsim.scenario.numbers import list_numbers
 from seatsim.schema.arrays import Array
 from seatsim.schema.fields import read_packaged
 from seatsim.simulation.inputs import SeatInputs
@@ -28,6 +29,8 @@ _WARM_UP = (20.0, 60.0)
 """degC at the start and at the end of a run in which the damper warms up."""
 _ADDED_MASS = 20.0
 """kg; mass added in the driver's seat."""
+_CURRENT = "controller.current"
+"""The number of a scenario that a run without current changes where the current is not recorded."""
 
 
 class CandidateExperiment(NamedTuple):
@@ -94,8 +97,11 @@ def _intervene(problem: DiagnosisProblem, floor: Floor) -> Iterator[CandidateExp
         text = "repeat a run and log the current of the coil"
         yield CandidateExperiment("coil_current", text, floor, ("coil_current",))
     without = floor._replace(command=rest, coil_current=rest)
-    off = {} if {"current_command", "coil_current"} & set(problem.recording.channels) else {"controller.current": 0.0}
-    yield CandidateExperiment("zero_current", "repeat a run without current", without, set=off)
+    is_recorded = bool({"current_command", "coil_current"} & set(problem.recording.channels))
+    # A current that is neither recorded nor stated, as that of a passive damper, cannot be switched off.
+    if is_recorded or _CURRENT in list_numbers(problem.scenario):
+        off = {} if is_recorded else {_CURRENT: 0.0}
+        yield CandidateExperiment("zero_current", "repeat a run without current", without, set=off)
     low, high = _WARM_UP
     warming = floor._replace(temperature=low + (high - low) * time / time[-1])
     yield CandidateExperiment("warm_up", "repeat a run while the damper warms from 20 to 60 degC", warming)

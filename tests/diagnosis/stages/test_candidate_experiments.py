@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from seatsim.diagnosis.design.candidate_experiments import EXCITATIONS, excite, list_candidate_experiments
+from seatsim.rig.control import LAWS
+from seatsim.scenario.scenario import Control
 from seatsim.simulation.inputs import BenchInputs
 
 from .toy import CHANNELS, RATE, pose, record
@@ -82,3 +84,15 @@ def test_a_bench_repeats_the_motion_of_its_damper(bench):
     assert found.displacement is inputs.displacement
     assert found.command is inputs.current_command and found.temperature is inputs.damper_temperature
     assert found.coil_current is None
+
+
+@pytest.mark.parametrize("law", [None, LAWS.find("constant")(0.7)])
+def test_a_current_that_is_not_recorded_is_switched_off_where_the_nominal_states_it(bench, law):
+    channels = {name: bench.recording.channels[name] for name in CHANNELS[:3]}
+    control = law and Control(law, None, None)
+    scenario = dataclasses.replace(bench.scenario, control=control)
+    recording = dataclasses.replace(bench.recording, channels=channels)
+    found = by_name(dataclasses.replace(bench, recording=recording, scenario=scenario))
+    assert [each.set for name, each in found.items() if name == "zero_current"] == (
+        [{"controller.current": 0.0}] if law else []
+    )
