@@ -32,11 +32,9 @@ from threadpoolctl import threadpool_limits
 
 from seatsim.blind.sealed import Label, unseal
 from seatsim.diagnosis import score
-from seatsim.diagnosis.decide import decide_verdict
 from seatsim.diagnosis.noise import differ_materially
 from seatsim.diagnosis.problem import pose_problem
-from seatsim.diagnosis.solution import search
-from seatsim.diagnosis.solve import adopt, is_explained, pose_search, search_beside_disturbances, search_by_gap
+from seatsim.diagnosis.solve import adopt, is_explained, pose_search, search_by_gap, search_causes
 from seatsim.recordings.recording import load_recording
 from seatsim.schema.arrays import Array
 from seatsim.schema.files import write_json, write_text
@@ -72,16 +70,13 @@ def list_hypotheses(case: Path) -> None:
     with ThreadPoolExecutor() as pool, threadpool_limits(1):
         problem = pose_problem(load_recording(case), pool)
         task, objective = pose_search(problem, (), lambda _: None, repeats=not differ_materially(problem))
-        first = search(task, objective)
-        if first.decision.verdict != "none":
-            beside = [] if problem.bench else search_beside_disturbances(task, first)
-            searches = [score.Search(objective, first.selection), *beside]
-            decision = decide_verdict(searches, task.effects)
-            if not is_explained(first._replace(decision=decision)):
-                by_gap = search_by_gap(task, objective, first.selection)
-                searches[0] = score.Search(objective, adopt(objective, first.selection, by_gap.selection))
-                beside_unknown = score.list_hypotheses([by_gap], objective)
-            causes = score.list_hypotheses(searches)
+        found, decided = search_causes(task, objective, ())
+        if decided.decision.verdict != "none":
+            if not is_explained(found, decided.decision):
+                by_gap = search_by_gap(task, found.objective, found.selection)
+                found = found._replace(selection=adopt(found.objective, found.selection, by_gap.selection))
+                beside_unknown = score.list_hypotheses([by_gap], found.objective)
+            causes = score.list_hypotheses([score.Search(found.objective, found.selection), *found.beside])
     listed = {"weight": causes, "beside_unknown": beside_unknown}
     content = {of: [{"names": sorted(h.names), "features": h.features} for h in each] for of, each in listed.items()}
     write_json(case / HYPOTHESES, content)

@@ -141,7 +141,7 @@ def _merge_same(weighed: _Answers) -> list[tuple[Hypothesis, float]]:
 
 
 def _fit_named(hypothesis: Hypothesis) -> Evaluation | None:
-    """Return the rig of a hypothesis, fitted again without those of its effects that are not material."""
+    """Return the rig of a hypothesis, fitted again without those of its effects that are not named."""
     rig, search = hypothesis.rig, hypothesis.search
     if rig is None or search is None or rig.parameters.names <= hypothesis.names:
         return rig

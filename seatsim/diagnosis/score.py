@@ -33,6 +33,11 @@ _LITTLE = 0.02
 """Share of the excess, or gap in standard deviations, about which differences begin to count."""
 _LEAST_MOVEMENT = 0.01
 """Movement, in material limits, below which smaller ones count as much."""
+_NAMED = 0.6
+"""Movement, in material limits, from which an effect is named; smaller ones of a set make up for its wrong form.
+
+It is below 1, since what a fit finds of a material effect is often less than what the effect moves.
+"""
 
 
 class Weight(NamedTuple):
@@ -74,8 +79,8 @@ class Search(NamedTuple):
 class Hypothesis(NamedTuple):
     """What may explain the recording: a rig and a search, beside whose disturbance it stands, with features by name.
 
-    Without a rig it stands for an unknown cause. `names` are those of its effects that are material, of all where none
-    is, and of the disturbance.
+    Without a rig it stands for an unknown cause. `names` are those of its effects that move a channel enough to be
+    named, of all where none does, and of the disturbance.
     """
 
     features: dict[str, float]
@@ -137,8 +142,8 @@ def _describe_set(first: Search, search: Search, rig: Evaluation, gaps: _Gaps, a
             "repeated": beside.measure_share_repeated(problem),
             "drift": float(beside.effect == BIAS_DRIFT),
         }
-    material = frozenset(term.effect for term, moved in zip(parameters.terms, most, strict=False) if moved > 1.0)
-    return Hypothesis(features, rig, search, (material or names) | search.effect)
+    moving = frozenset(term.effect for term, moved in zip(parameters.terms, most, strict=False) if moved > _NAMED)
+    return Hypothesis(features, rig, search, (moving or names) | search.effect)
 
 
 def _measure_gaps(objective: Objective, selection: Selection) -> _Gaps:

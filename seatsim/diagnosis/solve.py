@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Sequence
-from typing import ParamSpec
+from typing import ParamSpec, TypeVar
 
 import numpy as np
 
 from seatsim.diagnosis.candidates import list_candidates
-from seatsim.diagnosis.decide import call_unknown, decide_beside_unknown, decide_verdict
+from seatsim.diagnosis.decide import Decision, call_unknown, decide_beside_unknown, decide_verdict
 from seatsim.diagnosis.fit import refit_on
 from seatsim.diagnosis.localise.discrepancy import describe_discrepancy
 from seatsim.diagnosis.localise.disturbance import Disturbance, find_disturbance, put_beside
@@ -25,6 +25,7 @@ from seatsim.diagnosis.solution import Progress, SearchTask, Solution, search
 from seatsim.effects.base import EFFECTS
 
 P = ParamSpec("P")
+Found = TypeVar("Found")
 _LARGEST_BY_GAP = 2
 """Most effects of a set that is sought under uniform weights."""
 
@@ -42,26 +43,31 @@ def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress)
     """
     differ = differ_materially(problem)
     task, objective = pose_search(problem, without, progress, repeats=not differ)
-    first = _search_causes(task, objective, without)
-    if differ and not (first.stochastic or problem.deadline.is_past):
-        second = _search_causes(*pose_search(problem, without, progress), without)
-        first = first if second.decision.verdict == "none" else second
-    # A random signal takes nothing off the gap, however right it is.
-    if first.decision.verdict == "none" or first.stochastic:
-        return first
-    if is_explained(first):
-        return _localise(task, first)
-    return _in_time(_explain_by_gap, task, first) or _localise(task, _call_unknown(first))
+    found, decided = search_causes(task, objective, without)
+    if differ and not (decided.stochastic or problem.deadline.is_past):
+        others, second = search_causes(*pose_search(problem, without, progress), without)
+        if second.decision.verdict != "none":
+            found, decided = others, second
+    if decided.decision.verdict != "none" and not is_explained(found, decided.decision):
+        # A random signal takes nothing off the gap, however right it is.
+        left = decided if decided.stochastic else _call_unknown(decided)
+        decided = _in_time(_explain_by_gap, task, found) or left
+    return decided if decided.where else _localise(task, decided)
 
 
-def _search_causes(task: SearchTask, objective: Objective, without: Sequence[str]) -> Solution:
-    """Return the solution under the weights of an objective, sought beside a broadband residual and a random signal."""
-    first = search(task, objective)
-    if first.decision.verdict == "unknown":
-        first = _in_time(_search_beyond_broadband, task, first) or first
-    if not objective.problem.bench:
-        first = _in_time(_decide_beside_disturbance, task, first, without) or first
-    return first
+def search_causes(task: SearchTask, objective: Objective, without: Sequence[str]) -> tuple[Solution, Solution]:
+    """Return what is found under the weights of an objective, and beside a broadband residual and a random signal.
+
+    The second solution is decided on all of it.
+    """
+    found = search(task, objective)
+    if found.decision.verdict == "unknown":
+        found = _in_time(_search_beyond_broadband, task, found) or found
+    if found.decision.verdict == "none" or objective.problem.bench:
+        return found, found
+    beside = _in_time(_search_beside_disturbances, task, found, without)
+    found = found._replace(beside=beside or [])
+    return found, _decide(task, found) if beside else found
 
 
 def pose_search(
@@ -74,7 +80,7 @@ def pose_search(
     return task, Objective(problem, weigh_noise(problem, repeats))
 
 
-def _in_time(stage: Callable[P, Solution], *arguments: P.args, **named: P.kwargs) -> Solution | None:
+def _in_time(stage: Callable[P, Found], *arguments: P.args, **named: P.kwargs) -> Found | None:
     """Return what a stage finds, None where the deadline ends it: what was found before it then stands."""
     try:
         return stage(*arguments, **named)
@@ -82,12 +88,12 @@ def _in_time(stage: Callable[P, Solution], *arguments: P.args, **named: P.kwargs
         return None
 
 
-def is_explained(solution: Solution) -> bool:
-    """Whether the chosen set is known, and takes enough of the gap, nominal and calibrated, to be its causes.
+def is_explained(found: Solution, decision: Decision) -> bool:
+    """Whether a set is known, and takes enough of the gap, nominal and calibrated, to be its causes.
 
     Weights by noise value what an effect improves where signals are weak, which may be next to nothing of the gap.
     """
-    objective, selection, decision = solution.objective, solution.selection, solution.decision
+    objective, selection = found.objective, found.selection
     if decision.verdict == "unknown":
         return False
     taken = [measure_gap_taken(objective, rig, decision.chosen) for rig in (selection.nominal, selection.calibrated)]
@@ -115,11 +121,10 @@ def _explain_by_gap(task: SearchTask, first: Solution) -> Solution:
     likeliest effects are stated beside the unexplained remainder.
     """
     uniform = search_by_gap(task, first.objective, first.selection)
-    second = _decide(task, first._replace(selection=adopt(first.objective, first.selection, uniform.selection)))
-    if second.stochastic:
+    first = first._replace(selection=adopt(first.objective, first.selection, uniform.selection))
+    second = _decide(task, first)
+    if second.stochastic or is_explained(first, second.decision):
         return second
-    if is_explained(second):
-        return _localise(task, second)
     return _state_beside_unknown(task, _call_unknown(second), uniform)
 
 
@@ -172,13 +177,7 @@ def _localise(task: SearchTask, solution: Solution) -> Solution:
     return solution._replace(where=share_gap(objective, decision.chosen, remainder), discrepancy=found)
 
 
-def _decide_beside_disturbance(task: SearchTask, first: Solution, without: Sequence[str]) -> Solution:
-    """Return the solution decided on the sets found so far and on those beside each disturbance that they may leave."""
-    beside = [] if first.decision.verdict == "none" else search_beside_disturbances(task, first, without)
-    return _decide(task, first._replace(beside=beside)) if beside else first
-
-
-def search_beside_disturbances(task: SearchTask, first: Solution, without: Sequence[str] = ()) -> list[Search]:
+def _search_beside_disturbances(task: SearchTask, first: Solution, without: Sequence[str]) -> list[Search]:
     """Return the search beside the disturbance that the sets of a solution may leave; none if it is one `without`."""
     task.progress("asking whether a disturbance hides the effects")
     chosen = None if first.decision.verdict == "unknown" else first.decision.chosen
