@@ -79,8 +79,8 @@ class Search(NamedTuple):
 class Hypothesis(NamedTuple):
     """What may explain the recording: a rig and a search, beside whose disturbance it stands, with features by name.
 
-    Without a rig it stands for an unknown cause. `names` are those of its effects that move a channel enough to be
-    named, of all where none does, and of the disturbance.
+    Without a rig it stands for an unknown cause. `names` are those of the disturbance and of its effects that move a
+    channel enough to be named, of all where there is none of either.
     """
 
     features: dict[str, float]
@@ -143,7 +143,7 @@ def _describe_set(first: Search, search: Search, rig: Evaluation, gaps: _Gaps, a
             "drift": float(beside.effect == BIAS_DRIFT),
         }
     moving = frozenset(term.effect for term, moved in zip(parameters.terms, most, strict=False) if moved > _NAMED)
-    return Hypothesis(features, rig, search, (moving or names) | search.effect)
+    return Hypothesis(features, rig, search, moving | search.effect or names)
 
 
 def _measure_gaps(objective: Objective, selection: Selection) -> _Gaps:
