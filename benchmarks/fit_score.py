@@ -76,7 +76,7 @@ def list_hypotheses(case: Path) -> None:
                 by_gap = search_by_gap(task, found.objective, found.selection)
                 found = found._replace(selection=adopt(found.objective, found.selection, by_gap.selection))
                 beside_unknown = score.list_hypotheses([by_gap], found.objective)
-            causes = score.list_hypotheses([score.Search(found.objective, found.selection), *found.beside])
+            causes = score.list_hypotheses(found.searches)
     listed = {"weight": causes, "beside_unknown": beside_unknown}
     content = {of: [{"names": sorted(h.names), "features": h.features} for h in each] for of, each in listed.items()}
     write_json(case / HYPOTHESES, content)

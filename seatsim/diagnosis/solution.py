@@ -27,8 +27,7 @@ class SearchTask(NamedTuple):
 class Solution(NamedTuple):
     """A selection with its decision, the blocks that the gap lies in, and the discrepancy, if anything is unexplained.
 
-    `stochastic` is the effect, if any, whose signal is that discrepancy; `beside` holds the searches beside a
-    disturbance.
+    `stochastic` is the effect, if any, whose signal is that discrepancy; `beside` is the search beside a disturbance.
     """
 
     objective: Objective
@@ -37,7 +36,12 @@ class Solution(NamedTuple):
     where: Sequence[Share] = ()
     discrepancy: Discrepancy | None = None
     stochastic: str = ""
-    beside: Sequence[Search] = ()
+    beside: Search | None = None
+
+    @property
+    def searches(self) -> list[Search]:
+        """The search without a disturbance, which is the first, and that beside one, if any."""
+        return [Search(self.objective, self.selection), *filter(None, [self.beside])]
 
 
 def search(task: SearchTask, objective: Objective, rig: LinearisedRig | None = None) -> Solution:

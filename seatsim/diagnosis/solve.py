@@ -12,7 +12,7 @@ from seatsim.diagnosis.candidates import list_candidates
 from seatsim.diagnosis.decide import Decision, call_unknown, decide_beside_unknown, decide_verdict
 from seatsim.diagnosis.fit import refit_on
 from seatsim.diagnosis.localise.discrepancy import describe_discrepancy
-from seatsim.diagnosis.localise.disturbance import Disturbance, find_disturbance, put_beside
+from seatsim.diagnosis.localise.disturbance import find_disturbance, put_beside
 from seatsim.diagnosis.localise.localisation import localise_remainder, share_gap
 from seatsim.diagnosis.movement import measure_gap_taken
 from seatsim.diagnosis.noise import differ_materially, measure_broadband, weigh_gap, weigh_noise
@@ -52,6 +52,7 @@ def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress)
         # A random signal takes nothing off the gap, however right it is.
         left = decided if decided.stochastic else _call_unknown(decided)
         decided = _in_time(_explain_by_gap, task, found) or left
+    # A random signal, and what stands beside an unknown cause, have their blocks already.
     return decided if decided.where else _localise(task, decided)
 
 
@@ -65,9 +66,8 @@ def search_causes(task: SearchTask, objective: Objective, without: Sequence[str]
         found = _in_time(_search_beyond_broadband, task, found) or found
     if found.decision.verdict == "none" or objective.problem.bench:
         return found, found
-    beside = _in_time(_search_beside_disturbances, task, found, without)
-    found = found._replace(beside=beside or [])
-    return found, _decide(task, found) if beside else found
+    found = found._replace(beside=_in_time(_search_beside_disturbance, task, found, without))
+    return found, _decide(task, found) if found.beside else found
 
 
 def pose_search(
@@ -177,31 +177,27 @@ def _localise(task: SearchTask, solution: Solution) -> Solution:
     return solution._replace(where=share_gap(objective, decision.chosen, remainder), discrepancy=found)
 
 
-def _search_beside_disturbances(task: SearchTask, first: Solution, without: Sequence[str]) -> list[Search]:
+def _search_beside_disturbance(task: SearchTask, first: Solution, without: Sequence[str]) -> Search | None:
     """Return the search beside the disturbance that the sets of a solution may leave; none if it is one `without`."""
     task.progress("asking whether a disturbance hides the effects")
     chosen = None if first.decision.verdict == "unknown" else first.decision.chosen
-    found = find_disturbance(first.objective, first.selection, chosen)
-    return [] if found is None or found.effect in without else [_search_beside(task, first, found)]
-
-
-def _decide(task: SearchTask, solution: Solution) -> Solution:
-    """Return the solution decided anew on all its sets, those beside a disturbance among them."""
-    first = Search(solution.objective, solution.selection)
-    decision = decide_verdict([first, *solution.beside], task.effects)
-    objective, selection, disturbance = decision.search or first
-    if decision.verdict == "unknown" or disturbance is None:
-        return solution._replace(decision=decision)
-    moved = {disturbance.effect.partition(".")[0]: disturbance.measure_movements(objective.problem)}
-    where = share_gap(objective, decision.chosen, None, moved)
-    return Solution(objective, selection, decision, where, disturbance.found, disturbance.effect)
-
-
-def _search_beside(task: SearchTask, first: Solution, disturbance: Disturbance) -> Search:
-    """Return the search beside a disturbance that was found in what a solution leaves."""
+    disturbance = find_disturbance(first.objective, first.selection, chosen)
+    if disturbance is None or disturbance.effect in without:
+        return None
     task.progress(f"searching beside {disturbance.effect}")
     beside = put_beside(first.objective, disturbance)
     others = [each for each in task.candidates if each.effect != disturbance.effect]
     rig = first.selection.weigh_again(first.objective, beside)
     rig = rig._replace(sensitivities=rig.sensitivities.without(disturbance.effect))
     return Search(beside, select_effects(beside, others, task.progress, rig=rig), disturbance)
+
+
+def _decide(task: SearchTask, solution: Solution) -> Solution:
+    """Return the solution decided anew on all its sets, those beside a disturbance among them."""
+    decision = decide_verdict(solution.searches, task.effects)
+    objective, selection, disturbance = decision.search or solution.searches[0]
+    if decision.verdict == "unknown" or disturbance is None:
+        return solution._replace(decision=decision)
+    moved = {disturbance.effect.partition(".")[0]: disturbance.measure_movements(objective.problem)}
+    where = share_gap(objective, decision.chosen, None, moved)
+    return Solution(objective, selection, decision, where, disturbance.found, disturbance.effect)
