@@ -34,7 +34,7 @@ from seatsim.blind.sealed import Label, unseal
 from seatsim.diagnosis import score
 from seatsim.diagnosis.noise import differ_materially
 from seatsim.diagnosis.problem import pose_problem
-from seatsim.diagnosis.solve import adopt, is_explained, pose_search, search_by_gap, search_causes
+from seatsim.diagnosis.solve import is_explained, pose_search, search_by_gap, search_causes
 from seatsim.recordings.recording import load_recording
 from seatsim.schema.arrays import Array
 from seatsim.schema.files import write_json, write_text
@@ -73,8 +73,7 @@ def list_hypotheses(case: Path) -> None:
         found, decided = search_causes(task, objective, ())
         if decided.decision.verdict != "none":
             if not is_explained(found, decided.decision):
-                by_gap = search_by_gap(task, found.objective, found.selection)
-                found = found._replace(selection=adopt(found.objective, found.selection, by_gap.selection))
+                found, by_gap = search_by_gap(task, found)
                 beside_unknown = score.list_hypotheses([by_gap], found.objective)
             causes = score.list_hypotheses(found.searches)
     listed = {"weight": causes, "beside_unknown": beside_unknown}

@@ -143,7 +143,7 @@ def _describe_set(first: Search, search: Search, rig: Evaluation, gaps: _Gaps, a
             "drift": float(beside.effect == BIAS_DRIFT),
         }
     moving = frozenset(term.effect for term, moved in zip(parameters.terms, most, strict=False) if moved > _NAMED)
-    return Hypothesis(features, rig, search, moving | search.effect or names)
+    return Hypothesis(features, rig, search, (moving | search.effect) or names)
 
 
 def _measure_gaps(objective: Objective, selection: Selection) -> _Gaps:

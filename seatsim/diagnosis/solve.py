@@ -20,7 +20,7 @@ from seatsim.diagnosis.objective import Objective
 from seatsim.diagnosis.problem import DiagnosisProblem, OutOfTimeError
 from seatsim.diagnosis.result import Share
 from seatsim.diagnosis.score import Search
-from seatsim.diagnosis.select import Selection, select_effects
+from seatsim.diagnosis.select import select_effects
 from seatsim.diagnosis.solution import Progress, SearchTask, Solution, search
 from seatsim.effects.base import EFFECTS
 
@@ -113,33 +113,33 @@ def _search_beyond_broadband(task: SearchTask, first: Solution) -> Solution:
     return second if second.decision.verdict in ("known", "ambiguous") else first
 
 
-def _explain_by_gap(task: SearchTask, first: Solution) -> Solution:
+def _explain_by_gap(task: SearchTask, found: Solution) -> Solution:
     """Return the solution with the sets that a search under uniform weights proposes, or the remainder beside one.
 
     Where weak signals weigh most a fit may end far from the set that takes all of the gap, so that what is found under
     uniform weights is fitted and judged under those of the noise. Where it does not explain the gap either, its
     likeliest effects are stated beside the unexplained remainder.
     """
-    uniform = search_by_gap(task, first.objective, first.selection)
-    first = first._replace(selection=adopt(first.objective, first.selection, uniform.selection))
-    second = _decide(task, first)
-    if second.stochastic or is_explained(first, second.decision):
-        return second
-    return _state_beside_unknown(task, _call_unknown(second), uniform)
+    found, uniform = search_by_gap(task, found)
+    decided = _decide(task, found)
+    if decided.stochastic or is_explained(found, decided.decision):
+        return decided
+    return _state_beside_unknown(task, _call_unknown(decided), uniform)
 
 
-def search_by_gap(task: SearchTask, objective: Objective, known: Selection) -> Search:
-    """Return a search under uniform weights, by which all of the gap counts, from a rig that is known by others."""
+def search_by_gap(task: SearchTask, found: Solution) -> tuple[Solution, Search]:
+    """Return a search under uniform weights, by which all of the gap counts, and before it the solution with its sets.
+
+    The best of those are fitted again under the weights of the solution.
+    """
     task.progress("weighing the gap alone")
+    objective, known = found.objective, found.selection
     uniform = Objective(objective.problem, weigh_gap(objective.problem, known.calibrated.residuals))
     rig = known.weigh_again(objective, uniform)
-    return Search(uniform, select_effects(uniform, task.candidates, task.progress, _LARGEST_BY_GAP, rig))
-
-
-def adopt(objective: Objective, known: Selection, others: Selection) -> Selection:
-    """Return a selection with the best sets of another search, fitted again under the weights of an objective."""
+    others = select_effects(uniform, task.candidates, task.progress, _LARGEST_BY_GAP, rig)
     best = others.list_finalists(objective.settings.selection.finalists)
-    return known.propose([refit_on(objective, known.linearise(each)) for each in best if each.parameters.terms])
+    proposed = [refit_on(objective, known.linearise(each)) for each in best if each.parameters.terms]
+    return found._replace(selection=known.propose(proposed)), Search(uniform, others)
 
 
 def _call_unknown(solution: Solution) -> Solution:

@@ -97,7 +97,7 @@ def _intervene(problem: DiagnosisProblem, floor: Floor) -> Iterator[CandidateExp
         text = "repeat a run and log the current of the coil"
         yield CandidateExperiment("coil_current", text, floor, ("coil_current",))
     without = floor._replace(command=rest, coil_current=rest)
-    is_recorded = bool({"current_command", "coil_current"} & set(problem.recording.channels))
+    is_recorded = not {"current_command", "coil_current"}.isdisjoint(problem.recording.channels)
     # A current that is neither recorded nor stated, as that of a passive damper, cannot be switched off.
     if is_recorded or _CURRENT in list_numbers(problem.scenario):
         off = {} if is_recorded else {_CURRENT: 0.0}
