@@ -11,6 +11,7 @@ import numpy as np
 
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.effects.base import EFFECTS, ON_SEAT, Form, acts_on, same_place
+from seatsim.recordings.recording import COMMANDS
 from seatsim.rig.drivers import SINGLE_MASS
 from seatsim.schema.arrays import Array
 from seatsim.schema.fields import bounds, choices, describe, field_names
@@ -172,14 +173,13 @@ def _vary_start(candidate: Candidate, problem: DiagnosisProblem) -> list[Candida
 
 def _fits(cls: type[Record], problem: DiagnosisProblem) -> bool:
     """Whether the effect has something to act on in this recording."""
-    specification, recorded = EFFECTS.specification_of(cls), problem.recording.channels
-    commanded = "current_command" in recorded or "command_voltage" in recorded
+    specification = EFFECTS.specification_of(cls)
     if problem.bench and acts_on(cls, (*ON_SEAT, "plant", "frame_force")):
         return False
     if acts_on(cls, ("inner_mass",)) and problem.scenario.driver.model != SINGLE_MASS:
         return False
     # Where only the current is recorded, it drives the damper in the simulation, so that no fault of the coil shows.
-    if acts_on(cls, ("coil",)) and not commanded:
+    if acts_on(cls, ("coil",)) and set(COMMANDS).isdisjoint(problem.recording.channels):
         return False
     if specification.shown_by_fall and not problem.current_falls:
         return False

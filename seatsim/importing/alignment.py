@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from seatsim.recordings.quality.relations import band_passed
+from seatsim.recordings.recording import COMMANDS
 from seatsim.schema.arrays import Array
 
 _SHORTEST = 2.0
@@ -18,8 +19,6 @@ _LEAST = 0.5
 _HALF, _BETA, _ROLL = 32, 9.0, 0.92
 """Zero crossings of the sinc on each side, shape of the Kaiser window (stop band -90 dB), share of the band kept."""
 _CHUNK = 20_000
-HELD = ("current_command", "command_voltage")
-"""Channels that hold each value until the next row."""
 _SAME = 1e-6
 """Fraction of a row by which times may differ from rows, and still need no interpolation."""
 
@@ -132,7 +131,7 @@ def evened(name: str, values: Array, times: Array, grid: Array) -> Array:
     """
     from scipy.interpolate import CubicSpline
 
-    if name in HELD:
+    if name in COMMANDS:
         return np.asarray(values[np.clip(np.searchsorted(times, grid, side="right") - 1, 0, None)])
     later = np.concatenate([[True], np.diff(times) > 0.0])
     return np.asarray(CubicSpline(times[later], values[later])(grid), dtype=np.float64)

@@ -11,14 +11,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.importing.alignment import HELD, Channel, describe_offset, estimate_offset, evened, hold, resample
+from seatsim.importing.alignment import Channel, describe_offset, estimate_offset, evened, hold, resample
 from seatsim.importing.doubts import doubt_channel, doubt_time
 from seatsim.importing.import_map import PRIMITIVE, AxisMap, ChannelMap, ImportMap
 from seatsim.importing.names import quantity_of
 from seatsim.importing.signals import LISTED, Axis, DataFile, Group, Signal, check_is_history, find_clock, measured_axis
 from seatsim.recordings.quality.issue import Issue, place_in_run
 from seatsim.recordings.quality.relations import doubt_relations
-from seatsim.recordings.recording import CHANNELS
+from seatsim.recordings.recording import CHANNELS, COMMANDS
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest, placed
 from seatsim.schema.text import name_some
@@ -339,8 +339,9 @@ def _tabulate(
             table[name] = np.full(len(times), found.factor * entry.value + found.zero)
             continue
         each = held[name]
-        how, take = ("each value held", hold) if name in HELD else ("band-limited", partial(resample, new_rate=rate))
+        take = hold if name in COMMANDS else partial(resample, new_rate=rate)
         if abs(each.rate / rate - 1.0) > _SAME_RATE:
+            how = "each value held" if take is hold else "band-limited"
             notes.append(f"{name}: resampled from {each.rate:.6g} to {rate:.6g} Hz, {how}")
         table[name] = take(each.values, each.start - entry.delay, each.rate, times)
     return table

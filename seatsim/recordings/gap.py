@@ -13,7 +13,7 @@ from seatsim.metrics.objective_rating import ObjectiveRating, rate_agreement
 from seatsim.recordings.prediction import Prediction, predict_gap
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.quality.sensors import without_gravity
-from seatsim.recordings.recording import Recording, load_recording
+from seatsim.recordings.recording import COMMANDS, Recording, load_recording
 from seatsim.recordings.replay import COMPARED, LEFT_OUT, note_unused_log, replay, stands_out
 from seatsim.recordings.validation import Validation, validate
 from seatsim.scenario.loading import single
@@ -205,6 +205,6 @@ def forecast_gap(scenario: str | Path | Scenario, recording: str | Path | Record
 
 def _has_outputs(recording: Recording) -> bool:
     """Whether an output is recorded; a coil current is an input where it drives the damper in place of a command."""
-    recorded, commands = set(recording.channels), {"current_command", "command_voltage"}
-    outputs = recorded.intersection(COMPARED[recording.header.rig])
-    return bool(outputs if commands & recorded else outputs - {"coil_current"})
+    outputs = set(recording.channels).intersection(COMPARED[recording.header.rig])
+    is_commanded = not set(COMMANDS).isdisjoint(recording.channels)
+    return bool(outputs if is_commanded else outputs - {"coil_current"})

@@ -31,7 +31,7 @@ ACCELEROMETERS = ("floor_acceleration", "frame_acceleration", "driver_accelerati
 MOTION = (*ACCELEROMETERS, "suspension_displacement", "displacement", "velocity", "damper_force")
 """Channels of motion and force, which swing about zero and are never at rest for long."""
 COMMANDS = ("current_command", "command_voltage")
-"""Channels that are logged and not measured, so that they have no noise."""
+"""Channels that are logged and not measured: they have no noise, and hold each value until the next row."""
 CURRENTS = (*COMMANDS, "coil_current")
 """Channels of which one drives the coil or the damper."""
 

@@ -72,7 +72,7 @@ def replay(scenario: Scenario, recording: Recording, run: str) -> tuple[dict[str
 
 def note_unused_log(scenario: Scenario, recording: Recording) -> list[str]:
     """Return a sentence where the scenario's own law drives the coil and the recorded command or current does not."""
-    logged = [name for name in ("current_command", "coil_current") if name in recording.channels]
+    logged = [name for name in CURRENTS if name in recording.channels]
     if scenario.control is None or not logged or specification_of(type(scenario.control.law)).replays:
         return []
     law = LAWS.name_of(type(scenario.control.law))

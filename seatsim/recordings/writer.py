@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from seatsim.recordings.header import USUAL, Tolerances
-from seatsim.recordings.recording import CHANNELS, HEADER, SEAT_CHANNELS
+from seatsim.recordings.recording import CHANNELS, CURRENTS, HEADER, SEAT_CHANNELS
 from seatsim.scenario.numbers import PARAMETERS, TEMPERATURE, list_numbers
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest
@@ -50,7 +50,7 @@ def save_recording(
     if any(run.history.step != first.history.step for run in result.runs):
         raise InputError("the runs differ in solver.step; a recording has one sample rate")
     files = {f"run-{index + 1}": run for index, run in enumerate(result.runs)}
-    nominal = _nominal(first, {"current_command", "coil_current"} & set(channels))
+    nominal = _nominal(first, not set(CURRENTS).isdisjoint(channels))
     stated = {"parameter_tolerance": dict(tolerance) if isinstance(tolerance, Mapping) else tolerance}
     runs = {name: _changes(first, run) for name, run in files.items()}
     header = state_header("seat", 1.0 / first.history.step, stated, runs, {name: noise.get(name) for name in channels})
@@ -119,13 +119,13 @@ def _changes(first: Run, run: Run) -> dict[str, dict[str, float]]:
     return {"set": changed} if changed else {}
 
 
-def _nominal(run: Run, recorded: set[str]) -> dict[str, object]:
-    """Return the content of the nominal scenario; a current that is not `recorded` must be constant."""
+def _nominal(run: Run, is_current_recorded: bool) -> dict[str, object]:
+    """Return the content of the nominal scenario; a current that is not recorded must be constant."""
     if run.scenario.source is None:
         raise InputError(f"{run.scenario.name}: only the result of a scenario file can become a recording")
     values = run.scenario.source.data
     law: dict[str, object] = {"law": "replay"}
-    if not recorded:
+    if not is_current_recorded:
         commands = run["current_command"]
         if np.ptp(commands) > 0.0:
             raise InputError("a current that changes must be recorded: add the channel current_command or coil_current")

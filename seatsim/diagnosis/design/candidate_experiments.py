@@ -13,6 +13,7 @@ from scipy.optimize import minimize
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.excitations.base import EXCITATIONS as REGISTERED
 from seatsim.excitations.base import Floor
+from seatsim.recordings.recording import CURRENTS
 from seatsim.scenario.numbers import list_numbers
 from seatsim.schema.arrays import Array
 from seatsim.schema.fields import read_packaged
@@ -97,7 +98,7 @@ def _intervene(problem: DiagnosisProblem, floor: Floor) -> Iterator[CandidateExp
         text = "repeat a run and log the current of the coil"
         yield CandidateExperiment("coil_current", text, floor, ("coil_current",))
     without = floor._replace(command=rest, coil_current=rest)
-    is_recorded = not {"current_command", "coil_current"}.isdisjoint(problem.recording.channels)
+    is_recorded = not set(CURRENTS).isdisjoint(problem.recording.channels)
     # A current that is neither recorded nor stated, as that of a passive damper, cannot be switched off.
     if is_recorded or _CURRENT in list_numbers(problem.scenario):
         off = {} if is_recorded else {_CURRENT: 0.0}
@@ -121,8 +122,10 @@ def _recorded_floor(problem: DiagnosisProblem) -> Floor:
     if isinstance(inputs, SeatInputs):
         return inputs.floor
     still, moved = np.zeros(len(inputs.displacement)), inputs.displacement
-    driving = inputs.current_command, inputs.coil_current, inputs.damper_temperature
-    return Floor(1.0 / problem.rate, still, still, moved, *driving)
+    command = inputs.current_command
+    if inputs.command_voltage is not None and inputs.voltage_gain is not None:
+        command = inputs.voltage_gain * inputs.command_voltage
+    return Floor(1.0 / problem.rate, still, still, moved, command, inputs.coil_current, inputs.damper_temperature)
 
 
 _FIRST_STEP = 0.6

@@ -7,7 +7,7 @@ import numpy as np
 
 from seatsim.recordings.quality import damage
 from seatsim.recordings.quality.issue import Issue, RunUnderTest, Severity, is_at_rest, place_in_run
-from seatsim.recordings.recording import ACCELEROMETERS, MOTION
+from seatsim.recordings.recording import ACCELEROMETERS, COMMANDS, MOTION
 from seatsim.schema.arrays import Array
 from seatsim.schema.fields import read_packaged
 from seatsim.schema.units import conversion
@@ -85,7 +85,7 @@ def check_shapes(run: RunUnderTest) -> Iterator[Issue]:
     the limit of its supply, and any other channel where friction or play holds what it measures.
     """
     for channel, values in run.table.items():
-        if channel in ("current_command", "command_voltage", "damper_temperature") or np.ptp(values) == 0.0:
+        if channel in (*COMMANDS, "damper_temperature") or np.ptp(values) == 0.0:
             continue
         is_sure = channel in MOTION and damage.is_fine(run, channel)
         for extreme, rows in damage.flat_tops(values):

@@ -6,7 +6,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from seatsim.recordings.recording import Recording
+from seatsim.recordings.recording import COMMANDS, Recording
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
 from seatsim.schema.fields import read_packaged
@@ -120,7 +120,7 @@ class RunUnderTest(NamedTuple):
     @property
     def opposes_command(self) -> bool:
         """Whether the coil current falls where its command rises."""
-        commands = [self.table[name] for name in ("current_command", "command_voltage") if name in self.table]
+        commands = [self.table[name] for name in COMMANDS if name in self.table]
         coil = self.table["coil_current"]
         return any(float(np.cov(coil, each)[0, 1]) < -0.5 * np.std(coil) * np.std(each) for each in commands)
 

@@ -11,7 +11,7 @@ from seatsim.recordings.quality.damage import find_spikes, is_fine, measure_leve
 from seatsim.recordings.quality.issue import LATE, Issue, RunUnderTest, Severity, issue_in_all_runs
 from seatsim.recordings.quality.relations import filter_band, find_delay
 from seatsim.recordings.quality.sensors import check_constants, check_noise
-from seatsim.recordings.recording import MOTION
+from seatsim.recordings.recording import CURRENTS, MOTION
 from seatsim.recordings.replay import LEAST_ROWS, LEFT_OUT
 from seatsim.rig.temperature import Thermal
 from seatsim.schema.arrays import Array
@@ -86,7 +86,7 @@ def _check_stated(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     stated = source.data.get("controller") if source else None
     if (
         recording.header.rig == "seat"
-        and not {"current_command", "coil_current"} & set(recording.channels)
+        and set(CURRENTS).isdisjoint(recording.channels)
         and isinstance(stated, dict)
         and stated.get("law") == "replay"
         and "current" not in stated

@@ -86,6 +86,17 @@ def test_a_bench_repeats_the_motion_of_its_damper(bench):
     assert found.coil_current is None
 
 
+def test_a_bench_that_a_voltage_commands_repeats_it_as_a_current_and_can_be_run_without(bench):
+    channels = {name: bench.recording.channels[name] for name in CHANNELS[:3]}
+    channels["command_voltage"] = bench.recording.channels["current_command"]
+    recording = dataclasses.replace(bench.recording, channels=channels)
+    (inputs,) = bench.inputs.values()
+    inputs = inputs._replace(current_command=None, command_voltage=np.full(400, 5.0), voltage_gain=0.1)
+    found = by_name(dataclasses.replace(bench, recording=recording, inputs={"first": inputs}))
+    assert found["coil_current"].floor.command == pytest.approx(0.5)
+    assert not found["zero_current"].floor.command.any() and not found["zero_current"].set
+
+
 @pytest.mark.parametrize("law", [None, LAWS.find("constant")(0.7)])
 def test_a_current_that_is_not_recorded_is_switched_off_where_the_nominal_states_it(bench, law):
     channels = {name: bench.recording.channels[name] for name in CHANNELS[:3]}
