@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.stats import t as student_t
 
 from seatsim.diagnosis.objective import AT_BOUND, Parameters
 from seatsim.diagnosis.problem import LEAST_REMOVABLE, DiagnosisProblem
@@ -18,10 +19,7 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.text import join_names
 
 _BETWEEN_EXCITATIONS = 0.03
-"""Standard deviation by which the share differs between excitations beyond that between runs.
-
-On 54 simulated rigs the intervals from two or three other runs held 90 % of the shares of a run.
-"""
+"""Standard deviation by which the share differs between excitations beyond that between runs, on simulated rigs."""
 
 
 def write_answer(diagnosis: Diagnosis) -> str:
@@ -63,11 +61,15 @@ def share_taken(gap: Gaps | RunGaps) -> float:
 
 
 def _elsewhere(gap: Gaps) -> str:
-    """Return a clause on the share to be expected under another excitation, by how runs with a gap to remove differ."""
+    """Return a clause on the share to be expected under another excitation, by how runs with a gap to remove differ.
+
+    It is the 90 % prediction interval of one more run, by Student's t, as the standard deviation is that of few runs.
+    """
     shares = [share_taken(run) for run in gap.by_run if run.before.overall - run.floor.overall > LEAST_REMOVABLE]
     if len(shares) < 2:
         return ""
-    half = QUANTILE * math.hypot(float(np.std(shares, ddof=1)), _BETWEEN_EXCITATIONS)
+    between_runs = float(np.std(shares, ddof=1)) * math.sqrt(1.0 + 1.0 / len(shares))
+    half = math.hypot(student_t.ppf(0.95, len(shares) - 1) * between_runs, QUANTILE * _BETWEEN_EXCITATIONS)
     low, high = np.clip(float(np.median(shares)) + np.array([-half, half]), 0.0, 1.0)
     return f"; under another excitation {low:.0%} to {high:.0%} are expected"
 
