@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.stats import t as student_t
+from scipy.special import stdtrit
 
 from seatsim.diagnosis.objective import AT_BOUND, Parameters
 from seatsim.diagnosis.problem import LEAST_REMOVABLE, DiagnosisProblem
@@ -69,7 +69,7 @@ def _elsewhere(gap: Gaps) -> str:
     if len(shares) < 2:
         return ""
     between_runs = float(np.std(shares, ddof=1)) * math.sqrt(1.0 + 1.0 / len(shares))
-    half = math.hypot(student_t.ppf(0.95, len(shares) - 1) * between_runs, QUANTILE * _BETWEEN_EXCITATIONS)
+    half = math.hypot(stdtrit(len(shares) - 1, 0.95) * between_runs, QUANTILE * _BETWEEN_EXCITATIONS)
     low, high = np.clip(float(np.median(shares)) + np.array([-half, half]), 0.0, 1.0)
     return f"; under another excitation {low:.0%} to {high:.0%} are expected"
 

@@ -21,7 +21,7 @@ import numpy as np
 import scipy  # loads `scipy.signal` where it is first used
 
 from seatsim.recordings.quality.issue import LATE, Issue, RunUnderTest, Severity, Table, doubt
-from seatsim.recordings.recording import BENCH_CHANNELS, MOTION, SEAT_CHANNELS
+from seatsim.recordings.recording import BENCH_CHANNELS, COMMANDS, MOTION, SEAT_CHANNELS
 from seatsim.recordings.replay import COMPARED, LEFT_OUT, replay_table
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import RunError
@@ -254,7 +254,7 @@ _TURNED = 0.5
 """Share of what one phase for all frequencies leaves below which a delay is told from a lag, friction or play."""
 _DELAYED_COPY = 0.8
 """Least correlation with the simulation for a channel to be its delayed copy: below it may be another motion."""
-_INPUTS = ("floor_acceleration", "displacement", "velocity", "current_command", "command_voltage")
+_INPUTS = ("floor_acceleration", "displacement", "velocity", *COMMANDS)
 """Channels that drive the simulation."""
 _GROSS, _DELAYED = 0.4, 0.2
 """Least fall of the residual for a fault to be named, and for a delay. A flipped sign raises e^2 of a channel by up to
